@@ -23,7 +23,7 @@ export function setOf(layer, keep = 1) {
   pairs.push([layer.by, layer.amount.trim()], ["seed", layer.seed.trim()]);
   if (layer.warp !== "") pairs.push(["warp", layer.warp]);
   if (layer.field) pairs.push(["field", layer.field]);
-  if (keep < 1) pairs.push(["keep", String(keep)]);
+  if (keep < 1) pairs.push(["lod", String(keep)]);
   const attributes = attributesOf(layer);
   if (attributes.length > 0) pairs.push(["attributes", attributes.join(",")]);
   if (layer.scale) pairs.push(["scale_range", layer.range.replace(/\s/g, "")]);
@@ -44,7 +44,7 @@ export function joined(pairs) {
 export function memberOf(layer, keep = 1, isWhole = false) {
   const members = {};
   for (const [name, value] of setOf(layer, keep)) {
-    if (["spacing", "density", "min_distance", "keep"].includes(name)) members[name] = numberOr(value);
+    if (["spacing", "density", "min_distance", "lod"].includes(name)) members[name] = numberOr(value);
     else if (name === "warp") members[name] = value === "off" || value === "on" ? value : numberOr(value);
     else if (name === "seed") members[name] = new Digits(value);
     else if (name === "attributes") members[name] = value.split(",");

@@ -97,6 +97,19 @@ export interface Parameters {
      */
     keep?: number;
     /**
+     * The steps by which the points of a set that is thinned or in a field move apart, so that they are spread evenly:
+     * 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its time. Sets with all points do
+     * not settle. Allowed: an integer from 0 to 4. Default: 2.
+     */
+    settle?: number;
+    /**
+     * The level of detail: the part of the points that the answer has, at each place those of the lowest rank. None of
+     * them moves, so a level has a part of the points of a finer one, in fields, of kinds and of layers, too. Beside
+     * layers: of all of them; they keep clear of all points of each other. Allowed: a number from 1e-6 to 1. Default:
+     * 1.
+     */
+    lod?: number;
+    /**
      * The field that thins the points out, from place to place: a share of the density, which is that where the field
      * is 1. The list of fields shows what is loaded. By its name, or as in JSON; see `raster`. Default: none.
      */

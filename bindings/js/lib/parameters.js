@@ -25,6 +25,8 @@ export const KINDS = {
     seed: "integer",
     warp: "strength",
     keep: "number",
+    settle: "integer",
+    lod: "number",
     field: "field",
     except: "names",
     attributes: "names",

@@ -63,8 +63,8 @@ pub use sample::{
     Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column,
     Cursor, EvenVariants, F32, F64, Field, Format, Keep, LATTICE_LIMIT, LeastDistance, Member,
     Members, Neighbor, Offsets, Placement, Plan, Point, PointId, PointSet, Points, Polygon, Raster,
-    Region, ScaleRange, Seed, Settle, Spacing, Tile, UniformNumber, VariantScales, Variants, VaryingKinds,
-    Warp,
+    Region, ScaleRange, Seed, Settle, Spacing, Tile, UniformNumber, VariantScales, Variants,
+    VaryingKinds, Warp,
 };
 pub use sample::{PeriodicBlocks, PeriodicPlan, PeriodicSet};
 pub use table::Table;

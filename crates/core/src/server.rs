@@ -370,6 +370,21 @@ pub fn preview(plan: &Plan, spacing: f64) -> Result<Plan, Error> {
     plan.with_spacing(Spacing::new(spacing)?)
 }
 
+/// Whether the points of a set settle: in a field or where not all are kept, unless by no steps.
+///
+/// ```
+/// use strew_core::{PointSet, Table, server::settles};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let all = PointSet::new(table);
+/// assert!(!settles(&all) && settles(&all.keep(0.5)?));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[must_use]
+pub fn settles(set: &PointSet) -> bool {
+    set.settles()
+}
+
 /// About half the length, along the axes and in world units, of the outlines of all shapes of an area
 /// inside `within`: width + height for a box. Counting an area takes time in proportion to this and to
 /// its height.

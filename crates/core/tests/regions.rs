@@ -19,8 +19,8 @@ fn brute_force(set: &PointSet, region: Region) -> Vec<Point> {
     let pattern = Pattern::with_origin(alpha, seed.origin());
     let step = spacing.get() * alpha.set_side_f64() / f64::from(1u32 << FRACTION_BITS);
     let lattice = |v: f64| (v / step / f64::from(1u32 << FRACTION_BITS)).floor() as i64;
-    // f64 errs by a few units here; vectors reach 13 units, a warp of strength 2 at most 81.
-    let reach = 13 + 8 + 81;
+    // f64 errs by a few units here; vectors reach 13 units, a warp of strength 2 with long waves at most 111.
+    let reach = 13 + 8 + 111;
     let mut points = Vec::new();
     let (min, max) = (region.min().map(lattice), region.max().map(lattice));
     for y in min[1] - reach..=max[1] + reach {

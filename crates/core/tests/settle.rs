@@ -8,8 +8,7 @@ use std::collections::HashMap;
 use proptest::prelude::*;
 use strew_core::{
     Area, Backend, Circle, F64, Field, Placement, Point, PointId, PointSet, Points, Region, Seed,
-    Settle, Spacing, Table,
-    field::FieldSpec,
+    Settle, Spacing, Table, field::FieldSpec,
 };
 use subject::{all, all_by, shipped};
 
@@ -60,7 +59,11 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
     let still = set.clone().settle(0).expect("0");
     let share = |at: [f64; 2]| {
         let share = shares(at);
-        if share > 0.0 { share.min(1.0) * keep.get() } else { 0.0 }
+        if share > 0.0 {
+            share.min(1.0) * keep.get()
+        } else {
+            0.0
+        }
     };
     let mut points: Vec<Placed> = Vec::new();
     for point in still.within(region).expect("near").to_vec() {
@@ -84,7 +87,12 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
         } else {
             0.0
         };
-        let inside = (256.0 * (1.0 - own)).clamp(0.0, 1.0);
+        let is_sparse = own < 1.0 / 1600.0;
+        let inside = if is_sparse {
+            0.0
+        } else {
+            (256.0 * (1.0 - own)).clamp(0.0, 1.0)
+        };
         points.push(Placed {
             id: point.id,
             at,
@@ -123,7 +131,8 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
                     return own.at;
                 }
                 let spacing = unit / share.sqrt();
-                let mut go = sum.map(|v| (v as f32 * 128.0 * own.freedom).clamp(-0.3 * spacing, 0.3 * spacing));
+                let mut go = sum
+                    .map(|v| (v as f32 * 128.0 * own.freedom).clamp(-0.3 * spacing, 0.3 * spacing));
                 let far = (reach * spacing).min(nearest.sqrt());
                 let free = ((far * (1.0 - 1.0 / 262_144.0) - clear) * 0.5).max(0.0);
                 let length = (go[0] * go[0] + go[1] * go[1]).sqrt();
@@ -191,10 +200,7 @@ fn region(min: [f64; 2], sides: [f64; 2]) -> Region {
 
 /// Compares the points of a box with the reference of a wider one.
 fn check(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, inner: Region, room: f64) {
-    let wide = Region::new(
-        inner.min().map(|v| v - room),
-        inner.max().map(|v| v + room),
-    );
+    let wide = Region::new(inner.min().map(|v| v - room), inner.max().map(|v| v + room));
     let expected: Vec<Point> = reference(set, shares, wide.expect("ordered"))
         .into_iter()
         .filter(|point| inner.contains(point.at()))
@@ -225,7 +231,12 @@ fn points_of_fields_are_those_of_the_definition() {
         check(&set, &hills, region([-10.0, -4.0], [24.0, 20.0]), 60.0);
         let noise = noise();
         let set = self::set(11, 1.0, steps).in_field(noise.clone());
-        check(&set, &|at| noise.share(at), region([100.0, 50.0], [20.0, 24.0]), 50.0);
+        check(
+            &set,
+            &|at| noise.share(at),
+            region([100.0, 50.0], [20.0, 24.0]),
+            50.0,
+        );
     }
 }
 
@@ -233,7 +244,10 @@ fn points_of_fields_are_those_of_the_definition() {
 fn other_spacings_and_tables_are_those_of_the_definition() {
     let table = subject::table("sqrt(3)", 20);
     let placement = Placement::new(Spacing::new(0.37).expect("in range"), Seed(77));
-    let set = PointSet::new(table).placed(placement).keep(0.2).expect("a share");
+    let set = PointSet::new(table)
+        .placed(placement)
+        .keep(0.2)
+        .expect("a share");
     check(&set, &|_| 1.0, region([1000.0, -900.0], [6.0, 7.0]), 11.0);
 }
 
@@ -267,7 +281,10 @@ fn agrees(set: &PointSet, area: impl Into<Area>) {
     let rest = set.resume(area.clone(), blocks.cursor().expect("a place"));
     assert_eq!(rest.expect("the place").to_vec(), whole[filled..]);
     for point in whole.iter().step_by(n / 30 + 1) {
-        assert_eq!(set.point(point.id).map(|member| member.at()), Some(point.at()));
+        assert_eq!(
+            set.point(point.id).map(|member| member.at()),
+            Some(point.at())
+        );
         let nearest = set.nearest(point.at(), 1).expect("found");
         assert_eq!(nearest[0].member.id(), point.id);
         let around = set.around(point.at(), 4.0, 10_000).expect("few");
@@ -288,7 +305,10 @@ fn parts_agree_with_the_whole() {
     agrees(&thinned, circle);
     let field = set(9, 1.0, 3).in_field(hills);
     agrees(&field, region([-40.0, -170.0], [390.0, 240.0]));
-    agrees(&set(9, 1.0, 1).in_field(noise()), region([300.0, -170.0], [110.0, 150.0]));
+    agrees(
+        &set(9, 1.0, 1).in_field(noise()),
+        region([300.0, -170.0], [110.0, 150.0]),
+    );
 }
 
 proptest! {
@@ -325,7 +345,9 @@ fn full_density_does_not_move() {
     let full = set(3, 1.0, 3);
     let area = region([0.0, 0.0], [60.0, 60.0]);
     let of = |set: &PointSet| set.within(area).expect("near").to_vec();
-    let one = full.clone().in_field(FieldSpec::constant(1.0).expect("a share"));
+    let one = full
+        .clone()
+        .in_field(FieldSpec::constant(1.0).expect("a share"));
     assert_eq!(of(&one), of(&full));
     assert_eq!(of(&full.clone().settle(0).expect("0")), of(&full));
 }
@@ -345,9 +367,50 @@ fn distances_of_thinned_sets_are_kept() {
         let set = set(3, 1.0, steps).keep(keep).expect("a share");
         let least = set.least_distance();
         assert!(least > 0.5);
-        for point in set.within(region([0.0, 0.0], [50.0, 50.0])).expect("near").to_vec() {
+        for point in set
+            .within(region([0.0, 0.0], [50.0, 50.0]))
+            .expect("near")
+            .to_vec()
+        {
             let next = set.nearest(point.at(), 2).expect("found")[1];
             assert!(next.distance >= least, "{} {least}", next.distance);
         }
+    }
+}
+
+#[test]
+fn levels_of_detail_nest_and_nothing_moves() {
+    let area = region([-20.0, 30.0], [90.0, 70.0]);
+    let sets = [
+        set(3, 1.0, 2).in_field(noise()),
+        set(3, 1.0, 0).in_field(noise()),
+        set(3, 1.0, 3).keep(0.4).expect("a share"),
+        set(3, 1.0, 2),
+    ];
+    for set in sets {
+        let whole = set.within(area).expect("near").to_vec();
+        let mut last = whole.clone();
+        for part in [0.5, 0.11] {
+            let level = set.clone().lod(part).expect("a part");
+            let share = |id| set.share(id).unwrap_or(set.placement().keep.get());
+            let expected = whole.iter().filter(|p| set.rank(p.id) < part * share(p.id));
+            let plan = level.within(area).expect("near");
+            let points = plan.to_vec();
+            assert_eq!(points, expected.copied().collect::<Vec<_>>());
+            assert_eq!(plan.count(), points.len() as u128);
+            assert!(points.iter().all(|point| last.contains(point)));
+            assert_eq!(
+                level.nearest(points[5].at(), 1).expect("found")[0]
+                    .member
+                    .id(),
+                points[5].id
+            );
+            assert!(level.point(points[5].id).is_some());
+            last = points;
+        }
+        agrees(
+            &set.lod(0.3).expect("a part"),
+            region([0.0, -150.0], [330.0, 300.0]),
+        );
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use strew_catalog::{Ready, except::MOST_HOLES};
 use strew_config::Limits;
 use strew_core::{
-    Area, Cursor, ErrorKind, Placement, Plan, PointId, PointSet, Spacing,
+    Area, Cursor, ErrorKind, Keep, Placement, Plan, PointId, PointSet, Spacing,
     server::{self, Stop},
 };
 use strew_error::Error;
@@ -108,7 +108,7 @@ impl<'a> Planner<'a> {
             None => vec![],
         };
         self.prices.push(set, Some(spacing), region.bounds);
-        let whole = plan.placement().with_keep(set.whole);
+        let whole = plan.placement().with_lod(Keep::ALL);
         let layer = selection.set.placed(whole);
         self.layers.push(match &set.region {
             Some(own) => layer.limited_to(own.area.clone()),

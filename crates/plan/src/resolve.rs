@@ -32,6 +32,11 @@ pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Resolved, Error> {
             let spacing = Spacing::new(value).map_err(wrong(&parameters::SPACING, value))?;
             Ok(Resolved::Known(spacing, spacing.density()))
         }
+        Amount::MinDistance(distance) if set.moves() && set.field.is_some() => {
+            let detail = "not with a field: points settle";
+            let allowed = "density, spacing or count; or settle=0";
+            Err(set.fault(parameters::MIN_DISTANCE.name, distance, detail, allowed))
+        }
         Amount::MinDistance(distance) => {
             let least = ready.table.least_distance();
             let spacing = least.spacing_for(distance, set.warp).map_err(|error| {
@@ -67,7 +72,12 @@ pub(super) fn no_period(error: strew_core::Error) -> Error {
 
 /// The distance that coordinates within ±`reach` keep.
 pub(super) fn least_distance(set: &Set, ready: &Ready, spacing: Spacing, reach: f64) -> f64 {
+    if set.moves() && set.field.is_some() {
+        return 0.0;
+    }
     let only = set.kinds.as_ref().and_then(|kinds| kinds.only.as_ref());
+    // Where points settle, those of a kind keep the distance of all.
+    let only = only.filter(|_| !set.moves());
     let of_kind = only.and_then(|(_, kind)| ready.table.least_distance_of(*kind, *kind));
     let least = of_kind.unwrap_or_else(|| ready.table.least_distance());
     let least = least.reported(spacing, set.warp, reach);
@@ -86,7 +96,7 @@ pub(super) fn kind_distances(
     spacing: Spacing,
     reach: f64,
 ) -> Vec<KindDistance> {
-    let Some(kinds) = set.kinds.as_ref() else {
+    let Some(kinds) = set.kinds.as_ref().filter(|_| !set.moves()) else {
         return vec![];
     };
     let wanted = |name: &&str| kinds.only_name().is_none_or(|only| only == *name);

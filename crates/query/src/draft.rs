@@ -16,11 +16,11 @@ use crate::{
     layer::LayerDraft,
     parameter::{Group, Parameter, groups},
     parameters::{
-        BBOX, CRS, CURSOR, DECIMALS, EXCEPT, FORMAT, KEEP, LIMIT, OFFSET, ONLY, PARTS, PERIODIC,
+        BBOX, CRS, CURSOR, DECIMALS, EXCEPT, FORMAT, LIMIT, LOD, OFFSET, ONLY, PARTS, PERIODIC,
         SEED, SIZE, SUMMARY, WORLD, WORLD_DIGEST,
     },
     region::{REGION, RegionDraft},
-    set_check::keep,
+    set_check::lod,
     table,
     text::parse_pairs,
     value::Value,
@@ -226,7 +226,7 @@ impl Draft {
         }
         let is_of_set = |parameter: &Parameter| {
             let is_one = groups::SET.contains(&parameter.group) || parameter.group == Group::Period;
-            is_one && ![&SEED, &ONLY, &EXCEPT, &KEEP].contains(&parameter)
+            is_one && ![&SEED, &ONLY, &EXCEPT, &LOD].contains(&parameter)
         };
         let own = self
             .values
@@ -245,11 +245,11 @@ impl Draft {
             Some(seed) => layer.seeded(seed).check(&layers[..i], loaded),
             None => layer.check(&layers[..i], loaded),
         });
-        let (beside, only, common) = (all(beside), self.only(), keep(&self.values));
+        let (beside, only, common) = (all(beside), self.only(), lod(&self.values));
         let (_, mut sets, _, _, common) = (beside, all(sets), seed, only, common).together()?;
         if let Some(common) = common {
             for set in &mut sets {
-                set.thin_out(common);
+                set.show(common);
             }
         }
         let values: Vec<&Values> = layers.iter().map(|layer| &layer.values).collect();

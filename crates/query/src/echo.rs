@@ -281,9 +281,6 @@ impl Set {
         if let Some(made) = self.kinds.as_ref().and_then(|kinds| kinds.made.as_ref()) {
             identity["kinds_table"] = json!(made.digest);
         }
-        if self.whole != self.keep {
-            identity["whole"] = json!(self.whole.get());
-        }
         if let Some(terrain) = &self.terrain {
             identity["terrain_digest"] = json!(terrain.field.digest);
         }

@@ -4,7 +4,7 @@ use std::{fmt, sync::Arc};
 
 use strew_catalog::{Entry, Ready, except::Except};
 use strew_core::{
-    Area, Attributes, Keep, PeriodicSet, Placement, PointSet, Seed, Spacing, Table, Warp,
+    Area, Attributes, Keep, PeriodicSet, Placement, PointSet, Seed, Settle, Spacing, Table, Warp,
 };
 use strew_error::{Error, Fault};
 
@@ -13,7 +13,7 @@ use crate::{
     field::SetField,
     kinds::Kinds,
     parameter::Parameter,
-    parameters::{EXCEPT, KEEP},
+    parameters::{EXCEPT, LOD},
     period::Period,
     region::QueryRegion,
     resolved,
@@ -41,9 +41,11 @@ pub struct Set {
     pub warp: Warp,
     /// The share of the points that are kept.
     pub keep: Keep,
-    /// The share that later layers keep clear of: the set's own, without the common one of a query with layers. So
-    /// a smaller common share has a part of the points of a larger one.
-    pub whole: Keep,
+    /// How points settle if not all are kept or a field decides which are.
+    pub settle: Settle,
+    /// The level of detail: the set's own times the common one of a query with layers. Later layers keep clear of all
+    /// points, so a coarser level has a part of the points of a finer one.
+    pub lod: Keep,
     /// The field that the set is in.
     pub field: Option<SetField>,
     /// The further values of points.
@@ -72,6 +74,8 @@ impl Set {
         Placement::new(spacing, self.seed)
             .with_warp(self.warp)
             .with_keep(self.keep)
+            .with_settle(self.settle)
+            .with_lod(self.lod)
     }
 
     /// The points of a table at a spacing.
@@ -89,12 +93,25 @@ impl Set {
         })
     }
 
-    /// Keeps a share of its points, while other layers keep clear of all of them.
-    pub fn thin_out(&mut self, share: Keep) {
-        let product = (self.whole.get() * share.get()).max(Keep::MIN);
-        self.keep = Keep::new(product).unwrap_or(share);
-        let keep = (self.keep != Keep::ALL).then(|| Value::Number(self.keep.get()));
-        resolved::replace(&mut self.values, [(&KEEP, keep)]);
+    /// Shows a part of its points, while other layers keep clear of all of them.
+    pub(crate) fn show(&mut self, part: Keep) {
+        let product = (self.lod.get() * part.get()).max(Keep::MIN);
+        self.lod = Keep::new(product).unwrap_or(part);
+        let lod = (self.lod != Keep::ALL).then(|| Value::Number(self.lod.get()));
+        resolved::replace(&mut self.values, [(&LOD, lod)]);
+    }
+
+    /// Whether points settle, if by any steps: in a field and where a part is kept that is not tiny, but not in a period.
+    #[must_use]
+    pub fn settles(&self) -> bool {
+        let is_thinned = (Settle::LEAST_SHARE..1.0).contains(&self.keep.get());
+        self.period.is_none() && (is_thinned || self.field.is_some())
+    }
+
+    /// Whether points move so that those of a kind, or in a field any, keep no distance of their own.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        self.settles() && self.settle != Settle::OFF
     }
 
     /// Leaves out some points.
@@ -125,7 +142,7 @@ impl Set {
     /// The share of the table's points that are of the set, without a field.
     pub fn share(&self) -> f64 {
         let kind = self.kinds.as_ref().map_or(1.0, Kinds::share);
-        self.keep.get() * kind
+        self.keep.get() * self.lod.get() * kind
     }
 
     /// The part of the query's region in which the layer lies.
@@ -156,7 +173,9 @@ impl Set {
     ) -> Result<PeriodicSet, strew_core::Error> {
         let set = PeriodicSet::new(table.clone(), period.least)?;
         let set = set.side(period.side)?.seed(self.seed.0);
-        let mut set = set.warp(self.warp.strength())?.keep(self.keep.get())?;
+        let mut set = set
+            .warp(self.warp.strength())?
+            .keep(self.keep.get() * self.lod.get())?;
         if let Some((_, kind)) = self.kinds.as_ref().and_then(|kinds| kinds.only.as_ref()) {
             set = set.only(*kind)?;
         }

@@ -1,7 +1,7 @@
 //! Checking a set: from values to a table laid into the world.
 
 use strew_catalog::{Catalog, field::Allowance};
-use strew_core::{Attribute, Keep, Placement, Seed, Warp};
+use strew_core::{Attribute, Keep, Placement, Seed, Settle, Warp};
 use strew_error::{Checked, Error, Together as _};
 
 use crate::{
@@ -10,7 +10,8 @@ use crate::{
     field::Loaded,
     kinds::Kinds,
     parameters::{
-        ALPHA, ATTRIBUTES, HEIGHTS, KEEP, MAP, NORMALS, PROFILE, SCALE_RANGE, SEED, SPREAD, WARP,
+        ALPHA, ATTRIBUTES, HEIGHTS, KEEP, LOD, MAP, NORMALS, PROFILE, SCALE_RANGE, SEED, SETTLE,
+        SPREAD, WARP,
     },
     period::Period,
     resolved,
@@ -29,13 +30,20 @@ impl Set {
             Amount::of(values),
             values.get::<u64>(&SEED),
             warp(values),
-            keep(values),
+            (keep(values), settle(values), lod(values)).together(),
             (attributes::check(values, known), kinds.clone()).together(),
             table::check(values, None, loaded.catalog),
             (loaded.field(values), terrain::check(values, loaded)).together(),
         );
-        let (amount, seed, warp, keep, (attributes, mut kinds), (entry, pin), (field, terrain)) =
-            checked.together()?;
+        let (
+            amount,
+            seed,
+            warp,
+            (keep, settle, lod),
+            (attributes, mut kinds),
+            (entry, pin),
+            (field, terrain),
+        ) = checked.together()?;
         let entry = match &mut kinds {
             Some(kinds) => {
                 kinds.vary(values, loaded)?;
@@ -54,7 +62,8 @@ impl Set {
             seed,
             warp: warp.unwrap_or_else(|| Placement::default_warp(seed)),
             keep: keep.unwrap_or(Keep::ALL),
-            whole: keep.unwrap_or(Keep::ALL),
+            settle: settle.unwrap_or_default(),
+            lod: lod.unwrap_or(Keep::ALL),
             attributes,
             kinds,
             period,
@@ -93,6 +102,15 @@ impl Set {
             (
                 &KEEP,
                 (self.keep != Keep::ALL).then(|| Value::Number(self.keep.get())),
+            ),
+            (
+                &SETTLE,
+                self.settles()
+                    .then(|| Value::Integer(self.settle.steps().into())),
+            ),
+            (
+                &LOD,
+                (self.lod != Keep::ALL).then(|| Value::Number(self.lod.get())),
             ),
             (
                 &ATTRIBUTES,
@@ -150,7 +168,20 @@ fn warp(values: &Values) -> Checked<Option<Warp>> {
     warp.map_err(|error| values.fault(&WARP, error.to_string()).into())
 }
 
-pub(crate) fn keep(values: &Values) -> Checked<Option<Keep>> {
+fn settle(values: &Values) -> Checked<Option<Settle>> {
+    let steps = values.get::<u64>(&SETTLE)?;
+    let settle = steps.map(|steps| Settle::new(u32::try_from(steps).unwrap_or(u32::MAX)));
+    settle
+        .transpose()
+        .map_err(|error| values.fault(&SETTLE, error.to_string()).into())
+}
+
+pub(crate) fn lod(values: &Values) -> Checked<Option<Keep>> {
+    let lod = values.get(&LOD)?.map(Keep::new).transpose();
+    lod.map_err(|error| values.fault(&LOD, error.to_string()).into())
+}
+
+fn keep(values: &Values) -> Checked<Option<Keep>> {
     let keep = values.get(&KEEP)?.map(Keep::new).transpose();
     keep.map_err(|error| values.fault(&KEEP, error.to_string()).into())
 }

@@ -19,7 +19,7 @@ pub(super) struct Level {
     /// The side of its chunks.
     pub(super) size: f64,
     /// The share of the points.
-    pub(super) keep: f64,
+    pub(super) lod: f64,
     /// The query of addresses, which the daemon needs for the same answer.
     pub(super) query: String,
     /// The columns of its chunks.
@@ -45,12 +45,7 @@ pub(super) struct Grid {
 
 impl Level {
     /// The chunks that a box touches.
-    pub(super) fn new(
-        size: f64,
-        keep: f64,
-        query: String,
-        bbox: [f64; 4],
-    ) -> Result<Self, Failure> {
+    pub(super) fn new(size: f64, lod: f64, query: String, bbox: [f64; 4]) -> Result<Self, Failure> {
         let [min_x, min_y, max_x, max_y] = bbox;
         let between = |min: f64, max: f64| {
             let (first, end) = ((min / size).floor(), (max / size).ceil());
@@ -65,7 +60,7 @@ impl Level {
         };
         Ok(Self {
             size,
-            keep,
+            lod,
             query,
             columns: between(min_x, max_x)?,
             rows: between(min_y, max_y)?,
@@ -77,13 +72,13 @@ impl Level {
     /// # Errors
     /// The invalid member, its value, and the allowed values.
     pub(super) fn validate(&self) -> anyhow::Result<()> {
-        let Self { size, keep, .. } = self;
+        let Self { size, lod, .. } = self;
         if !(size.is_finite() && *size > 0.0) {
             return Err(anyhow!("size: {size}; allowed: a finite number above 0"));
         }
-        if !(Keep::MIN..=1.0).contains(keep) {
+        if !(Keep::MIN..=1.0).contains(lod) {
             return Err(anyhow!(
-                "keep: {keep}; allowed: a number from {:e} to 1",
+                "lod: {lod}; allowed: a number from {:e} to 1",
                 Keep::MIN
             ));
         }

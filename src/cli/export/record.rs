@@ -212,7 +212,7 @@ mod tests {
 
     #[test]
     fn damaged_members_of_a_manifest_are_named() {
-        let level = r#"{"size": 16, "keep": 1, "query": "", "columns": [0, 2], "rows": [0, 2]}"#;
+        let level = r#"{"size": 16, "lod": 1, "query": "", "columns": [0, 2], "rows": [0, 2]}"#;
         let manifest = format!(
             r#"{{"export": {{"strew": "1", "algorithm": 3, "world": null, "digests": [], "query": "", "format": "f32",
             "content_type": "", "bbox": [0, 0, 1, 1], "compressed": [], "archive": null, "levels": [{level}]}},
@@ -228,7 +228,7 @@ mod tests {
                 "\"size\": -16",
                 "export.levels[0].size: -16",
             ),
-            ("\"keep\": 1", "\"keep\": 0", "export.levels[0].keep: 0"),
+            ("\"lod\": 1", "\"lod\": 0", "export.levels[0].lod: 0"),
             (
                 columns,
                 "\"columns\": [2, 0]",

@@ -11,7 +11,7 @@ use strew_error::Error;
 use strew_plan::Planned;
 use strew_query::{
     Assets, Draft, Options, Parameter, Query, RegionDraft, ShapeDraft, Value, groups,
-    parameters::{BBOX, KEEP, WORLD},
+    parameters::{BBOX, LOD, WORLD},
     parse_pairs,
 };
 
@@ -37,7 +37,7 @@ pub(super) struct Spec {
     pub(super) world: Option<WorldName>,
     /// The digests of the tables, fields and lists that points depend on.
     pub(super) digests: Vec<String>,
-    /// The parameters of addresses without `keep`.
+    /// The parameters of addresses without `lod`.
     pub(super) query: String,
     /// The format of the files and its content type.
     pub(super) format: String,
@@ -68,7 +68,7 @@ pub(super) struct WorldName {
 pub(super) struct Checked {
     pub(super) query: Query,
     /// The share of its points; of a world with layers, the share of all layers.
-    keep: f64,
+    lod: f64,
     pub(super) output: Output,
 }
 
@@ -126,7 +126,7 @@ impl Spec {
         let world = text(&WORLD);
         let others = flags
             .texts()
-            .filter(|(parameter, _)| ![&BBOX, &WORLD, &KEEP].contains(parameter));
+            .filter(|(parameter, _)| ![&BBOX, &WORLD, &LOD].contains(parameter));
         let pairs = others.map(|(parameter, text)| {
             format!(
                 "{}={}",
@@ -135,16 +135,16 @@ impl Spec {
             )
         });
         let query = pairs.collect::<Vec<_>>().join("&");
-        let with_keep = |keep: Option<&str>| match (keep, query.is_empty()) {
+        let with_lod = |lod: Option<&str>| match (lod, query.is_empty()) {
             (None, _) => query.clone(),
-            (Some(keep), true) => format!("keep={keep}"),
-            (Some(keep), false) => format!("{query}&keep={keep}"),
+            (Some(lod), true) => format!("lod={lod}"),
+            (Some(lod), false) => format!("{query}&lod={lod}"),
         };
-        let given = text(&KEEP);
+        let given = text(&LOD);
         let given = given
             .as_deref()
             .map(|text| utf8_percent_encode(text.trim(), PLAIN).to_string());
-        let finest = Level::new(shape.size, 1.0, with_keep(given.as_deref()), bbox)?;
+        let finest = Level::new(shape.size, 1.0, with_lod(given.as_deref()), bbox)?;
         let first = check(
             world.as_deref(),
             &finest,
@@ -161,16 +161,16 @@ impl Spec {
             );
         }
         let (compressed, archive) = shape.packing(encoding)?;
-        let share = first.keep;
+        let share = first.lod;
         let mut levels = vec![Level {
-            keep: share,
+            lod: share,
             ..finest
         }];
         for k in 1..shape.levels {
-            let keep = share * 0.25_f64.powi(k as i32);
-            if keep < Keep::MIN {
+            let lod = share * 0.25_f64.powi(k as i32);
+            if lod < Keep::MIN {
                 refuse!(
-                    "--levels {}: level {k} has the share {keep:e} of the points; allowed with keep = {share}: at most \
+                    "--levels {}: level {k} has the share {lod:e} of the points; allowed with lod = {share}: at most \
                      {k} levels, because the smallest share is {:e}",
                     shape.levels,
                     Keep::MIN
@@ -179,8 +179,8 @@ impl Spec {
             let size = shape.size * f64::from(k).exp2();
             levels.push(Level::new(
                 size,
-                keep,
-                with_keep(Some(&keep.to_string())),
+                lod,
+                with_lod(Some(&lod.to_string())),
                 bbox,
             )?);
         }
@@ -296,16 +296,16 @@ fn check(
     let draft = Draft::new(values).within(Ok(chunk(level.size, at)));
     let checked = draft.check(catalog, config.limits.max_vertices);
     // It comes from flags or from the world's document.
-    let keep = || -> Result<f64, Error> {
+    let lod = || -> Result<f64, Error> {
         let (whole, _) = draft.filled(&catalog.worlds)?;
-        Ok(whole.values.get(&KEEP)?.unwrap_or(1.0))
+        Ok(whole.values.get(&LOD)?.unwrap_or(1.0))
     };
     let looks = |(query, options): (Query, Options)| -> Result<Checked, Error> {
         let encoding = options.encoding.unwrap_or(Encoding::Json);
         Ok(Checked {
             output: options.output(encoding)?,
             query,
-            keep: keep()?,
+            lod: lod()?,
         })
     };
     checked

@@ -4,7 +4,7 @@
 use serde_json::{Map, Value, json};
 use strew_query::{
     Group, MOST_LAYERS, NAME, Parameter, groups, of,
-    parameters::{COUNT, EXCEPT, KEEP, ONLY, PERIODIC, SEED, WORLD},
+    parameters::{COUNT, EXCEPT, LOD, ONLY, PERIODIC, SEED, WORLD},
     schema,
 };
 
@@ -75,7 +75,7 @@ fn query(groups: &'static [Group], about: &str) -> Value {
     });
     properties.insert("layers".into(), layers);
     // The common seed and share, and the one layer that is wanted.
-    let is_common = |parameter: &Parameter| [&SEED, &ONLY, &EXCEPT, &KEEP].contains(&parameter);
+    let is_common = |parameter: &Parameter| [&SEED, &ONLY, &EXCEPT, &LOD].contains(&parameter);
     let of_set = of(groups::SET).filter(|parameter| !is_common(parameter));
     let of_set = of_set.map(|parameter| (parameter.name.to_owned(), nothing()));
     let mut of_set: Map<String, Value> = of_set.collect();

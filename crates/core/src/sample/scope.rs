@@ -198,7 +198,8 @@ impl Scope {
             .as_ref()
             .and_then(|grade| constant(lattice, grade, &piece));
         // Points settle unless there are none, or all.
-        let share = share.filter(|&share| lattice.settle().is_none() || share <= 0.0 || share >= 1.0);
+        let share =
+            share.filter(|&share| lattice.settle().is_none() || share <= 0.0 || share >= 1.0);
         if let Some(share) = share {
             let area = area.cloned().unwrap_or(Area::Region(region));
             let mask = Mask { area: None, ..mask };

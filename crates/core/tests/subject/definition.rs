@@ -3,7 +3,7 @@
 
 use strew_core::{Field, Keep, PointId, PointSet, Seed, Table};
 
-const KNOT: i128 = 1 << 27;
+const KNOT: i128 = 1 << 25;
 
 fn mix(state: u64) -> u64 {
     let mut z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -76,10 +76,22 @@ fn control(key: u64, step: i128, knot: i128) -> i128 {
     order[..=place].iter().map(|&j| slope(j)).sum()
 }
 
-/// g of a direction at a coordinate across it.
-fn shift(key: u64, step: i128, s: i128) -> i128 {
+/// The part of a control value that long waves add.
+fn long_control(key: u64, step: i128, knot: i128) -> i128 {
+    let [a, b, c] = [-1, 0, 1].map(|i| control(key, step, knot.div_euclid(4) + i));
+    let sum = match knot.rem_euclid(4) {
+        0 => 6 * a + 10 * b,
+        1 => 3 * a + 12 * b + c,
+        2 => a + 12 * b + 3 * c,
+        _ => 10 * b + 6 * c,
+    };
+    sum.div_euclid(16)
+}
+
+/// g of a direction at a coordinate across it, from its control values.
+fn shift(control: impl Fn(i128) -> i128, s: i128) -> i128 {
     let cell = s.div_euclid(KNOT);
-    let [a, b, c] = [-1, 0, 1].map(|i| control(key, step, cell + i));
+    let [a, b, c] = [-1, 0, 1].map(|i| control(cell + i));
     let (half, unit) = (0.5f32, (KNOT as f32).recip());
     let constant = (a + b) as f32 * half;
     let linear = (b - a) as f32 * unit;
@@ -88,17 +100,26 @@ fn shift(key: u64, step: i128, s: i128) -> i128 {
     ((square * at + linear) * at + constant) as i128
 }
 
-/// The place to which the warp moves a position in units of 2⁻²⁰ lattice units.
-fn warped(seed: Seed, strength: f64, [mut x, mut y]: [i128; 2]) -> [i128; 2] {
+/// The place to which the warp of a profile moves a position in units of 2⁻²⁰ lattice units.
+fn warped(profile: &str, seed: Seed, strength: f64, [mut x, mut y]: [i128; 2]) -> [i128; 2] {
     let first = mix(seed.0 ^ u64::from_be_bytes(*b"WEAVERS!"));
     let key = |i: u64| mix(first.wrapping_add(i << 56));
     let step = |slope: f64| (slope * strength * KNOT as f64).round() as i128;
-    let (steep, half) = (step(0.06), step(0.03));
-    y += shift(key(1), steep, x);
-    x += shift(key(2), steep, y);
-    let rising = shift(key(3), half, x - y);
+    let shift = |i: u64, part: f64, s: i128| {
+        let value = |knot: i128| {
+            let short = control(key(i), step(0.09 * part), knot);
+            match profile {
+                "pink" => short + long_control(key(i + 4), step(0.24 * part), knot),
+                _ => short,
+            }
+        };
+        shift(value, s)
+    };
+    y += shift(1, 1.0, x);
+    x += shift(2, 1.0, y);
+    let rising = shift(3, 0.5, x - y);
     (x, y) = (x + rising, y + rising);
-    let falling = shift(key(4), half, x + y);
+    let falling = shift(4, 0.5, x + y);
     [x + falling, y - falling]
 }
 
@@ -208,7 +229,7 @@ fn displaced(set: &PointSet, id: PointId, vector: [i32; 2]) -> [f64; 2] {
     let displaced = [(i128::from(id.x) << 20) + dx, (i128::from(id.y) << 20) + dy];
     let place = match placement.warp.strength() {
         0.0 => displaced,
-        strength => warped(placement.seed, strength, displaced),
+        strength => warped(table.profile(), placement.seed, strength, displaced),
     };
     let step = placement.spacing.get() * table.alpha().set_side_f64() / f64::from(1 << 20);
     place.map(|v| v as f64 * step)

@@ -15,7 +15,8 @@ use strew_core::{
 
 const ALPHAS: [&str; 3] = ["(5-sqrt(3))/2", "sqrt(3)", "(1+sqrt(5))/2"];
 
-/// A table with arbitrary vectors up to about ±13 grid units, as long as those of published tables.
+/// A table with arbitrary vectors up to about ±13 grid units, as long as those of published tables. That of the
+/// golden ratio has the profile `pink`, and with it the long waves of the warp.
 pub fn table(alpha: &str, radius: u32) -> Table {
     let map = Map::new(alpha.parse::<Alpha>().expect("valid"), radius).expect("small");
     let blocks = map.intervals() * map.intervals();
@@ -27,7 +28,12 @@ pub fn table(alpha: &str, radius: u32) -> Table {
         (state % (26 << FRACTION_BITS)) as i32 - (13 << FRACTION_BITS)
     };
     let vectors = (0..blocks).map(|_| [next(), next()]).collect();
-    Table::new(map, "test", vectors, Provenance::default()).expect("valid")
+    let profile = if alpha.contains("sqrt(5)") {
+        "pink"
+    } else {
+        "test"
+    };
+    Table::new(map, profile, vectors, Provenance::default()).expect("valid")
 }
 
 /// Unit spacing with a seed and its default warp.

@@ -9,7 +9,7 @@ mod neighbors;
 mod point;
 
 use strew_core::{
-    Area, PointSet, Region, Spacing, Warp,
+    Area, Placement, PointSet, Region, Spacing, Warp,
     server::{self, Stop},
 };
 
@@ -233,7 +233,9 @@ fn rows(selection: &Selection) -> f64 {
     let area = &selection.area;
     let placement = selection.set.placement();
     let is_box = matches!(area, Area::Region(_));
-    let is_closed = placement.warp == Warp::OFF && !selection.looks_at_all();
+    let is_closed = placement.warp == Warp::OFF
+        && !selection.looks_at_all()
+        && !server::settles(&selection.set);
     let looks = candidates(selection) as f64 * (CANDIDATE + selection.look) / ROW;
     let Some(bounds) = area.bounds().filter(|_| !(is_box && is_closed)) else {
         return looks;
@@ -252,7 +254,25 @@ fn rows(selection: &Selection) -> f64 {
     } else {
         0.0
     };
-    along + across + cleared + looks
+    along + across + cleared + looks + settled(selection, bounds)
+}
+
+/// The rows that settling the points near an outline takes: some thirty places for each local spacing of it.
+fn settled(selection: &Selection, bounds: Region) -> f64 {
+    /// Nanoseconds for a step of the places of a local spacing.
+    const STEP: f64 = 8000.0;
+    let set = &selection.set;
+    let Placement {
+        spacing,
+        keep,
+        settle,
+        ..
+    } = set.placement();
+    if !server::settles(set) {
+        return 0.0;
+    }
+    let outline = server::outline(&selection.area, bounds) / spacing.get();
+    outline * keep.get().sqrt() * f64::from(settle.steps()) * STEP / ROW
 }
 
 /// The number of rows, and the work for polygons of many edges unless the rows alone exceed `most`.

@@ -406,7 +406,7 @@ fn wrong_flags_are_refused() {
         ),
         (&["--chunk=16", "--levels=11", "-o", "w"], "--levels"),
         (
-            &["--chunk=16", "--levels=9", "--keep=0.01", "-o", "w"],
+            &["--chunk=16", "--levels=9", "--lod=0.01", "-o", "w"],
             "--levels 9: level 7",
         ),
     ] {

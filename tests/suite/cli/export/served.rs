@@ -43,11 +43,11 @@ fn a_static_server_answers_as_the_daemon() {
     let chunks = [
         ("16/-1/0", ""),
         ("16/1/1", ""),
-        ("32/-1/0", "&keep=0.25"),
-        ("32/0/0", "&keep=0.25"),
+        ("32/-1/0", "&lod=0.25"),
+        ("32/0/0", "&lod=0.25"),
     ];
-    for (chunk, keep) in chunks {
-        let path = format!("/v1/worlds/forest/chunks/{chunk}?format=json{keep}");
+    for (chunk, lod) in chunks {
+        let path = format!("/v1/worlds/forest/chunks/{chunk}?format=json{lod}");
         let (there, here) = (get(daemon.address(), &path), get(nginx.address, &path));
         assert_alike(&there, &here, &path);
         assert!(here.text().contains("\"rock\""), "{}", here.text());
@@ -78,7 +78,7 @@ fn a_static_server_answers_as_the_daemon() {
         "16/0/0?format=json&seed=8",
         "16/0/0?format=csv",
         "32/0/0?format=json",
-        "32/0/0?format=json&keep=0.5",
+        "32/0/0?format=json&lod=0.5",
         "16/7/7?format=json",
     ] {
         let path = format!("/v1/worlds/forest/chunks/{other}");
@@ -144,7 +144,7 @@ fn sets_without_a_world_are_served_under_their_parameters() {
 #[test]
 fn a_coarser_level_has_a_part_of_the_points_of_a_finer_one() {
     let (_folder, file) = settings(WORLDS);
-    let of = |keep: &str| {
+    let of = |lod: &str| {
         let chunk = [
             "sample",
             "-q",
@@ -154,7 +154,7 @@ fn a_coarser_level_has_a_part_of_the_points_of_a_finer_one() {
             "--config",
             &file,
         ];
-        let output = run(&[&chunk[..], &["--keep", keep]].concat(), "");
+        let output = run(&[&chunk[..], &["--lod", lod]].concat(), "");
         assert!(output.status.success(), "{}", errors(&output));
         let text = String::from_utf8(output.stdout).expect("UTF-8");
         text.lines()
@@ -183,7 +183,7 @@ fn levels_have_a_quarter_of_the_common_share_each() {
         "--config",
         &file,
     ];
-    for (k, flags) in [&["--world=forest", "--keep=0.5"][..], &["--world=thin"]]
+    for (k, flags) in [&["--world=forest", "--lod=0.5"][..], &["--world=thin"]]
         .iter()
         .enumerate()
     {
@@ -192,11 +192,11 @@ fn levels_have_a_quarter_of_the_common_share_each() {
         let manifest = fs::read(out.join("manifest.json")).expect("written");
         let manifest: serde_json::Value = serde_json::from_slice(&manifest).expect("JSON");
         let levels = manifest["export"]["levels"].as_array().expect("levels");
-        let keeps: Vec<f64> = levels
+        let lods: Vec<f64> = levels
             .iter()
-            .map(|level| level["keep"].as_f64().expect("a number"))
+            .map(|level| level["lod"].as_f64().expect("a number"))
             .collect();
-        assert_eq!(keeps, [0.5, 0.125, 0.03125], "{flags:?}");
+        assert_eq!(lods, [0.5, 0.125, 0.03125], "{flags:?}");
         // Levels 0 and 1 have the same area.
         let points = |k: usize| manifest["levels"][k]["points"].as_f64().expect("a number");
         let ratio = points(1) / points(0);

@@ -1,6 +1,6 @@
 //! Lanes: the vector operations that the row loops need, as one small trait, and the loops over them.
 
-use crate::sample::{lattice::Point, warp::PatchShears};
+use crate::sample::lattice::Point;
 
 /// Vectors of one instruction set: [`WIDTH`](Self::WIDTH) integers, singles or doubles, in as many
 /// registers as that takes.
@@ -9,10 +9,10 @@ use crate::sample::{lattice::Point, warp::PatchShears};
 /// All functions require a machine with the instruction set, which
 /// [`Backend::available`](super::Backend::available) ensures. Those that take pointers require
 /// [`WIDTH`](Self::WIDTH) values there; pointers need no alignment.
-pub trait Lanes {
+pub trait Lanes: Sized {
     /// The number of lanes.
     const WIDTH: usize;
-    /// The number of successive cells that a [`Table`](Self::Table) has, a power of two.
+    /// The number of successive cells that a [`Table`](Self::Table) has, at most [`AT_ONCE`](crate::sample::warp::PatchShears::AT_ONCE).
     const WINDOW: usize;
 
     /// `i32` lanes.
@@ -29,6 +29,8 @@ pub trait Lanes {
     unsafe fn splat_int(v: i32) -> Self::Ints;
     unsafe fn add_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints;
     unsafe fn sub_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints;
+    unsafe fn min_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints;
+    unsafe fn max_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints;
     /// The cells of coordinates: `v >> CELL_BITS`.
     unsafe fn cells(v: Self::Ints) -> Self::Ints;
     /// The places of coordinates in their cells: `v & PatchShears::CELL_MASK`.
@@ -43,12 +45,29 @@ pub trait Lanes {
     unsafe fn singles_of(v: Self::Ints) -> Self::Singles;
     /// Rounds toward zero.
     unsafe fn truncate(v: Self::Singles) -> Self::Ints;
-    /// The coefficients of the cells from `first` on, out of those by the lowest four bits of the cell.
-    unsafe fn table(all: &[f32; PatchShears::CELLS], first: i32) -> Self::Table;
-    /// The coefficients of cells that a table has.
-    unsafe fn pick(table: Self::Table, cells: Self::Ints) -> Self::Singles;
-    /// The coefficients of any cells, by the lowest four bits of each.
-    unsafe fn pick_any(all: &[f32; PatchShears::CELLS], cells: Self::Ints) -> Self::Singles;
+    /// A table of the [`WINDOW`](Self::WINDOW) coefficients there.
+    unsafe fn table(from: *const f32) -> Self::Table;
+    /// The coefficients at some places of a table.
+    unsafe fn pick(table: Self::Table, places: Self::Ints) -> Self::Singles;
+    /// The coefficients at some places below [`AT_ONCE`](crate::sample::warp::PatchShears::AT_ONCE), as many as are there.
+    unsafe fn pick_at_once(from: *const f32, places: Self::Ints) -> Self::Singles;
+
+    /// The coefficients at any places.
+    ///
+    /// # Safety
+    /// There are coefficients at all of them.
+    #[inline(always)]
+    unsafe fn gather(from: *const f32, places: Self::Ints) -> Self::Singles {
+        // SAFETY: as the caller ensures.
+        unsafe {
+            let places = stored::<Self>(places);
+            let mut picked = [0.0; MOST];
+            for (picked, &place) in picked.iter_mut().zip(&places).take(Self::WIDTH) {
+                *picked = *from.add(place as usize);
+            }
+            Self::load_singles(picked.as_ptr())
+        }
+    }
 
     unsafe fn load_doubles(from: *const f64) -> Self::Doubles;
     unsafe fn splat_double(v: f64) -> Self::Doubles;

@@ -48,4 +48,4 @@ pub(super) use lanes::PlainLoop;
 pub use offsets::Offsets;
 pub(super) use rows::fill_row;
 pub use singles::F32;
-pub(super) use warped::{WarpedColumns, add_first_shear, fill_warped_row, warp_all};
+pub(super) use warped::{Extent, WarpedColumns, add_first_shear, fill_warped_row, warp_all};

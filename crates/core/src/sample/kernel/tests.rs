@@ -5,13 +5,14 @@
 use alloc::{vec, vec::Vec};
 
 use super::{
-    Backend, F32, F64, Format, Geometry, Offsets, Points, Row, WarpedColumns, fill_row,
-    fill_warped_row, format::Emit as _, rows::emit, write_numbers,
+    Backend, Extent, F32, F64, Format, Geometry, Offsets, Points, Row, WarpedColumns,
+    add_first_shear, fill_row, fill_warped_row, format::Emit as _, rows::emit, warp_all,
+    write_numbers,
 };
 use crate::sample::{
     Seed, Warp,
     lattice::{Point, PointId},
-    warp::{PatchShears, Shears},
+    warp::{PatchShears, Shears, Waves},
 };
 
 /// The longest row: four vectors of 16 and a rest.
@@ -35,28 +36,43 @@ struct Example {
     lattice: Vec<i64>,
     displaced: Vec<i32>,
     displacements: Vec<i32>,
+    extent: Extent,
     row: Row,
 }
 
+/// The lattice column of the patch's origin.
+const ORIGIN: i64 = -3_000_000_000;
+
 fn examples() -> impl Iterator<Item = Example> {
     let length = LONGEST + SHIFTS + 8;
-    // The lowest and the highest row of a patch, and some between.
-    [(0, 0), (255, 1), (17, 2), (128, 3)]
-        .map(|(y, seed)| {
-            let vector = |n: u64| (n % (20 << 20)) as i32 - (10 << 20);
-            let places = numbers(seed).map(vector).take(length).enumerate();
-            Example {
-                lattice: (0..length as i64).map(|i| i * 14 - 3_000_000_000).collect(),
-                displaced: places.map(|(i, dx)| ((i as i32 * 12) << 20) + dx).collect(),
-                displacements: numbers(seed + 9).map(vector).take(length).collect(),
-                row: Row {
-                    base: [(1i64 << 40) as f64 + 0.25, -(3i64 << 50) as f64],
-                    y: y << 20,
-                    lattice: -77 + i64::from(y),
-                },
-            }
-        })
-        .into_iter()
+    // The lowest and the highest row of a patch, and some between; the distance of columns, and a gap between some:
+    // 8 columns lie within 256 grid units, within 512, and in more.
+    [
+        (0, 0, 12, 0),
+        (255, 1, 12, 0),
+        (17, 2, 11, 80),
+        (128, 3, 6, 450),
+    ]
+    .map(|(y, seed, distance, gap)| {
+        let vector = |n: u64| (n % (20 << 20)) as i32 - (10 << 20);
+        let column = |i: usize| i as i64 * distance + if i < 37 { 0 } else { gap };
+        let places = numbers(seed).map(vector).take(length).enumerate();
+        let lattice: Vec<i64> = (0..length).map(|i| ORIGIN + column(i)).collect();
+        Example {
+            extent: Extent::new(ORIGIN, [-10 << 20, 10 << 20], &lattice),
+            lattice,
+            displaced: places
+                .map(|(i, dx)| ((column(i) as i32) << 20) + dx)
+                .collect(),
+            displacements: numbers(seed + 9).map(vector).take(length).collect(),
+            row: Row {
+                base: [(1i64 << 40) as f64 + 0.25, -(3i64 << 50) as f64],
+                y: y << 20,
+                lattice: -77 + i64::from(y),
+            },
+        }
+    })
+    .into_iter()
 }
 
 /// Runs `make` at several places of some memory and compares what it wrote with `expected`, and what lies
@@ -83,24 +99,79 @@ fn assert_written<I: Copy, B: PartialEq + core::fmt::Debug>(
     }
 }
 
+/// The shears of a patch.
+fn shears() -> PatchShears {
+    let shears = Shears::new(Waves::All, Warp::ON, Seed(5)).expect("on");
+    PatchShears::new(
+        &shears,
+        [1024 * 7, -256 * 3],
+        [[-20 << 20, 1040 << 20], [-20 << 20, 280 << 20]],
+    )
+}
+
+#[test]
+fn first_shears_have_the_same_bits_by_all_backends() {
+    let shears = shears();
+    for example in examples() {
+        for length in 0..=LONGEST {
+            let (lattice, displaced) = (&example.lattice[..length], &example.displaced[..length]);
+            let before = &example.displacements[..length];
+            let expected: Vec<i32> = before
+                .iter()
+                .zip(displaced)
+                .map(|(dy, &x)| dy + shears.first(x))
+                .collect();
+            for backend in Backend::available() {
+                let mut moved = before.to_vec();
+                let columns = (example.extent, lattice);
+                add_first_shear(backend, &shears, columns, displaced, &mut moved);
+                assert_eq!(moved, expected, "{backend:?}, {length}");
+            }
+        }
+    }
+}
+
+/// Lists of some hundred points in rows of several widths.
+#[test]
+fn lists_have_the_same_bits_by_all_backends() {
+    let shears = shears();
+    for width in [1u64, 40, 130, 330, 1000] {
+        for length in [0, 32, 256, 480] {
+            let place = |n: u64, size: u64| ((n % (size << 20)) as i32) + (3 << 20);
+            let x: Vec<i32> = numbers(width)
+                .map(|n| place(n, width))
+                .take(length)
+                .collect();
+            let rows = numbers(7).enumerate();
+            let y: Vec<i32> = rows
+                .map(|(i, n)| place(n, 26) + ((i as i32 / 4) << 20))
+                .take(length)
+                .collect();
+            let moved = x.iter().zip(&y).map(|(&x, &y)| shears.apply(x, y));
+            let expected: (Vec<i32>, Vec<i32>) = moved.map(|[x, y]| (x, y)).unzip();
+            for backend in Backend::available() {
+                let mut places = [vec![0; length], vec![0; length]];
+                warp_all(backend, &shears, [&x, &y], &mut places);
+                let [xs, ys] = places;
+                assert_eq!((xs, ys), expected, "{backend:?}, {width}, {length}");
+            }
+        }
+    }
+}
+
 /// Plain and warped rows of a format by all backends.
 fn all_rows<F: Format, B: PartialEq + core::fmt::Debug>(
     format: F,
     canary: F::Item,
     bits: impl Fn(F::Item) -> B + Copy,
 ) {
-    let warp = Warp::new(1.0).expect("in range");
-    let shears = Shears::new(warp, Seed(5)).expect("on");
-    let shears = PatchShears::new(
-        &shears,
-        [1024 * 7, -256 * 3],
-        [[-20 << 20, 1040 << 20], [-20 << 20, 280 << 20]],
-    );
+    let shears = shears();
     for example in examples() {
         let Example {
             lattice,
             displaced,
             displacements,
+            extent,
             row,
         } = &example;
         let places = displaced.iter().zip(lattice);
@@ -130,13 +201,7 @@ fn all_rows<F: Format, B: PartialEq + core::fmt::Debug>(
                     displacements: dys,
                     range: [dys.iter().min(), dys.iter().max()].map(|v| v.copied().unwrap_or(0)),
                     lattice: &lattice[from..],
-                    middle: length / 2,
-                    extents: [
-                        &displaced[from..][..length / 2],
-                        &displaced[from + length / 2..],
-                    ]
-                    .map(|half| [half.iter().min(), half.iter().max()])
-                    .map(|ends| ends.map(|v| v.copied().unwrap_or(0))),
+                    extent: *extent,
                 };
                 for backend in Backend::available() {
                     let note = alloc::format!("{format:?} {backend:?} {length} from {from}");

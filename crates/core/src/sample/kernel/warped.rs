@@ -3,6 +3,13 @@
 //! A point takes a chain of some sixty operations that wait for each other, longer than processors look ahead. So
 //! a row is warped in two passes: the first writes the places after the shear along x and the first diagonal
 //! one, some vectors at a time, and the second, which finds them in the cache, does the rest.
+//!
+//! The coefficients of a shear are looked up by the cell of each lane. A patch has some forty cells in a direction,
+//! more than a vector, but neighbors in a row are near each other: successive columns and bounds of everything else
+//! leave few cells. So each vector of a row has a table of its own, a load from the first cell that its points can
+//! touch, and where even that is known to hold all cells, one permutation finds a coefficient ([`Near`]). Sixteen
+//! cells take two on machines of short vectors ([`AtOnce`]), and more are gathered ([`Any`]). Lists jump from row to
+//! row; there the cells are those of a pass.
 
 use alloc::vec::Vec;
 use core::{mem::MaybeUninit, ops::Range};
@@ -11,9 +18,12 @@ use super::{
     Backend,
     backend::run_vectors,
     format::{Emit, Row},
-    lanes::{Lanes, VectorLoop},
+    lanes::{Lanes, VectorLoop, stored},
 };
-use crate::sample::warp::{CELL_BITS, PatchShears};
+use crate::{
+    sample::warp::{CELL_BITS, KNOT_BITS, PatchShears},
+    table::FRACTION_BITS,
+};
 
 /// The number of vectors of a pass.
 const PASS: usize = 16;
@@ -30,10 +40,58 @@ pub(crate) struct WarpedColumns<'a> {
     pub(crate) range: [i32; 2],
     /// Their lattice coordinates.
     pub(crate) lattice: &'a [i64],
-    /// The first column of the right half.
-    pub(crate) middle: usize,
-    /// Bounds of the displaced x of both halves.
-    pub(crate) extents: [[i32; 2]; 2],
+    /// The place of the displaced columns in the lattice.
+    pub(crate) extent: Extent,
+}
+
+/// How far columns are displaced, and how far from each other.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Extent {
+    /// The lattice column of the patch's origin.
+    pub(crate) origin: i64,
+    /// Bounds of the horizontal displacements.
+    pub(crate) reach: [i32; 2],
+    /// The greatest distance from the first to the last of 8 and of 16 successive columns, in the lattice.
+    widths: [i32; 2],
+}
+
+impl Extent {
+    /// The extent of columns of the lattice.
+    pub(crate) fn new(origin: i64, reach: [i32; 2], lattice: &[i64]) -> Self {
+        let widest = |number: usize| {
+            let ends = lattice.iter().zip(lattice.get(number - 1..).unwrap_or(&[]));
+            ends.map(|(first, last)| (last - first) as i32)
+                .fold(0, i32::max)
+        };
+        Self {
+            origin,
+            reach,
+            widths: [8, 16].map(widest),
+        }
+    }
+
+    /// The greatest distance between the displaced columns of a vector.
+    fn width<L: Lanes>(&self) -> i64 {
+        let columns = self.widths[usize::from(L::WIDTH > 8)];
+        let [least, most] = self.reach.map(i64::from);
+        (i64::from(columns) << FRACTION_BITS) + most - least
+    }
+
+    /// What takes a lattice column to the first cell of the values from `least` above it on: see [`cell`].
+    fn lead(&self, least: i32) -> i64 {
+        i64::from(least >> FRACTION_BITS) - self.origin
+    }
+}
+
+/// The first cell of the values of a column.
+#[inline(always)]
+const fn cell(column: i64, lead: i64) -> i32 {
+    ((column + lead) >> KNOT_BITS) as i32
+}
+
+/// Whether values that differ by at most `width` touch at most some number of cells.
+const fn fits(width: i64, cells: usize) -> bool {
+    width <= (cells as i64 - 1) << CELL_BITS
 }
 
 impl WarpedColumns<'_> {
@@ -81,22 +139,25 @@ struct WarpedRow<'a, F: Emit> {
 impl<F: Emit> VectorLoop for WarpedRow<'_, F> {
     #[inline(always)]
     unsafe fn run<L: Lanes>(&mut self) -> usize {
-        let WarpedColumns {
-            middle, extents, ..
-        } = self.columns;
         let length = self.columns.length(self.out.len());
         if length < L::WIDTH {
             return 0;
         }
-        // SAFETY: as the caller ensures; parts have at least a vector.
+        let (shears, columns) = (self.shears, self.columns);
+        let second = columns.range.map(|dy| self.row.y + dy);
+        let widths = self.widths(columns.extent.width::<L>());
+        let fit = |cells| widths.iter().all(|&width| fits(width, cells));
+        let has_one = fits(i64::from(second[1]) - i64::from(second[0]), L::WINDOW);
+        // SAFETY: as the caller ensures; there is at least a vector.
         unsafe {
-            if L::WINDOW < PatchShears::CELLS && (L::WIDTH..=length - L::WIDTH).contains(&middle) {
-                self.run_part::<L>(0..middle, extents[0]);
-                self.run_part::<L>(middle..length, extents[1]);
+            let second = Near::<L>::new(Tables::new(shears, 1), second[0] >> CELL_BITS);
+            if has_one && fit(L::WINDOW) {
+                self.run_by::<L, _, Near<L>>(length, second);
+            } else if has_one && fit(PatchShears::AT_ONCE) {
+                self.run_by::<L, _, AtOnce<L>>(length, second);
             } else {
-                let [left, right] = extents;
-                let all = [left[0].min(right[0]), left[1].max(right[1])];
-                self.run_part::<L>(0..length, all);
+                let second = Any::<L>::new(Tables::new(shears, 1), 0);
+                self.run_by::<L, _, Any<L>>(length, second);
             }
         }
         length
@@ -104,64 +165,50 @@ impl<F: Emit> VectorLoop for WarpedRow<'_, F> {
 }
 
 impl<F: Emit> WarpedRow<'_, F> {
-    /// Writes the items of some columns, at least a vector of them, whose displaced x have some bounds.
-    ///
-    /// # Safety
-    /// The machine has the instructions of `L`.
-    #[inline(always)]
-    unsafe fn run_part<L: Lanes>(&mut self, part: Range<usize>, x: [i32; 2]) {
-        let (shears, y) = (self.shears, self.columns.range.map(|dy| self.row.y + dy));
-        let [along_x, rising] = [1, 2].map(|direction| shears.bounds[direction]);
-        // Where the diagonal shears are looked up.
-        let x = [x[0] + along_x[0], x[1] + along_x[1]];
-        let third = [x[0] - y[1], x[1] - y[0]];
-        let fourth = [x[0] + y[0] + 2 * rising[0], x[1] + y[1] + 2 * rising[1]];
-        let [second, third, fourth] = [y, third, fourth].map(|s| s.map(|s| s >> CELL_BITS));
-        let [second_all, third_all, fourth_all] = [1, 2, 3].map(|i| &shears.quadratics[i]);
-        let is_near = [third, fourth]
-            .iter()
-            .all(|[first, last]| last - first < L::WINDOW as i32);
-        // SAFETY: as the caller ensures.
-        unsafe {
-            if is_near && second[0] == second[1] {
-                // In most rows the second shear has one cell for all points.
-                let second = OneCell::<L>::new(second_all, second[0]);
-                let third = Near::<L>::new(third_all, third[0]);
-                self.run_by::<L>(part, second, third, Near::<L>::new(fourth_all, fourth[0]));
-            } else if is_near {
-                let third = Near::<L>::new(third_all, third[0]);
-                let fourth = Near::<L>::new(fourth_all, fourth[0]);
-                self.run_by::<L>(part, Any(second_all), third, fourth);
-            } else {
-                self.run_by::<L>(part, Any(second_all), Any(third_all), Any(fourth_all));
-            }
-        }
+    /// The greatest differences of the coordinates across the third and the fourth shear, of points whose displaced x
+    /// differ by at most `width`.
+    fn widths(&self, width: i64) -> [i64; 2] {
+        let [along_x, rising] = [1, 2].map(|direction| self.shears.bounds[direction]);
+        let length = |[least, most]: [i32; 2]| i64::from(most) - i64::from(least);
+        let third = width + length(along_x) + length(self.columns.range);
+        [third, third + 2 * length(rising)]
     }
 
-    /// Writes the items of some columns, at least a vector of them, by the last three shears.
+    /// What takes columns to the first cells of the third and the fourth shear: see [`cell`].
+    fn leads(&self) -> [i64; 2] {
+        let WarpedColumns { range, extent, .. } = self.columns;
+        let [along_x, rising] = [1, 2].map(|direction| self.shears.bounds[direction][0]);
+        let [low, high] = range.map(|dy| self.row.y + dy);
+        let x = extent.reach[0] + along_x;
+        [x - high, x + low + 2 * rising].map(|least| extent.lead(least))
+    }
+
+    /// Writes the items of the first `length` columns, at least a vector of them, by the last three shears, the
+    /// diagonal ones by quadratics of kind `Q`.
     ///
     /// # Safety
     /// The machine has the instructions of `L`.
     #[inline(always)]
-    unsafe fn run_by<L: Lanes>(
+    unsafe fn run_by<L: Lanes, S: Quadratics<L>, Q: Quadratics<L>>(
         &mut self,
-        part: Range<usize>,
-        second: impl Quadratics<L>,
-        third: impl Quadratics<L>,
-        fourth: impl Quadratics<L>,
+        length: usize,
+        second: S,
     ) {
         let (columns, row, format) = (self.columns, self.row, *self.format);
-        let last = part.end - L::WIDTH;
+        let [third_all, fourth_all] = [2, 3].map(|i| Tables::new(self.shears, i));
+        let [third, fourth] = self.leads();
+        let last = length - L::WIDTH;
         let mut places = [const { MaybeUninit::<[L::Ints; 2]>::uninit() }; PASS];
-        let mut next = part.start;
-        while next < part.end {
-            let pass = (part.end - next).div_ceil(L::WIDTH).min(PASS);
+        let mut next = 0;
+        while next < length {
+            let pass = (length - next).div_ceil(L::WIDTH).min(PASS);
             // SAFETY: the machine has the instructions, and all slices have WIDTH values from each start on. The
             // last vector goes back over items that are already written.
             unsafe {
                 let y = L::splat_int(row.y);
                 for (k, place) in places[..pass].iter_mut().enumerate() {
                     let start = (next + k * L::WIDTH).min(last);
+                    let third = Q::new(third_all, cell(columns.lattice[start], third));
                     let x = L::load_ints(columns.displaced.as_ptr().add(start));
                     let y = L::add_ints(L::load_ints(columns.displacements.as_ptr().add(start)), y);
                     let x = L::add_ints(x, noise(second, y));
@@ -170,11 +217,12 @@ impl<F: Emit> WarpedRow<'_, F> {
                 }
                 for (k, place) in places[..pass].iter().enumerate() {
                     let start = (next + k * L::WIDTH).min(last);
+                    let lattice = &columns.lattice[start..start + L::WIDTH];
+                    let fourth = Q::new(fourth_all, cell(lattice[0], fourth));
                     // Written above.
                     let [x, y] = place.assume_init();
                     let falling = noise(fourth, L::add_ints(x, y));
                     let position = [L::add_ints(x, falling), L::sub_ints(y, falling)];
-                    let lattice = &columns.lattice[start..start + L::WIDTH];
                     let out = &mut self.out[start..start + L::WIDTH];
                     format.vector_items::<L>(row, position, lattice, out);
                 }
@@ -188,11 +236,14 @@ impl<F: Emit> WarpedRow<'_, F> {
 pub(crate) fn add_first_shear(
     backend: Backend,
     shears: &PatchShears,
+    (extent, lattice): (Extent, &[i64]),
     displaced: &[i32],
     displacements: &mut [i32],
 ) {
     let mut columns = FirstShear {
         shears,
+        extent,
+        lattice,
         displaced,
         displacements,
     };
@@ -205,6 +256,8 @@ pub(crate) fn add_first_shear(
 
 struct FirstShear<'a> {
     shears: &'a PatchShears,
+    extent: Extent,
+    lattice: &'a [i64],
     displaced: &'a [i32],
     displacements: &'a mut [i32],
 }
@@ -213,18 +266,42 @@ impl VectorLoop for FirstShear<'_> {
     #[inline(always)]
     unsafe fn run<L: Lanes>(&mut self) -> usize {
         let length = self.displaced.len().min(self.displacements.len());
-        let quadratics = Any(&self.shears.quadratics[0]);
-        let starts = (0..length - length % L::WIDTH).step_by(L::WIDTH);
-        for start in starts {
-            // SAFETY: the machine has the instructions, and both slices have a vector from `start` on.
+        let length = length.min(self.lattice.len());
+        let length = length - length % L::WIDTH;
+        let width = self.extent.width::<L>();
+        // SAFETY: as the caller ensures.
+        unsafe {
+            if fits(width, L::WINDOW) {
+                self.run_by::<L, Near<L>>(length);
+            } else if fits(width, PatchShears::AT_ONCE) {
+                self.run_by::<L, AtOnce<L>>(length);
+            } else {
+                self.run_by::<L, Any<L>>(length);
+            }
+        }
+        length
+    }
+}
+
+impl FirstShear<'_> {
+    /// Moves the first `length` columns, whole vectors.
+    ///
+    /// # Safety
+    /// The machine has the instructions of `L`.
+    #[inline(always)]
+    unsafe fn run_by<L: Lanes, Q: Quadratics<L>>(&mut self, length: usize) {
+        let lead = self.extent.lead(self.extent.reach[0]);
+        let tables = Tables::new(self.shears, 0);
+        for start in (0..length).step_by(L::WIDTH) {
+            // SAFETY: the machine has the instructions, and all slices have a vector from `start` on.
             unsafe {
+                let quadratics = Q::new(tables, cell(self.lattice[start], lead));
                 let to = self.displacements.as_mut_ptr().add(start);
                 let moved =
                     noise::<L>(quadratics, L::load_ints(self.displaced.as_ptr().add(start)));
                 L::store_ints(to, L::add_ints(L::load_ints(to), moved));
             }
         }
-        length - length % L::WIDTH
     }
 }
 
@@ -266,21 +343,40 @@ impl VectorLoop for WarpAll<'_> {
         if !length.is_multiple_of(L::WIDTH) {
             return 0;
         }
-        let (all, cells) = (&self.shears.quadratics, self.shears.cells);
-        let is_near = cells
-            .iter()
-            .all(|[first, last]| last - first < L::WINDOW as i32);
-        // SAFETY: as the caller ensures.
-        unsafe {
-            if is_near {
-                self.run_by::<L, _>([
-                    Near::<L>::new(&all[0], cells[0][0]),
-                    Near::<L>::new(&all[1], cells[1][0]),
-                    Near::<L>::new(&all[2], cells[2][0]),
-                    Near::<L>::new(&all[3], cells[3][0]),
-                ]);
-            } else {
-                self.run_by::<L, _>([Any(&all[0]), Any(&all[1]), Any(&all[2]), Any(&all[3])]);
+        let mut next = 0;
+        while next < length {
+            let part = next..length.min(next + PASS * L::WIDTH);
+            next = part.end;
+            // SAFETY: as the caller ensures, and parts lie within the slices.
+            unsafe {
+                let [x, y] = self.displaced.map(|list| extent::<L>(&list[part.clone()]));
+                let [along_y, along_x, rising, _] = self.shears.bounds;
+                let more = |[a, b]: [i32; 2], [c, d]: [i32; 2]| [a + c, b + d];
+                let first = x;
+                let second = more(y, along_y);
+                let x = more(x, along_x);
+                let third = [x[0] - second[1], x[1] - second[0]];
+                let fourth = [x[0] + second[0], x[1] + second[1]];
+                let fourth = more(more(fourth, rising), rising);
+                let fit = |cells| {
+                    let width = |[least, most]: [i32; 2]| i64::from(most) - i64::from(least);
+                    move |ranges: [[i32; 2]; 2]| ranges.map(width).iter().all(|&w| fits(w, cells))
+                };
+                let ends = [first, second, third, fourth].map(|range| range[0] >> CELL_BITS);
+                if fit(L::WINDOW)([first, second]) {
+                    self.run_axes::<L, Near<L>>(&part, ends);
+                } else if fit(PatchShears::AT_ONCE)([first, second]) {
+                    self.run_axes::<L, AtOnce<L>>(&part, ends);
+                } else {
+                    self.run_axes::<L, Any<L>>(&part, ends);
+                }
+                if fit(L::WINDOW)([third, fourth]) {
+                    self.run_diagonals::<L, Near<L>>(&part, ends);
+                } else if fit(PatchShears::AT_ONCE)([third, fourth]) {
+                    self.run_diagonals::<L, AtOnce<L>>(&part, ends);
+                } else {
+                    self.run_diagonals::<L, Any<L>>(&part, ends);
+                }
             }
         }
         length
@@ -288,53 +384,102 @@ impl VectorLoop for WarpAll<'_> {
 }
 
 impl WarpAll<'_> {
+    /// Moves some positions by the shears along the axes, whose first cells are known.
+    ///
     /// # Safety
-    /// The machine has the instructions of `L`, and the length is a multiple of their width.
+    /// The machine has the instructions of `L`, and the part is one of whole vectors.
     #[inline(always)]
-    unsafe fn run_by<L: Lanes, Q: Quadratics<L>>(&mut self, shears: [Q; 4]) {
-        let length = self.displaced[0].len();
+    unsafe fn run_axes<L: Lanes, Q: Quadratics<L>>(
+        &mut self,
+        part: &Range<usize>,
+        first: [i32; 4],
+    ) {
         let [to_x, to_y] = &mut self.places;
-        let mut next = 0;
-        while next < length {
-            let end = length.min(next + PASS * L::WIDTH);
-            // SAFETY: the machine has the instructions, and all slices have a vector from each start on.
-            unsafe {
-                for start in (next..end).step_by(L::WIDTH) {
-                    let x = L::load_ints(self.displaced[0].as_ptr().add(start));
-                    let y = L::load_ints(self.displaced[1].as_ptr().add(start));
-                    let y = L::add_ints(y, noise(shears[0], x));
-                    let x = L::add_ints(x, noise(shears[1], y));
-                    L::store_ints(to_x.as_mut_ptr().add(start), x);
-                    L::store_ints(to_y.as_mut_ptr().add(start), y);
-                }
-                for start in (next..end).step_by(L::WIDTH) {
-                    let x = L::load_ints(to_x.as_ptr().add(start));
-                    let y = L::load_ints(to_y.as_ptr().add(start));
-                    let rising = noise(shears[2], L::sub_ints(x, y));
-                    let (x, y) = (L::add_ints(x, rising), L::add_ints(y, rising));
-                    let falling = noise(shears[3], L::add_ints(x, y));
-                    L::store_ints(to_x.as_mut_ptr().add(start), L::add_ints(x, falling));
-                    L::store_ints(to_y.as_mut_ptr().add(start), L::sub_ints(y, falling));
-                }
+        // SAFETY: the machine has the instructions, and all slices have a vector from each start on.
+        unsafe {
+            let along_y = Q::new(Tables::new(self.shears, 0), first[0]);
+            let along_x = Q::new(Tables::new(self.shears, 1), first[1]);
+            for start in part.clone().step_by(L::WIDTH) {
+                let x = L::load_ints(self.displaced[0].as_ptr().add(start));
+                let y = L::load_ints(self.displaced[1].as_ptr().add(start));
+                let y = L::add_ints(y, noise(along_y, x));
+                let x = L::add_ints(x, noise(along_x, y));
+                L::store_ints(to_x.as_mut_ptr().add(start), x);
+                L::store_ints(to_y.as_mut_ptr().add(start), y);
             }
-            next = end;
+        }
+    }
+
+    /// Moves some places by the diagonal shears, whose first cells are known.
+    ///
+    /// # Safety
+    /// The machine has the instructions of `L`, and the part is one of whole vectors.
+    #[inline(always)]
+    unsafe fn run_diagonals<L: Lanes, Q: Quadratics<L>>(
+        &mut self,
+        part: &Range<usize>,
+        first: [i32; 4],
+    ) {
+        let [to_x, to_y] = &mut self.places;
+        // SAFETY: the machine has the instructions, and all slices have a vector from each start on.
+        unsafe {
+            let third = Q::new(Tables::new(self.shears, 2), first[2]);
+            let fourth = Q::new(Tables::new(self.shears, 3), first[3]);
+            for start in part.clone().step_by(L::WIDTH) {
+                let x = L::load_ints(to_x.as_ptr().add(start));
+                let y = L::load_ints(to_y.as_ptr().add(start));
+                let rising = noise(third, L::sub_ints(x, y));
+                let (x, y) = (L::add_ints(x, rising), L::add_ints(y, rising));
+                let falling = noise(fourth, L::add_ints(x, y));
+                L::store_ints(to_x.as_mut_ptr().add(start), L::add_ints(x, falling));
+                L::store_ints(to_y.as_mut_ptr().add(start), L::sub_ints(y, falling));
+            }
         }
     }
 }
 
-/// The quadratics of a direction, in the form in which coordinates of some cells find theirs.
+/// The least and the greatest of some numbers, whole vectors.
+///
+/// # Safety
+/// The machine has the instructions of `L`, and there is at least a vector.
+#[inline(always)]
+unsafe fn extent<L: Lanes>(all: &[i32]) -> [i32; 2] {
+    // SAFETY: as the caller ensures; the slice has a vector from each start on.
+    unsafe {
+        let mut least = L::load_ints(all.as_ptr());
+        let mut most = least;
+        for start in (L::WIDTH..all.len()).step_by(L::WIDTH) {
+            let v = L::load_ints(all.as_ptr().add(start));
+            (least, most) = (L::min_ints(least, v), L::max_ints(most, v));
+        }
+        let [least, most] = [least, most].map(|v| stored::<L>(v));
+        let least = least[..L::WIDTH].iter().copied().fold(i32::MAX, i32::min);
+        [
+            least,
+            most[..L::WIDTH].iter().copied().fold(i32::MIN, i32::max),
+        ]
+    }
+}
+
+/// The quadratics of some cells of a direction, in a form in which coordinates find theirs.
 trait Quadratics<L: Lanes>: Copy {
-    /// The coefficients of the cells of coordinates: constant, linear, square.
+    /// The quadratics of a direction from a cell on.
     ///
     /// # Safety
     /// The machine has the instructions of `L`.
+    unsafe fn new(tables: Tables, first: i32) -> Self;
+
+    /// The coefficients of the cells of coordinates: constant, linear, square.
+    ///
+    /// # Safety
+    /// The machine has the instructions of `L`, and the tables are still there.
     unsafe fn of(self, s: L::Ints) -> [L::Singles; 3];
 }
 
 /// g of coordinates across a direction; see [`PatchShears`].
 ///
 /// # Safety
-/// The machine has the instructions of `L`.
+/// The machine has the instructions of `L`, and the tables are still there.
 #[inline(always)]
 unsafe fn noise<L: Lanes>(quadratics: impl Quadratics<L>, s: L::Ints) -> L::Ints {
     // SAFETY: as the caller ensures.
@@ -346,23 +491,61 @@ unsafe fn noise<L: Lanes>(quadratics: impl Quadratics<L>, s: L::Ints) -> L::Ints
     }
 }
 
-/// The coefficients of the one cell in which all coordinates lie.
-struct OneCell<L: Lanes>([L::Singles; 3]);
-
-/// The coefficients of as many cells as a table has.
-struct Near<L: Lanes>([L::Table; 3]);
-
-/// The coefficients of all cells.
+/// The tables of a direction. A copy on the stack, which loops keep in registers.
 #[derive(Clone, Copy)]
-struct Any<'a>(&'a [[f32; PatchShears::CELLS]; 3]);
+struct Tables {
+    from: *const f32,
+    /// The length of a table.
+    length: usize,
+    /// The first cell.
+    first: i32,
+    /// The place of the last one.
+    last: u32,
+}
 
-impl<L: Lanes> Clone for OneCell<L> {
-    fn clone(&self) -> Self {
-        *self
+impl Tables {
+    #[inline(always)]
+    fn new(shears: &PatchShears, direction: usize) -> Self {
+        let (tables, length) = shears.tables(direction);
+        // From the last place on each of the three has as many entries.
+        assert!(tables.len() == 3 * length && shears.last_place() + PatchShears::AT_ONCE == length);
+        Self {
+            from: tables.as_ptr(),
+            length,
+            first: shears.first[direction],
+            last: shears.last_place() as u32,
+        }
+    }
+
+    /// The three tables from a cell on, and the number of that cell. They have at least [`PatchShears::AT_ONCE`]
+    /// entries left.
+    #[inline(always)]
+    fn at(self, cell: i32) -> ([*const f32; 3], i32) {
+        let place = ((cell - self.first) as u32).min(self.last);
+        let here = self.from.wrapping_add(place as usize);
+        let from = [0, 1, 2].map(|power| here.wrapping_add(power * self.length));
+        (from, self.first + place as i32)
     }
 }
 
-impl<L: Lanes> Copy for OneCell<L> {}
+/// The coefficients of [`Lanes::WINDOW`] cells.
+struct Near<L: Lanes> {
+    tables: [L::Table; 3],
+    first: L::Ints,
+}
+
+/// The coefficients of [`PatchShears::AT_ONCE`] cells.
+struct AtOnce<L: Lanes> {
+    from: [*const f32; 3],
+    first: L::Ints,
+}
+
+/// The coefficients of all cells.
+struct Any<L: Lanes> {
+    from: [*const f32; 3],
+    first: L::Ints,
+    last: L::Ints,
+}
 
 impl<L: Lanes> Clone for Near<L> {
     fn clone(&self) -> Self {
@@ -372,73 +555,101 @@ impl<L: Lanes> Clone for Near<L> {
 
 impl<L: Lanes> Copy for Near<L> {}
 
-impl<L: Lanes> OneCell<L> {
-    /// # Safety
-    /// The machine has the instructions of `L`.
-    #[inline(always)]
-    unsafe fn new([constant, linear, square]: &[[f32; PatchShears::CELLS]; 3], cell: i32) -> Self {
-        let cell = cell as usize % PatchShears::CELLS;
-        // SAFETY: as the caller ensures.
-        unsafe {
-            Self([
-                L::splat_single(constant[cell]),
-                L::splat_single(linear[cell]),
-                L::splat_single(square[cell]),
-            ])
-        }
+impl<L: Lanes> Clone for AtOnce<L> {
+    fn clone(&self) -> Self {
+        *self
     }
 }
 
-impl<L: Lanes> Near<L> {
-    /// # Safety
-    /// The machine has the instructions of `L`.
-    #[inline(always)]
-    unsafe fn new([constant, linear, square]: &[[f32; PatchShears::CELLS]; 3], first: i32) -> Self {
-        // SAFETY: as the caller ensures.
-        unsafe {
-            Self([
-                L::table(constant, first),
-                L::table(linear, first),
-                L::table(square, first),
-            ])
-        }
+impl<L: Lanes> Copy for AtOnce<L> {}
+
+impl<L: Lanes> Clone for Any<L> {
+    fn clone(&self) -> Self {
+        *self
     }
 }
 
-impl<L: Lanes> Quadratics<L> for OneCell<L> {
-    #[inline(always)]
-    unsafe fn of(self, _: L::Ints) -> [L::Singles; 3] {
-        self.0
-    }
-}
+impl<L: Lanes> Copy for Any<L> {}
 
 impl<L: Lanes> Quadratics<L> for Near<L> {
     #[inline(always)]
+    unsafe fn new(tables: Tables, first: i32) -> Self {
+        const { assert!(L::WINDOW <= PatchShears::AT_ONCE) };
+        let (from, first) = tables.at(first);
+        // SAFETY: the machine has the instructions, and the tables as many entries.
+        unsafe {
+            Self {
+                tables: [L::table(from[0]), L::table(from[1]), L::table(from[2])],
+                first: L::splat_int(first),
+            }
+        }
+    }
+
+    #[inline(always)]
     unsafe fn of(self, s: L::Ints) -> [L::Singles; 3] {
-        let [constant, linear, square] = self.0;
+        let [constant, linear, square] = self.tables;
         // SAFETY: as the caller ensures.
         unsafe {
-            let cells = L::cells(s);
+            let places = L::sub_ints(L::cells(s), self.first);
             [
-                L::pick(constant, cells),
-                L::pick(linear, cells),
-                L::pick(square, cells),
+                L::pick(constant, places),
+                L::pick(linear, places),
+                L::pick(square, places),
             ]
         }
     }
 }
 
-impl<L: Lanes> Quadratics<L> for Any<'_> {
+impl<L: Lanes> Quadratics<L> for AtOnce<L> {
+    #[inline(always)]
+    unsafe fn new(tables: Tables, first: i32) -> Self {
+        let (from, first) = tables.at(first);
+        // SAFETY: the machine has the instructions.
+        let first = unsafe { L::splat_int(first) };
+        Self { from, first }
+    }
+
     #[inline(always)]
     unsafe fn of(self, s: L::Ints) -> [L::Singles; 3] {
-        let [constant, linear, square] = self.0;
-        // SAFETY: as the caller ensures.
+        let [constant, linear, square] = self.from;
+        // SAFETY: the machine has the instructions, and the tables as many entries.
         unsafe {
-            let cells = L::cells(s);
+            let places = L::sub_ints(L::cells(s), self.first);
             [
-                L::pick_any(constant, cells),
-                L::pick_any(linear, cells),
-                L::pick_any(square, cells),
+                L::pick_at_once(constant, places),
+                L::pick_at_once(linear, places),
+                L::pick_at_once(square, places),
+            ]
+        }
+    }
+}
+
+impl<L: Lanes> Quadratics<L> for Any<L> {
+    #[inline(always)]
+    unsafe fn new(tables: Tables, _: i32) -> Self {
+        let (from, first) = tables.at(tables.first);
+        // SAFETY: the machine has the instructions.
+        unsafe {
+            Self {
+                from,
+                first: L::splat_int(first),
+                last: L::splat_int(tables.last as i32),
+            }
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn of(self, s: L::Ints) -> [L::Singles; 3] {
+        let [constant, linear, square] = self.from;
+        // SAFETY: the machine has the instructions, and places are brought into the tables.
+        unsafe {
+            let last = self.last;
+            let places = L::sub_ints(L::cells(s), self.first);
+            let places = L::min_ints(L::max_ints(places, L::splat_int(0)), last);
+            [
+                L::gather(constant, places),
+                L::gather(linear, places),
+                L::gather(square, places),
             ]
         }
     }

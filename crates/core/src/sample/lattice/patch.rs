@@ -35,6 +35,8 @@ pub(crate) struct Patch {
     /// Whether all columns are inner ones.
     pub(crate) columns_are_inner: bool,
     shears: Option<Box<PatchShears>>,
+    /// The least and the greatest displacement along x.
+    reach: [i32; 2],
 }
 
 impl Patch {
@@ -62,6 +64,7 @@ impl Patch {
             origin,
             bounds: [relative(x, origin[0]), relative(y, origin[1])],
             columns_are_inner: x.inner.start <= origin[0] && origin[0] + BAND_WIDTH <= x.inner.end,
+            reach: reach[0],
             shears: lattice.shears.map(|shears| {
                 let ranges = [(Axis::X, x, BAND_WIDTH), (Axis::Y, y, PATCH_HEIGHT)].map(
                     |(axis, span, length)| {
@@ -96,6 +99,11 @@ impl Patch {
     /// The warp, if there is one.
     pub(crate) fn shears(&self) -> Option<&PatchShears> {
         self.shears.as_deref()
+    }
+
+    /// The least and the greatest displacement along x.
+    pub(crate) const fn reach(&self) -> [i32; 2] {
+        self.reach
     }
 
     /// The place of a displaced position, both relative to the origin.

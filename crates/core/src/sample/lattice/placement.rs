@@ -29,6 +29,9 @@ pub struct Placement {
     pub keep: Keep,
     /// How points settle where not all are kept.
     pub settle: Settle,
+    /// The level of detail: the part of the points that is left out of nothing but the answer, so that none of the
+    /// others move.
+    pub lod: Keep,
 }
 
 impl Placement {
@@ -50,6 +53,7 @@ impl Placement {
             warp: Self::default_warp(seed),
             keep: Keep::ALL,
             settle: Settle::TWO,
+            lod: Keep::ALL,
         }
     }
 
@@ -91,6 +95,25 @@ impl Placement {
     #[must_use]
     pub const fn with_settle(self, settle: Settle) -> Self {
         Self { settle, ..self }
+    }
+
+    /// This placement with another level of detail.
+    ///
+    /// ```
+    /// use strew_core::{Keep, Placement, Seed, Spacing};
+    ///
+    /// let far = Placement::new(Spacing::ONE, Seed(7)).with_lod(Keep::new(0.1)?);
+    /// assert_eq!((far.keep, far.lod.get()), (Keep::ALL, 0.1));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn with_lod(self, lod: Keep) -> Self {
+        Self { lod, ..self }
+    }
+
+    /// The share of points that are kept and in the level of detail.
+    pub(super) const fn shown(&self) -> f64 {
+        self.keep.get() * self.lod.get()
     }
 
     /// This placement with another warp.

@@ -23,6 +23,8 @@ impl Settle {
     pub const OFF: Self = Self { steps: 0 };
     /// The default: most of the gain at half of the price of three.
     pub(crate) const TWO: Self = Self { steps: 2 };
+    /// The least share at which points settle. Sparser sets are thinned out of a wider spacing.
+    pub const LEAST_SHARE: f64 = 1.0 / 1600.0;
     /// The largest number of steps.
     pub const MAX_STEPS: u32 = 4;
 

@@ -15,7 +15,7 @@ use crate::{
     pattern::{Axis, Class, Pattern},
     sample::{
         field::Field,
-        warp::{NearShears, Shears, Stretch},
+        warp::{NearShears, Shears, Stretch, Waves},
     },
     table::{Cut, Displacement, FRACTION_BITS, Order, Table, TurnedTable, fixed},
 };
@@ -75,20 +75,22 @@ impl Lattice {
             warp,
             keep,
             settle,
+            ..
         } = placement;
         // The mean spacing in the grid is 1/t, so a scale of spacing · t makes it `spacing`.
         let scale = spacing.get() * alpha.set_side_f64();
-        let shears = Shears::new(warp, seed);
+        let shears = Shears::new(Waves::of(table.profile()), warp, seed);
         let turned = TurnedTable::new(&table, seed.symmetry());
-        let is_thinned = keep.get() < 1.0;
+        // Where points settle, the level of detail is a choice among settled ones.
+        let settles = (Settle::LEAST_SHARE..1.0).contains(&keep.get()) && !settle.is_off();
+        let shown = placement.shown();
         Self {
             placement,
             pattern: Pattern::with_origin(alpha, seed.origin()),
-            cut: (is_thinned && settle.is_off())
-                .then(|| turned.order().cut(table.map(), keep.get())),
+            cut: (shown < 1.0 && !settles).then(|| turned.order().cut(table.map(), shown)),
             kinds: None,
             varied: None,
-            grade: (is_thinned && !settle.is_off()).then(|| Grade::constant(keep.get())),
+            grade: settles.then(|| Grade::constant(keep.get())),
             turned,
             stretch: Stretch::of(shears.as_ref()),
             shears,
@@ -145,7 +147,7 @@ impl Lattice {
 
     /// About the share of all points that the lattice has, before a field decides.
     pub(crate) fn share(&self) -> f64 {
-        self.placement.keep.get() * self.kind_share()
+        self.placement.shown() * self.kind_share()
     }
 
     /// Whether the lattice has all points of the pattern, before a field decides.
@@ -162,17 +164,24 @@ impl Lattice {
 
     /// The lattice of a placement in a field.
     fn graded(&self, placement: Placement, grade: &Grade) -> Self {
+        let share = if placement.settle.is_off() {
+            placement.shown()
+        } else {
+            placement.keep.get()
+        };
         Self {
             placement,
-            grade: Some(grade.times(placement.keep.get())),
-            ..self.at(placement.with_keep(Keep::ALL))
+            grade: Some(grade.times(share)),
+            ..self.at(placement.with_keep(Keep::ALL).with_lod(Keep::ALL))
         }
     }
 
     /// The lattice where a field has the same share everywhere.
     pub(crate) fn in_constant(&self, share: f64) -> Self {
-        let keep = Keep::unchecked(share);
-        let placement = self.placement.with_keep(keep).with_settle(Settle::OFF);
+        let part = self.settle().map_or(1.0, |_| self.placement.lod.get());
+        let keep = Keep::unchecked(share * part);
+        let placement = self.placement.with_keep(keep).with_lod(Keep::ALL);
+        let placement = placement.with_settle(Settle::OFF);
         Self {
             placement: self.placement,
             ..self.at(placement)
@@ -195,6 +204,13 @@ impl Lattice {
         self.grade.is_some() && self.constant_share().is_none()
     }
 
+    /// Whether a point that settles, of a share, is of the kinds and the level of detail that are wanted.
+    pub(crate) fn shows(&self, id: PointId, share: f64) -> bool {
+        let lod = self.placement.lod;
+        (lod == Keep::ALL || self.rank(id) < lod.get() * share)
+            && (!self.tells_kinds() || self.block(id).is_some())
+    }
+
     /// The points of all kinds.
     pub(crate) fn of_all_kinds(&self) -> Self {
         Self {
@@ -205,7 +221,7 @@ impl Lattice {
     }
 
     /// Whether points are of some kind only.
-    pub(crate) fn tells_kinds(&self) -> bool {
+    fn tells_kinds(&self) -> bool {
         self.kinds.is_some() || self.picks()
     }
 
@@ -308,14 +324,12 @@ impl Lattice {
         }
         let is_turned = placement.seed.symmetry() != self.placement.seed.symmetry();
         let is_kept = placement.keep == self.placement.keep
-            && placement.settle == self.placement.settle;
+            && placement.settle == self.placement.settle
+            && placement.lod == self.placement.lod;
         if !is_kept || is_turned {
             return self.at(placement);
         }
-        let still = Placement {
-            keep: Keep::ALL,
-            ..placement
-        };
+        let still = placement.with_keep(Keep::ALL).with_lod(Keep::ALL);
         Self {
             placement,
             cut: self.cut,

@@ -131,10 +131,9 @@ fn scan_settled(
         let center = whole(v / lattice.step);
         center - reach..center + reach + 1
     });
-    let tells_kinds = lattice.tells_kinds();
     let made = |number| visits.map_or(ControlFlow::Continue(()), |visits| visits.row(number));
     tiles.visit(&within, made, |settled| {
-        if tells_kinds && lattice.block(settled.id).is_none() {
+        if !lattice.shows(settled.id, settled.share) {
             return ControlFlow::Continue(());
         }
         let [x, y] = settled.place.map(|k| lattice.world(k));

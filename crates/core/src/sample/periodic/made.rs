@@ -7,7 +7,7 @@ use crate::{
     sample::{
         lattice::{Grade, Keep},
         seed::Seed,
-        warp::{Warp, WrappedShears},
+        warp::{Warp, Waves, WrappedShears},
     },
     table::{Table, TurnedTable},
 };
@@ -38,7 +38,7 @@ impl Made {
         let scaled = |v: u64| ((u128::from(v) * u128::from(twin.period())) >> 64) as u64;
         let mut made = Self {
             turned: TurnedTable::new(table, seed.symmetry()),
-            shears: WrappedShears::new(warp, seed, twin.period()),
+            shears: WrappedShears::new(Waves::of(table.profile()), warp, seed, twin.period()),
             origin: [scaled(origin.x), scaled(origin.y)],
             columns: Default::default(),
         };

@@ -301,11 +301,19 @@ impl PointSet {
         self.table_distance().reported(spacing, warp, reach)
     }
 
+    /// Whether points settle.
+    pub(crate) fn settles(&self) -> bool {
+        self.lattice.settle().is_some()
+    }
+
     /// The least distance of the table's points that are of the set's kind, if it has one.
     pub(super) fn table_distance(&self) -> LeastDistance {
         let of_kind = |kind| self.table().least_distance_of(kind, kind);
         // Points of a kind keep the distance of all where they settle.
-        let kind = self.lattice.kind().filter(|_| self.lattice.settle().is_none());
+        let kind = self
+            .lattice
+            .kind()
+            .filter(|_| self.lattice.settle().is_none());
         let of_kind = kind.and_then(of_kind);
         of_kind.unwrap_or_else(|| self.table().least_distance())
     }

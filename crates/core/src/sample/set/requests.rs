@@ -164,6 +164,9 @@ impl PointSet {
         let Some(grade) = &scope.lattice.grade else {
             return Ok(0);
         };
+        if grade.known().is_some() {
+            return Ok(0);
+        }
         let piece = [scope.x.all.clone(), scope.y.all.clone()];
         Ok(candidates(&scope.lattice, grade, piece, pieces))
     }

@@ -1,6 +1,6 @@
 //! Freedom: the part of each move that a point makes.
 //!
-//! f = min(1, 256 (1 − s)) / (1 + e⁴), where e says how much the field changes around the point's place:
+//! f = min(1, 256 (1 − s)) / (1 + e⁴), and 0 for shares below 1/1600, where e says how much the field changes around the point's place:
 //! the greater of E(1)/.4 and E(1.8)/.7, where E(r) is the largest |λ/s − 1| at r local spacings to the left and right, below and
 //! above. So at full density nothing moves, and near edges little does.
 //!
@@ -11,7 +11,10 @@
 use alloc::vec::Vec;
 
 use super::LEAST_SHARE;
-use crate::sample::{area::Region, lattice::Grade};
+use crate::sample::{
+    area::Region,
+    lattice::{Grade, Settle},
+};
 
 /// Up to here a field counts as constant around a point.
 const GENTLE: f64 = 0.35;
@@ -102,6 +105,9 @@ pub(super) fn freedom(share: f64, around: [f64; 8]) -> f32 {
 
 /// The freedom of a point where the field counts as constant.
 fn inside(share: f64) -> f64 {
+    if share < Settle::LEAST_SHARE {
+        return 0.0;
+    }
     let part = 256.0 * (1.0 - share);
     if part < 1.0 { part.max(0.0) } else { 1.0 }
 }
@@ -158,7 +164,7 @@ impl Freedoms {
                 at,
                 share,
             } = *candidate;
-            if share >= 1.0 {
+            if !(Settle::LEAST_SHARE..1.0).contains(&share) {
                 found(point, 0.0, true);
                 continue;
             }
@@ -167,9 +173,8 @@ impl Freedoms {
             let slope = *slope.get_or_insert_with(|| {
                 let side = f64::from(1u32 << TILE_BITS) * per_unit;
                 let room = SPARSE_LOOK * spacing;
-                let into = [0, 1].map(|i| {
-                    f64::from(from_corner[i] & ((1 << TILE_BITS) - 1)) * per_unit
-                });
+                let into =
+                    [0, 1].map(|i| f64::from(from_corner[i] & ((1 << TILE_BITS) - 1)) * per_unit);
                 let min = [0, 1].map(|i| at[i] - into[i] - room);
                 let max = [0, 1].map(|i| at[i] - into[i] + side + room);
                 let is_far = (0..2).any(|i| max[i] - min[i] < 1e-9 * at[i].abs());

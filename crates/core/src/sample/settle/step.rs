@@ -157,14 +157,15 @@ impl Cells {
         let [xs, ys] = &places.at;
         let ends = [xs, ys].map(|list| {
             let ends = (i32::MAX, i32::MIN);
-            list.iter()
-                .fold(ends, |(a, b), &v| (a.min(v), b.max(v)))
+            list.iter().fold(ends, |(a, b), &v| (a.min(v), b.max(v)))
         });
         let number = places.len();
         let extents = ends.map(|(a, b)| i64::from(b) - i64::from(a) + 1);
         let area = extents[0] as f64 * extents[1] as f64;
         let side = (CELL * reach * libm::sqrt(area / number as f64)) as i64;
-        let side = extents.iter().fold(side, |side, e| side.max(e / MOST_CELLS));
+        let side = extents
+            .iter()
+            .fold(side, |side, e| side.max(e / MOST_CELLS));
         let side = side.clamp(1 << 16, i64::from(i32::MAX));
         self.side = side as i32;
         self.corner = ends.map(|(a, _)| a);
@@ -317,7 +318,12 @@ fn within(v: f32, most: f32) -> f32 {
 
 /// The sum of the pushes on a point, and the squared distance of the nearest one, in fixed-point units.
 #[inline(always)]
-fn pushes(near: &Near, kernel: &Kernel, unit: f32, (at, share): ([i32; 2], f32)) -> ([i32; 2], f32) {
+fn pushes(
+    near: &Near,
+    kernel: &Kernel,
+    unit: f32,
+    (at, share): ([i32; 2], f32),
+) -> ([i32; 2], f32) {
     let squared = |reach: f32| 0.5 / (reach * reach * unit * unit);
     let [by_reach, by_near] = [squared(kernel.reach), squared(kernel.near)];
     let (mut sum_x, mut sum_y) = ([0i32; PAD], [0i32; PAD]);
@@ -340,7 +346,11 @@ fn pushes(near: &Near, kernel: &Kernel, unit: f32, (at, share): ([i32; 2], f32))
             sum_x[k] = sum_x[k].wrapping_add(rounded(dx * force));
             sum_y[k] = sum_y[k].wrapping_add(rounded(dy * force));
             let other = if is_other { squared } else { f32::INFINITY };
-            nearest[k] = if other < nearest[k] { other } else { nearest[k] };
+            nearest[k] = if other < nearest[k] {
+                other
+            } else {
+                nearest[k]
+            };
         }
     }
     // Each has the bits of the rounder.
@@ -349,7 +359,9 @@ fn pushes(near: &Near, kernel: &Kernel, unit: f32, (at, share): ([i32; 2], f32))
         let sum = all.iter().fold(0i32, |a, &b| a.wrapping_add(b));
         sum.wrapping_sub(rounders)
     };
-    let least = nearest.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
+    let least = nearest
+        .iter()
+        .fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
     ([sum(sum_x), sum(sum_y)], least)
 }
 

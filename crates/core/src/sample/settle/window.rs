@@ -36,7 +36,9 @@ use crate::{
         area::Region,
         field::{FieldRows, Source},
         kernel::Backend,
-        lattice::{BAND_WIDTH, Columns, Grade, Lattice, Patch, PointId, Settle, Span, clip_to_band},
+        lattice::{
+            BAND_WIDTH, Columns, Grade, Lattice, Patch, PointId, Settle, Span, clip_to_band,
+        },
     },
     table::{FRACTION_BITS, fixed},
 };
@@ -233,7 +235,7 @@ impl Settler {
         let mut found = None;
         self.settle(
             &within,
-            |placed| placed.id == id,
+            |placed| placed.id == id && lattice.shows(id, placed.share),
             |settled| found = Some(settled.place),
         );
         found
@@ -375,14 +377,18 @@ impl Settler {
         let mut least = 1.0f64;
         let is_constant = self.grade.known().is_some();
         for (a, b) in SAMPLES {
-            let share = self.grade.share([left + a * (right - left), bottom + b * (top - bottom)]);
+            let share = self
+                .grade
+                .share([left + a * (right - left), bottom + b * (top - bottom)]);
             if share > 0.0 && share < least {
                 least = share;
             }
         }
         let pair = if is_constant { 1.0 } else { 1.25 };
         let kernels = kernels(self.settle).iter().enumerate();
-        let reach: f64 = kernels.map(|(t, kernel)| pair * widest(kernel) + 2.0 * moved_before(t)).sum();
+        let reach: f64 = kernels
+            .map(|(t, kernel)| pair * widest(kernel) + 2.0 * moved_before(t))
+            .sum();
         (reach * f64::from(self.scale.unit) * local(least)) as i64 + ROOM
     }
 

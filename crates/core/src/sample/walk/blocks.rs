@@ -128,9 +128,7 @@ impl<F: Format> Blocks<F> {
     /// The points of a window.
     pub(crate) fn of_window(scope: Arc<Scope>, window: Window) -> Self {
         let walk = match Pieces::new(&scope) {
-            Some(pieces) => {
-                Walk::Settled(Box::new(SettledWalk::from(pieces, window.start)))
-            }
+            Some(pieces) => Walk::Settled(Box::new(SettledWalk::from(pieces, window.start))),
             None => Walk::new(Bands::from(scope.clone(), window.start), window.start),
         };
         Self {

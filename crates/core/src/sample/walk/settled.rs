@@ -19,9 +19,7 @@ use crate::sample::{
     area::Area,
     count::count,
     kernel::{Backend, Format},
-    lattice::{
-        BAND_WIDTH, Found, Lattice, PATCH_HEIGHT, PointId, clip_to_band, places_of,
-    },
+    lattice::{BAND_WIDTH, Found, Lattice, PATCH_HEIGHT, PointId, clip_to_band, places_of},
     near::Guard,
     scope::Scope,
     settle::{Box2, Placed, Settled, Settler, common, widened},
@@ -122,12 +120,11 @@ impl Pieces {
             clear: &self.clear,
             lattice: &self.scope.lattice,
         };
-        let has = self.scope.lattice.tells_kinds();
         let lattice = &self.scope.lattice;
         let wants = |placed: &Placed| {
             holds(piece, placed.id)
                 && side(inside.bounds, placed) != Some(false)
-                && (!has || lattice.block(placed.id).is_some())
+                && lattice.shows(placed.id, placed.share)
         };
         self.settler.settle(&within, wants, |settled| {
             if inside.holds(&settled) {
@@ -143,7 +140,6 @@ impl Pieces {
             return 0;
         }
         let lattice = &self.scope.lattice;
-        let has = lattice.tells_kinds();
         let is_guarded = !self.clear.is_empty();
         let corner = [0, 1].map(|i| within[i].start >> TILE_BITS);
         let across = [0, 1].map(|i| (((within[i].end - 1) >> TILE_BITS) - corner[i] + 1) as usize);
@@ -176,9 +172,8 @@ impl Pieces {
             (Some(true), Some(true)) if !is_guarded => Some(true),
             _ => None,
         };
-        let is_own = |placed: &Placed| {
-            holds(piece, placed.id) && (!has || lattice.block(placed.id).is_some())
-        };
+        let is_own =
+            |placed: &Placed| holds(piece, placed.id) && lattice.shows(placed.id, placed.share);
         let mut number = 0;
         let mut unsure = vec![false; states.len()];
         self.settler.list(&within, |placed| {
@@ -221,8 +216,8 @@ impl Pieces {
         }
         let most = i128::from(self.settler.most_move(&self.bounds));
         let [x_ends, y_ends] = places_of(lattice, &[columns.clone(), y.all.clone()]);
-        let is_inside = self.bounds[0].start <= x_ends.start - most
-            && x_ends.end + most <= self.bounds[0].end;
+        let is_inside =
+            self.bounds[0].start <= x_ends.start - most && x_ends.end + most <= self.bounds[0].end;
         if !is_inside {
             return none;
         }
@@ -394,7 +389,12 @@ impl<F: Format> SettledWalk<F> {
             }
             let number = left.len().min(out.len() - filled);
             let by = (&self.format, self.backend);
-            write_found(by, self.origin, left.iter().copied(), &mut out[filled..][..number]);
+            write_found(
+                by,
+                self.origin,
+                left.iter().copied(),
+                &mut out[filled..][..number],
+            );
             self.taken += number;
             filled += number;
         }

@@ -10,7 +10,9 @@ use core::{mem::take, ops::Range};
 use crate::{
     pattern::{Axis, Class},
     sample::{
-        kernel::{Backend, Format, Row, WarpedColumns, add_first_shear, fill_row, fill_warped_row},
+        kernel::{
+            Backend, Extent, Format, Row, WarpedColumns, add_first_shear, fill_row, fill_warped_row,
+        },
         lattice::{Lattice, Line, Patch, Span},
     },
 };
@@ -29,10 +31,8 @@ pub(super) struct Template<F: Format> {
     displacements: Vec<i32>,
     /// Bounds of these; with warp only.
     range: [i32; 2],
-    /// The first column of the right half; with warp only.
-    middle: usize,
-    /// Bounds of the displaced x of both halves; with warp only.
-    extents: [[i32; 2]; 2],
+    /// How far columns are displaced, and how far from each other; with warp only.
+    extent: Extent,
     is_made: bool,
 }
 
@@ -89,15 +89,14 @@ pub(super) fn displaced(
 }
 
 impl<F: Format> Template<F> {
-    const fn new() -> Self {
+    fn new() -> Self {
         Self {
             columns: Vec::new(),
             lattice: Vec::new(),
             displaced: Vec::new(),
             displacements: Vec::new(),
             range: [0; 2],
-            middle: 0,
-            extents: [[0; 2]; 2],
+            extent: Extent::default(),
             is_made: false,
         }
     }
@@ -133,15 +132,15 @@ impl<F: Format> Template<F> {
             let of_all = || displaced(patch, columns, vectors);
             self.displaced.extend(of_all().map(|column| column.x));
             self.displacements.extend(of_all().map(|column| column.dy));
+            self.lattice.extend(columns.iter().map(|column| column.at));
+            let [origin, _] = patch.origin();
+            self.extent = Extent::new(origin, patch.reach(), &self.lattice);
             if let Some(shears) = patch.shears() {
+                let columns = (self.extent, &self.lattice[..]);
                 let dys = &mut self.displacements;
-                add_first_shear(backend, shears, &self.displaced, dys);
+                add_first_shear(backend, shears, columns, &self.displaced, dys);
             }
             self.range = bounds(&self.displacements);
-            self.middle = (columns.len() / 2).next_multiple_of(16).min(columns.len());
-            let (left, right) = self.displaced.split_at(self.middle);
-            self.extents = [left, right].map(bounds);
-            self.lattice.extend(columns.iter().map(|column| column.at));
         } else {
             let inner = if all { 0..columns.len() } else { inner };
             let room = columns.len();
@@ -241,8 +240,7 @@ impl<F: Format> Template<F> {
 
     fn warped(&self, columns: Range<usize>) -> WarpedColumns<'_> {
         WarpedColumns {
-            middle: self.middle.saturating_sub(columns.start),
-            extents: self.extents,
+            extent: self.extent,
             displaced: &self.displaced[columns.clone()],
             displacements: &self.displacements[columns.clone()],
             range: self.range,

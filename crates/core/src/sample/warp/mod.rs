@@ -3,7 +3,7 @@
 //! A displaced pattern repeats itself almost exactly, so the spectrum of a large window consists of
 //! Bragg peaks. The warp moves points along four directions d by smooth random functions of the
 //! coordinate across, p ← p + d·g(d⊥·p), one direction after another, and so decorrelates distant parts.
-//! g is a quadratic spline over a random walk of bounded steps, which bounds its slope.
+//! g is a quadratic spline over a random walk of bounded steps, which bounds its slope; for `pink`, over two such walks.
 //! Each shear preserves area exactly, so the low-frequency power does not rise, and inverts exactly, so
 //! random access remains.
 //!
@@ -25,5 +25,5 @@ pub(super) use bounds::Stretch;
 pub(super) use near::NearShears;
 pub(super) use patch::PatchShears;
 pub use shears::Warp;
-pub(super) use shears::{CELL_BITS, Shears};
+pub(super) use shears::{CELL_BITS, KNOT_BITS, Shears, Waves};
 pub(super) use wrapped::WrappedShears;

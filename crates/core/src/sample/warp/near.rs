@@ -2,14 +2,22 @@
 
 use super::shears::{CELL_BITS, CELL_MASK, Quadratic, Shears, across, evaluate, shear};
 
-/// The shears near one place. Positions are relative to an origin nearby, and the quadratic last
-/// used in each direction is kept.
+/// The shears near one place. Positions are relative to an origin nearby, and the quadratics last used in each
+/// direction are kept, by the lowest bits of the cell: points around a place touch two or three cells.
 #[derive(Debug)]
 pub(crate) struct NearShears<'a> {
     shears: &'a Shears,
     /// The cells of the origin, by direction.
     cells: [i64; 4],
-    last: [(i64, Quadratic); 4],
+    last: [[(i64, Quadratic); KEPT]; 4],
+}
+
+/// The number of quadratics kept in a direction, a power of two.
+const KEPT: usize = 4;
+
+/// The place of a cell among those kept.
+const fn slot(cell: i64) -> usize {
+    cell as usize % KEPT
 }
 
 impl<'a> NearShears<'a> {
@@ -23,7 +31,10 @@ impl<'a> NearShears<'a> {
         // beforehand, they do not wait for each other.
         let last = core::array::from_fn(|i| {
             let cell = cells[i].wrapping_add(relative[i]);
-            (relative[i], shears.quadratic(i, cell))
+            // Positions are far from the last cell of all.
+            let mut last = [(i64::MAX, [0.0; 3]); KEPT];
+            last[slot(relative[i])] = (relative[i], shears.quadratic(i, cell));
+            last
         });
         let near = Self {
             shears,
@@ -36,11 +47,14 @@ impl<'a> NearShears<'a> {
     #[inline]
     fn noise(&mut self, i: usize, s: i64) -> i64 {
         let cell = s >> CELL_BITS;
-        if self.last[i].0 != cell {
-            let quadratic = self.shears.quadratic(i, self.cells[i].wrapping_add(cell));
-            self.last[i] = (cell, quadratic);
+        let last = &mut self.last[i][slot(cell)];
+        if last.0 != cell {
+            *last = (
+                cell,
+                self.shears.quadratic(i, self.cells[i].wrapping_add(cell)),
+            );
         }
-        evaluate(&self.last[i].1, (s & CELL_MASK as i64) as i32).into()
+        evaluate(&last.1, (s & CELL_MASK as i64) as i32).into()
     }
 
     /// The place to which the warp moves a position, both relative to the origin.
@@ -63,15 +77,16 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::sample::{Seed, Warp};
+    use crate::sample::{Seed, Warp, warp::Waves};
 
     proptest! {
         #[test]
         fn points_near_a_place_get_the_same_bits(
-            seed: u64, x in -(1i128 << 72)..1 << 72, y in -(1i128 << 72)..1 << 72,
+            seed: u64, is_long: bool, x in -(1i128 << 72)..1 << 72, y in -(1i128 << 72)..1 << 72,
             near in proptest::collection::vec([-1i64 << 30..1 << 30, -1i64 << 30..1 << 30], 1..20),
         ) {
-            let shears = Shears::new(Warp::ON, Seed(seed)).expect("on");
+            let waves = if is_long { Waves::All } else { Waves::Short };
+            let shears = Shears::new(waves, Warp::ON, Seed(seed)).expect("on");
             let (mut relative, [left, bottom]) = NearShears::new(&shears, [x, y]);
             for [dx, dy] in near {
                 let there = shears.apply([left + i128::from(dx), bottom + i128::from(dy)]);

@@ -1,25 +1,31 @@
 //! The warp of the points of a patch, in 32-bit positions.
 
+use alloc::{vec, vec::Vec};
+
 use super::shears::{CELL_BITS, KNOT_BITS, Quadratic, Shears, across, evaluate, quadratic};
 
 /// The shears of one patch, with all quadratics tabulated. Positions relative to the patch's origin fit 32
 /// bits. The origin is a multiple of the knot distance along both axes.
 #[derive(Clone, Debug)]
 pub struct PatchShears {
-    /// By direction, by power, by the lowest four bits of the cell's number.
-    pub(crate) quadratics: [[[f32; Self::CELLS]; 3]; 4],
+    /// By direction, by power, by cell from the first one that the points touch on.
+    tables: Vec<f32>,
+    /// The length of a table: [`AT_ONCE`](Self::AT_ONCE) − 1 entries follow the last cell.
+    length: usize,
     /// By direction, bounds of g.
     pub(crate) bounds: [[i32; 2]; 4],
-    /// By direction, the first and the last cell that the points touch.
-    pub(crate) cells: [[i32; 2]; 4],
+    /// By direction, the first cell that the points touch.
+    pub(crate) first: [i32; 4],
 }
 
 impl PatchShears {
-    /// The most cells that the points of a patch touch in a direction: one vector of numbers. A patch is
-    /// 1024 × 256 grid units. With displacements below 128, shears along the axes below 40.2 and diagonal
-    /// ones below 20.1, as they are at the greatest strength, coordinates across the diagonals lie from −377
-    /// to 1655 and from −591 to 1359 units, within 16 cells of 128.
-    pub(crate) const CELLS: usize = 16;
+    /// The most cells that the points of a patch touch in a direction. A patch is 1024 × 256 grid units. With
+    /// displacements below 128, shears along the axes below 55.2 and diagonal ones below 27.6, as they are at the
+    /// greatest strength with long waves, coordinates across the diagonals lie from −623 to 1391 and from −422 to
+    /// 1702 units, within 68 cells of 32.
+    const CELLS: usize = 68;
+    /// The most cells that are looked up at once: one vector of numbers.
+    pub(crate) const AT_ONCE: usize = 16;
 
     /// Selects the place of a coordinate in its cell.
     pub(crate) const CELL_MASK: i32 = (1 << CELL_BITS) - 1;
@@ -27,12 +33,20 @@ impl PatchShears {
     /// The shears of the points whose displaced positions lie in some ranges of x and y, relative to the
     /// origin. Both ends belong to a range.
     pub(crate) fn new(shears: &Shears, origin: [i64; 2], [x, y]: [[i32; 2]; 2]) -> Self {
-        let mut patch = Self {
-            quadratics: [[[0.0; Self::CELLS]; 3]; 4],
-            bounds: [[0; 2]; 4],
-            cells: [[0; 2]; 4],
+        let is_empty = x[0] > x[1] || y[0] > y[1];
+        let cells = if is_empty {
+            1
+        } else {
+            most_cells(shears, [x, y])
         };
-        if x[0] > x[1] || y[0] > y[1] {
+        let length = cells + Self::AT_ONCE - 1;
+        let mut patch = Self {
+            tables: vec![0.0; 12 * length],
+            length,
+            bounds: [[0; 2]; 4],
+            first: [0; 4],
+        };
+        if is_empty {
             return patch;
         }
         let first = across(origin.map(|v| v >> KNOT_BITS));
@@ -62,17 +76,18 @@ impl PatchShears {
         let mut controls = [0; Self::CELLS + 2];
         let controls = &mut controls[..cells.min(Self::CELLS) + 2];
         shears.controls(direction, first + start - 1, controls);
-        let table = &mut self.quadratics[direction];
-        for (relative, knots) in (start..).zip(controls.windows(3)) {
+        let length = self.length;
+        let table = &mut self.tables[3 * direction * length..][..3 * length];
+        for (place, knots) in controls.windows(3).enumerate() {
             let coefficients = quadratic([knots[0], knots[1], knots[2]]);
-            for (of_power, coefficient) in table.iter_mut().zip(coefficients) {
-                of_power[relative.rem_euclid(Self::CELLS as i64) as usize] = coefficient;
+            for (power, coefficient) in coefficients.into_iter().enumerate() {
+                table[power * length + place] = coefficient;
             }
         }
         // A B-spline stays within its control values. The rest is room for rounding.
         let least = controls.iter().min().map_or(0, |v| v - 64);
         let bounds = [least, controls.iter().max().map_or(0, |v| v + 64)];
-        self.cells[direction] = touched;
+        self.first[direction] = touched[0];
         self.bounds[direction] = bounds;
         bounds
     }
@@ -102,12 +117,26 @@ impl PatchShears {
         })
     }
 
+    /// The tables of a direction, one after another, each of so many entries.
+    #[inline(always)]
+    pub(crate) fn tables(&self, direction: usize) -> (&[f32], usize) {
+        let length = self.length;
+        (&self.tables[3 * direction * length..][..3 * length], length)
+    }
+
+    /// The place of the last cell.
+    #[inline(always)]
+    pub(crate) const fn last_place(&self) -> usize {
+        self.length - Self::AT_ONCE
+    }
+
     #[inline(always)]
     fn noise(&self, direction: usize, s: i32) -> i32 {
-        let cell = (s >> CELL_BITS) as usize % Self::CELLS;
-        // By reference: `map` would copy the tables.
-        let [constant, linear, square] = &self.quadratics[direction];
-        let quadratic: Quadratic = [constant[cell], linear[cell], square[cell]];
+        // Cells that no point touches have those of another one.
+        let place = ((s >> CELL_BITS) - self.first[direction]) as u32 as usize;
+        let place = place.min(self.last_place());
+        let (tables, length) = self.tables(direction);
+        let quadratic: Quadratic = [0, 1, 2].map(|power| tables[power * length + place]);
         evaluate(&quadratic, s & Self::CELL_MASK)
     }
 
@@ -134,13 +163,22 @@ impl PatchShears {
     }
 }
 
+/// A bound of the number of cells that positions in some ranges touch in a direction. Those across the last
+/// diagonal are farthest apart.
+fn most_cells(shears: &Shears, [x, y]: [[i32; 2]; 2]) -> usize {
+    let [along_y, along_x, rising, _] = shears.amplitudes().map(|a| 2 * (i64::from(a) + 64));
+    let length = |[first, last]: [i32; 2]| i64::from(last) - i64::from(first);
+    let width = length(x) + length(y) + along_x + along_y + 2 * rising;
+    (width >> CELL_BITS) as usize + 2
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
     use crate::{
-        sample::{Seed, Warp},
+        sample::{Seed, Warp, warp::Waves},
         table::FRACTION_BITS,
     };
 
@@ -150,7 +188,7 @@ mod tests {
             seed: u64, column in -(1i64 << 42)..1 << 42, row in -(1i64 << 42)..1 << 42,
             x in -128i32 << FRACTION_BITS..1152 << FRACTION_BITS,
             y in -128i32 << FRACTION_BITS..384 << FRACTION_BITS,
-            corner in 0u8..8,
+            corner in 0u8..8, is_long: bool,
             strength in prop_oneof![0.1..=2.0f64, Just(2.0)],
         ) {
             // The corners reach the farthest cells.
@@ -162,7 +200,8 @@ mod tests {
                 _ => [x, y],
             };
             let warp = Warp::new(strength).expect("in range");
-            let shears = Shears::new(warp, Seed(seed)).expect("on");
+            let waves = if is_long { Waves::All } else { Waves::Short };
+            let shears = Shears::new(waves, warp, Seed(seed)).expect("on");
             let origin = [column * 1024, row * 256];
             let base = origin.map(|v| i128::from(v) << FRACTION_BITS);
             let there = shears.apply([base[0] + i128::from(x), base[1] + i128::from(y)]);

@@ -1,4 +1,11 @@
 //! The definition of the warp, and its strength.
+//!
+//! Knots are 32 grid units apart, some ten mean spacings: far enough for neighborhoods to keep their shape, and near
+//! enough that a place of the pattern which returns some hundred spacings away does not look alike there. Long waves
+//! of a low amplitude add little to that. They matter to a profile with much power at low frequencies, whose peaks
+//! only large movements blur: `pink` has a second walk in each direction, with knots four times as far apart.
+//! A quadratic spline is one of closer knots, too, so the two walks make one spline, and everything behind the control
+//! values is the same for both.
 
 use core::ops::{Add, Sub};
 
@@ -90,15 +97,38 @@ impl Warp {
     }
 }
 
-/// The distance of the knots of g, in bits of grid units: 2⁷ = 128.
-pub(super) const KNOT_BITS: u32 = 7;
+/// The distance of the knots of g, in bits of grid units: 2⁵ = 32.
+pub(crate) const KNOT_BITS: u32 = 5;
 /// The distance of the knots, in bits of fixed-point units.
 pub(crate) const CELL_BITS: u32 = FRACTION_BITS + KNOT_BITS;
 pub(super) const CELL_MASK: i128 = (1 << CELL_BITS) - 1;
 
 /// The steepest slope of the shears along the axes at strength 1. Diagonal ones have half of it: their true
 /// slope across is twice that of g, so all four strain alike.
-const SLOPE: f64 = 0.06;
+const SLOPE: f64 = 0.09;
+/// The slope of long waves, which adds to that.
+const LONG_SLOPE: f64 = 0.06;
+/// The number of knots to one of long waves, in bits: 2² = 4.
+pub(super) const LONG_BITS: u32 = 2;
+
+/// The waves that the warp of a table has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Waves {
+    /// Short ones.
+    Short,
+    /// Short and long ones.
+    All,
+}
+
+impl Waves {
+    /// The waves for a noise profile.
+    pub(crate) fn of(profile: &str) -> Self {
+        match profile {
+            "pink" => Self::All,
+            _ => Self::Short,
+        }
+    }
+}
 
 /// A direction of shear. Points move by g(s), where s is the coordinate across.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -126,6 +156,8 @@ const DIRECTIONS: [Direction; 4] = [
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shears {
     walks: [Walk; 4],
+    /// The walks of long waves, if there are such.
+    long: Option<[Walk; 4]>,
 }
 
 /// The quadratic of one cell of one direction, constant term first; in fixed-point units, also of its
@@ -140,9 +172,11 @@ pub(super) fn across<T: Copy + Add<Output = T> + Sub<Output = T>>([x, y]: [T; 2]
 
 impl Shears {
     /// The shears of a seed, or `None` if the warp is off.
-    pub(crate) fn new(warp: Warp, seed: Seed) -> Option<Self> {
-        let walks = directed(warp, seed, f64::from(1 << CELL_BITS))?;
-        Some(Self { walks })
+    pub(crate) fn new(waves: Waves, warp: Warp, seed: Seed) -> Option<Self> {
+        let knot = f64::from(1 << CELL_BITS);
+        let walks = short(warp, seed, knot)?;
+        let long = long(waves, warp, seed, knot * f64::from(1 << LONG_BITS));
+        Some(Self { walks, long })
     }
 
     /// The largest movement along x or y, in fixed-point units.
@@ -155,18 +189,45 @@ impl Shears {
 
     /// A bound of the control values of each shear, in fixed-point units.
     pub(super) fn amplitudes(&self) -> [i32; 4] {
-        self.walks.map(|walk| walk.amplitude())
+        let amplitudes = self.walks.map(|walk| walk.amplitude());
+        match &self.long {
+            None => amplitudes,
+            // Refined values lie between those that they are made of.
+            Some(long) => core::array::from_fn(|i| amplitudes[i] + long[i].amplitude() + 1),
+        }
     }
 
     /// The steepest slope of each shear's g.
     pub(super) fn slopes(&self) -> [f64; 4] {
         let unit = f64::from(1 << CELL_BITS);
-        self.walks.map(|walk| f64::from(walk.step()) / unit)
+        core::array::from_fn(|i| {
+            let step = f64::from(self.walks[i].step());
+            let long = self.long.map_or(0.0, |long| {
+                // Refined values are rounded, each by less than a unit.
+                f64::from(long[i].step()) / f64::from(1 << LONG_BITS) + 1.0
+            });
+            (step + long) / unit
+        })
     }
 
     /// The control values of successive knots of a direction, from `first` on.
     pub(super) fn controls(&self, direction: usize, first: i64, out: &mut [i32]) {
         self.walks[direction].controls(first, out);
+        let Some(long) = &self.long else {
+            return;
+        };
+        let parts = 1 << LONG_BITS;
+        let (mut number, mut part) = (first >> LONG_BITS, first as usize & (parts - 1));
+        let mut rest = out;
+        while !rest.is_empty() {
+            let mut knots = [0; 3];
+            long[direction].controls(number.wrapping_sub(1), &mut knots);
+            let (here, after) = rest.split_at_mut((parts - part).min(rest.len()));
+            for (part, control) in (part..).zip(here) {
+                *control += refined(knots, part, parts);
+            }
+            (number, part, rest) = (number.wrapping_add(1), 0, after);
+        }
     }
 
     /// The uniform quadratic B-spline of the control values on one cell.
@@ -200,17 +261,34 @@ impl Shears {
 
 /// The walks of a seed's four directions for knots at a distance in fixed-point units, or `None` if the warp
 /// is off.
-pub(super) fn directed(warp: Warp, seed: Seed, knot: f64) -> Option<[Walk; 4]> {
-    if warp.is_off() {
-        return None;
-    }
-    let step = SLOPE * warp.strength() * knot;
+pub(super) fn short(warp: Warp, seed: Seed, knot: f64) -> Option<[Walk; 4]> {
+    (!warp.is_off()).then(|| directed(SLOPE * warp.strength() * knot, seed, 1))
+}
+
+/// The walks of long waves, for their knots, if there are such.
+pub(super) fn long(waves: Waves, warp: Warp, seed: Seed, knot: f64) -> Option<[Walk; 4]> {
+    (waves == Waves::All && !warp.is_off())
+        .then(|| directed(LONG_SLOPE * warp.strength() * knot, seed, 5))
+}
+
+/// Walks of a greatest step along the axes, with keys from number `first` on.
+fn directed(step: f64, seed: Seed, first: u64) -> [Walk; 4] {
     let steps = [step, step, step / 2.0, step / 2.0].map(|step| libm::round(step) as i32);
-    let first = split_mix(seed.0 ^ 0x5745_4156_4552_5321);
-    Some(core::array::from_fn(|i| {
-        let key = split_mix(first.wrapping_add((i as u64 + 1) << 56));
+    let common = split_mix(seed.0 ^ 0x5745_4156_4552_5321);
+    core::array::from_fn(|i| {
+        let key = split_mix(common.wrapping_add((i as u64 + first) << 56));
         Walk::new(key, steps[i])
-    }))
+    })
+}
+
+/// The control value of part `part` of a cell for a spline whose knots are `parts` times as close, from those of the
+/// knots before the cell, at its start and at its end: the blossom of the cell's quadratic at the ends of the part
+/// (de Boor, "A Practical Guide to Splines", ch. XI), rounded down.
+pub(super) fn refined([before, start, end]: [i32; 3], part: usize, parts: usize) -> i32 {
+    let [a, b, c] = [before, start, end].map(i64::from);
+    let (i, n) = (part as i64, parts as i64);
+    let sum = n * n * (a + b) + n * (2 * i + 1) * (b - a) + i * (i + 1) * (a - 2 * b + c);
+    sum.div_euclid(2 * n * n) as i32
 }
 
 /// Shear number `i`, with `g` as a function of the coordinate across.
@@ -255,6 +333,8 @@ pub(super) fn evaluate(quadratic: &Quadratic, at: i32) -> i32 {
 
 #[cfg(test)]
 mod tests {
+    use alloc::vec;
+
     use proptest::prelude::*;
 
     use super::*;
@@ -262,11 +342,43 @@ mod tests {
     proptest! {
         #[test]
         fn inverts_exactly(seed: u64, x in -(1i128 << 72)..1 << 72, y in -(1i128 << 72)..1 << 72) {
-            let shears = Shears::new(Warp::ON, Seed(seed)).expect("on");
-            let there = shears.apply([x, y]);
-            prop_assert_eq!(shears.invert(there), [x, y]);
-            let reach = i128::from(shears.reach());
-            prop_assert!((there[0] - x).abs() <= reach && (there[1] - y).abs() <= reach);
+            for waves in [Waves::Short, Waves::All] {
+                let shears = Shears::new(waves, Warp::ON, Seed(seed)).expect("on");
+                let there = shears.apply([x, y]);
+                prop_assert_eq!(shears.invert(there), [x, y]);
+                let reach = i128::from(shears.reach());
+                prop_assert!((there[0] - x).abs() <= reach && (there[1] - y).abs() <= reach);
+            }
+        }
+
+        #[test]
+        fn long_waves_are_the_same_spline_with_closer_knots(seed: u64, s in -(1i128 << 60)..1 << 60) {
+            let shears = |waves| Shears::new(waves, Warp::ON, Seed(seed)).expect("on");
+            let [only_short, all] = [Waves::Short, Waves::All].map(shears);
+            let long = all.long.expect("all waves");
+            let knot = f64::from(1 << (CELL_BITS + LONG_BITS));
+            let cell = s >> (CELL_BITS + LONG_BITS);
+            let at = (s - (cell << (CELL_BITS + LONG_BITS))) as f64 / knot;
+            for direction in 0..4 {
+                let mut knots = [0; 3];
+                long[direction].controls(cell as i64 - 1, &mut knots);
+                let [a, b, c] = knots.map(f64::from);
+                let expected = (a + b) / 2.0 + ((b - a) + (a - 2.0 * b + c) / 2.0 * at) * at;
+                let found = all.noise(direction, s) - only_short.noise(direction, s);
+                // Rounding in `f32`: values are below 2²⁶.
+                prop_assert!((found as f64 - expected).abs() <= 32.0, "{} {}", found, expected);
+            }
+        }
+
+        #[test]
+        fn controls_are_the_same_from_any_knot(seed: u64, first: i64, length in 0usize..60, skipped in 0usize..60) {
+            let shears = Shears::new(Waves::All, Warp::ON, Seed(seed)).expect("on");
+            let (mut all, mut part) = (vec![0; skipped + length], vec![0; length]);
+            for direction in 0..4 {
+                shears.controls(direction, first, &mut all);
+                shears.controls(direction, first.wrapping_add(skipped as i64), &mut part);
+                prop_assert_eq!(&all[skipped..], &part);
+            }
         }
     }
 

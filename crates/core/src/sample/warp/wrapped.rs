@@ -1,15 +1,15 @@
 //! The warp of a periodic set: the same shears, with knots that wrap.
 //!
 //! A period has 8·2ᵏ knots, so that whole groups of them fill it, at distances as near to those of the plain
-//! warp as that allows. Short periods have eight closer ones. Steps are in proportion to the distance, so the
-//! slopes are those of the plain warp. Everything is integer arithmetic, also the spline, whose knots are at no
-//! power of two.
+//! warp as that allows. Short periods have eight closer ones, and long waves have eight knots at least as well.
+//! Steps are in proportion to the distance, so the slopes are those of the plain warp. Everything is integer
+//! arithmetic, also the spline, whose knots are at no power of two.
 
 use alloc::{vec, vec::Vec};
 
 use super::{
-    Warp,
-    shears::{KNOT_BITS, directed, shear},
+    Warp, Waves,
+    shears::{KNOT_BITS, LONG_BITS, long, refined, shear, short},
     walk::{GROUP, Walk},
 };
 use crate::{sample::seed::Seed, table::FRACTION_BITS};
@@ -27,20 +27,27 @@ pub(crate) struct WrappedShears {
 
 impl WrappedShears {
     /// The shears of a seed on a torus of `period` grid units, at most 2²⁵, or `None` if the warp is off.
-    pub(crate) fn new(warp: Warp, seed: Seed, period: u64) -> Option<Self> {
+    pub(crate) fn new(waves: Waves, warp: Warp, seed: Seed, period: u64) -> Option<Self> {
         let mut knots = GROUP as u64;
         // At √½ to √2 times the plain distance, by a comparison of squares.
         while period * period > 2 * ((knots * knots) << (2 * KNOT_BITS)) {
             knots *= 2;
         }
         let period = (period as i64) << FRACTION_BITS;
-        // Exact: the number of knots is a power of two below 2²⁰.
+        // Exact: the number of knots is a power of two, at most 2²⁰.
+        let knots = knots as usize;
         let knot = period / knots as i64;
-        let walks = directed(warp, seed, knot as f64)?;
+        let mut controls = short(warp, seed, knot as f64)?.map(|walk| wrapped(&walk, knots));
+        let far = (knots >> LONG_BITS).max(GROUP);
+        if let Some(walks) = long(waves, warp, seed, (period / far as i64) as f64) {
+            for (controls, walk) in controls.iter_mut().zip(walks) {
+                add_refined(controls, &wrapped(&walk, far));
+            }
+        }
         Some(Self {
             period,
             knot,
-            controls: walks.map(|walk| wrapped(&walk, knots as usize)),
+            controls,
         })
     }
 
@@ -66,6 +73,16 @@ impl WrappedShears {
     }
 }
 
+/// Adds the spline of a period whose knots are farther apart.
+fn add_refined(controls: &mut [i32], far: &[i32]) {
+    let parts = controls.len() / far.len();
+    for (i, control) in controls.iter_mut().enumerate() {
+        let cell = i / parts;
+        let knots = [far.len() - 1, 0, 1].map(|step| far[(cell + step) % far.len()]);
+        *control += refined(knots, i % parts, parts);
+    }
+}
+
 /// The control values of all knots of a period. Groups begin at another knot in each direction of each seed.
 fn wrapped(walk: &Walk, knots: usize) -> Vec<i32> {
     let mut controls = vec![0; knots];
@@ -87,18 +104,16 @@ mod tests {
     use super::*;
 
     fn shears(seed: u64, period: u64) -> WrappedShears {
-        WrappedShears::new(Warp::ON, Seed(seed), period).expect("on")
+        WrappedShears::new(Waves::Short, Warp::ON, Seed(seed), period).expect("on")
+    }
+
+    fn all_waves(seed: u64, period: u64) -> WrappedShears {
+        WrappedShears::new(Waves::All, Warp::ON, Seed(seed), period).expect("on")
     }
 
     #[test]
     fn knots_are_about_as_far_apart_as_in_the_plane() {
-        for (period, knots) in [
-            (224, 8),
-            (1024, 8),
-            (1450, 16),
-            (2048, 16),
-            (1 << 25, 1 << 18),
-        ] {
+        for (period, knots) in [(56, 8), (256, 8), (363, 16), (512, 16), (1 << 25, 1 << 20)] {
             let shears = shears(7, period);
             assert_eq!(shears.controls[0].len(), knots, "{period}");
             assert_eq!(shears.knot * knots as i64, shears.period);
@@ -110,24 +125,44 @@ mod tests {
         fn a_torus_is_mapped_onto_itself(
             seed: u64, half in 20u64..3000, x: i32, y: i32, i in -2i64..=2, j in -2i64..=2,
         ) {
-            let shears = shears(seed, 2 * half);
-            let at = [i64::from(x), i64::from(y)];
-            let wrap = |p: [i64; 2]| p.map(|v| v.rem_euclid(shears.period));
-            let shifted = [at[0] + i * shears.period, at[1] + j * shears.period];
-            prop_assert_eq!(wrap(shears.apply(at)), wrap(shears.apply(shifted)));
+            for shears in [shears(seed, 2 * half), all_waves(seed, 2 * half)] {
+                let at = [i64::from(x), i64::from(y)];
+                let wrap = |p: [i64; 2]| p.map(|v| v.rem_euclid(shears.period));
+                let shifted = [at[0] + i * shears.period, at[1] + j * shears.period];
+                prop_assert_eq!(wrap(shears.apply(at)), wrap(shears.apply(shifted)));
+            }
         }
 
         #[test]
         fn the_spline_has_no_seam_and_bounded_slopes(seed: u64, half in 20u64..3000, x: u32) {
-            let shears = shears(seed, 2 * half);
-            let x = i64::from(x) % shears.period;
-            for (direction, slope) in [0.06, 0.06, 0.03, 0.03].into_iter().enumerate() {
-                for x in [x, shears.period - 1, shears.knot - 1] {
-                    for step in [1, 1 << 10, 1 << 20] {
-                        let rise = shears.noise(direction, x + step) - shears.noise(direction, x);
-                        prop_assert!(rise.abs() as f64 <= slope * step as f64 + 3.0);
+            for (shears, most) in [(shears(seed, 2 * half), 0.09), (all_waves(seed, 2 * half), 0.15)] {
+                let x = i64::from(x) % shears.period;
+                for (direction, slope) in [most, most, most / 2.0, most / 2.0].into_iter().enumerate() {
+                    for x in [x, shears.period - 1, shears.knot - 1] {
+                        for step in [1, 1 << 10, 1 << 20] {
+                            let rise = shears.noise(direction, x + step) - shears.noise(direction, x);
+                            prop_assert!(rise.abs() as f64 <= slope * step as f64 + 4.0);
+                        }
                     }
                 }
+            }
+        }
+
+        #[test]
+        fn a_refined_spline_is_the_same(seed: u64, half in 200u64..3000, x: u32) {
+            let (short, all) = (shears(seed, 2 * half), all_waves(seed, 2 * half));
+            let far = (all.controls[0].len() >> LONG_BITS).max(GROUP);
+            let knot = all.period / far as i64;
+            let walks = long(Waves::All, Warp::ON, Seed(seed), knot as f64).expect("on");
+            let x = i64::from(x) % all.period;
+            for (direction, walk) in walks.iter().enumerate() {
+                let controls = wrapped(walk, far);
+                let at = (x % knot) as f64 / knot as f64;
+                let cell = (x / knot) as usize;
+                let [a, b, c] = [far - 1, 0, 1].map(|step| f64::from(controls[(cell + step) % far]));
+                let expected = (a + b) / 2.0 + ((b - a) + (a - 2.0 * b + c) / 2.0 * at) * at;
+                let found = all.noise(direction, x) - short.noise(direction, x);
+                prop_assert!((found as f64 - expected).abs() <= 8.0, "{} {}", found, expected);
             }
         }
     }

@@ -29,22 +29,6 @@ pub(in super::super) fn compiled_loop(work: &mut impl PlainLoop) {
 
 pub(in super::super) struct Avx2;
 
-/// The lanes of `low` or of `high`, as the fourth bit of each cell selects.
-///
-/// # Safety
-/// The machine has AVX2.
-#[inline(always)]
-unsafe fn half_of(low: __m256, high: __m256, cells: __m256i) -> __m256 {
-    // The bit as the sign.
-    unsafe {
-        _mm256_blendv_ps(
-            low,
-            high,
-            _mm256_castsi256_ps(_mm256_slli_epi32::<28>(cells)),
-        )
-    }
-}
-
 impl Lanes for Avx2 {
     const WIDTH: usize = 8;
     const WINDOW: usize = 8;
@@ -77,6 +61,16 @@ impl Lanes for Avx2 {
     #[inline(always)]
     unsafe fn sub_ints(a: __m256i, b: __m256i) -> __m256i {
         unsafe { _mm256_sub_epi32(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn min_ints(a: __m256i, b: __m256i) -> __m256i {
+        unsafe { _mm256_min_epi32(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn max_ints(a: __m256i, b: __m256i) -> __m256i {
+        unsafe { _mm256_max_epi32(a, b) }
     }
 
     #[inline(always)]
@@ -125,30 +119,29 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    unsafe fn table(all: &[f32; PatchShears::CELLS], first: i32) -> __m256 {
+    unsafe fn table(from: *const f32) -> __m256 {
+        unsafe { _mm256_loadu_ps(from) }
+    }
+
+    #[inline(always)]
+    unsafe fn pick(table: __m256, places: __m256i) -> __m256 {
+        unsafe { _mm256_permutevar8x32_ps(table, places) }
+    }
+
+    #[inline(always)]
+    unsafe fn pick_at_once(from: *const f32, places: __m256i) -> __m256 {
         unsafe {
-            // The cells by their lowest three bits.
-            let first = _mm256_set1_epi32(first);
-            let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-            let after = _mm256_and_si256(_mm256_sub_epi32(lanes, first), _mm256_set1_epi32(7));
-            let low = _mm256_loadu_ps(all.as_ptr());
-            let high = _mm256_loadu_ps(all.as_ptr().add(8));
-            half_of(low, high, _mm256_add_epi32(first, after))
+            let low = _mm256_permutevar8x32_ps(_mm256_loadu_ps(from), places);
+            let high = _mm256_permutevar8x32_ps(_mm256_loadu_ps(from.add(8)), places);
+            // The fourth bit as the sign.
+            let is_high = _mm256_castsi256_ps(_mm256_slli_epi32::<28>(places));
+            _mm256_blendv_ps(low, high, is_high)
         }
     }
 
     #[inline(always)]
-    unsafe fn pick(table: __m256, cells: __m256i) -> __m256 {
-        unsafe { _mm256_permutevar8x32_ps(table, cells) }
-    }
-
-    #[inline(always)]
-    unsafe fn pick_any(all: &[f32; PatchShears::CELLS], cells: __m256i) -> __m256 {
-        unsafe {
-            let low = _mm256_permutevar8x32_ps(_mm256_loadu_ps(all.as_ptr()), cells);
-            let high = _mm256_permutevar8x32_ps(_mm256_loadu_ps(all.as_ptr().add(8)), cells);
-            half_of(low, high, cells)
-        }
+    unsafe fn gather(from: *const f32, places: __m256i) -> __m256 {
+        unsafe { _mm256_i32gather_ps::<4>(from, places) }
     }
 
     #[inline(always)]

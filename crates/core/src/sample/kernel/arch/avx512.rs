@@ -34,7 +34,7 @@ pub(in super::super) struct Avx512;
 
 impl Lanes for Avx512 {
     const WIDTH: usize = 16;
-    const WINDOW: usize = PatchShears::CELLS;
+    const WINDOW: usize = PatchShears::AT_ONCE;
 
     type Ints = __m512i;
     type Singles = __m512;
@@ -64,6 +64,16 @@ impl Lanes for Avx512 {
     #[inline(always)]
     unsafe fn sub_ints(a: __m512i, b: __m512i) -> __m512i {
         unsafe { _mm512_sub_epi32(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn min_ints(a: __m512i, b: __m512i) -> __m512i {
+        unsafe { _mm512_min_epi32(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn max_ints(a: __m512i, b: __m512i) -> __m512i {
+        unsafe { _mm512_max_epi32(a, b) }
     }
 
     #[inline(always)]
@@ -112,18 +122,23 @@ impl Lanes for Avx512 {
     }
 
     #[inline(always)]
-    unsafe fn table(all: &[f32; PatchShears::CELLS], _: i32) -> __m512 {
-        unsafe { _mm512_loadu_ps(all.as_ptr()) }
+    unsafe fn table(from: *const f32) -> __m512 {
+        unsafe { _mm512_loadu_ps(from) }
     }
 
     #[inline(always)]
-    unsafe fn pick(table: __m512, cells: __m512i) -> __m512 {
-        unsafe { _mm512_permutexvar_ps(cells, table) }
+    unsafe fn pick(table: __m512, places: __m512i) -> __m512 {
+        unsafe { _mm512_permutexvar_ps(places, table) }
     }
 
     #[inline(always)]
-    unsafe fn pick_any(all: &[f32; PatchShears::CELLS], cells: __m512i) -> __m512 {
-        unsafe { Self::pick(Self::table(all, 0), cells) }
+    unsafe fn pick_at_once(from: *const f32, places: __m512i) -> __m512 {
+        unsafe { Self::pick(Self::table(from), places) }
+    }
+
+    #[inline(always)]
+    unsafe fn gather(from: *const f32, places: __m512i) -> __m512 {
+        unsafe { _mm512_i32gather_ps::<4>(places, from) }
     }
 
     #[inline(always)]

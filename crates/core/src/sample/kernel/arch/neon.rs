@@ -17,14 +17,27 @@ pub(in super::super) unsafe fn run(work: &mut impl VectorLoop) -> usize {
 
 pub(in super::super) struct Neon;
 
+/// The bytes of places: of entry i those from 4i to 4i + 3.
+///
+/// # Safety
+/// The machine has NEON.
+#[inline(always)]
+unsafe fn bytes(places: int32x4_t) -> uint8x16_t {
+    unsafe {
+        let first = vdupq_n_u32(0x0302_0100);
+        let places = vreinterpretq_u32_s32(places);
+        vreinterpretq_u8_u32(vmlaq_u32(first, places, vdupq_n_u32(0x0404_0404)))
+    }
+}
+
 impl Lanes for Neon {
     const WIDTH: usize = 4;
-    const WINDOW: usize = PatchShears::CELLS;
+    const WINDOW: usize = 8;
 
     type Ints = int32x4_t;
     type Singles = float32x4_t;
     type Doubles = [float64x2_t; 2];
-    type Table = uint8x16x4_t;
+    type Table = uint8x16x2_t;
 
     #[inline(always)]
     unsafe fn load_ints(from: *const i32) -> int32x4_t {
@@ -49,6 +62,16 @@ impl Lanes for Neon {
     #[inline(always)]
     unsafe fn sub_ints(a: int32x4_t, b: int32x4_t) -> int32x4_t {
         unsafe { vsubq_s32(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn min_ints(a: int32x4_t, b: int32x4_t) -> int32x4_t {
+        unsafe { vminq_s32(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn max_ints(a: int32x4_t, b: int32x4_t) -> int32x4_t {
+        unsafe { vmaxq_s32(a, b) }
     }
 
     #[inline(always)]
@@ -98,24 +121,21 @@ impl Lanes for Neon {
     }
 
     #[inline(always)]
-    unsafe fn table(all: &[f32; PatchShears::CELLS], _: i32) -> uint8x16x4_t {
-        // The table is 64 bytes; entry i is bytes 4i to 4i + 3.
-        unsafe { vld1q_u8_x4(all.as_ptr().cast()) }
+    unsafe fn table(from: *const f32) -> uint8x16x2_t {
+        unsafe { vld1q_u8_x2(from.cast()) }
     }
 
     #[inline(always)]
-    unsafe fn pick(table: uint8x16x4_t, cells: int32x4_t) -> float32x4_t {
+    unsafe fn pick(table: uint8x16x2_t, places: int32x4_t) -> float32x4_t {
+        unsafe { vreinterpretq_f32_u8(vqtbl2q_u8(table, bytes(places))) }
+    }
+
+    #[inline(always)]
+    unsafe fn pick_at_once(from: *const f32, places: int32x4_t) -> float32x4_t {
         unsafe {
-            let cells = vreinterpretq_u32_s32(vandq_s32(cells, vdupq_n_s32(15)));
-            let first = vdupq_n_u32(0x0302_0100);
-            let bytes = vmlaq_u32(first, cells, vdupq_n_u32(0x0404_0404));
-            vreinterpretq_f32_u8(vqtbl4q_u8(table, vreinterpretq_u8_u32(bytes)))
+            let table = vld1q_u8_x4(from.cast());
+            vreinterpretq_f32_u8(vqtbl4q_u8(table, bytes(places)))
         }
-    }
-
-    #[inline(always)]
-    unsafe fn pick_any(all: &[f32; PatchShears::CELLS], cells: int32x4_t) -> float32x4_t {
-        unsafe { Self::pick(Self::table(all, 0), cells) }
     }
 
     #[inline(always)]

@@ -17,14 +17,30 @@ pub(in super::super) unsafe fn run(work: &mut impl VectorLoop) -> usize {
 
 pub(in super::super) struct Simd128;
 
+/// The bytes of places: of entry i those from 4i to 4i + 3.
+#[inline(always)]
+fn bytes(places: v128) -> v128 {
+    i32x4_add(
+        i32x4_mul(places, i32x4_splat(0x0404_0404)),
+        i32x4_splat(0x0302_0100),
+    )
+}
+
+/// The bytes of a table that are in its quarter number `k`. A swizzle returns 0 for bytes outside its 16, so
+/// quarters can be combined.
+#[inline(always)]
+fn quarter(entries: v128, bytes: v128, k: u8) -> v128 {
+    u8x16_swizzle(entries, u8x16_sub(bytes, u8x16_splat(16 * k)))
+}
+
 impl Lanes for Simd128 {
     const WIDTH: usize = 4;
-    const WINDOW: usize = PatchShears::CELLS;
+    const WINDOW: usize = 8;
 
     type Ints = v128;
     type Singles = v128;
     type Doubles = [v128; 2];
-    type Table = [v128; 4];
+    type Table = [v128; 2];
 
     #[inline(always)]
     unsafe fn load_ints(from: *const i32) -> v128 {
@@ -49,6 +65,16 @@ impl Lanes for Simd128 {
     #[inline(always)]
     unsafe fn sub_ints(a: v128, b: v128) -> v128 {
         i32x4_sub(a, b)
+    }
+
+    #[inline(always)]
+    unsafe fn min_ints(a: v128, b: v128) -> v128 {
+        i32x4_min(a, b)
+    }
+
+    #[inline(always)]
+    unsafe fn max_ints(a: v128, b: v128) -> v128 {
+        i32x4_max(a, b)
     }
 
     #[inline(always)]
@@ -98,31 +124,25 @@ impl Lanes for Simd128 {
     }
 
     #[inline(always)]
-    unsafe fn table(all: &[f32; PatchShears::CELLS], _: i32) -> [v128; 4] {
-        // SAFETY: the table has four quarters of four entries.
-        [0, 4, 8, 12].map(|k| unsafe { v128_load(all.as_ptr().add(k).cast()) })
+    unsafe fn table(from: *const f32) -> [v128; 2] {
+        // SAFETY: as the caller ensures.
+        [0, 4].map(|k| unsafe { v128_load(from.add(k).cast()) })
     }
 
     #[inline(always)]
-    unsafe fn pick(table: [v128; 4], cells: v128) -> v128 {
-        // Entry i is bytes 4i to 4i + 3. A swizzle returns 0 for bytes outside its 16, so the quarters of
-        // the table can be combined.
-        let cells = v128_and(cells, i32x4_splat(15));
-        let bytes = i32x4_add(
-            i32x4_mul(cells, i32x4_splat(0x0404_0404)),
-            i32x4_splat(0x0302_0100),
-        );
-        let quarter =
-            |k: usize| u8x16_swizzle(table[k], u8x16_sub(bytes, u8x16_splat(16 * k as u8)));
-        v128_or(
-            v128_or(quarter(0), quarter(1)),
-            v128_or(quarter(2), quarter(3)),
-        )
+    unsafe fn pick(table: [v128; 2], places: v128) -> v128 {
+        let bytes = bytes(places);
+        v128_or(quarter(table[0], bytes, 0), quarter(table[1], bytes, 1))
     }
 
     #[inline(always)]
-    unsafe fn pick_any(all: &[f32; PatchShears::CELLS], cells: v128) -> v128 {
-        unsafe { Self::pick(Self::table(all, 0), cells) }
+    unsafe fn pick_at_once(from: *const f32, places: v128) -> v128 {
+        // SAFETY: there are 16 coefficients.
+        let [low, high] = [0, 8].map(|k| unsafe { Self::table(from.add(k)) });
+        let bytes = bytes(places);
+        let low = v128_or(quarter(low[0], bytes, 0), quarter(low[1], bytes, 1));
+        let high = v128_or(quarter(high[0], bytes, 2), quarter(high[1], bytes, 3));
+        v128_or(low, high)
     }
 
     #[inline(always)]
