@@ -172,7 +172,7 @@ fn a_coarser_level_has_a_part_of_the_points_of_a_finer_one() {
 fn levels_have_a_quarter_of_the_common_share_each() {
     let (folder, file) = settings(WORLDS);
     let thin = fs::read_to_string(&file).expect("readable")
-        + "[worlds.thin]\nkeep = 0.5\n"
+        + "[worlds.thin]\nlod = 0.5\n"
         + &WORLDS.replace("worlds.forest", "worlds.thin");
     fs::write(&file, thin).expect("writable");
     let shape = [
