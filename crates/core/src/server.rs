@@ -385,6 +385,21 @@ pub fn settles(set: &PointSet) -> bool {
     set.settles()
 }
 
+/// A bound of the share of points that a set has in a box: its share, times that of its field.
+///
+/// ```
+/// use strew_core::{PointSet, Region, Table, server::greatest_share};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let view = Region::new([0.0, 0.0], [20.0, 20.0])?;
+/// assert_eq!(greatest_share(&PointSet::new(table).keep(0.5)?, &view), 0.5);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[must_use]
+pub fn greatest_share(set: &PointSet, within: &Region) -> f64 {
+    set.greatest_share(within)
+}
+
 /// About half the length, along the axes and in world units, of the outlines of all shapes of an area
 /// inside `within`: width + height for a box. Counting an area takes time in proportion to this and to
 /// its height.

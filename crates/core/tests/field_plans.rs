@@ -166,7 +166,7 @@ proptest! {
     #[test]
     fn a_box_holds_what_the_definition_has((set, field) in any_set(), region in any_box()) {
         let expected = defined(&set, &field, &region);
-        let set = set.in_field(field);
+        let set = set.in_field(field).settle(0).expect("0");
         let plan = set.within(region).expect("near");
         prop_assert_eq!(plan.to_vec(), expected.clone());
         prop_assert_eq!(plan.count(), expected.len() as u128);

@@ -218,7 +218,7 @@ parameters! {
         name: "settle",
         about: "The steps by which the points of a set that is thinned or in a field move apart, so that they are \
                 spread evenly: 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its \
-                time. Sets with all points do not settle.",
+                time. Sets with all points, and periods, do not settle.",
         group: Group::Points,
         shape: Shape::Integer { min: 0, max: Settle::MAX_STEPS as u64 },
         default: Some("2"),

@@ -7,9 +7,9 @@ use strew_error::{Checked, Fault};
 use crate::{
     parameter::Parameter,
     parameters::{
-        ALIGN, ATTRIBUTES, COUNT, CRS, DECIMALS, EXCEPT, HEIGHTS, LOD, MIN_DISTANCE, NORMALS, ONLY,
-        PERIODIC, SCALE_RANGE, SCALE_RANGES, SETTLE, SIZE, SPREAD, SUMMARY, TERRAIN,
-        VARIANT_FIELDS, VARIANTS,
+        ALIGN, ATTRIBUTES, COUNT, CRS, DECIMALS, EXCEPT, HEIGHTS, MIN_DISTANCE, NORMALS, ONLY,
+        PERIODIC, SCALE_RANGE, SCALE_RANGES, SIZE, SPREAD, SUMMARY, TERRAIN, VARIANT_FIELDS,
+        VARIANTS,
     },
     spread::Spread,
     value::Value,
@@ -85,22 +85,6 @@ pub static RULES: &[Rule] = &[
             &VARIANT_FIELDS,
             "not with periodic: shares that vary do not repeat",
             None,
-        ),
-    ),
-    rule(
-        &SETTLE,
-        Condition::Without(
-            &PERIODIC,
-            "not with periodic: the points of a period do not settle",
-            None,
-        ),
-    ),
-    rule(
-        &LOD,
-        Condition::Without(
-            &COUNT,
-            "not with lod: a level has a part of the points",
-            Some("density, spacing or min_distance"),
         ),
     ),
     rule(

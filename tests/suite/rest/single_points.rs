@@ -229,7 +229,7 @@ fn a_share_keeps_the_points_of_lowest_rank() {
             .map(|text| text.parse().expect("a number"))
             .collect();
         for share in [0.01, 0.25, 0.5, 0.99] {
-            let kept = Csv::get(&daemon, &format!("{region}&{set}&keep={share}")).points;
+            let kept = Csv::get(&daemon, &format!("{region}&{set}&keep={share}&settle=0")).points;
             let lesser = all
                 .points
                 .iter()

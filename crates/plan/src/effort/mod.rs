@@ -260,7 +260,7 @@ fn rows(selection: &Selection) -> f64 {
 /// The rows that settling the points near an outline takes: some thirty places for each local spacing of it.
 fn settled(selection: &Selection, bounds: Region) -> f64 {
     /// Nanoseconds for a step of the places of a local spacing.
-    const STEP: f64 = 8000.0;
+    const STEP: f64 = 4000.0;
     let set = &selection.set;
     let Placement {
         spacing,
@@ -271,8 +271,9 @@ fn settled(selection: &Selection, bounds: Region) -> f64 {
     if !server::settles(set) {
         return 0.0;
     }
+    let share = server::greatest_share(set, &bounds).min(keep.get());
     let outline = server::outline(&selection.area, bounds) / spacing.get();
-    outline * keep.get().sqrt() * f64::from(settle.steps()) * STEP / ROW
+    outline * share.sqrt() * f64::from(settle.steps()) * STEP / ROW
 }
 
 /// The number of rows, and the work for polygons of many edges unless the rows alone exceed `most`.

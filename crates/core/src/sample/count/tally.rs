@@ -203,7 +203,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        sample::{Keep, Placement, PointId, Seed, Spacing},
+        sample::{Keep, Placement, PointId, Seed, Settle, Spacing},
         table::{Mix, Ranks, Table},
     };
 
@@ -231,7 +231,8 @@ mod tests {
         ) {
             let table = Table::undisplaced("(5-sqrt(3))/2".parse().expect("valid"), radius, "test");
             let placement = Placement::new(Spacing::new(1.0).expect("valid"), Seed(seed))
-                .with_keep(Keep::new(share).expect("in range"));
+                .with_keep(Keep::new(share).expect("in range"))
+                .with_settle(Settle::OFF);
             let lattice = Lattice::new(table.expect("small"), placement);
             let ids = (y..y + height).flat_map(|y| (x..x + width).map(move |x| PointId { x, y }));
             let kept = ids.filter(|&id| lattice.pattern.contains(id.x, id.y) && lattice.rank(id) < share);
@@ -253,7 +254,8 @@ mod tests {
             let split = table.block_ranks(mix.splits()[0].block as usize);
             let share = if in_split { split.start + (split.end - split.start) * part } else { part };
             let placement = Placement::new(Spacing::new(1.0).expect("valid"), Seed(seed))
-                .with_keep(Keep::new(share.max(1e-6)).expect("in range"));
+                .with_keep(Keep::new(share.max(1e-6)).expect("in range"))
+                .with_settle(Settle::OFF);
             let lattice = Lattice::new(table, placement).of_kind(kind);
             let ids = (y..y + height).flat_map(|y| (x..x + width).map(move |x| PointId { x, y }));
             let kept = ids.filter(|&id| {

@@ -7,6 +7,7 @@ use crate::{
     error::Error,
     pattern::Arrangement,
     sample::{
+        area::Region,
         attribute::{Attributes, BoundAttributes},
         lattice::{Placement, Point, PointId},
         member::Member,
@@ -299,6 +300,15 @@ impl PointSet {
         }
         let Placement { spacing, warp, .. } = self.placement();
         self.table_distance().reported(spacing, warp, reach)
+    }
+
+    /// A bound of the share in a box.
+    pub(crate) fn greatest_share(&self, within: &Region) -> f64 {
+        let all = self.placement().keep.get();
+        match &self.lattice.grade {
+            Some(grade) => grade.bounds(within)[1].min(all),
+            None => all,
+        }
     }
 
     /// Whether points settle.
