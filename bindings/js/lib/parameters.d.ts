@@ -98,8 +98,8 @@ export interface Parameters {
     keep?: number;
     /**
      * The steps by which the points of a set that is thinned or in a field move apart, so that they are spread evenly:
-     * 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its time. Sets with all points do
-     * not settle. Allowed: an integer from 0 to 4. Default: 2.
+     * 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its time. Sets with all points,
+     * and periods, do not settle. Allowed: an integer from 0 to 4. Default: 2.
      */
     settle?: number;
     /**

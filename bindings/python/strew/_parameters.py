@@ -75,8 +75,8 @@ class Parameters(TypedDict, total=False):
     #: number from 1e-6 to 1. Default: 1.
     keep: float
     #: The steps by which the points of a set that is thinned or in a field move apart, so that they are spread evenly:
-    #: 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its time. Sets with all points do
-    #: not settle. Allowed: an integer from 0 to 4. Default: 2.
+    #: 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its time. Sets with all points,
+    #: and periods, do not settle. Allowed: an integer from 0 to 4. Default: 2.
     settle: int
     #: The level of detail: the part of the points that the answer has, at each place those of the lowest rank. None of
     #: them moves, so a level has a part of the points of a finer one, in fields, of kinds and of layers, too. Beside
