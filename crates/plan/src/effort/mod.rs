@@ -236,7 +236,8 @@ fn rows(selection: &Selection) -> f64 {
     let is_closed = placement.warp == Warp::OFF
         && !selection.looks_at_all()
         && !server::settles(&selection.set);
-    let looks = candidates(selection) as f64 * (CANDIDATE + selection.look) / ROW;
+    let candidates = candidates(selection) as f64;
+    let looks = candidates * (CANDIDATE + selection.look) / ROW;
     let Some(bounds) = area.bounds().filter(|_| !(is_box && is_closed)) else {
         return looks;
     };
@@ -254,12 +255,13 @@ fn rows(selection: &Selection) -> f64 {
     } else {
         0.0
     };
-    along + across + cleared + looks + settled(selection, bounds)
+    along + across + cleared + looks + settled(selection, bounds, candidates)
 }
 
-/// The rows that settling the points near an outline takes: some thirty places for each local spacing of it.
-fn settled(selection: &Selection, bounds: Region) -> f64 {
-    /// Nanoseconds for a step of the places of a local spacing.
+/// The rows that settling the points near an outline takes: some thirty places for each local spacing of it, but no more
+/// than all candidates of a field take.
+fn settled(selection: &Selection, bounds: Region, candidates: f64) -> f64 {
+    /// Nanoseconds for a step of the places of a local spacing, and of those around one point.
     const STEP: f64 = 4000.0;
     let set = &selection.set;
     let Placement {
@@ -273,7 +275,14 @@ fn settled(selection: &Selection, bounds: Region) -> f64 {
     }
     let share = server::greatest_share(set, &bounds).min(keep.get());
     let outline = server::outline(&selection.area, bounds) / spacing.get();
-    outline * share.sqrt() * f64::from(settle.steps()) * STEP / ROW
+    let near = outline * share.sqrt();
+    let is_in_field = candidates > 0.0 || selection.look > 0.0;
+    let places = if is_in_field {
+        near.min(candidates)
+    } else {
+        near
+    };
+    places * f64::from(settle.steps()) * STEP / ROW
 }
 
 /// The number of rows, and the work for polygons of many edges unless the rows alone exceed `most`.

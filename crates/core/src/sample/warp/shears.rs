@@ -359,9 +359,9 @@ mod tests {
             let knot = f64::from(1 << (CELL_BITS + LONG_BITS));
             let cell = s >> (CELL_BITS + LONG_BITS);
             let at = (s - (cell << (CELL_BITS + LONG_BITS))) as f64 / knot;
-            for direction in 0..4 {
+            for (direction, long) in long.iter().enumerate() {
                 let mut knots = [0; 3];
-                long[direction].controls(cell as i64 - 1, &mut knots);
+                long.controls(cell as i64 - 1, &mut knots);
                 let [a, b, c] = knots.map(f64::from);
                 let expected = (a + b) / 2.0 + ((b - a) + (a - 2.0 * b + c) / 2.0 * at) * at;
                 let found = all.noise(direction, s) - only_short.noise(direction, s);
