@@ -233,14 +233,16 @@ fn rows(selection: &Selection) -> f64 {
     let area = &selection.area;
     let placement = selection.set.placement();
     let is_box = matches!(area, Area::Region(_));
-    let is_closed = placement.warp == Warp::OFF
-        && !selection.looks_at_all()
-        && !server::settles(&selection.set);
+    let is_closed = placement.warp == Warp::OFF && !selection.looks_at_all();
     let candidates = candidates(selection) as f64;
     let looks = candidates * (CANDIDATE + selection.look) / ROW;
-    let Some(bounds) = area.bounds().filter(|_| !(is_box && is_closed)) else {
+    let Some(bounds) = area.bounds() else {
         return looks;
     };
+    let looks = looks + settled(selection, bounds, candidates);
+    if is_box && is_closed {
+        return looks;
+    }
     let spacing = placement.spacing.get();
     let [width, height] = sides(bounds);
     let along = server::outline(area, bounds) * UNITS / spacing;
@@ -255,7 +257,7 @@ fn rows(selection: &Selection) -> f64 {
     } else {
         0.0
     };
-    along + across + cleared + looks + settled(selection, bounds, candidates)
+    along + across + cleared + looks
 }
 
 /// The rows that settling the points near an outline takes: some thirty places for each local spacing of it, but no more
