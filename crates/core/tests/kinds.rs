@@ -118,12 +118,14 @@ proptest! {
 
     #[test]
     fn a_box_holds_what_the_definition_has(set in any_set(), region in any_box()) {
+        let set = set.settle(0).expect("0");
         let expected = defined(&set, &region, |id| definition::place(&set, id));
         agree(&set, region, &expected);
     }
 
     #[test]
     fn a_field_leaves_what_the_definition_has(set in any_set(), region in any_box()) {
+        let set = set.settle(0).expect("0");
         let field = |[x, y]: [f64; 2]| 0.5 + 0.6 * (x * 0.11).sin() * (y * 0.07).cos();
         let expected = defined(&set, &region, |id| definition::place_in(&set, &field, id));
         agree(&set.in_field(field), region, &expected);

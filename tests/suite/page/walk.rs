@@ -34,7 +34,7 @@ fn picked(browser: &Browser) -> String {
 /// Compares what stands in a leaf with the chunk that the server answers for it: `null` if they agree.
 const COMPARED: &str = "(async (leaf) => { \
     const thing = strew.world.sets[0].built.get(`${leaf.level}/${leaf.cx}/${leaf.cy}`); \
-    const path = `/v1/chunks/${leaf.size}/${leaf.cx}/${leaf.cy}?spacing=2&seed=7&format=csv&keep=${leaf.keep}`; \
+    const path = `/v1/chunks/${leaf.size}/${leaf.cx}/${leaf.cy}?spacing=2&seed=7&format=csv&lod=${leaf.keep}`; \
     const lines = (await (await fetch(path)).text()).trim().split('\\n').slice(1); \
     const theirs = lines.map((line) => line.split(',').slice(1).map(Math.fround).join()).sort(); \
     const ours = []; \
