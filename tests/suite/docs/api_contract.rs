@@ -94,19 +94,20 @@ fn without_fields(mut document: Value) -> Value {
     let rules = document["paths"]["/v1/points"]["get"]["x-rules"].clone();
     let terrain = json!([{ "parameter": "terrain", "values": [] }]);
     let rules = rules.as_array().expect("a list").iter();
-    let parts: Vec<&str> = rules
+    let parts = rules
         .filter(|rule| rule["others"] == terrain)
-        .filter_map(|rule| rule["parameter"].as_str())
-        .collect();
-    without_parts_of_terrains(&mut document, &parts);
+        .filter_map(|rule| rule["parameter"].as_str());
+    // Plain numbers, which addresses have, too.
+    let parts: Vec<&str> = parts.chain(["settle", "lod"]).collect();
+    without_some_members(&mut document, &parts);
     let schemas = &mut document["components"]["schemas"];
     // Answers have all shapes.
     schemas["DescribedField"]["properties"]["field"] = json!({});
     document
 }
 
-/// Takes what only goes with a terrain out of bodies: the generator fails on that many members.
-fn without_parts_of_terrains(value: &mut Value, parts: &[&str]) {
+/// Takes some members out of bodies: the generator fails on as many as they have.
+fn without_some_members(value: &mut Value, parts: &[&str]) {
     match value {
         Value::Object(members) => {
             if let Some(Value::Object(properties)) = members.get_mut("properties")
@@ -118,11 +119,11 @@ fn without_parts_of_terrains(value: &mut Value, parts: &[&str]) {
                 }
             }
             let inner = members.values_mut();
-            inner.for_each(|member| without_parts_of_terrains(member, parts));
+            inner.for_each(|member| without_some_members(member, parts));
         }
         Value::Array(items) => items
             .iter_mut()
-            .for_each(|item| without_parts_of_terrains(item, parts)),
+            .for_each(|item| without_some_members(item, parts)),
         _ => {}
     }
 }
