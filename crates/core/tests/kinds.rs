@@ -279,8 +279,8 @@ proptest! {
         set in any_set(), corner in prop::array::uniform2(-1e12..1e12f64),
         size in prop::array::uniform2(1.0..1e9f64), cut in 0.0..1.0f64, kind: u8,
     ) {
-        // Counts of warped boxes take time in proportion to the circumference.
-        let set = set.warp(0.0).expect("in range");
+        // Counts of warped boxes and of points that settle take time in proportion to the circumference.
+        let set = set.warp(0.0).expect("in range").settle(0).expect("0");
         let own = only(&set, kind % kinds(&set));
         let [x, y] = corner;
         let [right, top] = [x + size[0], y + size[1]];

@@ -17,10 +17,9 @@
 //!      └───────────────────────────────┘
 //! ```
 //!
-//! A sparse point reaches far, but one that stays needs no neighbors: where a field fades out, its sparsest
-//! points stay because it is steep there. So boxes grow by the points that move, not by bounds of the field. How
-//! far these reach is only known when they are listed, so a window is guessed first, and listed again if it
-//! was too small. Where points end does not depend on it.
+//! A sparse point reaches far, but one that stays needs no neighbors, as where a field fades out. So boxes grow by the
+//! points that move. How far these reach is known when they are listed: a window is guessed, and listed again if it
+//! was too small.
 
 use alloc::{vec, vec::Vec};
 use core::ops::Range;
