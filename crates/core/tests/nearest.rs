@@ -127,7 +127,7 @@ proptest! {
     fn thinned_searches_see_what_is_kept(
         (set, at) in any_query(), keep in 0.01..1.0f64, k in 1usize..20,
     ) {
-        let thinned = set.clone().keep(keep).expect("a share");
+        let thinned = set.clone().keep(keep).expect("a share").settle(0).expect("0");
         let nearest = found(thinned.nearest(at, k).expect("near"));
         prop_assert_eq!(nearest.len(), k);
         let mut all = in_box(&set, at, nearest[k - 1].1);

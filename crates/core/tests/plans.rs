@@ -239,7 +239,7 @@ proptest! {
         let ranks = set.attributes(&ranks).expect("of any table");
         let mut expected = within(&set, &area).to_vec();
         expected.retain(|p| ranks.value(0, p.id).expect("a member") < share);
-        let kept = set.clone().keep(share).expect("in range");
+        let kept = set.clone().keep(share).expect("in range").settle(0).expect("0");
         let plan = within(&kept, &area);
         prop_assert_eq!(plan.count(), expected.len() as u128);
         prop_assert_eq!(&all::<Points>(&plan, 100), &expected);

@@ -18,8 +18,7 @@
 //! ```
 //!
 //! A sparse point reaches far, but one that stays needs no neighbors, as where a field fades out. So boxes grow by the
-//! points that move. How far these reach is known when they are listed: a window is guessed, and listed again if it
-//! was too small.
+//! points that move. How far these reach is known when they are listed: a window is guessed, and listed again if need be.
 
 use alloc::{vec, vec::Vec};
 use core::ops::Range;
