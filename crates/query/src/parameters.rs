@@ -3,7 +3,7 @@
 //! Addresses, command lines, JSON bodies, messages, worlds, echoes, help texts and the API's
 //! description are loops over this table. ARCHITECTURE.md says how to add a parameter.
 
-use strew_core::{Keep, PeriodicSet, ScaleRange, Settle, Spacing, UniformNumber, Variants, Warp};
+use strew_core::{Keep, PeriodicSet, ScaleRange, Spacing, UniformNumber, Variants, Warp};
 use strew_encode::{
     CRS as CRS_ALLOWED, MOST_DECIMALS,
     preview::{LEAST_SIZE, MOST_SIZE},
@@ -18,6 +18,7 @@ use crate::{
 
 mod named;
 mod terrain;
+mod thinned;
 
 /// Makes a static of each parameter, and the list of all.
 macro_rules! parameters {
@@ -214,31 +215,9 @@ parameters! {
         ..Parameter::PLAIN
     };
     /// The steps by which points settle.
-    SETTLE = Parameter {
-        name: "settle",
-        about: "The steps by which the points of a set that is thinned or in a field move apart, so that they are \
-                spread evenly: 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its \
-                time. Sets with all points, and periods, do not settle.",
-        group: Group::Points,
-        shape: Shape::Integer { min: 0, max: Settle::MAX_STEPS as u64 },
-        default: Some("2"),
-        example: "3",
-        is_echoed: true,
-        ..Parameter::RARE
-    };
+    SETTLE = thinned::SETTLE;
     /// The level of detail.
-    LOD = Parameter {
-        name: "lod",
-        about: "The level of detail: the part of the points that the answer has, at each place those of the lowest \
-                rank. None of them moves, so a level has a part of the points of a finer one, in fields, of kinds \
-                and of layers, too. Beside layers: of all of them; they keep clear of all points of each other.",
-        group: Group::Points,
-        shape: Shape::Number { min: Keep::MIN, max: 1.0 },
-        default: Some("1"),
-        example: "0.25",
-        is_echoed: true,
-        ..Parameter::RARE
-    };
+    LOD = thinned::LOD;
     /// The field that the set is in.
     FIELD = Parameter {
         name: "field",
