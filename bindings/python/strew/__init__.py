@@ -6,9 +6,9 @@ region; the same query has the same points on every machine.
 >>> import strew
 >>> points = strew.points(bbox=(0, 0, 10, 10), spacing=1, seed=7)
 >>> len(points)
-102
+100
 >>> points.xy.shape
-(102, 2)
+(100, 2)
 
 :func:`points` answers in this process. :func:`connect` asks a daemon instead; what it returns has the same
 functions and the same points.

@@ -63,7 +63,7 @@ class Source:
 
         >>> import strew
         >>> strew.query({"region": {"bbox": [0, 0, 10, 10]}, "spacing": 1, "seed": 7}).count()
-        102
+        100
         """
         made = PointSet(self, dict(query))
         if self.checks_at_once and "region" in query:
