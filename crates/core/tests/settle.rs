@@ -33,6 +33,34 @@ fn kernels(steps: u32) -> Vec<[f32; 4]> {
     }
 }
 
+/// The steps of sets with kinds whose points push each other: ρ, c, γ, h of all points, and ρ, c of those of a kind.
+fn kernels_with_kinds(steps: u32) -> Vec<([f32; 4], [f32; 2])> {
+    match steps {
+        1 => vec![([2.395, 0.298, 0.999, 0.366], [2.4, 0.13])],
+        2 => vec![
+            ([2.29, 0.435, 1.134, 0.278], [2.4, 0.13]),
+            ([2.403, 0.312, 0.836, 0.49], [2.4, 0.13]),
+        ],
+        3 => vec![
+            ([1.707, 0.509, 1.004, 0.266], [2.453, 0.111]),
+            ([2.359, 0.299, 1.021, 0.341], [2.359, 0.146]),
+            ([2.422, 0.27, 0.761, 0.738], [2.392, 0.078]),
+        ],
+        _ => vec![
+            ([2.312, 0.407, 1.165, 0.617], [2.4, 0.13]),
+            ([1.832, 0.471, 0.797, 0.641], [2.4, 0.13]),
+            ([2.544, 0.501, 1.0, 0.0], [2.4, 0.13]),
+            ([2.772, 0.286, 0.836, 0.141], [2.4, 0.13]),
+        ],
+    }
+}
+
+/// The part of all points that a kind has, if its points push each other.
+fn part(set: &PointSet, kind: u8) -> Option<f64> {
+    let part = set.table().mix()?.shares().of(kind);
+    (0.125..=0.8).contains(&part).then_some(part)
+}
+
 /// A point of the reference.
 struct Placed {
     id: PointId,
@@ -41,6 +69,7 @@ struct Placed {
     world: [f64; 2],
     share: f64,
     freedom: f32,
+    kind: Option<u8>,
 }
 
 /// Where the points of a box settle, by the definition alone: all points of the box step together, with all pairs.
@@ -100,11 +129,23 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
             world,
             share: own,
             freedom: (part * inside) as f32,
+            kind: set.kind_of(point.id),
         });
     }
     let clear = (set.table().least_distance().with_warp(warp) * unit) as f32;
     let unit = unit as f32;
-    for [reach, push, near, guard] in kernels(settle.steps()) {
+    let kinds = set
+        .table()
+        .mix()
+        .map_or(0, |mix| mix.shares().kinds() as u8);
+    let has_kin = (0..kinds).any(|kind| self::part(set, kind).is_some());
+    let steps = if has_kin {
+        kernels_with_kinds(settle.steps())
+    } else {
+        let all = kernels(settle.steps());
+        all.into_iter().map(|all| (all, [1.0, 0.0])).collect()
+    };
+    for ([reach, push, near, guard], [kin_reach, kin_push]) in steps {
         let [by_reach, by_near] = [reach, near].map(|r| 0.5 / (r * r * unit * unit));
         let moved: Vec<[i64; 2]> = points
             .iter()
@@ -112,6 +153,8 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
                 let share = own.share.max(1.0 / 400.0) as f32;
                 let mut sum = [0i32; 2];
                 let mut nearest = f32::INFINITY;
+                let part = own.kind.and_then(|kind| self::part(set, kind));
+                let mut of_kin = [0i32; 2];
                 for other in &points {
                     let [dx, dy] = [0, 1].map(|i| (own.at[i] - other.at[i]) as f32);
                     let squared = dx * dx + dy * dy;
@@ -126,13 +169,36 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
                     let quanta = |push: f32| (push / 128.0).round_ties_even() as i32;
                     sum[0] = sum[0].wrapping_add(quanta(dx * force));
                     sum[1] = sum[1].wrapping_add(quanta(dy * force));
+                    if let Some(part) = part.filter(|_| own.kind == other.kind) {
+                        let counted =
+                            |p: &Placed| (part * p.share.max(1.0 / 400.0)).max(1.0 / 800.0) as f32;
+                        let scaled = squared * (counted(own) + counted(other));
+                        let by_reach = 0.5 / (kin_reach * kin_reach * unit * unit);
+                        let u = (1.0 - scaled * by_reach).max(0.0);
+                        let strength = 1.0 / (part * part * part).sqrt().sqrt().sqrt();
+                        let push = (f64::from(kin_push) * strength) as f32;
+                        let u = u * u;
+                        let force = push * (u * u);
+                        of_kin[0] = of_kin[0].wrapping_add(quanta(dx * force));
+                        of_kin[1] = of_kin[1].wrapping_add(quanta(dy * force));
+                    }
                 }
                 if own.freedom == 0.0 {
                     return own.at;
                 }
                 let spacing = unit / share.sqrt();
-                let mut go = sum
-                    .map(|v| (v as f32 * 128.0 * own.freedom).clamp(-0.3 * spacing, 0.3 * spacing));
+                let mut freedom = own.freedom;
+                if has_kin {
+                    let most = (0.15 * spacing / 128.0) as i32;
+                    for (sum, kin) in sum.iter_mut().zip(of_kin) {
+                        *sum = sum.wrapping_add(kin.clamp(-most, most));
+                    }
+                    let near = 1.0 - nearest / (0.4 * spacing * spacing);
+                    let near = (2.0 * near.max(0.0)).min(1.0);
+                    freedom += (freedom.sqrt().sqrt() - freedom) * near;
+                }
+                let mut go =
+                    sum.map(|v| (v as f32 * 128.0 * freedom).clamp(-0.3 * spacing, 0.3 * spacing));
                 let far = (reach * spacing).min(nearest.sqrt());
                 let free = ((far * (1.0 - 1.0 / 262_144.0) - clear) * 0.5).max(0.0);
                 let length = (go[0] * go[0] + go[1] * go[1]).sqrt();
@@ -251,6 +317,62 @@ fn other_spacings_and_tables_are_those_of_the_definition() {
     check(&set, &|_| 1.0, region([1000.0, -900.0], [6.0, 7.0]), 11.0);
 }
 
+fn with_kinds(shares: &str, seed: u64, steps: u32) -> PointSet {
+    let placement = Placement::new(Spacing::new(1.0).expect("in range"), Seed(seed));
+    let table = subject::mixed::mixed(&blue(), shares);
+    PointSet::new(table).placed(placement.with_settle(Settle::new(steps).expect("0 to 4")))
+}
+
+#[test]
+fn kinds_that_are_thinned_are_those_of_the_definition() {
+    for (shares, steps, keep) in [
+        ("1:1", 1, 0.5),
+        ("1:3", 2, 0.3),
+        ("1:1:2", 3, 0.12),
+        ("1:7", 2, 0.3),
+        ("1:1", 4, 0.97),
+        ("1:3:10", 2, 0.009),
+    ] {
+        let set = with_kinds(shares, 7, steps).keep(keep).expect("a share");
+        let local = 1.0 / keep.sqrt();
+        let inner = region([-31.0, 11.0], [7.0 * local, 6.0 * local]);
+        check(&set, &|_| 1.0, inner, 19.0 * local);
+    }
+}
+
+#[test]
+fn kinds_in_fields_are_those_of_the_definition() {
+    for (shares, steps) in [("1:1:2", 1), ("1:3", 2), ("1:1", 3)] {
+        let set = with_kinds(shares, 3, steps).in_field(hills);
+        check(&set, &hills, region([-10.0, -4.0], [20.0, 16.0]), 70.0);
+        let noise = noise();
+        let set = with_kinds(shares, 11, steps).in_field(noise.clone());
+        check(
+            &set,
+            &|at| noise.share(at),
+            region([100.0, 50.0], [16.0, 14.0]),
+            60.0,
+        );
+    }
+}
+
+#[test]
+fn rare_kinds_settle_with_the_others_alone() {
+    for shares in ["1:99", "1:31"] {
+        let kinds = with_kinds(shares, 7, 3).keep(0.3).expect("a share");
+        let mut others = kinds.clone();
+        let area = region([-20.0, -20.0], [40.0, 40.0]);
+        check(&kinds, &|_| 1.0, area, 20.0);
+        others = others.only(0).expect("a kind");
+        for point in others.within(area).expect("near").to_vec() {
+            assert_eq!(
+                kinds.point(point.id).map(|member| member.at()),
+                Some(point.at())
+            );
+        }
+    }
+}
+
 /// Every part of a plan, made in another way, has the same points.
 fn agrees(set: &PointSet, area: impl Into<Area>) {
     let area = area.into();
@@ -311,11 +433,44 @@ fn parts_agree_with_the_whole() {
     );
 }
 
+#[test]
+fn parts_of_kinds_agree_with_the_whole() {
+    let thinned = with_kinds("1:1:2", 5, 2).keep(0.2).expect("a share");
+    agrees(&thinned, region([-40.0, -300.0], [500.0, 420.0]));
+    agrees(
+        &thinned.clone().only(1).expect("a kind"),
+        region([-4.0, -3.0], [60.0, 72.0]),
+    );
+    let circle = Circle::new([100.0, 30.0], 90.0).expect("a circle");
+    agrees(&thinned, circle);
+    let field = with_kinds("1:3", 9, 3).in_field(hills);
+    agrees(&field, region([-40.0, -170.0], [390.0, 240.0]));
+}
+
+#[test]
+fn settling_leaves_kinds_as_they_are() {
+    let set = with_kinds("1:1:2", 5, 2).in_field(noise());
+    let area = region([0.0, 0.0], [40.0, 40.0]);
+    let whole = set.within(area).expect("near").to_vec();
+    let counts = set.kind_counts(area).expect("near");
+    for kind in 0..3 {
+        let own = set.clone().only(kind).expect("a kind");
+        let expected: Vec<Point> = whole
+            .iter()
+            .filter(|point| set.kind_of(point.id) == Some(kind))
+            .copied()
+            .collect();
+        assert_eq!(own.within(area).expect("near").to_vec(), expected);
+        assert_eq!(counts[usize::from(kind)], expected.len() as u128);
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
-    fn chunks_tile_the_plane(seed: u64, keep in 0.02..1.0f64, steps in 0u32..=4, in_field: bool, x in -9i64..9) {
-        let mut set = set(seed, 1.0, steps).keep(keep).expect("a share");
+    fn chunks_tile_the_plane(seed: u64, keep in 0.02..1.0f64, steps in 0u32..=4, in_field: bool, has_kinds: bool, x in -9i64..9) {
+        let set = if has_kinds { with_kinds("1:1:2", seed, steps) } else { set(seed, 1.0, steps) };
+        let mut set = set.keep(keep).expect("a share");
         if in_field {
             set = set.in_field(noise());
         }

@@ -11,6 +11,9 @@
 //!   over the one that is promised;
 //! - *var*: Var(N − ∫λ)/∫λ in boxes of 8 to 32 points; *bias* of the count in percent, then by octave of the share.
 //!
+//! Where a table has kinds, or gets some by `--mix 1:1:2`, *kinds* is the mean low power of each, in windows of 24 spacings of
+//! its own, the rarest first. `--share 0.21` measures that share alone.
+//!
 //! Stripes have more lines: the density over the share by half local spacings from the edge, outside first.
 //!
 //! `--draw forest|shares|SET OUT.png` draws instead.
@@ -22,11 +25,12 @@ mod sets;
 use std::{error::Error, path::Path};
 
 use figures::{Boxes, Ground, Near, Octave, Windows};
-use sets::{Case, Kind, Stripes};
+use sets::{Case, Kind, Part, Stripes};
 use strew_core::{PointSet, Region};
 use strew_forge::{
+    MixJob,
     measure::{Spectrum, Window},
-    read_table,
+    mix, read_table,
 };
 
 /// The width of a ring.
@@ -39,9 +43,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         let found = at.and_then(|at| arguments.get(at + 1));
         found.map_or(default.to_owned(), Clone::clone)
     };
-    let all = PointSet::new(read_table(Path::new(
-        arguments.first().ok_or("which table?")?,
-    ))?);
+    let table = read_table(Path::new(arguments.first().ok_or("which table?")?))?;
+    let all = PointSet::new(match after("--mix", "") {
+        shares if shares.is_empty() => table,
+        shares => {
+            let made = mix(&table, &MixJob::labels(shares.parse()?), &())?;
+            made.ok_or("stopped")?.table
+        }
+    });
     let numbers =
         |text: String| -> Result<Vec<f64>, _> { text.split(',').map(str::parse).collect() };
     let seeds = numbers(after("--seeds", "11,29,58"))?;
@@ -58,10 +67,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             .ok_or("--draw WHAT OUT.png")?;
         return draw::draw(&all, what, Path::new(out), &steps, seeds[0] as u64);
     }
-    for case in Case::all()
-        .iter()
-        .filter(|case| case.name.starts_with(&wanted))
-    {
+    let cases = match after("--share", "") {
+        share if share.is_empty() => Case::all(),
+        share => vec![Case::constant(share.parse()?)],
+    };
+    for case in cases.iter().filter(|case| case.name.starts_with(&wanted)) {
         let mut rows: Vec<Row> = steps.iter().map(|_| Row::default()).collect();
         for &seed in &seeds {
             measure(case, &all, (seed as u64, [x, y], points), &steps, &mut rows)?;
@@ -95,7 +105,12 @@ fn measure(
         (16, 96)
     };
     let boxes = Boxes::new(&ground, for_boxes);
+    let parts = all.table().mix().map_or(Vec::new(), |mix| {
+        let shares = mix.shares();
+        (0..shares.kinds() as u8).map(|k| shares.of(k)).collect()
+    });
     let mut windows = None;
+    let mut of_kinds: Vec<Windows> = Vec::new();
     for (&steps, row) in steps.iter().zip(rows) {
         let set = set.clone().settle(steps as u32)?;
         let members = set.within(region)?.to_vec();
@@ -105,6 +120,21 @@ fn measure(
             .collect();
         let windows = windows.get_or_insert_with(|| Windows::new(&ground, &points, for_windows));
         row.low.extend(windows.low(&points));
+        row.kinds.resize(parts.len(), Vec::new());
+        for (kind, part) in parts.iter().enumerate() {
+            let is_own = |p: &&strew_core::Point| set.kind_of(p.id) == Some(kind as u8);
+            let own = members.iter().filter(is_own);
+            let own: Vec<[f64; 2]> = own.map(|p| [p.x - corner[0], p.y - corner[1]]).collect();
+            if of_kinds.len() == kind {
+                let shares = Part(&shares, *part);
+                let ground = Ground {
+                    shares: &shares,
+                    ..ground
+                };
+                of_kinds.push(Windows::new(&ground, &own, for_windows));
+            }
+            row.kinds[kind].extend(of_kinds[kind].low(&own));
+        }
         let mut near = Near::of(&ground, &points);
         near.plain /= all.clone().seed(seed).least_distance();
         row.near.push(near);
@@ -127,6 +157,7 @@ fn measure(
 #[derive(Default)]
 struct Row {
     low: Vec<f64>,
+    kinds: Vec<Vec<f64>>,
     whole: Vec<[f64; 2]>,
     near: Vec<Near>,
     counts: Vec<Vec<Octave>>,
@@ -140,6 +171,12 @@ impl Row {
         let [mean, _] = average(&low);
         let median = low.get(low.len() / 2).copied().unwrap_or(0.0);
         print!("{name} | low {mean:.4} {median:.4}");
+        if !self.kinds.is_empty() {
+            print!(" kinds");
+            for low in &self.kinds {
+                print!(" {:.4}", average(low)[0]);
+            }
+        }
         if !self.whole.is_empty() {
             let [low, tall] = [0, 1].map(|i| self.whole.iter().map(|v| v[i]).collect::<Vec<_>>());
             print!(

@@ -35,6 +35,26 @@ impl Field for Shares {
     }
 }
 
+/// A part of some shares: those of a kind.
+pub struct Part<'a>(pub &'a Shares, pub f64);
+
+impl Field for Part<'_> {
+    fn share(&self, at: [f64; 2]) -> f64 {
+        self.0.share(at) * self.1
+    }
+
+    fn shares(&self, places: &[[f64; 2]], shares: &mut [f64]) {
+        self.0.shares(places, shares);
+        for share in shares {
+            *share *= self.1;
+        }
+    }
+
+    fn bounds(&self, within: &Region) -> [f64; 2] {
+        self.0.bounds(within).map(|share| share * self.1)
+    }
+}
+
 /// Stripes along y: `inside` where x modulo `period` is below `width`, else `outside`.
 #[derive(Clone, Copy)]
 pub struct Stripes {
@@ -94,6 +114,15 @@ pub struct Case {
 }
 
 impl Case {
+    /// The same share everywhere.
+    pub fn constant(share: f64) -> Self {
+        Self {
+            name: format!("keep {share:.4}"),
+            kind: Kind::Constant(share),
+            mean: share,
+        }
+    }
+
     /// All sets, in the order of docs/quality.md.
     pub fn all() -> Vec<Self> {
         let case = |name: &str, kind: Kind, mean: f64| Self {
@@ -133,9 +162,7 @@ impl Case {
             0.03,
             1.0 / 300.0,
         ];
-        all.extend(
-            constant.map(|share| case(&format!("keep {share:.4}"), Kind::Constant(share), share)),
-        );
+        all.extend(constant.map(Self::constant));
         all.extend([
             case("edge 1|1/16", stripes(96.0, 48.0, 1.0, 1.0 / 16.0), 0.53),
             case("edge .9|0", stripes(96.0, 48.0, 0.9, 0.0), 0.45),

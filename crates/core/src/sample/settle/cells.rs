@@ -24,11 +24,14 @@ pub(super) struct Places {
     pub(super) freedom: Vec<f32>,
     /// The steps in which a point moves: those up to this.
     pub(super) until: Vec<u8>,
+    /// The pushes of the points of the same kind in the next step, in quanta; empty where kinds have none.
+    pub(super) of_kin: [Vec<i32>; 2],
 }
 
 impl Places {
     pub(super) fn clear(&mut self) {
-        for list in self.at.iter_mut().chain(&mut self.placed) {
+        let lists = self.at.iter_mut().chain(&mut self.placed);
+        for list in lists.chain(&mut self.of_kin) {
             list.clear();
         }
         self.share.clear();

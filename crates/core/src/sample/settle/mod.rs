@@ -24,7 +24,7 @@
 //! The reach comes from the mean density of the pair, so the pushes of a pair are equal and opposite, and in two
 //! dimensions the pressure of such pushes does not depend on the density: no term for it is needed, and the field
 //! is not looked at again. `freedom` has f, which is 0 at full density and where a field is steep, so that edges stay
-//! sharp; `step` one step with its constants of exactness, `cells` the order in which it finds neighbors; `window` the points that matter to some others, and `reach` how far these lie.
+//! sharp; `step` one step with its constants of exactness, `cells` the order in which it finds neighbors; `window` the points that matter to some others, and `reach` how far these lie. `kin` has what points of a kind add.
 //!
 //! The constants ρ, c, γ, h were learned by measuring power and distances (CMA-ES); docs/algorithm.md lists them.
 //!
@@ -39,6 +39,7 @@
 mod boxes;
 mod cells;
 mod freedom;
+mod kin;
 mod reach;
 mod step;
 mod tiles;

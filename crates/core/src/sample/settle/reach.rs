@@ -4,6 +4,7 @@ use super::{
     LEAST_SHARE,
     cells::Places,
     freedom::{local, root},
+    kin::LEAST_OF_KIN,
     step::{Kernel, STEP, WHOLE},
 };
 
@@ -13,9 +14,39 @@ const ROOM: i64 = 64;
 /// The number of successive points, which are near each other, whose reach is found at once.
 const NEAR: usize = 16;
 
-/// The greatest reach of a kernel, in local spacings.
-pub(super) fn widest(kernel: &Kernel) -> f64 {
-    f64::from(kernel.reach.max(kernel.near))
+/// How far the pushes of a step reach.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reach {
+    /// Those of all points, in local spacings.
+    all: f64,
+    /// Those of points of a kind, in local spacings of the kind, and the least part of all points that a kind counts as.
+    kin: Option<[f64; 2]>,
+}
+
+impl Reach {
+    pub(super) fn new(kernel: &Kernel, kin: Option<(&Kernel, f64)>) -> Self {
+        let widest = |kernel: &Kernel| f64::from(kernel.reach.max(kernel.near));
+        Self {
+            all: widest(kernel),
+            kin: kin.map(|(kernel, part)| [widest(kernel), part]),
+        }
+    }
+
+    /// The greatest reach, in local spacings.
+    pub(super) fn widest(&self) -> f64 {
+        let kin = self.kin.map_or(0.0, |[reach, part]| reach / root(part));
+        self.all.max(kin)
+    }
+
+    /// The greatest reach of points of some counted shares, in spacings at full density.
+    fn between(&self, [a, b]: [f64; 2]) -> f64 {
+        let all = self.all * root(2.0 / (a + b));
+        self.kin.map_or(all, |[reach, part]| {
+            let counted = |share: f64| (part * share).max(LEAST_OF_KIN);
+            // With room for shares that round.
+            all.max(reach * 1.000_001 * root(2.0 / (counted(a) + counted(b))))
+        })
+    }
 }
 
 /// How far a point may have gone before step number `t`, which counts from 0, in local spacings.
@@ -25,16 +56,16 @@ fn moved_before(t: usize) -> f64 {
 
 /// How far from a point of a share others may be that push it in step number `t`, which counts from 0, if none is sparser
 /// than `least`: by the places where they were placed, in spacings at full density.
-fn room(kernel: &Kernel, t: usize, [share, least]: [f64; 2]) -> f64 {
-    let moved = moved_before(t) * (local(share) + local(least));
-    widest(kernel) * root(2.0 / (share.max(LEAST_SHARE) + least.max(LEAST_SHARE))) + moved
+fn room(reach: &Reach, t: usize, shares: [f64; 2]) -> f64 {
+    let [a, b] = shares.map(local);
+    reach.between(shares.map(|share| share.max(LEAST_SHARE))) + moved_before(t) * (a + b)
 }
 
 /// How far from a point others may be that matter to where it goes in all steps, in units of a window.
-pub(super) fn whole_room(kernels: &[Kernel], shares: [f64; 2], unit: f64) -> i64 {
-    let steps = kernels.iter().enumerate();
-    let rooms: f64 = steps.map(|(t, kernel)| room(kernel, t, shares)).sum();
-    (rooms * unit) as i64 + ROOM * kernels.len() as i64
+pub(super) fn whole_room(reaches: &[Reach], shares: [f64; 2], unit: f64) -> i64 {
+    let steps = reaches.iter().enumerate();
+    let rooms: f64 = steps.map(|(t, reach)| room(reach, t, shares)).sum();
+    (rooms * unit) as i64 + ROOM * reaches.len() as i64
 }
 
 /// The ranges of a box along both axes, from a window's corner.
@@ -97,7 +128,7 @@ impl Extent {
 
 /// The extent of the points that matter to those that move in step number `t`, which counts from 0, and the least share
 /// of these.
-pub(super) fn reached(places: &Places, (kernel, t): (&Kernel, usize), unit: f64) -> (Extent, f64) {
+pub(super) fn reached(places: &Places, (reach, t): (&Reach, usize), unit: f64) -> (Extent, f64) {
     let step = t as u8 + 1;
     let Places {
         placed: [xs, ys],
@@ -125,7 +156,7 @@ pub(super) fn reached(places: &Places, (kernel, t): (&Kernel, usize), unit: f64)
         }
         if low <= 1.0 {
             let share = f64::from(low);
-            let room = room(kernel, t, [share, least]) * unit;
+            let room = room(reach, t, [share, least]) * unit;
             extent.add([min, max], room as i64 + ROOM);
             sparsest = sparsest.min(share);
         }

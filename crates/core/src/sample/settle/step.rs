@@ -4,9 +4,13 @@
 //! move is the wrapping sum of these. So the sum does not depend on the order of neighbors, and a pair's pushes are equal and
 //! opposite to the last bit. Points beyond a pair's reach push by zero, so it does not matter which are looked at.
 
+use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::cells::{Cells, MOVES, Places, Sorted};
+use super::{
+    cells::{Cells, MOVES, Places, Sorted},
+    kin::eased,
+};
 use crate::sample::kernel::{Backend, PlainLoop, compiled_loop};
 
 /// The greatest move in a step along each axis, in local spacings.
@@ -32,7 +36,7 @@ const LANES: usize = 8;
 const WIDEST: f32 = 2.0;
 
 /// Pushes are multiples of this many fixed-point units, 2⁻¹³ grid units.
-const QUANTUM: f32 = 128.0;
+pub(super) const QUANTUM: f32 = 128.0;
 
 /// 1.5 · 2²³: a number within ±2²², added to it, is rounded to an integer, in the lower bits.
 const ROUNDER: f32 = 12_582_912.0;
@@ -64,6 +68,34 @@ impl Cells {
             kernel,
             step,
             scale,
+            sums: None,
+        };
+        compiled_loop(backend, &mut work);
+    }
+
+    /// Sums the pushes on the points that move in a step, in quanta, and moves none.
+    pub(super) fn pushes(
+        &mut self,
+        places: &mut Places,
+        (kernel, step): (&Kernel, u8),
+        scale: Scale,
+        backend: Backend,
+        sums: &mut [Vec<i32>; 2],
+    ) {
+        for list in sums.iter_mut() {
+            list.clear();
+            list.resize(places.len(), 0);
+        }
+        if places.len() == 0 {
+            return;
+        }
+        let mut work = Step {
+            cells: self,
+            places,
+            kernel,
+            step,
+            scale,
+            sums: Some(sums),
         };
         compiled_loop(backend, &mut work);
     }
@@ -82,7 +114,7 @@ struct Group {
     /// The squared distance of the nearest point, in fixed-point units.
     nearest: [f32; LANES],
     /// The number of pushes that were summed.
-    pushes: usize,
+    number_of_pushes: usize,
 }
 
 struct Step<'a> {
@@ -91,6 +123,8 @@ struct Step<'a> {
     kernel: &'a Kernel,
     step: u8,
     scale: Scale,
+    /// Where the pushes of points go if these do not move.
+    sums: Option<&'a mut [Vec<i32>; 2]>,
 }
 
 impl PlainLoop for Step<'_> {
@@ -122,7 +156,10 @@ impl PlainLoop for Step<'_> {
                 if group.number > 0 {
                     group.fill_up();
                     self.sum(&mut group);
-                    self.go(&group);
+                    match &mut self.sums {
+                        Some(sums) => group.tell(sums),
+                        None => self.go(&group),
+                    }
                 }
             }
         }
@@ -187,16 +224,24 @@ impl Step<'_> {
                 placed[k] = list[i];
             }
         }
-        let rounders = (group.pushes as i32).wrapping_mul(ROUNDER.to_bits() as i32);
+        let [mut push_x, mut push_y] = group.pushes();
+        if let [xs, ys] = &self.places.of_kin
+            && !xs.is_empty()
+        {
+            for k in 0..LANES {
+                let i = group.point[k] as usize;
+                push_x[k] = push_x[k].wrapping_add(xs[i]);
+                push_y[k] = push_y[k].wrapping_add(ys[i]);
+                let spacing = unit / group.share[k].sqrt_();
+                freedom[k] = eased(freedom[k], group.nearest[k], spacing);
+            }
+        }
         let mut to = [[0; LANES]; 2];
         for k in 0..LANES {
             let spacing = unit / group.share[k].sqrt_();
             let most = STEP * spacing;
-            let go = |sum: i32| {
-                let push = sum.wrapping_sub(rounders) as f32;
-                within(push * QUANTUM * freedom[k], most)
-            };
-            let (mut x, mut y) = (go(group.push_x[k]), go(group.push_y[k]));
+            let go = |push: i32| within(push as f32 * QUANTUM * freedom[k], most);
+            let (mut x, mut y) = (go(push_x[k]), go(push_y[k]));
             // Two points that each go half of the way that is free stay clear of each other.
             let far = self.kernel.reach * spacing;
             let free = (lesser(far, group.nearest[k].sqrt_()) * SURELY - clear) * 0.5;
@@ -234,7 +279,7 @@ impl Group {
         push_x: [0; LANES],
         push_y: [0; LANES],
         nearest: [f32::INFINITY; LANES],
-        pushes: 0,
+        number_of_pushes: 0,
     };
 
     #[inline(always)]
@@ -254,6 +299,23 @@ impl Group {
             self.point[k] = self.point[last];
             (self.x[k], self.y[k]) = (self.x[last], self.y[last]);
             self.share[k] = self.share[last];
+        }
+    }
+
+    /// The sums of the pushes in quanta.
+    #[inline(always)]
+    fn pushes(&self) -> [[i32; LANES]; 2] {
+        let rounders = (self.number_of_pushes as i32).wrapping_mul(ROUNDER.to_bits() as i32);
+        [self.push_x, self.push_y].map(|sums| sums.map(|sum| sum.wrapping_sub(rounders)))
+    }
+
+    /// Writes the pushes on the points to some lists.
+    #[inline(always)]
+    fn tell(&self, lists: &mut [Vec<i32>; 2]) {
+        for (list, pushes) in lists.iter_mut().zip(self.pushes()) {
+            for (&point, push) in self.point[..self.number].iter().zip(pushes) {
+                list[point as usize] = push;
+            }
         }
     }
 
@@ -285,7 +347,7 @@ impl Group {
             }
         }
         (self.push_x, self.push_y, self.nearest) = (push_x, push_y, nearest);
-        self.pushes += points.len();
+        self.number_of_pushes += points.len();
     }
 }
 
@@ -333,17 +395,17 @@ fn rounded(push: f32) -> i32 {
 }
 
 #[inline(always)]
-fn lesser(a: f32, b: f32) -> f32 {
+pub(super) fn lesser(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
 #[inline(always)]
-fn above_zero(v: f32) -> f32 {
+pub(super) fn above_zero(v: f32) -> f32 {
     if v > 0.0 { v } else { 0.0 }
 }
 
 /// The square root, which rounds alike everywhere.
-trait Root {
+pub(super) trait Root {
     fn sqrt_(self) -> Self;
 }
 

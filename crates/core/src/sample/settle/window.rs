@@ -29,17 +29,16 @@ use super::{
     cells::{Cells, Places},
     freedom::{Candidate, Freedoms, inside, local, slipped},
     kernels,
-    reach::{Extent, reached, whole_room, widest},
-    step::{Scale, WHOLE},
+    kin::Kin,
+    reach::{Extent, Reach, reached, whole_room},
+    step::{Kernel, Scale, WHOLE},
 };
 use crate::{
     sample::{
         area::Region,
         field::{FieldRows, Source},
         kernel::Backend,
-        lattice::{
-            BAND_WIDTH, Columns, Grade, Lattice, Patch, PointId, Settle, Span, clip_to_band,
-        },
+        lattice::{BAND_WIDTH, Columns, Grade, Lattice, Patch, PointId, Span, clip_to_band},
     },
     table::{FRACTION_BITS, fixed},
 };
@@ -62,7 +61,11 @@ pub(crate) struct Settler {
     /// The points of all kinds, where their ranks left them.
     lattice: Lattice,
     grade: Grade,
-    settle: Settle,
+    kernels: &'static [Kernel],
+    /// The points by kinds, if those of a kind push each other.
+    kin: Option<Kin>,
+    /// How far each step reaches.
+    reaches: Vec<Reach>,
     scale: Scale,
     /// Windows count in units of this many fixed-point units, in bits: more than one where the pattern is sparse.
     shift: u32,
@@ -103,10 +106,21 @@ impl Settler {
             shift += 1;
         }
         let unit = f64::from(1u32 << FRACTION_BITS) / side;
+        let kin = Kin::new(lattice, settle);
+        let kernels = kin.as_ref().map_or(kernels(settle), |kin| kin.steps().all);
+        let reach = |(t, kernel)| {
+            let of_kin = kin.as_ref().map(|kin| kin.kernel(t));
+            Reach::new(
+                kernel,
+                of_kin.as_ref().map(|(kernel, part)| (kernel, *part)),
+            )
+        };
         Some(Self {
+            reaches: kernels.iter().enumerate().map(reach).collect(),
             lattice: lattice.of_all_kinds(),
             grade,
-            settle,
+            kernels,
+            kin,
             scale: Scale {
                 unit: (unit / f64::from(1u32 << shift)) as f32,
                 clear: (lattice.certified() / f64::from(1u32 << shift)) as f32,
@@ -319,13 +333,12 @@ impl Settler {
         } else {
             (0.8 * least, 1.1)
         };
-        let kernels = kernels(self.settle);
         if is_constant {
-            return own.widened(whole_room(kernels, [least; 2], unit));
+            return own.widened(whole_room(&self.reaches, [least; 2], unit));
         }
         let mut all = own;
         for (parts, share) in parts().zip(shares) {
-            let room = whole_room(kernels, [share.max(least), least], slack * unit);
+            let room = whole_room(&self.reaches, [share.max(least), least], slack * unit);
             all = all.and(own.place(parts).widened(room));
         }
         all
@@ -345,8 +358,12 @@ impl Settler {
         });
         let mut listed = core::mem::take(&mut self.listed);
         let mut places = core::mem::take(&mut self.places);
+        let mut kin = self.kin.take();
         listed.clear();
         places.clear();
+        if let Some(kin) = &mut kin {
+            kin.clear();
+        }
         let (shift, unit) = (self.shift, self.unit);
         self.visit(&within, |id, place, share| {
             let [x, y] = [(place[0] - corner[0]) as i64, (place[1] - corner[1]) as i64];
@@ -361,6 +378,9 @@ impl Settler {
                 })
             };
             let below = (1 << shift) - 1;
+            if let Some(kin) = &mut kin {
+                kin.add(listed.len(), id, share);
+            }
             listed.push(Listed {
                 id,
                 share,
@@ -380,25 +400,25 @@ impl Settler {
         places.share.extend(shares);
         places.freedom.resize(listed.len(), 0.0);
         places.until.resize(listed.len(), 0);
-        (self.listed, self.places) = (listed, places);
+        (self.listed, self.places, self.kin) = (listed, places, kin);
     }
 
     /// Finds out which points move in which steps. Returns the extent of the points that matter to them; if it goes
     /// beyond the window, only about.
     fn prepare(&mut self, corner: [i128; 2], window: Extent) -> Extent {
-        let kernels = kernels(self.settle);
         let unit = f64::from(self.scale.unit);
+        let steps = self.reaches.len();
         let mut all = Extent::NONE;
         let mut from = Extent::NONE;
-        for (t, kernel) in kernels.iter().enumerate().rev() {
+        for t in (0..steps).rev() {
             let step = t as u8 + 1;
-            self.free(corner, step, (t + 1 < kernels.len()).then_some(from));
+            self.free(corner, step, (t + 1 < steps).then_some(from));
             let sparsest;
-            (from, sparsest) = reached(&self.places, (kernel, t), unit);
+            (from, sparsest) = reached(&self.places, (&self.reaches[t], t), unit);
             all = all.and(from);
             if !all.is_within(&window) {
                 // The steps before this one reach on.
-                let reach: f64 = kernels[..t].iter().map(widest).sum();
+                let reach: f64 = self.reaches[..t].iter().map(Reach::widest).sum();
                 let room = (reach * 1.2 * unit * local(sparsest)) as i64;
                 return all.widened(room);
             }
@@ -465,7 +485,10 @@ impl Settler {
     }
 
     fn take_steps(&mut self) {
-        for (step, kernel) in (1..).zip(kernels(self.settle)) {
+        for (step, kernel) in (1..).zip(self.kernels) {
+            if let Some(kin) = &mut self.kin {
+                kin.push(&mut self.places, step, self.scale, self.backend);
+            }
             self.cells
                 .step(&mut self.places, (kernel, step), self.scale, self.backend);
         }

@@ -1,0 +1,267 @@
+//! Kin: points of a kind, which push each other once more.
+//!
+//! # The problem
+//!
+//! Where all points settle alike, all of them together are even, but each kind stays as grainy as its labels left it
+//! among the points of low ranks.
+//!
+//! # The idea
+//!
+//! The points of a kind are a set of their own, whose share is the kind's part of the share. So in each step they push
+//! each other by the same rule a second time, with one more kernel and with distances in local spacings of the
+//! kind:
+//!
+//! ```text
+//!     o = max(part · s, 1/800)             u = |d|² (o_i + o_j) / 2σ²
+//!     W(u) = c · part^(−3/8) · max(0, 1 − u/ρ²)⁴
+//! ```
+//!
+//! The sum of these pushes is cut to ±.15 local spacings along each axis, and joins that of all points before the point
+//! goes. Each kind is summed in a pass of its own, whose cells have its points only: a rare kind reaches farther, but
+//! finds as few neighbors.
+//!
+//! Kernels of this sort bring points of different kinds nearer to each other, and ranks leave pairs where a field is so
+//! steep that points hardly move. So a point with a near neighbor moves more freely: see [`eased`].
+//!
+//! # Which kinds
+//!
+//! Those with a part from 1/8 to 4/5 of all points. A rarer kind would reach so far that chunks needed many more
+//! points around them, and few of its points have another one in reach; a denser one is nearly all points, and what its
+//! own power can be is decided by the others (docs/kinds.md). If a set has none of these, its points settle as without
+//! kinds. Neither do kinds whose shares vary push each other: their points are those of the set without kinds.
+
+use alloc::vec::Vec;
+
+use super::{
+    LEAST_SHARE,
+    cells::{Cells, Places},
+    freedom::root,
+    step::{Kernel, QUANTUM, Root, Scale, above_zero, lesser},
+};
+use crate::{
+    sample::{
+        kernel::Backend,
+        lattice::{Lattice, PointId, Settle},
+    },
+    table::Shares,
+};
+
+/// The least and the greatest part of all points of a kind whose points push each other.
+const PARTS: [f64; 2] = [1.0 / 8.0, 4.0 / 5.0];
+
+/// Shares of a kind count as at least this: some 28 spacings. So reaches are bounded.
+pub(super) const LEAST_OF_KIN: f64 = 1.0 / 800.0;
+
+/// The greatest push of the points of a kind in a step along each axis, in local spacings of all points.
+const MOST: f32 = 0.15;
+
+/// A neighbor counts as near below the root of this, in local spacings.
+const NEAR: f32 = 0.4;
+
+/// The steps of a set with such kinds: the pushes of all points, and of those of a kind.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Steps {
+    pub(super) all: &'static [Kernel],
+    kin: &'static [[f32; 2]],
+}
+
+/// The points of a window by kinds, and their pushes.
+#[derive(Clone, Debug)]
+pub(super) struct Kin {
+    /// A lattice that knows the kind of each point.
+    lattice: Lattice,
+    steps: Steps,
+    kinds: Vec<Kind>,
+    cells: Cells,
+    sums: [Vec<i32>; 2],
+}
+
+#[derive(Clone, Debug)]
+struct Kind {
+    part: f64,
+    is_in: bool,
+    /// The factor of its pushes.
+    strength: f64,
+    /// The numbers of its points in the window.
+    points: Vec<u32>,
+    /// Its points; shares are those of the kind.
+    places: Places,
+}
+
+impl Kin {
+    /// The kinds of a lattice, if points of some of them push each other.
+    pub(super) fn new(lattice: &Lattice, settle: Settle) -> Option<Self> {
+        if lattice.is_varied() {
+            return None;
+        }
+        let shares = lattice.kind_parts()?;
+        least_part(shares)?;
+        let kind = |kind: usize| {
+            let part = shares.of(kind as u8);
+            Kind {
+                part,
+                is_in: is_in(part),
+                strength: 1.0 / root(root(root(part * part * part))),
+                points: Vec::new(),
+                places: Places::default(),
+            }
+        };
+        Some(Self {
+            steps: Steps::of(settle),
+            kinds: (0..shares.kinds()).map(kind).collect(),
+            lattice: lattice.clone(),
+            cells: Cells::default(),
+            sums: [Vec::new(), Vec::new()],
+        })
+    }
+
+    pub(super) const fn steps(&self) -> Steps {
+        self.steps
+    }
+
+    /// The pushes of points of a kind of part 1 in step number `t`, which counts from 0, and the least part of a kind.
+    pub(super) fn kernel(&self, t: usize) -> (Kernel, f64) {
+        let parts = self.kinds.iter().filter(|kind| kind.is_in);
+        let least = parts.fold(1.0f64, |least, kind| least.min(kind.part));
+        (self.steps.of_kin(t, 1.0), least)
+    }
+
+    /// Forgets the points.
+    pub(super) fn clear(&mut self) {
+        for kind in &mut self.kinds {
+            kind.points.clear();
+            kind.places.clear();
+        }
+    }
+
+    /// Adds point number `i` of the window.
+    pub(super) fn add(&mut self, i: usize, id: PointId, share: f64) {
+        let kind = self.lattice.kind_of(id).map(usize::from);
+        let kind = kind.and_then(|kind| self.kinds.get_mut(kind));
+        if let Some(kind) = kind.filter(|kind| kind.is_in) {
+            let counted = kind.part * share.max(LEAST_SHARE);
+            kind.points.push(i as u32);
+            kind.places.share.push(counted.max(LEAST_OF_KIN) as f32);
+        }
+    }
+
+    /// Sums the pushes of the points of each kind in a step, which counts from 1.
+    pub(super) fn push(&mut self, all: &mut Places, step: u8, scale: Scale, backend: Backend) {
+        let mut of_kin = core::mem::take(&mut all.of_kin);
+        for list in &mut of_kin {
+            list.clear();
+            list.resize(all.len(), 0);
+        }
+        for kind in self.kinds.iter_mut().filter(|kind| kind.is_in) {
+            kind.follow(all);
+            let kernel = self.steps.of_kin(usize::from(step) - 1, kind.strength);
+            let work = (&kernel, step);
+            self.cells
+                .pushes(&mut kind.places, work, scale, backend, &mut self.sums);
+            for (list, sums) in of_kin.iter_mut().zip(&self.sums) {
+                for (&i, &sum) in kind.points.iter().zip(sums) {
+                    let i = i as usize;
+                    let most = (MOST * (scale.unit / all.share[i].sqrt_()) / QUANTUM) as i32;
+                    list[i] = sum.clamp(-most, most);
+                }
+            }
+        }
+        all.of_kin = of_kin;
+    }
+}
+
+impl Kind {
+    /// Puts the points where they are among all of them.
+    fn follow(&mut self, all: &Places) {
+        let Self { points, places, .. } = self;
+        let numbers = || points.iter().map(|&i| i as usize);
+        for (own, all) in places.at.iter_mut().zip(&all.at) {
+            own.clear();
+            own.extend(numbers().map(|i| all[i]));
+        }
+        places.freedom.clear();
+        places.freedom.extend(numbers().map(|i| all.freedom[i]));
+        places.until.clear();
+        places.until.extend(numbers().map(|i| all.until[i]));
+    }
+}
+
+/// Whether points of a kind of a part push each other.
+fn is_in(part: f64) -> bool {
+    (PARTS[0]..=PARTS[1]).contains(&part)
+}
+
+/// The least part of a kind whose points push each other; `None` if there is no such kind.
+fn least_part(shares: &Shares) -> Option<f64> {
+    let parts = (0..shares.kinds()).map(|kind| shares.of(kind as u8));
+    parts.filter(|part| is_in(*part)).reduce(f64::min)
+}
+
+/// The freedom of a point that is too near to another one: up to its fourth root, which is reached where the nearest is
+/// at half of the squared distance that counts as near.
+#[inline(always)]
+pub(super) fn eased(freedom: f32, nearest: f32, spacing: f32) -> f32 {
+    let far = nearest / (NEAR * spacing * spacing);
+    let part = lesser(2.0 * above_zero(1.0 - far), 1.0);
+    freedom + (freedom.sqrt_().sqrt_() - freedom) * part
+}
+
+impl Steps {
+    const fn of(settle: Settle) -> Self {
+        match settle.steps() {
+            0 | 1 => ONE,
+            2 => TWO,
+            3 => THREE,
+            _ => FOUR,
+        }
+    }
+
+    /// The pushes of points of a kind in step number `t`, which counts from 0, times a strength.
+    fn of_kin(&self, t: usize, strength: f64) -> Kernel {
+        let [reach, push] = self.kin[t];
+        Kernel {
+            reach,
+            push: (f64::from(push) * strength) as f32,
+            near: reach,
+            guard: 0.0,
+        }
+    }
+}
+
+const fn kernel([reach, push, near, guard]: [f32; 4]) -> Kernel {
+    Kernel {
+        reach,
+        push,
+        near,
+        guard,
+    }
+}
+
+const ONE: Steps = Steps {
+    all: &[kernel([2.395, 0.298, 0.999, 0.366])],
+    kin: &[[2.4, 0.13]],
+};
+const TWO: Steps = Steps {
+    all: &[
+        kernel([2.29, 0.435, 1.134, 0.278]),
+        kernel([2.403, 0.312, 0.836, 0.490]),
+    ],
+    kin: &[[2.4, 0.13], [2.4, 0.13]],
+};
+const THREE: Steps = Steps {
+    all: &[
+        kernel([1.707, 0.509, 1.004, 0.266]),
+        kernel([2.359, 0.299, 1.021, 0.341]),
+        kernel([2.422, 0.270, 0.761, 0.738]),
+    ],
+    kin: &[[2.453, 0.111], [2.359, 0.146], [2.392, 0.078]],
+};
+const FOUR: Steps = Steps {
+    all: &[
+        kernel([2.312, 0.407, 1.165, 0.617]),
+        kernel([1.832, 0.471, 0.797, 0.641]),
+        kernel([2.544, 0.501, 1.0, 0.0]),
+        kernel([2.772, 0.286, 0.836, 0.141]),
+    ],
+    kin: &[[2.4, 0.13], [2.4, 0.13], [2.4, 0.13], [2.4, 0.13]],
+};
