@@ -385,6 +385,27 @@ pub fn settles(set: &PointSet) -> bool {
     set.settles()
 }
 
+/// About how long a set's points settle near an outline, in steps of a set without kinds; 0 if they do not. Points of
+/// kinds push each other twice and reach farther.
+///
+/// ```
+/// use strew_core::{PointSet, Table, server::settling, table::{Mix, Ranks}};
+///
+/// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let half = PointSet::new(table.clone()).keep(0.5)?;
+/// assert_eq!(settling(&half.clone().settle(0)?), 0.0);
+/// assert_eq!(settling(&half), 2.0);
+/// let mix = Mix::scattered(table.map(), "1:3".parse()?)?;
+/// let ranks = Ranks::new((0..mix.labels().len() as u32).collect())?;
+/// let kinds = PointSet::new(table.with_mix(mix, ranks)?).keep(0.5)?;
+/// assert_eq!(settling(&kinds), 8.0);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[must_use]
+pub fn settling(set: &PointSet) -> f64 {
+    set.settling()
+}
+
 /// A bound of the share of points that a set has in a box: its share, times that of its field.
 ///
 /// ```

@@ -9,10 +9,10 @@ use crate::{
     sample::{
         area::Region,
         attribute::{Attributes, BoundAttributes},
-        lattice::{Placement, Point, PointId},
+        lattice::{Placement, Point, PointId, Settle},
         member::Member,
         near::{Clearance, LeastDistance, Visits, limits, search},
-        settle::Settler,
+        settle::{Settler, weight},
     },
 };
 
@@ -314,6 +314,12 @@ impl PointSet {
     /// Whether points settle.
     pub(crate) fn settles(&self) -> bool {
         self.lattice.settle().is_some()
+    }
+
+    /// About how long points settle near an outline, in steps of a set without kinds.
+    pub(crate) fn settling(&self) -> f64 {
+        let steps = self.lattice.settle().map_or(0, Settle::steps);
+        f64::from(steps) * weight(&self.lattice)
     }
 
     /// The least distance of the table's points that are of the set's kind, if it has one.

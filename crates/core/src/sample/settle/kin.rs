@@ -36,7 +36,7 @@ use super::{
     LEAST_SHARE,
     cells::{Cells, Places},
     freedom::root,
-    step::{Kernel, QUANTUM, Root, Scale, above_zero, lesser},
+    step::{Kernel, QUANTUM, Root, SURELY, Scale, above_zero, lesser, within},
 };
 use crate::{
     sample::{
@@ -71,6 +71,7 @@ pub(super) struct Kin {
     /// A lattice that knows the kind of each point.
     lattice: Lattice,
     steps: Steps,
+    least_part: f64,
     kinds: Vec<Kind>,
     cells: Cells,
     sums: [Vec<i32>; 2],
@@ -95,7 +96,7 @@ impl Kin {
             return None;
         }
         let shares = lattice.kind_parts()?;
-        least_part(shares)?;
+        let least_part = least_part(shares)?;
         let kind = |kind: usize| {
             let part = shares.of(kind as u8);
             Kind {
@@ -108,6 +109,7 @@ impl Kin {
         };
         Some(Self {
             steps: Steps::of(settle),
+            least_part,
             kinds: (0..shares.kinds()).map(kind).collect(),
             lattice: lattice.clone(),
             cells: Cells::default(),
@@ -119,11 +121,14 @@ impl Kin {
         self.steps
     }
 
-    /// The pushes of points of a kind of part 1 in step number `t`, which counts from 0, and the least part of a kind.
-    pub(super) fn kernel(&self, t: usize) -> (Kernel, f64) {
-        let parts = self.kinds.iter().filter(|kind| kind.is_in);
-        let least = parts.fold(1.0f64, |least, kind| least.min(kind.part));
-        (self.steps.of_kin(t, 1.0), least)
+    /// The pushes of points of a kind of part 1 in step number `t`, which counts from 0.
+    pub(super) fn kernel(&self, t: usize) -> Kernel {
+        self.steps.of_kin(t, 1.0)
+    }
+
+    /// The least part of all points of a kind whose points push each other.
+    pub(super) const fn least_part(&self) -> f64 {
+        self.least_part
     }
 
     /// Forgets the points.
@@ -186,6 +191,15 @@ impl Kind {
     }
 }
 
+/// About how much longer the points of a lattice settle near an outline than those of a set without kinds.
+pub(crate) fn weight(lattice: &Lattice) -> f64 {
+    let shares = lattice.kind_parts().filter(|_| !lattice.is_varied());
+    // Each pair of a kind pushes twice, and margins are wider.
+    shares
+        .and_then(least_part)
+        .map_or(1.0, |part| 2.0 / root(part))
+}
+
 /// Whether points of a kind of a part push each other.
 fn is_in(part: f64) -> bool {
     (PARTS[0]..=PARTS[1]).contains(&part)
@@ -195,6 +209,79 @@ fn is_in(part: f64) -> bool {
 fn least_part(shares: &Shares) -> Option<f64> {
     let parts = (0..shares.kinds()).map(|kind| shares.of(kind as u8));
     parts.filter(|part| is_in(*part)).reduce(f64::min)
+}
+
+impl Cells {
+    /// Where a point goes that would go farther than half of what separates it from the distance that is kept: past its
+    /// nearest neighbor, and up to half of what separates it from the next one. `None` where it may go as it likes, and
+    /// where it would leave the box around its place.
+    ///
+    /// Of two points that go to each other each goes half of what is free along the line between them, if each is the other's
+    /// nearest one. If one of them has a nearer one, it goes no farther than half of what is free in any direction.
+    #[inline(always)]
+    pub(super) fn pass(
+        &self,
+        (at, placed): ([i32; 2], [i32; 2]),
+        (wish, nearest): ([f32; 2], f32),
+        whole: f32,
+        clear: f32,
+    ) -> Option<[i32; 2]> {
+        let free = |squared: f32| above_zero((squared.sqrt_() * SURELY - clear) * 0.5);
+        if (wish[0] * wish[0] + wish[1] * wish[1]).sqrt_() <= free(nearest) {
+            return None;
+        }
+        let offset = [0, 1].map(|i| at[i].wrapping_sub(placed[i]) as f32);
+        let [mut x, mut y] = [0, 1].map(|i| within(offset[i] + wish[i], whole) - offset[i]);
+        let length = (x * x + y * y).sqrt_();
+        // Those farther off leave it free.
+        let far = (2.0 * length + clear) * 1.001;
+        let ([dx, dy], nearest, next) = self.nearest_two(at, far);
+        if length <= free(nearest) {
+            return None;
+        }
+        let most = free(next);
+        if length > most {
+            let part = most / length;
+            (x, y) = (x * part, y * part);
+        }
+        let (distance, most) = (nearest.sqrt_(), free(nearest));
+        let toward = -(x * dx + y * dy) / distance;
+        if toward > most {
+            let back = (toward - most) / distance;
+            (x, y) = (x + back * dx, y + back * dy);
+        }
+        let is_inside = (offset[0] + x).abs() <= whole && (offset[1] + y).abs() <= whole;
+        is_inside.then(|| [at[0].wrapping_add(x as i32), at[1].wrapping_add(y as i32)])
+    }
+
+    /// The offset from the nearest point within a distance, its square, and that of the next one. Of equally near
+    /// points the one of the lesser offset counts.
+    #[inline(always)]
+    fn nearest_two(&self, [x, y]: [i32; 2], far: f32) -> ([f32; 2], f32, f32) {
+        let room = far as i64 + 1;
+        let [columns, rows] = [(0, x), (1, y)].map(|(axis, v)| {
+            let v = i64::from(v);
+            self.along[axis].cells(v - room, v + room)
+        });
+        let (mut offset, mut nearest, mut next) = ([0.0; 2], f32::INFINITY, f32::INFINITY);
+        for row in rows {
+            let start = |column: usize| self.starts[row * self.along[0].cells + column] as usize;
+            for other in &self.points[start(columns.start)..start(columns.end)] {
+                let dx = x.wrapping_sub(other.at[0]) as f32;
+                let dy = y.wrapping_sub(other.at[1]) as f32;
+                let squared = dx * dx + dy * dy;
+                if squared > 0.0 && squared <= next {
+                    let is_less = [dx, dy] < offset;
+                    if squared < nearest || (squared == nearest && is_less) {
+                        (offset, next, nearest) = ([dx, dy], nearest, squared);
+                    } else {
+                        next = squared;
+                    }
+                }
+            }
+        }
+        (offset, nearest, next)
+    }
 }
 
 /// The freedom of a point that is too near to another one: up to its fourth root, which is reached where the nearest is

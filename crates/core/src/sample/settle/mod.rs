@@ -46,6 +46,7 @@ mod tiles;
 mod window;
 
 pub(crate) use boxes::{Box2, Placed, Settled, add_place, common, joined, widened};
+pub(crate) use kin::weight;
 use step::Kernel;
 pub(crate) use tiles::SettledTiles;
 pub(crate) use window::Settler;

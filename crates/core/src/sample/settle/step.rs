@@ -260,6 +260,18 @@ impl Step<'_> {
             to[0][k] = settle(group.x[k], x, placed[0][k]);
             to[1][k] = settle(group.y[k], y, placed[1][k]);
         }
+        if !self.places.of_kin[0].is_empty() && clear > 0.0 {
+            for k in 0..group.number {
+                let spacing = unit / group.share[k].sqrt_();
+                let go = |push: i32| within(push as f32 * QUANTUM * freedom[k], STEP * spacing);
+                let wish = ([go(push_x[k]), go(push_y[k])], group.nearest[k]);
+                let at = [group.x[k], group.y[k]];
+                let placed = [placed[0][k], placed[1][k]];
+                if let Some(at) = self.cells.pass((at, placed), wish, WHOLE * spacing, clear) {
+                    [to[0][k], to[1][k]] = at;
+                }
+            }
+        }
         for k in 0..group.number {
             let i = group.point[k] as usize;
             for (list, to) in self.places.at.iter_mut().zip(&to) {
@@ -374,11 +386,11 @@ impl Prepared {
 }
 
 /// Less than 1 by more than what rounds.
-const SURELY: f32 = 1.0 - 1.0 / 262_144.0;
+pub(super) const SURELY: f32 = 1.0 - 1.0 / 262_144.0;
 
 /// A number within ±`most`.
 #[inline(always)]
-fn within(v: f32, most: f32) -> f32 {
+pub(super) fn within(v: f32, most: f32) -> f32 {
     if v > most {
         most
     } else if v < -most {

@@ -27,7 +27,7 @@ use super::{
     LEAST_SHARE, MOST_MOVE,
     boxes::{Box2, Placed, Settled, widened},
     cells::{Cells, Places},
-    freedom::{Candidate, Freedoms, inside, local, slipped},
+    freedom::{Candidate, Freedoms, inside, local, root, slipped},
     kernels,
     kin::Kin,
     reach::{Extent, Reach, reached, whole_room},
@@ -109,7 +109,7 @@ impl Settler {
         let kin = Kin::new(lattice, settle);
         let kernels = kin.as_ref().map_or(kernels(settle), |kin| kin.steps().all);
         let reach = |(t, kernel)| {
-            let of_kin = kin.as_ref().map(|kin| kin.kernel(t));
+            let of_kin = kin.as_ref().map(|kin| (kin.kernel(t), kin.least_part()));
             Reach::new(
                 kernel,
                 of_kin.as_ref().map(|(kernel, part)| (kernel, *part)),
@@ -148,6 +148,13 @@ impl Settler {
         let low = self.grade.bounds(&self.region(within))[0];
         // With room for what rounds.
         (f64::from(WHOLE) * 1.000_01 * self.unit * local(low)) as i64 + (2 << self.shift)
+    }
+
+    /// About how many times as far as in sets without kinds points matter to others.
+    pub(crate) fn width(&self) -> f64 {
+        self.kin
+            .as_ref()
+            .map_or(1.0, |kin| 1.0 / root(kin.least_part()))
     }
 
     /// The box around a box that holds the places of all points that may settle in it.

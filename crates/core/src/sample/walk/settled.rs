@@ -32,7 +32,7 @@ const PIECE: i64 = 512;
 /// The sides of the tiles that are compared with an outline as a whole, in bits of fixed-point units: 128 grid units.
 const TILE_BITS: u32 = 27;
 
-/// About how far around a box points matter to those in it, in greatest moves.
+/// About how far around a box points matter to those in it, in greatest moves, in sets without kinds.
 const MARGIN: i128 = 16;
 
 /// A scope that may have up to this many points settles at once, when it is counted, and its points are kept: 12 bytes
@@ -180,6 +180,7 @@ impl Pieces {
             }
         });
         let margin = MARGIN * i128::from(self.settler.most_move(&within));
+        let margin = (margin as f64 * self.settler.width()) as i128;
         for some in joined(unsure.into_iter().flatten(), margin) {
             if self.scope.stop.is_raised() {
                 break;
