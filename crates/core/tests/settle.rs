@@ -14,21 +14,21 @@ use subject::{all, all_by, shipped};
 
 const SQUARE: f64 = 4.0;
 
-/// The steps of docs/algorithm.md: ρ, c, γ, h.
+/// The steps of docs/algorithm.md: ρ, a, γ, b.
 fn kernels(steps: u32) -> Vec<[f32; 4]> {
     match steps {
-        1 => vec![[2.395, 0.298, 0.999, 0.366]],
-        2 => vec![[2.29, 0.435, 1.134, 0.278], [2.403, 0.312, 0.836, 0.49]],
+        1 => vec![[2.395, 0.7388, 0.999, 0.605]],
+        2 => vec![[2.29, 0.8121, 1.134, 0.5273], [2.403, 0.7474, 0.836, 0.7]],
         3 => vec![
-            [1.605, 0.588, 1.108, 0.227],
-            [2.531, 0.371, 1.094, 0.347],
-            [2.462, 0.361, 0.788, 0.653],
+            [1.605, 0.8757, 1.108, 0.4764],
+            [2.531, 0.7804, 1.094, 0.5891],
+            [2.462, 0.7751, 0.788, 0.8081],
         ],
         _ => vec![
-            [2.312, 0.407, 1.165, 0.617],
-            [1.832, 0.471, 0.797, 0.641],
-            [2.544, 0.501, 1.0, 0.0],
-            [2.772, 0.286, 0.836, 0.141],
+            [2.312, 0.7987, 1.165, 0.7855],
+            [1.832, 0.8284, 0.797, 0.8006],
+            [2.544, 0.8413, 1.0, 0.0],
+            [2.772, 0.7313, 0.836, 0.3755],
         ],
     }
 }
@@ -36,8 +36,10 @@ fn kernels(steps: u32) -> Vec<[f32; 4]> {
 /// A point of the reference.
 struct Placed {
     id: PointId,
+    /// In units of 128 fixed-point units, and the fixed-point units below these.
     at: [i64; 2],
     placed: [i64; 2],
+    below: [i64; 2],
     world: [f64; 2],
     share: f64,
     freedom: f32,
@@ -95,17 +97,20 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
         };
         points.push(Placed {
             id: point.id,
-            at,
-            placed: at,
+            at: at.map(|k| k >> 7),
+            placed: at.map(|k| k >> 7),
+            below: at.map(|k| k & 127),
             world,
             share: own,
             freedom: (part * inside) as f32,
         });
     }
-    let clear = (set.table().least_distance().with_warp(warp) * unit) as f32;
-    let unit = unit as f32;
+    let clear = (set.table().least_distance().with_warp(warp) * unit / 128.0) as f32;
+    let unit = (unit / 128.0) as f32;
     for [reach, push, near, guard] in kernels(settle.steps()) {
         let [by_reach, by_near] = [reach, near].map(|r| 0.5 / (r * r * unit * unit));
+        let weight = by_reach * push;
+        let ratio = by_near * guard / weight;
         let moved: Vec<[i64; 2]> = points
             .iter()
             .map(|own| {
@@ -115,34 +120,36 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
                 for other in &points {
                     let [dx, dy] = [0, 1].map(|i| (own.at[i] - other.at[i]) as f32);
                     let squared = dx * dx + dy * dy;
-                    let scaled = squared * (share + other.share.max(1.0 / 400.0) as f32);
-                    let u = (1.0 - scaled * by_reach).max(0.0);
-                    let v = (1.0 - scaled * by_near).max(0.0);
+                    let weights = [share, other.share.max(1.0 / 400.0) as f32].map(|s| s * weight);
+                    let scaled = squared * (weights[0] + weights[1]);
+                    let u = (push - scaled).max(0.0);
+                    let v = (guard - scaled * ratio).max(0.0);
                     if squared > 0.0 {
                         nearest = nearest.min(squared);
                     }
                     let u = u * u;
-                    let force = push * (u * u) + guard * (v * v);
-                    let quanta = |push: f32| (push / 128.0).round_ties_even() as i32;
-                    sum[0] = sum[0].wrapping_add(quanta(dx * force));
-                    sum[1] = sum[1].wrapping_add(quanta(dy * force));
+                    let force = u * u + v * v;
+                    let whole = |push: f32| push.round_ties_even() as i32;
+                    sum[0] = sum[0].wrapping_add(whole(dx * force));
+                    sum[1] = sum[1].wrapping_add(whole(dy * force));
                 }
                 if own.freedom == 0.0 {
                     return own.at;
                 }
                 let spacing = unit / share.sqrt();
-                let mut go = sum
-                    .map(|v| (v as f32 * 128.0 * own.freedom).clamp(-0.3 * spacing, 0.3 * spacing));
+                let mut go =
+                    sum.map(|v| (v as f32 * own.freedom).clamp(-0.3 * spacing, 0.3 * spacing));
                 let far = (reach * spacing).min(nearest.sqrt());
-                let free = ((far * (1.0 - 1.0 / 262_144.0) - clear) * 0.5).max(0.0);
+                let free = ((far * (1.0 - 1.0 / 262_144.0) - clear) * 0.5 - 2.0).max(0.0);
                 let length = (go[0] * go[0] + go[1] * go[1]).sqrt();
                 if length > free {
                     go = go.map(|v| v * (free / length));
                 }
                 [0, 1].map(|i| {
-                    let offset = own.at[i] + i64::from(go[i] as i32) - own.placed[i];
-                    let whole = 0.4 * spacing;
-                    own.placed[i] + i64::from((offset as f32).clamp(-whole, whole) as i32)
+                    let whole = |v: f32| i64::from(v.round_ties_even() as i32);
+                    let offset = own.at[i] + whole(go[i]) - own.placed[i];
+                    let most = 0.4 * spacing;
+                    own.placed[i] + whole((offset as f32).clamp(-most, most))
                 })
             })
             .collect();
@@ -150,18 +157,18 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
             point.at = to;
         }
     }
+    let world = |point: &Placed| [0, 1].map(|i| (point.at[i] * 128 + point.below[i]) as f64 * step);
     let back = |point: &Placed| {
-        let there = share(point.at.map(|v| v as f64 * step));
+        let there = share(world(point));
         there < 0.5 * point.share || there > 2.0 * point.share
     };
     points
         .iter()
         .map(|point| {
-            let e_is_small = point.world;
             let at = if point.freedom > 0.0 && back(point) {
-                e_is_small
+                point.world
             } else {
-                point.at.map(|v| v as f64 * step)
+                world(point)
             };
             let [x, y] = at;
             Point { id: point.id, x, y }

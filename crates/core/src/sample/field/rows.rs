@@ -191,19 +191,12 @@ impl FieldRows {
             patch,
             ..
         } = source;
-        let scale = Scale::new(lattice, patch);
         self.place(patch, backend);
         let number = self.number;
-        let [xs, ys] = &self.places;
-        compiled_loop(
-            backend,
-            &mut Convert {
-                scale,
-                places: [&xs[..number], &ys[..number]],
-                at: &mut self.at[..number],
-            },
-        );
-        grade.shares(&self.at[..number], &mut self.shares[..number]);
+        match grade.known() {
+            Some(share) => self.shares[..number].fill(share),
+            None => self.look((lattice, grade, patch), backend),
+        }
         self.keep(lattice, patch);
         let (number, [xs, ys]) = (self.number, &self.places);
         let places = xs.iter().zip(ys).map(|(&x, &y)| [x, y]);
@@ -235,6 +228,21 @@ impl FieldRows {
                 }
             }
         }
+    }
+
+    /// Looks the shares up where the candidates lie.
+    fn look(&mut self, (lattice, grade, patch): (&Lattice, &Grade, &Patch), backend: Backend) {
+        let (number, scale) = (self.number, Scale::new(lattice, patch));
+        let [xs, ys] = &self.places;
+        compiled_loop(
+            backend,
+            &mut Convert {
+                scale,
+                places: [&xs[..number], &ys[..number]],
+                at: &mut self.at[..number],
+            },
+        );
+        grade.shares(&self.at[..number], &mut self.shares[..number]);
     }
 
     /// Leaves the candidates whose rank is below the share.

@@ -26,7 +26,7 @@ const STEEP: f64 = 4.0;
 const LOOKS: [[f64; 2]; 2] = [[1.0, 0.4], [1.8, 0.7]];
 
 /// The sides of a tile in bits of a window's units: 64 grid units.
-const TILE_BITS: u32 = 26;
+const TILE_BITS: u32 = 19;
 
 /// A point whose freedom is wanted.
 #[derive(Clone, Copy, Debug)]

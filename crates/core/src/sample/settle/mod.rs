@@ -17,7 +17,7 @@
 //!
 //! ```text
 //!     u = |d|² (s_i + s_j) / 2σ²                 d = p_i − p_j: squared distance in the pair's local spacings
-//!     W(u) = c · max(0, 1 − u/ρ²)⁴ + h · max(0, 1 − u/γ²)²
+//!     W(u) = (a · max(0, 1 − u/ρ²))⁴ + (b · max(0, 1 − u/γ²))²
 //!     p_i ← p_i + f_i Σ_j d · W(u)               cut to ±.3 local spacings a step and ±.4 in all
 //! ```
 //!
@@ -26,7 +26,7 @@
 //! is not looked at again. `freedom` has f, which is 0 at full density and where a field is steep, so that edges stay
 //! sharp; `step` one step with its constants of exactness, `cells` the order in which it finds neighbors; `window` the points that matter to some others, and `reach` how far these lie.
 //!
-//! The constants ρ, c, γ, h were learned by measuring power and distances (CMA-ES); docs/algorithm.md lists them.
+//! The constants ρ, a, γ, b were learned by measuring power and distances (CMA-ES); docs/algorithm.md lists them.
 //!
 //! # Invariants
 //!
@@ -77,19 +77,19 @@ const fn kernel([reach, push, near, guard]: [f32; 4]) -> Kernel {
     }
 }
 
-const ONE: [Kernel; 1] = [kernel([2.395, 0.298, 0.999, 0.366])];
+const ONE: [Kernel; 1] = [kernel([2.395, 0.7388, 0.999, 0.605])];
 const TWO: [Kernel; 2] = [
-    kernel([2.29, 0.435, 1.134, 0.278]),
-    kernel([2.403, 0.312, 0.836, 0.490]),
+    kernel([2.29, 0.8121, 1.134, 0.5273]),
+    kernel([2.403, 0.7474, 0.836, 0.7]),
 ];
 const THREE: [Kernel; 3] = [
-    kernel([1.605, 0.588, 1.108, 0.227]),
-    kernel([2.531, 0.371, 1.094, 0.347]),
-    kernel([2.462, 0.361, 0.788, 0.653]),
+    kernel([1.605, 0.8757, 1.108, 0.4764]),
+    kernel([2.531, 0.7804, 1.094, 0.5891]),
+    kernel([2.462, 0.7751, 0.788, 0.8081]),
 ];
 const FOUR: [Kernel; 4] = [
-    kernel([2.312, 0.407, 1.165, 0.617]),
-    kernel([1.832, 0.471, 0.797, 0.641]),
-    kernel([2.544, 0.501, 1.0, 0.0]),
-    kernel([2.772, 0.286, 0.836, 0.141]),
+    kernel([2.312, 0.7987, 1.165, 0.7855]),
+    kernel([1.832, 0.8284, 0.797, 0.8006]),
+    kernel([2.544, 0.8413, 1.0, 0.0]),
+    kernel([2.772, 0.7313, 0.836, 0.3755]),
 ];

@@ -25,12 +25,12 @@ use core::ops::Range;
 
 use super::{
     LEAST_SHARE, MOST_MOVE,
-    boxes::{Box2, Placed, Settled, widened},
+    boxes::{Box2, Placed, Settled, most_move, widened},
     cells::{Cells, Places},
     freedom::{Candidate, Freedoms, inside, local, slipped},
     kernels,
-    reach::{Extent, reached, whole_room, widest},
-    step::{Scale, WHOLE},
+    reach::{Extent, reached, step_room, whole_room, widest},
+    step::Scale,
 };
 use crate::{
     sample::{
@@ -50,8 +50,12 @@ const TOGETHER: usize = 2048;
 /// Corners of windows are multiples of this many fixed-point units, in bits.
 const CORNER_BITS: u32 = 26;
 
-/// The largest distance from a window's corner, in the units of a window.
-const FARTHEST: i64 = 1 << 30;
+/// The unit of a window in fixed-point units, in bits, where the pattern is not very sparse: some 10⁻⁵ spacings.
+const UNIT_BITS: u32 = 7;
+
+/// The largest distance from a window's corner, in the units of a window: single precision has all integers up to it, and
+/// their differences.
+const FARTHEST: i64 = 1 << 23;
 
 /// The places along each axis of a box at which a field is looked at to guess how sparse it is.
 const SAMPLES: usize = 9;
@@ -64,7 +68,7 @@ pub(crate) struct Settler {
     grade: Grade,
     settle: Settle,
     scale: Scale,
-    /// Windows count in units of this many fixed-point units, in bits: more than one where the pattern is sparse.
+    /// Windows count in units of this many fixed-point units, in bits.
     shift: u32,
     /// Fixed-point units of a mean spacing at full density.
     unit: f64,
@@ -85,7 +89,7 @@ struct Listed {
     id: PointId,
     share: f64,
     /// The bits of its place below the window's units.
-    below: [u8; 2],
+    below: [u16; 2],
     is_wanted: bool,
     /// Whether it may have to go back.
     may_slip: bool,
@@ -98,10 +102,11 @@ impl Settler {
         let grade = lattice.grade.clone()?;
         let side = lattice.table.alpha().set_side_f64();
         // Up to some 350 spacings fit a window.
-        let mut shift = 0;
-        while 400.0 / side > f64::from(1u32 << shift) * 1500.0 {
-            shift += 1;
+        let mut sparse = 0;
+        while 400.0 / side > f64::from(1u32 << sparse) * 1500.0 {
+            sparse += 1;
         }
+        let shift = UNIT_BITS + sparse;
         let unit = f64::from(1u32 << FRACTION_BITS) / side;
         Some(Self {
             lattice: lattice.of_all_kinds(),
@@ -132,8 +137,7 @@ impl Settler {
     /// The greatest move of points that were placed in a box, in fixed-point units.
     pub(crate) fn most_move(&self, within: &Box2) -> i64 {
         let low = self.grade.bounds(&self.region(within))[0];
-        // With room for what rounds.
-        (f64::from(WHOLE) * 1.000_01 * self.unit * local(low)) as i64 + (2 << self.shift)
+        most_move(self.unit * local(low), self.shift)
     }
 
     /// The box around a box that holds the places of all points that may settle in it.
@@ -178,20 +182,21 @@ impl Settler {
 
     /// Calls `visit` for every point that was placed in a box.
     pub(crate) fn list(&mut self, within: &Box2, mut visit: impl FnMut(Placed)) {
-        let unit = self.unit;
-        let shift = self.shift;
-        self.visit(within, |id, place, share| {
-            let most = f64::from(WHOLE) * 1.000_01 * unit * local(share);
-            visit(Placed {
-                id,
-                place,
-                share,
-                most: most as i64 + (2 << shift),
-            });
+        let (unit, shift) = (self.unit, self.shift);
+        let corner = within.each_ref().map(|range| range.start);
+        self.visit(within, corner, |id, offset, share| {
+            let place = [0, 1].map(|i| corner[i] + i128::from(offset[i]));
+            visit(Placed::new((id, place, share), (unit, shift)));
         });
     }
 
-    fn visit(&mut self, within: &Box2, mut visit: impl FnMut(PointId, [i128; 2], f64)) {
+    /// Calls `visit` for every point that was placed in a box, with its place from a corner near it, in fixed-point units.
+    fn visit(
+        &mut self,
+        within: &Box2,
+        corner: [i128; 2],
+        mut visit: impl FnMut(PointId, [i64; 2], f64),
+    ) {
         let Self {
             lattice,
             grade,
@@ -217,7 +222,7 @@ impl Settler {
                 let end = y.all.end.min(patch.end());
                 rows.clear();
                 let [left, bottom] = patch.origin();
-                let origin = [fixed(left), fixed(bottom)];
+                let origin = [fixed(left) - corner[0], fixed(bottom) - corner[1]].map(|v| v as i64);
                 while next < end {
                     let source = Source {
                         lattice,
@@ -233,8 +238,8 @@ impl Settler {
                             x: left + column,
                             y: bottom + row,
                         };
-                        let place = [0, 1].map(|i| origin[i] + i128::from(found.place[i]));
-                        visit(id, place, share);
+                        let offset = [0, 1].map(|i| origin[i] + i64::from(found.place[i]));
+                        visit(id, offset, share);
                     }
                 }
             }
@@ -263,7 +268,7 @@ impl Settler {
         let mut window = self.guess(within, own);
         loop {
             self.list_window(corner, window, own, &mut wants);
-            let needed = self.prepare(corner, window);
+            let needed = self.prepare(corner, window, own);
             if needed.is_within(&window) {
                 break;
             }
@@ -283,10 +288,10 @@ impl Settler {
     }
 
     /// The fixed-point place of point number `i` of the window, which keeps the bits below the window's unit.
-    fn place(&self, corner: [i128; 2], i: usize, at: &[Vec<i32>; 2]) -> [i128; 2] {
+    fn place(&self, corner: [i128; 2], i: usize, at: &[Vec<f32>; 2]) -> [i128; 2] {
         let below = self.listed[i].below;
         let place = |axis: usize| {
-            let whole = i64::from(at[axis][i]) << self.shift;
+            let whole = (at[axis][i] as i64) << self.shift;
             corner[axis] + i128::from(whole | i64::from(below[axis]))
         };
         [place(0), place(1)]
@@ -348,36 +353,27 @@ impl Settler {
         listed.clear();
         places.clear();
         let (shift, unit) = (self.shift, self.unit);
-        self.visit(&within, |id, place, share| {
-            let [x, y] = [(place[0] - corner[0]) as i64, (place[1] - corner[1]) as i64];
-            let at = [(x >> shift) as i32, (y >> shift) as i32];
+        let below = (1 << shift) - 1;
+        self.visit(&within, corner, |id, offset, share| {
+            let at = offset.map(|v| (v >> shift) as i32 as f32);
             let is_wanted = own.holds(at) && {
-                let most = f64::from(WHOLE) * 1.000_01 * unit * local(share);
-                wants(&Placed {
-                    id,
-                    place,
-                    share,
-                    most: most as i64 + (2 << shift),
-                })
+                let place = [0, 1].map(|i| corner[i] + i128::from(offset[i]));
+                wants(&Placed::new((id, place, share), (unit, shift)))
             };
-            let below = (1 << shift) - 1;
             listed.push(Listed {
                 id,
                 share,
-                below: [(x & below) as u8, (y & below) as u8],
+                below: offset.map(|v| (v & below) as u16),
                 is_wanted,
                 may_slip: false,
             });
             places.placed[0].push(at[0]);
             places.placed[1].push(at[1]);
+            places.share.push(share.max(LEAST_SHARE) as f32);
         });
         for (at, placed) in places.at.iter_mut().zip(&places.placed) {
             at.extend_from_slice(placed);
         }
-        let shares = listed
-            .iter()
-            .map(|listed| listed.share.max(LEAST_SHARE) as f32);
-        places.share.extend(shares);
         places.freedom.resize(listed.len(), 0.0);
         places.until.resize(listed.len(), 0);
         (self.listed, self.places) = (listed, places);
@@ -385,11 +381,21 @@ impl Settler {
 
     /// Finds out which points move in which steps. Returns the extent of the points that matter to them; if it goes
     /// beyond the window, only about.
-    fn prepare(&mut self, corner: [i128; 2], window: Extent) -> Extent {
+    fn prepare(&mut self, corner: [i128; 2], window: Extent, own: Extent) -> Extent {
         let kernels = kernels(self.settle);
         let unit = f64::from(self.scale.unit);
         let mut all = Extent::NONE;
         let mut from = Extent::NONE;
+        if let Some(share) = self.grade.known() {
+            // Reaches are alike: the window is as wide as its box and these.
+            let mut movers = None;
+            for (t, kernel) in kernels.iter().enumerate().rev() {
+                self.free(corner, t as u8 + 1, movers);
+                let room = step_room(kernel, t, [share; 2], unit);
+                movers = Some(movers.unwrap_or(own).widened(room));
+            }
+            return movers.unwrap_or(own);
+        }
         for (t, kernel) in kernels.iter().enumerate().rev() {
             let step = t as u8 + 1;
             self.free(corner, step, (t + 1 < kernels.len()).then_some(from));
@@ -432,7 +438,7 @@ impl Settler {
             } else {
                 self.freedoms.add(Candidate {
                     point: i as u32,
-                    from_corner: [x, y],
+                    from_corner: [x as i32, y as i32],
                     share: listed.share,
                 });
             }
