@@ -72,11 +72,8 @@ impl FieldRows {
     }
 
     /// The points that were found last, with their shares.
-    pub(crate) fn with_shares(&self) -> impl Iterator<Item = (Found, f64)> {
-        self.found
-            .iter()
-            .copied()
-            .zip(self.found_shares.iter().copied())
+    pub(crate) fn with_shares(&self) -> (&[Found], &[f64]) {
+        (&self.found, &self.found_shares)
     }
 
     /// Takes the next points.
@@ -99,6 +96,7 @@ impl FieldRows {
         backend: Backend,
     ) -> i64 {
         self.found.clear();
+        self.found_shares.clear();
         self.next = 0;
         self.number = 0;
         let mut next = rows.start;
@@ -201,7 +199,6 @@ impl FieldRows {
         let (number, [xs, ys]) = (self.number, &self.places);
         let places = xs.iter().zip(ys).map(|(&x, &y)| [x, y]);
         let all = places.zip(&self.addresses).zip(&self.shares).take(number);
-        self.found_shares.clear();
         for ((place, &address), &share) in all {
             if patch.holds(place) {
                 self.found.push(Found { place, address });

@@ -113,19 +113,16 @@ impl Cells {
     #[inline(always)]
     pub(super) fn sort(&mut self, places: &Places, (reach, weight): (f32, f32), step: u8) {
         let number = places.len();
-        let [xs, ys] = places.at.each_ref().map(|list| &list[..number]);
-        let ends = [xs, ys].map(ends);
+        let [xs, ys] = [&places.at[0][..number], &places.at[1][..number]];
+        let ends = [self::ends(xs), self::ends(ys)];
         let shares = &places.share[..number];
         let [least, most] = self::ends(shares);
         self.least = least * weight;
         self.are_alike = least == most;
-        let extents = ends.map(|[least, most]| most - least + 1.0);
-        let area = f64::from(extents[0]) * f64::from(extents[1]);
+        let [width, height] = ends.map(|[least, most]| most - least + 1.0);
+        let area = f64::from(width) * f64::from(height);
         let side = reach * libm::sqrt(area / number as f64) as f32;
-        let side = extents
-            .iter()
-            .fold(side, |side, e| greater(side, e / MOST_ROWS));
-        let side = greater(side, 512.0);
+        let side = greater(greater(side, greater(width, height) / MOST_ROWS), 512.0);
         self.side = side;
         let [x, y] = [
             Divisor::new(ends[0], side / FINE as f32),

@@ -39,6 +39,7 @@
 mod boxes;
 mod cells;
 mod freedom;
+mod lister;
 mod reach;
 mod step;
 mod tiles;

@@ -18,12 +18,12 @@ pub(super) fn widest(kernel: &Kernel) -> f64 {
     f64::from(kernel.reach.max(kernel.near))
 }
 
-/// How far a point may have gone before step number `t`, which counts from 0, in local spacings.
+/// How far a point may have gone along each axis before step number `t`, which counts from 0, in local spacings.
 fn moved_before(t: usize) -> f64 {
-    f64::from(WHOLE).min(f64::from(STEP) * t as f64) * core::f64::consts::SQRT_2
+    f64::from(WHOLE).min(f64::from(STEP) * t as f64)
 }
 
-/// How far from a point of a share others may be that push it in step number `t`, which counts from 0, if none is sparser
+/// How far from a point of a share, along each axis, others may be that push it in step number `t`, which counts from 0, if none is sparser
 /// than `least`: by the places where they were placed, in spacings at full density.
 fn room(kernel: &Kernel, t: usize, [share, least]: [f64; 2]) -> f64 {
     let moved = moved_before(t) * (local(share) + local(least));
@@ -57,16 +57,18 @@ impl Extent {
     };
 
     /// Adds places between some ends, with room around them.
-    fn add(&mut self, [min, max]: [[f32; 2]; 2], room: i64) {
+    pub(super) fn add(&mut self, [min, max]: [[f32; 2]; 2], room: i64) {
         for i in 0..2 {
             self.min[i] = self.min[i].min(min[i] as i64 - room);
             self.max[i] = self.max[i].max(max[i] as i64 + room);
         }
     }
 
+    #[inline(always)]
     pub(super) fn holds(&self, [x, y]: [f32; 2]) -> bool {
-        let (x, y) = (x as i64, y as i64);
-        (self.min[0] <= x) & (x <= self.max[0]) & (self.min[1] <= y) & (y <= self.max[1])
+        // Beyond what single precision holds there are no points.
+        let [min, max] = [self.min, self.max].map(|v| v.map(|v| v as f32));
+        (min[0] <= x) & (x <= max[0]) & (min[1] <= y) & (y <= max[1])
     }
 
     /// A place, by parts of the sides.

@@ -183,7 +183,10 @@ impl Step<'_> {
         } = &*self.cells;
         let least = |list: &[f32; LANES]| list.iter().fold(f32::INFINITY, |a, &b| lesser(b, a));
         let most = |list: &[f32; LANES]| list.iter().fold(-f32::INFINITY, |a, &b| greater(b, a));
-        let ends = [&group.x, &group.y].map(|list| [least(list), most(list)]);
+        let ends = [
+            [least(&group.x), most(&group.x)],
+            [least(&group.y), most(&group.y)],
+        ];
         let sparse = least(&group.weight);
         let mut around = self.around(ends, sparse, self.cells.least);
         if !self.cells.are_alike {
@@ -193,8 +196,9 @@ impl Step<'_> {
         }
         let [columns, rows] = around;
         for row in rows {
-            let [start, end] =
-                [columns.start, columns.end].map(|c| starts[row * x.cells + c] as usize);
+            let first = row * x.cells;
+            let start = starts[first + columns.start] as usize;
+            let end = starts[first + columns.end] as usize;
             group.add_pushes(&self.kernel, &points[start..end]);
         }
     }
@@ -203,10 +207,12 @@ impl Step<'_> {
     #[inline(always)]
     fn around(&self, ends: [[f32; 2]; 2], sparse: f32, least: f32) -> [Range<usize>; 2] {
         let reach = (self.kernel.most / (sparse + least)).sqrt_();
-        [0, 1].map(|axis| {
-            let [from, to] = ends[axis];
-            self.cells.along[axis].cells(from - reach, to + reach)
-        })
+        let [[left, right], [bottom, top]] = ends;
+        let [x, y] = self.cells.along;
+        [
+            x.cells(left - reach, right + reach),
+            y.cells(bottom - reach, top + reach),
+        ]
     }
 
     /// Moves a group by its pushes.

@@ -29,23 +29,18 @@ use super::{
     cells::{Cells, Places},
     freedom::{Candidate, Freedoms, inside, local, slipped},
     kernels,
+    lister::Lister,
     reach::{Extent, reached, step_room, whole_room, widest},
     step::Scale,
 };
 use crate::{
     sample::{
         area::Region,
-        field::{FieldRows, Source},
         kernel::Backend,
-        lattice::{
-            BAND_WIDTH, Columns, Grade, Lattice, Patch, PointId, Settle, Span, clip_to_band,
-        },
+        lattice::{Lattice, PointId, Settle},
     },
-    table::{FRACTION_BITS, fixed},
+    table::FRACTION_BITS,
 };
-
-/// The most candidates that are looked at together.
-const TOGETHER: usize = 2048;
 
 /// Corners of windows are multiples of this many fixed-point units, in bits.
 const CORNER_BITS: u32 = 26;
@@ -63,18 +58,13 @@ const SAMPLES: usize = 9;
 /// Settles points, with memory of its own.
 #[derive(Clone, Debug)]
 pub(crate) struct Settler {
-    /// The points of all kinds, where their ranks left them.
-    lattice: Lattice,
-    grade: Grade,
+    lister: Lister,
     settle: Settle,
     scale: Scale,
     /// Windows count in units of this many fixed-point units, in bits.
     shift: u32,
     /// Fixed-point units of a mean spacing at full density.
     unit: f64,
-    backend: Backend,
-    columns: Columns,
-    rows: FieldRows,
     listed: Vec<Listed>,
     places: Places,
     cells: Cells,
@@ -109,8 +99,7 @@ impl Settler {
         let shift = UNIT_BITS + sparse;
         let unit = f64::from(1u32 << FRACTION_BITS) / side;
         Some(Self {
-            lattice: lattice.of_all_kinds(),
-            grade,
+            lister: Lister::new(lattice.of_all_kinds(), grade),
             settle,
             scale: Scale {
                 unit: (unit / f64::from(1u32 << shift)) as f32,
@@ -118,9 +107,6 @@ impl Settler {
             },
             shift,
             unit,
-            backend: Backend::best(),
-            columns: Columns::default(),
-            rows: FieldRows::default(),
             listed: Vec::new(),
             places: Places::default(),
             cells: Cells::default(),
@@ -131,12 +117,12 @@ impl Settler {
 
     /// Works by another backend.
     pub(crate) const fn set_backend(&mut self, backend: Backend) {
-        self.backend = backend;
+        self.lister.backend = backend;
     }
 
     /// The greatest move of points that were placed in a box, in fixed-point units.
     pub(crate) fn most_move(&self, within: &Box2) -> i64 {
-        let low = self.grade.bounds(&self.region(within))[0];
+        let low = self.lister.grade.bounds(&self.region(within))[0];
         most_move(self.unit * local(low), self.shift)
     }
 
@@ -149,7 +135,7 @@ impl Settler {
 
     /// The greatest share in a box.
     pub(crate) fn greatest_share(&self, within: &Box2) -> f64 {
-        self.grade.bounds(&self.region(within))[1]
+        self.lister.grade.bounds(&self.region(within))[1]
     }
 
     /// The number of points of the last window.
@@ -173,7 +159,7 @@ impl Settler {
     /// The region of a box.
     pub(crate) fn region(&self, within: &Box2) -> Region {
         let [x, y] = within;
-        let world = |k: i128| self.lattice.world(k);
+        let world = |k: i128| self.lister.lattice.world(k);
         Region::between(
             [world(x.start), world(y.start)],
             [world(x.end.max(x.start)), world(y.end.max(y.start))],
@@ -184,66 +170,13 @@ impl Settler {
     pub(crate) fn list(&mut self, within: &Box2, mut visit: impl FnMut(Placed)) {
         let (unit, shift) = (self.unit, self.shift);
         let corner = within.each_ref().map(|range| range.start);
-        self.visit(within, corner, |id, offset, share| {
-            let place = [0, 1].map(|i| corner[i] + i128::from(offset[i]));
-            visit(Placed::new((id, place, share), (unit, shift)));
-        });
-    }
-
-    /// Calls `visit` for every point that was placed in a box, with its place from a corner near it, in fixed-point units.
-    fn visit(
-        &mut self,
-        within: &Box2,
-        corner: [i128; 2],
-        mut visit: impl FnMut(PointId, [i64; 2], f64),
-    ) {
-        let Self {
-            lattice,
-            grade,
-            columns,
-            rows,
-            backend,
-            ..
-        } = self;
-        if within.iter().any(Range::is_empty) {
-            return;
-        }
-        let [x, y] = Span::of_box(lattice, within.clone());
-        if x.all.is_empty() || y.all.is_empty() {
-            return;
-        }
-        let bands = x.all.start.div_euclid(BAND_WIDTH)..=(x.all.end - 1).div_euclid(BAND_WIDTH);
-        for band in bands {
-            let range = clip_to_band(band, &x.all);
-            columns.list(lattice, range.clone());
-            let mut next = y.all.start;
-            while next < y.all.end {
-                let patch = Patch::new(lattice, band, next, &x, &y);
-                let end = y.all.end.min(patch.end());
-                rows.clear();
-                let [left, bottom] = patch.origin();
-                let origin = [fixed(left) - corner[0], fixed(bottom) - corner[1]].map(|v| v as i64);
-                while next < end {
-                    let source = Source {
-                        lattice,
-                        grade,
-                        patch: &patch,
-                        spans: [&x, &y],
-                        columns: (columns, &range),
-                    };
-                    next = rows.list(source, next..end, TOGETHER, *backend);
-                    for (found, share) in rows.with_shares() {
-                        let [column, row] = found.address();
-                        let id = PointId {
-                            x: left + column,
-                            y: bottom + row,
-                        };
-                        let offset = [0, 1].map(|i| origin[i] + i64::from(found.place[i]));
-                        visit(id, offset, share);
-                    }
-                }
+        self.lister.list(within, corner, |some| {
+            for (found, &share) in some.found.iter().zip(some.shares) {
+                let (id, offset) = (some.id(found), some.offset(found));
+                let place = [0, 1].map(|i| corner[i] + i128::from(offset[i]));
+                visit(Placed::new((id, place, share), (unit, shift)));
             }
-        }
+        });
     }
 
     /// Settles points that were placed in a box: those that are wanted. `found` is called for each of them, in the
@@ -268,7 +201,7 @@ impl Settler {
         let mut window = self.guess(within, own);
         loop {
             self.list_window(corner, window, own, &mut wants);
-            let needed = self.prepare(corner, window, own);
+            let needed = self.prepare(corner, window);
             if needed.is_within(&window) {
                 break;
             }
@@ -300,21 +233,21 @@ impl Settler {
     /// The world coordinates of the place at which point number `i` of the window was placed.
     fn placed(&self, corner: [i128; 2], i: usize) -> [f64; 2] {
         let [x, y] = self.place(corner, i, &self.places.placed);
-        [self.lattice.world(x), self.lattice.world(y)]
+        [self.lister.lattice.world(x), self.lister.lattice.world(y)]
     }
 
     /// About where the points lie that matter to those in a box, from a window's corner.
     fn guess(&mut self, within: &Box2, own: Extent) -> Extent {
         let region = self.region(within);
         let ([left, bottom], [right, top]) = (region.min(), region.max());
-        let is_constant = self.grade.known().is_some();
+        let is_constant = self.lister.grade.known().is_some();
         let samples = if is_constant { 1 } else { SAMPLES };
         let part = |i: usize| i as f64 / (SAMPLES - 1) as f64;
         let parts = || (0..samples).flat_map(|i| (0..samples).map(move |k| [part(i), part(k)]));
         let at = parts().map(|[a, b]| [left + a * (right - left), bottom + b * (top - bottom)]);
         let at: Vec<[f64; 2]> = at.collect();
         let mut shares = vec![0.0; at.len()];
-        self.grade.shares(&at, &mut shares);
+        self.lister.grade.shares(&at, &mut shares);
         let sparse = shares.iter().filter(|share| **share > 0.0);
         let least = sparse.fold(1.0f64, |a, b| a.min(*b));
         let unit = f64::from(self.scale.unit);
@@ -354,22 +287,30 @@ impl Settler {
         places.clear();
         let (shift, unit) = (self.shift, self.unit);
         let below = (1 << shift) - 1;
-        self.visit(&within, corner, |id, offset, share| {
-            let at = offset.map(|v| (v >> shift) as i32 as f32);
-            let is_wanted = own.holds(at) && {
-                let place = [0, 1].map(|i| corner[i] + i128::from(offset[i]));
-                wants(&Placed::new((id, place, share), (unit, shift)))
-            };
-            listed.push(Listed {
-                id,
-                share,
-                below: offset.map(|v| (v & below) as u16),
-                is_wanted,
-                may_slip: false,
-            });
-            places.placed[0].push(at[0]);
-            places.placed[1].push(at[1]);
-            places.share.push(share.max(LEAST_SHARE) as f32);
+        self.lister.list(&within, corner, |some| {
+            let offsets = || some.found.iter().map(|found| some.offset(found));
+            for (axis, list) in places.placed.iter_mut().enumerate() {
+                list.extend(offsets().map(|offset| (offset[axis] >> shift) as i32 as f32));
+            }
+            let shares = some.shares.iter();
+            places
+                .share
+                .extend(shares.map(|share| share.max(LEAST_SHARE) as f32));
+            let points = some.found.iter().zip(some.shares);
+            listed.extend(points.map(|(found, &share)| {
+                let (id, offset) = (some.id(found), some.offset(found));
+                let is_wanted = own.holds(offset.map(|v| (v >> shift) as i32 as f32)) && {
+                    let place = [0, 1].map(|i| corner[i] + i128::from(offset[i]));
+                    wants(&Placed::new((id, place, share), (unit, shift)))
+                };
+                Listed {
+                    id,
+                    share,
+                    below: offset.map(|v| (v & below) as u16),
+                    is_wanted,
+                    may_slip: false,
+                }
+            }));
         });
         for (at, placed) in places.at.iter_mut().zip(&places.placed) {
             at.extend_from_slice(placed);
@@ -381,20 +322,13 @@ impl Settler {
 
     /// Finds out which points move in which steps. Returns the extent of the points that matter to them; if it goes
     /// beyond the window, only about.
-    fn prepare(&mut self, corner: [i128; 2], window: Extent, own: Extent) -> Extent {
+    fn prepare(&mut self, corner: [i128; 2], window: Extent) -> Extent {
         let kernels = kernels(self.settle);
         let unit = f64::from(self.scale.unit);
         let mut all = Extent::NONE;
         let mut from = Extent::NONE;
-        if let Some(share) = self.grade.known() {
-            // Reaches are alike: the window is as wide as its box and these.
-            let mut movers = None;
-            for (t, kernel) in kernels.iter().enumerate().rev() {
-                self.free(corner, t as u8 + 1, movers);
-                let room = step_room(kernel, t, [share; 2], unit);
-                movers = Some(movers.unwrap_or(own).widened(room));
-            }
-            return movers.unwrap_or(own);
+        if let Some(share) = self.lister.grade.known() {
+            return self.prepare_alike(share);
         }
         for (t, kernel) in kernels.iter().enumerate().rev() {
             let step = t as u8 + 1;
@@ -412,19 +346,45 @@ impl Settler {
         all
     }
 
-    /// Finds the freedom of the points that move up to a step: of those in an extent, or without one, those that are wanted.
-    fn free(&mut self, corner: [i128; 2], step: u8, within: Option<Extent>) {
-        let is_constant = self.grade.known().is_some();
+    /// The same where all shares are alike, so that reaches are, too.
+    fn prepare_alike(&mut self, share: f64) -> Extent {
         let Places {
             placed: [xs, ys],
             freedom,
             until,
             ..
         } = &mut self.places;
+        freedom.fill(inside(share) as f32);
+        let mut movers = Extent::NONE;
+        let points = xs.iter().zip(&*ys).zip(until.iter_mut());
+        for (((&x, &y), until), listed) in points.zip(&self.listed) {
+            if listed.is_wanted {
+                movers.add([[x, y]; 2], 0);
+            }
+            *until = if listed.is_wanted { u8::MAX } else { 0 };
+        }
+        for (t, kernel) in kernels(self.settle).iter().enumerate().rev() {
+            for ((until, &x), &y) in until.iter_mut().zip(&*xs).zip(&*ys) {
+                let is_new = (*until == 0) & movers.holds([x, y]);
+                *until = if is_new { t as u8 + 1 } else { *until };
+            }
+            let room = step_room(kernel, t, [share; 2], f64::from(self.scale.unit));
+            movers = movers.widened(room);
+        }
+        movers
+    }
+
+    /// Finds the freedom of the points that move up to a step: of those in an extent, or without one, those that are wanted.
+    fn free(&mut self, corner: [i128; 2], step: u8, within: Option<Extent>) {
+        let Places {
+            placed: [xs, ys],
+            until,
+            ..
+        } = &mut self.places;
         self.freedoms.clear();
         let placed = xs.iter().zip(ys.iter());
-        let lists = self.listed.iter().zip(placed).zip(until).zip(freedom);
-        for (i, (((listed, (&x, &y)), until), freedom)) in lists.enumerate() {
+        let lists = self.listed.iter().zip(placed).zip(until);
+        for (i, ((listed, (&x, &y)), until)) in lists.enumerate() {
             let is_new = match &within {
                 None => listed.is_wanted,
                 Some(within) => *until == 0 && within.holds([x, y]),
@@ -433,28 +393,21 @@ impl Settler {
                 continue;
             }
             *until = step;
-            if is_constant {
-                *freedom = inside(listed.share) as f32;
-            } else {
-                self.freedoms.add(Candidate {
-                    point: i as u32,
-                    from_corner: [x as i32, y as i32],
-                    share: listed.share,
-                });
-            }
-        }
-        if is_constant {
-            return;
+            self.freedoms.add(Candidate {
+                point: i as u32,
+                from_corner: [x as i32, y as i32],
+                share: listed.share,
+            });
         }
         let (spacing, per_unit) = (
-            self.lattice.placement.spacing.get(),
-            self.lattice.step * f64::from(1u32 << self.shift),
+            self.lister.lattice.placement.spacing.get(),
+            self.lister.lattice.step * f64::from(1u32 << self.shift),
         );
         let mut freedoms = core::mem::take(&mut self.freedoms);
         let mut freedom = core::mem::take(&mut self.places.freedom);
         let mut slippery = core::mem::take(&mut self.slippery);
         freedoms.find(
-            &self.grade,
+            &self.lister.grade,
             (spacing, per_unit),
             |i| self.placed(corner, i as usize),
             |i, free, is_gentle| {
@@ -472,13 +425,20 @@ impl Settler {
 
     fn take_steps(&mut self) {
         for (step, kernel) in (1..).zip(kernels(self.settle)) {
-            self.cells
-                .step(&mut self.places, (kernel, step), self.scale, self.backend);
+            self.cells.step(
+                &mut self.places,
+                (kernel, step),
+                self.scale,
+                self.lister.backend,
+            );
         }
     }
 
     /// Puts points back that slipped over an edge.
     fn go_back(&mut self, corner: [i128; 2]) {
+        if self.lister.grade.known().is_some() {
+            return;
+        }
         for i in 0..self.listed.len() {
             let Listed {
                 is_wanted,
@@ -488,7 +448,10 @@ impl Settler {
             } = self.listed[i];
             if is_wanted && may_slip && self.places.freedom[i] > 0.0 {
                 let at = self.place(corner, i, &self.places.at);
-                let there = self.grade.share(at.map(|k| self.lattice.world(k)));
+                let there = self
+                    .lister
+                    .grade
+                    .share(at.map(|k| self.lister.lattice.world(k)));
                 if slipped(share, there) {
                     for axis in 0..2 {
                         self.places.at[axis][i] = self.places.placed[axis][i];
