@@ -27,8 +27,9 @@ use super::{
     LEAST_SHARE, MOST_MOVE,
     boxes::{Box2, Placed, Settled, widened},
     cells::{Cells, Places},
-    freedom::{Candidate, Freedoms, inside, local, slipped},
+    freedom::{Candidate, Freedoms, constant, local, slipped},
     kernels,
+    near::Near,
     reach::{Extent, reached, whole_room, widest},
     step::{Scale, WHOLE},
 };
@@ -64,6 +65,8 @@ pub(crate) struct Settler {
     grade: Grade,
     settle: Settle,
     scale: Scale,
+    /// What limits the step of sets with all points, where that is taken.
+    near: Option<Near>,
     /// Windows count in units of this many fixed-point units, in bits: more than one where the pattern is sparse.
     shift: u32,
     /// Fixed-point units of a mean spacing at full density.
@@ -103,14 +106,21 @@ impl Settler {
             shift += 1;
         }
         let unit = f64::from(1u32 << FRACTION_BITS) / side;
+        let own = |v: f64| v / f64::from(1u32 << shift);
+        let clear = own(lattice.certified());
+        let near = settle.is_near().then(|| {
+            let reach = kernels(settle).iter().map(widest).fold(0.0, f64::max);
+            Near::new(clear, reach * own(unit))
+        });
         Some(Self {
             lattice: lattice.of_all_kinds(),
             grade,
             settle,
             scale: Scale {
-                unit: (unit / f64::from(1u32 << shift)) as f32,
-                clear: (lattice.certified() / f64::from(1u32 << shift)) as f32,
+                unit: own(unit) as f32,
+                clear: near.as_ref().map_or(clear as f32, |_| 0.0),
             },
+            near,
             shift,
             unit,
             backend: Backend::best(),
@@ -428,7 +438,7 @@ impl Settler {
             }
             *until = step;
             if is_constant {
-                *freedom = inside(listed.share) as f32;
+                *freedom = constant(listed.share) as f32;
             } else {
                 self.freedoms.add(Candidate {
                     point: i as u32,
@@ -468,6 +478,9 @@ impl Settler {
         for (step, kernel) in (1..).zip(kernels(self.settle)) {
             self.cells
                 .step(&mut self.places, (kernel, step), self.scale, self.backend);
+        }
+        if let Some(near) = &mut self.near {
+            near.limit(&mut self.places);
         }
     }
 
