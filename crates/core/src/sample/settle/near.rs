@@ -14,7 +14,7 @@ use super::{cells::Places, freedom::root};
 /// Less than 1 by more than what rounds.
 const SURELY: f64 = 1.0 - 1.0 / 262_144.0;
 
-/// The limit of a near step, with memory to find neighbors: the points by square cells of its reach.
+/// The limit of a near step, with memory to find neighbors: the points by square cells about as large as its reach.
 #[derive(Clone, Debug)]
 pub(super) struct Near {
     /// The distances in the units of a window: D, and the reach.
@@ -99,8 +99,9 @@ impl Near {
 
     /// The column and the row of the cell of a place.
     fn cell(&self, at: [i32; 2]) -> [usize; 2] {
-        [0, 1]
-            .map(|k: usize| ((f64::from(at[k]) - f64::from(self.corner[k])) / self.reach) as usize)
+        // Somewhat larger than the reach, for what rounds.
+        let side = self.reach + 1.0;
+        [0, 1].map(|k: usize| ((f64::from(at[k]) - f64::from(self.corner[k])) / side) as usize)
     }
 
     /// Sorts places by cells.
