@@ -33,6 +33,38 @@ fn kernels(steps: u32) -> Vec<[f32; 4]> {
     }
 }
 
+/// The step of sets with all points.
+const NEAR: [f32; 4] = [0.8, 1.249, 0.8, 0.0];
+
+/// A move of the near step, from the offsets of all other points: no approach by more than half of what separates two
+/// points from the least distance `clear`.
+fn limited(go: [i64; 2], offsets: &[[i64; 2]], clear: f64, reach: f64) -> [i64; 2] {
+    let surely = 1.0 - 1.0 / 262_144.0;
+    let free = |far: f64| (far * surely - clear - 4.0).max(0.0) * 0.5;
+    let go = go.map(|v| v as f64);
+    let offsets = offsets.iter().map(|offset| offset.map(|v| v as f64));
+    let length = |[x, y]: [f64; 2]| (x * x + y * y).sqrt();
+    let near: Vec<[f64; 2]> = offsets
+        .filter(|offset| length(*offset) > 0.0 && length(*offset) < reach)
+        .collect();
+    let along = |go: [f64; 2], [x, y]: [f64; 2]| go[0] * x + go[1] * y;
+    let part = near
+        .iter()
+        .map(|&offset| (along(go, offset) / length(offset), length(offset)))
+        .filter(|(approach, far)| *approach > 0.0 || free(*far) == 0.0)
+        .map(|(approach, far)| free(far) / approach.max(1e-9))
+        .fold((free(reach) / length(go)).min(1.0), f64::min);
+    let go = go.map(|v| (v * part).trunc());
+    let is_clear = near
+        .iter()
+        .all(|&offset| along(go, offset) <= free(length(offset)) * length(offset));
+    if is_clear {
+        go.map(|v| v as i64)
+    } else {
+        [0; 2]
+    }
+}
+
 /// A point of the reference.
 struct Placed {
     id: PointId,
@@ -59,6 +91,8 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
     let step = spacing.get() * side / f64::from(1u32 << 20);
     let unit = f64::from(1u32 << 20) / side;
     let still = set.clone().settle(0).expect("0");
+    // In fields points settle as well, but no distance is promised.
+    let is_near = set.least_distance() > 0.0 && keep.get() == 1.0;
     let share = |at: [f64; 2]| {
         let share = shares(at);
         if share > 0.0 {
@@ -95,6 +129,7 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
         } else {
             (256.0 * (1.0 - own)).clamp(0.0, 1.0)
         };
+        let inside = if is_near { 1.0 } else { inside };
         points.push(Placed {
             id: point.id,
             at: at.map(|k| k >> 7),
@@ -105,9 +140,16 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
             freedom: (part * inside) as f32,
         });
     }
-    let clear = (set.table().least_distance().with_warp(warp) * unit / 128.0) as f32;
+    let certified = set.table().least_distance().with_warp(warp) * unit / 128.0;
+    let clear = if is_near { 0.0 } else { certified as f32 };
+    let reach_of_near = f64::from(NEAR[0]) * unit / 128.0;
     let unit = (unit / 128.0) as f32;
-    for [reach, push, near, guard] in kernels(settle.steps()) {
+    let steps = if is_near {
+        vec![NEAR]
+    } else {
+        kernels(settle.steps())
+    };
+    for [reach, push, near, guard] in steps {
         let [by_reach, by_near] = [reach, near].map(|r| 0.5 / (r * r * unit * unit));
         let weight = by_reach * push;
         let ratio = by_near * guard / weight;
@@ -142,15 +184,23 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
                 let far = (reach * spacing).min(nearest.sqrt());
                 let free = ((far * (1.0 - 1.0 / 262_144.0) - clear) * 0.5 - 2.0).max(0.0);
                 let length = (go[0] * go[0] + go[1] * go[1]).sqrt();
-                if length > free {
+                if clear > 0.0 && length > free {
                     go = go.map(|v| v * (free / length));
                 }
-                [0, 1].map(|i| {
+                let to = [0, 1].map(|i| {
                     let whole = |v: f32| i64::from(v.round_ties_even() as i32);
                     let offset = own.at[i] + whole(go[i]) - own.placed[i];
                     let most = 0.4 * spacing;
                     own.placed[i] + whole((offset as f32).clamp(-most, most))
-                })
+                });
+                let go = [0, 1].map(|i| to[i] - own.at[i]);
+                if !is_near || go == [0; 2] {
+                    return to;
+                }
+                let offset = |other: &Placed| [0, 1].map(|i| other.at[i] - own.at[i]);
+                let offsets: Vec<[i64; 2]> = points.iter().map(offset).collect();
+                let go = limited(go, &offsets, certified, reach_of_near);
+                [0, 1].map(|i| own.at[i] + go[i])
             })
             .collect();
         for (point, to) in points.iter_mut().zip(moved) {
@@ -228,6 +278,38 @@ fn thinned_points_are_those_of_the_definition() {
         let local = 1.0 / keep.sqrt();
         let inner = region([-31.0, 11.0], [8.0 * local, 7.0 * local]);
         check(&set, &|_| 1.0, inner, 12.0 * local);
+    }
+}
+
+#[test]
+fn all_points_make_one_small_step_if_asked() {
+    for (seed, steps) in [(7, 1), (8, 3), (0, 1)] {
+        let set = set(seed, 1.0, steps);
+        check(&set, &|_| 1.0, region([-31.0, 11.0], [12.0, 9.0]), 4.0);
+    }
+    let table = subject::shipped("spaced-5-sqrt3-over-2-s");
+    let placement = Placement::new(Spacing::new(0.37).expect("in range"), Seed(77));
+    let set = PointSet::new(table).placed(placement).settle(1).expect("1");
+    check(&set, &|_| 1.0, region([1000.0, -900.0], [5.0, 5.0]), 2.0);
+}
+
+#[test]
+fn the_small_step_parts_near_points() {
+    let area = region([-500.0, 0.0], [90.0, 90.0]);
+    for seed in [7, 8] {
+        let least = |set: &PointSet| {
+            let points = set.within(area).expect("near").to_vec();
+            let nearest = points.iter().map(|point| {
+                let next = set.nearest(point.at(), 2).expect("found")[1];
+                next.distance
+            });
+            nearest.fold(f64::INFINITY, f64::min) / 1.074_569_931_823_542
+        };
+        let still = set(seed, 1.0, 0);
+        let near = still.clone().settle(1).expect("1");
+        assert_eq!(near.least_distance(), still.least_distance());
+        let [before, after] = [&still, &near].map(least);
+        assert!(before < 0.635 && after > 0.64, "{before} {after}");
     }
 }
 
@@ -310,6 +392,8 @@ fn parts_agree_with_the_whole() {
     agrees(&thinned, region([-4.0, -3.0], [30.0, 42.0]));
     let circle = Circle::new([100.0, 30.0], 90.0).expect("a circle");
     agrees(&thinned, circle);
+    agrees(&set(5, 1.0, 1), region([-40.0, -200.0], [190.0, 220.0]));
+    agrees(&set(5, 1.0, 1), region([-4.0, -3.0], [13.0, 17.0]));
     let field = set(9, 1.0, 3).in_field(hills);
     agrees(&field, region([-40.0, -170.0], [390.0, 240.0]));
     agrees(
@@ -325,6 +409,8 @@ proptest! {
         let mut set = set(seed, 1.0, steps).keep(keep).expect("a share");
         if in_field {
             set = set.in_field(noise());
+        } else if keep > 0.6 {
+            set = set.keep(1.0).expect("all");
         }
         let size = SQUARE / keep.sqrt();
         let mut chunks: Vec<Point> = Vec::new();
@@ -349,9 +435,17 @@ proptest! {
 
 #[test]
 fn full_density_does_not_move() {
-    let full = set(3, 1.0, 3);
+    let placement = Placement::new(Spacing::new(1.0).expect("in range"), Seed(3));
+    let full = PointSet::new(blue()).placed(placement);
     let area = region([0.0, 0.0], [60.0, 60.0]);
     let of = |set: &PointSet| set.within(area).expect("near").to_vec();
+    let most = set(3, 1.0, 4);
+    let one = most
+        .clone()
+        .in_field(FieldSpec::constant(1.0).expect("a share"));
+    assert_eq!(of(&one), of(&full));
+    assert_ne!(of(&most), of(&full));
+    assert_eq!(of(&most), of(&set(3, 1.0, 1)));
     let one = full
         .clone()
         .in_field(FieldSpec::constant(1.0).expect("a share"));
@@ -370,7 +464,7 @@ fn constant_fields_and_shares_are_one_thing() {
 
 #[test]
 fn distances_of_thinned_sets_are_kept() {
-    for (keep, steps) in [(0.95, 2), (0.8, 3), (0.5, 4), (0.5, 1)] {
+    for (keep, steps) in [(0.95, 2), (0.8, 3), (0.5, 4), (0.5, 1), (1.0, 1)] {
         let set = set(3, 1.0, steps).keep(keep).expect("a share");
         let least = set.least_distance();
         assert!(least > 0.5);
@@ -393,6 +487,7 @@ fn levels_of_detail_nest_and_nothing_moves() {
         set(3, 1.0, 0).in_field(noise()),
         set(3, 1.0, 3).keep(0.4).expect("a share"),
         set(3, 1.0, 2),
+        PointSet::new(blue()).seed(3),
     ];
     for set in sets {
         let whole = set.within(area).expect("near").to_vec();

@@ -266,13 +266,9 @@ fn settled(selection: &Selection, bounds: Region, candidates: f64) -> f64 {
     /// Nanoseconds for a step of the places of a local spacing, and of those around one point.
     const STEP: f64 = 4000.0;
     let set = &selection.set;
-    let Placement {
-        spacing,
-        keep,
-        settle,
-        ..
-    } = set.placement();
-    if !server::settles(set) {
+    let Placement { spacing, keep, .. } = set.placement();
+    let steps = server::steps(set);
+    if steps == 0 {
         return 0.0;
     }
     let share = server::greatest_share(set, &bounds).min(keep.get());
@@ -284,7 +280,7 @@ fn settled(selection: &Selection, bounds: Region, candidates: f64) -> f64 {
     } else {
         near
     };
-    places * f64::from(settle.steps()) * STEP / ROW
+    places * f64::from(steps) * STEP / ROW
 }
 
 /// The number of rows, and the work for polygons of many edges unless the rows alone exceed `most`.

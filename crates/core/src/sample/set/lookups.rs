@@ -311,9 +311,13 @@ impl PointSet {
         }
     }
 
-    /// Whether points settle.
-    pub(crate) fn settles(&self) -> bool {
-        self.lattice.settle().is_some()
+    /// The number of steps by which points settle.
+    pub(crate) fn steps(&self) -> u32 {
+        let placement = self.placement();
+        match self.lattice.is_in_field() {
+            true => placement.settle.steps(),
+            false => placement.settle.steps_at(placement.keep),
+        }
     }
 
     /// The least distance of the table's points that are of the set's kind, if it has one.

@@ -102,6 +102,11 @@ pub(super) fn freedom(share: f64, around: [f64; 8]) -> f32 {
     (part * inside(share)) as f32
 }
 
+/// The freedom of a point that no field thins, at the set's share. With all points these are those of the near step.
+pub(super) fn constant(share: f64) -> f64 {
+    if share < 1.0 { inside(share) } else { 1.0 }
+}
+
 /// The freedom of a point where the field counts as constant.
 pub(super) fn inside(share: f64) -> f64 {
     if share < Settle::LEAST_SHARE {

@@ -23,8 +23,8 @@
 //!
 //! The reach comes from the mean density of the pair, so the pushes of a pair are equal and opposite, and in two
 //! dimensions the pressure of such pushes does not depend on the density: no term for it is needed, and the field
-//! is not looked at again. `freedom` has f, which is 0 at full density and where a field is steep, so that edges stay
-//! sharp; `step` one step with its constants of exactness, `cells` the order in which it finds neighbors; `window` the points that matter to some others, and `reach` how far these lie.
+//! is not looked at again. `freedom` has f, which is 0 at full density (but for that step) and where a field is steep, so that edges stay
+//! sharp; `step` one step with its constants of exactness, `cells` the order in which it finds neighbors; `near` the limit of the one step of sets with all points; `window` the points that matter to some others, and `reach` how far these lie.
 //!
 //! The constants ρ, a, γ, b were learned by measuring power and distances (CMA-ES); docs/algorithm.md lists them.
 //!
@@ -34,12 +34,13 @@
 //! - A point ends within .4 local spacings of its place along each axis, at most [`MOST_MOVE`] spacings: what lies deeper in
 //!   or farther off an outline is decided without a step.
 //! - Where all points keep the distance D of the table's certificate, they keep it after each step: none goes farther
-//!   than half of what separates it from D.
+//!   than half of what separates it from D, or in the near step, goes farther toward any neighbor.
 
 mod boxes;
 mod cells;
 mod freedom;
 mod lister;
+mod near;
 mod reach;
 mod step;
 mod tiles;
@@ -61,6 +62,7 @@ pub(crate) const MOST_MOVE: f64 = 8.0;
 /// The pushes of each step.
 const fn kernels(settle: Settle) -> &'static [Kernel] {
     match settle.steps() {
+        _ if settle.is_near() => &NEAR,
         0 => &[],
         1 => &ONE,
         2 => &TWO,
@@ -78,6 +80,8 @@ const fn kernel([reach, push, near, guard]: [f32; 4]) -> Kernel {
     }
 }
 
+/// The step of sets with all points.
+const NEAR: [Kernel; 1] = [kernel([0.8, 1.249, 0.8, 0.0])];
 const ONE: [Kernel; 1] = [kernel([2.395, 0.7388, 0.999, 0.605])];
 const TWO: [Kernel; 2] = [
     kernel([2.29, 0.8121, 1.134, 0.5273]),

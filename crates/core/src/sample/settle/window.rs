@@ -27,9 +27,10 @@ use super::{
     LEAST_SHARE, MOST_MOVE,
     boxes::{Box2, Placed, Settled, most_move, widened},
     cells::{Cells, Places},
-    freedom::{Candidate, Freedoms, inside, local, slipped},
+    freedom::{Candidate, Freedoms, constant, local, slipped},
     kernels,
     lister::Lister,
+    near::Near,
     reach::{Extent, reached, step_room, whole_room, widest},
     step::Scale,
 };
@@ -61,6 +62,8 @@ pub(crate) struct Settler {
     lister: Lister,
     settle: Settle,
     scale: Scale,
+    /// What limits the step of sets with all points, where that is taken.
+    near: Option<Near>,
     /// Windows count in units of this many fixed-point units, in bits.
     shift: u32,
     /// Fixed-point units of a mean spacing at full density.
@@ -98,13 +101,20 @@ impl Settler {
         }
         let shift = UNIT_BITS + sparse;
         let unit = f64::from(1u32 << FRACTION_BITS) / side;
+        let own = |v: f64| v / f64::from(1u32 << shift);
+        let clear = own(lattice.certified());
+        let near = settle.is_near().then(|| {
+            let reach = kernels(settle).iter().map(widest).fold(0.0, f64::max);
+            Near::new(clear, reach * own(unit))
+        });
         Some(Self {
             lister: Lister::new(lattice.of_all_kinds(), grade),
             settle,
             scale: Scale {
-                unit: (unit / f64::from(1u32 << shift)) as f32,
-                clear: (lattice.certified() / f64::from(1u32 << shift)) as f32,
+                unit: own(unit) as f32,
+                clear: near.as_ref().map_or(clear as f32, |_| 0.0),
             },
+            near,
             shift,
             unit,
             listed: Vec::new(),
@@ -354,7 +364,7 @@ impl Settler {
             until,
             ..
         } = &mut self.places;
-        freedom.fill(inside(share) as f32);
+        freedom.fill(constant(share) as f32);
         let mut movers = Extent::NONE;
         let points = xs.iter().zip(&*ys).zip(until.iter_mut());
         for (((&x, &y), until), listed) in points.zip(&self.listed) {
@@ -431,6 +441,9 @@ impl Settler {
                 self.scale,
                 self.lister.backend,
             );
+        }
+        if let Some(near) = &mut self.near {
+            near.limit(&mut self.places);
         }
     }
 
