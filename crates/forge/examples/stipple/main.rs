@@ -81,8 +81,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         for (way, mean) in ways.iter().zip(&mut means) {
             let mut verdicts = Vec::new();
             for &seed in &seeds {
-                let (points, seconds) = points(*way, picture, &ground, count, seed)?;
-                verdicts.push(judge.verdict(&points, seconds));
+                let start = seconds();
+                let points = points(*way, picture, &ground, count, seed)?;
+                verdicts.push(judge.verdict(&points, seconds() - start));
                 if seed == seeds[0] {
                     drawn.push(points);
                 }
@@ -101,26 +102,25 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Points by a way and a seed, and the seconds that they took.
+/// Points by a way and a seed.
 fn points(
     way: Way,
     picture: &Picture,
     ground: &pictures::Ground,
     count: u64,
     seed: u64,
-) -> Result<(Vec<[f64; 2]>, f64), Box<dyn Error>> {
+) -> Result<Vec<[f64; 2]>, Box<dyn Error>> {
     let (steps, weight) = match way {
         Way::Settled(steps) => (steps, None),
         Way::Voronoi(weight) => (0, Some(weight)),
     };
-    let start = seconds();
     let mut points = picture.stippled(count, seed, steps)?;
     if let Some(weight) = weight {
         for _ in 0..RELAXED {
             points = relax::step(ground, &points, weight)?;
         }
     }
-    Ok((points, seconds() - start))
+    Ok(points)
 }
 
 /// The seconds for which this thread has had a processor, where Linux counts them; else those of the clock, which are
