@@ -3,7 +3,7 @@
 //! Every pixel has a rank, and the pixels of rank below a share are spread evenly at every share, across the seam,
 //! too. It begins with the points of a period, scaled to the grid: an eighth of the pixels. From there on it is void
 //! and cluster (Ulichney 1993). The pixel in the tightest cluster leaves first, until few are left, which are ordered
-//! by their distances. These few come first in the mask; then the largest void is filled next. So it never shows
+//! by their distances. These few come first in the mask; then the largest void is filled next, until as few are off. So it never shows
 //! where the points end, which are spread in another way than voids are filled. All energies are integers, so a mask
 //! is the same on every machine.
 
@@ -112,18 +112,22 @@ impl Mask {
             }
             voids.flip();
         }
-        for (rank, pixel) in few::ordered(size as usize, &voids.on())
+        for (rank, pixel) in few::ordered(size as usize, &voids.those(true))
             .into_iter()
             .enumerate()
         {
             ranks[pixel] = rank as u32;
         }
         voids.choose(Choice::Voids);
-        for rank in few..pixels {
+        for rank in few..pixels - few {
             if !goes_on(rank) {
                 return Ok(None);
             }
             ranks[voids.flip()] = rank as u32;
+        }
+        let last = few::ordered(size as usize, &voids.those(false));
+        for (rank, pixel) in (0..pixels).rev().zip(last) {
+            ranks[pixel] = rank as u32;
         }
         Ok(Some(Self { size, ranks }))
     }

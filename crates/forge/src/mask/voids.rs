@@ -60,10 +60,10 @@ impl Voids {
         voids
     }
 
-    /// The pixels that are on.
-    pub(super) fn on(&self) -> Vec<usize> {
+    /// The pixels that are on, or off.
+    pub(super) fn those(&self, is_on: bool) -> Vec<usize> {
         (0..self.is_on.len())
-            .filter(|&pixel| self.is_on[pixel])
+            .filter(|&pixel| self.is_on[pixel] == is_on)
             .collect()
     }
 
