@@ -13,11 +13,13 @@ use strew_core::{
     field::{Edges, FieldSpec, Pixels},
 };
 use strew_encode::preview::MOST_SIZE;
-use strew_query::{Draft, Value, Values, groups, parameters};
+use strew_query::{Draft, Value, parameters};
 use strew_raster::{Image, Limits};
 
 use super::{
-    Failure, config, must_be_within,
+    Failure, config,
+    flags::{Flags, Stippled},
+    must_be_within,
     output::Output as Target,
     refusal::Source,
     refuse,
@@ -64,6 +66,8 @@ pub(super) struct Args {
     #[arg(long, short)]
     quiet: bool,
     #[command(flatten)]
+    flags: Flags<Stippled>,
+    #[command(flatten)]
     settings: config::Args,
 }
 
@@ -83,7 +87,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let mut fields = config.loaded_fields()?;
     fields.insert(NamedField::of_spec(PICTURE, darkness(&image, args)?));
     let catalog = config.tables()?.with_fields(fields);
-    let mut values = Values::new(groups::POINTS, "");
+    let mut values = args.flags.values();
     let bbox = vec![0.0, 0.0, width as f64, height as f64];
     values.add_value(&parameters::BBOX, Value::Numbers(bbox));
     values.add_value(&parameters::COUNT, Value::Integer(args.points));

@@ -71,7 +71,7 @@ export interface Parameters {
     alpha?: string | number;
     /**
      * The size of the neighborhood map: larger maps have better quality and take more memory. Allowed: s, m or l, if
-     * the profile is loaded with it. Default: m if it is loaded, else s or the smallest.
+     * the profile is loaded with it. Default: m, of pink l, if it is loaded, else s or the smallest.
      */
     map?: string;
     /**
@@ -98,8 +98,9 @@ export interface Parameters {
     keep?: number;
     /**
      * The steps by which the points of a set that is thinned or in a field move apart, so that they are spread evenly:
-     * 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its time. Sets with all points,
-     * and periods, do not settle. Allowed: an integer from 0 to 4. Default: 2.
+     * 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its time. Sets with all points
+     * stay by default; for them 1 is one small step that moves the nearest points apart, and more count as 1. Periods
+     * do not settle. Allowed: an integer from 0 to 4. Default: 2; 0 for sets with all points.
      */
     settle?: number;
     /**

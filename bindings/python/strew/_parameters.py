@@ -58,7 +58,7 @@ class Parameters(TypedDict, total=False):
     #: profile is loaded. Default: (5-sqrt(3))/2.
     alpha: str | float
     #: The size of the neighborhood map: larger maps have better quality and take more memory. Allowed: s, m or l, if
-    #: the profile is loaded with it. Default: m if it is loaded, else s or the smallest.
+    #: the profile is loaded with it. Default: m, of pink l, if it is loaded, else s or the smallest.
     map: str
     #: The digest of the table that must answer: caches may keep the answer forever. If another table would answer, the
     #: query is refused. Allowed: 64 hexadecimal digits, as in the header strew-table. Default: any table that fits the
@@ -75,8 +75,9 @@ class Parameters(TypedDict, total=False):
     #: number from 1e-6 to 1. Default: 1.
     keep: float
     #: The steps by which the points of a set that is thinned or in a field move apart, so that they are spread evenly:
-    #: 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its time. Sets with all points,
-    #: and periods, do not settle. Allowed: an integer from 0 to 4. Default: 2.
+    #: 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its time. Sets with all points
+    #: stay by default; for them 1 is one small step that moves the nearest points apart, and more count as 1. Periods
+    #: do not settle. Allowed: an integer from 0 to 4. Default: 2; 0 for sets with all points.
     settle: int
     #: The level of detail: the part of the points that the answer has, at each place those of the lowest rank. None of
     #: them moves, so a level has a part of the points of a finer one, in fields, of kinds and of layers, too. Beside

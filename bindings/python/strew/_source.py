@@ -79,11 +79,13 @@ class Source:
         gamma: float = 1.0,
         seed: int = 1,
         profile: str = "blue",
+        settle: int = 3,
     ) -> PointSet:
         """A picture as exactly ``points`` dots, in pixels of the picture, x to the right and y upward.
 
         ``image`` is a path, the bytes of a PNG, JPEG, WebP, TIFF or npy file, or an array: rows of light from 0 to
         1 if it is of floats, else of sRGB with up to four channels. With ``invert`` dots are where it is light.
+        They move apart by ``settle`` steps, 0 to 4.
 
         >>> import numpy as np, strew
         >>> ramp = np.tile(np.linspace(0, 1, 64), (64, 1))
@@ -94,5 +96,12 @@ class Source:
         dark = darkness(image, invert)
         height, width = dark.shape
         field = raster(dark, bbox=(0, 0, width, height), edges="clamp", gamma=gamma)
-        query = {"bbox": (0, 0, width, height), "count": points, "seed": seed, "profile": profile, "field": field}
+        query = {
+            "bbox": (0, 0, width, height),
+            "count": points,
+            "seed": seed,
+            "profile": profile,
+            "settle": settle,
+            "field": field,
+        }
         return self.query(body(query))

@@ -133,14 +133,18 @@ def test_stippling_is_that_of_the_command(tmp_path: Path) -> None:
     picture = np.dstack([colors, colors // 2, 255 - colors])
     path = tmp_path / "picture.png"
     path.write_bytes(strew._fields._picture(picture))
-    for invert in (False, True):
-        flags = ["--invert"] if invert else []
+    cases: list[tuple[dict[str, Any], list[str]]] = [
+        ({}, []),
+        ({"invert": True}, ["--invert"]),
+        ({"settle": 0}, ["--settle", "0"]),
+    ]
+    for options, flags in cases:
         command = [program(), "stipple", path, "-n", "400", "-o", tmp_path / "dots.csv", "-q", *flags]
         environment = {name: value for name, value in os.environ.items() if not name.startswith("STREW_")}
         subprocess.run(command, check=True, env=environment)
         expected = (tmp_path / "dots.csv").read_bytes()
         for image in (path, path.read_bytes(), picture):
-            assert strew.stipple(image, 400, invert=invert).document("csv") == expected
+            assert strew.stipple(image, 400, **options).document("csv") == expected
 
 
 def test_pictures_that_cannot_be_used_are_refused() -> None:

@@ -370,19 +370,21 @@ pub fn preview(plan: &Plan, spacing: f64) -> Result<Plan, Error> {
     plan.with_spacing(Spacing::new(spacing)?)
 }
 
-/// Whether the points of a set settle: in a field or where not all are kept, unless by no steps.
+/// The number of steps by which the points of a set settle, 0 if they stay.
 ///
 /// ```
-/// use strew_core::{PointSet, Table, server::settles};
+/// use strew_core::{PointSet, Table, server::steps};
 ///
 /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
 /// let all = PointSet::new(table);
-/// assert!(!settles(&all) && settles(&all.keep(0.5)?));
+/// let half = all.clone().keep(0.5)?;
+/// assert_eq!((steps(&all), steps(&half)), (0, 2));
+/// assert_eq!((steps(&all.settle(3)?), steps(&half.settle(3)?)), (1, 3));
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 #[must_use]
-pub fn settles(set: &PointSet) -> bool {
-    set.settles()
+pub fn steps(set: &PointSet) -> u32 {
+    set.steps()
 }
 
 /// About how long a set's points settle near an outline, in steps of a set without kinds; 0 if they do not. Points of

@@ -14,43 +14,43 @@ use subject::{all, all_by, shipped};
 
 const SQUARE: f64 = 4.0;
 
-/// The steps of docs/algorithm.md: ρ, c, γ, h.
+/// The steps of docs/algorithm.md: ρ, a, γ, b.
 fn kernels(steps: u32) -> Vec<[f32; 4]> {
     match steps {
-        1 => vec![[2.395, 0.298, 0.999, 0.366]],
-        2 => vec![[2.29, 0.435, 1.134, 0.278], [2.403, 0.312, 0.836, 0.49]],
+        1 => vec![[2.395, 0.7388, 0.999, 0.605]],
+        2 => vec![[2.29, 0.8121, 1.134, 0.5273], [2.403, 0.7474, 0.836, 0.7]],
         3 => vec![
-            [1.605, 0.588, 1.108, 0.227],
-            [2.531, 0.371, 1.094, 0.347],
-            [2.462, 0.361, 0.788, 0.653],
+            [1.605, 0.8757, 1.108, 0.4764],
+            [2.531, 0.7804, 1.094, 0.5891],
+            [2.462, 0.7751, 0.788, 0.8081],
         ],
         _ => vec![
-            [2.312, 0.407, 1.165, 0.617],
-            [1.832, 0.471, 0.797, 0.641],
-            [2.544, 0.501, 1.0, 0.0],
-            [2.772, 0.286, 0.836, 0.141],
+            [2.312, 0.7987, 1.165, 0.7855],
+            [1.832, 0.8284, 0.797, 0.8006],
+            [2.544, 0.8413, 1.0, 0.0],
+            [2.772, 0.7313, 0.836, 0.3755],
         ],
     }
 }
 
-/// The steps of sets with kinds whose points push each other: ρ, c, γ, h of all points, and ρ, c of those of a kind.
+/// The steps of sets with kinds whose points push each other: ρ, a, γ, b of all points, and ρ, a of those of a kind.
 fn kernels_with_kinds(steps: u32) -> Vec<([f32; 4], [f32; 2])> {
     match steps {
-        1 => vec![([2.3, 0.26, 0.97, 0.42], [2.3, 0.06])],
+        1 => vec![([2.3, 0.7141, 0.97, 0.6481], [2.3, 0.4949])],
         2 => vec![
-            ([2.0, 0.33, 0.93, 0.34], [2.32, 0.12]),
-            ([2.28, 0.41, 0.8, 0.73], [2.35, 0.1]),
+            ([2.0, 0.7579, 0.93, 0.5831], [2.32, 0.5886]),
+            ([2.28, 0.8002, 0.8, 0.8544], [2.35, 0.5623]),
         ],
         3 => vec![
-            ([1.707, 0.509, 1.004, 0.266], [2.453, 0.111]),
-            ([2.359, 0.299, 1.021, 0.341], [2.359, 0.146]),
-            ([2.422, 0.27, 0.761, 0.738], [2.392, 0.078]),
+            ([1.707, 0.8447, 1.004, 0.5158], [2.453, 0.5772]),
+            ([2.359, 0.7395, 1.021, 0.584], [2.359, 0.6181]),
+            ([2.422, 0.7208, 0.761, 0.8591], [2.392, 0.5285]),
         ],
         _ => vec![
-            ([1.635, 0.424, 0.885, 0.398], [2.101, 0.514]),
-            ([2.277, 0.634, 0.944, 0.395], [2.479, 0.19]),
-            ([2.008, 0.214, 0.866, 0.167], [2.159, 0.117]),
-            ([2.499, 0.346, 0.72, 0.664], [2.31, 0.036]),
+            ([1.635, 0.8069, 0.885, 0.6309], [2.101, 0.8467]),
+            ([2.277, 0.8923, 0.944, 0.6285], [2.479, 0.6602]),
+            ([2.008, 0.6801, 0.866, 0.4087], [2.159, 0.5849]),
+            ([2.499, 0.767, 0.72, 0.8149], [2.31, 0.4356]),
         ],
     }
 }
@@ -61,11 +61,45 @@ fn part(set: &PointSet, kind: u8) -> Option<f64> {
     (0.125..=0.8).contains(&part).then_some(part)
 }
 
+/// The step of sets with all points.
+const NEAR: [f32; 4] = [0.8, 1.249, 0.8, 0.0];
+
+/// A move of the near step, from the offsets of all other points: no approach by more than half of what separates two
+/// points from the least distance `clear`.
+fn limited(go: [i64; 2], offsets: &[[i64; 2]], clear: f64, reach: f64) -> [i64; 2] {
+    let surely = 1.0 - 1.0 / 262_144.0;
+    let free = |far: f64| (far * surely - clear - 4.0).max(0.0) * 0.5;
+    let go = go.map(|v| v as f64);
+    let offsets = offsets.iter().map(|offset| offset.map(|v| v as f64));
+    let length = |[x, y]: [f64; 2]| (x * x + y * y).sqrt();
+    let near: Vec<[f64; 2]> = offsets
+        .filter(|offset| length(*offset) > 0.0 && length(*offset) < reach)
+        .collect();
+    let along = |go: [f64; 2], [x, y]: [f64; 2]| go[0] * x + go[1] * y;
+    let part = near
+        .iter()
+        .map(|&offset| (along(go, offset) / length(offset), length(offset)))
+        .filter(|(approach, far)| *approach > 0.0 || free(*far) == 0.0)
+        .map(|(approach, far)| free(far) / approach.max(1e-9))
+        .fold((free(reach) / length(go)).min(1.0), f64::min);
+    let go = go.map(|v| (v * part).trunc());
+    let is_clear = near
+        .iter()
+        .all(|&offset| along(go, offset) <= free(length(offset)) * length(offset));
+    if is_clear {
+        go.map(|v| v as i64)
+    } else {
+        [0; 2]
+    }
+}
+
 /// A point of the reference.
 struct Placed {
     id: PointId,
+    /// In units of 128 fixed-point units, and the fixed-point units below these.
     at: [i64; 2],
     placed: [i64; 2],
+    below: [i64; 2],
     world: [f64; 2],
     share: f64,
     freedom: f32,
@@ -108,7 +142,7 @@ fn past(
         go = [go[0] + back * d[0], go[1] + back * d[1]];
     }
     let is_inside = (0..2).all(|i| (offset[i] + go[i]).abs() <= whole);
-    is_inside.then(|| [0, 1].map(|i| own.at[i] + i64::from(go[i] as i32)))
+    is_inside.then(|| [0, 1].map(|i| own.at[i] + go[i].round_ties_even() as i64))
 }
 
 /// Where the points of a box settle, by the definition alone: all points of the box step together, with all pairs.
@@ -125,6 +159,8 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
     let step = spacing.get() * side / f64::from(1u32 << 20);
     let unit = f64::from(1u32 << 20) / side;
     let still = set.clone().settle(0).expect("0");
+    // In fields points settle as well, but no distance is promised.
+    let is_near = set.least_distance() > 0.0 && keep.get() == 1.0;
     let share = |at: [f64; 2]| {
         let share = shares(at);
         if share > 0.0 {
@@ -161,31 +197,41 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
         } else {
             (256.0 * (1.0 - own)).clamp(0.0, 1.0)
         };
+        let inside = if is_near { 1.0 } else { inside };
         points.push(Placed {
             id: point.id,
-            at,
-            placed: at,
+            at: at.map(|k| k >> 7),
+            placed: at.map(|k| k >> 7),
+            below: at.map(|k| k & 127),
             world,
             share: own,
             freedom: (part * inside) as f32,
             kind: set.kind_of(point.id),
         });
     }
-    let clear = (set.table().least_distance().with_warp(warp) * unit) as f32;
-    let unit = unit as f32;
+    let certified = set.table().least_distance().with_warp(warp) * unit / 128.0;
+    let clear = if is_near { 0.0 } else { certified as f32 };
+    let reach_of_near = f64::from(NEAR[0]) * unit / 128.0;
+    let unit = (unit / 128.0) as f32;
     let kinds = set
         .table()
         .mix()
         .map_or(0, |mix| mix.shares().kinds() as u8);
-    let has_kin = (0..kinds).any(|kind| self::part(set, kind).is_some());
+    let has_kin = !is_near && (0..kinds).any(|kind| self::part(set, kind).is_some());
     let steps = if has_kin {
         kernels_with_kinds(settle.steps())
     } else {
-        let all = kernels(settle.steps());
+        let all = if is_near {
+            vec![NEAR]
+        } else {
+            kernels(settle.steps())
+        };
         all.into_iter().map(|all| (all, [1.0, 0.0])).collect()
     };
     for ([reach, push, near, guard], [kin_reach, kin_push]) in steps {
         let [by_reach, by_near] = [reach, near].map(|r| 0.5 / (r * r * unit * unit));
+        let weight = by_reach * push;
+        let ratio = by_near * guard / weight;
         let moved: Vec<[i64; 2]> = points
             .iter()
             .map(|own| {
@@ -197,29 +243,31 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
                 for other in &points {
                     let [dx, dy] = [0, 1].map(|i| (own.at[i] - other.at[i]) as f32);
                     let squared = dx * dx + dy * dy;
-                    let scaled = squared * (share + other.share.max(1.0 / 400.0) as f32);
-                    let u = (1.0 - scaled * by_reach).max(0.0);
-                    let v = (1.0 - scaled * by_near).max(0.0);
+                    let weights = [share, other.share.max(1.0 / 400.0) as f32].map(|s| s * weight);
+                    let scaled = squared * (weights[0] + weights[1]);
+                    let u = (push - scaled).max(0.0);
+                    let v = (guard - scaled * ratio).max(0.0);
                     if squared > 0.0 {
                         nearest = nearest.min(squared);
                     }
                     let u = u * u;
-                    let force = push * (u * u) + guard * (v * v);
-                    let quanta = |push: f32| (push / 128.0).round_ties_even() as i32;
-                    sum[0] = sum[0].wrapping_add(quanta(dx * force));
-                    sum[1] = sum[1].wrapping_add(quanta(dy * force));
-                    if let Some(part) = part.filter(|_| own.kind == other.kind) {
+                    let force = u * u + v * v;
+                    let whole = |push: f32| push.round_ties_even() as i32;
+                    sum[0] = sum[0].wrapping_add(whole(dx * force));
+                    sum[1] = sum[1].wrapping_add(whole(dy * force));
+                    if let Some(part) = part.filter(|_| has_kin && own.kind == other.kind) {
                         let counted =
                             |p: &Placed| (part * p.share.max(1.0 / 400.0)).max(1.0 / 800.0) as f32;
-                        let scaled = squared * (counted(own) + counted(other));
                         let by_reach = 0.5 / (kin_reach * kin_reach * unit * unit);
-                        let u = (1.0 - scaled * by_reach).max(0.0);
-                        let strength = 1.0 / (part * part * part).sqrt().sqrt().sqrt();
+                        let strength =
+                            1.0 / (part * part * part).sqrt().sqrt().sqrt().sqrt().sqrt();
                         let push = (f64::from(kin_push) * strength) as f32;
+                        let weights = [own, other].map(|p| counted(p) * (by_reach * push));
+                        let u = (push - squared * (weights[0] + weights[1])).max(0.0);
                         let u = u * u;
-                        let force = push * (u * u);
-                        of_kin[0] = of_kin[0].wrapping_add(quanta(dx * force));
-                        of_kin[1] = of_kin[1].wrapping_add(quanta(dy * force));
+                        let force = u * u;
+                        of_kin[0] = of_kin[0].wrapping_add(whole(dx * force));
+                        of_kin[1] = of_kin[1].wrapping_add(whole(dy * force));
                     }
                 }
                 if own.freedom == 0.0 {
@@ -228,7 +276,7 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
                 let spacing = unit / share.sqrt();
                 let mut freedom = own.freedom;
                 if has_kin {
-                    let most = (0.15 * spacing / 128.0) as i32;
+                    let most = (0.15 * spacing) as i32;
                     for (sum, kin) in sum.iter_mut().zip(of_kin) {
                         *sum = sum.wrapping_add(kin.clamp(-most, most));
                     }
@@ -236,46 +284,55 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
                     let near = (2.0 * near.max(0.0)).min(1.0);
                     freedom += (freedom.sqrt().sqrt() - freedom) * near;
                 }
-                let mut go =
-                    sum.map(|v| (v as f32 * 128.0 * freedom).clamp(-0.3 * spacing, 0.3 * spacing));
+                let mut go = sum.map(|v| (v as f32 * freedom).clamp(-0.3 * spacing, 0.3 * spacing));
                 let wish = go;
                 let far = (reach * spacing).min(nearest.sqrt());
-                let half =
-                    |distance: f32| ((distance * (1.0 - 1.0 / 262_144.0) - clear) * 0.5).max(0.0);
+                let half = |distance: f32| {
+                    ((distance * (1.0 - 1.0 / 262_144.0) - clear) * 0.5 - 2.0).max(0.0)
+                };
                 let free = half(far);
                 let length = (go[0] * go[0] + go[1] * go[1]).sqrt();
-                if length > free {
+                if clear > 0.0 && length > free {
                     go = go.map(|v| v * (free / length));
                 }
-                if has_kin && length > half(nearest.sqrt()) {
+                if has_kin && clear > 0.0 && length > half(nearest.sqrt()) {
                     let whole = 0.4 * spacing;
                     if let Some(at) = past(&points, own, wish, (whole, &half)) {
                         return at;
                     }
                 }
-                [0, 1].map(|i| {
-                    let offset = own.at[i] + i64::from(go[i] as i32) - own.placed[i];
-                    let whole = 0.4 * spacing;
-                    own.placed[i] + i64::from((offset as f32).clamp(-whole, whole) as i32)
-                })
+                let to = [0, 1].map(|i| {
+                    let whole = |v: f32| i64::from(v.round_ties_even() as i32);
+                    let offset = own.at[i] + whole(go[i]) - own.placed[i];
+                    let most = 0.4 * spacing;
+                    own.placed[i] + whole((offset as f32).clamp(-most, most))
+                });
+                let go = [0, 1].map(|i| to[i] - own.at[i]);
+                if !is_near || go == [0; 2] {
+                    return to;
+                }
+                let offset = |other: &Placed| [0, 1].map(|i| other.at[i] - own.at[i]);
+                let offsets: Vec<[i64; 2]> = points.iter().map(offset).collect();
+                let go = limited(go, &offsets, certified, reach_of_near);
+                [0, 1].map(|i| own.at[i] + go[i])
             })
             .collect();
         for (point, to) in points.iter_mut().zip(moved) {
             point.at = to;
         }
     }
+    let world = |point: &Placed| [0, 1].map(|i| (point.at[i] * 128 + point.below[i]) as f64 * step);
     let back = |point: &Placed| {
-        let there = share(point.at.map(|v| v as f64 * step));
+        let there = share(world(point));
         there < 0.5 * point.share || there > 2.0 * point.share
     };
     points
         .iter()
         .map(|point| {
-            let e_is_small = point.world;
             let at = if point.freedom > 0.0 && back(point) {
-                e_is_small
+                point.world
             } else {
-                point.at.map(|v| v as f64 * step)
+                world(point)
             };
             let [x, y] = at;
             Point { id: point.id, x, y }
@@ -335,6 +392,38 @@ fn thinned_points_are_those_of_the_definition() {
         let local = 1.0 / keep.sqrt();
         let inner = region([-31.0, 11.0], [8.0 * local, 7.0 * local]);
         check(&set, &|_| 1.0, inner, 12.0 * local);
+    }
+}
+
+#[test]
+fn all_points_make_one_small_step_if_asked() {
+    for (seed, steps) in [(7, 1), (8, 3), (0, 1)] {
+        let set = set(seed, 1.0, steps);
+        check(&set, &|_| 1.0, region([-31.0, 11.0], [12.0, 9.0]), 4.0);
+    }
+    let table = subject::shipped("spaced-5-sqrt3-over-2-s");
+    let placement = Placement::new(Spacing::new(0.37).expect("in range"), Seed(77));
+    let set = PointSet::new(table).placed(placement).settle(1).expect("1");
+    check(&set, &|_| 1.0, region([1000.0, -900.0], [5.0, 5.0]), 2.0);
+}
+
+#[test]
+fn the_small_step_parts_near_points() {
+    let area = region([-500.0, 0.0], [90.0, 90.0]);
+    for seed in [7, 8] {
+        let least = |set: &PointSet| {
+            let points = set.within(area).expect("near").to_vec();
+            let nearest = points.iter().map(|point| {
+                let next = set.nearest(point.at(), 2).expect("found")[1];
+                next.distance
+            });
+            nearest.fold(f64::INFINITY, f64::min) / 1.074_569_931_823_542
+        };
+        let still = set(seed, 1.0, 0);
+        let near = still.clone().settle(1).expect("1");
+        assert_eq!(near.least_distance(), still.least_distance());
+        let [before, after] = [&still, &near].map(least);
+        assert!(before < 0.635 && after > 0.64, "{before} {after}");
     }
 }
 
@@ -473,6 +562,8 @@ fn parts_agree_with_the_whole() {
     agrees(&thinned, region([-4.0, -3.0], [30.0, 42.0]));
     let circle = Circle::new([100.0, 30.0], 90.0).expect("a circle");
     agrees(&thinned, circle);
+    agrees(&set(5, 1.0, 1), region([-40.0, -200.0], [190.0, 220.0]));
+    agrees(&set(5, 1.0, 1), region([-4.0, -3.0], [13.0, 17.0]));
     let field = set(9, 1.0, 3).in_field(hills);
     agrees(&field, region([-40.0, -170.0], [390.0, 240.0]));
     agrees(
@@ -521,6 +612,8 @@ proptest! {
         let mut set = set.keep(keep).expect("a share");
         if in_field {
             set = set.in_field(noise());
+        } else if keep > 0.6 {
+            set = set.keep(1.0).expect("all");
         }
         let size = SQUARE / keep.sqrt();
         let mut chunks: Vec<Point> = Vec::new();
@@ -545,9 +638,17 @@ proptest! {
 
 #[test]
 fn full_density_does_not_move() {
-    let full = set(3, 1.0, 3);
+    let placement = Placement::new(Spacing::new(1.0).expect("in range"), Seed(3));
+    let full = PointSet::new(blue()).placed(placement);
     let area = region([0.0, 0.0], [60.0, 60.0]);
     let of = |set: &PointSet| set.within(area).expect("near").to_vec();
+    let most = set(3, 1.0, 4);
+    let one = most
+        .clone()
+        .in_field(FieldSpec::constant(1.0).expect("a share"));
+    assert_eq!(of(&one), of(&full));
+    assert_ne!(of(&most), of(&full));
+    assert_eq!(of(&most), of(&set(3, 1.0, 1)));
     let one = full
         .clone()
         .in_field(FieldSpec::constant(1.0).expect("a share"));
@@ -566,8 +667,8 @@ fn constant_fields_and_shares_are_one_thing() {
 
 #[test]
 fn distances_of_thinned_sets_are_kept() {
-    let plain =
-        [(0.95, 2), (0.8, 3), (0.5, 4), (0.5, 1)].map(|(keep, steps)| (set(3, 1.0, steps), keep));
+    let plain = [(0.95, 2), (0.8, 3), (0.5, 4), (0.5, 1), (1.0, 1)]
+        .map(|(keep, steps)| (set(3, 1.0, steps), keep));
     let kinds = [
         ("1:1", 0.9, 2),
         ("1:1:2", 0.7, 3),
@@ -598,6 +699,7 @@ fn levels_of_detail_nest_and_nothing_moves() {
         set(3, 1.0, 0).in_field(noise()),
         set(3, 1.0, 3).keep(0.4).expect("a share"),
         set(3, 1.0, 2),
+        PointSet::new(blue()).seed(3),
     ];
     for set in sets {
         let whole = set.within(area).expect("near").to_vec();

@@ -161,7 +161,7 @@ parameters! {
         about: "The size of the neighborhood map: larger maps have better quality and take more memory.",
         group: Group::Table,
         allowed: Some("s, m or l, if the profile is loaded with it"),
-        default: Some("m if it is loaded, else s or the smallest"),
+        default: Some("m, of pink l, if it is loaded, else s or the smallest"),
         example: "s",
         is_echoed: true,
         ..Parameter::RARE

@@ -41,7 +41,7 @@ pub struct Set {
     pub warp: Warp,
     /// The share of the points that are kept.
     pub keep: Keep,
-    /// How points settle if not all are kept or a field decides which are.
+    /// How points settle.
     pub settle: Settle,
     /// The level of detail: the set's own times the common one of a query with layers. Later layers keep clear of all
     /// points, so a coarser level has a part of the points of a finer one.
@@ -101,17 +101,25 @@ impl Set {
         resolved::replace(&mut self.values, [(&LOD, lod)]);
     }
 
-    /// Whether points settle, if by any steps: in a field and where a part is kept that is not tiny, but not in a period.
+    /// The number of steps by which points settle; `None` where none is what they do by default: in periods, with all
+    /// points, and with a tiny part of them.
     #[must_use]
-    pub fn settles(&self) -> bool {
+    pub fn steps(&self) -> Option<u32> {
+        if self.period.is_some() {
+            return None;
+        }
+        if self.field.is_some() {
+            return Some(self.settle.steps());
+        }
+        let steps = self.settle.steps_at(self.keep);
         let is_thinned = (Settle::LEAST_SHARE..1.0).contains(&self.keep.get());
-        self.period.is_none() && (is_thinned || self.field.is_some())
+        (is_thinned || steps > 0).then_some(steps)
     }
 
     /// Whether points move so that those of a kind, or in a field any, keep no distance of their own.
     #[must_use]
     pub fn moves(&self) -> bool {
-        self.settles() && self.settle != Settle::OFF
+        self.steps().is_some_and(|steps| steps > 0)
     }
 
     /// Leaves out some points.

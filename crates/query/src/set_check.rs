@@ -105,8 +105,7 @@ impl Set {
             ),
             (
                 &SETTLE,
-                self.settles()
-                    .then(|| Value::Integer(self.settle.steps().into())),
+                self.steps().map(|steps| Value::Integer(steps.into())),
             ),
             (
                 &LOD,

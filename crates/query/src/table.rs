@@ -111,9 +111,12 @@ impl Wanted<'_> {
 
     /// The usual sizes first, then the smallest.
     fn of_any_size(&self) -> Option<Arc<Entry>> {
-        let usual = [Size::M, Size::S]
-            .iter()
-            .find_map(|&size| self.loaded(size));
+        // Much power at low frequencies makes the returns of a small map conspicuous.
+        let sizes: &[Size] = match &*self.profile {
+            "pink" => &[Size::L, Size::M, Size::S],
+            _ => &[Size::M, Size::S],
+        };
+        let usual = sizes.iter().find_map(|&size| self.loaded(size));
         let smallest = || {
             let sizes = self.catalog.sizes(&self.profile, self.alpha);
             self.loaded(*sizes.first()?)

@@ -185,6 +185,68 @@ fn dots_are_as_many_as_requested_and_as_dense_as_the_picture_is_dark() {
     assert!(part(&hard, 0, 16) > part(&dark, 0, 16) + 0.03);
 }
 
+/// The root mean square of what a Gaussian as wide as dots are apart sees of dots of [`shades`], about the mean of each
+/// column, over that mean. The picture is the same along columns, so none of it is the picture's.
+fn unevenness(dots: &[[f64; 2]]) -> f64 {
+    let density = |at: [f64; 2]| -> f64 {
+        let far = dots
+            .iter()
+            .map(|[x, y]| (x - at[0]).powi(2) + (y - at[1]).powi(2));
+        far.map(|squared| (-squared / 2.0).exp()).sum()
+    };
+    let mut squares = vec![];
+    for x in 4..48 {
+        let column: Vec<f64> = (8..49)
+            .map(|y| density([f64::from(x), f64::from(y) / 2.0]))
+            .collect();
+        let mean = column.iter().sum::<f64>() / column.len() as f64;
+        squares.extend(column.iter().map(|v| (v / mean - 1.0).powi(2)));
+    }
+    (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+}
+
+#[test]
+fn dots_settle_unless_they_shall_stay() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let picture = shades(folder.path());
+    let stipple = |more: &[&str]| {
+        let command = [
+            "stipple",
+            text(&picture),
+            "-q",
+            "-n",
+            "2000",
+            "--format",
+            "csv",
+        ];
+        printed(&[&command[..], more].concat())
+    };
+    let dots = |csv: &str| {
+        let places = csv.lines().skip(1).map(|line| {
+            let mut numbers = line
+                .split(',')
+                .skip(1)
+                .map(|v| v.parse::<f64>().expect("a number"));
+            [(); 2].map(|()| numbers.next().expect("x and y"))
+        });
+        places.collect::<Vec<_>>()
+    };
+    let settled = stipple(&["--settle", "3"]);
+    assert_eq!(settled, stipple(&[]));
+    let [placed, settled] = [stipple(&["--settle", "0"]), settled].map(|csv| dots(&csv));
+    assert_eq!([placed.len(), settled.len()], [2000; 2]);
+    assert!(placed != settled);
+    for end in [16.0, 32.0, 48.0] {
+        let [before, after] = [&placed, &settled].map(|dots| {
+            let left = dots.iter().filter(|dot| dot[0] < end);
+            left.count() as f64 / 2000.0
+        });
+        assert!((before - after).abs() < 0.01, "{end}: {before}, {after}");
+    }
+    let [before, after] = [&placed, &settled].map(|dots| unevenness(dots));
+    assert!(after < 0.5 * before, "{before}, {after}");
+}
+
 #[test]
 fn dots_are_written_as_pictures() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -298,6 +360,12 @@ fn what_cannot_be_done_is_told_before_the_work() {
             &["-n", "9", "--dot", "99"],
             "--dot 99: out of range",
         ),
+        (
+            &picture,
+            &["-n", "9", "--settle", "5"],
+            "--settle 5: out of range; allowed: an integer from 0 to 4",
+        ),
+        (&picture, &["-n", "9", "--settle", "-1"], "--settle -1"),
         (
             &picture,
             &["-n", "9", "--profile", "red"],

@@ -197,9 +197,9 @@ impl Scope {
             .grade
             .as_ref()
             .and_then(|grade| constant(lattice, grade, &piece));
-        // Points settle unless there are none, or all.
-        let share =
-            share.filter(|&share| lattice.settle().is_none() || share <= 0.0 || share >= 1.0);
+        // Points settle, but those of a field not where there are none, or all.
+        let stay = |share| lattice.is_in_field() && (share <= 0.0 || share >= 1.0);
+        let share = share.filter(|&share| lattice.settle().is_none() || stay(share));
         if let Some(share) = share {
             let area = area.cloned().unwrap_or(Area::Region(region));
             let mask = Mask { area: None, ..mask };

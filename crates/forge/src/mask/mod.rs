@@ -1,10 +1,13 @@
 //! Threshold masks: tileable squares of pixels in an order, for dithering and halftoning.
 //!
 //! Every pixel has a rank, and the pixels of rank below a share are spread evenly at every share, across the seam,
-//! too. The points of a period, scaled to the grid, are the pixels of the first eighth: those of lowest rank. From
-//! there on it is void and cluster (Ulichney 1993): the pixel in the tightest cluster leaves first, and the
-//! largest void is filled next. All energies are integers, so a mask is the same on every machine.
+//! too. It begins with the points of a period, scaled to the grid: an eighth of the pixels. From there on it is void
+//! and cluster (Ulichney 1993). The pixel in the tightest cluster leaves first, until few are left, which are ordered
+//! by their distances. These few come first in the mask; then the largest void is filled next, until as few are off. So it never shows
+//! where the points end, which are spread in another way than voids are filled. All energies are integers, so a mask
+//! is the same on every machine.
 
+mod few;
 mod spectrum;
 mod voids;
 
@@ -83,6 +86,8 @@ impl Mask {
     ) -> Result<Option<Self>, MaskError> {
         /// A few milliseconds of work.
         const STEP: usize = 1000;
+        /// One of this number of pixels is left by the clusters: with fewer, voids are wider than the kernel.
+        const FEW: usize = 56;
         if !(Self::LEAST_SIZE..=Self::MOST_SIZE).contains(&size) {
             return Err(MaskError {
                 field: "size".into(),
@@ -96,23 +101,33 @@ impl Mask {
         }
         let pixels = (size * size) as usize;
         let first = first(table, size, seed)?;
+        let few = pixels / FEW;
         let mut ranks = vec![0; pixels];
+        let mut goes_on = |rank: usize| !rank.is_multiple_of(STEP) || goes_on();
         let mut voids = Voids::new(size as usize, &first);
         voids.choose(Choice::Clusters);
-        let mut goes_on = |rank: usize| !rank.is_multiple_of(STEP) || goes_on();
-        for rank in (0..first.len()).rev() {
+        for rank in (few..first.len()).rev() {
+            if !goes_on(rank) {
+                return Ok(None);
+            }
+            voids.flip();
+        }
+        for (rank, pixel) in few::ordered(size as usize, &voids.those(true))
+            .into_iter()
+            .enumerate()
+        {
+            ranks[pixel] = rank as u32;
+        }
+        voids.choose(Choice::Voids);
+        for rank in few..pixels - few {
             if !goes_on(rank) {
                 return Ok(None);
             }
             ranks[voids.flip()] = rank as u32;
         }
-        let mut voids = Voids::new(size as usize, &first);
-        voids.choose(Choice::Voids);
-        for rank in first.len()..pixels {
-            if !goes_on(rank) {
-                return Ok(None);
-            }
-            ranks[voids.flip()] = rank as u32;
+        let last = few::ordered(size as usize, &voids.those(false));
+        for (rank, pixel) in (0..pixels).rev().zip(last) {
+            ranks[pixel] = rank as u32;
         }
         Ok(Some(Self { size, ranks }))
     }
@@ -230,7 +245,7 @@ impl Mask {
     }
 }
 
-/// The pixels of the first eighth: those of the points of lowest rank in a period on the grid, each once.
+/// An eighth of the pixels: those of the points of lowest rank in a period on the grid, each once.
 fn first(table: &Table, size: u32, seed: u64) -> Result<Vec<usize>, MaskError> {
     let wanted = u64::from(size) * u64::from(size) / 8;
     let set = PeriodicSet::new(table.clone(), wanted)?;

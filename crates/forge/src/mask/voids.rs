@@ -8,7 +8,7 @@
 const SQUARED: i64 = 72;
 const REACH: i64 = 8;
 /// The side of a block.
-const BLOCK: usize = 16;
+const BLOCK: usize = 8;
 
 /// The rule for the pixel that is flipped next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,6 +58,13 @@ impl Voids {
             voids.add(pixel, u32::wrapping_add);
         }
         voids
+    }
+
+    /// The pixels that are on, or off.
+    pub(super) fn those(&self, is_on: bool) -> Vec<usize> {
+        (0..self.is_on.len())
+            .filter(|&pixel| self.is_on[pixel] == is_on)
+            .collect()
     }
 
     /// Begins to flip pixels of a kind.

@@ -72,11 +72,8 @@ impl FieldRows {
     }
 
     /// The points that were found last, with their shares.
-    pub(crate) fn with_shares(&self) -> impl Iterator<Item = (Found, f64)> {
-        self.found
-            .iter()
-            .copied()
-            .zip(self.found_shares.iter().copied())
+    pub(crate) fn with_shares(&self) -> (&[Found], &[f64]) {
+        (&self.found, &self.found_shares)
     }
 
     /// Takes the next points.
@@ -99,6 +96,7 @@ impl FieldRows {
         backend: Backend,
     ) -> i64 {
         self.found.clear();
+        self.found_shares.clear();
         self.next = 0;
         self.number = 0;
         let mut next = rows.start;
@@ -191,24 +189,16 @@ impl FieldRows {
             patch,
             ..
         } = source;
-        let scale = Scale::new(lattice, patch);
         self.place(patch, backend);
         let number = self.number;
-        let [xs, ys] = &self.places;
-        compiled_loop(
-            backend,
-            &mut Convert {
-                scale,
-                places: [&xs[..number], &ys[..number]],
-                at: &mut self.at[..number],
-            },
-        );
-        grade.shares(&self.at[..number], &mut self.shares[..number]);
+        match grade.known() {
+            Some(share) => self.shares[..number].fill(share),
+            None => self.look((lattice, grade, patch), backend),
+        }
         self.keep(lattice, patch);
         let (number, [xs, ys]) = (self.number, &self.places);
         let places = xs.iter().zip(ys).map(|(&x, &y)| [x, y]);
         let all = places.zip(&self.addresses).zip(&self.shares).take(number);
-        self.found_shares.clear();
         for ((place, &address), &share) in all {
             if patch.holds(place) {
                 self.found.push(Found { place, address });
@@ -235,6 +225,21 @@ impl FieldRows {
                 }
             }
         }
+    }
+
+    /// Looks the shares up where the candidates lie.
+    fn look(&mut self, (lattice, grade, patch): (&Lattice, &Grade, &Patch), backend: Backend) {
+        let (number, scale) = (self.number, Scale::new(lattice, patch));
+        let [xs, ys] = &self.places;
+        compiled_loop(
+            backend,
+            &mut Convert {
+                scale,
+                places: [&xs[..number], &ys[..number]],
+                at: &mut self.at[..number],
+            },
+        );
+        grade.shares(&self.at[..number], &mut self.shares[..number]);
     }
 
     /// Leaves the candidates whose rank is below the share.

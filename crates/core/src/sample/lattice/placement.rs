@@ -27,7 +27,7 @@ pub struct Placement {
     pub warp: Warp,
     /// The share of the points that is kept.
     pub keep: Keep,
-    /// How points settle where not all are kept.
+    /// How points settle.
     pub settle: Settle,
     /// The level of detail: the part of the points that is left out of nothing but the answer, so that none of the
     /// others move.

@@ -82,7 +82,7 @@ impl Lattice {
         let shears = Shears::new(Waves::of(table.profile()), warp, seed);
         let turned = TurnedTable::new(&table, seed.symmetry());
         // Where points settle, the level of detail is a choice among settled ones.
-        let settles = (Settle::LEAST_SHARE..1.0).contains(&keep.get()) && !settle.is_off();
+        let settles = settle.of_share(keep.get()).is_some();
         let shown = placement.shown();
         Self {
             placement,
@@ -191,7 +191,10 @@ impl Lattice {
     /// The steps by which points settle, if they do.
     pub(crate) fn settle(&self) -> Option<Settle> {
         let settle = self.placement.settle;
-        (self.grade.is_some() && !settle.is_off()).then_some(settle)
+        match self.grade.as_ref()?.known() {
+            Some(share) => settle.of_share(share),
+            None => (!settle.is_off()).then_some(settle),
+        }
     }
 
     /// The share of points that settle, if it is no field's.
@@ -330,6 +333,7 @@ impl Lattice {
             return self.at(placement);
         }
         let still = placement.with_keep(Keep::ALL).with_lod(Keep::ALL);
+        let still = still.with_settle(Settle::OFF);
         Self {
             placement,
             cut: self.cut,

@@ -9,7 +9,7 @@ use crate::{
     sample::{
         area::Region,
         attribute::{Attributes, BoundAttributes},
-        lattice::{Placement, Point, PointId, Settle},
+        lattice::{Placement, Point, PointId},
         member::Member,
         near::{Clearance, LeastDistance, Visits, limits, search},
         settle::{Settler, weight},
@@ -311,15 +311,18 @@ impl PointSet {
         }
     }
 
-    /// Whether points settle.
-    pub(crate) fn settles(&self) -> bool {
-        self.lattice.settle().is_some()
+    /// The number of steps by which points settle.
+    pub(crate) fn steps(&self) -> u32 {
+        let placement = self.placement();
+        match self.lattice.is_in_field() {
+            true => placement.settle.steps(),
+            false => placement.settle.steps_at(placement.keep),
+        }
     }
 
     /// About how long points settle near an outline, in steps of a set without kinds.
     pub(crate) fn settling(&self) -> f64 {
-        let steps = self.lattice.settle().map_or(0, Settle::steps);
-        f64::from(steps) * weight(&self.lattice)
+        f64::from(self.steps()) * weight(&self.lattice)
     }
 
     /// The least distance of the table's points that are of the set's kind, if it has one.

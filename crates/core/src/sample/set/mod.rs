@@ -233,7 +233,7 @@ impl PointSet {
     }
 
     /// Sets the number of steps by which points settle in a [field](Self::in_field) and where not all are
-    /// [kept](Self::keep), 0 to 4; see [`Settle`](crate::Settle).
+    /// [kept](Self::keep), 0 to 4; see [`Settle`](crate::Settle). Sets with all points take at most one, a smaller one.
     ///
     /// # Errors
     /// [`ErrorKind::Settle`](crate::ErrorKind::Settle) above 4.

@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
+use super::{freedom::local, step::WHOLE};
 use crate::sample::lattice::PointId;
 
 /// A point where it has settled.
@@ -25,14 +26,32 @@ pub(crate) struct Placed {
     /// In fixed-point units.
     pub(crate) place: [i128; 2],
     pub(crate) share: f64,
-    /// The greatest move along each axis, in fixed-point units.
-    pub(crate) most: i64,
+    /// Fixed-point units of a mean spacing at full density, and the bits of a window's unit.
+    scale: (f64, u32),
 }
 
 impl Placed {
+    pub(super) const fn new(
+        (id, place, share): (PointId, [i128; 2], f64),
+        scale: (f64, u32),
+    ) -> Self {
+        Self {
+            id,
+            place,
+            share,
+            scale,
+        }
+    }
+
+    /// The greatest move along each axis, in fixed-point units.
+    fn most_move(&self) -> i64 {
+        let (unit, shift) = self.scale;
+        most_move(unit * local(self.share), shift)
+    }
+
     /// Whether the point is in a box wherever it goes, in none of it, or either.
     pub(crate) fn side(&self, bounds: &Box2) -> Option<bool> {
-        let most = i128::from(self.most);
+        let most = i128::from(self.most_move());
         let mut is_sure = true;
         for (range, place) in bounds.iter().zip(self.place) {
             if place + most < range.start || place - most >= range.end {
@@ -42,6 +61,13 @@ impl Placed {
         }
         is_sure.then_some(true)
     }
+}
+
+/// The greatest move along each axis of points with a local spacing, all in fixed-point units, and the bits of a
+/// window's unit.
+pub(super) fn most_move(spacing: f64, shift: u32) -> i64 {
+    // With room for what rounds.
+    (f64::from(WHOLE) * 1.000_01 * spacing) as i64 + (2 << shift)
 }
 
 /// The part of a box in another one.

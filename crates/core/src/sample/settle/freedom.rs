@@ -26,7 +26,7 @@ const STEEP: f64 = 4.0;
 const LOOKS: [[f64; 2]; 2] = [[1.0, 0.4], [1.8, 0.7]];
 
 /// The sides of a tile in bits of a window's units: 64 grid units.
-const TILE_BITS: u32 = 26;
+const TILE_BITS: u32 = 19;
 
 /// A point whose freedom is wanted.
 #[derive(Clone, Copy, Debug)]
@@ -100,6 +100,11 @@ pub(super) fn freedom(share: f64, around: [f64; 8]) -> f32 {
         0.0
     };
     (part * inside(share)) as f32
+}
+
+/// The freedom of a point that no field thins, at the set's share. With all points these are those of the near step.
+pub(super) fn constant(share: f64) -> f64 {
+    if share < 1.0 { inside(share) } else { 1.0 }
 }
 
 /// The freedom of a point where the field counts as constant.

@@ -13,7 +13,7 @@
 //!
 //! ```text
 //!     o = max(part · s, 1/800)             u = |d|² (o_i + o_j) / 2σ²
-//!     W(u) = c · part^(−3/8) · max(0, 1 − u/ρ²)⁴
+//!     W(u) = (a · part^(−3/32) · max(0, 1 − u/ρ²))⁴
 //! ```
 //!
 //! The sum of these pushes is cut to ±.15 local spacings along each axis, and joins that of all points before the point
@@ -36,7 +36,7 @@ use super::{
     LEAST_SHARE,
     cells::{Cells, Places},
     freedom::root,
-    step::{Kernel, QUANTUM, Root, SURELY, Scale, above_zero, lesser, within},
+    step::{Kernel, Root, SPARE, SURELY, Scale, above_zero, lesser, whole_number, within},
 };
 use crate::{
     sample::{
@@ -92,7 +92,7 @@ struct Kind {
 impl Kin {
     /// The kinds of a lattice, if points of some of them push each other.
     pub(super) fn new(lattice: &Lattice, settle: Settle) -> Option<Self> {
-        if lattice.is_varied() {
+        if lattice.is_varied() || settle.is_near() {
             return None;
         }
         let shares = lattice.kind_parts()?;
@@ -102,7 +102,7 @@ impl Kin {
             Kind {
                 part,
                 is_in: is_in(part),
-                strength: 1.0 / root(root(root(part * part * part))),
+                strength: 1.0 / root(root(root(root(root(part * part * part))))),
                 points: Vec::new(),
                 places: Places::default(),
             }
@@ -166,7 +166,7 @@ impl Kin {
             for (list, sums) in of_kin.iter_mut().zip(&self.sums) {
                 for (&i, &sum) in kind.points.iter().zip(sums) {
                     let i = i as usize;
-                    let most = (MOST * (scale.unit / all.share[i].sqrt_()) / QUANTUM) as i32;
+                    let most = (MOST * (scale.unit / all.share[i].sqrt_())) as i32;
                     list[i] = sum.clamp(-most, most);
                 }
             }
@@ -221,20 +221,20 @@ impl Cells {
     #[inline(always)]
     pub(super) fn pass(
         &self,
-        (at, placed): ([i32; 2], [i32; 2]),
+        (at, placed): ([f32; 2], [f32; 2]),
         (wish, nearest): ([f32; 2], f32),
         whole: f32,
         clear: f32,
-    ) -> Option<[i32; 2]> {
-        let free = |squared: f32| above_zero((squared.sqrt_() * SURELY - clear) * 0.5);
+    ) -> Option<[f32; 2]> {
+        let free = |squared: f32| above_zero((squared.sqrt_() * SURELY - clear) * 0.5 - SPARE);
         if (wish[0] * wish[0] + wish[1] * wish[1]).sqrt_() <= free(nearest) {
             return None;
         }
-        let offset = [0, 1].map(|i| at[i].wrapping_sub(placed[i]) as f32);
+        let offset = [0, 1].map(|i| at[i] - placed[i]);
         let [mut x, mut y] = [0, 1].map(|i| within(offset[i] + wish[i], whole) - offset[i]);
         let length = (x * x + y * y).sqrt_();
         // Those farther off leave it free.
-        let far = (2.0 * length + clear) * 1.001;
+        let far = (2.0 * length + clear + 2.0 * SPARE) * 1.001;
         let ([dx, dy], nearest, next) = self.nearest_two(at, far);
         if length <= free(nearest) {
             return None;
@@ -251,24 +251,21 @@ impl Cells {
             (x, y) = (x + back * dx, y + back * dy);
         }
         let is_inside = (offset[0] + x).abs() <= whole && (offset[1] + y).abs() <= whole;
-        is_inside.then(|| [at[0].wrapping_add(x as i32), at[1].wrapping_add(y as i32)])
+        is_inside.then(|| [at[0] + whole_number(x), at[1] + whole_number(y)])
     }
 
     /// The offset from the nearest point within a distance, its square, and that of the next one. Of equally near
     /// points the one of the lesser offset counts.
     #[inline(always)]
-    fn nearest_two(&self, [x, y]: [i32; 2], far: f32) -> ([f32; 2], f32, f32) {
-        let room = far as i64 + 1;
-        let [columns, rows] = [(0, x), (1, y)].map(|(axis, v)| {
-            let v = i64::from(v);
-            self.along[axis].cells(v - room, v + room)
-        });
+    fn nearest_two(&self, [x, y]: [f32; 2], far: f32) -> ([f32; 2], f32, f32) {
+        let [columns, rows] =
+            [(0, x), (1, y)].map(|(axis, v)| self.along[axis].cells(v - far, v + far));
         let (mut offset, mut nearest, mut next) = ([0.0; 2], f32::INFINITY, f32::INFINITY);
         for row in rows {
             let start = |column: usize| self.starts[row * self.along[0].cells + column] as usize;
             for other in &self.points[start(columns.start)..start(columns.end)] {
-                let dx = x.wrapping_sub(other.at[0]) as f32;
-                let dy = y.wrapping_sub(other.at[1]) as f32;
+                let dx = x - other.at[0];
+                let dy = y - other.at[1];
                 let squared = dx * dx + dy * dy;
                 if squared > 0.0 && squared <= next {
                     let is_less = [dx, dy] < offset;
@@ -325,30 +322,35 @@ const fn kernel([reach, push, near, guard]: [f32; 4]) -> Kernel {
 }
 
 const ONE: Steps = Steps {
-    all: &[kernel([2.3, 0.26, 0.97, 0.42])],
-    kin: &[[2.3, 0.06]],
+    all: &[kernel([2.3, 0.7141, 0.97, 0.6481])],
+    kin: &[[2.3, 0.4949]],
 };
 const TWO: Steps = Steps {
     all: &[
-        kernel([2.0, 0.33, 0.93, 0.34]),
-        kernel([2.28, 0.41, 0.8, 0.73]),
+        kernel([2.0, 0.7579, 0.93, 0.5831]),
+        kernel([2.28, 0.8002, 0.8, 0.8544]),
     ],
-    kin: &[[2.32, 0.12], [2.35, 0.1]],
+    kin: &[[2.32, 0.5886], [2.35, 0.5623]],
 };
 const THREE: Steps = Steps {
     all: &[
-        kernel([1.707, 0.509, 1.004, 0.266]),
-        kernel([2.359, 0.299, 1.021, 0.341]),
-        kernel([2.422, 0.27, 0.761, 0.738]),
+        kernel([1.707, 0.8447, 1.004, 0.5158]),
+        kernel([2.359, 0.7395, 1.021, 0.584]),
+        kernel([2.422, 0.7208, 0.761, 0.8591]),
     ],
-    kin: &[[2.453, 0.111], [2.359, 0.146], [2.392, 0.078]],
+    kin: &[[2.453, 0.5772], [2.359, 0.6181], [2.392, 0.5285]],
 };
 const FOUR: Steps = Steps {
     all: &[
-        kernel([1.635, 0.424, 0.885, 0.398]),
-        kernel([2.277, 0.634, 0.944, 0.395]),
-        kernel([2.008, 0.214, 0.866, 0.167]),
-        kernel([2.499, 0.346, 0.72, 0.664]),
+        kernel([1.635, 0.8069, 0.885, 0.6309]),
+        kernel([2.277, 0.8923, 0.944, 0.6285]),
+        kernel([2.008, 0.6801, 0.866, 0.4087]),
+        kernel([2.499, 0.767, 0.72, 0.8149]),
     ],
-    kin: &[[2.101, 0.514], [2.479, 0.19], [2.159, 0.117], [2.31, 0.036]],
+    kin: &[
+        [2.101, 0.8467],
+        [2.479, 0.6602],
+        [2.159, 0.5849],
+        [2.31, 0.4356],
+    ],
 };

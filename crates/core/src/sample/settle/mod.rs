@@ -17,16 +17,16 @@
 //!
 //! ```text
 //!     u = |d|² (s_i + s_j) / 2σ²                 d = p_i − p_j: squared distance in the pair's local spacings
-//!     W(u) = c · max(0, 1 − u/ρ²)⁴ + h · max(0, 1 − u/γ²)²
+//!     W(u) = (a · max(0, 1 − u/ρ²))⁴ + (b · max(0, 1 − u/γ²))²
 //!     p_i ← p_i + f_i Σ_j d · W(u)               cut to ±.3 local spacings a step and ±.4 in all
 //! ```
 //!
 //! The reach comes from the mean density of the pair, so the pushes of a pair are equal and opposite, and in two
 //! dimensions the pressure of such pushes does not depend on the density: no term for it is needed, and the field
-//! is not looked at again. `freedom` has f, which is 0 at full density and where a field is steep, so that edges stay
-//! sharp; `step` one step with its constants of exactness, `cells` the order in which it finds neighbors; `window` the points that matter to some others, and `reach` how far these lie. `kin` has what points of a kind add.
+//! is not looked at again. `freedom` has f, which is 0 at full density (but for that step) and where a field is steep, so that edges stay
+//! sharp; `step` one step with its constants of exactness, `cells` the order in which it finds neighbors; `near` the limit of the one step of sets with all points; `window` the points that matter to some others, and `reach` how far these lie. `kin` has what points of a kind add.
 //!
-//! The constants ρ, c, γ, h were learned by measuring power and distances (CMA-ES); docs/algorithm.md lists them.
+//! The constants ρ, a, γ, b were learned by measuring power and distances (CMA-ES); docs/algorithm.md lists them.
 //!
 //! # Invariants
 //!
@@ -34,12 +34,14 @@
 //! - A point ends within .4 local spacings of its place along each axis, at most [`MOST_MOVE`] spacings: what lies deeper in
 //!   or farther off an outline is decided without a step.
 //! - Where all points keep the distance D of the table's certificate, they keep it after each step: none goes farther
-//!   than half of what separates it from D.
+//!   than half of what separates it from D, or in the near step, goes farther toward any neighbor.
 
 mod boxes;
 mod cells;
 mod freedom;
 mod kin;
+mod lister;
+mod near;
 mod reach;
 mod step;
 mod tiles;
@@ -62,6 +64,7 @@ pub(crate) const MOST_MOVE: f64 = 8.0;
 /// The pushes of each step.
 const fn kernels(settle: Settle) -> &'static [Kernel] {
     match settle.steps() {
+        _ if settle.is_near() => &NEAR,
         0 => &[],
         1 => &ONE,
         2 => &TWO,
@@ -79,19 +82,21 @@ const fn kernel([reach, push, near, guard]: [f32; 4]) -> Kernel {
     }
 }
 
-const ONE: [Kernel; 1] = [kernel([2.395, 0.298, 0.999, 0.366])];
+/// The step of sets with all points.
+const NEAR: [Kernel; 1] = [kernel([0.8, 1.249, 0.8, 0.0])];
+const ONE: [Kernel; 1] = [kernel([2.395, 0.7388, 0.999, 0.605])];
 const TWO: [Kernel; 2] = [
-    kernel([2.29, 0.435, 1.134, 0.278]),
-    kernel([2.403, 0.312, 0.836, 0.490]),
+    kernel([2.29, 0.8121, 1.134, 0.5273]),
+    kernel([2.403, 0.7474, 0.836, 0.7]),
 ];
 const THREE: [Kernel; 3] = [
-    kernel([1.605, 0.588, 1.108, 0.227]),
-    kernel([2.531, 0.371, 1.094, 0.347]),
-    kernel([2.462, 0.361, 0.788, 0.653]),
+    kernel([1.605, 0.8757, 1.108, 0.4764]),
+    kernel([2.531, 0.7804, 1.094, 0.5891]),
+    kernel([2.462, 0.7751, 0.788, 0.8081]),
 ];
 const FOUR: [Kernel; 4] = [
-    kernel([2.312, 0.407, 1.165, 0.617]),
-    kernel([1.832, 0.471, 0.797, 0.641]),
-    kernel([2.544, 0.501, 1.0, 0.0]),
-    kernel([2.772, 0.286, 0.836, 0.141]),
+    kernel([2.312, 0.7987, 1.165, 0.7855]),
+    kernel([1.832, 0.8284, 0.797, 0.8006]),
+    kernel([2.544, 0.8413, 1.0, 0.0]),
+    kernel([2.772, 0.7313, 0.836, 0.3755]),
 ];

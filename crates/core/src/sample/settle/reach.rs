@@ -5,11 +5,11 @@ use super::{
     cells::Places,
     freedom::{local, root},
     kin::LEAST_OF_KIN,
-    step::{Kernel, STEP, WHOLE},
+    step::{Kernel, STEP, WHOLE, greater, lesser},
 };
 
 /// Room for what rounds, in units of a window.
-const ROOM: i64 = 64;
+const ROOM: i64 = 4;
 
 /// The number of successive points, which are near each other, whose reach is found at once.
 const NEAR: usize = 16;
@@ -49,23 +49,29 @@ impl Reach {
     }
 }
 
-/// How far a point may have gone before step number `t`, which counts from 0, in local spacings.
+/// How far a point may have gone along each axis before step number `t`, which counts from 0, in local spacings.
 fn moved_before(t: usize) -> f64 {
-    f64::from(WHOLE).min(f64::from(STEP) * t as f64) * core::f64::consts::SQRT_2
+    f64::from(WHOLE).min(f64::from(STEP) * t as f64)
 }
 
-/// How far from a point of a share others may be that push it in step number `t`, which counts from 0, if none is sparser
+/// How far from a point of a share, along each axis, others may be that push it in step number `t`, which counts from 0, if none is sparser
 /// than `least`: by the places where they were placed, in spacings at full density.
 fn room(reach: &Reach, t: usize, shares: [f64; 2]) -> f64 {
     let [a, b] = shares.map(local);
     reach.between(shares.map(|share| share.max(LEAST_SHARE))) + moved_before(t) * (a + b)
 }
 
+/// The same in units of a window, with room for what rounds.
+pub(super) fn step_room(reach: &Reach, t: usize, shares: [f64; 2], unit: f64) -> i64 {
+    (room(reach, t, shares) * unit) as i64 + ROOM
+}
+
 /// How far from a point others may be that matter to where it goes in all steps, in units of a window.
 pub(super) fn whole_room(reaches: &[Reach], shares: [f64; 2], unit: f64) -> i64 {
     let steps = reaches.iter().enumerate();
-    let rooms: f64 = steps.map(|(t, reach)| room(reach, t, shares)).sum();
-    (rooms * unit) as i64 + ROOM * reaches.len() as i64
+    steps
+        .map(|(t, reach)| step_room(reach, t, shares, unit))
+        .sum()
 }
 
 /// The ranges of a box along both axes, from a window's corner.
@@ -82,16 +88,18 @@ impl Extent {
     };
 
     /// Adds places between some ends, with room around them.
-    fn add(&mut self, [min, max]: [[i32; 2]; 2], room: i64) {
+    pub(super) fn add(&mut self, [min, max]: [[f32; 2]; 2], room: i64) {
         for i in 0..2 {
-            self.min[i] = self.min[i].min(i64::from(min[i]) - room);
-            self.max[i] = self.max[i].max(i64::from(max[i]) + room);
+            self.min[i] = self.min[i].min(min[i] as i64 - room);
+            self.max[i] = self.max[i].max(max[i] as i64 + room);
         }
     }
 
-    pub(super) fn holds(&self, [x, y]: [i32; 2]) -> bool {
-        let (x, y) = (i64::from(x), i64::from(y));
-        (self.min[0] <= x) & (x <= self.max[0]) & (self.min[1] <= y) & (y <= self.max[1])
+    #[inline(always)]
+    pub(super) fn holds(&self, [x, y]: [f32; 2]) -> bool {
+        // Beyond what single precision holds there are no points.
+        let [min, max] = [self.min, self.max].map(|v| v.map(|v| v as f32));
+        (min[0] <= x) & (x <= max[0]) & (min[1] <= y) & (y <= max[1])
     }
 
     /// A place, by parts of the sides.
@@ -137,27 +145,25 @@ pub(super) fn reached(places: &Places, (reach, t): (&Reach, usize), unit: f64) -
         until,
         ..
     } = places;
-    let lesser = |a: f32, b: f32| if b < a { b } else { a };
-    let least = f64::from(share.iter().fold(1.0, |a, &b| lesser(a, b)));
+    let least = f64::from(share.iter().fold(1.0, |a, &b| lesser(b, a)));
     let mut extent = Extent::NONE;
     let mut sparsest = 1.0f64;
     let lists = xs.chunks(NEAR).zip(ys.chunks(NEAR)).zip(share.chunks(NEAR));
     let lists = lists.zip(freedom.chunks(NEAR).zip(until.chunks(NEAR)));
     for (((xs, ys), shares), (freedom, until)) in lists {
-        let (mut min, mut max) = ([i32::MAX; 2], [i32::MIN; 2]);
+        let (mut min, mut max) = ([f32::INFINITY; 2], [-f32::INFINITY; 2]);
         let mut low = f32::INFINITY;
         let points = xs.iter().zip(ys).zip(shares).zip(freedom.iter().zip(until));
         for (((&x, &y), &share), (&freedom, &until)) in points {
             if until >= step && freedom > 0.0 {
-                min = [min[0].min(x), min[1].min(y)];
-                max = [max[0].max(x), max[1].max(y)];
-                low = lesser(low, share);
+                min = [lesser(x, min[0]), lesser(y, min[1])];
+                max = [greater(x, max[0]), greater(y, max[1])];
+                low = lesser(share, low);
             }
         }
         if low <= 1.0 {
             let share = f64::from(low);
-            let room = room(reach, t, [share, least]) * unit;
-            extent.add([min, max], room as i64 + ROOM);
+            extent.add([min, max], step_room(reach, t, [share, least], unit));
             sparsest = sparsest.min(share);
         }
     }

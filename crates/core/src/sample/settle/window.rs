@@ -25,32 +25,34 @@ use core::ops::Range;
 
 use super::{
     LEAST_SHARE, MOST_MOVE,
-    boxes::{Box2, Placed, Settled, widened},
+    boxes::{Box2, Placed, Settled, most_move, widened},
     cells::{Cells, Places},
-    freedom::{Candidate, Freedoms, inside, local, root, slipped},
+    freedom::{Candidate, Freedoms, constant, local, root, slipped},
     kernels,
     kin::Kin,
-    reach::{Extent, Reach, reached, whole_room},
-    step::{Kernel, Scale, WHOLE},
+    lister::Lister,
+    near::Near,
+    reach::{Extent, Reach, reached, step_room, whole_room},
+    step::{Kernel, Scale},
 };
 use crate::{
     sample::{
         area::Region,
-        field::{FieldRows, Source},
         kernel::Backend,
-        lattice::{BAND_WIDTH, Columns, Grade, Lattice, Patch, PointId, Span, clip_to_band},
+        lattice::{Lattice, PointId},
     },
-    table::{FRACTION_BITS, fixed},
+    table::FRACTION_BITS,
 };
-
-/// The most candidates that are looked at together.
-const TOGETHER: usize = 2048;
 
 /// Corners of windows are multiples of this many fixed-point units, in bits.
 const CORNER_BITS: u32 = 26;
 
-/// The largest distance from a window's corner, in the units of a window.
-const FARTHEST: i64 = 1 << 30;
+/// The unit of a window in fixed-point units, in bits, where the pattern is not very sparse: some 10⁻⁵ spacings.
+const UNIT_BITS: u32 = 7;
+
+/// The largest distance from a window's corner, in the units of a window: single precision has all integers up to it, and
+/// their differences.
+const FARTHEST: i64 = 1 << 23;
 
 /// The places along each axis of a box at which a field is looked at to guess how sparse it is.
 const SAMPLES: usize = 9;
@@ -58,22 +60,19 @@ const SAMPLES: usize = 9;
 /// Settles points, with memory of its own.
 #[derive(Clone, Debug)]
 pub(crate) struct Settler {
-    /// The points of all kinds, where their ranks left them.
-    lattice: Lattice,
-    grade: Grade,
+    lister: Lister,
     kernels: &'static [Kernel],
     /// The points by kinds, if those of a kind push each other.
     kin: Option<Kin>,
     /// How far each step reaches.
     reaches: Vec<Reach>,
     scale: Scale,
-    /// Windows count in units of this many fixed-point units, in bits: more than one where the pattern is sparse.
+    /// What limits the step of sets with all points, where that is taken.
+    near: Option<Near>,
+    /// Windows count in units of this many fixed-point units, in bits.
     shift: u32,
     /// Fixed-point units of a mean spacing at full density.
     unit: f64,
-    backend: Backend,
-    columns: Columns,
-    rows: FieldRows,
     listed: Vec<Listed>,
     places: Places,
     cells: Cells,
@@ -88,7 +87,7 @@ struct Listed {
     id: PointId,
     share: f64,
     /// The bits of its place below the window's units.
-    below: [u8; 2],
+    below: [u16; 2],
     is_wanted: bool,
     /// Whether it may have to go back.
     may_slip: bool,
@@ -101,10 +100,11 @@ impl Settler {
         let grade = lattice.grade.clone()?;
         let side = lattice.table.alpha().set_side_f64();
         // Up to some 350 spacings fit a window.
-        let mut shift = 0;
-        while 400.0 / side > f64::from(1u32 << shift) * 1500.0 {
-            shift += 1;
+        let mut sparse = 0;
+        while 400.0 / side > f64::from(1u32 << sparse) * 1500.0 {
+            sparse += 1;
         }
+        let shift = UNIT_BITS + sparse;
         let unit = f64::from(1u32 << FRACTION_BITS) / side;
         let kin = Kin::new(lattice, settle);
         let kernels = kin.as_ref().map_or(kernels(settle), |kin| kin.steps().all);
@@ -115,21 +115,25 @@ impl Settler {
                 of_kin.as_ref().map(|(kernel, part)| (kernel, *part)),
             )
         };
+        let reaches: Vec<Reach> = kernels.iter().enumerate().map(reach).collect();
+        let own = |v: f64| v / f64::from(1u32 << shift);
+        let clear = own(lattice.certified());
+        let near = settle.is_near().then(|| {
+            let reach = reaches.iter().map(Reach::widest).fold(0.0, f64::max);
+            Near::new(clear, reach * own(unit))
+        });
         Some(Self {
-            reaches: kernels.iter().enumerate().map(reach).collect(),
-            lattice: lattice.of_all_kinds(),
-            grade,
+            reaches,
+            lister: Lister::new(lattice.of_all_kinds(), grade),
             kernels,
             kin,
             scale: Scale {
-                unit: (unit / f64::from(1u32 << shift)) as f32,
-                clear: (lattice.certified() / f64::from(1u32 << shift)) as f32,
+                unit: own(unit) as f32,
+                clear: near.as_ref().map_or(clear as f32, |_| 0.0),
             },
+            near,
             shift,
             unit,
-            backend: Backend::best(),
-            columns: Columns::default(),
-            rows: FieldRows::default(),
             listed: Vec::new(),
             places: Places::default(),
             cells: Cells::default(),
@@ -140,14 +144,13 @@ impl Settler {
 
     /// Works by another backend.
     pub(crate) const fn set_backend(&mut self, backend: Backend) {
-        self.backend = backend;
+        self.lister.backend = backend;
     }
 
     /// The greatest move of points that were placed in a box, in fixed-point units.
     pub(crate) fn most_move(&self, within: &Box2) -> i64 {
-        let low = self.grade.bounds(&self.region(within))[0];
-        // With room for what rounds.
-        (f64::from(WHOLE) * 1.000_01 * self.unit * local(low)) as i64 + (2 << self.shift)
+        let low = self.lister.grade.bounds(&self.region(within))[0];
+        most_move(self.unit * local(low), self.shift)
     }
 
     /// About how many times as far as in sets without kinds points matter to others.
@@ -166,7 +169,7 @@ impl Settler {
 
     /// The greatest share in a box.
     pub(crate) fn greatest_share(&self, within: &Box2) -> f64 {
-        self.grade.bounds(&self.region(within))[1]
+        self.lister.grade.bounds(&self.region(within))[1]
     }
 
     /// The number of points of the last window.
@@ -190,7 +193,7 @@ impl Settler {
     /// The region of a box.
     pub(crate) fn region(&self, within: &Box2) -> Region {
         let [x, y] = within;
-        let world = |k: i128| self.lattice.world(k);
+        let world = |k: i128| self.lister.lattice.world(k);
         Region::between(
             [world(x.start), world(y.start)],
             [world(x.end.max(x.start)), world(y.end.max(y.start))],
@@ -199,67 +202,15 @@ impl Settler {
 
     /// Calls `visit` for every point that was placed in a box.
     pub(crate) fn list(&mut self, within: &Box2, mut visit: impl FnMut(Placed)) {
-        let unit = self.unit;
-        let shift = self.shift;
-        self.visit(within, |id, place, share| {
-            let most = f64::from(WHOLE) * 1.000_01 * unit * local(share);
-            visit(Placed {
-                id,
-                place,
-                share,
-                most: most as i64 + (2 << shift),
-            });
-        });
-    }
-
-    fn visit(&mut self, within: &Box2, mut visit: impl FnMut(PointId, [i128; 2], f64)) {
-        let Self {
-            lattice,
-            grade,
-            columns,
-            rows,
-            backend,
-            ..
-        } = self;
-        if within.iter().any(Range::is_empty) {
-            return;
-        }
-        let [x, y] = Span::of_box(lattice, within.clone());
-        if x.all.is_empty() || y.all.is_empty() {
-            return;
-        }
-        let bands = x.all.start.div_euclid(BAND_WIDTH)..=(x.all.end - 1).div_euclid(BAND_WIDTH);
-        for band in bands {
-            let range = clip_to_band(band, &x.all);
-            columns.list(lattice, range.clone());
-            let mut next = y.all.start;
-            while next < y.all.end {
-                let patch = Patch::new(lattice, band, next, &x, &y);
-                let end = y.all.end.min(patch.end());
-                rows.clear();
-                let [left, bottom] = patch.origin();
-                let origin = [fixed(left), fixed(bottom)];
-                while next < end {
-                    let source = Source {
-                        lattice,
-                        grade,
-                        patch: &patch,
-                        spans: [&x, &y],
-                        columns: (columns, &range),
-                    };
-                    next = rows.list(source, next..end, TOGETHER, *backend);
-                    for (found, share) in rows.with_shares() {
-                        let [column, row] = found.address();
-                        let id = PointId {
-                            x: left + column,
-                            y: bottom + row,
-                        };
-                        let place = [0, 1].map(|i| origin[i] + i128::from(found.place[i]));
-                        visit(id, place, share);
-                    }
-                }
+        let (unit, shift) = (self.unit, self.shift);
+        let corner = within.each_ref().map(|range| range.start);
+        self.lister.list(within, corner, |some| {
+            for (found, &share) in some.found.iter().zip(some.shares) {
+                let (id, offset) = (some.id(found), some.offset(found));
+                let place = [0, 1].map(|i| corner[i] + i128::from(offset[i]));
+                visit(Placed::new((id, place, share), (unit, shift)));
             }
-        }
+        });
     }
 
     /// Settles points that were placed in a box: those that are wanted. `found` is called for each of them, in the
@@ -304,10 +255,10 @@ impl Settler {
     }
 
     /// The fixed-point place of point number `i` of the window, which keeps the bits below the window's unit.
-    fn place(&self, corner: [i128; 2], i: usize, at: &[Vec<i32>; 2]) -> [i128; 2] {
+    fn place(&self, corner: [i128; 2], i: usize, at: &[Vec<f32>; 2]) -> [i128; 2] {
         let below = self.listed[i].below;
         let place = |axis: usize| {
-            let whole = i64::from(at[axis][i]) << self.shift;
+            let whole = (at[axis][i] as i64) << self.shift;
             corner[axis] + i128::from(whole | i64::from(below[axis]))
         };
         [place(0), place(1)]
@@ -316,21 +267,21 @@ impl Settler {
     /// The world coordinates of the place at which point number `i` of the window was placed.
     fn placed(&self, corner: [i128; 2], i: usize) -> [f64; 2] {
         let [x, y] = self.place(corner, i, &self.places.placed);
-        [self.lattice.world(x), self.lattice.world(y)]
+        [self.lister.lattice.world(x), self.lister.lattice.world(y)]
     }
 
     /// About where the points lie that matter to those in a box, from a window's corner.
     fn guess(&mut self, within: &Box2, own: Extent) -> Extent {
         let region = self.region(within);
         let ([left, bottom], [right, top]) = (region.min(), region.max());
-        let is_constant = self.grade.known().is_some();
+        let is_constant = self.lister.grade.known().is_some();
         let samples = if is_constant { 1 } else { SAMPLES };
         let part = |i: usize| i as f64 / (SAMPLES - 1) as f64;
         let parts = || (0..samples).flat_map(|i| (0..samples).map(move |k| [part(i), part(k)]));
         let at = parts().map(|[a, b]| [left + a * (right - left), bottom + b * (top - bottom)]);
         let at: Vec<[f64; 2]> = at.collect();
         let mut shares = vec![0.0; at.len()];
-        self.grade.shares(&at, &mut shares);
+        self.lister.grade.shares(&at, &mut shares);
         let sparse = shares.iter().filter(|share| **share > 0.0);
         let least = sparse.fold(1.0f64, |a, b| a.min(*b));
         let unit = f64::from(self.scale.unit);
@@ -372,39 +323,40 @@ impl Settler {
             kin.clear();
         }
         let (shift, unit) = (self.shift, self.unit);
-        self.visit(&within, |id, place, share| {
-            let [x, y] = [(place[0] - corner[0]) as i64, (place[1] - corner[1]) as i64];
-            let at = [(x >> shift) as i32, (y >> shift) as i32];
-            let is_wanted = own.holds(at) && {
-                let most = f64::from(WHOLE) * 1.000_01 * unit * local(share);
-                wants(&Placed {
-                    id,
-                    place,
-                    share,
-                    most: most as i64 + (2 << shift),
-                })
-            };
-            let below = (1 << shift) - 1;
-            if let Some(kin) = &mut kin {
-                kin.add(listed.len(), id, share);
+        let below = (1 << shift) - 1;
+        self.lister.list(&within, corner, |some| {
+            let offsets = || some.found.iter().map(|found| some.offset(found));
+            for (axis, list) in places.placed.iter_mut().enumerate() {
+                list.extend(offsets().map(|offset| (offset[axis] >> shift) as i32 as f32));
             }
-            listed.push(Listed {
-                id,
-                share,
-                below: [(x & below) as u8, (y & below) as u8],
-                is_wanted,
-                may_slip: false,
-            });
-            places.placed[0].push(at[0]);
-            places.placed[1].push(at[1]);
+            let shares = some.shares.iter();
+            places
+                .share
+                .extend(shares.map(|share| share.max(LEAST_SHARE) as f32));
+            let points = some.found.iter().zip(some.shares);
+            if let Some(kin) = &mut kin {
+                for (i, (found, &share)) in (listed.len()..).zip(points.clone()) {
+                    kin.add(i, some.id(found), share);
+                }
+            }
+            listed.extend(points.map(|(found, &share)| {
+                let (id, offset) = (some.id(found), some.offset(found));
+                let is_wanted = own.holds(offset.map(|v| (v >> shift) as i32 as f32)) && {
+                    let place = [0, 1].map(|i| corner[i] + i128::from(offset[i]));
+                    wants(&Placed::new((id, place, share), (unit, shift)))
+                };
+                Listed {
+                    id,
+                    share,
+                    below: offset.map(|v| (v & below) as u16),
+                    is_wanted,
+                    may_slip: false,
+                }
+            }));
         });
         for (at, placed) in places.at.iter_mut().zip(&places.placed) {
             at.extend_from_slice(placed);
         }
-        let shares = listed
-            .iter()
-            .map(|listed| listed.share.max(LEAST_SHARE) as f32);
-        places.share.extend(shares);
         places.freedom.resize(listed.len(), 0.0);
         places.until.resize(listed.len(), 0);
         (self.listed, self.places, self.kin) = (listed, places, kin);
@@ -417,6 +369,9 @@ impl Settler {
         let steps = self.reaches.len();
         let mut all = Extent::NONE;
         let mut from = Extent::NONE;
+        if let Some(share) = self.lister.grade.known() {
+            return self.prepare_alike(share);
+        }
         for t in (0..steps).rev() {
             let step = t as u8 + 1;
             self.free(corner, step, (t + 1 < steps).then_some(from));
@@ -433,19 +388,45 @@ impl Settler {
         all
     }
 
-    /// Finds the freedom of the points that move up to a step: of those in an extent, or without one, those that are wanted.
-    fn free(&mut self, corner: [i128; 2], step: u8, within: Option<Extent>) {
-        let is_constant = self.grade.known().is_some();
+    /// The same where all shares are alike, so that reaches are, too.
+    fn prepare_alike(&mut self, share: f64) -> Extent {
         let Places {
             placed: [xs, ys],
             freedom,
             until,
             ..
         } = &mut self.places;
+        freedom.fill(constant(share) as f32);
+        let mut movers = Extent::NONE;
+        let points = xs.iter().zip(&*ys).zip(until.iter_mut());
+        for (((&x, &y), until), listed) in points.zip(&self.listed) {
+            if listed.is_wanted {
+                movers.add([[x, y]; 2], 0);
+            }
+            *until = if listed.is_wanted { u8::MAX } else { 0 };
+        }
+        for (t, reach) in self.reaches.iter().enumerate().rev() {
+            for ((until, &x), &y) in until.iter_mut().zip(&*xs).zip(&*ys) {
+                let is_new = (*until == 0) & movers.holds([x, y]);
+                *until = if is_new { t as u8 + 1 } else { *until };
+            }
+            let room = step_room(reach, t, [share; 2], f64::from(self.scale.unit));
+            movers = movers.widened(room);
+        }
+        movers
+    }
+
+    /// Finds the freedom of the points that move up to a step: of those in an extent, or without one, those that are wanted.
+    fn free(&mut self, corner: [i128; 2], step: u8, within: Option<Extent>) {
+        let Places {
+            placed: [xs, ys],
+            until,
+            ..
+        } = &mut self.places;
         self.freedoms.clear();
         let placed = xs.iter().zip(ys.iter());
-        let lists = self.listed.iter().zip(placed).zip(until).zip(freedom);
-        for (i, (((listed, (&x, &y)), until), freedom)) in lists.enumerate() {
+        let lists = self.listed.iter().zip(placed).zip(until);
+        for (i, ((listed, (&x, &y)), until)) in lists.enumerate() {
             let is_new = match &within {
                 None => listed.is_wanted,
                 Some(within) => *until == 0 && within.holds([x, y]),
@@ -454,28 +435,21 @@ impl Settler {
                 continue;
             }
             *until = step;
-            if is_constant {
-                *freedom = inside(listed.share) as f32;
-            } else {
-                self.freedoms.add(Candidate {
-                    point: i as u32,
-                    from_corner: [x, y],
-                    share: listed.share,
-                });
-            }
-        }
-        if is_constant {
-            return;
+            self.freedoms.add(Candidate {
+                point: i as u32,
+                from_corner: [x as i32, y as i32],
+                share: listed.share,
+            });
         }
         let (spacing, per_unit) = (
-            self.lattice.placement.spacing.get(),
-            self.lattice.step * f64::from(1u32 << self.shift),
+            self.lister.lattice.placement.spacing.get(),
+            self.lister.lattice.step * f64::from(1u32 << self.shift),
         );
         let mut freedoms = core::mem::take(&mut self.freedoms);
         let mut freedom = core::mem::take(&mut self.places.freedom);
         let mut slippery = core::mem::take(&mut self.slippery);
         freedoms.find(
-            &self.grade,
+            &self.lister.grade,
             (spacing, per_unit),
             |i| self.placed(corner, i as usize),
             |i, free, is_gentle| {
@@ -493,16 +467,23 @@ impl Settler {
 
     fn take_steps(&mut self) {
         for (step, kernel) in (1..).zip(self.kernels) {
+            let backend = self.lister.backend;
             if let Some(kin) = &mut self.kin {
-                kin.push(&mut self.places, step, self.scale, self.backend);
+                kin.push(&mut self.places, step, self.scale, backend);
             }
             self.cells
-                .step(&mut self.places, (kernel, step), self.scale, self.backend);
+                .step(&mut self.places, (kernel, step), self.scale, backend);
+        }
+        if let Some(near) = &mut self.near {
+            near.limit(&mut self.places);
         }
     }
 
     /// Puts points back that slipped over an edge.
     fn go_back(&mut self, corner: [i128; 2]) {
+        if self.lister.grade.known().is_some() {
+            return;
+        }
         for i in 0..self.listed.len() {
             let Listed {
                 is_wanted,
@@ -512,7 +493,10 @@ impl Settler {
             } = self.listed[i];
             if is_wanted && may_slip && self.places.freedom[i] > 0.0 {
                 let at = self.place(corner, i, &self.places.at);
-                let there = self.grade.share(at.map(|k| self.lattice.world(k)));
+                let there = self
+                    .lister
+                    .grade
+                    .share(at.map(|k| self.lister.lattice.world(k)));
                 if slipped(share, there) {
                     for axis in 0..2 {
                         self.places.at[axis][i] = self.places.placed[axis][i];

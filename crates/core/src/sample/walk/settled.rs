@@ -115,13 +115,15 @@ impl Pieces {
             lattice: &self.scope.lattice,
         };
         let lattice = &self.scope.lattice;
+        let is_deep = common(&ends, &self.bounds) == ends;
+        let is_inside = is_deep && inside.area.is_none() && self.clear.is_empty();
         let wants = |placed: &Placed| {
             holds(piece, placed.id)
-                && placed.side(inside.bounds) != Some(false)
+                && (is_deep || placed.side(inside.bounds) != Some(false))
                 && lattice.shows(placed.id, placed.share)
         };
         self.settler.settle(&within, wants, |settled| {
-            if inside.holds(&settled) {
+            if is_inside || inside.holds(&settled) {
                 visit(settled);
             }
         });

@@ -1,0 +1,149 @@
+//! What keeps points clear of each other in the near step, that of sets with all points.
+//!
+//! There points lie hardly farther apart than the distance D that is promised, so the limit of the other steps, half of
+//! what separates a point from D in any direction, would leave no move. Here each point is limited toward each neighbor:
+//! it approaches that by at most half of what separates the two from D. So a pair loses at most all of that, and moves
+//! away from a neighbor are free.
+//!
+//! Neighbors beyond the reach of the step are not looked at. No point goes farther than half of what separates them from D.
+
+use alloc::vec::Vec;
+
+use super::{
+    cells::Places,
+    freedom::root,
+    step::{greater, lesser},
+};
+
+/// What two points keep beyond D, in the units of a window: more than rounding takes from their distance.
+const SPARE: f64 = 4.0;
+
+/// Less than 1 by more than what rounds.
+const SURELY: f64 = 1.0 - 1.0 / 262_144.0;
+
+/// The limit of a near step, with memory to find neighbors: the points by square cells about as large as its reach.
+#[derive(Clone, Debug)]
+pub(super) struct Near {
+    /// The distances in the units of a window: D, and the reach.
+    clear: f64,
+    reach: f64,
+    corner: [f32; 2],
+    columns: usize,
+    /// By cell: the place of its first point; one more for the end.
+    starts: Vec<u32>,
+    points: Vec<u32>,
+}
+
+impl Near {
+    pub(super) fn new(clear: f64, reach: f64) -> Self {
+        Self {
+            clear,
+            reach,
+            corner: [0.0; 2],
+            columns: 0,
+            starts: Vec::new(),
+            points: Vec::new(),
+        }
+    }
+
+    /// Shortens the moves of the points of a window from the places where they were placed.
+    pub(super) fn limit(&mut self, places: &mut Places) {
+        if places.len() == 0 {
+            return;
+        }
+        self.sort(&places.placed);
+        let Places { at, placed, .. } = places;
+        for i in 0..placed[0].len() {
+            let own = [placed[0][i], placed[1][i]];
+            let go = [0, 1].map(|k| f64::from(at[k][i]) - f64::from(own[k]));
+            if go != [0.0; 2] {
+                let go = self.limited(placed, own, go);
+                at[0][i] = own[0] + go[0];
+                at[1][i] = own[1] + go[1];
+            }
+        }
+    }
+
+    /// The move of a point, shortened.
+    fn limited(&self, placed: &[Vec<f32>; 2], own: [f32; 2], go: [f64; 2]) -> [f32; 2] {
+        let free = |far: f64| (far * SURELY - self.clear - SPARE).max(0.0) * 0.5;
+        let length = root(go[0] * go[0] + go[1] * go[1]);
+        let mut part = (free(self.reach) / length).min(1.0);
+        self.visit(placed, own, |offset, far| {
+            let approach = (go[0] * offset[0] + go[1] * offset[1]) / far;
+            let free = free(far);
+            if free <= 0.0 {
+                part = 0.0;
+            } else if approach > 0.0 {
+                part = part.min(free / approach);
+            }
+        });
+        let go = go.map(|v| libm::trunc(v * part) as f32);
+        // Rounding may have turned the move a little.
+        let mut is_clear = true;
+        self.visit(placed, own, |offset, far| {
+            let approach = f64::from(go[0]) * offset[0] + f64::from(go[1]) * offset[1];
+            is_clear &= approach <= free(far) * far;
+        });
+        if is_clear { go } else { [0.0; 2] }
+    }
+
+    /// Calls `visit` with the offsets and distances of all points within reach of one.
+    fn visit(&self, placed: &[Vec<f32>; 2], own: [f32; 2], mut visit: impl FnMut([f64; 2], f64)) {
+        let [column, row] = self.cell(own);
+        let rows = (self.starts.len() - 1) / self.columns;
+        let columns = column.saturating_sub(1)..(column + 2).min(self.columns);
+        for row in row.saturating_sub(1)..(row + 2).min(rows) {
+            let [from, to] =
+                [columns.start, columns.end].map(|c| self.starts[row * self.columns + c] as usize);
+            for &other in &self.points[from..to] {
+                let at = [0, 1].map(|k: usize| placed[k][other as usize]);
+                let offset = [0, 1].map(|k: usize| f64::from(at[k]) - f64::from(own[k]));
+                let far = root(offset[0] * offset[0] + offset[1] * offset[1]);
+                if far > 0.0 && far < self.reach {
+                    visit(offset, far);
+                }
+            }
+        }
+    }
+
+    /// The column and the row of the cell of a place.
+    fn cell(&self, at: [f32; 2]) -> [usize; 2] {
+        // Somewhat larger than the reach, for what rounds.
+        let side = self.reach + 1.0;
+        [0, 1].map(|k: usize| ((f64::from(at[k]) - f64::from(self.corner[k])) / side) as usize)
+    }
+
+    /// Sorts places by cells.
+    fn sort(&mut self, placed: &[Vec<f32>; 2]) {
+        let least = |list: &[f32]| list.iter().fold(f32::INFINITY, |a, &b| lesser(b, a));
+        let most = |list: &[f32]| list.iter().fold(-f32::INFINITY, |a, &b| greater(b, a));
+        self.corner = [0, 1].map(|k: usize| least(&placed[k]));
+        let [last_column, last_row] = self.cell([0, 1].map(|k: usize| most(&placed[k])));
+        self.columns = last_column + 1;
+        self.starts.clear();
+        self.starts.resize(self.columns * (last_row + 1) + 1, 0);
+        let number = placed[0].len();
+        let cell = |near: &Self, i: usize| {
+            let [column, row] = near.cell([placed[0][i], placed[1][i]]);
+            row * near.columns + column
+        };
+        for i in 0..number {
+            let cell = cell(self, i);
+            self.starts[cell] += 1;
+        }
+        let mut before = 0;
+        for start in &mut self.starts {
+            before += *start;
+            *start = before;
+        }
+        self.points.clear();
+        self.points.resize(number, 0);
+        for i in 0..number {
+            let cell = cell(self, i);
+            self.starts[cell] -= 1;
+            let place = self.starts[cell] as usize;
+            self.points[place] = i as u32;
+        }
+    }
+}
