@@ -28,7 +28,7 @@
 //! Those with a part from 1/8 to 4/5 of all points. A rarer kind would reach so far that chunks needed many more
 //! points around them, and few of its points have another one in reach; a denser one is nearly all points, and what its
 //! own power can be is decided by the others (docs/kinds.md). If a set has none of these, its points settle as without
-//! kinds. Neither do kinds whose shares vary push each other: their points are those of the set without kinds.
+//! kinds. Kinds whose shares vary do not push each other: points are where those of the table put them.
 
 use alloc::vec::Vec;
 
@@ -43,7 +43,7 @@ use crate::{
         kernel::Backend,
         lattice::{Lattice, PointId, Settle},
     },
-    table::Shares,
+    table::{Mix, Shares},
 };
 
 /// The least and the greatest part of all points of a kind whose points push each other.
@@ -92,10 +92,10 @@ struct Kind {
 impl Kin {
     /// The kinds of a lattice, if points of some of them push each other.
     pub(super) fn new(lattice: &Lattice, settle: Settle) -> Option<Self> {
-        if lattice.is_varied() || settle.is_near() {
+        if settle.is_near() {
             return None;
         }
-        let shares = lattice.kind_parts()?;
+        let shares = lattice.table.mix()?.shares();
         let least_part = least_part(shares)?;
         let kind = |kind: usize| {
             let part = shares.of(kind as u8);
@@ -111,7 +111,8 @@ impl Kin {
             steps: Steps::of(settle),
             least_part,
             kinds: (0..shares.kinds()).map(kind).collect(),
-            lattice: lattice.clone(),
+            // Kinds that vary leave points where those of the table put them.
+            lattice: lattice.of_all_kinds(),
             cells: Cells::default(),
             sums: [Vec::new(), Vec::new()],
         })
@@ -193,7 +194,7 @@ impl Kind {
 
 /// About how much longer the points of a lattice settle near an outline than those of a set without kinds.
 pub(crate) fn weight(lattice: &Lattice) -> f64 {
-    let shares = lattice.kind_parts().filter(|_| !lattice.is_varied());
+    let shares = lattice.table.mix().map(Mix::shares);
     // Each pair of a kind pushes twice, and margins are wider.
     shares
         .and_then(least_part)

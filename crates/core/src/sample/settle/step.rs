@@ -317,10 +317,10 @@ impl Step<'_> {
                 }
             }
         }
-        for k in 0..group.number {
-            let i = group.point[k] as usize;
-            self.places.at[0][i] = to[0][k];
-            self.places.at[1][i] = to[1][k];
+        let points = group.point[..group.number].iter();
+        for (&point, (&x, &y)) in points.zip(to[0].iter().zip(&to[1])) {
+            self.places.at[0][point as usize] = x;
+            self.places.at[1][point as usize] = y;
         }
     }
 }
