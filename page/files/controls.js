@@ -12,11 +12,12 @@ import { allVariants, variantNames } from "./query.js";
 
 const AMOUNT_WORDS = { spacing: "Mean spacing", density: "Density", min_distance: "Least distance" };
 const WARP_WORDS = { "": "As the seed asks", off: "Off", on: "On", 0.5: "Half as strong", 1.5: "Stronger", 2: "Strongest" };
+const SETTLE_WORDS = { "": "As usual", 0: "Off", 1: "One step", 2: "Two steps", 3: "Three steps", 4: "Four steps" };
 const DIE = "M5 3h14a2 2 0 0 1 2 2v14a2 2 0 0 1-2 2H5a2 2 0 0 1-2-2V5a2 2 0 0 1 2-2zM8.5 8.5h.01M15.5 8.5h.01M12 12h.01M8.5 15.5h.01M15.5 15.5h.01";
 /** The slider of the amount reaches this many doublings to each side. */
 const DOUBLINGS = 3;
 /** The fields that can be wrong. */
-const FIELDS = ["profile", "alpha", "map", "amount", "seed", "warp", "field", "range", "variants", "clear"];
+const FIELDS = ["profile", "alpha", "map", "amount", "seed", "warp", "settle", "field", "range", "variants", "clear"];
 
 export class Controls {
   /** `profiles` is the server's list of tables, `fields` that of fields; `stipple` takes a picture's file. */
@@ -107,13 +108,15 @@ export class Controls {
   expert() {
     const { layer } = this;
     const standard = () => choicesOf(this.profiles, this.layer);
-    const isOpen = Boolean(layer.alpha || layer.map || layer.warp);
-    return make("details", { class: "group", id: "expert", open: isOpen }, make("summary", {}, "Pattern, map and warp"),
+    const isOpen = Boolean(layer.alpha || layer.map || layer.warp || layer.settle);
+    return make("details", { class: "group", id: "expert", open: isOpen }, make("summary", {}, "Pattern, warp and settling"),
       make("div", { class: "pair" },
         field("Pattern α", "alpha", select("alpha", (value) => this.change({ alpha: value === standard().standard ? "" : value, map: "" }))),
         field("Map size", "map", select("map", (map) => this.change({ map: map === standard().maps[0] ? "" : map })))),
       field("Warp", "warp", select("warp", (warp) => this.change({ warp })),
-        make("p", { class: "note" }, "The warp bends the pattern a little, so that no direction is special.")));
+        make("p", { class: "note" }, "The warp bends the pattern a little, so that no direction is special.")),
+      field("Settling", "settle", select("settle", (settle) => this.change({ settle })),
+        make("p", { class: "note" }, "Points that a field leaves take small steps, two as usual, until they are even. Where all points stay, one step moves the nearest apart.")));
   }
 
   /** The amount in other terms, as the server has said it. */
@@ -231,6 +234,8 @@ export class Controls {
     setOptions(set("by"), Object.entries(AMOUNT_WORDS), layer.by);
     const warps = including(Object.keys(WARP_WORDS), layer.warp).map((w) => [w, WARP_WORDS[w] ?? w]);
     setOptions(set("warp"), warps.sort((a, b) => warpOrder(a[0]) - warpOrder(b[0])), layer.warp);
+    const steps = including(Object.keys(SETTLE_WORDS), layer.settle).map((k) => [k, SETTLE_WORDS[k] ?? k]);
+    setOptions(set("settle"), steps.sort((a, b) => (a[0] || -1) - (b[0] || -1)), layer.settle);
     setOptions(set("field"), this.fieldChoices(), layer.field);
     for (const member of ["amount", "seed", "range", "variants", "clear"]) {
       const input = set(member);
@@ -286,7 +291,7 @@ export class Controls {
     const { understood, faults } = this.notes[this.picked] ?? {};
     const all = { ...faults, ...faultsBefore(this.layer, this.picked) };
     for (const id of FIELDS) fault(this.root, id, all[id]);
-    if (all.alpha || all.map || all.warp) byId("expert").open = true;
+    if (all.alpha || all.map || all.warp || all.settle) byId("expert").open = true;
     byId("about-amount").textContent = understood && !faults ? said(understood) : "";
     byId("about-profile").textContent = PROFILE_WORDS[this.layer.profile] ?? "";
     this.root.querySelector("#amount").setAttribute("aria-label", AMOUNT_WORDS[this.layer.by]);

@@ -22,6 +22,7 @@ export function setOf(layer, keep = 1) {
   if (layer.map) pairs.push(["map", layer.map]);
   pairs.push([layer.by, layer.amount.trim()], ["seed", layer.seed.trim()]);
   if (layer.warp !== "") pairs.push(["warp", layer.warp]);
+  if (layer.settle !== "") pairs.push(["settle", layer.settle]);
   if (layer.field) pairs.push(["field", layer.field]);
   if (keep < 1) pairs.push(["lod", String(keep)]);
   const attributes = attributesOf(layer);
@@ -44,7 +45,7 @@ export function joined(pairs) {
 export function memberOf(layer, keep = 1, isWhole = false) {
   const members = {};
   for (const [name, value] of setOf(layer, keep)) {
-    if (["spacing", "density", "min_distance", "lod"].includes(name)) members[name] = numberOr(value);
+    if (["spacing", "density", "min_distance", "settle", "lod"].includes(name)) members[name] = numberOr(value);
     else if (name === "warp") members[name] = value === "off" || value === "on" ? value : numberOr(value);
     else if (name === "seed") members[name] = new Digits(value);
     else if (name === "attributes") members[name] = value.split(",");

@@ -14,8 +14,8 @@ export function worldOf(layers) {
 
 /** What a layer of a world may have for the page to show it. */
 const MEMBERS = [
-  "name", "profile", "alpha", "map", ...AMOUNTS, "seed", "warp", "field", "attributes", "scale_range", "variants",
-  "clear_of",
+  "name", "profile", "alpha", "map", ...AMOUNTS, "seed", "warp", "settle", "field", "attributes", "scale_range",
+  "variants", "clear_of",
 ];
 
 /** The values of each point that a layer shows. */
@@ -73,7 +73,7 @@ async function layerOf(set, i, name, clear) {
   const by = AMOUNTS.find((amount) => amount in set);
   if (!by) throw new Error(`“${name}” has a layer without ${AMOUNTS.join(", ")}: one of them is needed.`);
   const layer = { ...LAYER, color: i, by, amount: String(set[by]), seed: textOf(set.seed ?? 0), clear };
-  for (const member of ["profile", "alpha", "map", "warp"]) if (member in set) layer[member] = String(set[member]);
+  for (const member of ["profile", "alpha", "map", "warp", "settle"]) if (member in set) layer[member] = String(set[member]);
   if (set.field) Object.assign(layer, await fieldFrom(set.field));
   for (const attribute of [set.attributes ?? []].flat()) {
     if (!ATTRIBUTES.includes(attribute)) throw new Error(`“${name}” has an attribute that this page does not show: \`${attribute}\`.`);

@@ -29,6 +29,7 @@ fn every_control_changes_the_points_and_the_url() {
         ("#seed", "18446744073709551615", "seed=18446744073709551615"),
         ("#warp", "off", "warp=off"),
         ("#warp", "2", "warp=2"),
+        ("#settle", "1", "settle=1"),
     ] {
         let hash = chosen(&browser, selector, value);
         assert!(hash.contains(part), "{selector} {value}: {hash}");

@@ -71,8 +71,8 @@ impl Proxy {
 }
 
 fn haproxy(address: SocketAddr, replicas: &[SocketAddr], trusted: Option<&Path>) -> String {
-    // Checks time out on a busy machine, and would take away replicas that are well.
-    let checked = || " check inter 100ms fall 1 rise 1".to_owned();
+    // A check that is late on a busy machine takes no replica away that is well.
+    let checked = || " check inter 100ms fall 3 rise 1".to_owned();
     let options = trusted.map_or_else(checked, |file| {
         let file = file.display();
         format!(" ssl verify required ca-file {file} verifyhost localhost no-ssl-reuse")
@@ -84,7 +84,7 @@ fn haproxy(address: SocketAddr, replicas: &[SocketAddr], trusted: Option<&Path>)
         .collect();
     format!(
         "global\n    maxconn 100\ndefaults\n    mode http\n    timeout connect 5s\n    \
-         timeout client 20s\n    timeout server 20s\n    retries 3\n    option redispatch 1\n    \
+         timeout client 20s\n    timeout server 20s\n    timeout check 3s\n    retries 3\n    option redispatch 1\n    \
          http-reuse never\n    retry-on conn-failure empty-response 503\nfrontend in\n    bind {address}\n    \
          default_backend strew\nbackend strew\n    balance roundrobin\n    \
          option httpchk GET /readyz\n{servers}"

@@ -14,6 +14,7 @@
 
 mod flat;
 mod grade;
+mod keep;
 mod kinds;
 mod line;
 mod lines;
@@ -32,12 +33,13 @@ mod world;
 
 pub(super) use flat::{Flat, Found, Inside};
 pub(super) use grade::Grade;
+pub use keep::Keep;
 pub(super) use kinds::{OneKind, check_kind};
 pub(super) use line::Line;
 pub(super) use lines::{Columns, Listed, lines_of_class, places};
 pub(super) use multiple::Multiple;
 pub(super) use patch::{BAND_WIDTH, PATCH_HEIGHT, Patch, clip_to_band};
-pub use placement::{Keep, Placement};
+pub use placement::Placement;
 pub use point::{Point, PointId};
 pub(super) use prefix::PrefixCounts;
 pub(super) use rank::{kind, rank};

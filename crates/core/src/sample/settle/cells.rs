@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::step::{ROUNDER, greater, lesser};
+use super::plain::{ROUNDER, greater, lesser};
 
 /// The number of rows of cells, and of cells in a row for each [`FINE`], is at most this.
 const MOST_ROWS: f32 = 1024.0;

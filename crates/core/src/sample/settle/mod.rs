@@ -39,9 +39,12 @@
 mod boxes;
 mod cells;
 mod freedom;
+mod guess;
 mod kin;
 mod lister;
 mod near;
+mod past;
+mod plain;
 mod reach;
 mod step;
 mod tiles;

@@ -12,7 +12,7 @@ use alloc::vec::Vec;
 use super::{
     cells::Places,
     freedom::root,
-    step::{greater, lesser},
+    plain::{greater, lesser},
 };
 
 /// What two points keep beyond D, in the units of a window: more than rounding takes from their distance.

@@ -5,7 +5,8 @@ use super::{
     cells::Places,
     freedom::{local, root},
     kin::LEAST_OF_KIN,
-    step::{Kernel, STEP, WHOLE, greater, lesser},
+    plain::{greater, lesser},
+    step::{Kernel, STEP, WHOLE},
 };
 
 /// Room for what rounds, in units of a window.

@@ -20,7 +20,7 @@
 //! A sparse point reaches far, but one that stays needs no neighbors, as where a field fades out. So boxes grow by the
 //! points that move. How far these reach is known when they are listed: a window is guessed, and listed again if need be.
 
-use alloc::{vec, vec::Vec};
+use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::{
@@ -28,11 +28,12 @@ use super::{
     boxes::{Box2, Placed, Settled, most_move, widened},
     cells::{Cells, Places},
     freedom::{Candidate, Freedoms, constant, local, root, slipped},
+    guess::guess,
     kernels,
     kin::Kin,
     lister::Lister,
     near::Near,
-    reach::{Extent, Reach, reached, step_room, whole_room},
+    reach::{Extent, Reach, reached, step_room},
     step::{Kernel, Scale},
 };
 use crate::{
@@ -53,9 +54,6 @@ const UNIT_BITS: u32 = 7;
 /// The largest distance from a window's corner, in the units of a window: single precision has all integers up to it, and
 /// their differences.
 const FARTHEST: i64 = 1 << 23;
-
-/// The places along each axis of a box at which a field is looked at to guess how sparse it is.
-const SAMPLES: usize = 9;
 
 /// Settles points, with memory of its own.
 #[derive(Clone, Debug)]
@@ -232,7 +230,12 @@ impl Settler {
             min: [0, 1].map(|i| self.offset(corner, i, within[i].start)),
             max: [0, 1].map(|i| self.offset(corner, i, within[i].end - 1)),
         };
-        let mut window = self.guess(within, own);
+        let mut window = guess(
+            &self.lister.grade,
+            (self.region(within), own),
+            &self.reaches,
+            f64::from(self.scale.unit),
+        );
         loop {
             self.list_window(corner, window, own, &mut wants);
             let needed = self.prepare(corner, window);
@@ -268,38 +271,6 @@ impl Settler {
     fn placed(&self, corner: [i128; 2], i: usize) -> [f64; 2] {
         let [x, y] = self.place(corner, i, &self.places.placed);
         [self.lister.lattice.world(x), self.lister.lattice.world(y)]
-    }
-
-    /// About where the points lie that matter to those in a box, from a window's corner.
-    fn guess(&mut self, within: &Box2, own: Extent) -> Extent {
-        let region = self.region(within);
-        let ([left, bottom], [right, top]) = (region.min(), region.max());
-        let is_constant = self.lister.grade.known().is_some();
-        let samples = if is_constant { 1 } else { SAMPLES };
-        let part = |i: usize| i as f64 / (SAMPLES - 1) as f64;
-        let parts = || (0..samples).flat_map(|i| (0..samples).map(move |k| [part(i), part(k)]));
-        let at = parts().map(|[a, b]| [left + a * (right - left), bottom + b * (top - bottom)]);
-        let at: Vec<[f64; 2]> = at.collect();
-        let mut shares = vec![0.0; at.len()];
-        self.lister.grade.shares(&at, &mut shares);
-        let sparse = shares.iter().filter(|share| **share > 0.0);
-        let least = sparse.fold(1.0f64, |a, b| a.min(*b));
-        let unit = f64::from(self.scale.unit);
-        // Points between the samples and around them may be sparser.
-        let (least, slack) = if is_constant {
-            (least, 1.0)
-        } else {
-            (0.8 * least, 1.1)
-        };
-        if is_constant {
-            return own.widened(whole_room(&self.reaches, [least; 2], unit));
-        }
-        let mut all = own;
-        for (parts, share) in parts().zip(shares) {
-            let room = whole_room(&self.reaches, [share.max(least), least], slack * unit);
-            all = all.and(own.place(parts).widened(room));
-        }
-        all
     }
 
     /// Lists the points of a window.

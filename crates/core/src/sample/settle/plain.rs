@@ -1,0 +1,60 @@
+//! Plain arithmetic in single precision, which is the same on all processors.
+
+/// What a point keeps between itself and the end of its way, in units: more than rounding takes from the distance of two
+/// points, before the step and in it.
+pub(super) const SPARE: f32 = 2.0;
+
+/// Less than 1 by more than what rounds.
+pub(super) const SURELY: f32 = 1.0 - 1.0 / 262_144.0;
+
+/// A number within ±`most`.
+#[inline(always)]
+pub(super) fn within(v: f32, most: f32) -> f32 {
+    let v = if v > most { most } else { v };
+    if v < -most { -most } else { v }
+}
+
+/// 1.5 · 2²³: a number within ±2²², added to it, is rounded to an integer, in the lower bits.
+pub(super) const ROUNDER: f32 = 12_582_912.0;
+
+/// A push, to the nearest integer, plus the bits of the rounder.
+#[inline(always)]
+pub(super) fn rounded(push: f32) -> i32 {
+    (push + ROUNDER).to_bits() as i32
+}
+
+/// The nearest integer; of two, the even one.
+#[inline(always)]
+pub(super) fn whole_number(v: f32) -> f32 {
+    (v + ROUNDER) - ROUNDER
+}
+
+#[inline(always)]
+pub(super) fn lesser(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+pub(super) fn greater(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+#[inline(always)]
+pub(super) fn above_zero(v: f32) -> f32 {
+    if v > 0.0 { v } else { 0.0 }
+}
+
+/// The square root, which rounds alike everywhere.
+pub(super) trait Root {
+    fn sqrt_(self) -> Self;
+}
+
+impl Root for f32 {
+    #[inline(always)]
+    fn sqrt_(self) -> Self {
+        #[cfg(feature = "std")]
+        return self.sqrt();
+        #[cfg(not(feature = "std"))]
+        libm::sqrtf(self)
+    }
+}
