@@ -14,11 +14,11 @@ before(async () => {
 test("points, ids and columns", () => {
     const attributes = { attributes: "angle, variant", variants: { oak: 3, birch: 1 } };
     const points = strew.points({ bbox: [0, 0, 10, 10], spacing: 1, seed: 7, ...attributes });
-    assert.equal(points.count(), 102);
-    assert.equal(points.xy().length, 204);
-    assert.equal(points.ids().length, 204);
+    assert.equal(points.count(), 100);
+    assert.equal(points.xy().length, 200);
+    assert.equal(points.ids().length, 200);
     assert.deepEqual(points.names(), ["angle", "variant"]);
-    assert.equal(points.column("angle").length, 102);
+    assert.equal(points.column("angle").length, 100);
     assert.deepEqual([...new Set(points.column("variant"))].sort(), ["birch", "oak"]);
     const [first] = points;
     assert.equal(first.x, points.xy()[0]);
@@ -44,7 +44,7 @@ test("a set without a region has chunks, neighbors and points by id", () => {
 test("parts are the whole, and their bodies are queries", () => {
     const points = strew.points({ bbox: [0, 0, 50, 50], spacing: 1, seed: 2 });
     const parts = points.split(3).map((part) => strew.query(structuredClone(part.body)));
-    assert.deepEqual(parts.map((part) => part.count()), [833, 833, 832]);
+    assert.deepEqual(parts.map((part) => part.count()), [833, 832, 832]);
     assert.deepEqual(parts.flatMap((part) => [...part.xy()]), [...points.xy()]);
 });
 

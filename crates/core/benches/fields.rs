@@ -1,7 +1,8 @@
 //! The speed of sets in fields, compared with thinned sets in the same run.
 //!
 //! `cargo bench -p strew-core --bench fields` prints medians of interleaved rounds: rasters of 512² pixels over
-//! 2000² spacings, constant shares, a mask of 16384² pixels of which 1 % is 1, and cold boxes.
+//! 2000² spacings, constant shares, a mask of 16384² pixels of which 1 % is 1, and cold boxes; all of it without
+//! settling, and by two and three steps.
 
 use std::{hint::black_box, time::Instant};
 
@@ -54,13 +55,20 @@ fn within(set: &PointSet, field: impl Field + 'static, region: Region) -> Plan {
 }
 
 fn main() {
-    let (side, size, rounds) = if is_quick() {
-        (300.0, 1024, 1)
-    } else {
-        (2000.0, 16384, 7)
+    for steps in [0, 2, 3] {
+        println!("settle={steps}");
+        measure(steps);
+    }
+}
+
+fn measure(steps: u32) {
+    let (side, size, rounds) = match steps {
+        _ if is_quick() => (200.0, 1024, 1),
+        0 => (2000.0, 16384, 7),
+        _ => (2000.0, 16384, 3),
     };
     let region = square(side);
-    let set = PointSet::blue().seed(5);
+    let set = PointSet::blue().seed(5).settle(steps).expect("0 to 4");
     let noise = Noise {
         seed: 1,
         wavelength: 50.0,
