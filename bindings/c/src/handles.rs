@@ -3,9 +3,9 @@
 #![expect(non_camel_case_types, reason = "the names of C")]
 
 #[cfg(not(target_arch = "wasm32"))]
+use std::path::Path;
 use std::{
     ffi::c_char,
-    path::Path,
     ptr,
     sync::{Arc, OnceLock},
 };
