@@ -24,6 +24,11 @@ lint:
 bench:
     cargo bench -p strew-core
 
+# What requests cost a daemon: instructions and allocations of each, beside those that are kept (needs valgrind).
+instructions *args:
+    cargo build --locked --profile profiling
+    benches/instructions.py target/profiling/strew {{args}}
+
 # The unsafe code of the kernel under AddressSanitizer, with every instruction set of this machine, and
 # under valgrind, which supports AVX2. (Miri needs a nightly toolchain and lacks most vector instructions.)
 sanitize:

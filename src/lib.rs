@@ -6,6 +6,7 @@
 //!
 //! Everything else is in the crates beside it: `strew-service` answers queries, `strew-plan` is what programs embed.
 
+pub mod body;
 pub mod cli;
 pub mod grpc;
 pub mod ops;

@@ -3,18 +3,23 @@
 
 use std::{
     convert::Infallible,
+    future::ready,
     net::{SocketAddr, TcpListener},
     sync::Arc,
 };
 
-use axum::{Router, body::Body, extract::Path, response::Response, routing};
 use bytes::Bytes;
 use futures_util::stream;
-use http::header;
+use http::{Method, header};
 use prost::Message as _;
 use strew::{
+    body::{Body, BoxError, Response},
     grpc::proto::{PointBlock, StreamPointsResponse, stream_points_response::Message},
     ops::App,
+    rest::{
+        Context, Refused,
+        api::{Endpoint, Operation, Tag},
+    },
 };
 use strew_config::Layers;
 use strew_encode::Pool;
@@ -33,8 +38,8 @@ impl Host {
         let config = layers.finish().expect("valid");
         let block_bytes = config.limits.block_bytes;
         let app = App::new(config).expect("tables and threads");
-        let routes = routes(app.service(), block_bytes);
-        let app = app.with_routes(routes);
+        let endpoints = endpoints(app.service(), block_bytes);
+        let app = app.with_endpoints(endpoints);
         let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
         let address = listener.local_addr().expect("bound");
         let runtime = tokio::runtime::Builder::new_multi_thread()
@@ -51,51 +56,59 @@ impl Host {
 
 /// `/bench/constant/{bytes}`, `/bench/copied/{bytes}`, `/bench/small/{bytes}` and the gRPC method
 /// `/bench.Constant/{bytes}`.
-fn routes(service: &Arc<Service>, block_bytes: usize) -> Router {
+fn endpoints(service: &Arc<Service>, block_bytes: usize) -> Vec<Endpoint> {
     let block = Bytes::from(noise(block_bytes));
     let framed = framed(&block);
-    let copied = (service.clone(), block.clone());
-    let small = block.clone();
-    Router::new()
-        .route(
-            "/bench/constant/{bytes}",
-            routing::get(move |Path(bytes): Path<usize>| async move {
-                let blocks =
-                    cut(bytes, block.len()).map(move |n| Ok::<_, Infallible>(block.slice(..n)));
-                answer(bytes, stream::iter(blocks))
-            }),
-        )
-        .route(
-            "/bench/copied/{bytes}",
-            routing::get(move |Path(bytes): Path<usize>| async move {
-                let (service, block) = copied;
-                let permit = service.streams().admit().expect("a place");
-                let pool = Pool::<u64>::new(block.len() / size_of::<u64>());
-                let blocks = cut(bytes, block.len()).map(move |n| {
-                    let mut buffer = pool.take();
-                    bytemuck::cast_slice_mut(&mut buffer)[..n].copy_from_slice(&block[..n]);
-                    pool.lend(buffer, n.div_ceil(size_of::<u64>()))
-                });
-                answer(bytes, service.stream(permit, blocks))
-            }),
-        )
-        .route(
-            "/bench/small/{bytes}",
-            routing::get(move |Path(bytes): Path<usize>| async move {
-                octets(Body::from(small.slice(..bytes)))
-            }),
-        )
-        .route(
-            "/bench.Constant/{bytes}",
-            routing::post(move |Path(bytes): Path<usize>| async move {
-                let frames = cut(bytes, framed.len());
-                let frames = frames.map(move |_| Ok::<_, Infallible>(framed.clone()));
-                let mut response = Response::new(Body::from_stream(stream::iter(frames)));
-                let kind = header::HeaderValue::from_static("application/grpc");
-                response.headers_mut().insert(header::CONTENT_TYPE, kind);
-                response
-            }),
-        )
+    let (constant, small) = (block.clone(), block.clone());
+    let service = service.clone();
+    vec![
+        endpoint("/bench/constant/{bytes}", Method::GET, move |bytes| {
+            let block = constant.clone();
+            let blocks =
+                cut(bytes, block.len()).map(move |n| Ok::<_, Infallible>(block.slice(..n)));
+            answer(bytes, stream::iter(blocks))
+        }),
+        endpoint("/bench/copied/{bytes}", Method::GET, move |bytes| {
+            let block = block.clone();
+            let permit = service.streams().admit().expect("a place");
+            let pool = Pool::<u64>::new(block.len() / size_of::<u64>());
+            let blocks = cut(bytes, block.len()).map(move |n| {
+                let mut buffer = pool.take();
+                bytemuck::cast_slice_mut(&mut buffer)[..n].copy_from_slice(&block[..n]);
+                pool.lend(buffer, n.div_ceil(size_of::<u64>()))
+            });
+            answer(bytes, service.stream(permit, blocks))
+        }),
+        endpoint("/bench/small/{bytes}", Method::GET, move |bytes| {
+            octets(Body::from(small.slice(..bytes)))
+        }),
+        endpoint("/bench.Constant/{bytes}", Method::POST, move |bytes| {
+            let (framed, frames) = (framed.clone(), cut(bytes, framed.len()));
+            let frames = frames.map(move |_| Ok::<_, Infallible>(framed.clone()));
+            let mut response = Response::new(Body::from_stream(stream::iter(frames)));
+            let kind = header::HeaderValue::from_static("application/grpc");
+            response.headers_mut().insert(header::CONTENT_TYPE, kind);
+            response
+        }),
+    ]
+}
+
+/// A path whose parameter is a number of bytes, open to all.
+fn endpoint(
+    path: &'static str,
+    method: Method,
+    answer: impl Fn(usize) -> Response + Clone + Send + Sync + 'static,
+) -> Endpoint {
+    let operation = Operation {
+        method,
+        ..Operation::new(Tag::Operations, vec![])
+    };
+    let answer = move |(), context: Context| {
+        let [bytes] = context.path();
+        let response = answer(bytes.parse().expect("a number of bytes"));
+        ready(Ok::<_, Refused>(response))
+    };
+    Endpoint::only(path, (), operation, answer).open()
 }
 
 /// The sizes of the blocks that make `bytes` bytes.
@@ -106,7 +119,7 @@ fn cut(bytes: usize, block: usize) -> impl Iterator<Item = usize> + Send + Unpin
 fn answer<S, E>(bytes: usize, blocks: S) -> Response
 where
     S: futures_util::Stream<Item = Result<Bytes, E>> + Send + 'static,
-    E: Into<axum::BoxError> + 'static,
+    E: Into<BoxError> + 'static,
 {
     let mut response = octets(Body::from_stream(blocks));
     let headers = response.headers_mut();

@@ -1,8 +1,8 @@
 //! Addresses of REST: a path with its parameters. Portraits of tables are left out: each
 //! takes its time once, and there is hardly a parameter to them.
 
-use axum::body::Body;
 use http::Request;
+use strew::body::Body;
 
 use super::protocols;
 

@@ -1,7 +1,7 @@
 //! Queries as JSON: a line with the path, then the body.
 
-use axum::body::Body;
 use http::Request;
+use strew::body::Body;
 
 use super::protocols;
 

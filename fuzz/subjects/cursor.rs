@@ -3,8 +3,8 @@
 //! Bytes: the query, how many points are taken before, then pairs of a place in the token and what
 //! is put there.
 
-use axum::body::Body;
 use http::{Request, StatusCode};
+use strew::body::Body;
 
 use super::protocols::{self, Answered};
 

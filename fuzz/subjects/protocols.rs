@@ -2,15 +2,18 @@
 
 use std::sync::{Arc, LazyLock};
 
-use axum::{Extension, Router, body::Body, response::Response};
-use http::{Request, StatusCode, header};
-use strew::{grpc, rest};
+use bytes::Bytes;
+use http::{StatusCode, header};
+use http_body::Body as _;
+use strew::{
+    body::{Body, BoxError, Request},
+    grpc, rest,
+};
 use strew_access::Caller;
 use strew_catalog::Catalog;
 use strew_config::{Layers, Limits};
 use strew_service::{Service, Workers};
 use tokio::runtime::Runtime;
-use tower::ServiceExt as _;
 
 /// The most points of an answer here: what is fuzzed is asking.
 pub const MOST_POINTS: u64 = 3000;
@@ -21,8 +24,8 @@ const MOST_BYTES: usize = 256 << 20;
 
 struct Protocols {
     runtime: Runtime,
-    rest: Router,
-    grpc: Router,
+    rest: rest::Routes,
+    grpc: grpc::Calls,
 }
 
 static PROTOCOLS: LazyLock<Protocols> = LazyLock::new(|| {
@@ -39,16 +42,12 @@ static PROTOCOLS: LazyLock<Protocols> = LazyLock::new(|| {
     let workers = Workers::new(1).expect("a thread");
     let service = Arc::new(Service::new(catalog, limits, workers));
     let (grpc, _) = runtime
-        .block_on(grpc::routes(service.clone()))
+        .block_on(grpc::calls(service.clone()))
         .expect("built rightly");
-    // There is no gate: everyone is let in.
-    let open = |router: Router| router.layer(Extension(Caller::default()));
     let pages = rest::Pages::default();
-    let rest::Routes { router, paths } =
-        rest::Routes::new(rest::endpoints(&service), &pages, "", open, open);
     Protocols {
-        rest: router.fallback(async move |request| rest::not_found(&request, &paths)),
-        grpc: open(grpc.into_axum_router()),
+        rest: rest::Routes::new(rest::endpoints(&service), &pages, ""),
+        grpc,
         runtime,
     }
 });
@@ -66,12 +65,17 @@ impl Answered {
 }
 
 /// Asks by REST. The answer is one that may be, or this panics.
-pub fn ask(request: Request<Body>) -> Answered {
+pub fn ask(request: Request) -> Answered {
     let protocols = &*PROTOCOLS;
     let answered = protocols.runtime.block_on(async {
-        let response = protocols.rest.clone().oneshot(request).await;
-        let (head, body) = response.unwrap_or_else(|never| match never {}).into_parts();
-        let body = axum::body::to_bytes(body, MOST_BYTES).await;
+        let path = request.uri().path().to_owned();
+        let response = match protocols.rest.find(&path) {
+            // There is no gate: everyone is let in.
+            Some(found) => found.answer(request, Caller::default()).await,
+            None => protocols.rest.nothing(&path),
+        };
+        let (head, body) = response.into_parts();
+        let body = body.whole(MOST_BYTES).await;
         let body = body.expect("an answer ends as it should").to_vec();
         Answered { head, body }
     });
@@ -114,19 +118,15 @@ pub fn call(method: &str, message: &[u8]) -> (u32, String) {
     let mut frame = vec![0];
     frame.extend(u32::try_from(message.len()).expect("short").to_be_bytes());
     frame.extend(message);
-    let request = Request::post(format!("/strew.v1.PointService/{method}"))
+    let request = http::Request::post(format!("/strew.v1.PointService/{method}"))
         .version(http::Version::HTTP_2)
         .header(header::CONTENT_TYPE, "application/grpc")
         .header(header::TE, "trailers")
+        .extension(Caller::default())
         .body(Body::from(frame))
         .expect("a request");
     protocols.runtime.block_on(async {
-        let response: Response = protocols
-            .grpc
-            .clone()
-            .oneshot(request)
-            .await
-            .unwrap_or_else(|never| match never {});
+        let response = protocols.grpc.answer(request).await;
         let (head, mut body) = response.into_parts();
         let mut trailers = head.headers;
         while let Some(frame) = next(&mut body).await {
@@ -141,7 +141,6 @@ pub fn call(method: &str, message: &[u8]) -> (u32, String) {
     })
 }
 
-async fn next(body: &mut Body) -> Option<Result<http_body::Frame<axum::body::Bytes>, axum::Error>> {
-    use http_body::Body as _;
+async fn next(body: &mut Body) -> Option<Result<http_body::Frame<Bytes>, BoxError>> {
     std::future::poll_fn(|context| std::pin::Pin::new(&mut *body).poll_frame(context)).await
 }

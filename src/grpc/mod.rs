@@ -1,5 +1,6 @@
 //! gRPC: messages in, streamed messages out. It decides nothing itself.
 
+mod calls;
 mod compression;
 mod deadline;
 mod direct;
@@ -27,9 +28,11 @@ use std::sync::Arc;
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use bytes::Bytes;
 use http::{HeaderMap, HeaderValue};
-use tonic::{Status, server::NamedService, service::Routes};
+use tonic::{Status, server::NamedService};
 use tonic_health::server::HealthReporter;
 
+use calls::answering;
+pub use calls::{Calls, route};
 pub use deadline::Deadline;
 use direct::Direct;
 use points::Points;
@@ -90,12 +93,11 @@ pub const fn code_name(code: u32) -> &'static str {
 /// Why the gRPC routes cannot be built: the contract's descriptors do not read.
 pub type BuildError = tonic_reflection::server::Error;
 
-/// The routes of gRPC, with reflection and health, and the handle that reports to health checks
-/// when the daemon stops.
+/// The calls of gRPC, with reflection and health, and the handle that reports to health checks when the daemon stops.
 ///
 /// # Errors
 /// Never, unless the program was built wrongly.
-pub async fn routes(service: Arc<Service>) -> Result<(Routes, Health), BuildError> {
+pub async fn calls(service: Arc<Service>) -> Result<(Calls, Health), BuildError> {
     let (reporter, health) = tonic_health::server::health_reporter();
     reporter.set_serving::<PointServiceServer<Points>>().await;
     let reflection = || {
@@ -112,15 +114,17 @@ pub async fn routes(service: Arc<Service>) -> Result<(Routes, Health), BuildErro
         inner: points,
         service,
     };
-    let routes = Routes::new(points)
-        .add_service(health.max_decoding_message_size(NAMES))
-        .add_service(reflection().build_v1()?.max_decoding_message_size(NAMES))
-        .add_service(
+    let calls = Calls::new([
+        answering(points),
+        answering(health.max_decoding_message_size(NAMES)),
+        answering(reflection().build_v1()?.max_decoding_message_size(NAMES)),
+        answering(
             reflection()
                 .build_v1alpha()?
                 .max_decoding_message_size(NAMES),
-        );
-    Ok((routes, Health { reporter }))
+        ),
+    ]);
+    Ok((calls, Health { reporter }))
 }
 
 /// Sets what the standard health service reports.

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use axum::{extract::State, response::Response};
 use http::Method;
 use strew_error::Kind;
 
 use super::reload::{Cause, Done, Reloader};
+use crate::body::Response;
 use crate::rest::{
     Context, Refused,
     api::{Answer, Endpoint, Operation, Tag},
@@ -29,10 +29,7 @@ pub(super) fn endpoint(reloader: Arc<Reloader>) -> Endpoint {
     Endpoint::only("/v1/tables:reload", reloader, operation, reload)
 }
 
-async fn reload(
-    State(reloader): State<Arc<Reloader>>,
-    context: Context,
-) -> Result<Response, Refused> {
+async fn reload(reloader: Arc<Reloader>, context: Context) -> Result<Response, Refused> {
     context.caller.must_be_admin()?;
     let reload = reloader.reload(Cause::Request).await?;
     Ok(json(&reload)?)

@@ -1,77 +1,133 @@
 //! gRPC calls on the common port: native ones, those of web pages (gRPC-Web), and requests to their
 //! paths that are not calls.
 
-use std::sync::Arc;
-
-use axum::{
-    Router,
-    body::Body,
-    extract::Request,
-    middleware::{self, Next},
-    response::Response,
+use std::{
+    convert::Infallible,
+    pin::{Pin, pin},
+    sync::Arc,
+    task::{Context, Poll},
 };
+
 use http::Version;
 use http_body_util::BodyExt as _;
+use parking_lot::Mutex;
 use strew_access::Gate;
 use strew_service::Record;
+use tonic::codegen::Service;
 use tonic_web::GrpcWebLayer;
+use tower_layer::Layer as _;
 
 use super::{
     dialect::Dialect,
-    exchange::{Intake, grpc_code},
+    exchange::{Intake, Visit, grpc_code},
     gate,
 };
-use crate::{grpc, rest};
+use crate::{
+    body::{Body, Request, Response},
+    grpc, rest,
+};
 
-/// The routes of gRPC, behind the gate. (The last layer is the first to see a request.)
-pub(super) fn routes(grpc: Router, gate: Arc<Gate>, intake: &Intake) -> Router {
-    intake
-        .before(grpc)
-        .layer(middleware::from_fn_with_state(gate, gate::of_calls))
-        .layer(middleware::from_fn(on_terms))
-        .layer(GrpcWebLayer::new())
-        .layer(middleware::from_fn(only_calls))
+/// The calls of gRPC, behind the gate. Cheap to clone.
+#[derive(Clone, Debug)]
+pub(super) struct Calls {
+    pub(super) calls: grpc::Calls,
+    pub(super) gate: Arc<Gate>,
+    pub(super) intake: Intake,
 }
 
-/// Rejects requests that are not calls with a problem document instead of a gRPC status.
-async fn only_calls(request: Request, next: Next) -> Response {
-    match Dialect::of(request.headers()) {
-        Dialect::Rest => rest::not_a_call(&request),
-        Dialect::Grpc if request.version() < Version::HTTP_2 => rest::needs_http2(&request),
-        _ => next.run(request).await,
-    }
-}
-
-/// Calls are answered as compressed as they ask, and in time.
-async fn on_terms(mut request: Request, next: Next) -> Response {
-    let mut response = match grpc::terms(request.headers_mut()) {
-        Err(refusal) => refusal.into_http::<Body>(),
-        Ok(None) => next.run(request).await,
-        Ok(Some(deadline)) => {
-            let mut response = match deadline.answer(next.run(request)).await {
-                Ok(response) => response,
-                Err(late) => late.into_http::<Body>(),
-            };
-            // The exchange ends with it, also after the head.
-            response.extensions_mut().insert(deadline);
-            response
-        }
-    };
-    grpc::improve(response.headers_mut());
-    let Some(record) = Record::current() else {
-        return response;
-    };
-    if let Some(code) = grpc_code(response.headers()) {
-        record.ended(code);
-        return response;
-    }
-    // Noted here, because the body of a web page's call has its trailers in data.
-    response.map(|body| {
-        Body::new(body.map_frame(move |frame| {
-            if let Some(code) = frame.trailers_ref().and_then(grpc_code) {
-                record.ended(code);
+impl Calls {
+    /// Answers a request to the path of a call. What is no call gets a problem document instead of a gRPC status.
+    pub(super) async fn answer(&self, mut visit: Box<Visit>) -> Response {
+        let request = &mut visit.request;
+        match visit.dialect {
+            Dialect::Rest => rest::not_a_call(request),
+            Dialect::Grpc if request.version() < Version::HTTP_2 => rest::needs_http2(request),
+            Dialect::Grpc => self.on_terms(visit).await,
+            Dialect::GrpcWeb | Dialect::GrpcWebText => {
+                let request = std::mem::take(request);
+                let inner = OfPage {
+                    calls: self.clone(),
+                    visit: Arc::new(Mutex::new(Some(visit))),
+                };
+                let answer = GrpcWebLayer::new().layer(inner).call(request).await;
+                answer.unwrap_or_else(|never| match never {}).map(Body::new)
             }
-            frame
-        }))
-    })
+        }
+    }
+
+    /// Calls are answered as compressed as they ask, and in time.
+    async fn on_terms(&self, mut visit: Box<Visit>) -> Response {
+        let mut response = match grpc::terms(visit.request.headers_mut()) {
+            Err(refusal) => refusal.into_http::<tonic::body::Body>().map(Body::new),
+            Ok(None) => self.admitted(visit).await,
+            Ok(Some(deadline)) => {
+                let answer = pin!(self.admitted(visit));
+                let mut response = match deadline.answer(answer).await {
+                    Ok(response) => response,
+                    Err(late) => late.into_http::<tonic::body::Body>().map(Body::new),
+                };
+                // The exchange ends with it, also after the head.
+                response.extensions_mut().insert(deadline);
+                response
+            }
+        };
+        grpc::improve(response.headers_mut());
+        let Some(record) = Record::current() else {
+            return response;
+        };
+        if let Some(code) = grpc_code(response.headers()) {
+            record.ended(code);
+            return response;
+        }
+        // Noted here, because the body of a web page's call has its trailers in data.
+        response.map(|body| {
+            Body::new(body.map_frame(move |frame| {
+                if let Some(code) = frame.trailers_ref().and_then(grpc_code) {
+                    record.ended(code);
+                }
+                frame
+            }))
+        })
+    }
+
+    async fn admitted(&self, mut visit: Box<Visit>) -> Response {
+        match gate::of_calls(&self.gate, &visit.client, &visit.request) {
+            Ok(Some(caller)) => {
+                visit.request.extensions_mut().insert(caller);
+            }
+            Ok(None) => {}
+            Err(denied) => return grpc::refusal(&denied.into()).map(Body::new),
+        }
+        let answer = |request: Request| self.calls.answer(request);
+        self.intake.answer(visit, answer).await
+    }
+}
+
+/// The inside of a call of a web page, once it reads like any other.
+#[derive(Clone)]
+struct OfPage {
+    calls: Calls,
+    /// All of the request but itself: there is one.
+    visit: Arc<Mutex<Option<Box<Visit>>>>,
+}
+
+impl Service<http::Request<tonic::body::Body>> for OfPage {
+    type Response = Response;
+    type Error = Infallible;
+    type Future = Pin<Box<dyn Future<Output = Result<Response, Infallible>> + Send>>;
+
+    fn poll_ready(&mut self, _: &mut Context<'_>) -> Poll<Result<(), Infallible>> {
+        Poll::Ready(Ok(()))
+    }
+
+    fn call(&mut self, request: http::Request<tonic::body::Body>) -> Self::Future {
+        let Self { calls, visit } = self.clone();
+        Box::pin(async move {
+            let Some(mut visit) = visit.lock().take() else {
+                return Ok(grpc::unimplemented().map(Body::new));
+            };
+            visit.request = request.map(Body::new);
+            Ok(calls.on_terms(visit).await)
+        })
+    }
 }

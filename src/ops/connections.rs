@@ -4,15 +4,13 @@
 //! Each connection is a task that runs the HTTP library over a guarded socket. Beyond the limit a
 //! client is refused. A connection frees its place when the client leaves, is idle, or takes nothing.
 
-use std::{io, net::SocketAddr, sync::Arc, time::Duration};
+use std::{io, net::SocketAddr, pin::Pin, sync::Arc, time::Duration};
 
-use axum::{Router, body::Body};
 use http::{Request, Response};
 use hyper::{body::Incoming, service::Service as HyperService};
 use hyper_util::{
     rt::{TokioExecutor, TokioIo, TokioTimer},
     server::conn::auto::Builder,
-    service::TowerToHyperService,
 };
 use prometheus::IntCounter;
 use strew_access::{Gate, InUse, OneOf, Quota};
@@ -27,13 +25,14 @@ use tokio_util::{sync::CancellationToken, task::TaskTracker};
 
 use super::{
     exchange::{Fate, OpenExchanges},
+    front::Front,
     guarded::{FirstWords, WriteTimeout},
     throttle::LogThrottle,
     tls::Tls,
 };
-use crate::rest;
+use crate::{body::Body, rest};
 
-/// Who asks: every request carries it among its extensions.
+/// Who asks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Peer(pub SocketAddr);
 
@@ -115,7 +114,7 @@ impl Connections {
     }
 
     /// Takes connections until [`close`](Self::close).
-    pub(super) async fn take(&self, listener: TcpListener, router: Router) {
+    pub(super) async fn take(&self, listener: TcpListener, front: Arc<Front>) {
         let shared = &self.shared;
         loop {
             let taken = tokio::select! {
@@ -124,7 +123,7 @@ impl Connections {
                 taken = listener.accept() => taken,
             };
             match taken {
-                Ok((stream, peer)) => self.place(stream, peer, &router),
+                Ok((stream, peer)) => self.place(stream, peer, &front),
                 Err(error) if is_of_the_client(&error) => {}
                 Err(error) => {
                     if let Some(times) = shared.failed.record() {
@@ -137,14 +136,14 @@ impl Connections {
     }
 
     /// Gives a connection a place, or refuses it.
-    fn place(&self, stream: TcpStream, peer: SocketAddr, router: &Router) {
+    fn place(&self, stream: TcpStream, peer: SocketAddr, front: &Arc<Front>) {
         let shared = self.shared.clone();
         match shared.places_of(peer) {
             Ok(places) => {
-                let router = router.clone();
+                let front = front.clone();
                 let running = shared.running.clone();
                 running.spawn(async move {
-                    shared.serve(stream, peer, router).await;
+                    shared.serve(stream, peer, front).await;
                     drop(places);
                 });
             }
@@ -194,13 +193,13 @@ impl Shared {
         Ok((place, of_address.transpose()?))
     }
 
-    async fn serve(&self, stream: TcpStream, peer: SocketAddr, router: Router) {
+    async fn serve(&self, stream: TcpStream, peer: SocketAddr, front: Arc<Front>) {
         let _ = stream.set_nodelay(true);
         #[cfg(any(target_os = "android", target_os = "linux"))]
         let _ = socket2::SockRef::from(&stream).set_tcp_notsent_lowat(UNSENT);
         let stream = WriteTimeout::new(stream, self.patience.stalled);
         match &self.tls {
-            None => self.converse(stream, peer, router).await,
+            None => self.converse(stream, peer, front).await,
             Some(tls) => {
                 let handshake = tls.acceptor().accept(stream);
                 let handshake = tokio::time::timeout(self.patience.opening, handshake);
@@ -209,7 +208,7 @@ impl Shared {
                     () = self.closing.cancelled() => return,
                 };
                 match shaken {
-                    Ok(Ok(stream)) => self.converse(stream, peer, router).await,
+                    Ok(Ok(stream)) => self.converse(stream, peer, front).await,
                     Ok(Err(error)) => self.no_handshake(peer, &error.to_string()),
                     Err(_) => self.no_handshake(peer, "it took too long"),
                 }
@@ -226,13 +225,13 @@ impl Shared {
         }
     }
 
-    async fn converse<S>(&self, stream: S, peer: SocketAddr, router: Router)
+    async fn converse<S>(&self, stream: S, peer: SocketAddr, front: Arc<Front>)
     where
         S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
     {
         let open = OpenExchanges::new();
         let service = Answers {
-            router: TowerToHyperService::new(router),
+            front,
             peer: Peer(peer),
             open: open.clone(),
         };
@@ -300,7 +299,7 @@ fn http(settings: &Server) -> Builder<TokioExecutor> {
 
 /// Answers the requests of one connection.
 struct Answers {
-    router: TowerToHyperService<Router>,
+    front: Arc<Front>,
     peer: Peer,
     open: Arc<OpenExchanges>,
 }
@@ -308,13 +307,12 @@ struct Answers {
 impl HyperService<Request<Incoming>> for Answers {
     type Response = Response<Body>;
     type Error = std::convert::Infallible;
-    type Future = <TowerToHyperService<Router> as HyperService<Request<Incoming>>>::Future;
+    type Future = Pin<Box<dyn Future<Output = Result<Response<Body>, Self::Error>> + Send>>;
 
-    fn call(&self, mut request: Request<Incoming>) -> Self::Future {
-        let extensions = request.extensions_mut();
-        extensions.insert(self.peer);
-        extensions.insert(self.open.clone());
-        self.router.call(request)
+    fn call(&self, request: Request<Incoming>) -> Self::Future {
+        let (front, peer, open) = (self.front.clone(), self.peer, self.open.clone());
+        let request = request.map(Body::incoming);
+        Box::pin(async move { Ok(front.answer(peer, &open, request).await) })
     }
 }
 

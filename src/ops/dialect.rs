@@ -1,9 +1,5 @@
 //! The protocol that a client speaks, and how refusals and broken answers are said in it.
 
-use axum::{
-    body::Body,
-    response::{IntoResponse as _, Response},
-};
 use bytes::Bytes;
 use http::{HeaderMap, header};
 use http_body::Frame;
@@ -11,7 +7,11 @@ use strew_error::Error;
 use strew_service::Interrupted;
 
 use super::metrics::Protocol;
-use crate::{grpc, rest::Refused};
+use crate::{
+    body::{Body, BoxError, Response},
+    grpc,
+    rest::Refused,
+};
 
 /// The protocol of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,9 +34,6 @@ pub(super) enum Ending {
     /// The deadline of the client is over.
     Deadline(grpc::Deadline),
 }
-
-/// An error as the readers of bodies find it.
-pub(super) type BoxError = Box<dyn std::error::Error + Send + Sync>;
 
 impl Dialect {
     /// The protocol of a request with these headers: calls have content types of their own.
@@ -72,7 +69,7 @@ impl Dialect {
         if self.is_call() {
             grpc::refusal(error).map(Body::new)
         } else {
-            Refused(error.clone()).into_response()
+            Refused(error.clone()).response()
         }
     }
 
@@ -87,10 +84,10 @@ impl Dialect {
 
     /// The last frame of an answer that is not complete. Calls end with a status, others with an
     /// error, which the client sees as a broken connection or stream.
-    pub(super) fn ending(self, why: Ending) -> Option<Result<Frame<Bytes>, axum::Error>> {
+    pub(super) fn ending(self, why: Ending) -> Option<Result<Frame<Bytes>, BoxError>> {
         let trailers = match why {
             Ending::Interrupted(why) if !self.is_call() => {
-                return Some(Err(axum::Error::new(why)));
+                return Some(Err(why.into()));
             }
             Ending::Interrupted(why) => grpc::interrupted(why),
             Ending::Deadline(deadline) => deadline.trailers(),

@@ -4,20 +4,15 @@
 //! other. Open to all are `/livez`, `/readyz`, the pages with the description of the API, and of gRPC
 //! health and reflection: probes have no keys, and what the API looks like is no secret.
 
-use std::{net::IpAddr, sync::Arc};
-
-use axum::{
-    body::Body,
-    extract::{Request, State},
-    middleware::Next,
-    response::{IntoResponse as _, Response},
-};
 use http::{HeaderMap, HeaderName, HeaderValue, header};
-use strew_access::{Caller, Gate, Usage};
+use strew_access::{Caller, Gate};
 use strew_error::{Denied, Level};
 
 use super::exchange::Client;
-use crate::{grpc, rest::Refused};
+use crate::{
+    body::{Request, Response},
+    rest::Refused,
+};
 
 const API_KEY: HeaderName = HeaderName::from_static("x-api-key");
 const RATE_LIMIT: HeaderName = HeaderName::from_static("ratelimit");
@@ -26,70 +21,42 @@ const RATE_LIMIT_POLICY: HeaderName = HeaderName::from_static("ratelimit-policy"
 /// The services of gRPC that are open to all.
 const OPEN: [&str; 2] = ["/grpc.health.", "/grpc.reflection."];
 
-/// The gate of REST.
-pub(super) async fn of_rest(
-    State(gate): State<Arc<Gate>>,
-    mut request: Request,
-    next: Next,
-) -> Response {
-    let (mut response, level) = match admit(&gate, &request) {
-        Ok(caller) => {
-            request.extensions_mut().insert(caller.clone());
-            let response = next.run(request).await;
-            (response, caller.level())
-        }
-        Err(denied) => {
-            let level = match &denied {
-                Denied::TooFast { short, .. } => Some(short.level),
-                _ => None,
-            };
-            (Refused::from(denied).into_response(), level)
-        }
-    };
-    if let Some(level) = level {
-        add_rate_limit(level, response.headers_mut());
-    }
-    response
+/// The caller of a request of REST, if it is let in.
+pub(super) fn of_rest(gate: &Gate, client: &Client, headers: &HeaderMap) -> Result<Caller, Denied> {
+    gate.admit(shown(headers), client.address, client.usage.clone())
 }
 
-/// The gate of gRPC.
-pub(super) async fn of_calls(
-    State(gate): State<Arc<Gate>>,
-    mut request: Request,
-    next: Next,
-) -> Response {
+/// The answer to a request that is not let in, and the level of its rate.
+pub(super) fn refused(denied: Denied) -> (Response, Option<Level>) {
+    let level = match &denied {
+        Denied::TooFast { short, .. } => Some(short.level),
+        _ => None,
+    };
+    (Refused::from(denied).response(), level)
+}
+
+/// The caller of a call, if it is let in; none for what is open to all.
+pub(super) fn of_calls(
+    gate: &Gate,
+    client: &Client,
+    request: &Request,
+) -> Result<Option<Caller>, Denied> {
     let path = request.uri().path();
-    if !OPEN.iter().any(|open| path.starts_with(open)) {
-        match admit(&gate, &request) {
-            Ok(caller) => {
-                request.extensions_mut().insert(caller);
-            }
-            Err(denied) => return grpc::refusal(&denied.into()).map(Body::new),
-        }
+    if OPEN.iter().any(|open| path.starts_with(open)) {
+        return Ok(None);
     }
-    next.run(request).await
+    of_rest(gate, client, request.headers()).map(Some)
 }
 
 /// The gate of the administrators' own address: every client there is an administrator, except web
 /// pages, which can reach what their reader's browser can.
-pub(super) async fn of_admins(mut request: Request, next: Next) -> Response {
-    if request.headers().contains_key(header::ORIGIN) {
-        let denied = Denied::NotAdmin {
+pub(super) fn of_admins(headers: &HeaderMap) -> Result<Caller, Denied> {
+    if headers.contains_key(header::ORIGIN) {
+        return Err(Denied::NotAdmin {
             name: Some("of a web page".into()),
-        };
-        return Refused::from(denied).into_response();
+        });
     }
-    request.extensions_mut().insert(Caller::admin());
-    next.run(request).await
-}
-
-fn admit(gate: &Gate, request: &Request) -> Result<Caller, Denied> {
-    let client = request.extensions().get::<Client>();
-    let (address, usage) = match client {
-        Some(client) => (client.address, client.usage.clone()),
-        None => (IpAddr::from([0, 0, 0, 0]), Usage::unlimited()),
-    };
-    gate.admit(shown(request.headers()), address, usage)
+    Ok(Caller::admin())
 }
 
 /// The key of a request: `x-api-key`, or else `Authorization` of the scheme Bearer.
@@ -103,8 +70,11 @@ fn shown(headers: &HeaderMap) -> Option<&[u8]> {
     })
 }
 
-/// Adds the headers that describe a rate (draft-ietf-httpapi-ratelimit-headers).
-fn add_rate_limit(level: Level, headers: &mut HeaderMap) {
+/// Adds the headers that describe a rate (draft-ietf-httpapi-ratelimit-headers), if there is one.
+pub(super) fn tell(level: Option<Level>, headers: &mut HeaderMap) {
+    let Some(level) = level else {
+        return;
+    };
     let rate = level.rate;
     let burst = rate.burst_points as u64;
     let window = (rate.burst_points / rate.points_per_second).ceil().max(1.0) as u64;

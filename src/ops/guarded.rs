@@ -11,10 +11,12 @@ use std::{
     time::Duration,
 };
 
+use bytes::BufMut as _;
 use tokio::{
     io::{AsyncRead, AsyncWrite, ReadBuf},
     time::{Instant, Sleep, sleep},
 };
+use tokio_util::io::poll_read_buf;
 
 /// The bytes that are read at once. The HTTP library reads into a buffer of 8 KiB, which it doubles each time it
 /// is filled: a connection would then hold 256 KiB until it is closed.
@@ -52,11 +54,10 @@ impl<S: AsyncRead + Unpin> AsyncRead for FirstWords<S> {
         cx: &mut Context<'_>,
         buffer: &mut ReadBuf<'_>,
     ) -> Poll<io::Result<()>> {
-        let room = buffer.remaining().min(AT_ONCE);
-        let mut part = ReadBuf::new(buffer.initialize_unfilled_to(room));
-        let polled = Pin::new(&mut self.stream).poll_read(cx, &mut part);
-        let read = part.filled().len();
-        buffer.advance(read);
+        let before = buffer.filled().len();
+        let mut room = buffer.limit(AT_ONCE);
+        let polled = poll_read_buf(Pin::new(&mut self.stream), cx, &mut room);
+        let read = buffer.filled().len() - before;
         if let Some(deadline) = &mut self.deadline {
             match &polled {
                 Poll::Pending => {
@@ -72,7 +73,7 @@ impl<S: AsyncRead + Unpin> AsyncRead for FirstWords<S> {
                 }
             }
         }
-        polled
+        polled.map_ok(|_| ())
     }
 }
 

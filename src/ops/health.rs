@@ -8,7 +8,6 @@ use std::{
     time::Duration,
 };
 
-use axum::{extract::State, response::Response};
 use http::StatusCode;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -17,9 +16,10 @@ use strew_service::{Pulse, Service, Workers};
 use tokio::sync::watch;
 
 use crate::{
+    body::Response,
     grpc::Health,
     rest::{
-        self, Refused,
+        self, Context, Refused,
         api::{Answer, Endpoint, Operation, Tag},
     },
 };
@@ -93,7 +93,6 @@ pub fn endpoints(readiness: Readiness, service: Arc<Service>) -> Vec<Endpoint> {
         ],
         "/readyz",
     );
-    let live = || async { Ok::<_, Refused>(momentary(StatusCode::OK, &Alive { alive: true })?) };
     vec![
         Endpoint::only("/livez", (), alive, live).open(),
         Endpoint::only("/readyz", (readiness, service), is_ready, ready).open(),
@@ -138,8 +137,13 @@ struct Ready {
     streams: usize,
 }
 
+async fn live((): (), _: Context) -> Result<Response, Refused> {
+    Ok(momentary(StatusCode::OK, &Alive { alive: true })?)
+}
+
 async fn ready(
-    State((readiness, service)): State<(Readiness, Arc<Service>)>,
+    (readiness, service): (Readiness, Arc<Service>),
+    _: Context,
 ) -> Result<Response, Refused> {
     let ready = readiness.is_ready();
     let status = if ready {

@@ -8,6 +8,7 @@ mod dialect;
 mod exchange;
 pub mod exposure;
 pub mod files;
+mod front;
 mod gate;
 mod guarded;
 pub mod health;

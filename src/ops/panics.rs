@@ -1,30 +1,24 @@
 //! A panic is a bug, and stays one request's: it is logged, answered as an internal error in the
 //! client's own language, and the connection goes on.
 
-use std::{any::Any, panic::AssertUnwindSafe};
+use std::{any::Any, panic::AssertUnwindSafe, pin::Pin};
 
-use axum::{
-    extract::{Request, State},
-    middleware::Next,
-    response::Response,
-};
 use futures_util::FutureExt as _;
 use strew_error::Error;
 
 use super::{dialect::Dialect, metrics::Metrics};
+use crate::body::Response;
 
 /// Answers what panics.
 pub(super) async fn answered(
-    State(metrics): State<Metrics>,
-    request: Request,
-    next: Next,
+    metrics: &Metrics,
+    dialect: Dialect,
+    answer: Pin<&mut (impl Future<Output = Response> + Send)>,
 ) -> Response {
-    let dialect = Dialect::of(request.headers());
-    let path = request.uri().path().to_owned();
-    let answer = AssertUnwindSafe(next.run(request)).catch_unwind().await;
+    let answer = AssertUnwindSafe(answer).catch_unwind().await;
     answer.unwrap_or_else(|panic| {
         metrics.panics.inc();
-        tracing::error!(path, panic = said(&*panic), "a handler panicked");
+        tracing::error!(panic = said(&*panic), "a handler panicked");
         let error = Error::Internal("the request could not be answered");
         dialect.refusal(&error)
     })

@@ -2,7 +2,6 @@
 
 use std::{io, net::TcpListener, sync::Arc, time::Duration};
 
-use axum::{Router, extract::Request, middleware, response::Response};
 use strew_access::{Gate, KeysError};
 use strew_catalog::{
     Catalog, CatalogError,
@@ -17,20 +16,22 @@ use strew_service::{Service, Workers};
 use tokio_util::task::AbortOnDropHandle;
 
 use super::{
-    admin, calls,
+    admin,
+    calls::Calls,
     connections::Connections,
-    dialect::Dialect,
     exchange::{self, Exchanges, Intake},
-    gate,
+    front::{Admission, Front},
     health::{self, Readiness},
     metrics::{self, Metrics},
-    panics,
     reload::{Reloader, Watched},
     shutdown::Hangups,
     spans::{Collector, Spans, SpansError},
     tls::{Tls, TlsError},
 };
-use crate::{grpc, rest};
+use crate::{
+    grpc,
+    rest::{self, Routes, api::Endpoint},
+};
 
 /// Why the daemon cannot start or go on.
 #[derive(Debug, thiserror::Error)]
@@ -85,7 +86,7 @@ pub struct App {
     collector: Option<Collector>,
     spans: Option<Spans>,
     pages: rest::Pages,
-    more: Router,
+    more: Vec<Endpoint>,
 }
 
 impl App {
@@ -143,7 +144,7 @@ impl App {
             collector,
             spans: None,
             pages: rest::Pages::default(),
-            more: Router::new(),
+            more: vec![],
         })
     }
 
@@ -154,10 +155,10 @@ impl App {
         self
     }
 
-    /// Serves further routes on the same port, behind the same layers.
+    /// Serves further paths on the same port, which are not described.
     #[must_use]
-    pub fn with_routes(mut self, routes: Router) -> Self {
-        self.more = self.more.merge(routes);
+    pub fn with_endpoints(mut self, more: Vec<Endpoint>) -> Self {
+        self.more = more;
         self
     }
 
@@ -181,7 +182,7 @@ impl App {
         self.admin.as_ref()?.local_addr().ok()
     }
 
-    /// The routes that it serves.
+    /// What it serves.
     #[must_use]
     pub const fn service(&self) -> &Arc<Service> {
         &self.service
@@ -217,7 +218,7 @@ impl App {
         let begin = forging.clone();
         let _ = tokio::task::spawn_blocking(move || begin.resume()).await;
         let readiness = Readiness::within(config::seconds(self.config.server.ready_within_seconds));
-        let (router, grpc_health) = self.router(readiness.clone()).await?;
+        let (front, grpc_health) = self.front(readiness.clone()).await?;
         let watch = readiness.clone();
         let watch = watch.watch(self.service.workers().clone(), grpc_health.clone());
         let _pulse = AbortOnDropHandle::new(tokio::spawn(watch));
@@ -226,19 +227,16 @@ impl App {
         let server = &self.config.server;
         let admins = Connections::new(server, self.tls.clone(), None, handshakes.clone());
         if let Some(listener) = self.admin.take() {
-            let (listener, router) = (
-                asynchronous(listener)?,
-                self.admin_router(readiness.clone()),
-            );
+            let (listener, front) = (asynchronous(listener)?, self.admin_front(readiness.clone()));
             let admins = admins.clone();
-            tokio::spawn(async move { admins.take(listener, router).await });
+            tokio::spawn(async move { admins.take(listener, Arc::new(front)).await });
         }
         let _admins = EndOnDrop(admins);
         let gate = Some(self.gate.clone());
         let connections = Connections::new(server, self.tls.clone(), gate, handshakes.clone());
         let taking = tokio::spawn({
             let connections = connections.clone();
-            async move { connections.take(listener, router).await }
+            async move { connections.take(listener, Arc::new(front)).await }
         });
         shutdown.await;
         readiness.close();
@@ -285,78 +283,60 @@ impl App {
         }))
     }
 
-    /// Both protocols, health, and one fallback for all.
-    async fn router(&self, readiness: Readiness) -> Result<(Router, grpc::Health), ServeError> {
-        let (grpc, grpc_health) = grpc::routes(self.service.clone()).await?;
+    /// Both protocols, and health.
+    async fn front(&self, readiness: Readiness) -> Result<(Front, grpc::Health), ServeError> {
+        let (calls, health) = grpc::calls(self.service.clone()).await?;
         let mut endpoints = rest::endpoints(&self.service);
         endpoints.extend(health::endpoints(readiness, self.service.clone()));
         endpoints.push(admin::endpoint(self.reloader.clone()));
         if self.config.metrics.enabled {
             endpoints.push(self.metrics_endpoint());
         }
+        let routes = Routes::new(endpoints, &self.pages, &self.config.http.public_url);
         let intake = Intake::new(&self.config, self.service.budget().clone());
-        // A client without a key takes no place among requests.
-        let (gate, bounds) = (self.gate.clone(), intake.clone());
-        let behind_gate = move |router: Router| {
-            let router = bounds.before(router);
-            router.layer(middleware::from_fn_with_state(gate, gate::of_rest))
+        let calls = Calls {
+            calls,
+            gate: self.gate.clone(),
+            intake: intake.clone(),
         };
-        let bounds = intake.clone();
-        let open = move |router: Router| bounds.before(router);
-        let rest::Routes { router, paths } = rest::Routes::new(
-            endpoints,
-            &self.pages,
-            &self.config.http.public_url,
-            open,
-            behind_gate,
-        );
-        let calls = grpc.into_axum_router().reset_fallback();
-        let others = Router::new().fallback(move |request| nothing_here(request, paths));
-        let router = router
-            .merge(calls::routes(calls, self.gate.clone(), &intake))
-            .merge(intake.before(self.more.clone()))
-            .merge(intake.before(others));
-        Ok((self.finished(router), grpc_health))
+        let admission = Admission::Gate(self.gate.clone(), intake);
+        let routes = routes.with(self.more.clone());
+        Ok((self.answering(routes, Some(calls), admission), health))
     }
 
-    /// The routes of the address for administrators.
-    fn admin_router(&self, readiness: Readiness) -> Router {
+    /// What the address for administrators answers.
+    fn admin_front(&self, readiness: Readiness) -> Front {
         let mut endpoints = health::endpoints(readiness, self.service.clone());
         endpoints.push(admin::endpoint(self.reloader.clone()));
         endpoints.extend(rest::forge_endpoints(&self.service));
         if self.config.metrics.enabled {
             endpoints.push(self.metrics_endpoint());
         }
-        let of_admins = |router: Router| router.layer(middleware::from_fn(gate::of_admins));
-        let rest::Routes { router, paths } = rest::Routes::new(
-            endpoints,
-            &self.pages,
-            &self.config.http.public_url,
-            |open| open,
-            of_admins,
-        );
-        self.finished(router.fallback(move |request| nothing_here(request, paths)))
+        let routes = Routes::new(endpoints, &self.pages, &self.config.http.public_url);
+        self.answering(routes, None, Admission::Admins)
     }
 
-    /// The layers around every answer.
-    fn finished(&self, router: Router) -> Router {
-        let panics = middleware::from_fn_with_state(self.metrics.clone(), panics::answered);
-        let router = router.layer(panics);
-        let router = rest::finished(
-            router,
+    fn answering(&self, routes: Routes, calls: Option<Calls>, admission: Admission) -> Front {
+        let finish = rest::Finish::new(
             &self.config.http,
             self.config.server.max_header_bytes,
             self.gate.settings().needs_key(),
             self.service.clone(),
         );
         let exchanges = Exchanges {
-            metrics: self.metrics.clone(),
+            metrics: Arc::new(self.metrics.clone()),
             spans: self.spans.clone(),
             gate: self.gate.clone(),
             budget: self.service.budget().clone(),
             terms: exchange::terms(&self.config.server),
         };
-        exchange::observed(router, exchanges)
+        Front {
+            routes,
+            calls,
+            admission,
+            finish,
+            exchanges,
+        }
     }
 
     fn metrics_endpoint(&self) -> rest::api::Endpoint {
@@ -377,13 +357,4 @@ impl Drop for EndOnDrop {
 fn asynchronous(listener: TcpListener) -> io::Result<tokio::net::TcpListener> {
     listener.set_nonblocking(true)?;
     tokio::net::TcpListener::from_std(listener)
-}
-
-/// The answer to an unknown path, in the protocol of the client.
-async fn nothing_here(request: Request, paths: String) -> Response {
-    if Dialect::of(request.headers()).is_call() {
-        grpc::unimplemented().map(axum::body::Body::new)
-    } else {
-        rest::not_found(&request, &paths)
-    }
 }

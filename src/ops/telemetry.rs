@@ -1,11 +1,26 @@
 //! The log: on standard error, so that standard output stays for answers.
 //!
-//! As text for people or as JSON, an object a line, for programs that gather logs.
+//! As text for people or as JSON, an object a line, for programs that gather logs. Lines that a request causes have its
+//! id, however little is logged: it is looked up when there is a line to write.
 
-use std::io::IsTerminal as _;
+use std::{fmt, io::IsTerminal as _};
 
 use strew_config::LogFormat;
-use tracing_subscriber::EnvFilter;
+use strew_service::Record;
+use tracing::{Event, Subscriber};
+use tracing_subscriber::{
+    filter::Targets,
+    fmt::{
+        FmtContext, FormatEvent, FormatFields,
+        format::{self, Writer},
+    },
+    layer::{Layer as _, SubscriberExt as _},
+    registry::LookupSpan,
+    util::SubscriberInitExt as _,
+};
+
+/// The target of access lines, which say more about their request than its id.
+pub(super) const ACCESS: &str = "strew::access";
 
 /// Starts logging. The filter is a level or levels by module; a second call changes nothing.
 ///
@@ -15,19 +30,76 @@ pub fn start(
     filter: &str,
     format: LogFormat,
 ) -> Result<(), tracing_subscriber::filter::ParseError> {
-    let filter: EnvFilter = filter.parse()?;
-    let lines = tracing_subscriber::fmt()
-        .with_env_filter(filter)
+    let filter: Targets = filter.parse()?;
+    let is_json = format == LogFormat::Json;
+    let is_colored = !is_json && std::io::stderr().is_terminal();
+    let lines = tracing_subscriber::fmt::layer()
         .with_writer(std::io::stderr)
+        .with_ansi(is_colored)
         // A line that cannot be written is lost: an error about it on the same stream would fail, too, and panic.
         .log_internal_errors(false);
-    let _ = match format {
-        LogFormat::Text => lines.with_ansi(std::io::stderr().is_terminal()).try_init(),
-        LogFormat::Json => lines
-            .json()
-            .flatten_event(true)
-            .with_span_list(false)
-            .try_init(),
+    let registry = tracing_subscriber::registry();
+    let _ = if is_json {
+        let lines = lines
+            .fmt_fields(format::JsonFields::new())
+            .event_format(Named {
+                inner: format::format().json().flatten_event(true),
+                is_json,
+            });
+        registry.with(lines.with_filter(filter)).try_init()
+    } else {
+        let lines = lines.event_format(Named {
+            inner: format::format().with_ansi(is_colored),
+            is_json,
+        });
+        registry.with(lines.with_filter(filter)).try_init()
     };
     Ok(())
+}
+
+/// Lines with the id of their request.
+struct Named<F> {
+    inner: F,
+    is_json: bool,
+}
+
+impl<S, N, F> FormatEvent<S, N> for Named<F>
+where
+    S: Subscriber + for<'a> LookupSpan<'a>,
+    N: for<'a> FormatFields<'a> + 'static,
+    F: FormatEvent<S, N>,
+{
+    fn format_event(
+        &self,
+        context: &FmtContext<'_, S, N>,
+        mut writer: Writer<'_>,
+        event: &Event<'_>,
+    ) -> fmt::Result {
+        let record = Record::current().filter(|_| event.metadata().target() != ACCESS);
+        let Some(record) = record else {
+            return self.inner.format_event(context, writer, event);
+        };
+        let mut line = String::new();
+        let inner = Writer::new(&mut line);
+        self.inner.format_event(context, inner, event)?;
+        let line = line.trim_end();
+        // Ids are plain: nothing in them has to be escaped.
+        let names = [
+            ("request_id", Some(record.id())),
+            ("trace_id", record.trace()),
+        ];
+        let names = names.into_iter().filter_map(|(name, id)| Some((name, id?)));
+        if self.is_json {
+            writer.write_str(line.strip_suffix('}').unwrap_or(line))?;
+            for (name, id) in names {
+                write!(writer, ",\"{name}\":\"{id}\"")?;
+            }
+            return writer.write_str("}\n");
+        }
+        writer.write_str(line)?;
+        for (name, id) in names {
+            write!(writer, " {name}=\"{id}\"")?;
+        }
+        writer.write_char('\n')
+    }
 }

@@ -1,13 +1,12 @@
 //! Answers with points on every path: checked, planned, streamed.
 
-use std::{collections::BTreeMap, convert::Infallible};
+use std::{collections::BTreeMap, convert::Infallible, pin::pin, sync::LazyLock};
 
-use axum::{body::Body, response::Response};
 use futures_util::{StreamExt as _, stream};
 use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
 use schemars::JsonSchema;
 use strew_core::ALGORITHM_VERSION;
-use strew_encode::{Answer, Output, write_number};
+use strew_encode::{Answer, Encoding, Output, write_number};
 use strew_error::{Error, Kind};
 use strew_plan::{Planned, QueryEcho, TableEcho};
 use strew_query::{Options, Query};
@@ -21,6 +20,7 @@ use super::{
     negotiate::{self, Chosen},
     range::{self, Wanted},
 };
+use crate::body::{Body, Response};
 
 const COUNT: HeaderName = HeaderName::from_static("strew-count");
 const TABLE: HeaderName = HeaderName::from_static("strew-table");
@@ -184,11 +184,12 @@ pub(super) async fn stream(
     }
     let freshness = freshness(service, context, &query, chosen.content_type).negotiated();
     if let Some(wanted) = Wanted::of(method, headers, &freshness) {
-        let make = part(service, context, query, chosen, output, wanted);
-        return freshness.answer(headers, make).await;
+        // On the heap, lest all answers have room for it.
+        let mut make = Box::pin(part(service, context, query, chosen, output, wanted));
+        return freshness.answer(headers, make.as_mut()).await;
     }
     let make = points(service, context, query, chosen, output);
-    freshness.answer(headers, make).await
+    freshness.answer(headers, pin!(make)).await
 }
 
 /// The response with the points.
@@ -307,6 +308,26 @@ pub(super) fn freshness(
     Freshness::of(&context.uri, &context.headers, content_type, &made_of).pinned(query.is_pinned())
 }
 
+/// The name under which an answer is saved.
+fn disposition(encoding: Encoding) -> HeaderValue {
+    static KNOWN: LazyLock<Vec<(Encoding, HeaderValue)>> = LazyLock::new(|| {
+        let made = |encoding: Encoding| {
+            let way = if encoding.is_shown() {
+                "inline"
+            } else {
+                "attachment"
+            };
+            let text = format!("{way}; filename=\"{}\"", encoding.file_name());
+            (encoding, HeaderValue::from_str(&text).expect("plain names"))
+        };
+        Encoding::ALL.into_iter().map(made).collect()
+    });
+    let found = KNOWN.iter().find(|(known, _)| *known == encoding);
+    found.map_or(HeaderValue::from_static("attachment"), |(_, value)| {
+        value.clone()
+    })
+}
+
 /// The headers of an answer.
 fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<HeaderMap, Error> {
     let text = |text: &str| {
@@ -321,12 +342,18 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
         HeaderValue::from_static(chosen.content_type),
     );
     headers.insert(COUNT, count.into());
-    let digests: Vec<&str> = planned
-        .sets
-        .iter()
-        .map(|set| set.entry.digest.as_str())
-        .collect();
-    headers.insert(TABLE, text(&digests.join(", "))?);
+    let mut digests = planned.sets.iter().map(|set| set.entry.digest.as_str());
+    let tables = match (digests.next(), planned.sets.len()) {
+        (Some(only), 1) => text(only)?,
+        (first, _) => text(
+            &first
+                .into_iter()
+                .chain(digests)
+                .collect::<Vec<_>>()
+                .join(", "),
+        )?,
+    };
+    headers.insert(TABLE, tables);
     if let Some(token) = planned.next() {
         headers.insert(NEXT, text(&token.to_string())?);
     }
@@ -358,14 +385,7 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
     if let Some(warning) = answer.warning() {
         headers.insert(WARNING, HeaderValue::from_static(warning));
     }
-    let encoding = chosen.encoding;
-    let way = if encoding.is_shown() {
-        "inline"
-    } else {
-        "attachment"
-    };
-    let disposition = format!("{way}; filename=\"{}\"", encoding.file_name());
-    headers.insert(header::CONTENT_DISPOSITION, text(&disposition)?);
+    headers.insert(header::CONTENT_DISPOSITION, disposition(chosen.encoding));
     if let Some(size) = answer.size() {
         headers.insert(header::CONTENT_LENGTH, size.into());
     }

@@ -3,9 +3,8 @@
 //! The content type is not looked at: a body is read as JSON anyway, and `curl -d` calls everything
 //! a form.
 
-use std::{error::Error as _, sync::Arc};
+use std::sync::Arc;
 
-use axum::extract::{FromRequest, Request};
 use bytes::Bytes;
 use futures_util::StreamExt as _;
 use http::{HeaderMap, header};
@@ -14,38 +13,39 @@ use strew_error::{Error, Fault};
 use strew_query::{Draft, Group, Options, Query, read_body};
 use strew_service::{Service, segments::Segments, unpack::Coding};
 
-use super::problem::Refused;
+use crate::body::Body;
 
 /// A whole body.
 #[derive(Debug)]
-pub(super) struct Whole(pub(super) Bytes);
+pub struct Whole(pub(super) Bytes);
 
-impl FromRequest<Arc<Service>> for Whole {
-    type Rejection = Refused;
-
-    async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, Refused> {
-        let limit = service.limits().max_body_bytes;
-        let is_packed = is_packed(request.headers())?;
-        let length = request.headers().get(header::CONTENT_LENGTH);
-        let length = length.and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
-        // A body that announces that it is too long need not even be sent.
-        if length.is_some_and(|length| usize::try_from(length).is_ok_and(|length| length > limit)) {
-            return Err(Error::BodyTooLarge { limit }.into());
+/// Reads a whole body.
+pub(super) async fn whole(
+    service: &Arc<Service>,
+    headers: &HeaderMap,
+    body: Body,
+) -> Result<Bytes, Error> {
+    let limit = service.limits().max_body_bytes;
+    let is_packed = is_packed(headers)?;
+    let length = headers.get(header::CONTENT_LENGTH);
+    let length = length.and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
+    // A body that announces that it is too long need not even be sent.
+    if length.is_some_and(|length| usize::try_from(length).is_ok_and(|length| length > limit)) {
+        return Err(Error::BodyTooLarge { limit });
+    }
+    let mut pieces = body.pieces();
+    let mut segments = Segments::default();
+    while let Some(piece) = pieces.next().await {
+        let piece = piece.map_err(|error| why(&*error))?;
+        if segments.len() + piece.len() > limit {
+            return Err(Error::BodyTooLarge { limit });
         }
-        let mut pieces = request.into_body().into_data_stream();
-        let mut segments = Segments::default();
-        while let Some(piece) = pieces.next().await {
-            let piece = piece.map_err(|error| why(&error))?;
-            if segments.len() + piece.len() > limit {
-                return Err(Error::BodyTooLarge { limit }.into());
-            }
-            segments.append(&piece);
-        }
-        let bytes = segments.joined();
-        Ok(Self(match is_packed {
-            true => service.unpacked(Coding::Gzip, bytes, "body").await?,
-            false => bytes,
-        }))
+        segments.append(&piece);
+    }
+    let bytes = segments.joined();
+    match is_packed {
+        true => service.unpacked(Coding::Gzip, bytes, "body").await,
+        false => Ok(bytes),
     }
 }
 
@@ -89,8 +89,8 @@ pub(super) async fn query(
 }
 
 /// Why a body broke off: as the gate says, or because the client stopped.
-fn why(error: &axum::Error) -> Error {
-    let mut cause = error.source();
+fn why(error: &(dyn std::error::Error + 'static)) -> Error {
+    let mut cause = Some(error);
     while let Some(inner) = cause {
         if let Some(error) = inner.downcast_ref::<Error>() {
             return error.clone();

@@ -3,10 +3,6 @@
 
 use std::sync::Arc;
 
-use axum::{
-    extract::{Path, State},
-    response::Response,
-};
 use strew_core::server::Stop;
 use strew_error::{Checked, Together as _};
 use strew_query::{Draft, Parameter, RegionDraft, Shape, ShapeDraft, groups};
@@ -17,7 +13,7 @@ use super::{
     api::{Endpoint, Operation, Tag},
     context::Context,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -68,12 +64,9 @@ pub(super) const ROW: Parameter = Parameter {
     ..Parameter::PLAIN
 };
 
-async fn get(
-    State(service): State<Arc<Service>>,
-    Path([size, x, y]): Path<[String; 3]>,
-    context: Context,
-) -> Result<Response, Refused> {
-    let draft = Draft::new(context.values(groups::CHUNK)).within(region([&size, &x, &y]));
+async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+    let [size, x, y] = context.path();
+    let draft = Draft::new(context.values(groups::CHUNK)).within(region([size, x, y]));
     let (query, options) = service.check(&draft, &Stop::NEVER)?;
     Ok(answer::stream(&service, &context, query, options).await?)
 }

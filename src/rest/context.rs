@@ -1,31 +1,38 @@
 //! Requests as handlers take them: the caller, and all that decides how the answer is sent; for some, the body.
 
-use std::sync::Arc;
-
-use axum::{
-    extract::{FromRequest, FromRequestParts, Request},
-    response::Response,
+use std::{
+    pin::{Pin, pin},
+    sync::Arc,
 };
+
 use bytes::Bytes;
-use http::{HeaderMap, Method, Uri, request::Parts};
+use http::{HeaderMap, Method, Uri};
 use serde::Serialize;
 use strew_access::Caller;
 use strew_error::{Error, Fault};
 use strew_query::{Group, Values, parse_pairs};
 use strew_service::Service;
 
-use super::{body::Whole, document, freshness::Freshness, problem::Refused};
+use super::{body, document, freshness::Freshness, problem::Refused};
+use crate::body::{Body, Response};
 
 /// A request without its body.
 #[derive(Debug)]
-pub(crate) struct Context {
+pub struct Context {
     pub(crate) caller: Caller,
     pub(super) method: Method,
     pub(super) uri: Uri,
     pub(super) headers: HeaderMap,
+    /// The parameters in its path, in their order.
+    pub(super) path: Vec<String>,
 }
 
 impl Context {
+    /// The parameters in the path: as many as the path of the endpoint has.
+    pub fn path<const N: usize>(&self) -> [&str; N] {
+        std::array::from_fn(|place| self.path.get(place).map_or("", String::as_str))
+    }
+
     /// The parameters of the address.
     pub(super) fn values(&self, groups: &'static [Group]) -> Values {
         parse_pairs(self.uri.query().unwrap_or_default(), groups)
@@ -45,7 +52,7 @@ impl Context {
         &self,
         content_type: &'static str,
         made_of: &(impl Serialize + Sync),
-        make: impl Future<Output = Result<Response, Error>>,
+        make: Pin<&mut impl Future<Output = Result<Response, Error>>>,
     ) -> Result<Response, Error> {
         let freshness = self.freshness(content_type, made_of);
         freshness.answer(&self.headers, make).await
@@ -57,7 +64,7 @@ impl Context {
         document: &(impl Serialize + Sync),
     ) -> Result<Response, Error> {
         let make = async { document::json(document) };
-        self.answer(document::JSON, document, make).await
+        self.answer(document::JSON, document, pin!(make)).await
     }
 
     /// The error of a path that names nothing.
@@ -78,35 +85,22 @@ impl Context {
     }
 }
 
-impl<S: Sync> FromRequestParts<S> for Context {
-    type Rejection = Refused;
-
-    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Refused> {
-        Ok(Self {
-            caller: Caller::noted(parts.extensions.get())?,
-            method: parts.method.clone(),
-            uri: parts.uri.clone(),
-            headers: parts.headers.clone(),
-        })
-    }
-}
-
 /// A request whose query is its body.
 #[derive(Debug)]
-pub(super) struct Sent {
+pub struct Sent {
     pub(super) context: Context,
     pub(super) body: Bytes,
 }
 
-impl FromRequest<Arc<Service>> for Sent {
-    type Rejection = Refused;
-
-    async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, Refused> {
-        let (mut parts, body) = request.into_parts();
-        let context = Context::from_request_parts(&mut parts, service).await?;
+impl Sent {
+    /// Reads the body of a request, which has no parameters beside it.
+    pub(super) async fn read(
+        service: &Arc<Service>,
+        context: Context,
+        body: Body,
+    ) -> Result<Self, Refused> {
         context.no_parameters()?;
-        let request = Request::from_parts(parts, body);
-        let Whole(body) = Whole::from_request(request, service).await?;
+        let body = body::whole(service, &context.headers, body).await?;
         Ok(Self { context, body })
     }
 }

@@ -1,10 +1,10 @@
 //! Pages of other origins as clients (the Fetch standard's CORS protocol), without credentials that
 //! browsers add by themselves: keys are headers that a page has to know.
 
-use axum::{body::Body, extract::Request, response::Response};
 use http::{HeaderMap, HeaderValue, Method, StatusCode, header};
 
 use super::vary;
+use crate::body::{Body, Request, Response};
 
 /// The origins whose pages may send requests.
 #[derive(Clone, Debug, PartialEq, Eq)]

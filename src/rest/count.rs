@@ -1,8 +1,7 @@
 //! `GET` and `POST /v1/count`: the exact number of points of a query, without making them.
 
-use std::sync::Arc;
+use std::{pin::pin, sync::Arc};
 
-use axum::{extract::State, response::Response, routing};
 use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -15,14 +14,14 @@ use strew_service::Service;
 use super::{
     answer,
     api::{
-        self, Endpoint, Operation, Tag,
+        self, Endpoint, Operation, Tag, handler,
         schemas::{self, CountQuery},
     },
     body,
     context::{Context, Sent},
     document, query,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -61,8 +60,11 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
             .into(),
         ..Operation::new(Tag::Points, vec![answers()])
     };
-    let operations = vec![(given, routing::get(get)), (posted, routing::post(post))];
-    Endpoint::new("/v1/count", service, operations)
+    let operations = vec![
+        (given, handler(&service, get)),
+        (posted, handler(&service, post)),
+    ];
+    Endpoint::new("/v1/count", operations)
 }
 
 /// The exact number of points of a query.
@@ -74,16 +76,15 @@ struct Count {
     query: Resolved,
 }
 
-async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
     let draft = Draft::of(context.values(groups::COUNT));
     let (query, _) = service.check(&draft, &Stop::NEVER)?;
     let freshness = answer::freshness(&service, &context, &query, document::JSON);
-    Ok(freshness
-        .answer(&context.headers, counted(&service, &context, query))
-        .await?)
+    let make = pin!(counted(&service, &context, query));
+    Ok(freshness.answer(&context.headers, make).await?)
 }
 
-async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
+async fn post(service: Arc<Service>, sent: Sent) -> Result<Response, Refused> {
     let Sent { context, body } = sent;
     let (_, query, _) = body::query(&service, body, groups::COUNTED).await?;
     Ok(counted(&service, &context, query).await?)

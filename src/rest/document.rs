@@ -1,9 +1,10 @@
 //! Answers that are one small document: JSON, or a file of another type.
 
-use axum::{body::Body, response::Response};
 use http::{HeaderValue, header};
 use serde::Serialize;
 use strew_error::Error;
+
+use crate::body::{Body, Response};
 
 /// The content type of JSON.
 pub(super) const JSON: &str = "application/json";
@@ -32,6 +33,8 @@ pub fn momentary(mut response: Response) -> Response {
 /// A file as an answer.
 pub fn file(bytes: impl Into<Body>, content_type: &'static str) -> Response {
     let mut response = Response::new(bytes.into());
+    // With what is put onto it later there are a dozen: a map that grows is filled anew.
+    response.headers_mut().reserve(16);
     let value = HeaderValue::from_static(content_type);
     response.headers_mut().insert(header::CONTENT_TYPE, value);
     response

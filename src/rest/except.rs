@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use axum::{extract::State, response::Response, routing};
 use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -14,11 +13,11 @@ use strew_query::groups;
 use strew_service::Service;
 
 use super::{
-    api::{self, Endpoint, Operation, Tag, schemas},
+    api::{self, Endpoint, Operation, Tag, handler, schemas},
     context::{Context, Sent},
     document, query,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -47,15 +46,18 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         example: format!("/v1/except -d '{}'", example()),
         ..listed.clone()
     };
-    let operations = vec![(listed, routing::get(all)), (sent, routing::post(post))];
-    Endpoint::new("/v1/except", service, operations)
+    let operations = vec![
+        (listed, handler(&service, all)),
+        (sent, handler(&service, post)),
+    ];
+    Endpoint::new("/v1/except", operations)
 }
 
 fn example() -> serde_json::Value {
     json!({ "ids": ["trees/18:-17", "trees/23:-15"] })
 }
 
-async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
+async fn post(service: Arc<Service>, sent: Sent) -> Result<Response, Refused> {
     let Sent { body, .. } = sent;
     let bytes = body.len();
     let hold = move |service: &Service, _: &Stop| service.hold_list(&body);
@@ -96,7 +98,7 @@ impl<'a> List<'a> {
     }
 }
 
-async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+async fn all(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let lists = Lists {

@@ -1,12 +1,7 @@
 //! `GET /v1/fields`: the fields that are loaded, one of them, and its picture.
 
-use std::sync::Arc;
+use std::{pin::pin, sync::Arc};
 
-use axum::{
-    extract::{Path, State},
-    response::Response,
-    routing,
-};
 use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -18,13 +13,13 @@ use strew_query::{Parameter, groups};
 use strew_service::Service;
 
 use super::{
-    api::{self, Endpoint, Operation, Tag, schemas},
+    api::{self, Endpoint, Operation, Tag, handler, schemas},
     body,
     chunks::{COLUMN, ROW, SIZE},
     context::{Context, Sent},
     document, query,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 const NAME: Parameter = Parameter {
     name: "name",
@@ -67,15 +62,18 @@ pub(super) fn list(service: Arc<Service>) -> Endpoint {
             )],
         )
     };
-    let operations = vec![(listed, routing::get(all)), (sent, routing::post(post))];
-    Endpoint::new("/v1/fields", service, operations)
+    let operations = vec![
+        (listed, handler(&service, all)),
+        (sent, handler(&service, post)),
+    ];
+    Endpoint::new("/v1/fields", operations)
 }
 
 fn example() -> serde_json::Value {
     json!({ "radial": { "center": [10, 10], "radii": [5, 20] } })
 }
 
-async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
+async fn post(service: Arc<Service>, sent: Sent) -> Result<Response, Refused> {
     let Sent { body, .. } = sent;
     let (bytes, budget) = (body.len(), service.own_budget());
     let read = move || {
@@ -176,7 +174,7 @@ impl<'a> Summary<'a> {
     }
 }
 
-async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+async fn all(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let fields = || catalog.fields().iter();
@@ -186,16 +184,13 @@ async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Re
             fields: fields().map(|field| Summary::new(field)).collect(),
         })
     };
-    Ok(context.answer(document::JSON, &made_of, make).await?)
+    Ok(context.answer(document::JSON, &made_of, pin!(make)).await?)
 }
 
-async fn one(
-    State(service): State<Arc<Service>>,
-    Path(name): Path<String>,
-    context: Context,
-) -> Result<Response, Refused> {
+async fn one(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+    let [name] = context.path();
     context.values(groups::NONE).read()?;
-    let field = named(&service, &name, &context)?;
+    let field = named(&service, name, &context)?;
     let described = Described {
         summary: Summary::new(&field),
         field: field.document.without_folders(),
@@ -203,14 +198,11 @@ async fn one(
     Ok(context.document(&described).await?)
 }
 
-async fn chunk(
-    State(service): State<Arc<Service>>,
-    Path([name, size, x, y]): Path<[String; 4]>,
-    context: Context,
-) -> Result<Response, Refused> {
+async fn chunk(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+    let [name, size, x, y] = context.path();
     context.values(groups::NONE).read()?;
-    let field = named(&service, &name, &context)?;
-    let (size, x, y) = (SIZE.read(&size), COLUMN.read(&x), ROW.read(&y)).together()?;
+    let field = named(&service, name, &context)?;
+    let (size, x, y) = (SIZE.read(size), COLUMN.read(x), ROW.read(y)).together()?;
     let parts = field.spec.parts();
     let digest = field.digest();
     let make = async {
@@ -218,7 +210,7 @@ async fn chunk(
         let picture = service.process(SIDE * SIDE * parts, draw).await??;
         Ok(document::file(picture, PNG))
     };
-    Ok(context.answer(PNG, &digest, make).await?)
+    Ok(context.answer(PNG, &digest, pin!(make)).await?)
 }
 
 /// The field of a path.

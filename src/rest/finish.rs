@@ -3,12 +3,6 @@
 
 use std::sync::Arc;
 
-use axum::{
-    Router,
-    extract::{Request, State},
-    middleware::{self, Next},
-    response::Response,
-};
 use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Version, header};
 use strew_config::Http;
 use strew_service::Service;
@@ -16,64 +10,85 @@ use strew_service::Service;
 use super::{
     coding,
     cors::{self, Origins},
-    freshness, harden,
+    freshness::Keeping,
+    harden,
     problem::{self, Problem},
 };
+use crate::body::{Request, Response};
 
-/// The settings that finishing needs.
+/// The last step of every answer.
 #[derive(Clone, Debug)]
-struct Finish {
+pub struct Finish {
     origins: Origins,
-    cache_seconds: u32,
-    /// Answers are for one client, not for those who share a cache with it.
-    is_private: bool,
+    keeping: Keeping,
     head_bytes: usize,
     service: Arc<Service>,
 }
 
-/// Finishes the answers of a router; heads of requests longer than `head_bytes` are refused. Answers
-/// that are private are not kept by caches that several clients share.
-pub fn finished(
-    router: Router,
-    settings: &Http,
-    head_bytes: u32,
-    is_private: bool,
-    service: Arc<Service>,
-) -> Router {
-    let finish = Finish {
-        origins: Origins::read(&settings.cors_origins),
-        cache_seconds: settings.cache_seconds,
-        is_private,
-        head_bytes: usize::try_from(head_bytes).unwrap_or(usize::MAX),
-        service,
-    };
-    router.layer(middleware::from_fn_with_state(finish, finish_answer))
+/// What the last step must know of a request.
+#[derive(Debug)]
+pub struct Wishes {
+    is_head: bool,
+    origin: Option<HeaderValue>,
+    accept: HeaderMap,
 }
 
-async fn finish_answer(State(finish): State<Finish>, request: Request, next: Next) -> Response {
-    let (method, headers) = (request.method(), request.headers());
-    if let Some(allowed) = cors::preflight(&finish.origins, method, headers) {
-        return allowed;
+impl Wishes {
+    /// Those of a request.
+    #[must_use]
+    pub fn of(request: &Request) -> Self {
+        let headers = request.headers();
+        Self {
+            is_head: *request.method() == Method::HEAD,
+            origin: headers.get(header::ORIGIN).cloned(),
+            accept: picked(headers, &header::ACCEPT_ENCODING),
+        }
     }
-    let is_head = *method == Method::HEAD;
-    let origin = headers.get(header::ORIGIN).cloned();
-    let accept = picked(headers, &header::ACCEPT_ENCODING);
-    let refusal = too_long(&request, finish.head_bytes)
-        .or_else(|| wrong_host(&request))
-        .or_else(|| foreign(&finish.origins, &request));
-    let mut response = match refusal {
-        Some(refusal) => refusal,
-        None => next.run(request).await,
-    };
-    cors::allow(&finish.origins, origin.as_ref(), response.headers_mut());
-    if is_grpc(response.headers()) {
-        return response;
+}
+
+impl Finish {
+    /// Heads of requests longer than `head_bytes` are refused. Answers that are private are not kept by caches that
+    /// several clients share.
+    #[must_use]
+    pub fn new(settings: &Http, head_bytes: u32, is_private: bool, service: Arc<Service>) -> Self {
+        Self {
+            origins: Origins::read(&settings.cors_origins),
+            keeping: Keeping::new(settings.cache_seconds, is_private),
+            head_bytes: usize::try_from(head_bytes).unwrap_or(usize::MAX),
+            service,
+        }
     }
-    let mut response = problem::instead_of_bare(response).await;
-    freshness::keep(&mut response, finish.cache_seconds, finish.is_private);
-    harden::guard(response.headers_mut(), finish.origins == Origins::All);
-    let coded = coding::apply(&accept, is_head, &finish.service, response).await;
-    coded.unwrap_or_else(|error| Problem::response(&error))
+
+    /// The answer to a preflight of a browser, which is complete.
+    #[must_use]
+    pub fn preflight(&self, request: &Request) -> Option<Response> {
+        cors::preflight(&self.origins, request.method(), request.headers())
+    }
+
+    /// Why a request is refused whatever it asks for: by its head.
+    #[must_use]
+    pub fn refusal(&self, request: &Request) -> Option<Response> {
+        too_long(request, self.head_bytes)
+            .or_else(|| wrong_host(request))
+            .or_else(|| foreign(&self.origins, request))
+    }
+
+    /// Puts onto an answer what all have.
+    pub async fn answer(&self, wishes: &Wishes, mut response: Response) -> Response {
+        let origin = wishes.origin.as_ref();
+        cors::allow(&self.origins, origin, response.headers_mut());
+        if is_grpc(response.headers()) {
+            return response;
+        }
+        let mut response = problem::instead_of_bare(response).await;
+        self.keeping.set(&mut response);
+        harden::guard(response.headers_mut(), self.origins == Origins::All);
+        let Wishes {
+            is_head, accept, ..
+        } = wishes;
+        let coded = coding::apply(accept, *is_head, &self.service, response).await;
+        coded.unwrap_or_else(|error| Problem::response(&error))
+    }
 }
 
 /// The lines of one header.

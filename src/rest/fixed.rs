@@ -4,7 +4,6 @@
 
 use std::sync::Arc;
 
-use axum::{body::Body, response::Response};
 use bytes::Bytes;
 use http::{HeaderMap, HeaderValue, Uri, header};
 
@@ -12,6 +11,7 @@ use super::{
     coding::{Coding, Encoder},
     freshness::Freshness,
 };
+use crate::body::{Body, Response};
 
 /// A document. Cheap to clone.
 #[derive(Clone, Debug)]

@@ -4,7 +4,8 @@
 //! hash of those and is known before a point is made. Tags are strong: equal tags, equal bytes. An
 //! address that pins its table (`table=…`) is answered the same forever.
 
-use axum::{body::Body, response::Response};
+use std::pin::Pin;
+
 use http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
 use serde::Serialize;
 use strew_core::ALGORITHM_VERSION;
@@ -14,6 +15,7 @@ use super::{
     coding::{Coding, Decided},
     vary,
 };
+use crate::body::{Body, Response};
 
 /// The tag of an answer and what else caches need, known before the answer is made.
 #[derive(Clone, Debug)]
@@ -42,19 +44,18 @@ impl Freshness {
     ) -> Self {
         let coding = Coding::chosen(headers, content_type);
         let asked = uri.path_and_query().map_or("", |asked| asked.as_str());
-        let identity = (
-            env!("CARGO_PKG_VERSION"),
-            ALGORITHM_VERSION,
-            asked,
-            content_type,
-            made_of,
-        );
         let mut written = Vec::with_capacity(512);
+        written.extend_from_slice(&ALGORITHM_VERSION.to_le_bytes());
+        // None of these has a line break.
+        for part in [env!("CARGO_PKG_VERSION"), asked, content_type] {
+            written.extend_from_slice(part.as_bytes());
+            written.push(b'\n');
+        }
         // Numbers and texts can always be written.
-        let _ = serde_json::to_writer(&mut written, &identity);
+        let _ = serde_json::to_writer(&mut written, made_of);
         let hash = blake3::hash(&written).to_hex();
         let suffix = coding.map_or("", Coding::suffix);
-        let tag = format!("\"{}{suffix}\"", &hash[..32]);
+        let tag = ["\"", &hash[..32], suffix, "\""].concat();
         Self {
             tag: HeaderValue::from_str(&tag).unwrap_or(HeaderValue::from_static("\"\"")),
             coding,
@@ -92,7 +93,7 @@ impl Freshness {
     pub(super) async fn answer(
         &self,
         headers: &HeaderMap,
-        make: impl Future<Output = Result<Response, Error>>,
+        make: Pin<&mut impl Future<Output = Result<Response, Error>>>,
     ) -> Result<Response, Error> {
         if let Some(unchanged) = self.unchanged(headers) {
             return Ok(unchanged);
@@ -154,24 +155,42 @@ impl Freshness {
     }
 }
 
-/// Sets how long an answer may be kept, unless it says so already.
-pub(super) fn keep(response: &mut Response, seconds: u32, is_private: bool) {
-    let pinned = response.extensions().get::<Pinned>().is_some();
-    let headers = response.headers_mut();
-    if headers.contains_key(header::CACHE_CONTROL) {
-        return;
+/// How long answers may be kept.
+#[derive(Clone, Debug)]
+pub(super) struct Keeping {
+    pinned: HeaderValue,
+    tagged: HeaderValue,
+}
+
+impl Keeping {
+    /// For so many seconds unless their address pins them; those that are private by their client alone.
+    pub(super) fn new(seconds: u32, is_private: bool) -> Self {
+        let who = if is_private { "private" } else { "public" };
+        let timed = |text: String| {
+            HeaderValue::from_str(&text).unwrap_or(HeaderValue::from_static("no-cache"))
+        };
+        Self {
+            pinned: timed(format!("{who}, max-age=31536000, immutable")),
+            tagged: timed(format!("{who}, max-age={seconds}")),
+        }
     }
-    let who = if is_private { "private" } else { "public" };
-    let timed =
-        |text: String| HeaderValue::from_str(&text).unwrap_or(HeaderValue::from_static("no-cache"));
-    let value = if pinned {
-        timed(format!("{who}, max-age=31536000, immutable"))
-    } else if headers.contains_key(header::ETAG) {
-        timed(format!("{who}, max-age={seconds}"))
-    } else {
-        HeaderValue::from_static("no-store")
-    };
-    headers.insert(header::CACHE_CONTROL, value);
+
+    /// Sets how long an answer may be kept, unless it says so already.
+    pub(super) fn set(&self, response: &mut Response) {
+        let pinned = response.extensions().get::<Pinned>().is_some();
+        let headers = response.headers_mut();
+        if headers.contains_key(header::CACHE_CONTROL) {
+            return;
+        }
+        let value = if pinned {
+            self.pinned.clone()
+        } else if headers.contains_key(header::ETAG) {
+            self.tagged.clone()
+        } else {
+            HeaderValue::from_static("no-store")
+        };
+        headers.insert(header::CACHE_CONTROL, value);
+    }
 }
 
 #[cfg(test)]

@@ -7,6 +7,8 @@ use http::{HeaderMap, HeaderName, HeaderValue, header};
 const NO_PAGE: &str =
     "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'; sandbox";
 
+const RESOURCE_POLICY: HeaderName = HeaderName::from_static("cross-origin-resource-policy");
+
 /// Sets the headers that an answer lacks. If all pages may read answers, they may also show them as pictures.
 pub(super) fn guard(headers: &mut HeaderMap, all_may_read: bool) {
     let resource = if all_may_read {
@@ -18,12 +20,10 @@ pub(super) fn guard(headers: &mut HeaderMap, all_may_read: bool) {
         (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
         (header::REFERRER_POLICY, "no-referrer"),
         (header::CONTENT_SECURITY_POLICY, NO_PAGE),
-        (
-            HeaderName::from_static("cross-origin-resource-policy"),
-            resource,
-        ),
+        (RESOURCE_POLICY, resource),
     ] {
-        let slot = headers.entry(name);
-        slot.or_insert(HeaderValue::from_static(value));
+        if !headers.contains_key(&name) {
+            headers.insert(name, HeaderValue::from_static(value));
+        }
     }
 }

@@ -2,12 +2,6 @@
 
 use std::{convert::Infallible, sync::Arc};
 
-use axum::{
-    body::Body,
-    extract::{Path, State},
-    response::Response,
-    routing,
-};
 use bytes::Bytes;
 use futures_util::{StreamExt as _, stream};
 use http::{HeaderMap, Method, header};
@@ -18,11 +12,14 @@ use strew_query::{Parameter, groups};
 use strew_service::{Record, Service, forging::JobStatus};
 
 use super::{
-    api::{self, Endpoint, Operation, Tag, schemas},
+    api::{self, Endpoint, Operation, Tag, handler, schemas},
     context::Context,
     document,
 };
-use crate::rest::Refused;
+use crate::{
+    body::{Body, Response},
+    rest::Refused,
+};
 
 /// The content type of server-sent events.
 const EVENTS: &str = "text/event-stream";
@@ -73,8 +70,11 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
             "The job, which ends with its current step.",
         ))
     };
-    let operations = vec![(get, routing::get(one)), (cancel, routing::delete(delete))];
-    Endpoint::new("/v1/jobs/{id}", service, operations)
+    let operations = vec![
+        (get, handler(&service, one)),
+        (cancel, handler(&service, delete)),
+    ];
+    Endpoint::new("/v1/jobs/{id}", operations)
 }
 
 /// The parts that the operations share.
@@ -94,19 +94,16 @@ struct Jobs {
     jobs: Vec<JobStatus>,
 }
 
-async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+async fn all(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let jobs = service.jobs(&context.caller)?;
     Ok(document::momentary(document::json(&Jobs { jobs })?))
 }
 
-async fn one(
-    State(service): State<Arc<Service>>,
-    Path(id): Path<String>,
-    context: Context,
-) -> Result<Response, Refused> {
+async fn one(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+    let [id] = context.path();
     context.values(groups::NONE).read()?;
-    let job = service.job(&context.caller, &id)?;
+    let job = service.job(&context.caller, id)?;
     if !wants_events(&context.headers) {
         return Ok(document::momentary(document::json(&job.status())?));
     }
@@ -122,14 +119,11 @@ async fn one(
     Ok(document::momentary(document::file(events, EVENTS)))
 }
 
-async fn delete(
-    State(service): State<Arc<Service>>,
-    Path(id): Path<String>,
-    context: Context,
-) -> Result<Response, Refused> {
+async fn delete(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+    let [id] = context.path();
     context.values(groups::NONE).read()?;
     Ok(document::json(
-        &service.cancel_job(&context.caller, &id).await?,
+        &service.cancel_job(&context.caller, id).await?,
     )?)
 }
 

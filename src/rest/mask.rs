@@ -1,8 +1,7 @@
 //! `GET /v1/mask.png` and `GET /v1/mask/spectrum.svg`: tileable threshold masks.
 
-use std::sync::Arc;
+use std::{pin::pin, sync::Arc};
 
-use axum::{extract::State, response::Response};
 use strew_error::{Error, Kind};
 use strew_query::groups;
 use strew_service::{
@@ -16,7 +15,7 @@ use super::{
     context::Context,
     document,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 /// The path of the mask.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -59,7 +58,7 @@ fn drawn(
     let (content_type, parameters) = (format.content_type(), operation.parameters);
     operation.answers = api::Answer::file(operation.summary, content_type, schema).or_unchanged();
     operation.problems.push(Kind::OtherTable);
-    let handler = move |State(service): State<Arc<Service>>, context: Context| async move {
+    let handler = move |service: Arc<Service>, context: Context| async move {
         let query = MaskQuery::check(&context.values(parameters), &service.catalog())?;
         let freshness = context.freshness(content_type, &query.entry.digest);
         let freshness = freshness.pinned(query.is_pinned);
@@ -67,7 +66,7 @@ fn drawn(
             let file = service.mask(&context.caller, query, drawn).await?;
             Ok::<Response, Error>(document::file(file, content_type))
         };
-        Ok::<_, Refused>(freshness.answer(&context.headers, make).await?)
+        Ok::<_, Refused>(freshness.answer(&context.headers, pin!(make)).await?)
     };
     Endpoint::only(path, service, operation, handler)
 }

@@ -29,6 +29,7 @@ mod profiles;
 mod quality;
 mod query;
 mod range;
+mod routes;
 mod single;
 mod split;
 mod tables;
@@ -38,19 +39,21 @@ mod worlds;
 
 use std::sync::Arc;
 
-use axum::{Router, extract::Request, response::Response};
 use http::StatusCode;
 
 use api::Endpoint;
-pub(crate) use context::Context;
+pub use body::Whole;
+pub use context::{Context, Sent};
 pub use document::{file, json, momentary};
-pub use finish::finished;
+pub use finish::{Finish, Wishes};
 pub use page::{Page, Pages};
 use problem::Problem;
 pub use problem::Refused;
+pub use routes::{Found, Routes};
 use strew_error::Error;
 use strew_service::Service;
-pub use unknown::not_found;
+
+use crate::body::{Request, Response};
 pub use worlds::world_document;
 
 /// The endpoints of REST, without their description.
@@ -89,40 +92,6 @@ pub fn forge_endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
         jobs::list(service.clone()),
         jobs::endpoint(service.clone()),
     ]
-}
-
-/// All that the port answers by REST.
-#[derive(Debug)]
-pub struct Routes {
-    /// The routes.
-    pub router: Router,
-    /// The paths, for answers to unknown ones.
-    pub paths: String,
-}
-
-impl Routes {
-    /// The routes of these endpoints, of their description and of the pages, which name `public_url` as their own
-    /// address if it is not empty. Those that are open go through `open`, all others through `gate`.
-    #[must_use]
-    pub fn new(
-        mut endpoints: Vec<Endpoint>,
-        pages: &Pages,
-        public_url: &str,
-        open: impl FnOnce(Router) -> Router,
-        gate: impl FnOnce(Router) -> Router,
-    ) -> Self {
-        endpoints.extend(page::endpoints(pages, public_url));
-        endpoints.push(openapi::endpoint(&endpoints));
-        let paths: Vec<&str> = endpoints.iter().map(Endpoint::path).collect();
-        let paths = paths.join(", ");
-        let (free, closed): (Vec<_>, Vec<_>) = endpoints.into_iter().partition(Endpoint::is_open);
-        let joined = |endpoints: Vec<Endpoint>| {
-            let routers = endpoints.into_iter().map(Endpoint::into_router);
-            routers.fold(Router::new(), Router::merge)
-        };
-        let router = open(joined(free).merge(page::icon(pages))).merge(gate(joined(closed)));
-        Self { router, paths }
-    }
 }
 
 /// The whole HTTP/1.1 response to a client whose connection is refused.

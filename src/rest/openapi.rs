@@ -1,23 +1,30 @@
 //! `GET /openapi.json`: the description of the REST API, for programs.
 
-use http::{HeaderMap, Uri};
+use bytes::Bytes;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
+    context::Context,
+    document::JSON,
     fixed::Fixed,
+    problem::Refused,
 };
+use crate::body::Response;
 
 const PATH: &str = "/openapi.json";
 
 /// The path, with the description of these endpoints and itself.
 pub(super) fn endpoint(endpoints: &[Endpoint]) -> Endpoint {
-    let own = Endpoint::only(PATH, (), operation(), || async {}).open();
+    let with = |document: Fixed| Endpoint::only(PATH, document, operation(), answer).open();
+    let own = with(Fixed::new(JSON, Bytes::new()));
     let document = api::document(endpoints.iter().chain([&own]));
     let mut text = serde_json::to_vec_pretty(&document).unwrap_or_default();
     text.push(b'\n');
-    let document = Fixed::new("application/json", text.into());
-    let answer = move |uri: Uri, headers: HeaderMap| async move { document.answer(&uri, &headers) };
-    Endpoint::only(PATH, (), operation(), answer).open()
+    with(Fixed::new(JSON, text.into()))
+}
+
+async fn answer(document: Fixed, context: Context) -> Result<Response, Refused> {
+    Ok(document.answer(&context.uri, &context.headers))
 }
 
 fn operation() -> Operation {
@@ -29,7 +36,7 @@ fn operation() -> Operation {
         example: PATH.into(),
         ..Operation::new(
             Tag::About,
-            api::Answer::file("The document.", "application/json", schemas::object).or_unchanged(),
+            api::Answer::file("The document.", JSON, schemas::object).or_unchanged(),
         )
     }
 }

@@ -5,17 +5,17 @@
 
 use std::sync::Arc;
 
-use axum::{Router, extract::State, response::Response, routing};
 use bytes::Bytes;
-use http::{HeaderMap, HeaderName, HeaderValue, Uri, header};
+use http::{HeaderName, HeaderValue, header};
 use strew_error::{Error, Kind};
 use strew_query::Parameter;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
+    context::Context,
     fixed::Fixed,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 /// The policy of pages: they may load their own parts and the answers of the daemon, and nothing inline.
 const POLICY: &str = "default-src 'none'; style-src 'self'; script-src 'self'; worker-src 'self'; \
@@ -88,14 +88,13 @@ pub(super) fn endpoints(pages: &Pages, public_url: &str) -> Vec<Endpoint> {
 }
 
 /// The icon at the address where browsers look for that of an answer that is no page.
-pub(super) fn icon(pages: &Pages) -> Router {
+pub(super) fn icon(pages: &Pages) -> Option<Endpoint> {
     let mut parts = pages.parts.iter();
-    let Some((_, content)) = parts.find(|(name, _)| name == "icon.svg") else {
-        return Router::new();
-    };
+    let (_, content) = parts.find(|(name, _)| name == "icon.svg")?;
     let icon = Fixed::new(PICTURE, content.clone());
-    let answer = move |uri: Uri, headers: HeaderMap| async move { part(&icon, &uri, &headers) };
-    Router::new().route("/favicon.ico", routing::get(answer))
+    let described = ("getIcon", "/favicon.ico", "The icon", "");
+    let operation = operation(described, &[PICTURE], &[], vec![]);
+    Some(Endpoint::only("/favicon.ico", icon, operation, fixed).open())
 }
 
 fn page(page: &Page, public_url: &str) -> Endpoint {
@@ -109,8 +108,7 @@ fn page(page: &Page, public_url: &str) -> Endpoint {
     let html = page.html.replace("<span id=\"version\"></span>", version);
     let html = html.replace(PREVIEW, &format!("{PREVIEW}{public_url}"));
     let document = Fixed::new(HTML, html.into());
-    let answer = move |uri: Uri, headers: HeaderMap| async move { part(&document, &uri, &headers) };
-    Endpoint::only(page.path, (), operation, answer).open()
+    Endpoint::only(page.path, document, operation, fixed).open()
 }
 
 /// Parts at a path, with the name of the operation and an example.
@@ -178,22 +176,18 @@ fn operation(
 /// The parts by their names, ready to send.
 type Parts = Arc<Vec<(String, Fixed)>>;
 
-async fn one(
-    State(parts): State<Parts>,
-    uri: Uri,
-    headers: HeaderMap,
-) -> Result<Response, Refused> {
-    let name = uri.path().trim_start_matches("/page/");
+async fn one(parts: Parts, context: Context) -> Result<Response, Refused> {
+    let name = context.uri.path().trim_start_matches("/page/");
     let found = parts.iter().find(|(part, _)| part == name);
     let (_, document) = found.ok_or_else(|| Error::NoSuchPath {
-        path: uri.path().into(),
+        path: context.uri.path().into(),
         available: "the pages and the parts that they name".into(),
     })?;
-    Ok(part(document, &uri, &headers))
+    fixed(document.clone(), context).await
 }
 
-fn part(document: &Fixed, uri: &Uri, headers: &HeaderMap) -> Response {
-    let mut response = document.answer(uri, headers);
+async fn fixed(document: Fixed, context: Context) -> Result<Response, Refused> {
+    let mut response = document.answer(&context.uri, &context.headers);
     for (name, value) in [
         (header::CONTENT_SECURITY_POLICY, POLICY),
         (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
@@ -206,7 +200,7 @@ fn part(document: &Fixed, uri: &Uri, headers: &HeaderMap) -> Response {
         let value = HeaderValue::from_static(value);
         response.headers_mut().insert(name, value);
     }
-    response
+    Ok(response)
 }
 
 const CROSS_ORIGIN_OPENER_POLICY: HeaderName =

@@ -1,8 +1,7 @@
 //! `GET /v1/periods`: the periods that a table has.
 
-use std::sync::Arc;
+use std::{pin::pin, sync::Arc};
 
-use axum::{extract::State, response::Response};
 use strew_error::Kind;
 use strew_query::{Periods, groups};
 use strew_service::Service;
@@ -12,7 +11,7 @@ use super::{
     context::Context,
     document,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -31,9 +30,9 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     Endpoint::only("/v1/periods", service, operation, get)
 }
 
-async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
     let periods = Periods::of(&context.values(groups::PERIODS), &service.catalog())?;
     let made_of = (&periods.alpha, periods.radius);
     let make = async { document::json(&periods) };
-    Ok(context.answer(document::JSON, &made_of, make).await?)
+    Ok(context.answer(document::JSON, &made_of, pin!(make)).await?)
 }

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use axum::{extract::State, response::Response};
 use strew_core::server::Stop;
 use strew_query::{Draft, groups};
 use strew_service::Service;
@@ -12,7 +11,7 @@ use super::{
     api::{Endpoint, Operation, Tag},
     context::Context,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -30,7 +29,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
 }
 
 /// Answers a query.
-async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
     let draft = Draft::of(context.values(groups::POINTS));
     let (query, options) = service.check(&draft, &Stop::NEVER)?;
     Ok(answer::stream(&service, &context, query, options).await?)

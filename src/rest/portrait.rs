@@ -1,11 +1,7 @@
 //! `GET /v1/profiles/{name}` and `…/spectrum.svg`: one table with its curves and its picture.
 
-use std::sync::Arc;
+use std::{pin::pin, sync::Arc};
 
-use axum::{
-    extract::{Path, State},
-    response::Response,
-};
 use schemars::JsonSchema;
 use serde::Serialize;
 use strew_catalog::Entry;
@@ -22,7 +18,7 @@ use super::{
     freshness::Freshness,
     profiles::Profile,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 /// The path of the curves.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -85,12 +81,9 @@ fn operation(
 }
 
 /// The table of a profile with its measured curves.
-async fn get(
-    State(service): State<Arc<Service>>,
-    Path(name): Path<String>,
-    context: Context,
-) -> Result<Response, Refused> {
-    let (entry, freshness) = chosen(&service, &name, &context, document::JSON)?;
+async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+    let [name] = context.path();
+    let (entry, freshness) = chosen(&service, name, &context, document::JSON)?;
     let make = async {
         let portrait = service.portrait(&entry).await?;
         let aim = entry.aim();
@@ -110,21 +103,18 @@ async fn get(
             },
         })
     };
-    Ok(freshness.answer(&context.headers, make).await?)
+    Ok(freshness.answer(&context.headers, pin!(make)).await?)
 }
 
 /// The picture.
-async fn svg(
-    State(service): State<Arc<Service>>,
-    Path(name): Path<String>,
-    context: Context,
-) -> Result<Response, Refused> {
-    let (entry, freshness) = chosen(&service, &name, &context, SVG)?;
+async fn svg(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+    let [name] = context.path();
+    let (entry, freshness) = chosen(&service, name, &context, SVG)?;
     let make = async {
         let portrait = service.portrait(&entry).await?;
         Ok(document::file(portrait.svg.clone(), SVG))
     };
-    Ok(freshness.answer(&context.headers, make).await?)
+    Ok(freshness.answer(&context.headers, pin!(make)).await?)
 }
 
 /// The table that is wanted, and how fresh what is made of it is.

@@ -1,14 +1,12 @@
 //! Errors as problem documents (RFC 9457).
 
-use axum::{
-    body::Body,
-    response::{IntoResponse, Response},
-};
 use http::{HeaderValue, StatusCode, header};
 use schemars::JsonSchema;
 use serde::Serialize;
 use strew_error::{Denied, Error, Fault, Kind, Short};
 use strew_service::Record;
+
+use crate::body::{Body, Response};
 
 /// Why there is no answer (RFC 9457).
 #[derive(Debug, Serialize, JsonSchema)]
@@ -199,9 +197,7 @@ pub(super) async fn instead_of_bare(response: Response) -> Response {
         return response;
     }
     let (parts, body) = response.into_parts();
-    let text = axum::body::to_bytes(body, MOST_TEXT)
-        .await
-        .unwrap_or_default();
+    let text = body.whole(MOST_TEXT).await.unwrap_or_default();
     let detail = match String::from_utf8_lossy(&text) {
         text if text.trim().is_empty() => "the request cannot be answered".into(),
         text => text.trim().to_owned(),
@@ -219,8 +215,10 @@ pub(super) async fn instead_of_bare(response: Response) -> Response {
 #[derive(Debug)]
 pub struct Refused(pub Error);
 
-impl IntoResponse for Refused {
-    fn into_response(self) -> Response {
+impl Refused {
+    /// The answer.
+    #[must_use]
+    pub fn response(&self) -> Response {
         Problem::response(&self.0)
     }
 }

@@ -1,8 +1,7 @@
 //! `GET /v1/profiles`: the profiles that are loaded.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::{collections::BTreeMap, pin::pin, sync::Arc};
 
-use axum::{extract::State, response::Response};
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer, ser::SerializeMap as _};
 use strew_catalog::{Catalog, Entry};
@@ -15,7 +14,7 @@ use super::{
     context::Context,
     document,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -34,7 +33,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
 }
 
 /// Lists the tables.
-async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let made_of: Vec<&str> = catalog.digests().collect();
@@ -46,7 +45,7 @@ async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Re
                 .collect(),
         })
     };
-    Ok(context.answer(document::JSON, &made_of, make).await?)
+    Ok(context.answer(document::JSON, &made_of, pin!(make)).await?)
 }
 
 /// The tables that are loaded.

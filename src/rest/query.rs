@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use axum::{extract::State, response::Response};
 use http::Method;
 use serde_json::json;
 use strew_error::Kind;
@@ -18,7 +17,7 @@ use super::{
     body,
     context::Sent,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -56,7 +55,7 @@ fn example() -> serde_json::Value {
     })
 }
 
-async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
+async fn post(service: Arc<Service>, sent: Sent) -> Result<Response, Refused> {
     let Sent { context, body } = sent;
     let (_, query, options) = body::query(&service, body, groups::QUERY).await?;
     Ok(answer::stream(&service, &context, query, options).await?)

@@ -3,13 +3,13 @@
 
 use std::ops::Range;
 
-use axum::response::Response;
 use bytes::Bytes;
 use futures_util::{Stream, StreamExt as _};
 use http::{HeaderMap, HeaderValue, Method, StatusCode, header};
 use strew_service::Interrupted;
 
 use super::{freshness::Freshness, problem::Problem};
+use crate::body::Response;
 
 /// The unit of ranges.
 pub(super) const BYTES: HeaderValue = HeaderValue::from_static("bytes");

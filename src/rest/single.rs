@@ -1,11 +1,7 @@
 //! `GET /v1/points/{id}` and `GET /v1/nearest`: single points.
 
-use std::sync::Arc;
+use std::{pin::pin, sync::Arc};
 
-use axum::{
-    extract::{Path, State},
-    response::Response,
-};
 use schemars::JsonSchema;
 use serde::Serialize;
 use strew_error::Kind;
@@ -19,7 +15,7 @@ use super::{
     document,
     freshness::Freshness,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 const ID: Parameter = Parameter {
     name: "id",
@@ -87,25 +83,22 @@ struct Several {
     query: ResolvedSet,
 }
 
-async fn point(
-    State(service): State<Arc<Service>>,
-    Path(id): Path<String>,
-    context: Context,
-) -> Result<Response, Refused> {
+async fn point(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+    let [id] = context.path();
     let values = context.values(groups::SINGLE);
     let set = Set::single(&values, &service.catalog())?;
     let freshness = freshness(&context, &set);
     let make = async {
         let placed = service.place(&context.caller, set).await?;
         document::json(&One {
-            point: placed.point(&id)?,
+            point: placed.point(id)?,
             query: placed.resolved,
         })
     };
-    Ok(freshness.answer(&context.headers, make).await?)
+    Ok(freshness.answer(&context.headers, pin!(make)).await?)
 }
 
-async fn near(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+async fn near(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
     let values = context.values(groups::NEAREST);
     let (set, nearest) = Nearest::of_set(&values, &service.catalog())?;
     let freshness = freshness(&context, &set);
@@ -116,7 +109,7 @@ async fn near(State(service): State<Arc<Service>>, context: Context) -> Result<R
         })
     };
     let make = service.nearest(&context.caller, set, nearest, write);
-    Ok(freshness.answer(&context.headers, make).await?)
+    Ok(freshness.answer(&context.headers, pin!(make)).await?)
 }
 
 /// The freshness of a document about single points of a set.

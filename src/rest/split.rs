@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use axum::{extract::State, response::Response};
 use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -21,7 +20,7 @@ use super::{
     context::Context,
     document, query,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -73,7 +72,7 @@ struct Part {
 }
 
 async fn post(
-    State(service): State<Arc<Service>>,
+    service: Arc<Service>,
     context: Context,
     Whole(body): Whole,
 ) -> Result<Response, Refused> {

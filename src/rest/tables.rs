@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use axum::{extract::State, response::Response};
 use http::{HeaderValue, Method, StatusCode, header};
 use serde_json::json;
 use strew_core::server::Stop;
@@ -17,7 +16,7 @@ use super::{
     context::Sent,
     document, query,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -58,7 +57,7 @@ fn example() -> serde_json::Value {
     json!({ "profile": "blue", "alpha": "sqrt(2)", "map": "s" })
 }
 
-async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
+async fn post(service: Arc<Service>, sent: Sent) -> Result<Response, Refused> {
     let Sent { context, body } = sent;
     service.forging().admit(&context.caller)?;
     let length = body.len();

@@ -1,10 +1,10 @@
 //! The answers to unknown paths, and to methods that a path does not take.
 
-use axum::{extract::Request, response::Response};
 use http::{HeaderValue, Method, Uri, header};
 use strew_error::Error;
 
 use super::problem::Problem;
+use crate::body::Response;
 
 /// The most paths that an answer names.
 const MOST: usize = 3;
@@ -14,9 +14,7 @@ const LIKE: f64 = 0.5;
 const COMPARED: usize = 80;
 
 /// The answer to an unknown path: the paths that are most like it.
-#[must_use]
-pub fn not_found(request: &Request, paths: &str) -> Response {
-    let path = request.uri().path();
+pub(super) fn not_found(path: &str, paths: &str) -> Response {
     let error = Error::NoSuchPath {
         path: path.into(),
         available: available(path, paths),

@@ -4,12 +4,11 @@ use http::{HeaderMap, HeaderValue, header};
 
 /// Adds the name of a header.
 pub(super) fn on(headers: &mut HeaderMap, name: &'static str) {
-    let joined = match headers.get(header::VARY).map(HeaderValue::to_str) {
-        Some(Ok(before)) => HeaderValue::from_str(&format!("{before}, {name}")).ok(),
-        _ => None,
+    let before = headers.insert(header::VARY, HeaderValue::from_static(name));
+    let Some(Ok(before)) = before.as_ref().map(HeaderValue::to_str) else {
+        return;
     };
-    headers.insert(
-        header::VARY,
-        joined.unwrap_or(HeaderValue::from_static(name)),
-    );
+    if let Ok(joined) = HeaderValue::from_str(&[before, ", ", name].concat()) {
+        headers.insert(header::VARY, joined);
+    }
 }

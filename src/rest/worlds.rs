@@ -2,10 +2,6 @@
 
 use std::sync::Arc;
 
-use axum::{
-    extract::{Path, State},
-    response::Response,
-};
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::value::RawValue;
@@ -21,7 +17,7 @@ use super::{
     context::Context,
     document,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 const NAME: Parameter = Parameter {
     name: "name",
@@ -131,7 +127,7 @@ impl<'a> Summary<'a> {
     }
 }
 
-async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+async fn all(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let worlds = List {
@@ -142,13 +138,10 @@ async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Re
     Ok(context.document(&worlds).await?)
 }
 
-async fn one(
-    State(service): State<Arc<Service>>,
-    Path(name): Path<String>,
-    context: Context,
-) -> Result<Response, Refused> {
+async fn one(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+    let [name] = context.path();
     context.values(groups::NONE).read()?;
-    let world = named(&service, &name, &context)?;
+    let world = named(&service, name, &context)?;
     let described = Described::new(&world)?;
     Ok(context.document(&described).await?)
 }
@@ -171,15 +164,12 @@ pub fn world_document(world: &World) -> Result<Vec<u8>, Error> {
     document::written(&Described::new(world)?)
 }
 
-async fn chunk(
-    State(service): State<Arc<Service>>,
-    Path([name, size, x, y]): Path<[String; 4]>,
-    context: Context,
-) -> Result<Response, Refused> {
-    named(&service, &name, &context)?;
+async fn chunk(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+    let [name, size, x, y] = context.path();
+    named(&service, name, &context)?;
     let mut values = context.values(groups::WORLD_CHUNK);
-    values.replace(&WORLD, Some(Value::Text(name)));
-    let draft = Draft::new(values).within(chunks::region([&size, &x, &y]));
+    values.replace(&WORLD, Some(Value::Text(name.into())));
+    let draft = Draft::new(values).within(chunks::region([size, x, y]));
     let (query, options) = service.check(&draft, &Stop::NEVER)?;
     Ok(answer::stream(&service, &context, query, options).await?)
 }

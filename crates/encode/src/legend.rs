@@ -13,6 +13,9 @@ use super::{
 /// Longer texts break proxies that hold the head of an answer in a page of memory.
 const MOST_BYTES: usize = 4000;
 
+/// The legend of `f32` for points that have nothing but a place.
+const F32: &str = r#"[{"name":"x","type":"f32"},{"name":"y","type":"f32"}]"#;
+
 /// A column of records.
 #[derive(Clone, Debug, Serialize)]
 struct Entry<'a> {
@@ -65,6 +68,10 @@ impl<'a> Entry<'a> {
 /// The columns of a format of records in their order, as a JSON list in ASCII; `None` for other formats.
 /// Names that would make it too long are left out.
 pub(super) fn legend(schema: &Schema, encoding: Encoding) -> Option<String> {
+    // What most requests ask for.
+    if let (Encoding::F32, []) = (encoding, schema.columns()) {
+        return Some(F32.into());
+    }
     let whole = listed(schema, encoding, true)?;
     if whole.len() <= MOST_BYTES {
         Some(whole)

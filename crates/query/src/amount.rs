@@ -29,8 +29,7 @@ impl Amount {
     /// # Errors
     /// Faults if there is none, or more than one.
     pub(super) fn of(values: &Values) -> Checked<Self> {
-        let given: Vec<&Parameter> = taken(values).filter(|amount| values.has(amount)).collect();
-        match given.as_slice() {
+        match values.given_of(&AMOUNTS).as_slice() {
             [] => Err(Fault::missing(&format!("{}spacing", values.path()), one_of(values)).into()),
             [only] if **only == DENSITY => values.require(only).map(Self::Density),
             [only] if **only == SPACING => values.require(only).map(Self::Spacing),
@@ -56,14 +55,12 @@ impl Amount {
     }
 }
 
-/// The amounts that a request takes.
-pub(super) fn taken(values: &Values) -> impl Iterator<Item = &'static Parameter> {
-    let is_amount =
-        |parameter: &&Parameter| [Group::Amount, Group::Count].contains(&parameter.group);
-    values.takes().filter(is_amount)
-}
+/// The groups of amounts.
+const AMOUNTS: [Group; 2] = [Group::Amount, Group::Count];
 
 fn one_of(values: &Values) -> String {
-    let names: Vec<&str> = taken(values).map(|parameter| parameter.name).collect();
+    let taken = values.takes();
+    let taken = taken.filter(|parameter| AMOUNTS.contains(&parameter.group));
+    let names: Vec<&str> = taken.map(|parameter| parameter.name).collect();
     format!("one of {}", names.join(", "))
 }

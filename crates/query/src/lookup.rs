@@ -15,6 +15,12 @@ impl Parameter {
     }
 }
 
+/// The parameter of some groups with a name.
+pub(crate) fn find(groups: &[Group], name: &str) -> Option<&'static Parameter> {
+    let mut all = PARAMETERS.iter().chain(PATTERN_PARAMETERS).copied();
+    all.find(|parameter| parameter.name == name && groups.contains(&parameter.group))
+}
+
 /// The parameters of some groups.
 pub fn of(groups: &'static [Group]) -> impl Iterator<Item = &'static Parameter> + Clone {
     let all = PARAMETERS.iter().chain(PATTERN_PARAMETERS).copied();

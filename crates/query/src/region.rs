@@ -93,10 +93,7 @@ impl RegionDraft {
     /// # Errors
     /// Faults if there are several, or one that cannot be read.
     pub fn of(values: &Values) -> Checked<Option<Self>> {
-        let shapes = values
-            .takes()
-            .filter(|parameter| parameter.group == Group::Region);
-        let given: Vec<_> = shapes.filter(|parameter| values.has(parameter)).collect();
+        let given = values.given_of(&[Group::Region]);
         let shape = match given.as_slice() {
             [] => return Ok(None),
             [first, second, ..] => {

@@ -8,7 +8,7 @@ use strew_error::{Checked, Fault, Faults, unknown};
 
 use crate::{
     json::object::shown,
-    lookup::{names, of},
+    lookup::{find, names, of},
     parameter::{Group, Parameter, groups},
     shape::Shape,
     value::Value,
@@ -141,7 +141,7 @@ impl Values {
         name: &str,
         value: impl FnOnce() -> String,
     ) -> Option<&'static Parameter> {
-        let named = self.takes().find(|parameter| parameter.name == name);
+        let named = find(self.groups, name);
         if named.is_none() {
             let detail = match Parameter::named(name) {
                 Some(_) => "not allowed here".into(),
@@ -197,6 +197,19 @@ impl Values {
     #[must_use]
     pub fn has(&self, parameter: &Parameter) -> bool {
         self.given.iter().any(|(known, _)| *known == parameter)
+    }
+
+    /// The given parameters of some groups, in the order of the table.
+    #[must_use]
+    pub(crate) fn given_of(&self, groups: &[Group]) -> Vec<&'static Parameter> {
+        let given = self.given.iter().map(|(parameter, _)| *parameter);
+        let mut found: Vec<_> = given
+            .filter(|parameter| groups.contains(&parameter.group))
+            .collect();
+        if found.len() > 1 {
+            found.sort_by_key(|parameter| self.takes().position(|taken| taken == *parameter));
+        }
+        found
     }
 
     /// The value of a parameter, if it is given.

@@ -84,6 +84,9 @@ impl Samplers {
     /// A table, ready.
     pub(super) async fn get(&self, entry: &Arc<Entry>, workers: &Workers) -> Result<Ready, Error> {
         self.asked.fetch_add(1, Ordering::Relaxed);
+        if let Some(ready) = self.ready.get(&entry.digest).await {
+            return Ok(ready);
+        }
         let build = async {
             self.made.fetch_add(1, Ordering::Relaxed);
             let entry = entry.clone();
@@ -99,10 +102,9 @@ impl Samplers {
                 .take_turn(Lane::Short, move |_| Ready::load(&entry))
                 .await?
         };
-        self.ready
-            .try_get_with_by_ref(&entry.digest, build)
-            .await
-            .map_err(|error| (*error).clone())
+        // On the heap, lest those that find their table have room for it.
+        let made = Box::pin(self.ready.try_get_with_by_ref(&entry.digest, build));
+        made.await.map_err(|error| (*error).clone())
     }
 
     /// The entry of a name, if the cache has one.

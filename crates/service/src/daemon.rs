@@ -262,26 +262,42 @@ impl Service {
             // Handing it over would take longer.
             Planned::new(query, &tables, &limits)?
         } else {
-            let most = limits.max_rows;
-            let is_plain = effort::is_plain(&query);
-            let price = move |_: &Stop| (effort::planning(&query, &tables, most), query, tables);
-            let (rows, query, tables) = match is_plain {
-                true => price(&Stop::default()),
-                false => self.workers.take_turn(Lane::Short, price).await?,
-            };
-            let rows = rows?;
-            charged = rows as u128;
-            // Before the work, which is done even if the answer is refused.
-            if charged > 0 {
-                caller.charge(charged, 0)?;
-            }
-            let plan = move |stop: &Stop| Planned::unless_stopped(query, &tables, &limits, stop);
-            self.workers.take_turn(effort::lane(rows), plan).await??
+            // On the heap, lest small boxes have room for it.
+            let turns = Box::pin(self.planned_in_turns(caller, query, tables, limits));
+            let (planned, rows) = turns.await?;
+            charged = rows;
+            planned
         };
         tracing::debug!(count = planned.count(), table = %planned.entry().key, "planned");
         if let Some(record) = Record::current() {
             record.take_lane(effort::block_lane(&planned));
         }
+        Ok((planned, charged))
+    }
+
+    /// Plans a query on the workers, as its price says. Returns the plan and the points charged for it.
+    async fn planned_in_turns(
+        &self,
+        caller: &Caller,
+        query: Query,
+        tables: Vec<Ready>,
+        limits: Limits,
+    ) -> Result<(Planned, u128), Error> {
+        let most = limits.max_rows;
+        let is_plain = effort::is_plain(&query);
+        let price = move |_: &Stop| (effort::planning(&query, &tables, most), query, tables);
+        let (rows, query, tables) = match is_plain {
+            true => price(&Stop::default()),
+            false => self.workers.take_turn(Lane::Short, price).await?,
+        };
+        let rows = rows?;
+        let charged = rows as u128;
+        // Before the work, which is done even if the answer is refused.
+        if charged > 0 {
+            caller.charge(charged, 0)?;
+        }
+        let plan = move |stop: &Stop| Planned::unless_stopped(query, &tables, &limits, stop);
+        let planned = self.workers.take_turn(effort::lane(rows), plan).await??;
         Ok((planned, charged))
     }
 
@@ -298,7 +314,7 @@ impl Service {
                 None => {
                     caller.charge(POINTS * set.entry.blocks() as u128, 0)?;
                     let _making = Record::making();
-                    self.mixes.get(&ready, &what, &self.workers).await?
+                    Box::pin(self.mixes.get(&ready, &what, &self.workers)).await?
                 }
             },
         };

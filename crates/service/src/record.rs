@@ -25,6 +25,7 @@ tokio::task_local! {
 #[derive(Debug)]
 pub struct Record {
     id: Box<str>,
+    trace: Option<Box<str>>,
     budget: Budget,
     format: OnceLock<&'static str>,
     refused: OnceLock<Kind>,
@@ -55,11 +56,12 @@ impl Drop for Making {
 const NONE: u32 = u32::MAX;
 
 impl Record {
-    /// Of a request with this id, which takes its memory from a budget.
+    /// Of a request with this id, in a trace or in none, which takes its memory from a budget.
     #[must_use]
-    pub fn new(id: &str, budget: Budget) -> Arc<Self> {
+    pub fn new(id: &str, trace: Option<&str>, budget: Budget) -> Arc<Self> {
         Arc::new(Self {
             id: id.into(),
+            trace: trace.map(Into::into),
             budget,
             format: OnceLock::new(),
             refused: OnceLock::new(),
@@ -75,8 +77,8 @@ impl Record {
     }
 
     /// Runs a future in which [`current`](Self::current) is this record.
-    pub async fn scope<F: Future>(self: Arc<Self>, future: F) -> F::Output {
-        CURRENT.scope(self, future).await
+    pub fn scope<F: Future>(self: Arc<Self>, future: F) -> impl Future<Output = F::Output> {
+        CURRENT.scope(self, future)
     }
 
     /// The record of the request that is being answered, if it has one: a command line's has none.
@@ -85,8 +87,8 @@ impl Record {
         CURRENT.try_with(Arc::clone).ok()
     }
 
-    /// Runs a job for a request on another thread, with the request as its [`current`](Self::current) one.
-    pub(super) fn within<T>(record: Option<Arc<Self>>, job: impl FnOnce() -> T) -> T {
+    /// Runs a job for a request outside of its task, with the request as its [`current`](Self::current) one.
+    pub fn within<T>(record: Option<Arc<Self>>, job: impl FnOnce() -> T) -> T {
         match record {
             Some(record) => CURRENT.sync_scope(record, job),
             None => job(),
@@ -137,6 +139,12 @@ impl Record {
     #[must_use]
     pub fn id(&self) -> &str {
         &self.id
+    }
+
+    /// The name of the trace that the request is in, if it is in one.
+    #[must_use]
+    pub fn trace(&self) -> Option<&str> {
+        self.trace.as_deref()
     }
 
     /// The format of the answer, if it has points.
@@ -272,8 +280,8 @@ mod tests {
         Record::refuse(Kind::Busy);
         assert!(Record::current().is_none());
         let (a, b) = (
-            Record::new("a", Budget::new(1)),
-            Record::new("b", Budget::new(1)),
+            Record::new("a", None, Budget::new(1)),
+            Record::new("b", None, Budget::new(1)),
         );
         let noted = |kind| async move {
             tokio::task::yield_now().await;
@@ -293,7 +301,7 @@ mod tests {
     #[tokio::test]
     async fn what_a_request_brings_along_is_held_until_it_is_over() {
         let budget = Budget::new(100);
-        let record = Record::new("a", budget.clone());
+        let record = Record::new("a", None, budget.clone());
         let job = async {
             let record = Record::current();
             let there = std::thread::spawn(|| {

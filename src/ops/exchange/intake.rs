@@ -7,19 +7,13 @@
 //! places of their own.
 
 use std::{
+    future::ready,
     pin::Pin,
     sync::Arc,
     task::{Context, Poll},
     time::Duration,
 };
 
-use axum::{
-    Router,
-    body::Body,
-    extract::{Request, State},
-    middleware::{self, Next},
-    response::Response,
-};
 use bytes::Bytes;
 use http_body::{Body as HttpBody, Frame, SizeHint};
 use parking_lot::Mutex;
@@ -32,11 +26,9 @@ use tokio::{
     time::{Instant, Sleep, sleep, sleep_until},
 };
 
-use super::{Client, Probe, Refused};
-use crate::ops::{
-    dialect::{BoxError, Dialect},
-    throttle::LogThrottle,
-};
+use super::Visit;
+use crate::body::{Answering, Body, BoxError, Request, Response};
+use crate::ops::{dialect::Dialect, throttle::LogThrottle};
 
 /// The bounds that all requests share. Cheap to clone.
 #[derive(Clone, Debug)]
@@ -67,91 +59,68 @@ impl Intake {
         }
     }
 
-    /// Puts these bounds before a router.
-    pub(in crate::ops) fn before(&self, router: Router) -> Router {
-        router.layer(middleware::from_fn_with_state(self.clone(), pass))
+    /// Answers a request within the bounds, or refuses it.
+    pub(in crate::ops) async fn answer(
+        &self,
+        mut visit: Box<Visit>,
+        answer: impl FnOnce(Request) -> Answering,
+    ) -> Response {
+        let (shared, dialect) = (&*self.shared, visit.dialect);
+        let answered = match visit.refused.take() {
+            Some(error) => Err(error),
+            None => shared.answer(visit, answer).await,
+        };
+        answered.unwrap_or_else(|error| {
+            if let Some(times) = shared.refused.record() {
+                tracing::warn!(%error, times, "a request is refused");
+            }
+            dialect.refusal(&error)
+        })
     }
-}
-
-async fn pass(State(intake): State<Intake>, mut request: Request, next: Next) -> Response {
-    let shared = &*intake.shared;
-    let dialect = Dialect::of(request.headers());
-    let refused = request.extensions_mut().remove::<Refused>();
-    let answer = match refused {
-        Some(Refused(error)) => Err(error),
-        None => shared.answer(dialect, request, next).await,
-    };
-    answer.unwrap_or_else(|error| {
-        if let Some(times) = shared.refused.record() {
-            tracing::warn!(%error, times, "a request is refused");
-        }
-        dialect.refusal(&error)
-    })
 }
 
 impl Shared {
     async fn answer(
         &self,
-        dialect: Dialect,
-        request: Request,
-        next: Next,
+        visit: Box<Visit>,
+        answer: impl FnOnce(Request) -> Answering,
     ) -> Result<Response, Error> {
-        let is_probe = request.extensions().get::<Probe>().is_some();
-        let client = request.extensions().get::<Client>();
+        let (client, dialect) = (&visit.client, visit.dialect);
+        let is_probe = client.is_probe;
         let places = (!is_probe).then(|| Places {
             all: self.places.clone(),
-            address: client.map_or_else(Usage::unlimited, |client| client.usage.clone()),
+            address: client.usage.clone(),
         });
         let record = Record::current();
         let budget = record
             .as_ref()
             .map_or(&self.budget, |record| record.budget());
-        let received = Arc::new(Receiving {
-            held: Mutex::new(budget.hold_anyway(0)),
-            place: Mutex::new(None),
-            places,
-            done: Notify::new(),
-        });
-        if request.body().is_end_stream() {
-            received.take_place()?;
-            received.done.notify_one();
-        }
-        let request = request.map(|body| {
-            if body.is_end_stream() {
-                return body;
-            }
-            Body::new(Received {
-                body,
-                deadline: Box::pin(sleep(self.body)),
-                patience: self.body,
-                receiving: received.clone(),
-                dialect,
-                at_once: 0,
-                free: if is_probe { PROBE_BODY } else { 0 },
-            })
-        });
-        // The body has a deadline of its own; the time for the answer begins when it is there. Waiting for turns
-        // and work each have as long as the settings allow.
-        let too_long = async {
-            received.done.notified().await;
-            let begun = Instant::now();
-            let mut waited = Duration::ZERO;
-            while waited < self.first_byte && begun.elapsed() < self.first_byte + waited {
-                sleep_until(begun + self.first_byte + waited).await;
-                let clock = record.as_ref().map(|record| record.clock().waited());
-                waited = clock.unwrap_or_default();
-            }
-            let seconds = self.first_byte.as_secs_f64().to_string();
-            match record.as_ref().is_some_and(|record| record.come_back()) {
-                true => Error::KindsInTheMaking { seconds },
-                false => Error::TimeOver { seconds },
-            }
+        let mut response = if visit.request.body().is_end_stream() {
+            let _place = places.as_ref().map(Places::take).transpose()?;
+            self.in_time(record.as_deref(), ready(()), answer(visit.request))
+                .await?
+        } else {
+            let received = Arc::new(Receiving {
+                held: Mutex::new(budget.hold_anyway(0)),
+                place: Mutex::new(None),
+                places,
+                done: Notify::new(),
+            });
+            let request = visit.request.map(|body| {
+                Body::new(Received {
+                    body,
+                    deadline: Box::pin(sleep(self.body)),
+                    patience: self.body,
+                    receiving: received.clone(),
+                    dialect,
+                    at_once: 0,
+                    free: if is_probe { PROBE_BODY } else { 0 },
+                })
+            });
+            let is_received = received.done.notified();
+            self.in_time(record.as_deref(), is_received, answer(request))
+                .await?
         };
-        let mut response = tokio::select! {
-            response = next.run(request) => response,
-            error = too_long => return Err(error),
-        };
-        drop(received);
         let whole = response.body().size_hint().exact();
         if let Some(bytes @ 1..) = whole {
             let bytes = usize::try_from(bytes).unwrap_or(usize::MAX);
@@ -163,6 +132,37 @@ impl Shared {
         }
         Ok(response)
     }
+
+    /// Answers in time. A body has a deadline of its own: the time begins when it is there. Waiting for turns and work
+    /// each have as long as the settings allow.
+    async fn in_time(
+        &self,
+        record: Option<&Record>,
+        is_received: impl Future<Output = ()>,
+        answer: Answering,
+    ) -> Result<Response, Error> {
+        let too_long = async {
+            is_received.await;
+            let begun = Instant::now();
+            let mut waited = Duration::ZERO;
+            while waited < self.first_byte && begun.elapsed() < self.first_byte + waited {
+                sleep_until(begun + self.first_byte + waited).await;
+                let clock = record.map(|record| record.clock().waited());
+                waited = clock.unwrap_or_default();
+            }
+            let seconds = self.first_byte.as_secs_f64().to_string();
+            match record.is_some_and(Record::come_back) {
+                true => Error::KindsInTheMaking { seconds },
+                false => Error::TimeOver { seconds },
+            }
+        };
+        tokio::select! {
+            // An answer that is there at once needs no timer.
+            biased;
+            response = answer => Ok(response),
+            error = too_long => Err(error),
+        }
+    }
 }
 
 /// A body that is being received.
@@ -171,7 +171,7 @@ struct Receiving {
     /// The memory of the body so far, held until there is an answer.
     held: Mutex<Held>,
     /// The place of the request, once all of it has come.
-    place: Mutex<Option<(OneOf, InUse)>>,
+    place: Mutex<Option<Place>>,
     /// Where it takes its place; health checks need none.
     places: Option<Places>,
     /// Notified when the last of it has come, or is not wanted any more.
@@ -185,18 +185,27 @@ struct Places {
     address: Arc<Usage>,
 }
 
+/// A place among all requests, and one among those of the address.
+type Place = (OneOf, InUse);
+
+impl Places {
+    fn take(&self) -> Result<Place, Error> {
+        let limit = self.all.limit();
+        let of_address = self.address.place(&self.all)?;
+        let one = self.all.clone().one();
+        Ok((one.ok_or(Error::TooManyRequests { limit })?, of_address))
+    }
+}
+
 impl Receiving {
     /// Takes a place for the request, unless it has one.
     fn take_place(&self) -> Result<(), Error> {
-        let Some(Places { all, address }) = &self.places else {
+        let Some(places) = &self.places else {
             return Ok(());
         };
         let mut place = self.place.lock();
         if place.is_none() {
-            let limit = all.limit();
-            let of_address = address.place(all)?;
-            let one = all.clone().one().ok_or(Error::TooManyRequests { limit })?;
-            *place = Some((one, of_address));
+            *place = Some(places.take()?);
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Exchanges: a request from its head until the socket has taken the last byte of its answer.
 //!
-//! Two layers see every request of both protocols, also those to open pages and to health.
-//! [`observed`] is the outermost one. It names the request, counts it against its client's address,
+//! Two steps see every request of both protocols, also those to open pages and to health.
+//! [`Exchanges`] is the outermost one. It names the request, counts it against its client's address,
 //! makes its [`Exchange`] and lets the answer leave through it. [`Intake`] is inside of what finishes
 //! answers, so that its refusals are finished like all others. It bounds requests at once, bodies and
 //! the time to the head of the answer.
@@ -12,25 +12,18 @@ mod progress;
 mod reply;
 mod report;
 
-use std::{net::IpAddr, sync::Arc};
+use std::{net::IpAddr, pin::pin, sync::Arc};
 
-use axum::{
-    Router,
-    body::Body,
-    extract::{Request, State},
-    middleware::{self, Next},
-    response::Response,
-};
-use http::{HeaderName, HeaderValue, StatusCode, header};
-use tracing::Instrument as _;
+use http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 
 use super::{Peer, dialect::Dialect, identity::REQUEST_ID, metrics::Metrics, spans::Spans};
+use crate::body::{Body, Request, Response};
 pub(super) use intake::Intake;
 pub(super) use open::{Fate, OpenExchanges};
 use progress::Terms;
 use reply::{Exchange, Places};
-use report::Report;
 pub(super) use report::code as grpc_code;
+use report::{Asked, Report};
 use strew_access::{Gate, Usage};
 use strew_config::{Server, seconds};
 use strew_error::{Denied, Error};
@@ -39,7 +32,7 @@ use strew_service::{Budget, Record};
 /// The state that all exchanges share. Cheap to clone.
 #[derive(Clone, Debug)]
 pub(super) struct Exchanges {
-    pub(super) metrics: Metrics,
+    pub(super) metrics: Arc<Metrics>,
     pub(super) spans: Option<Spans>,
     pub(super) gate: Arc<Gate>,
     pub(super) budget: Budget,
@@ -55,15 +48,19 @@ const BASE: usize = 16 << 10;
 pub(super) struct Client {
     pub(super) address: IpAddr,
     pub(super) usage: Arc<Usage>,
+    /// A health check is answered whatever else is in progress.
+    pub(super) is_probe: bool,
 }
 
-/// Why the intake should refuse a request.
-#[derive(Clone, Debug)]
-struct Refused(Error);
-
-/// A health check that is answered whatever else is in progress.
-#[derive(Clone, Copy, Debug)]
-struct Probe;
+/// A request on its way to its answer. On the heap: what waits for an answer then moves it as a pointer.
+#[derive(Debug)]
+pub(super) struct Visit {
+    pub(super) request: Request,
+    pub(super) dialect: Dialect,
+    pub(super) client: Client,
+    /// Why the intake should refuse it.
+    pub(super) refused: Option<Error>,
+}
 
 /// The paths of health checks and metrics, which have a reserve of places.
 const PROBES: [&str; 4] = [
@@ -84,90 +81,87 @@ pub(super) fn terms(server: &Server) -> Terms {
     }
 }
 
-/// A router whose requests are exchanges.
-pub(super) fn observed(router: Router, exchanges: Exchanges) -> Router {
-    router.layer(middleware::from_fn_with_state(exchanges, exchange))
-}
-
-async fn exchange(
-    State(exchanges): State<Exchanges>,
-    mut request: Request,
-    next: Next,
-) -> Response {
-    let dialect = Dialect::of(request.headers());
-    let client = exchanges.client(&request);
-    let usage = client.usage.clone();
-    let budget = exchanges.budget.of_address(usage.clone());
-    let report = Report::start(exchanges.metrics, exchanges.spans, budget.clone(), &request);
-    let (record, span) = (report.record().clone(), report.span().clone());
-
-    let is_probe = PROBES.contains(&request.uri().path());
-    let probe = is_probe.then(|| usage.probe()).flatten();
-    // Refusals are answers, too: those beyond the limits are small, and beyond twice the limits they
-    // have no body that a client could leave untouched.
-    let (is_free, used, limit) = (
-        probe.is_some(),
-        usage.requests.used(),
-        usage.requests.limit(),
-    );
-    let base = match is_free {
-        true => Ok(budget.hold_anyway(BASE)),
-        false => budget.hold(BASE),
-    };
-    let refused = match base.as_ref().err() {
-        Some(error) => Some(error.clone()),
-        None if is_free || used < limit => None,
-        None => {
-            let what = "requests";
-            Some(Denied::Address { what, limit }.into())
-        }
-    };
-    let is_bare = base.is_err() || !is_free && used >= limit.saturating_mul(2);
-    let places = Places {
-        _request: usage.request(),
-        _probe: probe,
-        _base: base.unwrap_or_else(|_| budget.hold_anyway(BASE)),
-    };
-    let open = request.extensions().get::<Arc<OpenExchanges>>();
-    let entry = open.map(OpenExchanges::begin);
-    let exchange = Exchange::new(report, dialect, exchanges.terms, places, entry);
-
-    let extensions = request.extensions_mut();
-    extensions.insert(client);
-    if is_free {
-        extensions.insert(Probe);
-    }
-    let mut response = match refused {
-        Some(error) if is_bare => record.clone().scope(async { bare(dialect, &error) }).await,
-        refused => {
-            if let Some(error) = refused {
-                request.extensions_mut().insert(Refused(error));
-            }
-            let answered = next.run(request);
-            record.clone().scope(answered).instrument(span).await
-        }
-    };
-    if let Ok(id) = HeaderValue::from_str(record.id()) {
-        response.headers_mut().insert(REQUEST_ID, id);
-    }
-    exchange.answer(response)
-}
-
 impl Exchanges {
-    fn client(&self, request: &Request) -> Client {
-        let lines: Vec<&[u8]> = request
-            .headers()
-            .get_all(FORWARDED_FOR)
-            .iter()
-            .map(HeaderValue::as_bytes)
-            .collect();
-        // Inside a program without sockets all are one.
-        let peer = request.extensions().get::<Peer>();
-        let peer = peer.map_or(IpAddr::from([0, 0, 0, 0]), |peer| peer.0.ip());
-        let address = self.gate.client(peer, lines.into_iter());
+    /// Answers a request to a route; the answer leaves through its exchange.
+    pub(super) async fn answer<A: Future<Output = Response>>(
+        &self,
+        peer: Peer,
+        open: &Arc<OpenExchanges>,
+        route: &'static str,
+        request: Request,
+        answer: impl FnOnce(Box<Visit>) -> A,
+    ) -> Response {
+        let dialect = Dialect::of(request.headers());
+        let mut client = self.client(peer, request.headers());
+        let usage = client.usage.clone();
+        let budget = self.budget.of_address(usage.clone());
+        let report = {
+            let asked = Asked {
+                request: &request,
+                protocol: dialect.protocol(),
+                route,
+                peer,
+            };
+            Report::start(&self.metrics, self.spans.as_ref(), budget.clone(), &asked)
+        };
+        let record = report.record().clone();
+
+        let is_probe = PROBES.contains(&request.uri().path());
+        let probe = is_probe.then(|| usage.probe()).flatten();
+        // Refusals are answers, too: those beyond the limits are small, and beyond twice the limits they
+        // have no body that a client could leave untouched.
+        client.is_probe = probe.is_some();
+        let (used, limit) = (usage.requests.used(), usage.requests.limit());
+        let base = match client.is_probe {
+            true => Ok(budget.hold_anyway(BASE)),
+            false => budget.hold(BASE),
+        };
+        let refused = match base.as_ref().err() {
+            Some(error) => Some(error.clone()),
+            None if client.is_probe || used < limit => None,
+            None => {
+                let what = "requests";
+                Some(Denied::Address { what, limit }.into())
+            }
+        };
+        let is_bare = base.is_err() || !client.is_probe && used >= limit.saturating_mul(2);
+        let places = Places {
+            _request: usage.request(),
+            _probe: probe,
+            _base: base.unwrap_or_else(|_| budget.hold_anyway(BASE)),
+        };
+        let exchange = Exchange::new(report, dialect, self.terms, places, open.begin());
+
+        let answered = pin!(async {
+            match refused {
+                Some(error) if is_bare => bare(dialect, &error),
+                refused => {
+                    let visit = Visit {
+                        request,
+                        dialect,
+                        client,
+                        refused,
+                    };
+                    answer(Box::new(visit)).await
+                }
+            }
+        });
+        let mut response = record.clone().scope(answered).await;
+        if let Ok(id) = HeaderValue::from_str(record.id()) {
+            response.headers_mut().insert(REQUEST_ID, id);
+        }
+        exchange.answer(response)
+    }
+
+    fn client(&self, Peer(peer): Peer, headers: &HeaderMap) -> Client {
+        let lines = headers.get_all(FORWARDED_FOR).iter();
+        let address = self
+            .gate
+            .client(peer.ip(), lines.map(HeaderValue::as_bytes));
         Client {
             usage: self.gate.usage(address),
             address,
+            is_probe: false,
         }
     }
 }

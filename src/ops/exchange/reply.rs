@@ -16,12 +16,11 @@ use std::{
     task::{Context, Poll, Waker},
 };
 
-use axum::{body::Body, response::Response};
 use bytes::Bytes;
 use http_body::{Body as HttpBody, Frame, SizeHint};
 use parking_lot::Mutex;
 use strew_access::InUse;
-use strew_service::{Budget, Held, Interrupted};
+use strew_service::{Budget, Held, Interrupted, Record};
 use tokio::time::{Instant, Sleep, sleep_until};
 
 use super::{
@@ -30,6 +29,7 @@ use super::{
     report::Report,
 };
 use crate::{
+    body::{Body, BoxError, Response},
     grpc,
     ops::dialect::{Dialect, Ending},
 };
@@ -45,7 +45,7 @@ pub(super) struct Exchange {
     /// The most time, if the client set a limit as well.
     end: Mutex<End>,
     /// Its place among the exchanges of the connection.
-    _entry: Option<Entry>,
+    _entry: Entry,
     _places: Places,
 }
 
@@ -94,7 +94,7 @@ impl Exchange {
         dialect: Dialect,
         terms: Terms,
         places: Places,
-        entry: Option<Entry>,
+        entry: Entry,
     ) -> Arc<Self> {
         let now = Instant::now();
         let budget = report.record().budget().clone();
@@ -118,7 +118,7 @@ impl Exchange {
             budget,
             dialect,
             end: Mutex::new(end),
-            _entry: entry.map(|entry| entry.of(exchange.clone())),
+            _entry: entry.of(exchange.clone()),
             _places: places,
         })
     }
@@ -250,12 +250,12 @@ impl State {
 
 impl HttpBody for Reply {
     type Data = Bytes;
-    type Error = axum::Error;
+    type Error = BoxError;
 
     fn poll_frame(
         mut self: Pin<&mut Self>,
         cx: &mut Context<'_>,
-    ) -> Poll<Option<Result<Frame<Bytes>, axum::Error>>> {
+    ) -> Poll<Option<Result<Frame<Bytes>, BoxError>>> {
         let this = &mut *self;
         let exchange = this.exchange.clone();
         let now = Instant::now();
@@ -275,11 +275,8 @@ impl HttpBody for Reply {
         let Some(body) = &mut state.body else {
             return Poll::Ready(None);
         };
-        let polled = {
-            let span = state.report.span();
-            let _entered = span.enter();
-            Pin::new(body).poll_frame(cx)
-        };
+        let record = state.report.record().clone();
+        let polled = Record::within(Some(record), || Pin::new(body).poll_frame(cx));
         match polled {
             Poll::Pending => {
                 state.reader = Some(cx.waker().clone());

@@ -5,25 +5,22 @@
 
 use std::{net::SocketAddr, sync::Arc, time::Instant};
 
-use axum::{
-    extract::{MatchedPath, Request},
-    response::Response,
-};
 use bytes::Bytes;
-use http::{HeaderMap, Method, StatusCode, header};
+use http::{HeaderMap, Method, StatusCode, header, uri::PathAndQuery};
 use http_body::{Body as _, Frame};
 use strew_error::Kind;
 use strew_service::{Budget, Record};
-use tracing::Span;
 
 use crate::{
+    body::{Request, Response},
     grpc,
     ops::{
         Peer,
-        dialect::Dialect,
+        front::NO_ROUTE,
         identity::Identity,
         metrics::{Broken, Metrics, NO_FORMAT, Protocol, since},
         spans::{Answered, Spans},
+        telemetry::ACCESS,
     },
 };
 
@@ -38,17 +35,16 @@ enum Stand {
 /// The facts about a request and its answer; reported when dropped.
 #[derive(Debug)]
 pub(super) struct Report {
-    metrics: Metrics,
+    metrics: Arc<Metrics>,
     spans: Option<Spans>,
     record: Arc<Record>,
     identity: Identity,
-    span: Span,
     start: Instant,
     protocol: Protocol,
-    route: Arc<str>,
+    route: &'static str,
     method: Method,
-    address: String,
-    client: Option<SocketAddr>,
+    address: Option<PathAndQuery>,
+    client: SocketAddr,
     status: Option<StatusCode>,
     stand: Stand,
     /// The length of the answer in bytes, if it was announced.
@@ -59,41 +55,48 @@ pub(super) struct Report {
     counted: u64,
 }
 
-/// The longest address that goes into the log.
+/// What a report begins with.
+pub(super) struct Asked<'a> {
+    pub(super) request: &'a Request,
+    pub(super) protocol: Protocol,
+    pub(super) route: &'static str,
+    pub(super) peer: Peer,
+}
+
+/// The bytes of an address that go into the log.
 const LONGEST: usize = 500;
 
 impl Report {
     pub(super) fn start(
-        metrics: Metrics,
-        spans: Option<Spans>,
+        metrics: &Arc<Metrics>,
+        spans: Option<&Spans>,
         budget: Budget,
-        request: &Request,
+        &Asked {
+            request,
+            protocol,
+            route,
+            peer,
+        }: &Asked<'_>,
     ) -> Self {
-        let begins_one = || spans.as_ref().is_some_and(Spans::begins_one);
+        let begins_one = || spans.is_some_and(Spans::begins_one);
         let identity = Identity::of(request.headers(), begins_one);
-        let protocol = Dialect::of(request.headers()).protocol();
         metrics.in_flight(protocol).inc();
-        let asked = request.uri().path_and_query();
-        let asked = asked.map_or("", |asked| asked.as_str());
         let trace = identity.trace.as_ref().map(|trace| &*trace.trace);
-        // At the level of errors, so that they have it however little is logged.
-        let span = tracing::error_span!("request", request_id = identity.id, trace_id = trace);
         Self {
-            record: Record::new(&identity.id, budget),
-            span,
+            record: Record::new(&identity.id, trace, budget),
             start: Instant::now(),
-            route: route(request),
+            route,
             method: request.method().clone(),
-            address: asked.chars().take(LONGEST).collect(),
-            client: request.extensions().get::<Peer>().map(|peer| peer.0),
+            address: request.uri().path_and_query().cloned(),
+            client: peer.0,
             status: None,
             stand: Stand::Open,
             expected: None,
             bytes: 0,
             first_byte: None,
             counted: 0,
-            metrics,
-            spans,
+            metrics: metrics.clone(),
+            spans: spans.cloned(),
             identity,
             protocol,
         }
@@ -102,11 +105,6 @@ impl Report {
     /// The record that the answering code writes about the request.
     pub(super) const fn record(&self) -> &Arc<Record> {
         &self.record
-    }
-
-    /// The span of the lines that the request causes in the log.
-    pub(super) const fn span(&self) -> &Span {
-        &self.span
     }
 
     /// All of the answer has left.
@@ -163,6 +161,9 @@ impl Report {
     fn count(&mut self, bytes: u64) {
         let format = self.record.format().unwrap_or(NO_FORMAT);
         let points = self.record.points();
+        if points == self.counted && bytes == 0 {
+            return;
+        }
         self.metrics
             .made(self.protocol, format, points - self.counted, bytes);
         self.counted = points;
@@ -197,6 +198,15 @@ impl Report {
         }
     }
 
+    /// Path and query, as far as they are shown.
+    fn address(&self) -> &str {
+        let whole = self.address.as_ref().map_or("", PathAndQuery::as_str);
+        // A character has 4 bytes at most.
+        let ends = (LONGEST - 3..=LONGEST).rev();
+        let cut = ends.filter_map(|end| whole.get(..end)).next();
+        cut.unwrap_or(whole)
+    }
+
     fn is_refused(&self) -> bool {
         let failed = |status: StatusCode| status.is_client_error() || status.is_server_error();
         let has_failed = self.record.code().is_some_and(|code| code != 0);
@@ -225,26 +235,25 @@ impl Drop for Report {
             latency.observe(seconds);
         }
         let method = method_name(&self.method);
-        let requests = metrics.requests(protocol, &self.route, method, outcome);
+        let requests = metrics.requests(protocol, self.route, method, outcome);
         requests.inc();
 
         let trace = self.identity.trace.as_ref();
         let reason = self.record.refused().map(Kind::slug);
-        let client = self.client.map(|client| client.to_string());
         macro_rules! line {
             ($level:ident) => {
                 tracing::$level!(
-                    target: "strew::access",
+                    target: ACCESS,
                     parent: None,
                     request_id = self.record.id(),
                     trace_id = trace.map(|trace| &*trace.trace),
                     span_id = trace.map(|trace| &*trace.span),
                     parent_id = trace.and_then(|trace| trace.parent.as_deref()),
-                    client,
+                    client = %self.client,
                     protocol = self.protocol.name(),
                     method = self.method.as_str(),
-                    address = self.address,
-                    route = &*self.route,
+                    address = self.address(),
+                    route = self.route,
                     status = self.status.map(|status| status.as_u16()),
                     outcome,
                     reason,
@@ -259,21 +268,21 @@ impl Drop for Report {
             };
         }
         // Probes and scrapes come every few seconds and say nothing.
-        if let "/livez" | "/readyz" | "/metrics" = &*self.route {
+        if let "/livez" | "/readyz" | "/metrics" = self.route {
             line!(debug);
             return;
         }
         line!(info);
         if let (Some(spans), Some(trace)) = (&self.spans, trace) {
-            let is_call = self.protocol == Protocol::Grpc && &*self.route != NO_ROUTE;
+            let is_call = self.protocol == Protocol::Grpc && self.route != NO_ROUTE;
             spans.take(&Answered {
                 trace,
                 request_id: self.record.id(),
-                call: is_call.then_some(&*self.route),
-                route: Some(&*self.route).filter(|route| *route != NO_ROUTE),
+                call: is_call.then_some(self.route),
+                route: Some(self.route).filter(|route| *route != NO_ROUTE),
                 method,
-                address: &self.address,
-                client: self.client,
+                address: self.address(),
+                client: Some(self.client),
                 status: self.status.map(|status| status.as_u16()),
                 code: self.record.code(),
                 reason,
@@ -291,19 +300,6 @@ impl Drop for Report {
 /// With the digits that mean something.
 fn milliseconds(seconds: f64) -> f64 {
     (seconds * 1e6).round() / 1e3
-}
-
-/// The route of what has none.
-const NO_ROUTE: &str = "none";
-
-/// The route of a request: one of those there are, never the path as it was written.
-fn route(request: &Request) -> Arc<str> {
-    let path = request.uri().path();
-    if let Some(method) = grpc::METHODS.into_iter().find(|&method| method == path) {
-        return method.into();
-    }
-    let matched = request.extensions().get::<MatchedPath>();
-    matched.map_or(NO_ROUTE, MatchedPath::as_str).into()
 }
 
 /// A method's name, if it is a usual one: clients can make up others.

@@ -10,7 +10,7 @@ mod scrape;
 use std::time::{Instant, SystemTime};
 
 use prometheus::{
-    Histogram, HistogramVec, IntCounter, IntCounterVec, IntGauge, IntGaugeVec, Registry,
+    Histogram, HistogramVec, IntCounter, IntCounterVec, IntGauge, Registry,
     register_histogram_vec_with_registry as histograms,
     register_int_counter_vec_with_registry as counters,
     register_int_counter_with_registry as counter, register_int_gauge_vec_with_registry as gauges,
@@ -29,6 +29,8 @@ pub(super) enum Protocol {
 }
 
 impl Protocol {
+    const ALL: [Self; 2] = [Self::Rest, Self::Grpc];
+
     /// The label.
     pub(super) const fn name(self) -> &'static str {
         match self {
@@ -73,7 +75,8 @@ pub struct Metrics {
     registry: Registry,
     started: SystemTime,
     requests: IntCounterVec,
-    in_flight: IntGaugeVec,
+    /// By protocol.
+    in_flight: [IntGauge; 2],
     points: IntCounterVec,
     bytes: IntCounterVec,
     rejected: IntCounterVec,
@@ -102,6 +105,11 @@ impl Default for Metrics {
             histograms!(name, help, labels, BUCKETS.into(), all).expect(NEW)
         };
         let by_format = ["protocol", "format"];
+        let in_flight = gauges(
+            "strew_requests_in_flight",
+            "Requests that are being answered",
+            &["protocol"],
+        );
         let metrics = Self {
             started: SystemTime::now(),
             requests: counters(
@@ -109,11 +117,8 @@ impl Default for Metrics {
                 "Requests that were answered, by route and how they ended: a class of HTTP or a gRPC code",
                 &["protocol", "route", "method", "status"],
             ),
-            in_flight: gauges(
-                "strew_requests_in_flight",
-                "Requests that are being answered",
-                &["protocol"],
-            ),
+            in_flight: Protocol::ALL
+                .map(|protocol| in_flight.with_label_values(&[protocol.name()])),
             points: counters("strew_points_total", "Points made for answers", &by_format),
             bytes: counters(
                 "strew_response_bytes_total",
@@ -166,8 +171,7 @@ impl Default for Metrics {
             registry: all,
         };
         // Both protocols show from the start, at zero: a rate needs a first value.
-        for protocol in [Protocol::Rest, Protocol::Grpc] {
-            metrics.in_flight(protocol);
+        for protocol in Protocol::ALL {
             metrics.made(protocol, NO_FORMAT, 0, 0);
             metrics.latencies(protocol, NO_FORMAT);
             metrics.broken(protocol, Broken::Client);
@@ -183,8 +187,8 @@ impl Default for Metrics {
 
 impl Metrics {
     /// The number of requests that are being answered.
-    pub(super) fn in_flight(&self, protocol: Protocol) -> IntGauge {
-        self.in_flight.with_label_values(&[protocol.name()])
+    pub(super) const fn in_flight(&self, protocol: Protocol) -> &IntGauge {
+        &self.in_flight[protocol as usize]
     }
 
     /// Adds points and bytes that answers in a format were made of.

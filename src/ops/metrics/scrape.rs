@@ -2,13 +2,13 @@
 
 use std::{sync::Arc, time::UNIX_EPOCH};
 
-use axum::{extract::State, response::Response};
 use prometheus::{Counter, Gauge, Opts, Registry, TextEncoder, core::Collector};
 use strew_service::{Service, forging};
 
 use super::{Metrics, process::Process};
+use crate::body::Response;
 use crate::rest::{
-    self,
+    self, Context, Refused,
     api::{Answer, Endpoint, Operation, Tag, schemas},
 };
 
@@ -37,8 +37,9 @@ pub(in crate::ops) fn endpoint(metrics: Metrics, service: Arc<Service>) -> Endpo
     Endpoint::only("/metrics", state, operation, get)
 }
 
-async fn get(State((metrics, service)): State<(Metrics, Arc<Service>)>) -> Response {
-    rest::momentary(rest::file(metrics.scrape(&service).await, CONTENT_TYPE))
+async fn get((metrics, service): (Metrics, Arc<Service>), _: Context) -> Result<Response, Refused> {
+    let text = metrics.scrape(&service).await;
+    Ok(rest::momentary(rest::file(text, CONTENT_TYPE)))
 }
 
 impl Metrics {

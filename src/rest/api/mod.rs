@@ -6,34 +6,31 @@
 
 mod document;
 mod examples;
+mod handler;
 mod rules;
 pub mod schemas;
 mod sets;
 mod shape;
 
-use axum::{
-    Router,
-    handler::Handler,
-    routing::{self, MethodFilter, MethodRouter},
-};
 use http::Method;
 use schemars::JsonSchema;
 use serde_json::Value;
 use strew_error::Kind;
 use strew_query::{Group, Parameter};
 
-use super::unknown::wrong_method;
 use schemas::Content;
 
 pub(super) use document::document;
+pub use handler::{Handle, Handler, handler};
 
 /// A path that answers, and what it answers.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Endpoint {
     path: &'static str,
     operations: Vec<Operation>,
     is_open: bool,
-    router: Router,
+    /// The handler of each operation.
+    handlers: Vec<Handler>,
 }
 
 /// One method of a path.
@@ -176,49 +173,27 @@ impl Operation {
 
 impl Endpoint {
     /// A path with one operation and its handler.
-    ///
-    /// # Panics
-    /// For a method that is not one of HTTP's own.
-    pub fn only<S, T, H>(path: &'static str, state: S, operation: Operation, handler: H) -> Self
-    where
-        S: Clone + Send + Sync + 'static,
-        T: 'static,
-        H: Handler<T, S>,
-    {
-        let method = MethodFilter::try_from(operation.method.clone()).expect("a method of HTTP");
-        Self::new(path, state, vec![(operation, routing::on(method, handler))])
-    }
-
-    /// A path with a handler for each of its operations, in the same order. Other methods are
-    /// answered with a problem.
-    pub fn new<S: Clone + Send + Sync + 'static>(
+    pub fn only<S, T>(
         path: &'static str,
         state: S,
-        operations: Vec<(Operation, MethodRouter<S>)>,
-    ) -> Self {
-        let mut methods = MethodRouter::new();
-        let mut allowed: Vec<String> = vec![];
-        let mut described = vec![];
-        for (operation, handler) in operations {
-            methods = methods.merge(handler);
-            allowed.push(operation.method.to_string());
-            if operation.method == Method::GET {
-                allowed.push("HEAD".into());
-            }
-            described.push(operation);
-        }
-        let allowed = allowed.join(", ");
-        let fallback = move |method, uri| {
-            let allowed = allowed.clone();
-            async move { wrong_method(&method, &uri, &allowed) }
-        };
+        operation: Operation,
+        handle: impl Handle<S, T>,
+    ) -> Self
+    where
+        S: Clone + Send + Sync + 'static,
+    {
+        Self::new(path, vec![(operation, handler(&state, handle))])
+    }
+
+    /// A path with a handler for each of its operations. Other methods are answered with a problem.
+    #[must_use]
+    pub fn new(path: &'static str, operations: Vec<(Operation, Handler)>) -> Self {
+        let (operations, handlers) = operations.into_iter().unzip();
         Self {
             path,
-            operations: described,
+            operations,
+            handlers,
             is_open: false,
-            router: Router::new()
-                .route(path, methods.fallback(fallback))
-                .with_state(state),
         }
     }
 
@@ -247,8 +222,26 @@ impl Endpoint {
         &self.operations
     }
 
-    /// Its routes.
-    pub(super) fn into_router(self) -> Router {
-        self.router
+    /// The handler of a method; that of GET answers HEAD, too.
+    pub(super) fn handler(&self, method: &Method) -> Option<&Handler> {
+        let method = match *method {
+            Method::HEAD => &Method::GET,
+            _ => method,
+        };
+        let mut operations = self.operations.iter();
+        let place = operations.position(|operation| operation.method == method)?;
+        self.handlers.get(place)
+    }
+
+    /// The methods that it takes, with commas.
+    pub(super) fn allowed(&self) -> String {
+        let methods = self
+            .operations
+            .iter()
+            .map(|operation| match operation.method {
+                Method::GET => "GET, HEAD",
+                ref method => method.as_str(),
+            });
+        methods.collect::<Vec<_>>().join(", ")
     }
 }

@@ -10,12 +10,12 @@ mod encoder;
 
 use std::sync::Arc;
 
-use axum::{body::Body, response::Response};
 use bytes::Bytes;
 use futures_util::{StreamExt as _, stream};
 use http::{HeaderMap, HeaderValue, header};
 
 use super::vary;
+use crate::body::{Body, BoxError, Pieces, Response};
 pub(super) use choice::Coding;
 pub(super) use encoder::Encoder;
 use strew_error::Error;
@@ -49,6 +49,18 @@ pub(super) async fn apply(
     let Some(coding) = chosen else {
         return Ok(response);
     };
+    // On the heap, lest plain answers have room for it.
+    Box::pin(applied(coding, decided, is_head, service, response)).await
+}
+
+/// The answer in a coding.
+async fn applied(
+    coding: Coding,
+    decided: Option<Decided>,
+    is_head: bool,
+    service: &Service,
+    response: Response,
+) -> Result<Response, Error> {
     let whole = http_body::Body::size_hint(response.body()).exact();
     // Without a tag, which names the coding, an answer may stay plain: where that is shorter, and where
     // there is no room for a compressor.
@@ -103,7 +115,7 @@ async fn whole_document(
     let failed = |_| Error::Internal("an answer cannot be compressed");
     let _held = service.hold(coding.memory())?;
     let most = usize::try_from(length).unwrap_or(usize::MAX);
-    let plain = axum::body::to_bytes(body, most).await.map_err(failed)?;
+    let plain = body.whole(most).await.map_err(failed)?;
     let lane = if length <= MUCH {
         Lane::Short
     } else {
@@ -117,7 +129,7 @@ async fn whole_document(
 /// A body compressed block by block, each sent on when it is done. The work is done where points
 /// are made; meanwhile the next block is being made.
 fn compressed(body: Body, coding: Coding, workers: Workers, held: Held) -> Body {
-    let state = Encoder::new(coding).map(|encoder| (body.into_data_stream(), encoder));
+    let state = Encoder::new(coding).map(|encoder| (body.pieces(), encoder));
     let start = stream::once(std::future::ready(state));
     // The body is polled outside of its request.
     let threads = (workers, Owner::current());
@@ -128,9 +140,7 @@ fn compressed(body: Body, coding: Coding, workers: Workers, held: Held) -> Body 
                 stream::try_unfold(Some(state), move |state| next_block(state, threads.clone()))
                     .left_stream()
             }
-            Err(error) => {
-                stream::once(std::future::ready(Err(axum::Error::new(error)))).right_stream()
-            }
+            Err(error) => stream::once(std::future::ready(Err(error.into()))).right_stream(),
         }
     });
     // The memory of the encoder is held as long as the stream is.
@@ -139,12 +149,12 @@ fn compressed(body: Body, coding: Coding, workers: Workers, held: Held) -> Body 
     }))
 }
 
-type State = Option<(axum::body::BodyDataStream, Encoder)>;
+type State = Option<(Pieces, Encoder)>;
 
 async fn next_block(
     state: State,
     (workers, owner): (Workers, Owner),
-) -> Result<Option<(Bytes, State)>, axum::Error> {
+) -> Result<Option<(Bytes, State)>, BoxError> {
     let Some((mut blocks, encoder)) = state else {
         return Ok(None);
     };
@@ -152,6 +162,6 @@ async fn next_block(
     let is_last = block.is_none();
     let encode = move |_: &_| encoder.encode(block);
     let made = workers.take_turn_for(&owner, Lane::Short, encode).await;
-    let (encoder, encoded) = made.map_err(axum::Error::new)?.map_err(axum::Error::new)?;
+    let (encoder, encoded) = made??;
     Ok(Some((encoded, (!is_last).then_some((blocks, encoder)))))
 }

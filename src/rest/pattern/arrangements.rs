@@ -1,8 +1,7 @@
 //! `GET` and `POST /v1/pattern/arrangements`: facts, counts and lists of occurrences.
 
-use std::sync::Arc;
+use std::{pin::pin, sync::Arc};
 
-use axum::{body::Body, extract::State, response::Response, routing};
 use futures_util::StreamExt as _;
 use http::{HeaderName, HeaderValue, Method};
 use schemars::JsonSchema;
@@ -17,13 +16,16 @@ use strew_service::{
 
 use super::{
     api::{
-        self, Endpoint, Operation, Tag,
+        self, Endpoint, Operation, Tag, handler,
         schemas::{self, ArrangementQuery as ArrangementBody},
     },
     context::{Context, Sent},
     document, query,
 };
-use crate::rest::Refused;
+use crate::{
+    body::{Body, Response},
+    rest::Refused,
+};
 
 const COUNT: HeaderName = HeaderName::from_static("strew-count");
 const NEXT: HeaderName = HeaderName::from_static("strew-next");
@@ -65,8 +67,11 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         example: format!("/v1/pattern/arrangements -d '{body}'"),
         ..given.clone()
     };
-    let operations = vec![(given, routing::get(get)), (posted, routing::post(post))];
-    Endpoint::new("/v1/pattern/arrangements", service, operations)
+    let operations = vec![
+        (given, handler(&service, get)),
+        (posted, handler(&service, post)),
+    ];
+    Endpoint::new("/v1/pattern/arrangements", operations)
 }
 
 /// The answer, with a list or without.
@@ -131,7 +136,7 @@ struct Occurrence {
     places: Option<Vec<[f64; 2]>>,
 }
 
-async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
     let query = ArrangementQuery::check(&context.values(groups::ARRANGEMENT), &service.catalog())?;
     let content_type = query
         .list
@@ -140,10 +145,10 @@ async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Re
     let made_of = (digest, service.limits().max_points);
     let freshness = context.freshness(content_type, &made_of);
     let make = answer(&service, &context, query);
-    Ok(freshness.answer(&context.headers, make).await?)
+    Ok(freshness.answer(&context.headers, pin!(make)).await?)
 }
 
-async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
+async fn post(service: Arc<Service>, sent: Sent) -> Result<Response, Refused> {
     let Sent { context, body } = sent;
     let bytes = body.len();
     let read = move |service: &Service, _: &Stop| {

@@ -1,8 +1,7 @@
 //! `GET /v1/pattern/figures/….svg` and `….png`: the figures of patterns.
 
-use std::sync::Arc;
+use std::{pin::pin, sync::Arc};
 
-use axum::{extract::State, response::Response};
 use strew_error::Error;
 use strew_service::{
     Service,
@@ -14,7 +13,7 @@ use super::{
     context::Context,
     document,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 /// A figure as it is described: itself, its paths as a drawing and as pixels, their names for programs, a few words,
 /// the rest of its address.
@@ -91,7 +90,7 @@ fn endpoint(service: Arc<Service>, described: Described, format: Format) -> Endp
             api::Answer::file("The figure.", format.content_type(), content).or_unchanged(),
         )
     };
-    let handler = move |State(service): State<Arc<Service>>, context: Context| async move {
+    let handler = move |service: Arc<Service>, context: Context| async move {
         Ok::<_, Refused>(draw(&service, &context, figure, format).await?)
     };
     Endpoint::only(paths[number], service, operation, handler)
@@ -109,5 +108,5 @@ async fn draw(
         let file = service.figure(&context.caller, query, format).await?;
         Ok(document::file(file, content_type))
     };
-    context.answer(content_type, &(), make).await
+    context.answer(content_type, &(), pin!(make)).await
 }

@@ -1,8 +1,7 @@
 //! `GET /v1/pattern/map`: neighborhood maps.
 
-use std::sync::Arc;
+use std::{pin::pin, sync::Arc};
 
-use axum::{extract::State, response::Response};
 use strew_query::groups;
 use strew_service::{
     Service,
@@ -14,7 +13,7 @@ use super::{
     context::Context,
     document,
 };
-use crate::rest::Refused;
+use crate::{body::Response, rest::Refused};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -34,8 +33,8 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     Endpoint::only("/v1/pattern/map", service, operation, get)
 }
 
-async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
     let query = MapQuery::check(&context.values(groups::MAP))?;
     let make = service.map(&context.caller, query, |map| document::json(&map));
-    Ok(context.answer(document::JSON, &(), make).await?)
+    Ok(context.answer(document::JSON, &(), pin!(make)).await?)
 }

@@ -2,8 +2,15 @@
 
 use std::net::TcpListener;
 
-use axum::{Router, routing};
-use strew::ops::App;
+use http::Method;
+use strew::{
+    body::Response,
+    ops::App,
+    rest::{
+        Context, Refused,
+        api::{Endpoint, Operation, Tag, handler},
+    },
+};
 use strew_config::Layers;
 use strew_testkit::http1;
 
@@ -13,13 +20,19 @@ async fn a_panic_fails_one_request_only() {
     for setting in ["server.listen=127.0.0.1:0", "shutdown.drain_seconds=1"] {
         layers = layers.assignment(setting).expect("a setting");
     }
-    async fn panics() -> &'static str {
+    async fn panics((): (), _: Context) -> Result<Response, Refused> {
         panic!("a secret of the source")
     }
-    let routes = Router::new().route("/panics", routing::any(panics));
+    let operation = |method| Operation {
+        method,
+        ..Operation::new(Tag::Operations, vec![])
+    };
+    let methods = [Method::GET, Method::POST].map(operation);
+    let operations = methods.map(|operation| (operation, handler(&(), panics)));
+    let endpoint = Endpoint::new("/panics", operations.into()).open();
     let app = App::new(layers.finish().expect("settings"))
         .expect("tables")
-        .with_routes(routes);
+        .with_endpoints(vec![endpoint]);
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let address = listener.local_addr().expect("an address");
     let (stop, stopped) = tokio::sync::oneshot::channel::<()>();

@@ -273,7 +273,11 @@ mod tests {
 
     /// The owner of an address of its own.
     fn record() -> Arc<Record> {
-        Record::new("r", Budget::new(1 << 20).of_address(Usage::unlimited()))
+        Record::new(
+            "r",
+            None,
+            Budget::new(1 << 20).of_address(Usage::unlimited()),
+        )
     }
 
     #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
