@@ -113,7 +113,7 @@ fn tiles(plan: &Plan, most: usize) -> Vec<Point> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(100))]
 
     #[test]
     fn bulk_and_single_tests_agree(
