@@ -9,11 +9,11 @@ use strew_core::{
     server::{self, Stop},
 };
 use strew_error::Error;
-use strew_query::{Amount, Kinds, Period, Query, Set, Token, parameters};
+use strew_query::{Amount, Kinds, Period, Query, Set, Token, Window, parameters};
 
 use crate::{
     PlannedSet,
-    effort::{self, Layers, Selection},
+    effort::{self, Everywhere, Layers, Selection},
     resolve::{Resolved, check_reach, kind_distances, least_distance, no_period, resolve, unit},
 };
 
@@ -65,7 +65,11 @@ impl<'a> Planner<'a> {
         let points = set.points(ready, known.unwrap_or(Spacing::ONE))?;
         let area = self.left(set, ready, &points, is_over)?;
         let points = self.keeping_clear(set, points)?;
-        let test = self.prices.test(set);
+        // Exceptions leave out a few places of a box.
+        let places = known
+            .ok()
+            .and_then(|spacing| Everywhere::of(set, spacing, &set.area(region)));
+        let test = self.prices.test(set, places);
         let mut selection = Selection::new(set, points, area, test);
         let plan = match (known, here) {
             (Ok(spacing), _) if is_over || here.is_some() => {
@@ -107,6 +111,9 @@ impl<'a> Planner<'a> {
             Some(kinds) => self.kind_counts(kinds, &selection, &plan)?,
             None => vec![],
         };
+        // The points of a page may be the only ones in many tiles.
+        let is_page = self.query.window != Window::default();
+        let made = self.prices.test(set, places.filter(|_| !is_page));
         self.prices.push(set, Some(spacing), region.bounds);
         let whole = plan.placement().with_lod(Keep::ALL);
         let layer = selection.set.placed(whole);
@@ -124,7 +131,7 @@ impl<'a> Planner<'a> {
             Arc::new(plan),
             candidates,
         )
-        .priced(set, test, region.bounds)
+        .priced(set, made, region.bounds)
         .with_kinds(kinds, kind_distances(set, ready, spacing, region.reach())))
     }
 

@@ -9,6 +9,7 @@ use crate::{
     Options,
     assets::Assets,
     draft::Draft,
+    field::Loaded,
     parameter::{Group, Parameter},
     parameters::{EXCEPT, FIELD, ONLY, PERIODIC, TERRAIN, WORLD, WORLD_DIGEST},
     query::{Named, Query},
@@ -36,7 +37,11 @@ impl Draft {
         allowance: Allowance<'_>,
     ) -> Result<(Query, Options), Error> {
         let (draft, world) = self.filled(&assets.worlds)?;
-        let (mut query, options) = draft.check_whole(&assets.catalog, most_vertices, allowance)?;
+        let named = world.as_ref().filter(|_| self.leaves_sets());
+        let named = named.and_then(|world| assets.worlds.get(&world.name));
+        let known = named.and_then(|world| world.sets.clone());
+        let loaded = Loaded::new(&assets.catalog, allowance);
+        let (mut query, options) = draft.check_whole(&loaded, most_vertices, known)?;
         query.world = world;
         Ok((query, options))
     }

@@ -65,6 +65,17 @@ impl Draft {
         self
     }
 
+    /// Whether the sets of a world with layers are those of this query, which names it.
+    pub(crate) fn leaves_sets(&self) -> bool {
+        let is_of_set = |parameter: &Parameter| {
+            groups::SET.contains(&parameter.group) || parameter.group == Group::Period
+        };
+        let mut given = self.values.given().map(|(parameter, _)| parameter);
+        matches!(&self.layers, Ok(layers) if layers.is_empty())
+            && self.values.read().is_ok()
+            && !given.any(|parameter| *parameter != ONLY && is_of_set(parameter))
+    }
+
     /// Takes over what a world has and this query lacks.
     pub fn fill_from(&mut self, world: &Self) {
         self.values.replace(&WORLD, None);
@@ -114,8 +125,8 @@ impl Draft {
     /// As [`check`](Self::check).
     pub fn try_out(&self, catalog: &Catalog, most_vertices: usize) -> Result<Query, Error> {
         let whole = self.tried("bbox=0,0,1,1");
-        let unlimited = Allowance::UNLIMITED;
-        Ok(whole.check_whole(catalog, most_vertices, unlimited)?.0)
+        let loaded = Loaded::new(catalog, Allowance::UNLIMITED);
+        Ok(whole.check_whole(&loaded, most_vertices, None)?.0)
     }
 
     /// A part of a query, made whole with a region and an amount where it has none.
@@ -132,19 +143,19 @@ impl Draft {
         whole
     }
 
-    /// Checks a query that takes nothing from a world.
+    /// Checks a query that takes nothing from a world but `known` sets, which were checked before.
     pub(crate) fn check_whole(
         &self,
-        catalog: &Catalog,
+        loaded: &Loaded<'_>,
         most_vertices: usize,
-        allowance: Allowance<'_>,
+        known: Option<Arc<[Set]>>,
     ) -> Result<(Query, Options), Error> {
         self.check_vertices(most_vertices)?;
-        let loaded = Loaded::new(catalog, allowance);
-        let sets = match &self.layers {
-            Ok(layers) if layers.is_empty() => self.alone(&loaded).map(|set| vec![set]),
-            Ok(layers) => self.layers(layers, &loaded),
-            Err(faults) => Err(faults.clone()),
+        let sets = match (&self.layers, known) {
+            (Ok(_), Some(sets)) => Ok(sets),
+            (Ok(layers), None) if layers.is_empty() => self.alone(loaded).map(|set| [set].into()),
+            (Ok(layers), None) => self.layers(layers, loaded).map(Into::into),
+            (Err(faults), _) => Err(faults.clone()),
         };
         loaded.had_room()?;
         let (read, region, sets, window, options) = (
@@ -161,12 +172,12 @@ impl Draft {
             (None, Some(period)) => period.region()?,
             (None, None) => return Err(Fault::missing("region", REGION).into()),
         };
-        for set in &sets {
+        for set in &*sets {
             table::hold(&set.entry, set.pin.as_deref())?;
         }
         let query = Query {
             region,
-            sets: sets.into(),
+            sets,
             is_layered: !matches!(&self.layers, Ok(layers) if layers.is_empty()),
             window,
             world: None,

@@ -219,7 +219,7 @@ impl Scope {
             None
         } else {
             let area = area.map(around_chunks);
-            Sieve::new(lattice, Mask { area, ..mask }, [x.reach, y.reach])
+            Sieve::new(lattice, (Mask { area, ..mask }, is_box), [x.reach, y.reach])
         };
         Ok(Self {
             lattice: lattice.clone(),
@@ -241,6 +241,14 @@ impl Scope {
             lattice,
             x,
             y,
+            ..self.clone()
+        }
+    }
+
+    /// All points of the scope's box.
+    pub(crate) fn of_box(&self) -> Self {
+        Self {
+            sieve: None,
             ..self.clone()
         }
     }

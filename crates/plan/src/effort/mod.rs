@@ -17,8 +17,8 @@ use crate::{
     Lane,
     resolve::{Resolved, resolve},
 };
-pub(super) use layers::Layers;
 use layers::look;
+pub(super) use layers::{Everywhere, Layers};
 pub use making::block_bytes;
 pub use making::block_lane;
 pub use making::considered;
@@ -26,7 +26,7 @@ pub use neighbors::Neighbors;
 pub use point::point;
 use strew_catalog::Ready;
 use strew_error::Error;
-use strew_query::{Query, Set};
+use strew_query::{Amount, Query, Set};
 
 /// The approximate number of lattice units in a mean spacing.
 const UNITS: f64 = 3.0;
@@ -38,8 +38,9 @@ const COMPARISON: f64 = 5e-4;
 
 /// Looking at a point of a field takes this many nanoseconds, besides the look at the field itself.
 const CANDIDATE: f64 = 30.0;
-/// Counting a row takes this many nanoseconds.
+/// Counting a row takes this many nanoseconds, and making a point to test whether it is clear of others this many.
 const ROW: f64 = 1e3;
+const TESTED: f64 = 200.0;
 /// How long the number of points in a field is estimated, how long looking up the bounds of a piece takes beside the
 /// look at its field, and the fewest pieces.
 const ESTIMATE: f64 = 5e5;
@@ -76,8 +77,8 @@ pub(super) struct Selection {
     pub(super) set: PointSet,
     /// Where points are requested.
     pub(super) area: Area,
-    /// The time for each point, in nanoseconds, if points are looked at one by one: to keep clear of others, or for
-    /// kinds whose shares vary.
+    /// The time for each point, in nanoseconds, if points are made and looked at one by one: to keep clear of others,
+    /// or for kinds whose shares vary.
     by_point: f64,
     /// The time of a look at the field, in nanoseconds.
     look: f64,
@@ -92,10 +93,15 @@ impl Selection {
         let own = set.field.as_ref().map(|field| &field.spec);
         let of = |within| (look(varied, within), look(own, within));
         let (varied, look) = within.map_or((0.0, 0.0), of);
+        let made = match (varied > 0.0, test > 0.0) {
+            (true, _) => ROW,
+            (false, true) => TESTED,
+            (false, false) => 0.0,
+        };
         Self {
             set: points,
             area,
-            by_point: test + varied,
+            by_point: made + test + varied,
             look,
         }
     }
@@ -198,7 +204,11 @@ fn counted(query: &Query, set: &Set, ready: &Ready, most: f64, layers: &mut Laye
             (Spacing::new(guess).ok(), counts(set) + kinds(set))
         }
     };
-    let test = layers.test(set);
+    let places = match set.amount {
+        Amount::Count(_) => None,
+        _ => spacing.and_then(|spacing| Everywhere::of(set, spacing, &set.area(&query.region))),
+    };
+    let test = layers.test(set, places);
     layers.push(set, spacing, query.region.bounds);
     // Planning refuses what cannot be planned.
     let points = spacing.and_then(|spacing| set.points(ready, spacing).ok());
@@ -253,7 +263,7 @@ fn rows(selection: &Selection) -> f64 {
     };
     let cleared = if selection.looks_at_all() {
         let points = width * height * placement.spacing.density() * placement.keep.get();
-        points * (ROW + selection.by_point) / ROW
+        points * selection.by_point / ROW
     } else {
         0.0
     };

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use strew_catalog::named::{self, Source};
 
-use crate::draft::Draft;
+use crate::{draft::Draft, set::Set};
 
 /// The worlds that are loaded, by name.
 #[derive(Clone, Debug, Default)]
@@ -25,6 +25,8 @@ pub struct World {
     pub json: Arc<str>,
     /// The members, read and checked.
     pub draft: Draft,
+    /// Its layers, checked against the tables and fields that are loaded; `None` if it has none or does not fit these.
+    pub(crate) sets: Option<Arc<[Set]>>,
     /// The names of its layers.
     pub layers: Vec<String>,
     /// The BLAKE3 digest of all that its points depend on, in hexadecimal: the document, its tables, fields and

@@ -11,7 +11,7 @@ use strew_error::{Error, Fault};
 
 use super::{World, Worlds};
 use crate::{
-    Draft, Parameter, Query, groups,
+    Draft, Parameter, Query, Set, groups,
     parameters::{COUNT, CURSOR, OFFSET, WORLD, WORLD_DIGEST},
     read_body,
 };
@@ -89,16 +89,14 @@ impl Worlds {
     #[must_use]
     pub fn over(&self, catalog: &Catalog) -> Self {
         let renewed = |(name, world): (&String, &Arc<World>)| {
-            let query = world.draft.try_out(catalog, self.most_vertices);
-            let digest = query.map(|query| digest(&world.json, &query));
-            let world = match digest {
-                Ok(digest) if digest != world.digest => Arc::new(World {
-                    digest,
-                    ..World::clone(world)
-                }),
-                _ => Arc::clone(world),
+            let query = world.draft.try_out(catalog, self.most_vertices).ok();
+            let digest = query.as_ref().map(|query| digest(&world.json, query));
+            let renewed = World {
+                digest: digest.unwrap_or_else(|| world.digest.clone()),
+                sets: query.as_ref().and_then(sets),
+                ..World::clone(world)
             };
-            (name.clone(), world)
+            (name.clone(), Arc::new(renewed))
         };
         Self {
             entries: self.entries.iter().map(renewed).collect(),
@@ -164,6 +162,7 @@ impl World {
             name: found.name.clone(),
             source: found.source.clone(),
             digest: digest(json, &query),
+            sets: sets(&query),
             json: json.into(),
             layers: (draft.layers.iter().flatten())
                 .filter_map(|layer| layer.name.clone().ok()?)
@@ -171,6 +170,11 @@ impl World {
             draft,
         })
     }
+}
+
+/// The sets of a checked world, if they are layers: the amount of others may come from the query.
+fn sets(query: &Query) -> Option<Arc<[Set]>> {
+    query.is_layered.then(|| query.sets.clone())
 }
 
 /// The digest of a document with the tables and fields of its query.

@@ -147,3 +147,55 @@ fn broken_worlds_are_refused_at_the_start() {
         assert!(error.starts_with(expected), "{error}");
     }
 }
+
+#[test]
+fn checked_layers_are_those_of_a_new_check() {
+    let assets = loaded(FOREST).expect("valid");
+    let check = |address: &str| {
+        let draft = Draft::of(parse_pairs(address, groups::POINTS));
+        draft.check(&assets, 100)
+    };
+    let is_kept = |address: &str| {
+        let (query, _) = check(address).expect("valid");
+        let world = assets.worlds.get("forest").expect("loaded");
+        let kept = world.sets.as_ref().expect("layers");
+        (query.sets.as_ptr() == kept.as_ptr(), query)
+    };
+    let whole = "bbox=3,4,9,9&world=forest";
+    let (kept, query) = is_kept(whole);
+    assert!(kept);
+    // The same as the whole body, checked by itself.
+    let filled = Draft::of(parse_pairs(whole, groups::POINTS));
+    let (filled, world) = filled.filled(&assets.worlds).expect("known");
+    let (mut alone, _) = filled.check(&assets, 100).expect("valid");
+    assert!(alone.sets.as_ptr() != query.sets.as_ptr());
+    alone.world = world;
+    assert_eq!(query, alone);
+    // The window, the layer and the form of the answer are the query's own.
+    for own in ["limit=5", "only=rocks", "format=csv", "offset=2"] {
+        let (kept, query) = is_kept(&format!("{whole}&{own}"));
+        assert!(kept, "{own}");
+        let (other, _) = check(&format!("{whole}&{own}")).expect("valid");
+        assert_eq!(query, other);
+    }
+    for own in ["seed=5", "lod=0.5"] {
+        let (kept, query) = is_kept(&format!("{whole}&{own}"));
+        assert!(!kept, "{own}");
+        assert!(query.sets != alone.sets, "{own}");
+    }
+    assert!(check(&format!("{whole}&spacing=2")).is_err());
+    // Faults are still found, as is a layer that is not there.
+    for wrong in ["seed=red", "only=elm", "limit=-1", "decimals=x"] {
+        assert!(check(&format!("{whole}&{wrong}")).is_err(), "{wrong}");
+    }
+    // A world over other tables has their sets.
+    let catalog = Catalog::load(true, None).expect("built in");
+    let over = assets.worlds.over(&catalog);
+    let sets = |worlds: &Worlds| worlds.get("forest").and_then(|world| world.sets.clone());
+    assert_eq!(sets(&over), sets(&assets.worlds));
+    assert!(
+        sets(&over).map(|sets| sets.as_ptr()) != sets(&assets.worlds).map(|sets| sets.as_ptr())
+    );
+    // Without layers, the query may have the amount, so nothing is kept.
+    assert!(assets.worlds.get("meadow").expect("loaded").sets.is_none());
+}

@@ -15,7 +15,7 @@ use crate::{
 pub(crate) struct Flat {
     /// Their displaced positions, relative to the patch's origin.
     displaced: [Vec<i32>; 2],
-    /// Their places: where the warp moves these.
+    /// Their places: where the warp, if there is one, moves these.
     places: [Vec<i32>; 2],
     /// Their addresses: see [`address`].
     addresses: Vec<u32>,
@@ -56,7 +56,7 @@ const WHOLE: usize = 32;
 const LISTED: usize = 2048;
 
 impl Flat {
-    /// Lists the points of a warped patch in some columns, from row `rows.start` on, until there are at least
+    /// Lists the points of a patch in some columns, from row `rows.start` on, until there are at least
     /// `enough` or the rows end. Returns the first row that is not listed.
     pub(crate) fn list(
         &mut self,
@@ -119,6 +119,10 @@ impl Flat {
         if let Some(shears) = patch.shears() {
             let [x, y] = &self.displaced;
             warp_all(backend, shears, [x, y], &mut self.places);
+        } else {
+            for (places, displaced) in self.places.iter_mut().zip(&self.displaced) {
+                places.copy_from_slice(displaced);
+            }
         }
         next
     }

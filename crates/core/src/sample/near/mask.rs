@@ -8,13 +8,14 @@ use alloc::{sync::Arc, vec::Vec};
 use core::{cell::RefCell, ops::ControlFlow};
 
 use super::{
+    ground::{Ground, Known, Marked},
     limits::{check_number, check_place, check_radius, check_reach, check_work},
     scan::{Scratch, scan},
 };
 use crate::{
     error::{Error, ErrorKind, number},
     sample::{
-        area::Area,
+        area::{Area, Region},
         lattice::{Lattice, Point},
     },
 };
@@ -39,15 +40,21 @@ pub(crate) struct ClearOf {
 impl Mask {
     /// Tests for many places, with memory of their own.
     pub(crate) fn guards(&self) -> Guards {
-        Guards {
-            area: self.area.clone(),
-            clear: self.clear_guards(),
-        }
+        self.guards_holding(MOST_HELD)
     }
 
     /// The tests of [`clear`](Self::clear) alone.
     pub(crate) fn clear_guards(&self) -> Vec<Guard> {
-        self.clear.iter().map(ClearOf::guard).collect()
+        self.guards().clear
+    }
+
+    /// Tests that together hold up to `most` points of other sets.
+    fn guards_holding(&self, most: usize) -> Guards {
+        let each = most / self.clear.len().max(1);
+        Guards {
+            area: self.area.clone(),
+            clear: self.clear.iter().map(|of| of.guard(each)).collect(),
+        }
     }
 
     /// This mask with another set to keep clear of.
@@ -97,16 +104,45 @@ impl ClearOf {
         })
     }
 
-    fn guard(&self) -> Guard {
+    /// A test that holds up to `most` points: half of them of the other set, half of those that this keeps clear of.
+    fn guard(&self, most: usize) -> Guard {
         let (lattice, distance) = (self.lattice.clone(), self.distance);
-        Guard(RefCell::new(Clearance {
-            lattice,
-            guards: self.mask.guards(),
-            distance,
-            scratch: Scratch::default(),
+        let spacings = distance / lattice.placement.spacing.get();
+        let near = core::f64::consts::PI * spacings * spacings;
+        Guard(RefCell::new(Guarded {
+            search: SEARCH + near * visit(&lattice),
+            ground: Ground::new(most / 2),
+            clearance: Clearance {
+                lattice,
+                guards: self.mask.guards_holding(most / 2),
+                distance,
+                scratch: Scratch::default(),
+            },
         }))
     }
 }
+
+/// The most points of other sets that the tests of a piece of work hold: 16 bytes each.
+const MOST_HELD: usize = 1 << 17;
+
+/// The cost of a search near a place, in visits of points without a field.
+const SEARCH: f64 = 40.0;
+
+/// The cost of a visit of a point.
+const fn visit(lattice: &Lattice) -> f64 {
+    /// With a look at a field.
+    const IN_FIELD: f64 = 4.0;
+    if lattice.grade.is_some() {
+        IN_FIELD
+    } else {
+        1.0
+    }
+}
+
+/// The greatest sides of tiles, in mean spacings of the set whose points are listed, beside twice the distance.
+/// Points that settle are found in tiles of their own, which the boxes around these fit.
+const TILE: f64 = 32.0;
+const TILE_SETTLED: f64 = 24.0;
 
 /// Tests places against a mask. Not shared between threads: it keeps memory from place to place.
 #[derive(Clone, Debug)]
@@ -121,16 +157,97 @@ impl Guards {
         self.area.as_ref().is_none_or(|area| area.contains(p))
             && self.clear.iter().all(|guard| guard.permits(p))
     }
+
+    /// Turns to places within a box.
+    fn aim(&self, within: Region) {
+        if self.clear.is_empty() {
+            return;
+        }
+        let own = self.area.as_ref().and_then(Area::bounds);
+        let within = own.map_or(within, |own| own.and(within));
+        for guard in &self.clear {
+            guard.aim(within);
+        }
+    }
 }
 
 /// Tests whether places are clear of one set.
 #[derive(Clone, Debug)]
-pub(crate) struct Guard(RefCell<Clearance>);
+pub(crate) struct Guard(RefCell<Guarded>);
+
+#[derive(Clone, Debug)]
+struct Guarded {
+    clearance: Clearance,
+    /// The points around the places that are tested, if it is known where these lie.
+    ground: Ground,
+    /// The cost of a search.
+    search: f64,
+}
 
 impl Guard {
     /// Whether a place is far enough from all points of the other set.
+    #[inline]
     pub(crate) fn permits(&self, p: [f64; 2]) -> bool {
-        !self.0.borrow_mut().is_any_near(p, |_| true)
+        !self.0.borrow_mut().is_any_near(p)
+    }
+
+    /// Says that many of the next places lie within a box. They are tested faster; the answers are the same for all
+    /// places.
+    pub(crate) fn aim(&self, within: Region) {
+        self.0.borrow_mut().aim(within);
+    }
+}
+
+impl Guarded {
+    fn aim(&mut self, within: Region) {
+        let Clearance {
+            lattice,
+            guards,
+            distance,
+            ..
+        } = &self.clearance;
+        let tile = match lattice.settle() {
+            Some(_) => TILE_SETTLED,
+            None => TILE,
+        };
+        let spacing = lattice.placement.spacing.get();
+        let most = tile * spacing + 2.0 * distance;
+        let across = (most + 2.0 * distance) / spacing;
+        self.ground.aim(within, most, across * across);
+        let room = 2.0 * distance;
+        let around = Region::between(
+            within.min().map(|v| v - room),
+            within.max().map(|v| v + room),
+        );
+        guards.aim(around);
+    }
+
+    #[inline]
+    fn is_any_near(&mut self, at: [f64; 2]) -> bool {
+        match self.ground.at(at) {
+            Known::All(marked) => marked.is_any_near(at),
+            Known::In(tile) => self.is_any_near_in(tile, at),
+            Known::Nothing => self.clearance.is_any_near(at, |_| true),
+        }
+    }
+
+    /// Tests a place in a tile whose points are not marked, and marks them if that is worth it.
+    #[cold]
+    fn is_any_near_in(&mut self, tile: usize, at: [f64; 2]) -> bool {
+        let (clearance, ground) = (&mut self.clearance, &mut self.ground);
+        let distance = clearance.distance;
+        if let Some(around) = ground.around(tile, distance)
+            && let Some((center, radius)) = clearance.disk(around)
+            && ground.is_worth(tile, self.search, clearance.listing(radius))
+        {
+            let spacing = clearance.lattice.placement.spacing.get();
+            let places = clearance.list(around, (center, radius));
+            let marked = Marked::new(around, distance, spacing, &places);
+            let is_any_near = marked.is_any_near(at);
+            ground.mark(tile, marked);
+            return is_any_near;
+        }
+        clearance.is_any_near(at, |_| true)
     }
 }
 
@@ -230,5 +347,44 @@ impl Clearance {
             }
         });
         scanned.is_break()
+    }
+
+    /// The center and radius of a disk around a box, `None` if a search there leaves the limit. Within it every
+    /// place of the box is at least the distance from the limit.
+    fn disk(&self, around: Region) -> Option<([f64; 2], f64)> {
+        let (min, max) = (around.min(), around.max());
+        let center = [0, 1].map(|i| min[i] + (max[i] - min[i]) / 2.0);
+        let half = [0, 1].map(|i| (max[i] - center[i]).max(center[i] - min[i]));
+        let rounding = 4.0 * f64::EPSILON * (center[0].abs().max(center[1].abs()));
+        let radius = libm::hypot(half[0], half[1]) * (1.0 + 1e-9) + rounding;
+        check_place(center).ok()?;
+        check_reach(&self.lattice, center, radius + self.distance).ok()?;
+        Some((center, radius))
+    }
+
+    /// The cost of [listing](Self::list) the points of a disk.
+    fn listing(&self, radius: f64) -> f64 {
+        let spacings = radius / self.lattice.placement.spacing.get();
+        core::f64::consts::PI * spacings * spacings * visit(&self.lattice)
+    }
+
+    /// The places of the points of a box, with the disk around it.
+    fn list(&mut self, within: Region, (center, radius): ([f64; 2], f64)) -> Vec<[f64; 2]> {
+        let Self {
+            lattice,
+            guards,
+            scratch,
+            ..
+        } = self;
+        let mut places = Vec::new();
+        // Nothing breaks this.
+        let _ = scan(lattice, scratch, center, radius, None, |_, point| {
+            let at = point.at();
+            if within.contains(at) && guards.permit(at) {
+                places.push(at);
+            }
+            ControlFlow::Continue(())
+        });
+        places
     }
 }

@@ -1,11 +1,13 @@
 //! Points near a place.
 //!
 //! `scan` visits the points around a place. `search` returns the nearest ones and those within a radius,
-//! and `limits` refuses what would take too long; `visits` counts and stops them. `mask` decides by such neighbors which points of a set
-//! exist: those in its area that keep clear of other sets. `distance` is the least distance between any
-//! two points of a table, by the `pairs` of its blocks.
+//! and `limits` refuses what would take too long; `visits` counts and stops them. `mask` decides by such neighbors
+//! which points of a set exist: those in its area that keep clear of other sets. `ground` keeps the points of these
+//! around many places. `distance` is the least distance between any two points of a table, by the `pairs` of its
+//! blocks.
 
 mod distance;
+mod ground;
 pub(super) mod limits;
 mod mask;
 mod pairs;

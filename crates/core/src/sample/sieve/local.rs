@@ -110,6 +110,13 @@ impl LocalSieve {
         let [x, y] = [self.strip(Axis::X, columns), self.strip(Axis::Y, rows)];
         let within = Region::between([x[0], y[0]], [x[1], y[1]]);
         self.area = area.map(|area| area.focus(&within));
+        if !self.guards.is_empty() {
+            let bounds = area.and_then(Area::bounds);
+            let within = bounds.map_or(within, |bounds| bounds.and(within));
+            for guard in &self.guards {
+                guard.aim(within);
+            }
+        }
     }
 
     /// The area, reduced to what matters here.

@@ -15,8 +15,13 @@ pub(crate) struct Scale {
 
 impl Scale {
     pub(crate) fn new(lattice: &Lattice, patch: &Patch) -> Self {
+        Self::at(lattice, patch.origin())
+    }
+
+    /// The scale of the patch at an origin.
+    pub(crate) fn at(lattice: &Lattice, origin: [i64; 2]) -> Self {
         Self {
-            base: patch.origin().map(|v| fixed(v) as f64),
+            base: origin.map(|v| fixed(v) as f64),
             step: lattice.step,
         }
     }

@@ -5,7 +5,7 @@ use alloc::{sync::Arc, vec, vec::Vec};
 
 use super::{
     bands::Bands,
-    few::{FEW, Few, find_few},
+    few::{FEW, FEW_GUARDED, Few, find_few},
     graded::{FieldWalk, Next},
     settled::{Pieces, count_settled, find_few_settled, locate_settled},
 };
@@ -14,6 +14,7 @@ use crate::sample::{
     kernel::Points,
     lattice::{Point, PointId},
     scope::Scope,
+    sieve::Sieve,
 };
 
 /// The most marks of a count. Where there would be more, every other one is left out.
@@ -86,6 +87,8 @@ impl Counted {
         let mut walk = FieldWalk::<Points>::new(Bands::from(scope.clone(), None), None);
         let (mut count, mut marks) = (0, Marks::default());
         let mut kept = Some(Few::default());
+        let is_guarded = scope.sieve.as_ref().is_some_and(Sieve::is_guarded);
+        let most = if is_guarded { FEW_GUARDED } else { FEW };
         let mut patch = None;
         while !scope.stop.is_raised() {
             let Some(next) = walk.next(TOGETHER) else {
@@ -105,7 +108,7 @@ impl Counted {
                         marks.note(at, count);
                     }
                     count += found.len() as u128;
-                    kept = kept.filter(|_| count <= FEW as u128);
+                    kept = kept.filter(|_| count <= most as u128);
                     if let Some(kept) = &mut kept {
                         kept.add(origin, found.iter().copied());
                     }

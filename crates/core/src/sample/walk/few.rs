@@ -11,6 +11,7 @@ use crate::sample::{
     kernel::{Backend, F64, Format},
     lattice::{Found, PointId},
     scope::Scope,
+    sieve::Scale,
 };
 
 /// The most points of a small plan: 12 bytes each.
@@ -108,20 +109,35 @@ impl<F: Format> Kept<F> {
     }
 }
 
-/// The points of a small warped box. `None` if it is not small, or no warped box.
+/// The most points of a plan that keeps clear of other sets: testing them again costs more.
+pub(super) const FEW_GUARDED: usize = 8192;
+
+/// The points that are listed between two looks at the flag, where each is tested against other sets.
+const GUARDED: usize = 256;
+
+/// The points of a small box that is warped or keeps clear of other sets. `None` if it is not small, or no such box.
 pub(super) fn find_few(scope: &Arc<Scope>) -> Option<Few> {
     let Scope { lattice, x, y, .. } = &**scope;
-    if lattice.shears.is_none() || lattice.grade.is_some() || scope.sieve.is_some() {
+    if lattice.grade.is_some() {
         return None;
     }
+    let (guards, most) = match &scope.sieve {
+        Some(sieve) => (sieve.guards_alone()?, FEW_GUARDED),
+        None if lattice.shears.is_some() => (Vec::new(), FEW),
+        None => return None,
+    };
     let length = |range: &Range<i64>| (range.end as f64 - range.start as f64).max(0.0);
     // The share of lattice places that have a point.
     let side = lattice.map().alpha().set_side() as f64 / 18_446_744_073_709_551_616.0;
     let expected = length(&x.all) * length(&y.all) * side * side;
-    if expected > FEW as f64 {
+    if expected > most as f64 {
         return None;
     }
-    let mut walk = RowWalk::<F64>::new(Bands::from(scope.clone(), None), None);
+    let of_box = match &scope.sieve {
+        Some(_) => Arc::new(scope.of_box()),
+        None => scope.clone(),
+    };
+    let mut walk = RowWalk::<F64>::new(Bands::from(of_box, None), None);
     if !walk.is_flat() {
         return None;
     }
@@ -129,8 +145,21 @@ pub(super) fn find_few(scope: &Arc<Scope>) -> Option<Few> {
         found: Vec::with_capacity(expected as usize),
         ..Few::default()
     };
-    while let Some((origin, found)) = walk.list(FEW) {
-        few.add(origin, found);
+    let enough = if guards.is_empty() { FEW } else { GUARDED };
+    while let Some((origin, found)) = walk.list(enough) {
+        if guards.is_empty() {
+            few.add(origin, found);
+            continue;
+        }
+        if scope.stop.is_raised() {
+            break;
+        }
+        let scale = Scale::at(lattice, origin);
+        let permitted = found.filter(|found| {
+            let at = scale.world(found.place);
+            guards.iter().all(|guard| guard.permits(at))
+        });
+        few.add(origin, permitted);
     }
     Some(few)
 }

@@ -42,7 +42,6 @@ use crate::{
     sample::{
         kernel::{Format, Row, compiled},
         lattice::{BAND_WIDTH, Flat, Found, Inside, Listed, PointId, places},
-        scope::Scope,
         sieve::Scale,
     },
 };
@@ -168,10 +167,9 @@ impl<F: Format> RowWalk<F> {
         true
     }
 
-    /// Whether points are listed before they are written: in warped boxes that are not tall.
+    /// Whether points can be [listed](Self::list): in boxes that are not tall.
     pub(super) fn is_flat(&self) -> bool {
-        let Scope { lattice, sieve, .. } = &*self.bands.scope;
-        lattice.shears.is_some() && sieve.is_none() && self.templates.are_short()
+        self.bands.scope.sieve.is_none() && self.templates.are_short()
     }
 
     /// Lists the next points of a [flat](Self::is_flat) walk, some of which may be in the next patch. Returns their
@@ -187,7 +185,7 @@ impl<F: Format> RowWalk<F> {
         Some((self.bands.patch.origin(), inside.points()))
     }
 
-    /// Lists the points of the warped patch's rows up to `end` that lie inside, or `enough` of its points. Returns
+    /// Lists the points of the patch's rows up to `end` that lie inside, or `enough` of its points. Returns
     /// the first row that is not listed.
     fn list_flat(&mut self, end: i64, enough: usize) -> i64 {
         let Bands {

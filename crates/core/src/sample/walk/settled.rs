@@ -13,6 +13,7 @@ use core::ops::Range;
 use super::{
     bands::{format_of, write_found},
     few::Few,
+    strips::{PIECE, Rows},
     tile::Tile,
 };
 use crate::sample::{
@@ -25,9 +26,6 @@ use crate::sample::{
     settle::{Box2, Placed, Settled, Settler, add_place, common, joined, widened},
 };
 use crate::table::fixed;
-
-/// The rows of a piece: enough that the margins around it cost less than the piece.
-const PIECE: i64 = 512;
 
 /// The sides of the tiles that are compared with an outline as a whole, in bits of fixed-point units: 128 grid units.
 const TILE_BITS: u32 = 27;
@@ -104,10 +102,17 @@ impl Pieces {
         Some(area.focus(&self.settler.region(within)))
     }
 
+    /// Turns the tests of other sets to points that end in a box.
+    fn aim(&self, ends: &Box2) {
+        let within = self.settler.region(&common(ends, &self.bounds));
+        self.clear.iter().for_each(|guard| guard.aim(within));
+    }
+
     /// Calls `visit` for the settled points of some columns and rows of a band that lie inside, in their order.
     fn settle(&mut self, piece: &[Range<i64>; 2], mut visit: impl FnMut(Settled)) {
         let within = self.places(piece);
         let ends = widened(&within, self.settler.most_move(&within));
+        self.aim(&ends);
         let inside = Inside {
             bounds: &self.bounds,
             area: self.area(&ends),
@@ -188,6 +193,7 @@ impl Pieces {
                 break;
             }
             let ends = widened(&some, self.settler.most_move(&some));
+            self.aim(&ends);
             let inside = Inside {
                 bounds,
                 area: self.area(&ends),
@@ -234,62 +240,6 @@ impl Pieces {
 /// Whether an address is in some columns and rows.
 fn holds([columns, rows]: &[Range<i64>; 2], id: PointId) -> bool {
     columns.contains(&id.x) && rows.contains(&id.y)
-}
-
-/// A part of a scope in its order: rows of a band.
-#[derive(Clone, Debug)]
-struct Rows {
-    ahead: Range<i64>,
-    band: i64,
-    all: Range<i64>,
-    next: i64,
-}
-
-impl Rows {
-    fn new(bands: Range<i64>, all: Range<i64>) -> Self {
-        Self {
-            band: bands.start,
-            next: all.end,
-            ahead: bands,
-            all,
-        }
-    }
-
-    /// Moves to the next rows: the end of the piece that holds the next row, or further.
-    fn take(&mut self, sure: impl FnOnce(i64) -> Range<i64>) -> Option<(i64, Range<i64>, bool)> {
-        if self.next >= self.all.end {
-            self.band = self.ahead.next()?;
-            self.next = self.all.start;
-            if self.all.is_empty() {
-                return None;
-            }
-        }
-        let start = self.next;
-        let sure = sure(self.band);
-        let is_sure = sure.contains(&start);
-        let end = if is_sure {
-            sure.end
-        } else {
-            (start.div_euclid(PIECE) + 1) * PIECE
-        };
-        self.next = end.min(self.all.end);
-        Some((self.band, start..self.next, is_sure))
-    }
-
-    /// The address of the next row.
-    const fn place(&self) -> PointId {
-        if self.next < self.all.end {
-            PointId {
-                x: self.band * BAND_WIDTH,
-                y: self.next,
-            }
-        } else {
-            PointId {
-                x: self.ahead.start * BAND_WIDTH,
-                y: self.all.start,
-            }
-        }
-    }
 }
 
 /// A walk over points that settle.

@@ -1,0 +1,281 @@
+//! Sets that keep clear of others: bulk tests of many places agree with single searches and with all pairs.
+
+mod subject;
+
+use proptest::prelude::*;
+use strew_core::{
+    Area, Circle, F64, Keep, Placement, Plan, Point, PointSet, Points, Region, Seed, Spacing, Tile,
+    server::{self, Stop},
+};
+use subject::{all, any_seed, any_table, in_order_of_ids, mixed, set, unit};
+
+/// What another set is, beside its table, seed and spacing.
+#[derive(Clone, Copy, Debug)]
+enum Sort {
+    All,
+    /// It has a share of its points, which settle by some steps.
+    Kept(f64, u32),
+    InField,
+    /// It has the points of a kind alone.
+    OfKind,
+    /// It lies in a circle.
+    Limited,
+}
+
+fn any_sort() -> impl Strategy<Value = Sort> {
+    prop_oneof![
+        3 => Just(Sort::All),
+        1 => (0.05..0.9f64, 0u32..3).prop_map(|(share, steps)| Sort::Kept(share, steps)),
+        1 => Just(Sort::InField),
+        1 => Just(Sort::OfKind),
+        1 => Just(Sort::Limited),
+    ]
+}
+
+/// Another set, near a place.
+fn any_other() -> impl Strategy<Value = (PointSet, Sort)> {
+    let spacing = prop_oneof![0.25..1.0f64, 1.0..8.0f64];
+    (any_table(), any_seed(), spacing, any_sort(), 0usize..5).prop_map(
+        |(table, (seed, warp), spacing, sort, kinds)| {
+            let table = match sort {
+                Sort::OfKind => mixed::tables()[kinds].clone(),
+                _ => table,
+            };
+            let spacing = Spacing::new(spacing).expect("in range");
+            let placement = Placement::new(spacing, seed).with_warp(warp);
+            (set(&table, placement), sort)
+        },
+    )
+}
+
+/// The set as it is, around a place.
+fn made((other, sort): (PointSet, Sort), at: [f64; 2]) -> PointSet {
+    match sort {
+        Sort::All => other,
+        Sort::Kept(share, steps) => {
+            let keep = Keep::new(share).expect("in range");
+            let other = other.settle(steps).expect("few");
+            let placement = other.placement().with_keep(keep);
+            other.placed(placement)
+        }
+        Sort::InField => {
+            other.in_field(move |[x, y]: [f64; 2]| 0.5 + 0.1 * (x - at[0]) - 0.05 * (y - at[1]))
+        }
+        Sort::OfKind => other.only(0).expect("a kind"),
+        Sort::Limited => other.limited_to(Circle::new(at, 9.0).expect("valid")),
+    }
+}
+
+/// Somewhere: around the origin, far away and very far away.
+fn anywhere() -> impl Strategy<Value = [f64; 2]> {
+    let within = |most: f64| [-most..most, -most..most];
+    prop_oneof![within(30.0), within(1e5), within(1e12)]
+}
+
+/// An area around a place.
+fn any_area() -> impl Strategy<Value = ([f64; 2], Area)> {
+    let sides = [0.5..40.0f64, 0.5..40.0f64];
+    (anywhere(), sides, 0u8..4).prop_map(|(at, sides, sort)| {
+        let max = [0, 1].map(|i| at[i] + sides[i]);
+        let center = [0, 1].map(|i| at[i] + 0.5 * sides[i]);
+        let region = Region::new(at, max).expect("ordered");
+        let circle = || Circle::new(center, 0.5 * sides[0]).expect("valid");
+        let area = match sort {
+            0 => {
+                let number = at.map(|v| (v / sides[0]).floor() as i64);
+                Region::chunk(sides[0], number).expect("in range").into()
+            }
+            1 => Area::from(circle()),
+            2 => Area::from(region).without([circle().into()]),
+            _ => region.into(),
+        };
+        (center, area)
+    })
+}
+
+/// The points of a set that keeps clear of others, each decided by itself: a lookup searches near a single place.
+fn one_by_one(whole: &PointSet, clear: &PointSet, area: Area) -> Vec<Point> {
+    let mut points = whole.within(area).expect("in range").to_vec();
+    points.retain(|point| clear.point(point.id).is_some());
+    points
+}
+
+fn tiles(plan: &Plan, most: usize) -> Vec<Point> {
+    let tile = |tile: Tile| {
+        let (mut blocks, mut points) = (plan.tile_blocks::<Points>(&tile), vec![]);
+        let mut block = vec![Point::default(); 100];
+        while let filled @ 1.. = blocks.fill(&mut block) {
+            points.extend_from_slice(&block[..filled]);
+        }
+        points
+    };
+    plan.tiles(most).flat_map(tile).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+
+    #[test]
+    fn bulk_and_single_tests_agree(
+        table in any_table(), (seed, warp) in any_seed(), (at, area) in any_area(),
+        (first, second) in (any_other(), any_other()),
+        distances in [0.02..4.0f64, 0.02..4.0f64, 0.02..4.0f64],
+        nested: bool, sort in any_sort(), block in 1usize..300, most in 1usize..500,
+    ) {
+        let (first, second) = (made(first, at), made(second, at));
+        let [of_first, of_second, between] = distances;
+        let most_of = |set: &PointSet, distance: f64| distance.min(15.0 * set.placement().spacing.get());
+        let second = match nested {
+            true => second.clear_of(&first, most_of(&first, between)).expect("near"),
+            false => second,
+        };
+        let own = set(&table, Placement { seed, ..unit(0).with_warp(warp) });
+        // Kinds take a table with kinds.
+        let whole = match sort {
+            Sort::OfKind => own,
+            sort => made((own, sort), at),
+        };
+        let clear = whole.clone().clear_of(&first, most_of(&first, of_first)).expect("near");
+        let clear = clear.clear_of(&second, most_of(&second, of_second)).expect("near");
+        let expected = one_by_one(&whole, &clear, area.clone());
+        let plan = clear.within(area.clone()).expect("in range");
+        prop_assert_eq!(plan.count(), expected.len() as u128);
+        prop_assert_eq!(&all::<Points>(&plan, block), &expected);
+        prop_assert_eq!(&plan.to_vec(), &expected);
+        let places: Vec<[f64; 2]> = expected.iter().map(Point::at).collect();
+        prop_assert_eq!(&all::<F64>(&plan, block), &places);
+        prop_assert_eq!(&tiles(&plan, most), &expected);
+        // A part, and what comes after it.
+        let start = expected.len() / 3;
+        prop_assert_eq!(&plan.window(start as u128, Some(7)).to_vec()[..], &expected[start..(start + 7).min(expected.len())]);
+        let mut blocks = plan.blocks::<Points>();
+        let mut some = vec![Point::default(); start];
+        blocks.fill(&mut some);
+        if let Some(cursor) = blocks.cursor() {
+            let rest = clear.resume(area, cursor).expect("in range");
+            prop_assert_eq!(&rest.to_vec()[..], &expected[start..]);
+        }
+    }
+
+    #[test]
+    fn chunks_lose_nothing_and_share_nothing(
+        table in any_table(), (seed, warp) in any_seed(), other in any_other(),
+        distance in 0.05..3.0f64, at in [-40i64..40, -40i64..40], parts in 2i64..5,
+    ) {
+        let other = made(other, at.map(|v| 24.0 * v as f64));
+        let distance = distance.min(15.0 * other.placement().spacing.get());
+        let own = set(&table, Placement { seed, ..unit(0) }.with_warp(warp));
+        let clear = own.clear_of(&other, distance).expect("near");
+        let whole = clear.chunk(24.0, at).expect("in range").to_vec();
+        let mut points = vec![];
+        for i in 0..parts * parts {
+            let number = [at[0] * parts + i % parts, at[1] * parts + i / parts];
+            points.extend(clear.chunk(24.0 / parts as f64, number).expect("in range").to_vec());
+        }
+        prop_assert_eq!(in_order_of_ids(points), whole);
+    }
+}
+
+/// All pairs of points, without any search.
+#[test]
+fn no_pair_is_nearer() {
+    let table = &subject::tables()[0];
+    for (spacing, distance, side) in [
+        (6.0, 2.5, 300.0),
+        (1.0, 0.4, 150.0),
+        (0.3, 0.1, 60.0),
+        (0.5, 4.0, 60.0),
+    ] {
+        for min in [[0.0, 0.0], [-7000.0, 1300.0]] {
+            let rocks = set(
+                table,
+                Placement::new(Spacing::new(spacing).expect("valid"), Seed(5)),
+            );
+            let whole = set(
+                table,
+                Placement {
+                    seed: Seed(9),
+                    ..unit(0)
+                },
+            );
+            let clear = whole.clone().clear_of(&rocks, distance).expect("near");
+            let region = |room: f64| {
+                let [low, high] = [min.map(|v| v - room), min.map(|v| v + side + room)];
+                Region::new(low, high).expect("ordered")
+            };
+            let mut near = rocks
+                .within(region(distance + 1.0))
+                .expect("in range")
+                .to_vec();
+            near.sort_by(|a, b| a.x.total_cmp(&b.x));
+            let mut expected = whole.within(region(0.0)).expect("in range").to_vec();
+            expected.retain(|p| {
+                let start = near.partition_point(|q| q.x < p.x - distance - 0.1);
+                let end = near.partition_point(|q| q.x < p.x + distance + 0.1);
+                near[start..end].iter().all(|q| {
+                    let (x, y) = (q.x - p.x, q.y - p.y);
+                    x * x + y * y >= distance * distance
+                })
+            });
+            let plan = clear.within(region(0.0)).expect("in range");
+            assert_eq!(plan.count(), expected.len() as u128);
+            assert_eq!(all::<Points>(&plan, 1000), expected);
+        }
+    }
+}
+
+/// Several bands and patches, and other sets from much sparser to much denser.
+#[test]
+fn large_plans_are_made_piece_by_piece() {
+    let [a, b, c] = subject::tables();
+    let region = Region::new([-430.0, -70.0], [70.0, 60.0]).expect("ordered");
+    let other = |spacing: f64, seed: u64| {
+        set(
+            b,
+            Placement::new(Spacing::new(spacing).expect("valid"), Seed(seed)),
+        )
+    };
+    let rocks = other(30.0, 3);
+    let stones = set(
+        c,
+        Placement::new(Spacing::new(0.7).expect("valid"), Seed(4)),
+    );
+    let stones = stones.clear_of(&rocks, 10.0).expect("near");
+    for seed in [0, 8] {
+        let whole = set(
+            a,
+            Placement {
+                seed: Seed(seed),
+                ..unit(seed)
+            },
+        );
+        for (first, second) in [(8.0, 0.3), (0.5, 1.2)] {
+            let clear = whole.clone().clear_of(&rocks, first).expect("near");
+            let clear = clear.clear_of(&stones, second * 0.5).expect("near");
+            let plan = clear.within(region).expect("in range");
+            let points = all::<Points>(&plan, 5000);
+            assert_eq!(points.len() as u128, plan.count());
+            assert_eq!(points, one_by_one(&whole, &clear, region.into()));
+        }
+    }
+}
+
+#[test]
+fn counting_stops() {
+    let table = &subject::tables()[0];
+    let own = set(table, unit(3));
+    let clear = own
+        .clone()
+        .clear_of(&set(table, unit(4)), 0.4)
+        .expect("near");
+    let stop = Stop::new();
+    for side in [20.0, 2000.0] {
+        let region = Region::new([0.0; 2], [side; 2]).expect("ordered");
+        assert!(server::within(&clear, region, &Stop::new()).is_ok());
+    }
+    stop.raise();
+    for side in [20.0, 20_000.0] {
+        let region = Region::new([0.0; 2], [side; 2]).expect("ordered");
+        assert!(server::within(&clear, region, &stop).is_err());
+    }
+}
