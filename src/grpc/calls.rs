@@ -4,7 +4,7 @@ use std::{convert::Infallible, fmt, future::ready, sync::Arc};
 
 use tonic::{body::Body as TonicBody, codegen::Service};
 
-use super::METHODS;
+use super::methods::{METHODS, unimplemented};
 use crate::body::{Answering, Body, Request};
 
 type Answers = Arc<dyn Fn(Request) -> Answering + Send + Sync>;
@@ -63,7 +63,7 @@ impl Calls {
     pub fn answer(&self, request: Request) -> Answering {
         match service(request.uri().path()) {
             Some(place) => self.0[place](request),
-            None => Box::pin(ready(super::unimplemented().map(Body::new))),
+            None => Box::pin(ready(unimplemented().map(Body::new))),
         }
     }
 }

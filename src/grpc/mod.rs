@@ -10,6 +10,7 @@ mod frames;
 mod mask;
 mod message;
 mod messages;
+mod methods;
 mod pattern;
 mod periods;
 mod points;
@@ -35,6 +36,7 @@ use calls::answering;
 pub use calls::{Calls, route};
 pub use deadline::Deadline;
 use direct::Direct;
+pub use methods::unimplemented;
 use points::Points;
 use proto::point_service_server::PointServiceServer;
 use strew_error::Error;
@@ -42,25 +44,6 @@ use strew_service::{Interrupted, Service};
 
 /// The contract as reflection serves it.
 const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/strew_descriptors.bin"));
-
-/// The methods of the contract, by their paths.
-pub const METHODS: [&str; 15] = [
-    "/strew.v1.PointService/StreamPoints",
-    "/strew.v1.PointService/CountPoints",
-    "/strew.v1.PointService/SplitPoints",
-    "/strew.v1.PointService/GetPoint",
-    "/strew.v1.PointService/FindNearest",
-    "/strew.v1.PointService/ListProfiles",
-    "/strew.v1.PointService/ListPeriods",
-    "/strew.v1.PointService/GetMask",
-    "/strew.v1.PointService/ListFields",
-    "/strew.v1.PointService/ListWorlds",
-    "/strew.v1.PointService/ForgeTable",
-    "/strew.v1.PointService/GetArrangement",
-    "/strew.v1.PointService/ListOccurrences",
-    "/strew.v1.PointService/GetClusters",
-    "/strew.v1.PointService/GetMap",
-];
 
 /// The longest message to the services of health and reflection, which take names: those of files and of
 /// symbols.
@@ -224,10 +207,3 @@ const MALFORMED: [&str; 4] = [
 
 const GRPC_STATUS: &str = "grpc-status";
 const GRPC_MESSAGE: &str = "grpc-message";
-
-/// The answer to a method that does not exist.
-#[must_use]
-pub fn unimplemented() -> http::Response<tonic::body::Body> {
-    let methods = METHODS.join(", ");
-    Status::unimplemented(format!("unknown method; available: {methods}")).into_http()
-}

@@ -27,14 +27,11 @@ use super::{
     exchange::{Fate, OpenExchanges},
     front::Front,
     guarded::{FirstWords, WriteTimeout},
+    peer::Peer,
     throttle::LogThrottle,
     tls::Tls,
 };
 use crate::{body::Body, rest};
-
-/// Who asks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Peer(pub SocketAddr);
 
 /// Takes connections and serves them. Cheap to clone.
 #[derive(Clone)]

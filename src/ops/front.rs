@@ -8,10 +8,12 @@ use http_body::Body as _;
 use strew_access::{Caller, Gate};
 
 use super::{
-    Peer,
     calls::Calls,
     exchange::{Exchanges, Intake, OpenExchanges, Visit},
-    gate, panics,
+    gate,
+    metrics::NO_ROUTE,
+    panics,
+    peer::Peer,
 };
 use crate::{
     body::{Answering, Body, Request, Response},
@@ -38,9 +40,6 @@ pub(super) struct Front {
     pub(super) finish: Finish,
     pub(super) exchanges: Exchanges,
 }
-
-/// The route of what has none.
-pub(super) const NO_ROUTE: &str = "none";
 
 /// What a path leads to.
 enum Place<'a> {

@@ -15,6 +15,7 @@ pub mod health;
 mod identity;
 mod metrics;
 mod panics;
+mod peer;
 pub mod reload;
 pub mod serve;
 pub mod shutdown;
@@ -23,5 +24,5 @@ pub mod telemetry;
 mod throttle;
 pub mod tls;
 
-pub use connections::Peer;
+pub use peer::Peer;
 pub use serve::{App, ServeError};

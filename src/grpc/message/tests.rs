@@ -50,7 +50,7 @@ fn limits() -> Limits {
 #[test]
 fn every_field_that_is_repeated_and_every_message_that_decoders_join_has_a_limit() {
     let limits = limits();
-    assert_eq!(METHODS.len(), super::super::METHODS.len());
+    assert_eq!(METHODS.len(), super::super::methods::METHODS.len());
     for (shape, path, kind, most) in paths() {
         if most.is_once() && !matches!(kind, Kind::Message(_)) {
             continue;

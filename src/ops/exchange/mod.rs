@@ -16,7 +16,7 @@ use std::{net::IpAddr, pin::pin, sync::Arc};
 
 use http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 
-use super::{Peer, dialect::Dialect, identity::REQUEST_ID, metrics::Metrics, spans::Spans};
+use super::{dialect::Dialect, identity::REQUEST_ID, metrics::Metrics, peer::Peer, spans::Spans};
 use crate::body::{Body, Request, Response};
 pub(super) use intake::Intake;
 pub(super) use open::{Fate, OpenExchanges};

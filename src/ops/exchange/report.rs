@@ -15,10 +15,9 @@ use crate::{
     body::{Request, Response},
     grpc,
     ops::{
-        Peer,
-        front::NO_ROUTE,
         identity::Identity,
-        metrics::{Broken, Metrics, NO_FORMAT, Protocol, since},
+        metrics::{Broken, Metrics, NO_FORMAT, NO_ROUTE, Protocol, since},
+        peer::Peer,
         spans::{Answered, Spans},
         telemetry::ACCESS,
     },

@@ -68,6 +68,8 @@ const BUCKETS: [f64; 17] = [
 
 /// The format of answers without points.
 pub(super) const NO_FORMAT: &str = "none";
+/// The route of requests to unknown paths.
+pub(super) const NO_ROUTE: &str = "none";
 
 /// A daemon's metrics. Cheap to clone.
 #[derive(Clone, Debug)]

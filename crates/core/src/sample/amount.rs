@@ -43,7 +43,7 @@ pub(super) fn exactly(
         .as_ref()
         .and_then(Area::bounds)
         .ok_or_else(|| Error::new(ErrorKind::Unbounded, "area", "unbounded", "within a box"))?;
-    let [width, height] = [0, 1].map(|i| bounds.max()[i] - bounds.min()[i]);
+    let [width, height] = bounds.sides();
     let share = match &lattice.grade {
         Some(grade) => match sum_of_shares(grade, &bounds) {
             0.0 if is_zero(grade, bounds) => {

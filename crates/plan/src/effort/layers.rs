@@ -53,7 +53,7 @@ impl Everywhere {
     }
 
     fn within(region: Region, spacing: Spacing, share: f64) -> Self {
-        let sides = super::sides(region);
+        let sides = region.sides();
         Self {
             sides: [0, 1].map(|i| sides[i].min(PIECE[i] * spacing.get())),
             density: spacing.density() * share,

@@ -42,7 +42,7 @@ pub fn block_bytes(planned: &Planned, most: usize) -> usize {
 #[must_use]
 pub fn considered(planned: &Planned) -> u128 {
     let bounds = planned.query.region.bounds;
-    let [width, height] = super::sides(bounds);
+    let [width, height] = bounds.sides();
     let is_counted = planned.query.window.cursor.is_none();
     let considered = |(set, planned): (&Set, &PlannedSet)| {
         let count = planned.plan.count() as f64;

@@ -254,7 +254,7 @@ fn rows(selection: &Selection) -> f64 {
         return looks;
     }
     let spacing = placement.spacing.get();
-    let [width, height] = sides(bounds);
+    let [width, height] = bounds.sides();
     let along = server::outline(area, bounds) * UNITS / spacing;
     let across = if is_box {
         0.0
@@ -344,8 +344,4 @@ pub(super) fn least_spacing(
             return spacing;
         }
     }
-}
-
-fn sides(region: Region) -> [f64; 2] {
-    [0, 1].map(|i| region.max()[i] - region.min()[i])
 }

@@ -165,6 +165,19 @@ impl Region {
         self.max
     }
 
+    /// Width and height, in world units.
+    ///
+    /// ```
+    /// use strew_core::Region;
+    ///
+    /// assert_eq!(Region::new([-1.0, 2.0], [4.0, 4.5])?.sides(), [5.0, 2.5]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn sides(&self) -> [f64; 2] {
+        [self.max[0] - self.min[0], self.max[1] - self.min[1]]
+    }
+
     /// The intersection of two boxes; empty if they do not meet.
     ///
     /// ```

@@ -233,7 +233,7 @@ const MOST_FINE: f64 = 128.0;
 impl Marked {
     /// Places in a box, with a mean distance of neighbors or less than that. Tests are of one distance.
     pub(super) fn new(within: Region, distance: f64, spacing: f64, all: &[[f64; 2]]) -> Self {
-        let sides = [0, 1].map(|i| within.max()[i] - within.min()[i]);
+        let sides = within.sides();
         let fine = (0.5 * distance).max(sides[0].max(sides[1]) / MOST_FINE);
         let fine = Cells::new(within, fine);
         let coarse = Cells::new(within, distance.max(0.75 * spacing));
