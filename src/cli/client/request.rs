@@ -1,25 +1,34 @@
 //! A request by HTTP/1.1 and its answer.
 
-use std::{io, time::Duration};
+use std::{convert::Infallible, io, sync::Arc, time::Duration};
 
 use anyhow::anyhow;
 use bytes::Bytes;
+use futures_util::stream;
 use http::{Response, header, request, response};
-use http_body_util::{BodyExt as _, Full};
-use hyper::{body::Incoming, client::conn::http1::handshake};
+use http_body::Frame;
+use http_body_util::{BodyExt as _, Full, StreamBody, combinators::UnsyncBoxBody};
+use hyper::{body::Incoming, client::conn::http1::handshake, ext::on_informational};
 use hyper_util::rt::TokioIo;
 use rustls::AlertDescription;
 use tokio::{
     io::{AsyncRead, AsyncWrite},
     net::TcpStream,
     runtime::{self, Runtime},
+    sync::Notify,
     time::timeout,
 };
 use tokio_rustls::TlsConnector;
 
 use super::{address::Address, trust::Tls};
 
-type Request = http::Request<Full<Bytes>>;
+type Request = http::Request<UnsyncBoxBody<Bytes, Infallible>>;
+
+/// Larger bodies are sent once the daemon wants them. One that is refused before it is read closes the connection,
+/// which would break while the body is being written, and the refusal would be lost.
+const LARGE: usize = 16 << 10;
+/// A body is sent after this time to a proxy that does not answer "100 Continue".
+const UNASKED: Duration = Duration::from_secs(1);
 
 /// An answer, whose body is read as it comes. A body that ends early is an error.
 #[derive(Debug)]
@@ -41,8 +50,8 @@ pub(crate) fn send(
 ) -> anyhow::Result<Answer> {
     let request = request
         .header(header::HOST, address.authority())
-        .header(header::CONNECTION, "close")
-        .body(Full::from(body))?;
+        .header(header::CONNECTION, "close");
+    let request = with_body(request, body)?;
     let mut runtime = runtime::Builder::new_current_thread();
     let runtime = runtime.enable_all().build()?;
     match runtime.block_on(within(patience, exchange(address, tls, request))) {
@@ -61,6 +70,25 @@ pub(crate) fn send(
             Err(error)
         }
     }
+}
+
+/// A request with a body, which waits for "100 Continue" if it is large.
+fn with_body(request: request::Builder, body: Vec<u8>) -> http::Result<Request> {
+    if body.len() <= LARGE {
+        return request.body(Full::from(body).boxed_unsync());
+    }
+    let request = request
+        .header(header::CONTENT_LENGTH, body.len())
+        .header(header::EXPECT, "100-continue");
+    let wanted = Arc::new(Notify::new());
+    let informed = wanted.clone();
+    let sent = async move {
+        let _ = timeout(UNASKED, wanted.notified()).await;
+        Ok(Frame::data(body.into()))
+    };
+    let mut request = request.body(StreamBody::new(stream::once(sent)).boxed_unsync())?;
+    on_informational(&mut request, move |_| informed.notify_one());
+    Ok(request)
 }
 
 impl Answer {
