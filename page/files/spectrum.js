@@ -3,11 +3,11 @@
 
 import { transform } from "./fft.js";
 
-/** Measured up to this frequency, */
+/** Rings are measured up to this frequency. */
 export const MOST_NU = 3;
-/** drawn up to this one, */
+/** The picture and the curve end at this frequency. */
 export const DRAWN_NU = 2.5;
-/** in a picture of at most so many cells a side. */
+/** The most cells along a side of the picture. */
 const CELLS = 201;
 /** The mean of the taper's square: C(16, 8)/2¹⁶. */
 const MEAN_SQUARE = 12_870 / 65_536;

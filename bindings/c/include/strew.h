@@ -9,9 +9,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// What a function returns.
+// The result of a function.
 typedef enum {
-  // It has done what it is for.
+  // The call succeeded.
   STREW_OK = 0,
   // A query that is not valid.
   STREW_INVALID_QUERY = 1,
@@ -122,7 +122,7 @@ strew_code strew_library_hold_field(const strew_library *library, const char *bo
 
 // Plans a query and counts its points. Free the plan with `strew_plan_free`.
 //
-// `query` is the JSON body of `POST /v1/points:query`, or what stands behind `GET /v1/points?`:
+// `query` is the JSON body of `POST /v1/points:query`, or the query string of `GET /v1/points`:
 // `bbox=0,0,10,10&spacing=1&seed=7`.
 //
 // Arguments:
@@ -151,7 +151,7 @@ strew_code strew_plan_chunk(const strew_library *library,
 // `plan` is a plan, `count` a place for a number.
 strew_code strew_plan_count(const strew_plan *plan, uint64_t *count);
 
-// What the `f64` coordinates are relative to: the corner of a chunk, else the origin of the world.
+// The place that the `f64` coordinates are relative to: the corner of a chunk, else the origin of the world.
 //
 // Arguments:
 // `plan` is a plan, `origin` has room for two numbers.
@@ -238,7 +238,7 @@ strew_code strew_plan_split(const strew_plan *plan,
                             uint32_t parts,
                             strew_bytes **list);
 
-// The point of an id, in a set: what stands behind `GET /v1/points/{id}?`, such as `spacing=1&seed=7`.
+// The point of an id. `set` is the query string of `GET /v1/points/{id}`, such as `spacing=1&seed=7`.
 //
 // Returns `STREW_NO_SUCH_POINT` if the set has no point with that id. `attributes`, unless it is null, receives the
 // point with its attributes as JSON.
@@ -252,7 +252,7 @@ strew_code strew_point_by_id(const strew_library *library,
                              strew_point *found,
                              strew_bytes **attributes);
 
-// The points nearest to a place, nearest first: what stands behind `GET /v1/nearest?`, such as
+// The points nearest to a place, nearest first. `query` is the query string of `GET /v1/nearest`, such as
 // `at=5,5&k=3&spacing=1&seed=7`.
 //
 // Up to `capacity` points are written, and the number of those found to `count`, unless that is null. `attributes`,

@@ -195,7 +195,7 @@ class PointSet:
 
     @property
     def origin(self) -> tuple[float, float] | None:
-        """What coordinates are relative to, if not to the world's origin: the corner of a chunk."""
+        """The place that coordinates are relative to, the corner of a chunk; `None` for the world's origin."""
         origin = self.columns().origin
         return None if origin is None else (origin[0], origin[1])
 

@@ -89,7 +89,7 @@ impl Stripes {
     }
 }
 
-/// What the share is at each place.
+/// How the share varies over the plane.
 #[derive(Clone, Copy)]
 pub enum Kind {
     Constant(f64),

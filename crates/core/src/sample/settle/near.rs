@@ -15,10 +15,10 @@ use super::{
     plain::{greater, lesser},
 };
 
-/// What two points keep beyond D, in the units of a window: more than rounding takes from their distance.
+/// The distance that two points keep beyond D, in the units of a window: more than rounding takes from it.
 const SPARE: f64 = 4.0;
 
-/// Less than 1 by more than what rounds.
+/// A factor for lengths: less than 1 by more than their rounding errors.
 const SURELY: f64 = 1.0 - 1.0 / 262_144.0;
 
 /// The limit of a near step, with memory to find neighbors: the points by square cells about as large as its reach.

@@ -39,7 +39,7 @@ const LANES: usize = 8;
 /// A group ends where it is wider than this, in rows of cells.
 const WIDEST: f32 = 2.0;
 
-/// What steps need to know of a set.
+/// The lengths of a set that all its steps share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scale {
     /// Units of a mean spacing at full density.

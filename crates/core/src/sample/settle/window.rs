@@ -65,7 +65,7 @@ pub(crate) struct Settler {
     /// How far each step reaches.
     reaches: Vec<Reach>,
     scale: Scale,
-    /// What limits the step of sets with all points, where that is taken.
+    /// The limit of the step of sets with all points; `None` for other sets.
     near: Option<Near>,
     /// Windows count in units of this many fixed-point units, in bits.
     shift: u32,

@@ -48,7 +48,7 @@ pub(super) struct Pieces {
     clear: Vec<Guard>,
 }
 
-/// What of a scope restricts the points of a piece.
+/// The conditions of a scope that a settled point of a piece must meet.
 struct Inside<'a> {
     bounds: &'a Box2,
     area: Option<Area>,
