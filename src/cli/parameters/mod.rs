@@ -16,8 +16,8 @@ use super::{Failure, output};
 /// Flags of `strew parameters`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// The form to print: types for TypeScript (dts), names and kinds for JavaScript (js), both for Python (py), or a table
-    /// in Markdown (md).
+    /// The form to print: types for TypeScript (dts), names and kinds for JavaScript (js), both for Python (py), or a
+    /// table in Markdown (md).
     #[arg(long = "as", value_name = "FORM")]
     form: Form,
 }

@@ -18,7 +18,8 @@
 //! ```
 //!
 //! A sparse point reaches far, but one that stays needs no neighbors, as where a field fades out. So boxes grow by the
-//! points that move. How far these reach is known when they are listed: a window is guessed, and listed again if need be.
+//! points that move. How far these reach is known when they are listed: a window is guessed, and listed again if need
+//! be.
 
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -51,8 +52,8 @@ const CORNER_BITS: u32 = 26;
 /// The unit of a window in fixed-point units, in bits, where the pattern is not very sparse: some 10⁻⁵ spacings.
 const UNIT_BITS: u32 = 7;
 
-/// The largest distance from a window's corner, in the units of a window: single precision has all integers up to it, and
-/// their differences.
+/// The largest distance from a window's corner, in the units of a window: single precision has all integers up to it,
+/// and their differences.
 const FARTHEST: i64 = 1 << 23;
 
 /// Settles points, with memory of its own.
@@ -387,7 +388,8 @@ impl Settler {
         movers
     }
 
-    /// Finds the freedom of the points that move up to a step: of those in an extent, or without one, those that are wanted.
+    /// Finds the freedom of the points that move up to a step: of those in an extent, or without one, those that are
+    /// wanted.
     fn free(&mut self, corner: [i128; 2], step: u8, within: Option<Extent>) {
         let Places {
             placed: [xs, ys],

@@ -364,8 +364,8 @@ fn found_at(origin: [i64; 2], settled: &Settled) -> Found {
     Found::new(place, [x - origin[0], y - origin[1]])
 }
 
-/// The number of settled points of a scope. `mark` is called with the first address of each piece and the number of points
-/// before it.
+/// The number of settled points of a scope. `mark` is called with the first address of each piece and the number of
+/// points before it.
 pub(super) fn count_settled(mut pieces: Pieces, mut mark: impl FnMut(PointId, u128)) -> u128 {
     let scope = pieces.scope.clone();
     let thinned = scope
