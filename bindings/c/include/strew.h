@@ -46,9 +46,9 @@ typedef struct strew_plan strew_plan;
 typedef struct {
   // Its stable id, `x:y` in text.
   int64_t id[2];
-  // Its x.
+  // Its coordinate along x.
   double x;
-  // Its y.
+  // Its coordinate along y.
   double y;
   // Its distance from the place whose neighbors were searched, else 0.
   double distance;
@@ -108,7 +108,7 @@ void strew_bytes_free(strew_bytes *bytes);
 // `bytes` is null or bytes that are not freed.
 const char *strew_bytes_data(const strew_bytes *bytes);
 
-// How many bytes there are, without the zero after them. 0 for null.
+// The number of bytes, without the zero after them. 0 for null.
 //
 // Arguments:
 // `bytes` is null or bytes that are not freed.

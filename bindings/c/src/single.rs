@@ -19,9 +19,9 @@ use crate::{
 pub struct strew_point {
     /// Its stable id, `x:y` in text.
     pub id: [i64; 2],
-    /// Its x.
+    /// Its coordinate along x.
     pub x: f64,
-    /// Its y.
+    /// Its coordinate along y.
     pub y: f64,
     /// Its distance from the place whose neighbors were searched, else 0.
     pub distance: f64,
