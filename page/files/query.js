@@ -1,4 +1,4 @@
-// From what is chosen to what is asked: parameters of an address for one layer, a body for several.
+// From the choices on the page to a request: parameters of an address for one layer, a body for several.
 
 import { Digits, json } from "./digits.js";
 import { encoded } from "./state.js";

@@ -26,7 +26,7 @@ export function spectrumOf(points, side) {
   }
   const modes = Math.floor(MOST_NU * side);
   const { re, im, at } = transform(u, weights, modes);
-  // What the mean density itself gives is known and taken away.
+  // The contribution of the mean density is known and subtracted.
   const mean = sum / COEFFICIENTS[0] ** 2;
   for (let kx = -4; kx <= 4; kx += 1) {
     for (let ky = -4; ky <= 4; ky += 1) {

@@ -166,7 +166,8 @@ strew_code strew_plan_origin(const strew_plan *plan, double *origin);
 // `plan` is a plan, `xy` has room for 2 * `capacity` numbers.
 strew_code strew_plan_fill_xy(const strew_plan *plan, double *xy, size_t capacity);
 
-// The same as `f32`, relative to the lower corner of the region, which is written to `origin` unless that is null.
+// Writes the coordinates as `f32`, relative to the lower corner of the region, which is written to `origin` unless
+// that is null.
 //
 // Arguments:
 // `plan` is a plan, `xy` has room for 2 * `capacity` numbers, `origin` is null or has room for two.

@@ -1,4 +1,4 @@
-//! What went wrong: a code for programs, and words for people, kept for each thread.
+//! Errors: a code for programs and a message for people, kept for each thread.
 
 use std::{
     any::Any,

@@ -138,7 +138,8 @@ pub unsafe extern "C" fn strew_plan_fill_xy(
     })
 }
 
-/// The same as `f32`, relative to the lower corner of the region, which is written to `origin` unless that is null.
+/// Writes the coordinates as `f32`, relative to the lower corner of the region, which is written to `origin` unless
+/// that is null.
 ///
 /// # Safety
 /// `plan` is a plan, `xy` has room for 2 * `capacity` numbers, `origin` is null or has room for two.

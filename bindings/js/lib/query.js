@@ -11,7 +11,7 @@ const isList = (value) => Array.isArray(value) || (ArrayBuffer.isView(value) && 
 export const isObject = (value) => value !== null && typeof value === "object" && !isList(value);
 
 function region(shape, value) {
-    // What is not of this form is passed on, to be refused in the words of REST.
+    // Other values are passed on unchanged, to be refused in the words of REST.
     if (isList(value)) {
         const list = Array.from(value);
         if (shape === "circle" && list.length === 3) return { center: [list[0], list[1]], radius: list[2] };

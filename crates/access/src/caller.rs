@@ -148,7 +148,7 @@ impl Caller {
         self.take(points, REQUEST + charged as f64)
     }
 
-    /// Takes what a request costs, whatever it asks for.
+    /// Takes the fixed price of a request from the bucket.
     pub(super) fn charge_request(&self) -> Result<(), Denied> {
         self.take(REQUEST as u128, 0.0)
     }

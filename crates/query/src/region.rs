@@ -137,7 +137,7 @@ impl RegionDraft {
         })
     }
 
-    /// How many vertices its polygons have.
+    /// The number of vertices of its polygons.
     pub(super) fn vertices(&self) -> usize {
         match &self.shape {
             ShapeDraft::Polygons(polygons) => polygons.iter().flatten().map(Vec::len).sum(),

@@ -77,17 +77,17 @@ struct Piece {
 /// The points around a tile.
 #[derive(Clone, Debug)]
 enum Tile {
-    /// What the searches in it have cost so far.
+    /// Its points are not listed; the cost of the searches in it so far.
     Searched(f64),
     Marked(Marked),
 }
 
-/// What is known of a place.
+/// The points that are known around a place.
 #[derive(Debug)]
 pub(super) enum Known<'a> {
-    /// Nothing: the place is outside the piece.
+    /// None: the place is outside the piece.
     Nothing,
-    /// It lies in a tile of this number whose points are not listed.
+    /// None: the points of its tile, which has this number, are not listed.
     In(usize),
     /// All points around it.
     All(&'a Marked),
@@ -121,7 +121,7 @@ impl Ground {
         self.piece = Piece::new(within, most).filter(|_| is_possible);
     }
 
-    /// What is known of a place.
+    /// The points that are known around a place.
     #[inline]
     pub(super) fn at(&mut self, place: [f64; 2]) -> Known<'_> {
         let Some(piece) = self.piece.as_ref() else {

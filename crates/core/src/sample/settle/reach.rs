@@ -63,7 +63,7 @@ fn room(reach: &Reach, t: usize, shares: [f64; 2]) -> f64 {
     reach.between(shares.map(|share| share.max(LEAST_SHARE))) + moved_before(t) * (a + b)
 }
 
-/// The same in units of a window, with room for what rounds.
+/// [`room`] in units of a window, and a little for what rounds.
 pub(super) fn step_room(reach: &Reach, t: usize, shares: [f64; 2], unit: f64) -> i64 {
     (room(reach, t, shares) * unit) as i64 + ROOM
 }

@@ -360,7 +360,7 @@ impl Settler {
         all
     }
 
-    /// The same where all shares are alike, so that reaches are, too.
+    /// Does what [`prepare`](Self::prepare) does where all shares are alike, and with them all reaches.
     fn prepare_alike(&mut self, share: f64) -> Extent {
         let Places {
             placed: [xs, ys],
