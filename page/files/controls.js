@@ -104,7 +104,7 @@ export class Controls {
     ];
   }
 
-  /** What only those change who know why. */
+  /** The controls that experts need: few readers change them. */
   expert() {
     const { layer } = this;
     const standard = () => choicesOf(this.profiles, this.layer);

@@ -61,7 +61,7 @@ function numberOr(text) {
   return text !== "" && Number.isFinite(number) ? number : text;
 }
 
-/** What the layer of an index is called in requests. */
+/** The name of a layer in requests, by its index. */
 export function layerName(i) {
   return `layer${i + 1}`;
 }
