@@ -115,8 +115,8 @@ export class Disconnected extends Error {}
 
 /**
  * A daemon, with the functions of what `open` returns; its answers are promises. Several replicas are a list, or one
- * text with commas. A request goes to the one with the fewest requests of this client; an address that fails is left out
- * for a while, and an answer that breaks off continues at any of them, each point once.
+ * text with commas. A request goes to the one with the fewest requests of this client; an address that fails is left
+ * out for a while, and an answer that breaks off continues at any of them, each point once.
  */
 export function connect(
     url: string | URL | (string | URL)[],

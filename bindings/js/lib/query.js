@@ -44,8 +44,8 @@ export function body(keywords) {
 }
 
 /**
- * A body as JSON: a bigint is an integer, a typed array a list. What JSON cannot hold (NaN, infinity, functions, symbols)
- * becomes a word in its place, so that it is refused with the name of its member and what is allowed there.
+ * A body as JSON: a bigint is an integer, a typed array a list. Values that JSON cannot hold (NaN, infinity, functions,
+ * symbols) become words, so that they are refused with the name of their member and the values allowed there.
  */
 export function text(value) {
     const plain = (_, part) => {

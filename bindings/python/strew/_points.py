@@ -133,7 +133,7 @@ class PointSet:
         return self.within(chunk=(size, x, y))
 
     def split(self, parts: int) -> list[PointSet]:
-        """The points in up to so many parts of the same size, give or take one, in their order.
+        """The points in at most ``parts`` sets of the same size, give or take one, in their order.
 
         Each part is a set by itself, which another process or machine can make from its pickle.
 

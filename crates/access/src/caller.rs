@@ -16,7 +16,7 @@ use super::{InUse, Quota, Usage, bucket::Bucket};
 /// The price of a request, in points.
 const REQUEST: f64 = 1.0;
 
-/// Someone who has been let in. Cheap to clone.
+/// A client that the gate has admitted. Cheap to clone.
 #[derive(Clone, Debug, Default)]
 pub struct Caller {
     pub(super) name: Option<Arc<str>>,
@@ -54,7 +54,7 @@ impl Drop for Place {
 }
 
 impl Caller {
-    /// The caller that the gate noted.
+    /// The caller of a request that passed the gate.
     ///
     /// # Errors
     /// [`Denied::NoKey`] for a request that did not pass the gate.
