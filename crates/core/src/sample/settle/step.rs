@@ -19,7 +19,7 @@
 //!     │ │░│░│░│░│░│ │ │      1 to 8: a group, points of one row that move
 //!     ├─┼─┼─┼─┼─┼─┼─┼─┤
 //!     │ │░│1│2│8│░│ │ │      ░: all cells within the reach of the group;
-//!     ├─┼─┼─┼─┼─┼─┼─┼─┤      in each row one run of memory
+//!     ├─┼─┼─┼─┼─┼─┼─┼─┤      in each row one run of memory (not to scale)
 //!     │ │░│░│░│░│░│ │ │
 //!     └─┴─┴─┴─┴─┴─┴─┴─┘
 //! ```
@@ -34,7 +34,8 @@
 //! The sum is scaled by the point's freedom and then limited, to [`STEP`] local spacings along each axis in this step
 //! and to [`WHOLE`] from the place in the full set. Where points keep a distance D, a move is no longer than half the
 //! amount by which the point's nearest neighbor is farther away than D. Two points that approach each other by that
-//! much still keep D.
+//! much still keep D. Where points of a kind push each other, `kin` has summed those pushes before, and `past` lets a
+//! point pass a near neighbor.
 //!
 //! # Cost
 //!

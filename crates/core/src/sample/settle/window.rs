@@ -18,8 +18,18 @@
 //! ```
 //!
 //! A sparse point reaches far, but one that stays needs no neighbors, as where a field fades out. So boxes grow by the
-//! points that move. How far these reach is known when they are listed: a window is guessed, and listed again if need
-//! be.
+//! points that move. How far these reach is known only once they are listed: so `guess` looks at the field in a few
+//! places, the window is listed, and if `prepare` finds that points beyond it matter, it is listed again, larger.
+//!
+//! # Invariants
+//!
+//! - A point that moves in step t has every point that can push it in the window, each of which has moved in the steps
+//!   before as far as it is free to. So wanted points end where they would if the whole plane moved.
+//! - Places are integers from a corner near the middle that `f32` holds exactly. Corners are multiples of a unit; the
+//!   bits of a place below a unit are set aside and added again at the end. So the choice of the corner shows nowhere.
+//!
+//! The cost is a listing and the steps of all points in box 0: many for one wanted point, few more than the wanted
+//! ones for a piece of many rows.
 
 use alloc::vec::Vec;
 use core::ops::Range;
