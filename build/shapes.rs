@@ -82,7 +82,7 @@ fn place(wanted: &mut Vec<String>, name: &str) -> usize {
         })
 }
 
-/// What a field holds; nothing for a number, which takes no memory of its own.
+/// The kind of memory that a field holds; `None` for a number, which takes none beside the message.
 fn kind(
     field: &FieldDescriptorProto,
     wanted: &mut Vec<String>,

@@ -55,12 +55,12 @@ impl Body {
         Self(Inner::Bytes(Bytes::new()))
     }
 
-    /// What a client sends.
+    /// The body of a client's request.
     pub(crate) const fn incoming(body: Incoming) -> Self {
         Self(Inner::Incoming(body))
     }
 
-    /// Frames that another body gives.
+    /// The frames of another body.
     pub fn new<B>(body: B) -> Self
     where
         B: HttpBody<Data = Bytes> + Send + 'static,

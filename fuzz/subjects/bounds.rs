@@ -1,4 +1,4 @@
-//! What reading one input may take of memory and of the processor, whatever it says.
+//! The memory and the processor time that reading one input may take, whatever the input says.
 //!
 //! Both are measured for the whole process, because subjects work on several threads. So subjects run one
 //! after another.

@@ -1,12 +1,12 @@
 // Asking the server: errors in its own words, and patience while it is away.
 
-/** What the server refused, in its words. */
+/** A refusal of the server, in its words. */
 export class Problem extends Error {
   constructor(status, words, retryAfter = 0, faults = []) {
     super(words);
     this.status = status;
     this.retryAfter = retryAfter;
-    /** What is wrong with which field: `[{ field, value, detail, allowed }]`. */
+    /** The faults by field: `[{ field, value, detail, allowed }]`. */
     this.faults = faults;
   }
 

@@ -151,7 +151,7 @@ export class Chunks {
     if (filled !== bytes.length) throw brokeOff();
   }
 
-  /** What did not come is wanted again, unless it was aborted or refused for good. */
+  /** A chunk that did not come is requested again, unless it was aborted or refused for good. */
   lost(chunk, error) {
     chunk.state = "waiting";
     chunk.count = 0;

@@ -1,4 +1,4 @@
-// What to paste elsewhere to get the points in view: the address, curl, grpcurl, Python.
+// Texts to paste elsewhere that return the points in view: the address, curl, grpcurl, Python.
 
 import { messageOf } from "./paint/message.js";
 import { Digits, json } from "./digits.js";

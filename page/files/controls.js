@@ -11,7 +11,7 @@ import { SHAPES, SHAPE_SIGNS } from "./marks.js";
 import { allVariants, variantNames } from "./query.js";
 
 const AMOUNT_WORDS = { spacing: "Mean spacing", density: "Density", min_distance: "Least distance" };
-const WARP_WORDS = { "": "As the seed asks", off: "Off", on: "On", 0.5: "Half as strong", 1.5: "Stronger", 2: "Strongest" };
+const WARP_WORDS = { "": "Set by the seed", off: "Off", on: "On", 0.5: "Half as strong", 1.5: "Stronger", 2: "Strongest" };
 const SETTLE_WORDS = { "": "As usual", 0: "Off", 1: "One step", 2: "Two steps", 3: "Three steps", 4: "Four steps" };
 const DIE = "M5 3h14a2 2 0 0 1 2 2v14a2 2 0 0 1-2 2H5a2 2 0 0 1-2-2V5a2 2 0 0 1 2-2zM8.5 8.5h.01M15.5 8.5h.01M12 12h.01M8.5 15.5h.01M15.5 15.5h.01";
 /** The slider of the amount reaches this many doublings to each side. */
@@ -104,7 +104,7 @@ export class Controls {
     ];
   }
 
-  /** What only those change who know why. */
+  /** The controls that experts need: few readers change them. */
   expert() {
     const { layer } = this;
     const standard = () => choicesOf(this.profiles, this.layer);

@@ -4,7 +4,7 @@ import { ask, brokeOff, hasKey } from "./api.js";
 
 /** The number of points that are fetched to estimate the size of text. */
 const SAMPLE = 2000;
-/** What needs a body is held in memory until it is whole: no more than this. */
+/** The most bytes of an answer to a body: it is held in memory until it is whole. */
 export const MOST_HELD = 1e9;
 
 /**

@@ -1,4 +1,4 @@
-// What the server says about a query, in the words of the page and at its fields.
+// The server's faults of a query, in the words of the page and at its fields.
 
 /** The field of the page for each parameter. */
 const PLACES = {
@@ -17,7 +17,7 @@ const PLACES = {
   clear_of: "clear",
 };
 
-/** What each field takes. */
+/** The values that each field takes, as a message. */
 const TAKES = {
   spacing: "The mean spacing must be a number above 0, such as 1.5.",
   density: "The density must be a number above 0, such as 0.25.",
@@ -30,7 +30,7 @@ const TAKES = {
   clear_of: "The distance must be empty, 0, or a number up to 16 mean spacings of the layers before.",
 };
 
-/** What is wrong with which field of the page: `{ id: words }`; `""` holds what belongs to none. */
+/** The faults by field of the page: `{ id: words }`; `""` has those of no field. */
 export function faultsOf(error) {
   const found = {};
   for (const fault of error.faults ?? []) {
@@ -59,7 +59,7 @@ function wordsFor(name, { value, detail, allowed }) {
   return `“${value}” does not work: ${detail}. Allowed: ${allowed}.`;
 }
 
-/** What is wrong with a layer, as far as the page itself knows. */
+/** The faults of a layer that the page itself can find. */
 export function faultsBefore(layer, i) {
   const text = layer.clear.trim();
   const isDistance = text === "" || (Number.isFinite(Number(text)) && Number(text) >= 0);

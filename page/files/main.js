@@ -50,7 +50,7 @@ const plane = new Plane(byId("plane"), session.state.renderer, {
     rested();
   },
   failed: (error) => {
-    // What is wrong with the query is said at its fields.
+    // Faults of the query are shown at its fields.
     if (!isUnderstood) return;
     root.dataset.state = "failed";
     banner(error.message, [["Try again", () => {
@@ -76,7 +76,7 @@ const rested = settled(250, () => {
   if (session.state.layers.length > 1) controls?.counted(countsInView());
 });
 
-/** How many points of each layer are in view. */
+/** The number of points of each layer in view. */
 function countsInView() {
   const counts = session.state.layers.map(() => 0);
   plane.each((layer) => (counts[layer] += 1));
@@ -101,12 +101,12 @@ onPresence((gone) => {
 });
 
 let latest = 0;
-/** Whether the server has said what the layers are; before, they are shown as the page understands them. */
+/** Whether the server has resolved the layers; before, they are shown as the page understands them. */
 let isUnderstood = false;
-/** What is to be said once the plane shows something: why it is not what was requested. */
+/** The message to show with the plane, if it does not show what was requested: the reason. */
 let notice = null;
 
-/** What the server makes of each layer, or what is wrong with it. */
+/** The server's resolved values of each layer, or its faults. */
 async function notesOf(layers) {
   const notes = await Promise.all(layers.map(async (layer, i) => {
     try {

@@ -69,7 +69,7 @@ void main() {
 }`;
 
 const OPTIONS = { alpha: false, antialias: false, depth: false, stencil: false, powerPreference: "high-performance" };
-/** What renderers are called that have no graphics hardware. */
+/** The names of renderers without graphics hardware. */
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
 /** Whether WebGL2 is there and is done by hardware; looked at on a canvas that is thrown away. */

@@ -1,6 +1,6 @@
 // The tables of a server, as the panel offers them: which there are of a profile, and in what order.
 
-/** What the built-in profiles are for. */
+/** The uses of the built-in profiles. */
 export const PROFILE_WORDS = {
   blue: "Even and without direction: the one to begin with.",
   sharp: "Even with sharper order, close to the best of its kind.",
@@ -22,7 +22,7 @@ export function profileNames(tables) {
   return [...new Set(tables.map((table) => table.profile))];
 }
 
-/** What a layer can choose: `{ alphas, alpha, isStandard(alpha), maps, map }`. */
+/** The choices of a layer: `{ alphas, alpha, isStandard(alpha), maps, map }`. */
 export function choicesOf(tables, layer) {
   const own = tables.filter((table) => table.profile === layer.profile);
   const alphas = [...new Set(own.map((table) => table.alpha))];

@@ -1,4 +1,4 @@
-// From what is chosen to what is asked: parameters of an address for one layer, a body for several.
+// From the choices on the page to a request: parameters of an address for one layer, a body for several.
 
 import { Digits, json } from "./digits.js";
 import { encoded } from "./state.js";
@@ -61,7 +61,7 @@ function numberOr(text) {
   return text !== "" && Number.isFinite(number) ? number : text;
 }
 
-/** What the layer of an index is called in requests. */
+/** The name of a layer in requests, by its index. */
 export function layerName(i) {
   return `layer${i + 1}`;
 }

@@ -3,7 +3,7 @@
 import { Problem, askJson, onRefused } from "./api.js";
 import { json } from "./digits.js";
 
-/** What was sent or described by an address, by its digest. */
+/** The fields that were sent or described by an address, by their digests. */
 const held = new Map();
 const sending = new Map();
 
@@ -43,7 +43,7 @@ async function post(body, whole) {
   }
 }
 
-/** What a field is that this page has sent, or nothing. */
+/** The document of a field that this page has sent, or nothing. */
 export function documentOf(field) {
   return held.get(field);
 }

@@ -1,4 +1,4 @@
-// What is chosen, kept in step with the address and with what the server makes of it.
+// The choices on the page, kept in step with the address and with the server's resolved values.
 
 import { askJson } from "./api.js";
 import { joined, setOf, togetherBody } from "./query.js";
@@ -10,7 +10,7 @@ export class Session {
   constructor() {
     this.state = fromHash(location.hash);
     this.listeners = new Set();
-    /** What the server makes of each layer, by its parameters. */
+    /** The server's resolved values of each layer, by its parameters. */
     this.understood = new Map();
     this.write = settled(250, () => this.put("replaceState"));
     this.isHeld = false;
@@ -47,7 +47,7 @@ export class Session {
   choose(change, ...changed) {
     this.write.cancel();
     this.isHeld = false;
-    // What was only moved since is part of the entry before.
+    // Moves since the last change belong to the entry before.
     this.put("replaceState");
     change(this.state);
     this.put("pushState");
@@ -82,7 +82,7 @@ export class Session {
     this.write();
   }
 
-  /** What is wrong with layers together: `{ layer, error }`, or nothing. */
+  /** The fault of layers together: `{ layer, error }`, or nothing. */
   async understandTogether(layers) {
     if (layers.length === 1 || layers.every((layer) => !layer.clear.trim())) return null;
     try {

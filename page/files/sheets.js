@@ -1,4 +1,4 @@
-// What is painted once and shown in many frames: a sheet is larger than the canvas, so that a drag
+// Sheets, painted once and shown in many frames: a sheet is larger than the canvas, so that a drag
 // only moves it. The one before stays underneath until the next one is full.
 
 import { chunkSize, chunksOf, cornerFrom, shareFor } from "./grid.js";

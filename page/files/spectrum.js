@@ -3,11 +3,11 @@
 
 import { transform } from "./fft.js";
 
-/** Measured up to this frequency, */
+/** Rings are measured up to this frequency. */
 export const MOST_NU = 3;
-/** drawn up to this one, */
+/** The picture and the curve end at this frequency. */
 export const DRAWN_NU = 2.5;
-/** in a picture of at most so many cells a side. */
+/** The most cells along a side of the picture. */
 const CELLS = 201;
 /** The mean of the taper's square: C(16, 8)/2¹⁶. */
 const MEAN_SQUARE = 12_870 / 65_536;
@@ -26,7 +26,7 @@ export function spectrumOf(points, side) {
   }
   const modes = Math.floor(MOST_NU * side);
   const { re, im, at } = transform(u, weights, modes);
-  // What the mean density itself gives is known and taken away.
+  // The contribution of the mean density is known and subtracted.
   const mean = sum / COEFFICIENTS[0] ** 2;
   for (let kx = -4; kx <= 4; kx += 1) {
     for (let ky = -4; ky <= 4; ky += 1) {

@@ -1,4 +1,4 @@
-// What the page shows, and how it stands in the address: everything that is not a default is in the
+// The state of the page, and its form in the address: everything that is not a default is in the
 // hash, so that a link shows the same view.
 
 import { decimalsFor, formatPlace, parsePlace, place } from "./place.js";
@@ -32,7 +32,7 @@ export const LAYER = Object.freeze({
   clear: "",
 });
 
-/** What the tab How it works shows before anything is chosen. */
+/** The first state of the tab How it works. */
 export const WORKS = Object.freeze({
   mode: "index",
   alpha: "(5-sqrt(3))/2",
@@ -67,7 +67,7 @@ const KEYS = {
   clear: "clear",
 };
 
-/** What is painted stands in the address up to this number of characters; more goes into a file. */
+/** The most characters of a painting in the address; a longer one goes into a file. */
 export const MOST_PAINT = 4000;
 
 /** The most layers that the page offers. */
@@ -103,7 +103,7 @@ export function fromHash(hash) {
   return state;
 }
 
-/** What can stand in the address of the tab How it works. */
+/** The parameters of the tab How it works in the address. */
 const WORKS_VALUES = {
   mode: /^(index|arrangement|clusters|map|displacement)$/,
   alpha: /^.{1,40}$/,

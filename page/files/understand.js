@@ -25,7 +25,7 @@ function middleOf(plane, layer, count) {
   return { points: Float64Array.from(found), side };
 }
 
-/** What a window of the layer's own kind measures, with its warp, as a reference: `{ deltaMin, deltaAvg }`. */
+/** The measures of a window with the layer's table and warp, as a reference: `{ deltaMin, deltaAvg }`. */
 const references = new Map();
 function referenceOf(layer) {
   const pairs = [["alpha", layer.alpha], ["map", layer.map]].filter(([, value]) => value);
@@ -45,7 +45,7 @@ function warpOf({ warp, seed }) {
   return warp || (/^0*$/.test(seed.trim()) ? "off" : "on");
 }
 
-/** What is recorded of a layer's table. */
+/** The recorded figures of a layer's table. */
 export function recordedOf(layer) {
   const pairs = [["alpha", layer.alpha], ["map", layer.map]].filter(([, value]) => value);
   return askJson(`/v1/profiles/${encodeURIComponent(layer.profile)}${pairs.length ? "?" : ""}${joined(pairs)}`);
@@ -118,7 +118,7 @@ export class Understand {
   }
 
   async measure() {
-    // What is only partly there is not measured: this is called again when all is.
+    // A window that is partly loaded is not measured: this is called again when all of it is there.
     if (!this.isOpen || !this.plane.sheets.front?.isFull) return;
     const mine = (this.turn = (this.turn ?? 0) + 1);
     const layer = this.plane.look.layers[this.layer];

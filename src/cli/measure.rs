@@ -47,8 +47,8 @@ pub(super) struct Args {
     /// With --points: the set repeats outside the square.
     #[arg(long, requires = "points")]
     periodic: bool,
-    /// With a query: also compare the sets of this number of seeds, beginning with the query's own: the share of a patch
-    /// of 12 × 12 spacings that each set repeats (boxes of 300 × 300 spacings compare with those of the
+    /// With a query: also compare the sets of this number of seeds, beginning with the query's own: the share of a
+    /// patch of 12 × 12 spacings that each set repeats (boxes of 300 × 300 spacings compare with those of the
     /// documentation), and the similarity of each two sets.
     #[arg(long, value_name = "N", default_value_t = 0, conflicts_with_all = ["table", "points"],
         value_parser = clap::value_parser!(u64).range(..=16))]

@@ -9,9 +9,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// What a function returns.
+// The result of a function.
 typedef enum {
-  // It has done what it is for.
+  // The call succeeded.
   STREW_OK = 0,
   // A query that is not valid.
   STREW_INVALID_QUERY = 1,
@@ -46,9 +46,9 @@ typedef struct strew_plan strew_plan;
 typedef struct {
   // Its stable id, `x:y` in text.
   int64_t id[2];
-  // Its x.
+  // Its coordinate along x.
   double x;
-  // Its y.
+  // Its coordinate along y.
   double y;
   // Its distance from the place whose neighbors were searched, else 0.
   double distance;
@@ -108,7 +108,7 @@ void strew_bytes_free(strew_bytes *bytes);
 // `bytes` is null or bytes that are not freed.
 const char *strew_bytes_data(const strew_bytes *bytes);
 
-// How many bytes there are, without the zero after them. 0 for null.
+// The number of bytes, without the zero after them. 0 for null.
 //
 // Arguments:
 // `bytes` is null or bytes that are not freed.
@@ -122,7 +122,7 @@ strew_code strew_library_hold_field(const strew_library *library, const char *bo
 
 // Plans a query and counts its points. Free the plan with `strew_plan_free`.
 //
-// `query` is the JSON body of `POST /v1/points:query`, or what stands behind `GET /v1/points?`:
+// `query` is the JSON body of `POST /v1/points:query`, or the query string of `GET /v1/points`:
 // `bbox=0,0,10,10&spacing=1&seed=7`.
 //
 // Arguments:
@@ -151,7 +151,7 @@ strew_code strew_plan_chunk(const strew_library *library,
 // `plan` is a plan, `count` a place for a number.
 strew_code strew_plan_count(const strew_plan *plan, uint64_t *count);
 
-// What the `f64` coordinates are relative to: the corner of a chunk, else the origin of the world.
+// The place that the `f64` coordinates are relative to: the corner of a chunk, else the origin of the world.
 //
 // Arguments:
 // `plan` is a plan, `origin` has room for two numbers.
@@ -166,7 +166,8 @@ strew_code strew_plan_origin(const strew_plan *plan, double *origin);
 // `plan` is a plan, `xy` has room for 2 * `capacity` numbers.
 strew_code strew_plan_fill_xy(const strew_plan *plan, double *xy, size_t capacity);
 
-// The same as `f32`, relative to the lower corner of the region, which is written to `origin` unless that is null.
+// Writes the coordinates as `f32`, relative to the lower corner of the region, which is written to `origin` unless
+// that is null.
 //
 // Arguments:
 // `plan` is a plan, `xy` has room for 2 * `capacity` numbers, `origin` is null or has room for two.
@@ -238,7 +239,7 @@ strew_code strew_plan_split(const strew_plan *plan,
                             uint32_t parts,
                             strew_bytes **list);
 
-// The point of an id, in a set: what stands behind `GET /v1/points/{id}?`, such as `spacing=1&seed=7`.
+// The point of an id. `set` is the query string of `GET /v1/points/{id}`, such as `spacing=1&seed=7`.
 //
 // Returns `STREW_NO_SUCH_POINT` if the set has no point with that id. `attributes`, unless it is null, receives the
 // point with its attributes as JSON.
@@ -252,7 +253,7 @@ strew_code strew_point_by_id(const strew_library *library,
                              strew_point *found,
                              strew_bytes **attributes);
 
-// The points nearest to a place, nearest first: what stands behind `GET /v1/nearest?`, such as
+// The points nearest to a place, nearest first. `query` is the query string of `GET /v1/nearest`, such as
 // `at=5,5&k=3&spacing=1&seed=7`.
 //
 // Up to `capacity` points are written, and the number of those found to `count`, unless that is null. `attributes`,

@@ -1,4 +1,4 @@
-//! What went wrong: a code for programs, and words for people, kept for each thread.
+//! Errors: a code for programs and a message for people, kept for each thread.
 
 use std::{
     any::Any,
@@ -10,11 +10,11 @@ use std::{
 use serde_json::json;
 use strew_error::{Error, Fault, Kind};
 
-/// What a function returns.
+/// The result of a function.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Code {
-    /// It has done what it is for.
+    /// The call succeeded.
     Ok = 0,
     /// A query that is not valid.
     InvalidQuery = 1,
@@ -65,7 +65,7 @@ impl Failure {
         Self::of(Code::BufferTooSmall, &fault.into())
     }
 
-    /// What prevents a library.
+    /// The failure of a library that cannot be opened.
     pub fn unavailable(error: impl std::fmt::Display) -> Self {
         Self {
             code: Code::TableUnreadable,

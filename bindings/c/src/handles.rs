@@ -24,7 +24,7 @@ pub struct strew_library(pub(crate) Arc<Library>);
 pub struct strew_plan {
     pub(crate) library: Arc<Library>,
     pub(crate) planned: Planned,
-    /// All columns, once ids or a further column were wanted.
+    /// All columns, made when ids or a further column are first requested.
     pub(crate) columns: OnceLock<Columns>,
 }
 
@@ -139,7 +139,7 @@ pub unsafe extern "C" fn strew_bytes_data(bytes: *const strew_bytes) -> *const c
     bytes.map_or(ptr::null(), |bytes| bytes.0.as_ptr().cast())
 }
 
-/// How many bytes there are, without the zero after them. 0 for null.
+/// The number of bytes, without the zero after them. 0 for null.
 ///
 /// # Safety
 /// `bytes` is null or bytes that are not freed.

@@ -14,7 +14,7 @@ fn null(name: &str) -> Failure {
 /// A handle that the caller holds.
 ///
 /// # Safety
-/// Not null means a handle of this library that is not freed.
+/// Unless it is null, it is a handle of this library that is not freed.
 pub unsafe fn borrowed<'a, T>(handle: *const T, name: &str) -> Result<&'a T, Failure> {
     // SAFETY: as the caller promises.
     unsafe { handle.as_ref() }.ok_or_else(|| null(name))
@@ -23,7 +23,7 @@ pub unsafe fn borrowed<'a, T>(handle: *const T, name: &str) -> Result<&'a T, Fai
 /// A text of the caller.
 ///
 /// # Safety
-/// Not null means a text that ends with a zero byte.
+/// Unless it is null, it is a text that ends with a zero byte.
 pub unsafe fn text<'a>(text: *const c_char, name: &str) -> Result<&'a str, Failure> {
     if text.is_null() {
         return Err(null(name));
@@ -34,10 +34,10 @@ pub unsafe fn text<'a>(text: *const c_char, name: &str) -> Result<&'a str, Failu
     text.map_err(|_| Failure::argument(name, "not UTF-8", "text in UTF-8"))
 }
 
-/// Where a result goes.
+/// The caller's place for a result.
 ///
 /// # Safety
-/// Not null means a place for a `T`, which may be uninitialized.
+/// Unless it is null, it is a place for a `T`, which may be uninitialized.
 pub unsafe fn place<'a, T>(place: *mut T, name: &str) -> Result<Place<'a, T>, Failure> {
     // SAFETY: as the caller promises; uninitialized places are only written.
     let place = unsafe { place.cast::<std::mem::MaybeUninit<T>>().as_mut() };
@@ -56,7 +56,7 @@ impl<T> Place<'_, T> {
 /// Values of the caller.
 ///
 /// # Safety
-/// Not null means `count` values.
+/// Unless it is null, it points to `count` values.
 pub unsafe fn listed<'a, T>(
     values: *const T,
     count: usize,
@@ -75,7 +75,7 @@ pub unsafe fn listed<'a, T>(
 /// A buffer of the caller.
 ///
 /// # Safety
-/// Not null means room for `count` plain numbers, of any bits, which nothing else uses meanwhile.
+/// Unless it is null, it has room for `count` plain numbers, of any bits, which nothing else uses meanwhile.
 pub unsafe fn room<'a, T: Copy>(
     buffer: *mut T,
     count: usize,

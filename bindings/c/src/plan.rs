@@ -18,7 +18,7 @@ use crate::{
 
 /// Plans a query and counts its points. Free the plan with `strew_plan_free`.
 ///
-/// `query` is the JSON body of `POST /v1/points:query`, or what stands behind `GET /v1/points?`:
+/// `query` is the JSON body of `POST /v1/points:query`, or the query string of `GET /v1/points`:
 /// `bbox=0,0,10,10&spacing=1&seed=7`.
 ///
 /// # Safety
@@ -99,7 +99,7 @@ pub unsafe extern "C" fn strew_plan_count(plan: *const strew_plan, count: *mut u
     })
 }
 
-/// What the `f64` coordinates are relative to: the corner of a chunk, else the origin of the world.
+/// The place that the `f64` coordinates are relative to: the corner of a chunk, else the origin of the world.
 ///
 /// # Safety
 /// `plan` is a plan, `origin` has room for two numbers.
@@ -138,7 +138,8 @@ pub unsafe extern "C" fn strew_plan_fill_xy(
     })
 }
 
-/// The same as `f32`, relative to the lower corner of the region, which is written to `origin` unless that is null.
+/// Writes the coordinates as `f32`, relative to the lower corner of the region, which is written to `origin` unless
+/// that is null.
 ///
 /// # Safety
 /// `plan` is a plan, `xy` has room for 2 * `capacity` numbers, `origin` is null or has room for two.

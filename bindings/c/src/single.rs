@@ -19,9 +19,9 @@ use crate::{
 pub struct strew_point {
     /// Its stable id, `x:y` in text.
     pub id: [i64; 2],
-    /// Its x.
+    /// Its coordinate along x.
     pub x: f64,
-    /// Its y.
+    /// Its coordinate along y.
     pub y: f64,
     /// Its distance from the place whose neighbors were searched, else 0.
     pub distance: f64,
@@ -38,7 +38,7 @@ fn point(found: &Found) -> Result<strew_point, Failure> {
     })
 }
 
-/// The point of an id, in a set: what stands behind `GET /v1/points/{id}?`, such as `spacing=1&seed=7`.
+/// The point of an id. `set` is the query string of `GET /v1/points/{id}`, such as `spacing=1&seed=7`.
 ///
 /// Returns `STREW_NO_SUCH_POINT` if the set has no point with that id. `attributes`, unless it is null, receives the
 /// point with its attributes as JSON.
@@ -67,7 +67,7 @@ pub unsafe extern "C" fn strew_point_by_id(
     })
 }
 
-/// The points nearest to a place, nearest first: what stands behind `GET /v1/nearest?`, such as
+/// The points nearest to a place, nearest first. `query` is the query string of `GET /v1/nearest`, such as
 /// `at=5,5&k=3&spacing=1&seed=7`.
 ///
 /// Up to `capacity` points are written, and the number of those found to `count`, unless that is null. `attributes`,

@@ -5,7 +5,7 @@ use std::{
     ptr,
 };
 
-/// What buffers are aligned to: enough for any number.
+/// The alignment of buffers, enough for any number.
 const ALIGNMENT: usize = 8;
 
 /// Room for some bytes, or null. Its caller releases it with the same size.

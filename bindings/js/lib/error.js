@@ -1,4 +1,4 @@
-// What can go wrong, in the words of the REST API.
+// The errors of the package, in the words of the REST API.
 
 /** A query that has no answer. */
 export class StrewError extends Error {

@@ -60,9 +60,9 @@ export class PointSet<Where extends "here" | "there" = "here"> implements Iterab
     resolved(): Answer<Where, Record<string, unknown>>;
     /** x and y of each point, by turns. */
     xy(): Answer<Where, Float64Array>;
-    /** The same as `f32`, relative to the lower corner of the region. */
+    /** The coordinates as `f32`, relative to the lower corner of the region. */
     xyF32(): Answer<Where, { xy: Float32Array; origin: [number, number] }>;
-    /** What the coordinates of `xy()` are relative to: the corner of a chunk, else 0, 0. */
+    /** The place that the coordinates of `xy()` are relative to: the corner of a chunk, else 0, 0. */
     origin(): Answer<Where, [number, number]>;
     /** Two integers for each point; `x:y` as text. */
     ids(): Answer<Where, BigInt64Array>;
@@ -88,7 +88,7 @@ export class PointSet<Where extends "here" | "there" = "here"> implements Iterab
     [Symbol.iterator](): Iterator<Point>;
     /** Releases the memory of the points at once. A set that is used afterwards makes them again. */
     free(): void;
-    /** The same, for `using`, where the platform has `Symbol.dispose`. */
+    /** Frees the set at the end of a `using` block, where the platform has `Symbol.dispose`. */
     [Symbol.dispose](): void;
 }
 
@@ -115,8 +115,8 @@ export class Disconnected extends Error {}
 
 /**
  * A daemon, with the functions of what `open` returns; its answers are promises. Several replicas are a list, or one
- * text with commas. A request goes to the one with the fewest requests of this client; an address that fails is left out
- * for a while, and an answer that breaks off continues at any of them, each point once.
+ * text with commas. A request goes to the one with the fewest requests of this client; an address that fails is left
+ * out for a while, and an answer that breaks off continues at any of them, each point once.
  */
 export function connect(
     url: string | URL | (string | URL)[],

@@ -14,7 +14,7 @@ export class Module {
         this.calls = instance.exports;
     }
 
-    /** Does something with room for its arguments, which is released afterwards. */
+    /** Runs `work(room)`. Memory that it allocates by `room(bytes)` is released afterwards. */
     scoped(work) {
         const held = [];
         const room = (bytes) => {
@@ -52,7 +52,7 @@ export class Module {
         return DECODER.decode(bytes.subarray(0, bytes.indexOf(0)));
     }
 
-    /** A text with a zero behind it. */
+    /** The address of a copy of a text, with a zero after it. */
     text(room, text) {
         const bytes = ENCODER.encode(text);
         const at = room(bytes.length + 1);
@@ -62,7 +62,7 @@ export class Module {
         return at;
     }
 
-    /** The bytes that a call makes, whose last argument says where they are. */
+    /** The bytes that a call makes. It writes their handle to its last argument. */
     bytes(name, room, ...values) {
         const out = room(4);
         this.call(name, ...values, out);
@@ -74,12 +74,12 @@ export class Module {
         return copy;
     }
 
-    /** The same as JSON. */
+    /** The JSON value that a call makes. */
     json(name, room, ...values) {
         return JSON.parse(DECODER.decode(this.bytes(name, room, ...values)));
     }
 
-    /** The same as JSON with integers of any size. */
+    /** The JSON value that a call makes, with integers of any size. */
     exact(name, room, ...values) {
         return parsed(DECODER.decode(this.bytes(name, room, ...values)));
     }
@@ -92,7 +92,7 @@ export class Module {
         return new kind(this.memory.slice(at, at + bytes));
     }
 
-    /** Has a plan freed after the object that holds it, unless that frees it before. */
+    /** Frees a plan once its owner is collected, unless `free` does so before. */
     held(owner, plan) {
         this.#plans.register(owner, plan, owner);
     }

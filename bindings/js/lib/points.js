@@ -4,7 +4,7 @@ import { KINDS, WINDOW } from "./parameters.js";
 import { OF_ANSWERS, SHAPES, address, body, isObject, text } from "./query.js";
 import { StrewError } from "./error.js";
 
-/** What comes of a value, now or when it is there. */
+/** Applies a function to a value, or to that of a promise once it is there. */
 const after = (value, use) => (value instanceof Promise ? value.then(use) : use(value));
 
 /** Where points come from. */
@@ -42,7 +42,7 @@ export class PointSet {
         return { ...this.#body };
     }
 
-    /** What the points are made from. */
+    /** The planned query of the set. */
     plan() {
         this.#plan ??= this.#source.plan(text(this.#body), this.#body);
         return this.#plan;
@@ -69,12 +69,12 @@ export class PointSet {
         return this.#columns ? after(this.#columns, (columns) => columns.xy) : this.plan().xy();
     }
 
-    /** The same as a Float32Array, relative to an origin: `{ xy, origin }`. */
+    /** The coordinates as a Float32Array, relative to an origin: `{ xy, origin }`. */
     xyF32() {
         return this.plan().xyF32();
     }
 
-    /** What the coordinates of `xy()` are relative to: the corner of a chunk, else 0, 0. */
+    /** The place that the coordinates of `xy()` are relative to: the corner of a chunk, else 0, 0. */
     origin() {
         return this.plan().origin();
     }
@@ -88,7 +88,7 @@ export class PointSet {
         if (this.#columns) return this.#columns;
         const columns = this.plan().columns();
         this.#columns = columns;
-        // What failed is requested again by the next call.
+        // After a failure the next call requests them again.
         if (columns instanceof Promise) {
             columns.catch(() => {
                 if (this.#columns === columns) this.#columns = undefined;

@@ -11,7 +11,7 @@ const isList = (value) => Array.isArray(value) || (ArrayBuffer.isView(value) && 
 export const isObject = (value) => value !== null && typeof value === "object" && !isList(value);
 
 function region(shape, value) {
-    // What is not of this form is passed on, to be refused in the words of REST.
+    // Other values are passed on unchanged, to be refused in the words of REST.
     if (isList(value)) {
         const list = Array.from(value);
         if (shape === "circle" && list.length === 3) return { center: [list[0], list[1]], radius: list[2] };
@@ -44,8 +44,8 @@ export function body(keywords) {
 }
 
 /**
- * A body as JSON: a bigint is an integer, a typed array a list. What JSON cannot hold (NaN, infinity, functions, symbols)
- * becomes a word in its place, so that it is refused with the name of its member and what is allowed there.
+ * A body as JSON: a bigint is an integer, a typed array a list. Values that JSON cannot hold (NaN, infinity, functions,
+ * symbols) become words, so that they are refused with the name of their member and the values allowed there.
  */
 export function text(value) {
     const plain = (_, part) => {

@@ -6,9 +6,9 @@ import { Source } from "./points.js";
 import { parsed, text } from "./query.js";
 import { Elsewhere, Later, Replicas, broken, retryAfter } from "./replicas.js";
 
-// The statuses after which a daemon wants to be called again.
+// The statuses of refusals that pass: the same request may succeed later.
 const LATER = [429, 502, 503, 504];
-// Refusals that depend on what a daemon holds: by their kind, or by the only members that are wrong.
+// Refusals that depend on the tables, fields and worlds of a daemon: their kinds, or the members at fault.
 const HELD_KINDS = ["other-table", "other-world"];
 const HELD = ["cursor", "except", "field", "profile", "table", "terrain", "world"];
 
@@ -27,7 +27,7 @@ class Daemon extends Source {
         this.#replicas = new Replicas(addresses(url), retries, patience);
     }
 
-    /** The response of a replica, if it is a good one. */
+    /** The response of a replica, if it succeeded. */
     async #call(replica, path, body) {
         const post = { method: "POST", body, headers: { ...this.#headers, "content-type": "application/json" } };
         const options = body === undefined ? { headers: this.#headers } : post;
@@ -43,7 +43,7 @@ class Daemon extends Source {
         throw isAboutHeld(error) ? new Elsewhere(error) : error;
     }
 
-    /** What `work(call, progress)` makes of a response, at any replica. A body that breaks is `call.broken(error)`. */
+    /** Calls `work(call, progress)` at one replica after another. For a broken body it throws `call.broken(error)`. */
     attempts(work, limits) {
         const attempt = (replica, progress) => {
             const call = (path, body) => this.#call(replica, path, body);
@@ -93,7 +93,7 @@ const isAboutHeld = ({ kind, faults }) => {
     return HELD_KINDS.includes(kind) || (members.length > 0 && members.every((member) => HELD.includes(member)));
 };
 
-/** What is wrong, from a problem document. Proxies answer with other content. */
+/** The error that a problem document states. Proxies answer with other content. */
 function refusal(status, content) {
     let problem;
     try {
@@ -160,7 +160,7 @@ class RemotePlan {
         if (this.#known) return this.#known;
         const head = this.#requestHead();
         this.#known = head;
-        // What failed is requested again by the next call.
+        // After a failure the next call requests it again.
         head.catch(() => {
             if (this.#known === head) this.#known = undefined;
         });
@@ -223,7 +223,7 @@ function wholeLines(bytes) {
     return { rows, length: bytes.lastIndexOf(newline) + 1 };
 }
 
-/** The bytes of a body, until it ends or breaks off, and what broke it. */
+/** The bytes of a body, until it ends or breaks off, and the error if it broke off. */
 async function received(response) {
     const chunks = [];
     let error;
@@ -246,7 +246,7 @@ function joined(chunks) {
     return bytes;
 }
 
-/** The bytes of an answer of rows. One that breaks off goes on after the whole rows that came, at any replica. */
+/** The bytes of an answer of rows. After a break it resumes behind the last whole row, at any replica. */
 class Answer {
     #daemon;
     #query;
@@ -257,7 +257,7 @@ class Answer {
     #cursor = null;
     #first;
 
-    /** `whole(bytes, response)` is how many whole `rows` bytes begin with, and their `length`. */
+    /** `whole(bytes, response)` returns the number of whole `rows` at the start of some bytes, and their `length`. */
     constructor(daemon, query, form, whole) {
         this.#daemon = daemon;
         this.#query = { ...query, ...form };
@@ -300,7 +300,7 @@ class Answer {
         throw call.broken(error ?? new Error(`${this.#rows} of ${this.#count} points came`));
     }
 
-    /** The query of the rows that are left. The order is fixed, so they are known by their place. */
+    /** The query of the remaining rows. The order of points is fixed, so an offset finds them. */
     #rest() {
         if (!this.#rows) return this.#query;
         const rest = { ...this.#query, cursor: this.#cursor, offset: this.#rows };
@@ -313,7 +313,7 @@ class Answer {
 function valuesOf({ name, names, names_left_out }, points) {
     const values = points.map((point) => point[name] ?? null);
     if (!names && !names_left_out) return { names: null, values: Float64Array.from(values, (value) => value ?? NaN) };
-    // Headers have no room for very many names: those of the points are then in the order of their first points.
+    // Headers have no room for very many names. Then names are numbered in the order in which points first have them.
     const known = names ?? [...new Set(values.filter((value) => value !== null))];
     const places = new Map(known.map((text, place) => [text, place]));
     return { names: known, values: Int32Array.from(values, (value) => places.get(value) ?? -1) };

@@ -1,8 +1,8 @@
-// Daemons with the same points: which of them to call next, and when to call one again that failed.
+// Several daemons with the same points: the choice of the one to call next, and when to try a failed one again.
 
 import { Disconnected } from "./error.js";
 
-// For how many milliseconds an address is left out after its first failure, and at most.
+// The milliseconds for which a daemon is left out: after its first failure, and at most.
 const [SHORTEST, LONGEST] = [100, 5000];
 
 /** A refusal for now, or a connection that broke: another attempt may succeed, after `wait` milliseconds here. */
@@ -26,7 +26,7 @@ export function retryAfter(text) {
     return Math.max(0, Date.parse(text) - Date.now()) || 0;
 }
 
-/** A daemon, and how it did lately. */
+/** A daemon and its recent failures. */
 class Replica {
     running = 0;
     turn = 0;
@@ -46,7 +46,7 @@ class Replica {
         this.failures = this.until = 0;
     }
 
-    /** Leaves it out for a while. Requests that fail together count as one failure. */
+    /** Leaves the daemon out for a while. Requests that fail together count as one failure. */
     failed(wait) {
         const now = performance.now();
         if (now >= this.until) this.failures += 1;
@@ -57,19 +57,19 @@ class Replica {
 export class Replicas {
     #turns = 0;
 
-    /** `retries` is how often each may fail again in a row, `patience` the seconds after the first failure. */
+    /** `retries` bounds further failures in a row of each daemon, `patience` the seconds after the first failure. */
     constructor(urls, retries, patience) {
         this.all = urls.map((url) => new Replica(url));
         this.retries = retries;
         this.patience = 1000 * patience;
     }
 
-    /** Those that are not left out. */
+    /** The daemons that are not left out. */
     up() {
         return this.all.filter(({ until }) => until <= performance.now());
     }
 
-    /** The one with the fewest requests of those that are up; else the milliseconds until there may be one. */
+    /** The daemon with the fewest requests among those that are up; else the milliseconds until one may be. */
     #take(left, isUrgent) {
         const now = performance.now();
         const up = left.filter(({ until }) => until <= now);
@@ -84,7 +84,7 @@ export class Replicas {
         return { replica: best };
     }
 
-    /** What `work(replica, progress)` returns; it is called again for as long as another attempt may succeed. */
+    /** Calls `work(replica, progress)` until it succeeds or no other attempt may, and returns its result. */
     async attempts(work, { only = this.all, retries = this.retries } = {}) {
         let left = only;
         let [failures, end, last, refusal] = [0];
@@ -126,6 +126,6 @@ export class Replicas {
     }
 }
 
-/** What broke a connection, so that it is tried again. */
+/** The error of a connection that broke: another attempt is made. */
 export const broken = (replica, cause) =>
     new Later(new Disconnected(`${replica.url}: ${cause.cause?.message ?? cause.message}`, { cause }));

@@ -1,4 +1,4 @@
-// The package by itself.
+// The package without a daemon.
 import assert from "node:assert/strict";
 import { before, test } from "node:test";
 

@@ -1,4 +1,4 @@
-// What a daemon's points do when answers fail: a server that answers what the test wants.
+// Sets of a daemon whose answers fail. The server is a stub that answers as the test sets it.
 import assert from "node:assert/strict";
 import { createServer } from "node:http";
 import { after, before, beforeEach, test } from "node:test";

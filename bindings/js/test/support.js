@@ -1,4 +1,4 @@
-// What tests share: the package with all tables, and a real daemon.
+// Shared by tests: the package with all tables, and a real daemon.
 import { spawn } from "node:child_process";
 import { existsSync, readdirSync } from "node:fs";
 import { createInterface } from "node:readline";

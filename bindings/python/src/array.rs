@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pyo3::{prelude::*, types::PyDict};
 use strew_plan::{Columns, library::FurtherValues};
 
-/// What owns the memory.
+/// The owner of an array's memory.
 #[derive(Clone)]
 pub enum Owner {
     /// Pairs of coordinates.

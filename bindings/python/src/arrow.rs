@@ -67,7 +67,7 @@ pub struct Stream {
 // SAFETY: what a stream points to is an `Arc` and plain memory of its own, and has no thread.
 unsafe impl Send for Stream {}
 
-/// What a stream has yet to hand over.
+/// The batches that a stream has still to hand over.
 struct Source {
     columns: Arc<Columns>,
     metadata: BTreeMap<String, String>,
@@ -135,7 +135,7 @@ unsafe extern "C" fn release_stream(stream: *mut Stream) {
     }
 }
 
-/// What a schema points to.
+/// The memory that a schema points to.
 struct SchemaOwner {
     _format: CString,
     _name: CString,
@@ -239,7 +239,7 @@ enum Memory {
     Numbers(Vec<f64>),
 }
 
-/// What an array points to.
+/// The memory that an array points to.
 struct ArrayOwner {
     _memory: Vec<Memory>,
     buffers: Vec<*const c_void>,

@@ -77,7 +77,7 @@ impl Columns {
         self.0.len()
     }
 
-    /// What coordinates are relative to.
+    /// The place that coordinates are relative to, if it is not the world's origin.
     #[getter]
     fn origin(&self) -> Option<[f64; 2]> {
         self.0.origin

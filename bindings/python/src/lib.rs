@@ -1,6 +1,6 @@
 //! The native part of the Python package: the library's answers as Python objects, and nothing else.
 //!
-//! Queries come in as the text that REST takes, and what is wrong leaves as a `StrewError`. Work is done without
+//! Queries come in as the text that REST takes, and refusals leave as a `StrewError`. Work is done without
 //! the interpreter's lock.
 
 mod array;
@@ -59,7 +59,7 @@ fn nearest(py: Python<'_>, address: &str) -> PyResult<String> {
     json(&found.map_err(|error| raised(py, &error))?)
 }
 
-/// Holds a field, a body of `POST /v1/fields`; its digest.
+/// Holds a field, a body of `POST /v1/fields`, and returns its digest.
 #[pyfunction]
 fn hold_field(py: Python<'_>, body: &str) -> PyResult<String> {
     let library = library()?;
@@ -86,7 +86,7 @@ fn darkness<'py>(
     Ok((width, height, PyBytes::new(py, &bytes)))
 }
 
-/// Something as JSON.
+/// A value as JSON text.
 fn json(value: &impl serde::Serialize) -> PyResult<String> {
     serde_json::to_string(value).map_err(|error| PyRuntimeError::new_err(error.to_string()))
 }

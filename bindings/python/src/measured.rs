@@ -8,7 +8,7 @@ use strew_plan::library::measured::{self, Measured, document, drawing};
 
 use crate::{failure::raised, json};
 
-/// What was measured of a set of points.
+/// The measures of a set of points.
 #[pyclass(frozen, module = "strew._strew")]
 pub struct Report(Mutex<strew_forge::Report>);
 

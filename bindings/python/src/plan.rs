@@ -26,7 +26,7 @@ impl Plan {
 
 #[pymethods]
 impl Plan {
-    /// How many points it has.
+    /// The exact number of points.
     fn count(&self) -> u128 {
         self.0.count()
     }

@@ -1,4 +1,4 @@
-"""What can go wrong, in the words of the REST API."""
+"""The errors of the package, in the words of the REST API."""
 
 from __future__ import annotations
 

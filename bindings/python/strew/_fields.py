@@ -119,7 +119,7 @@ def _picture(array: np.ndarray[Any, Any]) -> bytes:
         raise ValueError(f"a picture has rows, columns and up to 4 channels, not the shape {array.shape}")
     height, width, channels = array.shape
     gray = _png(array.reshape(height, width * channels))
-    # The same samples, told to be of several channels.
+    # The head is replaced: it declares the samples to be of several channels.
     kind = {1: 0, 2: 4, 3: 2, 4: 6}[channels]
     head = struct.pack(">IIBBBBB", width, height, 8 * array.dtype.itemsize, kind, 0, 0, 0)
     crc = struct.pack(">I", zlib.crc32(b"IHDR" + head))

@@ -133,7 +133,7 @@ class PointSet:
         return self.within(chunk=(size, x, y))
 
     def split(self, parts: int) -> list[PointSet]:
-        """The points in up to so many parts of the same size, give or take one, in their order.
+        """The points in at most ``parts`` sets of the same size, give or take one, in their order.
 
         Each part is a set by itself, which another process or machine can make from its pickle.
 
@@ -195,7 +195,7 @@ class PointSet:
 
     @property
     def origin(self) -> tuple[float, float] | None:
-        """What coordinates are relative to, if not to the world's origin: the corner of a chunk."""
+        """The place that coordinates are relative to, the corner of a chunk; `None` for the world's origin."""
         origin = self.columns().origin
         return None if origin is None else (origin[0], origin[1])
 

@@ -47,7 +47,7 @@ def _region(shape: str, value: Any) -> dict[str, Any]:
         value = value.__geo_interface__
     if isinstance(value, np.ndarray):
         value = value.tolist()
-    # What is not of this form is passed on, to be refused in the words of REST.
+    # Other values are passed on unchanged, to be refused in the words of REST.
     if isinstance(value, (list, tuple)):
         if shape == "circle" and len(value) == 3:
             value = {"center": [value[0], value[1]], "radius": value[2]}

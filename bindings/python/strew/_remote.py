@@ -118,7 +118,7 @@ class Daemon(Source):
                 return self.open(replica, "GET", short)
             except (StrewError, Elsewhere) as refusal:
                 error = refusal.error if isinstance(refusal, Elsewhere) else refusal
-                # What is not valid is refused again, in the words of bodies.
+                # An invalid query is sent again as a body, to be refused in the words of bodies.
                 if error.kind != "invalid-query":
                     raise
         return self.open(replica, "POST", "/v1/points:query", text(query))
@@ -237,7 +237,7 @@ class _Asked:
                 # The count of a window comes with its split into one part.
                 count = self._daemon.json("POST", "/v1/points:split?parts=1", self._body())["count"]
                 first = self._daemon.json("POST", "/v1/points:query", self._body(format="json", limit=1))["query"]
-                # What is about the document, and not about the points.
+                # These members describe the document, not the points.
                 first = {name: first[name] for name in first if name not in ("format", "relative_to", "limit")}
                 if "limit" in window:
                     first["limit"] = self._query["limit"]

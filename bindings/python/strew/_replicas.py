@@ -73,7 +73,7 @@ class Replica:
         self.until = max(self.until, now + max(least, self.pause()))
 
     def pause(self) -> float:
-        """How long it is left out: longer with each failure, and never as long as for other clients."""
+        """The seconds for which it is left out: more with each failure, and at random, so that clients return apart."""
         longest = min(SHORTEST * 2.0 ** min(self.failures - 1, 30), LONGEST)
         return longest * random.uniform(0.5, 1.0)
 
@@ -124,7 +124,7 @@ class Replicas:
             replica.leave_out(time.monotonic(), wait)
 
     def up(self) -> list[Replica]:
-        """Those that are not left out."""
+        """The replicas that are not left out."""
         with self._lock:
             now = time.monotonic()
             return [replica for replica in self.all if replica.until <= now]

@@ -16,7 +16,7 @@ use super::{InUse, Quota, Usage, bucket::Bucket};
 /// The price of a request, in points.
 const REQUEST: f64 = 1.0;
 
-/// Someone who has been let in. Cheap to clone.
+/// A client that the gate has admitted. Cheap to clone.
 #[derive(Clone, Debug, Default)]
 pub struct Caller {
     pub(super) name: Option<Arc<str>>,
@@ -54,7 +54,7 @@ impl Drop for Place {
 }
 
 impl Caller {
-    /// The caller that the gate noted.
+    /// The caller of a request that passed the gate.
     ///
     /// # Errors
     /// [`Denied::NoKey`] for a request that did not pass the gate.
@@ -148,7 +148,7 @@ impl Caller {
         self.take(points, REQUEST + charged as f64)
     }
 
-    /// Takes what a request costs, whatever it asks for.
+    /// Takes the fixed price of a request from the bucket.
     pub(super) fn charge_request(&self) -> Result<(), Denied> {
         self.take(REQUEST as u128, 0.0)
     }

@@ -49,7 +49,8 @@ impl Layers {
     /// Lays a file over the layers so far.
     ///
     /// # Errors
-    /// If the file is not a regular one, is too long, cannot be read, is not TOML, or has a key or type that does not exist.
+    /// If the file is not a regular one, is too long, cannot be read, is not TOML, or has a key or type that does not
+    /// exist.
     pub fn file(mut self, path: &Path) -> Result<Self, ConfigError> {
         let text =
             bounded_file::read_text(path, MOST_BYTES).map_err(|error| ConfigError::Unreadable {

@@ -45,17 +45,17 @@ pub const DEFAULTS: &str = include_str!("../strew.toml");
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Config {
-    /// Where and how to serve.
+    /// Addresses, connections and their times.
     pub server: Server,
     /// The certificates of the server and of clients.
     pub tls: Tls,
     /// The admission of clients.
     pub access: Access,
-    /// How fast points may be taken.
+    /// The rate at which a client may take points.
     pub rate: Rate,
     /// The address of administrators.
     pub admin: Admin,
-    /// How HTTP answers.
+    /// Answers over HTTP.
     pub http: Http,
     /// The tables to load.
     pub tables: Tables,
@@ -67,17 +67,17 @@ pub struct Config {
     pub limits: Limits,
     /// The limits of one address.
     pub per_address: AddressLimits,
-    /// When files are reloaded.
+    /// The reloading of files.
     pub reload: Reload,
     /// The threads that make points.
     pub workers: Workers,
-    /// How to stop.
+    /// The times of a shutdown.
     pub shutdown: Shutdown,
     /// The log.
     pub log: Log,
     /// The metrics.
     pub metrics: Metrics,
-    /// Where to send spans.
+    /// The collector of spans.
     pub telemetry: Telemetry,
     /// The lists of points to load.
     pub except: Except,

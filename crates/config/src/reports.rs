@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::range::{DAY, HOUR, SECOND, out_of_range};
 
-/// How HTTP answers.
+/// The settings of answers over HTTP.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Http {
@@ -15,7 +15,7 @@ pub struct Http {
     pub cors_origins: String,
     /// How long an answer may be kept that a restart with other tables could change, in seconds.
     pub cache_seconds: u32,
-    /// Where the pages are seen from outside, such as `https://points.example`; empty if that is not known.
+    /// The address of the pages as seen from outside, such as `https://points.example`; empty if it is unknown.
     pub public_url: String,
 }
 
@@ -97,7 +97,7 @@ fn is_web_address(text: &str) -> bool {
 pub struct Log {
     /// A level, or levels by module.
     pub filter: String,
-    /// How a line looks.
+    /// The format of a line.
     pub format: LogFormat,
 }
 
@@ -115,7 +115,7 @@ impl Log {
     }
 }
 
-/// How a line of the log looks.
+/// The format of the lines of the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LogFormat {
@@ -133,7 +133,7 @@ pub struct Metrics {
     pub enabled: bool,
 }
 
-/// Where spans go, if anywhere.
+/// The settings of spans: the collector that receives them, if any.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Telemetry {
@@ -197,7 +197,7 @@ fn wrong_filter(text: &str) -> Option<String> {
     read.err().map(|error| error.to_string())
 }
 
-/// Programs without the parser have no log.
+/// Programs without a log need no parser of filters.
 #[cfg(not(feature = "log"))]
 const fn wrong_filter(_: &str) -> Option<String> {
     None

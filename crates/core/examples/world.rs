@@ -17,7 +17,7 @@ const CHUNK: f64 = 16.0;
 const VIEW: [i64; 2] = [72, 20];
 const FRAMES: u32 = 60;
 
-/// What stands in a chunk.
+/// The objects of a chunk.
 struct Chunk {
     rocks: Vec<Member>,
     trees: Vec<Member>,

@@ -9,7 +9,7 @@
 //! | a point by id, the nearest points | yes | if all points are kept | by building it on top | yes |
 //! | exactly N points; at least d apart | yes; yes | no; yes | no; yes | no; no |
 //! | dimensions | 2 | 2 and more | 2 | any |
-//! | memory | a table: 0.2 MB, the smallest 40 kB | all points | megabytes of tiles | none |
+//! | memory | a table: 0.2 MB, the smallest 35 kB | all points | megabytes of tiles | none |
 //!
 //! # Noise
 //!

@@ -240,8 +240,8 @@ pub fn nearest(
 /// Runs [`PointSet::around`] and visits a bounded number of points.
 ///
 /// # Errors
-/// As [`PointSet::around`], [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) where more points would have to be visited,
-/// and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+/// As [`PointSet::around`], [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) where more points would have to be
+/// visited, and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
 ///
 /// ```
 /// use strew_core::{PointSet, Table, server::{self, Stop, Visits}};

@@ -9,7 +9,7 @@ use strew_core::{
 };
 use subject::{all, any_seed, any_table, in_order_of_ids, mixed, set, unit};
 
-/// What another set is, beside its table, seed and spacing.
+/// The form of another set, whatever its table, seed and spacing.
 #[derive(Clone, Copy, Debug)]
 enum Sort {
     All,

@@ -65,8 +65,8 @@ pub struct Plain {
 }
 
 impl Answer {
-    /// The answer of some parts, in blocks of about `block_bytes`. `head` is what it says about itself, for formats
-    /// that have room for it, with the number of points of the parts.
+    /// The answer of some parts, in blocks of about `block_bytes`. `head` is called with their number of points, for
+    /// formats that have room for a head: the facts about the answer.
     ///
     /// # Errors
     /// [`Error::Invalid`] if the format cannot hold the answer.
@@ -199,7 +199,7 @@ impl Answer {
         Self::of_columns(rows, batches, writer, block_bytes)
     }
 
-    /// Libraries have no writers of columnar formats: their programs have better ones.
+    /// Refuses columnar formats: programs that link the library without them have writers of their own.
     #[cfg(not(feature = "columnar"))]
     fn in_columns(_: Rows, _: &Head, output: &Output, _: usize) -> Result<Self, Error> {
         let encoding = output.encoding;
@@ -283,7 +283,7 @@ impl Answer {
             origin,
             legend: None,
             warning: None,
-            // A window's tiles are those of the whole.
+            // The tiles of a window would be those of the whole plan.
             plain: plain.filter(|plain| !plain.plan.is_window()),
         }
     }
@@ -325,7 +325,7 @@ impl Answer {
         self.warning
     }
 
-    /// How to make it from the plan's tiles, if it is that simple.
+    /// The plan whose tiles are the answer, if that is all there is in it.
     #[must_use]
     pub const fn plain(&self) -> Option<&Plain> {
         self.plain.as_ref()

@@ -68,7 +68,7 @@ impl<'a> Entry<'a> {
 /// The columns of a format of records in their order, as a JSON list in ASCII; `None` for other formats.
 /// Names that would make it too long are left out.
 pub(super) fn legend(schema: &Schema, encoding: Encoding) -> Option<String> {
-    // What most requests ask for.
+    // Most requests want this one.
     if let (Encoding::F32, []) = (encoding, schema.columns()) {
         return Some(F32.into());
     }

@@ -151,7 +151,7 @@ mod tests {
     fn numbers<const N: usize>(bytes: &[u8], read: impl Fn([u8; N]) -> f64) -> Vec<f64> {
         let chunks = bytes.chunks_exact(N);
         chunks
-            .map(|bytes| read(bytes.try_into().expect("so many")))
+            .map(|bytes| read(bytes.try_into().expect("N bytes")))
             .collect()
     }
 

@@ -1,5 +1,6 @@
 //! What seeds do to a table: distances, isotropy by bands, recurrence, and what two seeds share: of each pair also the
-//! recurrence of the one in the other, which for different symmetries is that of chance. Seeds 7 and 10 have the same one.
+//! recurrence of the one in the other, which for different symmetries is that of chance. Seeds 7 and 10 have the same
+//! one.
 //!
 //! `cargo run --release -p strew-forge --example seeds -- TABLE [STRENGTH [SEEDS [SIDE [SETTLE]]]]`
 

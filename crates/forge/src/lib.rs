@@ -30,10 +30,9 @@
 //! radial power [`curve`]; their energy is the error against it. Then the panel is
 //! [measured](measure) and the figures are compared with the bounds of the profile ([`judge`]).
 //!
-//! Meanwhile a [`Watch`] follows the [`Progress`], keeps [`Checkpoint`]s and may stop the work;
-//! [`resume`] goes on from a checkpoint. For a table there is, [`with_ranks`] makes the order in which its points leave,
-//! and [`labels`] and [`mix()`] make kinds of points. Apart from jobs, a [`Report`] measures any point set, and
-//! [`picture()`] draws it.
+//! Meanwhile a [`Watch`] follows the [`Progress`], keeps [`Checkpoint`]s and may stop the work; [`resume`] goes on from
+//! a checkpoint. For an existing table, [`with_ranks`] makes the order in which its points leave, and [`labels`] and
+//! [`mix()`] make kinds of points. Apart from jobs, a [`Report`] measures any point set, and [`picture()`] draws it.
 
 mod checkpoint;
 pub mod curve;

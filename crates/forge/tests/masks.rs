@@ -46,8 +46,8 @@ fn no_seam_shows_around_an_eighth() {
     }
 }
 
-/// Plain void and cluster has 0.12 to 0.16 on average. A kernel that reaches no other pixel had 2.4 at 1/256, and a peak
-/// of 40: the pixels that came first were on one side.
+/// Plain void and cluster has 0.12 to 0.16 on average. A kernel that reaches no other pixel had 2.4 at 1/256, and a
+/// peak of 40: the pixels that came first were on one side.
 #[test]
 fn few_pixels_are_spread_too() {
     for (size, masks) in masks() {

@@ -1,4 +1,4 @@
-//! Mixes: kinds are even on sets that nobody looked at, and equal on every machine.
+//! Mixes: kinds are even on sets that the forge never saw, and equal on every machine.
 
 mod shipped;
 

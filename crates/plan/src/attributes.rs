@@ -14,7 +14,7 @@ pub struct PointAttributes {
 }
 
 impl PointAttributes {
-    /// The columns of `list`, which is what was bound.
+    /// The columns of `list`, of which `bound` was made.
     #[must_use]
     pub fn new(list: &Attributes, bound: BoundAttributes) -> Self {
         let column = |attribute: &Attribute| match attribute.variants() {

@@ -1,8 +1,8 @@
 //! Cursor tokens: places in an answer, to be handed back.
 //!
-//! A token holds what it takes to go on without counting again (which set, how many points came
-//! before, the lattice address of the next one, the spacing that a count became) and a digest of these with the query it belongs to,
-//! so that a token of another query, or a damaged one, is refused instead of giving other points.
+//! A token holds what it takes to go on without counting again (which set, how many points came before, the lattice
+//! address of the next one, the spacing that a count became) and a digest of these with the query it belongs to, so
+//! that a token of another query, or a damaged one, is refused and never yields other points.
 
 use std::fmt;
 

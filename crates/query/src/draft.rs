@@ -304,7 +304,7 @@ impl Draft {
         part
     }
 
-    /// The body of `POST /v1/points:query` that asks for this.
+    /// The body of `POST /v1/points:query` with this query.
     #[must_use]
     pub fn to_body(&self) -> Map<String, Json> {
         let mut body = Map::new();

@@ -1,11 +1,11 @@
 //! Queries: from raw parameters, a JSON body or typed fields to a checked [`Query`].
 //!
-//! [`parameters`] is the table of all parameters. Addresses ([`parse_pairs`]), bodies ([`read_body`]), flags and messages
-//! become [`Values`], each read by the parameter's [`Shape`]; with a region and layers they are a [`Draft`]. The one way
-//! on is [`Draft::check`] against [`Assets`]; beyond it nothing is checked again. It reports every fault it finds, so that
-//! a client needs one round to learn them all. A [`Set`] keeps its values with everything filled in: echoes and identities
-//! are loops over them. [`Worlds`] are queries that are described once. Depends on the catalog, the names of formats and
-//! the words of faults; plans nothing.
+//! [`parameters`] is the table of all parameters. Addresses ([`parse_pairs`]), bodies ([`read_body`]), flags and
+//! messages become [`Values`], each read by the parameter's [`Shape`]; with a region and layers they are a [`Draft`].
+//! The one way on is [`Draft::check`] against [`Assets`]; beyond it nothing is checked again. It reports every fault it
+//! finds, so that a client needs one round to learn them all. A [`Set`] keeps its values with everything filled in:
+//! echoes and identities are loops over them. [`Worlds`] are queries that are described once. Depends on the catalog,
+//! the names of formats and the words of faults; plans nothing.
 
 mod amount;
 mod assets;

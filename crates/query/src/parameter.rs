@@ -71,7 +71,7 @@ pub enum Group {
     Nearest,
     /// Into how many parts a query is split.
     Split,
-    /// How much of a list.
+    /// The length of a list.
     Listed,
     /// The α of a pattern, of which no table is needed.
     Pattern,

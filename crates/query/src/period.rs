@@ -82,7 +82,7 @@ pub struct Periods {
 }
 
 impl Periods {
-    /// The periods that some values ask for: from a number of points on, at most a number of them.
+    /// The periods that some values request: those with at least a number of points, and at most a number of them.
     ///
     /// # Errors
     /// Every fault, and [`Error::OtherTable`] if a pinned table is not loaded.

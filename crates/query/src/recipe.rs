@@ -1,8 +1,9 @@
-//! ARCHITECTURE.md says how to add a parameter. Here one is added to the table by an entry that only tests have: requests
-//! of its group then take it, read it from addresses and JSON, write it into bodies, and echo it.
+//! ARCHITECTURE.md says how to add a parameter. Here one is added to the table by an entry that only tests have:
+//! requests of its group then take it, read it from addresses and JSON, write it into bodies, and echo it.
 //!
 //! The program shows parameters by their entries alone. Its tests prove that with the same entry (`src/recipe.rs`):
-//! - flags and their help: `cli::flags::tests::an_added_parameter_is_a_flag_with_help`, `flags_are_a_loop_over_the_table`;
+//! - flags and their help: `cli::flags::tests::an_added_parameter_is_a_flag_with_help`,
+//!   `flags_are_a_loop_over_the_table`;
 //! - OpenAPI: `rest::api::document::tests::an_added_parameter_is_described`,
 //!   `parameters_and_members_are_loops_over_the_table`;
 //! - types of the bindings and documentation: `cli::parameters::tests::an_added_parameter_is_in_all_of_them`,

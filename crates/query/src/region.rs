@@ -10,10 +10,10 @@ use super::{
     parameters::{BBOX, CIRCLE, POLYGON},
 };
 
-/// What a chunk must be.
+/// The form of a chunk, as faults describe it.
 const CHUNK: &str =
     "a size above 0 and two integers within ±4503599627370496, the chunk's column and row";
-/// What a region must be.
+/// The forms of a region.
 pub(super) const REGION: &str =
     "one of bbox, circle, polygon (GeoJSON), chunk, or include with exclude";
 
@@ -25,7 +25,7 @@ pub type Rings = Vec<Vec<[f64; 2]>>;
 pub struct RegionDraft {
     /// The field it came from.
     pub path: String,
-    /// What it is.
+    /// The shape as it was read.
     pub shape: ShapeDraft,
 }
 
@@ -40,7 +40,7 @@ pub enum ShapeDraft {
     Polygons(Vec<Rings>),
     /// A square of the world grid of this size; answers are relative to its lower corner.
     Chunk(f64, [i64; 2]),
-    /// What lies in any region of the first list and in none of the second.
+    /// The points in any region of the first list and in none of the second.
     Combined(Vec<Checked<RegionDraft>>, Vec<Checked<RegionDraft>>),
 }
 
@@ -137,7 +137,7 @@ impl RegionDraft {
         })
     }
 
-    /// How many vertices its polygons have.
+    /// The number of vertices of its polygons.
     pub(super) fn vertices(&self) -> usize {
         match &self.shape {
             ShapeDraft::Polygons(polygons) => polygons.iter().flatten().map(Vec::len).sum(),

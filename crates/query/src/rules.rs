@@ -1,5 +1,5 @@
-//! Rules between parameters, which no shape of a single one can state: each stands here once, is evaluated when a set is
-//! checked, and is published with the operations that take its parameters.
+//! Rules between parameters, which no shape of a single one can state: each stands here once, is evaluated when a set
+//! is checked, and is published with the operations that take its parameters.
 
 use strew_encode::Encoding;
 use strew_error::{Checked, Fault};

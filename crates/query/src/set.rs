@@ -101,8 +101,8 @@ impl Set {
         resolved::replace(&mut self.values, [(&LOD, lod)]);
     }
 
-    /// The number of steps by which points settle; `None` where none is what they do by default: in periods, with all
-    /// points, and with a tiny part of them.
+    /// The number of steps by which points settle; `None` in sets whose points do not settle by default: periods, and
+    /// sets of all points or of a tiny part of them.
     #[must_use]
     pub fn steps(&self) -> Option<u32> {
         if self.period.is_some() {

@@ -40,7 +40,7 @@ pub enum RasterError {
     Wasteful {
         /// The number that the file has.
         found: String,
-        /// How much its pixels allow.
+        /// The most that its pixels allow.
         allowed: String,
     },
     /// It breaks the rules of its format, or ends early.

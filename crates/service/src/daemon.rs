@@ -404,7 +404,7 @@ impl Service {
             let _held = budget.hold(effort.bytes)?;
             let visits = Visits::new(most, stop.clone());
             let found = placed.nearest_visiting(nearest, &visits)?;
-            // Those that are thinned out take as long to find.
+            // Points that are thinned out take as long to find.
             let considered = found.len() as f64 / placed.set.keep.get();
             caller.charge(effort.considered(considered, visits.made()), 0)?;
             answer(&placed, found)

@@ -47,10 +47,10 @@ struct Begun {
     owner: Owner,
 }
 
-/// A waiting request. When its time is over, its client is asked to retry, and the mix goes on for a while.
+/// A waiting request. When its time is over, its answer is to retry, and the mix goes on for a while.
 struct Waiter(Option<(Making, Option<Arc<Record>>)>);
 
-/// How long a mix goes on for clients that were asked to retry.
+/// The time for which a mix goes on for clients that are to retry.
 const UNTIL_THEY_COME: Duration = Duration::from_secs(60);
 
 impl Waiter {

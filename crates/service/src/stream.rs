@@ -333,7 +333,7 @@ mod tests {
 
         fn next(&mut self) -> Option<usize> {
             let i = self.made.load(Ordering::SeqCst);
-            assert_ne!(i, self.panic_at, "as asked for");
+            assert_ne!(i, self.panic_at, "the panic of the test");
             (i < self.end).then(|| self.made.fetch_add(1, Ordering::SeqCst))
         }
     }

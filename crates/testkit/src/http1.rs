@@ -140,7 +140,7 @@ pub struct Response {
     left: Left,
 }
 
-/// What is left of a body (RFC 9112, section 6.3).
+/// The part of a body that is still to be read (RFC 9112, section 6.3).
 enum Left {
     Bytes(u64),
     /// Of the current chunk; at 0 the end of its line and the next chunk follow.

@@ -1,4 +1,4 @@
-//! What several of Strew's tests and benches share.
+//! Code that several of Strew's tests and benches share.
 //!
 //! | module | provides |
 //! |---|---|

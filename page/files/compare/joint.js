@@ -13,7 +13,7 @@ export const FARTHEST = 1e12;
 /** The number of methods that phones begin with. */
 const FEW = 2;
 
-/** What is shown, before anything is chosen: `isNarrow` on phones. */
+/** The first state, before anything is chosen: `isNarrow` on phones. */
 function initial(isNarrow) {
   const all = METHODS.map(({ id }) => id);
   return { x: place(0), y: place(0), span: isNarrow ? NARROW_SPAN : SPAN, seed: 1, profile: "blue", shown: isNarrow ? all.slice(0, FEW) : all };

@@ -1,4 +1,4 @@
-// What the worker makes: the points of a window by each method, and how long a point takes.
+// The work of the worker: the points of a window by each method, and the time of a point.
 
 import { bridson } from "./bridson.js";
 import { jittered, repeated, white } from "./cells.js";

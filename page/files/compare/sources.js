@@ -79,7 +79,7 @@ export class Made {
     return isWhole ? points : null;
   }
 
-  /** What a point takes. */
+  /** The time of a point. */
   time() {
     return make({ method: this.method, seed: this.seed });
   }
@@ -127,7 +127,7 @@ export class Asked {
     return Float64Array.from(points);
   }
 
-  /** What a point takes over the wire: in a large answer where the connection is quick, else in a small one. */
+  /** The time of a point over the wire: in a large answer where the connection is quick, else in a small one. */
   async time() {
     const origin = { x: place(0), y: place(0) };
     let { points, took } = await this.answer(origin, MEASURED);

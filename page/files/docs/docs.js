@@ -27,7 +27,7 @@ function operationsOf(document) {
   return found.sort((a, b) => tags.indexOf(a.tag) - tags.indexOf(b.tag));
 }
 
-/** What can be searched for in an operation: its own words first, then those of its parameters. */
+/** The searchable text of an operation: its own words first, then those of its parameters. */
 function wordsOf({ path, operation, method, tag, id }) {
   const parameters = operation.parameters.map((one) => `${one.name} ${one.description ?? ""}`);
   return [`${method} ${path} ${operation.summary} ${operation.description ?? ""} ${tag} ${id}`, ...parameters].map((text) => text.toLowerCase());
@@ -83,7 +83,7 @@ function overview() {
   ];
 }
 
-/** What an address names; as it stands if its escapes are wrong. */
+/** The text of an escaped address; the address itself if its escapes are wrong. */
 function named(hash) {
   try {
     return decodeURIComponent(hash);

@@ -18,7 +18,7 @@ function forms(of) {
   return of.anyOf ?? of.oneOf ?? null;
 }
 
-/** What a value may be, in a few words. */
+/** The allowed values of a schema, in a few words. */
 export function typeOf(schema, api, depth = 0) {
   const { of, name } = resolved(schema, api);
   if (of.const !== undefined) return JSON.stringify(of.const);

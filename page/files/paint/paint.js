@@ -17,7 +17,7 @@ const BRUSH = "M14 6l4 4M4 20c3 0 5-1 5-4a3 3 0 0 0-3-3c-2 0-2 2-2 3s0 3-2 4c1 0
 /** The field below what is painted, described in full. */
 const whole = (name) => documentOf(name) ?? { name };
 
-/** How many strokes there are. */
+/** The number of strokes. */
 function strokes({ strokes: { length } }) {
   return `${length} ${length === 1 ? "stroke" : "strokes"}`;
 }
@@ -194,7 +194,7 @@ export class Paint {
     this.follow();
     const { tool, brushSize: size, strength, work } = this;
     const stroke = { kind: tool, size, strength: tool === "road" ? 1 : strength, line: simplified(line, size * FINENESS) };
-    // Who begins with a brush wants to see what it does.
+    // A reader who begins with a brush wants to see its effect.
     const isFirst = work.strokes.length === 0 && !work.base && work.ground === 1 && tool === "paint";
     this.change({ strokes: [...work.strokes, stroke], ...(isFirst ? { ground: 0.1 } : {}) });
   }

@@ -1,4 +1,4 @@
-// What is painted: strokes that make denser, strokes that thin out, and roads; as text for the address, and as a field.
+// The painting: strokes that make denser, strokes that thin out, and roads; as text for the address, and as a field.
 
 /** The letters of the kinds in the text. */
 const KINDS = { p: "paint", e: "erase", r: "road" };

@@ -12,7 +12,7 @@ export function worldOf(layers) {
   return `${json(world, 2)}\n`;
 }
 
-/** What a layer of a world may have for the page to show it. */
+/** The members that a layer of a world may have for the page to show it. */
 const MEMBERS = [
   "name", "profile", "alpha", "map", ...AMOUNTS, "seed", "warp", "settle", "field", "attributes", "scale_range",
   "variants", "clear_of",

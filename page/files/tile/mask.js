@@ -28,7 +28,7 @@ export class Mask {
     this.take({ side: 1, tile: null, thresholds: null });
   }
 
-  /** What is chosen, as the server has it: `{ words, … }`, for `take`. */
+  /** The choice as the server resolves it: `{ words, … }`, for `take`. */
   async load(state) {
     const { size } = state;
     const answer = await ask(`/v1/mask.png?${joined(pairsOf({ ...state, bits: "8" }))}`);

@@ -30,7 +30,7 @@ export class Period {
     this.take({ points: new Float32Array(0), side: 1, measured: null });
   }
 
-  /** What is chosen, as the server has it: `{ words, … }`, for `take`. */
+  /** The choice as the server resolves it: `{ words, … }`, for `take`. */
   async load(state) {
     const set = joined(pairsOf(state));
     const [{ count, query }, answer] = await Promise.all([askJson(`/v1/count?${set}`), ask(`/v1/points?${set}&format=f32`)]);

@@ -1,8 +1,8 @@
-// What the page of a tile shows, and how it stands in the address.
+// The state of the page of a tile, and its form in the address.
 
 import { place } from "../place.js";
 
-/** What is shown before anything is chosen; `points` is the least number, the server takes the next period. */
+/** The first state; `points` is the least number, the server takes the next period. */
 const START = { what: "points", profile: "blue", points: 5041, share: 1, seed: "7", seams: true, size: 128, bits: "8" };
 
 /** The sides of masks, in pixels. */

@@ -28,7 +28,7 @@ export class Walker {
     Object.assign(this, { x, y, yaw, pitch, isFlying, tapped, canvas });
     this.held = new Set();
     this.height = null;
-    // Nothing moves by itself for those who want less of it; the button flies all the same.
+    // Readers who prefer reduced motion see nothing move by itself; the button still flies.
     this.mayFly = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.isFlying &&= this.mayFly;
     this.listen();

@@ -26,7 +26,7 @@ const LIGHTS = {
 };
 
 const OPTIONS = { alpha: false, antialias: true, depth: true, stencil: false, powerPreference: "high-performance" };
-/** What renderers are called that have no graphics hardware. */
+/** The names of renderers without graphics hardware. */
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
 /** A scene on a canvas, or `null` where there is no WebGL2. */

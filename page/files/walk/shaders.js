@@ -1,4 +1,4 @@
-// What the graphics processor runs. Colors are squared for the light and rooted at the end, which is near enough to
+// The programs of the graphics processor. Colors are squared for the light and rooted at the end, which is near enough to
 // linear light.
 
 /** The sky, and the haze that everything fades into. */

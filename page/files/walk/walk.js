@@ -101,7 +101,7 @@ function adapt(took) {
   else if (median < QUICK && level < Math.min(best, scene.isSlow ? 1 : best)) level += 1;
 }
 
-/** What the last picture was drawn from. */
+/** The state that the last picture was drawn from. */
 let pictured = "";
 let drawn = 0;
 

@@ -1,4 +1,4 @@
-// What is around the walker: chunks of two sets, of trees and of grass, each in leaves; the ground below them; and what
+// The surroundings of the walker: chunks of two sets, of trees and of grass, each in leaves; the ground below them; and what
 // of it is ready to be drawn.
 
 import { Chunks } from "../chunks.js";
@@ -61,7 +61,7 @@ export class World {
   want(set, { near, reach }, ahead) {
     set.near = near;
     set.leaves = reach > 0 ? leavesAround(this.around, { base: set.base, near, reach }) : [];
-    // What lies behind may come later.
+    // Leaves behind the walker may come later.
     const turned = ({ from, size, away }) => {
       const forth = (from[0] + size / 2) * ahead[0] + (from[1] + size / 2) * ahead[1];
       return forth > -size ? away : 2 * away + size;
@@ -78,7 +78,7 @@ export class World {
       const ground = groundOf(leaf, this.quality.cells);
       net = { ground, buffer: this.scene.buffer(ground.floats) };
     }
-    // Those used last are last.
+    // The net used last is the last in the map.
     this.nets.delete(name);
     this.nets.set(name, net);
     return net;
@@ -122,7 +122,10 @@ export class World {
     this.forget();
   }
 
-  /** What is to be drawn from a place: `{ grounds, things }`, with leaves placed as seen from there; `took` is the time of the last frame. */
+  /**
+   * The things to draw from a place: `{ grounds, things }`, with leaves placed as seen from there. `took` is the time of
+   * the last frame.
+   */
   look(at, took) {
     if (this.isStale) this.compose(took);
     const by = [distance(this.around.x, at.x), distance(this.around.y, at.y)];
@@ -134,7 +137,7 @@ export class World {
   }
 
   compose(took) {
-    // What cannot be made ready in this frame comes in the next ones.
+    // Leaves that cannot be made ready in this frame come in the next ones.
     this.isStale = false;
     this.composed += 1;
     this.until = performance.now() + Math.max(BUILDING, SHARE * took);

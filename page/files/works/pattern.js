@@ -43,7 +43,7 @@ export function turns(value) {
   return Number(value) / 2 ** 64;
 }
 
-/** The same for a difference, which has a sign: from −½ to ½. */
+/** A difference of turns, which has a sign: from −½ to ½. */
 export function signedTurns(value) {
   return turns(BigInt.asIntN(64, value));
 }
@@ -112,7 +112,7 @@ export class Pattern {
     return [...all].sort((a, b) => (a < b ? -1 : 1));
   }
 
-  /** What offsets leave of the set region: the image and the margin along both axes, and the density. */
+  /** The part of the set region that offsets leave: image and margin along both axes, and the density. */
   arrangement(offsets) {
     const image = [[0n, 0n], [0n, 0n]];
     for (const [x, y] of offsets) {

@@ -20,7 +20,7 @@ const WORDS = {
 export class Works {
   constructor(session) {
     this.session = session;
-    /** What a slider shows while it is held, before it is a choice. */
+    /** The value of a slider while it is held, before it is a choice. */
     this.live = {};
     this.hovered = null;
     this.build();
@@ -37,7 +37,7 @@ export class Works {
     return this.session.state.tab === "works";
   }
 
-  /** What is chosen, with what is being dragged. */
+  /** The choices, with the values that are being dragged. */
   get chosen() {
     return { ...this.session.state.works, ...this.live };
   }
@@ -210,7 +210,7 @@ export class Works {
     this.facts.replaceChildren(...said.map((text) => (typeof text === "string" ? make("p", {}, text) : text)));
   }
 
-  /** What only the server knows, of the mode that is shown. */
+  /** Requests the numbers of the shown mode that only the server knows. */
   async fetch() {
     const chosen = this.chosen;
     const pattern = this.isOpen && this.pattern();

@@ -76,7 +76,8 @@ impl Served<'_> {
         text
     }
 
-    /// Whether addresses may omit a parameter. They may omit the format of a world's files, on which points do not depend.
+    /// Whether addresses may omit a parameter. They may omit the format of a world's files, on which points do not
+    /// depend.
     fn may_lack(&self, name: &str) -> bool {
         self.spec.world.is_some() && name == FORMAT.name
     }

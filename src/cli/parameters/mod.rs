@@ -1,6 +1,6 @@
 //! `strew parameters`: the table of parameters as types of the bindings and as documentation.
 //!
-//! The repository keeps the output in files, so that nobody types a parameter twice. A test compares them;
+//! The repository keeps the output in files, so a parameter is written once. A test compares them;
 //! `UPDATE_GOLDEN=1 cargo test -p strew --lib cli::parameters` writes them.
 
 mod markdown;
@@ -16,8 +16,8 @@ use super::{Failure, output};
 /// Flags of `strew parameters`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// What to print: types for TypeScript (dts), names and kinds for JavaScript (js), both for Python (py), or a table
-    /// in Markdown (md).
+    /// The form to print: types for TypeScript (dts), names and kinds for JavaScript (js), both for Python (py), or a
+    /// table in Markdown (md).
     #[arg(long = "as", value_name = "FORM")]
     form: Form,
 }

@@ -5,9 +5,9 @@ use strew_query::{Parameter, Shape};
 /// The columns of a line.
 const WIDTH: usize = 120;
 
-/// What a parameter means, allows and defaults to, as one paragraph. Lists, objects and switches have types of their own
-/// in programs: only texts write them with commas and colons. `raster` is how a language names the function that makes
-/// fields.
+/// A parameter's meaning, allowed values and default, as one paragraph. Lists, objects and switches have types of their
+/// own in programs: only texts write them with commas and colons. `raster` is how a language names the function that
+/// makes fields.
 pub(super) fn paragraph(parameter: &Parameter, raster: &str) -> String {
     let allowed = match parameter.shape {
         Shape::Switch | Shape::Names { .. } | Shape::Weights | Shape::Ranges | Shape::Fields => {

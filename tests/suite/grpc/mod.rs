@@ -1,7 +1,6 @@
-//! The gRPC API: the points, counts and echoes of REST as messages (queries, single points,
-//! encodings), what is known of patterns, what a call carries besides its message (deadlines, compression, cancellation),
-//! gRPC-Web, discovery (profiles, health, reflection), the statuses of invalid requests, and the
-//! Python client.
+//! The gRPC API: the points, counts and echoes of REST as messages (queries, single points, encodings), what is known
+//! of patterns, what a call carries besides its message (deadlines, compression, cancellation), gRPC-Web, discovery
+//! (profiles, health, reflection), the statuses of invalid requests, and the Python client.
 
 mod calls;
 mod discovery;

@@ -95,7 +95,7 @@ fn a_table_is_made_once_judged_kept_and_served() {
         &["r40", "POST /v1/tables", "ForgeTable"],
     );
     let path = accepted(&post(&daemon, QUICK));
-    // Who asks again, in other words, follows the same job.
+    // The same table requested in other words follows the same job.
     let again = r#"{"alpha": "(10-sqrt(12))/4", "map": "r40"}"#;
     assert_eq!(accepted(&post(&daemon, again)), path);
     let jobs = get(&daemon, "/v1/jobs").json()["jobs"]

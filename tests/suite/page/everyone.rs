@@ -130,7 +130,7 @@ fn nothing_moves_by_itself_where_less_motion_is_wanted() {
     walk("");
     let state = "[strew.walker.isFlying, strew.look.time]";
     assert_eq!(browser.value(state), serde_json::json!([false, 0]));
-    // Who presses the button flies all the same.
+    // The button flies all the same.
     browser.click("#fly");
     browser.until("strew.walker.isFlying && document.querySelector('#fly').getAttribute('aria-pressed') === 'true'");
     assert_eq!(browser.errors(), Vec::<String>::new());

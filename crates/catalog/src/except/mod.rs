@@ -1,9 +1,9 @@
 //! Points that were taken away: lists of ids that answers leave out.
 //!
-//! A query names ids, and lists of the configuration, of a folder or of a client. What was taken away has its place all the
-//! same: other layers keep clear of it, attributes and ids of others stay. So nothing appears where a tree was
-//! felled. [`Except`] is what one set is without; planning cuts a hole of one coordinate for each of its points that
-//! lie in the region, and counts, cursors and parts follow from the area that is left.
+//! A query names ids, and lists of the configuration, of a folder or of a client. A point that was taken away keeps its
+//! place: other layers still keep clear of it, and the attributes and ids of others stay. So nothing appears where a
+//! tree was felled. [`Except`] has the points that one set lacks; planning cuts a hole of one coordinate for each of
+//! its points that lie in the region, and counts, cursors and parts follow from the area that is left.
 
 mod holes;
 mod list;

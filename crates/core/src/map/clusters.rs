@@ -63,9 +63,8 @@ impl Clusters {
     /// The time grows with the number of blocks that the clusters see, some 10⁴ for `most` = 16.
     ///
     /// # Errors
-    /// [`ErrorKind::Clusters`] if `distance` is out of range, unless 1 ≤ `most` ≤
-    /// [`MAX_POINTS`](Self::MAX_POINTS), and if clusters of that number of points reach farther than a map of half-width
-    /// [`MAX_RADIUS`](super::MAX_RADIUS).
+    /// [`ErrorKind::Clusters`] if `distance` is out of range, unless 1 ≤ `most` ≤ [`MAX_POINTS`](Self::MAX_POINTS), and
+    /// if clusters of that number of points reach farther than a map of half-width [`MAX_RADIUS`](super::MAX_RADIUS).
     ///
     /// ```
     /// use strew_core::{ErrorKind, map::Clusters};

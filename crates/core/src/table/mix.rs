@@ -213,7 +213,7 @@ fn targets(map: &Map, shares: &Shares) -> Vec<u128> {
 /// The splits that make shares exact.
 fn splits(map: &Map, shares: &Shares, labels: &[u8]) -> Result<Vec<Split>, Error> {
     let n = map.intervals();
-    // What each kind has too much.
+    // By kind, the area of its blocks beyond its target.
     let targets = targets(map, shares);
     let mut excess: Vec<i128> = targets.iter().map(|&target| -(target as i128)).collect();
     for (block, &kind) in labels.iter().enumerate() {

@@ -16,10 +16,11 @@
 //! # Ok::<(), strew_core::Error>(())
 //! ```
 //!
-//! `displacement` has the [`Table`], made of the `parts` that a `file` holds, and `derived` makes one from another; `units` the fixed point,
-//! `provenance` the history, `digest` the name, `text` the published text form. `ranks` is the order in which
-//! blocks leave when a set is thinned. `mix` has the kinds of points, in the ratio of `shares`. `symmetry` has the ways
-//! to turn all of these, `turned` a table that is turned, `shipped` the tables built into this crate.
+//! `displacement` has the [`Table`], made of the `parts` that a `file` holds, and `derived` makes one from another;
+//! `units` the fixed point, `provenance` the history, `digest` the name, `text` the published text form. `ranks` is the
+//! order in which blocks leave when a set is thinned. `mix` has the kinds of points, in the ratio of `shares`.
+//! `symmetry` has the ways to turn all of these, `turned` a table that is turned, `shipped` the tables built into this
+//! crate.
 
 mod derived;
 mod digest;

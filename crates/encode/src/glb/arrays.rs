@@ -1,4 +1,7 @@
-//! The arrays of a binary glTF file.
+//! The arrays of a binary glTF file: which ones a node has, their types and sizes.
+//!
+//! All nodes have the same arrays, because they follow from the columns of the answer. So the size of a point, and with
+//! it that of the file, is known before any point is made.
 
 use crate::{pose::Pose, schema::Schema};
 
@@ -6,20 +9,21 @@ use crate::{pose::Pose, schema::Schema};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Array<'a> {
     pub(super) name: &'a str,
-    /// The type of its items.
+    /// The glTF type of its items, such as `VEC3`.
     pub(super) items: &'static str,
-    /// The code of the type of their numbers.
+    /// The glTF code of the type of their numbers: 5126 is `f32`, 5123 `u16`.
     pub(super) numbers: u32,
     /// The bytes of an item.
     pub(super) bytes: u64,
 }
 
-/// The arrays of a node: their names, and the numbers of a point.
+/// The arrays that each node of an answer has.
 #[derive(Clone, Debug)]
 pub(super) struct Arrays {
+    /// Whether points have a rotation, and whether they have a scale.
     pub(super) is_turned: bool,
     pub(super) is_scaled: bool,
-    /// The names of further numbers.
+    /// The names of the arrays of further numbers: `_` and the column's name in capitals.
     pub(super) others: Vec<String>,
 }
 

@@ -195,7 +195,7 @@ impl Document {
 
 const EXTENSION: &str = "EXT_mesh_gpu_instancing";
 
-/// Those before are of the placeholder.
+/// The first accessor of arrays: those before belong to the placeholder.
 const FIRST_ACCESSOR: usize = 2;
 
 /// The numbers of nodes; that of the root is 0.

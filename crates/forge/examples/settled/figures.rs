@@ -1,7 +1,7 @@
 //! Figures of sets whose density varies, in units of the local density.
 //!
-//! What does not depend on the points is worked out once for all numbers of steps: boxes with their expected counts, and
-//! windows with the transforms of their shares.
+//! What does not depend on the points is worked out once for all numbers of steps: boxes with their expected counts,
+//! and windows with the transforms of their shares.
 
 use std::f64::consts::PI;
 

@@ -1,18 +1,18 @@
 //! Measures how points settle: sets that are thinned or lie in a field, after 0 to 4 steps.
 //!
 //! `cargo run --release -p strew-forge --example settled -- TABLE [--sets edge] [--steps 0,1,2,3,4] [--seeds 11,29,58]
-//! [--points 50000] [--at 7300000,-5100000]` measures windows of some points at a corner. A set is taken if its name begins
-//! so. A line is for all seeds together:
+//! [--points 50000] [--at 7300000,-5100000]` measures windows of some points at a corner. A set is taken if its name
+//! begins so. A line is for all seeds together:
 //!
-//! - *low*: mean power below ν = 0.5 (chance 1) in windows of 24 local spacings, their mean and median; *whole*, that of
-//!   the whole window, and *tall*, the tallest mode below ν = 0.8 over its ring, at constant shares;
+//! - *low*: mean power below ν = 0.5 (chance 1) in windows of 24 local spacings, their mean and median; *whole*, that
+//!   of the whole window, and *tall*, the tallest mode below ν = 0.8 over its ring, at constant shares;
 //! - *delta*: the least distance of all, that of the nearest 1 %, and the mean, in hexagonal distances of the denser
 //!   point's share; *near*: the number of pairs below 0.4; *of D*: the least distance
 //!   over the one that is promised;
 //! - *var*: Var(N − ∫λ)/∫λ in boxes of 8 to 32 points; *bias* of the count in percent, then by octave of the share.
 //!
-//! Where a table has kinds, or gets some by `--mix 1:1:2`, *kinds* is the mean low power of each, in windows of 24 spacings of
-//! its own, the rarest first. `--share 0.21` measures that share alone.
+//! Where a table has kinds, or gets some by `--mix 1:1:2`, *kinds* is the mean low power of each, in windows of 24
+//! spacings of its own, the rarest first. `--share 0.21` measures that share alone.
 //!
 //! Stripes have more lines: the density over the share by half local spacings from the edge, outside first.
 //!

@@ -89,12 +89,12 @@ impl Stripes {
     }
 }
 
-/// What the share is at each place.
+/// How the share varies over the plane.
 #[derive(Clone, Copy)]
 pub enum Kind {
     Constant(f64),
-    /// Natural noise of three octaves, the longest of this wavelength. Values of .3 and below are shares of .1, those of .7
-    /// and above 1.
+    /// Natural noise of three octaves, the longest of this wavelength. Values of .3 and below are shares of .1, those
+    /// of .7 and above 1.
     Noise(f64),
     Stripes(Stripes),
     /// Straight up and down between two shares, each way over a length, with flat parts between.

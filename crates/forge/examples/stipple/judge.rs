@@ -10,7 +10,7 @@ use crate::pictures::Ground;
 const HEXAGONAL: f64 = 1.074_569_931_823_542;
 /// The widths of Gaussians, in local spacings.
 const WIDTHS: [f64; 3] = [1.0, 2.0, 4.0];
-/// A Gaussian ends at so many standard deviations.
+/// The standard deviations at which a Gaussian is cut off.
 const REACH: f64 = 4.5;
 /// Places where tones are looked at.
 const PLACES: usize = 4000;
@@ -74,7 +74,7 @@ impl<'a> Judge<'a> {
         each.collect::<Vec<_>>().into_iter().fold([0.0; 3], add)
     }
 
-    /// What there is to say about points.
+    /// The errors and distances of points.
     pub fn verdict(&self, points: &[[f64; 2]], seconds: f64) -> Verdict {
         let errors = self.errors(points);
         let densities: Vec<f64> = points.iter().map(|&at| self.ground.density(at)).collect();

@@ -1,8 +1,8 @@
 //! Measures stipples: pictures as points, after 0 to 4 steps of settling, beside weighted Voronoi stippling and chance.
 //!
 //! `cargo run --release -p strew-forge --example stipple -- [--steps 0,2,3,4] [--points 5000] [--seeds 1,2,3,4,5]
-//! [--draw FOLDER]` prints a table in Markdown. `--draw` writes a PNG for each of the pictures, in rows of two: each number
-//! of steps, then weighted Voronoi stippling as published, and by the square of the darkness.
+//! [--draw FOLDER]` prints a table in Markdown. `--draw` writes a PNG for each of the pictures, in rows of two: each
+//! number of steps, then weighted Voronoi stippling as published, and by the square of the darkness.
 //!
 //! - *tone*: at places spread by darkness, the density of the points and the darkness of the picture, both seen through
 //!   the same Gaussian, whose standard deviation is 1, 2 or 4 local spacings. The difference over the latter,

@@ -84,7 +84,7 @@ impl Picture {
             .collect())
     }
 
-    /// The picture as a density of so many points.
+    /// The picture as a density with an integral of `count` points.
     pub fn ground(&self, count: usize) -> Result<Ground, Box<dyn Error>> {
         let [width, height] = self.size();
         let cell = (width * height / (count as f64 * CELLS_PER_POINT)).sqrt();

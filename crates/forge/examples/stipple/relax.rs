@@ -11,7 +11,8 @@ use crate::pictures::Ground;
 /// The weight of a place.
 #[derive(Clone, Copy)]
 pub enum Weight {
-    /// The darkness, as published. The density tends to the root of the weight, so long steps would lighten what is dark.
+    /// The darkness, as published. The density tends to the root of the weight, so long steps would lighten what is
+    /// dark.
     Darkness,
     /// Its square, so that the density tends to the darkness.
     Squared,

@@ -1,4 +1,4 @@
-//! Energies: what an optimizer lowers.
+//! Energies: the functions that an optimizer lowers.
 //!
 //! There are two kinds. A [`PairEnergy`] is a sum over pairs of points of a function of their
 //! distance: [`Gaussian`], [`Guard`], or the sum of two. It can be evaluated without points,

@@ -26,7 +26,7 @@ pub(super) fn ordered(size: usize, pixels: &[usize]) -> Vec<usize> {
     order
 }
 
-/// How much two pixels push each other.
+/// The push between two pixels.
 fn push(size: usize, a: usize, b: usize) -> u64 {
     let apart = |a: usize, b: usize| a.abs_diff(b).min(size - a.abs_diff(b));
     let [x, y] = [apart(a % size, b % size), apart(a / size, b / size)];

@@ -1,11 +1,12 @@
 //! Threshold masks: tileable squares of pixels in an order, for dithering and halftoning.
 //!
-//! Every pixel has a rank, and the pixels of rank below a share are spread evenly at every share, across the seam,
-//! too. It begins with the points of a period, scaled to the grid: an eighth of the pixels. From there on it is void
-//! and cluster (Ulichney 1993). The pixel in the tightest cluster leaves first, until few are left, which are ordered
-//! by their distances. These few come first in the mask; then the largest void is filled next, until as few are off. So it never shows
-//! where the points end, which are spread in another way than voids are filled. All energies are integers, so a mask
-//! is the same on every machine.
+//! Every pixel has a rank, and the pixels of rank below a share are spread evenly at every share, across the seam, too.
+//! The order begins with the points of a period, scaled to the grid: an eighth of the pixels. The rest is void and
+//! cluster (Ulichney 1993). Of the eighth, the pixel in the tightest cluster leaves first, until few are left, which
+//! are ordered by their distances. These few have the lowest ranks. From them on the largest void is filled next, until
+//! few pixels are off. The other points of the period are not kept, because points and filled voids are spread in
+//! different ways, and a mask that kept them would show where they end. All energies are integers, so a mask is the
+//! same on every machine.
 
 mod few;
 mod spectrum;

@@ -75,7 +75,7 @@ fn leaving_order(ground: &Ground, moves: &[[f64; 2]]) -> Vec<usize> {
         let spacing = 1.0 / target.max(LEAST).sqrt();
         let rate = -0.5 / (SIGMA * spacing * SIGMA * spacing);
         let range = CUTOFF * SIGMA * spacing;
-        // Who feels whom, and how much.
+        // Which blocks influence each other, and how much.
         let lists: Vec<Vec<Felt>> = (0..blocks)
             .into_par_iter()
             .map(|block| {

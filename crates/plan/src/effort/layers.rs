@@ -30,7 +30,7 @@ struct Layer {
     density: f64,
     /// The time to decide whether one of its points exists, in nanoseconds.
     look: f64,
-    /// The same for each of many points that are listed.
+    /// The time of such a look for each of many points that are listed at once.
     listed: f64,
 }
 

@@ -270,8 +270,8 @@ fn rows(selection: &Selection) -> f64 {
     along + across + cleared + looks
 }
 
-/// The rows that settling the points near an outline takes: some thirty places for each local spacing of it, but no more
-/// than all candidates of a field take.
+/// The rows that settling the points near an outline takes: some thirty places for each local spacing of it, but no
+/// more than all candidates of a field take.
 fn settled(selection: &Selection, bounds: Region, candidates: f64) -> f64 {
     /// Nanoseconds for a step of the places of a local spacing, and of those around one point.
     const STEP: f64 = 4000.0;

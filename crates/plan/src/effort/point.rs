@@ -5,16 +5,16 @@ use strew_query::Set;
 
 use super::layers::look;
 
-/// A point that is copied and written, in nanoseconds.
+/// The nanoseconds to copy and write a point.
 pub(super) const POINT: f64 = 50.0;
-/// A value of an attribute.
+/// Those to hash and write the value of an attribute.
 const VALUE: f64 = 20.0;
-/// A point that is thinned out, and one of a field that is looked at.
+/// Those of a point that is thinned out by its rank, and of one that is compared with a field.
 const PASSED: f64 = 0.15;
 const LOOKED_AT: f64 = 30.0;
-/// Points that are not clear of others are tested as well, at most this many for each that is.
+/// The most tests against other layers for each point that remains: points that are too near are tested as well.
 const TESTED: f64 = 4.0;
-/// A normal looks at the heights on four sides.
+/// The heights that a normal needs, on four sides.
 const SLOPE: f64 = 4.0;
 
 /// The time to make a point of a set, in nanoseconds, where testing a place against other layers takes `test` and

@@ -15,7 +15,7 @@ use super::{
     object::{Only, read},
 };
 
-/// What is read.
+/// The GeoJSON that is accepted, as faults describe it.
 pub(super) const GEOJSON: &str = "GeoJSON: a Polygon or MultiPolygon, or a Feature, \
                                   FeatureCollection or GeometryCollection of these; a ring is an \
                                   array of 3 different positions [x, y] or more";
@@ -154,7 +154,7 @@ impl<'de> Deserialize<'de> for Part {
 /// The polygons of a GeoJSON object, with their holes; what lies in any of them is meant.
 ///
 /// # Errors
-/// What is wrong, and where.
+/// Says what is wrong and at which path.
 pub(super) fn polygons(json: &RawValue) -> Result<Vec<Rings>, String> {
     let Part { polygons, .. } = read(json, "")?;
     match polygons.is_empty() {

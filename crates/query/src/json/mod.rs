@@ -16,9 +16,9 @@ use object::{Object, of_text, parse, shown};
 
 pub use region::{RegionSchema, read_region};
 
-/// What layers are.
+/// The form of layers, as faults describe it.
 const LAYERS: &str = "an array of 1 to 16 layers, objects with a name and a set of points each";
-/// What clear_of may be.
+/// The form of `clear_of`.
 const CLEAR_OF: &str =
     r#"an object of distances by the names of earlier layers, such as {"trees": 2}"#;
 

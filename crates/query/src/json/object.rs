@@ -27,7 +27,7 @@ impl<'a> Object<'a> {
     /// Reads an object.
     ///
     /// # Errors
-    /// What is wrong: it is no object, has a member twice, or too many members.
+    /// Says what is wrong: the value is no object, has a member twice, or has too many members.
     pub(super) fn read(json: &'a RawValue) -> Result<Self, String> {
         if !json.get().starts_with('{') {
             return Err("must be an object".into());
@@ -86,10 +86,10 @@ impl<'a> Visitor<'a> for Members {
     }
 }
 
-/// Reads JSON. `path` is put before the path of what is wrong in it.
+/// Reads JSON. `path` is the prefix of all paths in errors.
 ///
 /// # Errors
-/// What is wrong, and where, if it is a part.
+/// Says what is wrong and, for a part of the value, at which path.
 pub(super) fn read<'a, T: Deserialize<'a>>(json: &'a RawValue, path: &str) -> Result<T, String> {
     let mut json = Deserializer::from_str(json.get());
     serde_path_to_error::deserialize(&mut json).map_err(|error| {
@@ -110,7 +110,7 @@ pub(super) fn read<'a, T: Deserialize<'a>>(json: &'a RawValue, path: &str) -> Re
     })
 }
 
-/// What only an object is read as: serde would also read an array of the members.
+/// A value that is read from an object alone: serde would also accept an array of the members.
 #[derive(Debug)]
 pub(super) struct Only<T>(pub(super) T);
 
@@ -137,7 +137,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Only<T> {
 /// The elements of an array, as texts.
 ///
 /// # Errors
-/// What is wrong: it is no array, or longer than it may be.
+/// Says what is wrong: the value is no array, or has more than `most` elements.
 pub(super) fn elements<'a>(
     json: &'a RawValue,
     most: usize,
@@ -150,7 +150,7 @@ pub(super) fn elements<'a>(
     list(&mut json, 0..=most, what).map_err(|error| text_of(&error))
 }
 
-/// What is read of the members of an object, with their names.
+/// The members of an object, each value read as a `T`, with their names.
 fn by_name<'a, T: Deserialize<'a>>(
     json: &'a RawValue,
     what: &str,
@@ -165,7 +165,7 @@ fn by_name<'a, T: Deserialize<'a>>(
 /// An array of names.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Says that the value is no such array, or that it is too long.
 pub(crate) fn list_of_names(json: &RawValue) -> Result<Vec<String>, String> {
     let mut deserializer = Deserializer::from_str(json.get());
     list(&mut deserializer, 0..=MOST_GIVEN, "names").map_err(|error| match text_of(&error) {
@@ -177,7 +177,7 @@ pub(crate) fn list_of_names(json: &RawValue) -> Result<Vec<String>, String> {
 /// An object of numbers by name.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Says what is wrong with the object, or which of its values is no number.
 pub(crate) fn weights(json: &RawValue) -> Result<Vec<(String, f64)>, String> {
     by_name(json, "a number")
 }
@@ -185,7 +185,7 @@ pub(crate) fn weights(json: &RawValue) -> Result<Vec<(String, f64)>, String> {
 /// An object of pairs of numbers by name.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Says what is wrong with the object, or which of its values is no pair.
 pub(crate) fn ranges(json: &RawValue) -> Result<Vec<(String, [f64; 2])>, String> {
     by_name(json, "an array of two numbers")
 }

@@ -11,11 +11,11 @@ use super::{
     object::{Object, Only, elements, of_text, parse, read as typed, shown},
 };
 
-/// What a box is in JSON.
+/// The form of a box, as faults describe it.
 const BOX: &str = "[min_x, min_y, max_x, max_y], numbers with min_x < max_x and min_y < max_y";
-/// What a circle is in JSON.
+/// The form of a circle.
 const CIRCLE: &str = r#"{"center": [x, y], "radius": r}, numbers with r above 0"#;
-/// What a chunk is in JSON.
+/// The form of a chunk.
 const CHUNK: &str =
     r#"{"size": s, "x": column, "y": row}, a number above 0 and integers within ±4503599627370496"#;
 /// The shapes of regions, each a member.
@@ -90,7 +90,7 @@ objects! {
     PolygonRegion { polygon: GeoJson }
     /// A chunk; coordinates of the answer are relative to its corner.
     ChunkRegion { chunk: ChunkJson }
-    /// What lies in any region of include and in none of exclude. Lists nest 8 levels deep, and those of a query have
+    /// The points in any region of include and in none of exclude. Lists nest 8 levels deep, and those of a query have
     /// 1000 regions in all.
     CombinedRegion {
         #[schemars(length(min = 1, max = 1000))]

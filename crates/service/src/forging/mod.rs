@@ -3,7 +3,7 @@
 //! A client names a table that is not loaded; it becomes a job, one for each table, which all its clients share.
 //! Jobs run one after another (or a few at once) on threads of their own, of the lowest priority. A finished table
 //! is judged. One that is accepted is written into the folder of tables and served. Jobs, checkpoints and verdicts
-//! are kept in a folder beside the tables (`folder`), so that a restart goes on where a stop or a crash was.
+//! are kept in a folder beside the tables (`folder`), so that a restart resumes after a stop or a crash.
 
 mod folder;
 mod job;
@@ -42,13 +42,13 @@ pub struct Forging(Arc<Inner>);
 
 struct Inner {
     settings: config::Forge,
-    /// Where jobs are kept; `None` if nothing is made.
+    /// The folder of jobs; `None` if no tables are made.
     folder: Option<Folder>,
     publish: Publish,
     jobs: Mutex<Jobs>,
     /// Notified when a job ends.
     ended: Condvar,
-    /// The daemon stops: jobs keep a checkpoint and end.
+    /// Set when the daemon stops: jobs then write a checkpoint and end.
     is_stopping: AtomicBool,
 }
 
@@ -57,7 +57,7 @@ struct Inner {
 struct Jobs {
     by_id: BTreeMap<String, Arc<Job>>,
     waiting: VecDeque<Arc<Job>>,
-    /// The turns that clients have had: each begins a job in its turn.
+    /// By client, the turn in which one of its jobs last began.
     served: HashMap<String, u64>,
     turn: u64,
     running: usize,
@@ -104,7 +104,7 @@ impl Jobs {
         let job = self.waiting.remove(at)?;
         self.turn += 1;
         self.served.insert(job.client().to_owned(), self.turn);
-        // Of the others only those who wait matter.
+        // The turns of clients without waiting jobs are forgotten.
         let (waiting, last) = (&self.waiting, self.turn);
         let waits = |client: &str| waiting.iter().any(|job| job.is_of(client));
         self.served
@@ -134,7 +134,7 @@ impl Forging {
         }))
     }
 
-    /// Takes up the jobs that were kept: those that were interrupted go on.
+    /// Reads the jobs in the folder. Interrupted ones are queued again.
     pub fn resume(&self) {
         let Some(folder) = &self.0.folder else { return };
         let kept = folder.read();
@@ -180,7 +180,8 @@ impl Forging {
         &self.0.settings
     }
 
-    /// Begins to make a table, unless that has begun. `client` is the requester. Waits for the disk.
+    /// Queues a job for a table, unless the table is loaded or has a job. `client` is the requester. Waits for the
+    /// disk.
     ///
     /// # Errors
     /// [`Error::Invalid`] for a table that cannot be made, [`Error::Denied`] if the client has reached its limit of
@@ -198,7 +199,7 @@ impl Forging {
                 &spec, &made, &entry,
             ))));
         }
-        // Takes milliseconds, so before the lock.
+        // This takes milliseconds, so it is done before the lock is taken.
         made.check().map_err(|error| spec.fault(&error))?;
         let mut jobs = self.0.jobs();
         let id = spec.id();
@@ -333,7 +334,7 @@ impl Inner {
         Ok(())
     }
 
-    /// Writes down how a job stands.
+    /// Saves the state of a job in the folder.
     fn keep(&self, job: &Job) -> std::io::Result<()> {
         match &self.folder {
             Some(folder) => folder.keep(&job.kept_as()),
@@ -341,7 +342,7 @@ impl Inner {
         }
     }
 
-    /// Notes how a job has ended, and forgets the oldest ones.
+    /// Records how a job has ended, and forgets the oldest ended ones.
     fn end(
         &self,
         jobs: &mut Jobs,

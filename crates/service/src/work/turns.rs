@@ -81,7 +81,7 @@ impl Turns {
             return waiter.begin(Turn(self.clone()));
         }
         let queue = state.waiting.entry(address).or_default();
-        // Those whose clients have left make room, lest they gather behind a long job.
+        // Waiters whose clients have left make room, lest they gather behind a long job.
         queue.retain(|waiting| waiting.is_wanted());
         queue.push_back(waiter);
         if !state.order.contains(&address) {

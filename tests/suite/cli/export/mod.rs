@@ -1,5 +1,5 @@
-//! `strew export`: a world as files. A static server answers with the daemon's bytes, killed exports go on, and what
-//! differs is found.
+//! `strew export`: a world as files. A static server answers with the daemon's bytes, a killed export resumes, and
+//! `--check` finds every difference.
 
 mod levels;
 mod room;

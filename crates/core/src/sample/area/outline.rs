@@ -1,4 +1,4 @@
-//! The length of outlines. Counting tests points one by one only there, so it is what counting costs.
+//! The length of outlines. Counting tests points one by one only along them, so their length is its cost.
 
 use alloc::vec::Vec;
 

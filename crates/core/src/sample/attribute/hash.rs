@@ -1,7 +1,8 @@
 //! The hash of a point, and the numbers made from it.
 //!
-//! It is the finalizer of SplitMix64 (Steele, Lea, Flood, 2014) over row and column, under a key made of
-//! the seed and the attribute. The row comes first, so the points of a row share that round. Numbers are its upper 53 bits, so they are exact multiples of 2⁻⁵³ below 1.
+//! It is the finalizer of SplitMix64 (Steele, Lea, Flood, 2014) over row and column, under a key made of the seed and
+//! the attribute. The row comes first, so the points of a row share that round. Numbers are its upper 53 bits, so they
+//! are exact multiples of 2⁻⁵³ below 1.
 
 use core::f64::consts::TAU;
 

@@ -12,7 +12,8 @@ use crate::sample::lattice::Point;
 pub trait Lanes: Sized {
     /// The number of lanes.
     const WIDTH: usize;
-    /// The number of successive cells that a [`Table`](Self::Table) has, at most [`AT_ONCE`](crate::sample::warp::PatchShears::AT_ONCE).
+    /// The number of successive cells that a [`Table`](Self::Table) has, at most
+    /// [`AT_ONCE`](crate::sample::warp::PatchShears::AT_ONCE).
     const WINDOW: usize;
 
     /// `i32` lanes.
@@ -49,7 +50,8 @@ pub trait Lanes: Sized {
     unsafe fn table(from: *const f32) -> Self::Table;
     /// The coefficients at some places of a table.
     unsafe fn pick(table: Self::Table, places: Self::Ints) -> Self::Singles;
-    /// The coefficients at some places below [`AT_ONCE`](crate::sample::warp::PatchShears::AT_ONCE), as many as are there.
+    /// The coefficients at some places below [`AT_ONCE`](crate::sample::warp::PatchShears::AT_ONCE), as many as are
+    /// there.
     unsafe fn pick_at_once(from: *const f32, places: Self::Ints) -> Self::Singles;
 
     /// The coefficients at any places.

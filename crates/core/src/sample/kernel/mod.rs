@@ -6,9 +6,9 @@
 //! while lattice coordinates stay below 2⁵³, so it rounds once, as the conversion of the whole integer
 //! would.
 //!
-//! `rows` writes plain rows, `warped` warped ones, whose coefficients `quadratics` looks up. Their vector loops are written once over the trait of `lanes`, and
-//! each instruction set is a thin file of `arch`. `backend` finds out which sets the machine has, and runs a loop by
-//! one of them. `tests` compares every backend with plain code.
+//! `rows` writes plain rows, `warped` warped ones, whose coefficients `quadratics` looks up. Their vector loops are
+//! written once over the trait of `lanes`, and each instruction set is a thin file of `arch`. `backend` finds out which
+//! sets the machine has, and runs a loop by one of them. `tests` compares every backend with plain code.
 
 #![expect(
     unsafe_code,

@@ -78,7 +78,8 @@ impl Extent {
         (i64::from(columns) << FRACTION_BITS) + most - least
     }
 
-    /// What takes a lattice column to the first cell of the values from `least` above it on: see [`cell`].
+    /// The lead that [`cell`] adds to a lattice column to find the first cell that the values from `least` above it
+    /// on touch.
     fn lead(&self, least: i32) -> i64 {
         i64::from(least >> FRACTION_BITS) - self.origin
     }
@@ -175,7 +176,7 @@ impl<F: Emit> WarpedRow<'_, F> {
         [third, third + 2 * length(rising)]
     }
 
-    /// What takes columns to the first cells of the third and the fourth shear: see [`cell`].
+    /// The leads that [`cell`] adds to columns to find the first cells of the third and of the fourth shear.
     fn leads(&self) -> [i64; 2] {
         let WarpedColumns { range, extent, .. } = self.columns;
         let [along_x, rising] = [1, 2].map(|direction| self.shears.bounds[direction][0]);

@@ -3,8 +3,8 @@
 use super::Keep;
 use crate::error::{Error, ErrorKind};
 
-/// The number of steps by which points settle, 0 to 4. With 0 points stay where they are at full density. More steps are
-/// smoother, and each costs its time again.
+/// The number of steps by which points settle, 0 to 4. With 0 points stay where they are at full density. More steps
+/// are smoother, and each costs its time again.
 ///
 /// Thinned sets and those in fields settle by 2 steps by default. Sets with all points stay by default; with a number
 /// from 1 on they make one small step, which moves the nearest points apart.

@@ -1,12 +1,48 @@
-//! Ground: the points of another set around a piece of work, made in bulk and marked on grids.
+//! Ground: the points of another set around a piece of work, listed in bulk and marked on grids.
 //!
-//! Many places of one piece are tested against the points of another set. A search for each of them finds the same
-//! points again and again. So the piece is cut into tiles; the points of the other set in and around a tile are
-//! listed once and sorted into cells, and a test is a look at the few cells within the distance.
+//! # The problem
 //!
-//! Listing the points of a tile costs as much as some searches, and nobody knows beforehand how many places will be
-//! tested there. So a tile is listed when the searches in it have cost as much: all in all at most twice the
-//! cheaper of both ways, whatever the places are.
+//! A set that keeps clear of another one loses every point that has a point of the other set nearer than the distance.
+//! `Clearance` decides that for any place by a search in the unbounded lattice, which visits the lattice points that
+//! the warp may have moved there. A plan tests thousands of neighboring places, and their searches visit the same
+//! points again and again.
+//!
+//! # The idea
+//!
+//! The piece of a walk is cut into tiles. The other set's points in the box around a tile are listed by one search and
+//! sorted into cells; a test then reads a few cells:
+//!
+//! ```text
+//!        a piece                     the box around a tile
+//!     ┌──────┬──────┬──────┐        ┌──────────────────┐
+//!     │      │marked│      │        │ ·      ·      ·  │   wider than the tile by the distance,
+//!     ├──────┼──────┼──────┤        │   ┌──────────┐ · │   and a little for what rounds: it has
+//!     │      │marked│marked│        │ · │  tile    │   │   every point that can decide about a
+//!     └──────┴──────┴──────┘        │   └──────────┘   │   place in the tile
+//!                                   └──────────────────┘
+//! ```
+//!
+//! [`Marked`] has two grids of that box. A *fine* cell, half a distance wide or wider, has one bit: whether any listed
+//! point may be near a place in it. That bit decides most places. *Coarse* cells are as wide as the distance, or as
+//! three quarters of a spacing if that is more; the other places are compared with the points of the coarse cells
+//! around them, some three by three.
+//!
+//! # When a tile is listed
+//!
+//! Listing costs as much as some searches, and it is not known beforehand how many places of a tile will be tested. So
+//! places are searched for one by one until the searches in the tile have cost as much as its list would; then it is
+//! listed. A tile thus costs at most twice the cheaper of both ways, whatever the places are. Costs are estimates
+//! in visits of points, not times, so they are the same on every machine.
+//!
+//! # Invariants
+//!
+//! - A test compares dx·dx + dy·dy < distance·distance in `f64` on the coordinates of points, as a search does. So the
+//!   answers do not show which way decided, and pieces may be chosen freely.
+//! - Cells round, but monotonically: the cell of a coordinate never falls where the coordinate grows. So the cells
+//!   between those of x − `room` and x + `room` hold every point between, however each of them was rounded.
+//! - Where coordinates are too coarse for the tiles, far from the origin, or where a piece would have too many tiles or
+//!   a tile too many points, there is no ground, and places are searched for.
+//! - All tiles together hold at most `most_held` points. Beyond that all of them are dropped and begin anew.
 
 use alloc::{vec, vec::Vec};
 
@@ -41,17 +77,17 @@ struct Piece {
 /// The points around a tile.
 #[derive(Clone, Debug)]
 enum Tile {
-    /// What the searches in it have cost so far.
+    /// Its points are not listed; the cost of the searches in it so far.
     Searched(f64),
     Marked(Marked),
 }
 
-/// What is known of a place.
+/// The points that are known around a place.
 #[derive(Debug)]
 pub(super) enum Known<'a> {
-    /// Nothing: the place is outside the piece.
+    /// None: the place is outside the piece.
     Nothing,
-    /// It lies in a tile of this number whose points are not listed.
+    /// None: the points of its tile, which has this number, are not listed.
     In(usize),
     /// All points around it.
     All(&'a Marked),
@@ -85,7 +121,7 @@ impl Ground {
         self.piece = Piece::new(within, most).filter(|_| is_possible);
     }
 
-    /// What is known of a place.
+    /// The points that are known around a place.
     #[inline]
     pub(super) fn at(&mut self, place: [f64; 2]) -> Known<'_> {
         let Some(piece) = self.piece.as_ref() else {
@@ -219,7 +255,7 @@ pub(super) struct Marked {
     /// Fine cells, and which of them any place is near: the others need no further look.
     fine: Cells,
     is_near: Vec<bool>,
-    /// Coarse cells with about one place each.
+    /// Coarse cells, in which the places are sorted.
     coarse: Cells,
     /// The number of places in all coarse cells before each, row by row, and at last of all places.
     before: Vec<u32>,

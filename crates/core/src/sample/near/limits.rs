@@ -47,7 +47,7 @@ pub(super) fn check_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> Resul
     Ok(())
 }
 
-/// Refuses a radius that is not a number from 0 on.
+/// Refuses a radius that is negative or not finite.
 pub(super) fn check_radius(radius: f64) -> Result<(), Error> {
     if radius.is_finite() && radius >= 0.0 {
         return Ok(());

@@ -169,8 +169,8 @@ impl Plan {
         points
     }
 
-    /// The points in one of the formats [`F32`], [`F64`], [`Offsets`](crate::Offsets) and [`Points`], block by block: the fastest way
-    /// to make many.
+    /// The points in one of the formats [`F32`], [`F64`], [`Offsets`](crate::Offsets) and [`Points`], block by block:
+    /// the fastest way to make many.
     ///
     /// ```
     /// use strew_core::{Point, PointSet, Points, Table};
@@ -305,8 +305,8 @@ impl Plan {
         self.scope.region
     }
 
-    /// The lower corner of the requested chunk, or else of the [region](Self::region), in world coordinates.
-    /// [`F32`] coordinates and [`Offsets`](crate::Offsets) are relative to it; in a chunk to the exact corner, which this
+    /// The lower corner of the requested chunk, or else of the [region](Self::region), in world coordinates. [`F32`]
+    /// coordinates and [`Offsets`](crate::Offsets) are relative to it; in a chunk to the exact corner, which this
     /// rounds to `f64`.
     ///
     /// ```

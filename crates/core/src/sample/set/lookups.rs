@@ -204,7 +204,8 @@ impl PointSet {
         self.around_visiting(at, radius, limit, &Visits::any())
     }
 
-    /// Runs [`nearest`](Self::nearest) or [`nearest_within`](Self::nearest_within) and visits a bounded number of points.
+    /// Runs [`nearest`](Self::nearest) or [`nearest_within`](Self::nearest_within) and visits a bounded number of
+    /// points.
     pub(crate) fn nearest_visiting(
         &self,
         at: [f64; 2],

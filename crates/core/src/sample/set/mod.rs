@@ -254,9 +254,9 @@ impl PointSet {
         Ok(self.replaced(|placement| placement.with_settle(settle)))
     }
 
-    /// Sets the level of detail: the part of the points that are left out of nothing but the answers. Of the points of a
-    /// place those with the lowest ranks are in it, and they are where they are with all the others, so levels
-    /// nest. By default all are.
+    /// Sets the level of detail: the part of the set's points that answers have, those of lowest rank at each place.
+    /// The others still exist: the points of a level are where they are among all points, so levels nest. By default
+    /// answers have all points.
     ///
     /// # Errors
     /// [`ErrorKind::Keep`](crate::ErrorKind::Keep) outside 10⁻⁶ to 1.

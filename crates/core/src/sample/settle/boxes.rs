@@ -98,7 +98,8 @@ fn hull(a: &Box2, b: &Box2) -> Box2 {
     [0, 1].map(|i| a[i].start.min(b[i].start)..a[i].end.max(b[i].end))
 }
 
-/// Joins boxes that overlap, and those where a common window is smaller than one for each, by the margin around a window.
+/// Joins boxes that overlap, and those where a common window is smaller than one for each, by the margin around a
+/// window.
 pub(crate) fn joined(boxes: impl Iterator<Item = Box2>, margin: i128) -> Vec<Box2> {
     let area = |within: &Box2| -> f64 {
         let sides = within

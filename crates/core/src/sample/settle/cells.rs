@@ -114,7 +114,8 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// Sorts the points by cells, with their shares times `weight`. Which cell a point is in never matters to where it goes.
+    /// Sorts the points by cells, with their shares times `weight`. Which cell a point is in never matters to where it
+    /// goes.
     #[inline(always)]
     pub(super) fn sort(&mut self, places: &Places, (reach, weight): (f32, f32), step: u8) {
         let number = places.len();

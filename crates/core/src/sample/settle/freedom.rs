@@ -1,12 +1,12 @@
 //! Freedom: the part of each move that a point makes.
 //!
-//! f = min(1, 256 (1 − s)) / (1 + e⁴), and 0 for shares below 1/1600, where e says how much the field changes around the point's place:
-//! the greater of E(1)/.4 and E(1.8)/.7, where E(r) is the largest |λ/s − 1| at r local spacings to the left and right, below and
-//! above. So at full density nothing moves, and near edges little does.
+//! f = min(1, 256 (1 − s)) / (1 + e⁴), and 0 for shares below 1/1600, where e says how much the field changes around
+//! the point's place: the greater of E(1)/.4 and E(1.8)/.7, where E(r) is the largest |λ/s − 1| at r local spacings to
+//! the left and right, below and above. So at full density nothing moves, and near edges little does.
 //!
-//! Where e is at most [`GENTLE`], 1/(1 + e⁴) counts as 1, and from [`STEEP`] on as 0. So bounds of the field's slopes over a tile spare
-//! nearly all of the eight looks: where a field changes by less than a seventh across a local spacing, its points
-//! are free. At GENTLE the part left out is 1.5 %, at STEEP .4 %.
+//! Where e is at most [`GENTLE`], 1/(1 + e⁴) counts as 1, and from [`STEEP`] on as 0. So bounds of the field's slopes
+//! over a tile spare nearly all of the eight looks: where a field changes by less than a seventh across a local
+//! spacing, its points are free. At GENTLE the part left out is 1.5 %, at STEEP .4 %.
 
 use alloc::vec::Vec;
 

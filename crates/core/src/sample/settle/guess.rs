@@ -8,8 +8,8 @@ use crate::sample::{area::Region, lattice::Grade};
 /// The places along each axis of a box at which a field is looked at to guess how sparse it is.
 const SAMPLES: usize = 9;
 
-/// About where the points lie that matter to those in a box, whose region is given, in units of a window; `unit` of them
-/// are a spacing.
+/// About where the points lie that matter to those in a box, whose region is given, in units of a window; `unit` of
+/// them are a spacing.
 pub(super) fn guess(
     grade: &Grade,
     (region, own): (Region, Extent),

@@ -3,8 +3,8 @@
 //! # The problem
 //!
 //! A set that is thinned, or lies in a field, has the points whose rank is below the share. Ranks spread them as well
-//! as an order of the blocks can, which is grainy: mean power below ν = 0.5 of 0.06 to 0.08. A free optimizer would move
-//! all points until they are even, but then every point depends on every other one.
+//! as an order of the blocks can, which is grainy: mean power below ν = 0.5 of 0.06 to 0.08. A free optimizer would
+//! move all points until they are even, but then every point depends on every other one.
 //!
 //! # The idea
 //!
@@ -23,18 +23,32 @@
 //!
 //! The reach comes from the mean density of the pair, so the pushes of a pair are equal and opposite, and in two
 //! dimensions the pressure of such pushes does not depend on the density: no term for it is needed, and the field
-//! is not looked at again. `freedom` has f, which is 0 at full density (but for that step) and where a field is steep, so that edges stay
-//! sharp; `step` one step with its constants of exactness, `cells` the order in which it finds neighbors; `near` the limit of the one step of sets with all points; `window` the points that matter to some others, and `reach` how far these lie. `kin` has what points of a kind add.
+//! is not looked at again. The freedom f is 0 where a field is steep, so that edges stay sharp, and 0 at full density.
+//! (Sets with all points make one step of their own instead, with f = 1 and a limit of its own.)
 //!
 //! The constants ρ, a, γ, b were learned by measuring power and distances (CMA-ES); docs/algorithm.md lists them.
 //!
+//! # The files
+//!
+//! `window` finds the points that matter to some others and settles these; `reach` says how far they lie, `guess` how
+//! large a window is likely to be, `lister` lists its points. `step` is one step, over points that `cells` has sorted.
+//! `freedom` has f. `near` limits the step of sets with all points. `kin` adds the pushes of points of a kind, and
+//! `past` lets these go past near neighbors. `boxes` has points before and after they settle, `tiles` keeps settled
+//! points for places that follow.
+//!
 //! # Invariants
 //!
-//! - Where a point goes depends on points within its reach alone, not on which others are looked at, nor in which order.
-//! - A point ends within .4 local spacings of its place along each axis, at most [`MOST_MOVE`] spacings: what lies deeper in
-//!   or farther off an outline is decided without a step.
+//! - Where a point goes depends on points within its reach alone, not on which others are looked at, nor in which
+//!   order.
+//! - A point ends within .4 local spacings of its place along each axis, at most [`MOST_MOVE`] spacings. A point that
+//!   was placed deeper inside an outline, or farther outside, is decided without a step.
 //! - Where all points keep the distance D of the table's certificate, they keep it after each step: none goes farther
-//!   than half of what separates it from D, or in the near step, goes farther toward any neighbor.
+//!   than half of what separates it from D or, in the near step, farther than that toward any neighbor.
+//!
+//! # Cost
+//!
+//! A point costs k sums over the points within its reach. A window also lists and moves points around those that are
+//! wanted, as far as their reaches add up, so settling many points at once costs less for each.
 
 mod boxes;
 mod cells;

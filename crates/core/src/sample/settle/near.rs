@@ -1,11 +1,29 @@
-//! What keeps points clear of each other in the near step, that of sets with all points.
+//! The limit of the near step, that of sets with all points: it keeps points clear of each other.
 //!
-//! There points lie hardly farther apart than the distance D that is promised, so the limit of the other steps, half of
-//! what separates a point from D in any direction, would leave no move. Here each point is limited toward each neighbor:
-//! it approaches that by at most half of what separates the two from D. So a pair loses at most all of that, and moves
-//! away from a neighbor are free.
+//! # The problem
 //!
-//! Neighbors beyond the reach of the step are not looked at. No point goes farther than half of what separates them from D.
+//! The table promises a distance D for any two points, and the nearest pairs of a full set lie hardly farther apart.
+//! The limit of the other steps, half of what separates a point from D in any direction, would leave no move.
+//!
+//! # The idea
+//!
+//! Each point is limited toward each neighbor alone: of a distance r between two points it approaches the other one
+//! by at most (r − D)/2. Moves away from a neighbor are free:
+//!
+//! ```text
+//!     i ├── at most (r − D)/2 ──┤─────── D ───────├── at most (r − D)/2 ──┤ j
+//! ```
+//!
+//! Along the line between their first places the two are then D apart, or more, so their distance is at least D. A
+//! neighbor beyond the reach of the step is not looked at: no move is longer than half of what separates the reach from
+//! D, so that pair keeps D as well.
+//!
+//! # Invariants
+//!
+//! - Limits follow from the places before the step, not from how others move, so points are limited in any order.
+//! - A move is shortened by one factor for all neighbors, and truncated to integers. Truncating may turn it a little,
+//!   so it is compared with all neighbors again; a move that now goes too far is dropped.
+//! - Lengths are computed in `f64` and counted short by [`SURELY`], and D long by [`SPARE`], by more than they round.
 
 use alloc::vec::Vec;
 
@@ -15,10 +33,10 @@ use super::{
     plain::{greater, lesser},
 };
 
-/// What two points keep beyond D, in the units of a window: more than rounding takes from their distance.
+/// The distance that two points keep beyond D, in the units of a window: more than rounding takes from it.
 const SPARE: f64 = 4.0;
 
-/// Less than 1 by more than what rounds.
+/// A factor for lengths: less than 1 by more than their rounding errors.
 const SURELY: f64 = 1.0 - 1.0 / 262_144.0;
 
 /// The limit of a near step, with memory to find neighbors: the points by square cells about as large as its reach.

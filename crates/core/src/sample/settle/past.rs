@@ -13,8 +13,9 @@ impl Cells {
     /// nearest neighbor, and up to half of what separates it from the next one. `None` where it may go as it likes, and
     /// where it would leave the box around its place.
     ///
-    /// Of two points that go to each other each goes half of what is free along the line between them, if each is the other's
-    /// nearest one. If one of them has a nearer one, it goes no farther than half of what is free in any direction.
+    /// Of two points that go to each other each goes half of what is free along the line between them, if each is the
+    /// other's nearest one. If one of them has a nearer one, it goes no farther than half of what is free in any
+    /// direction.
     #[inline(always)]
     pub(super) fn pass(
         &self,

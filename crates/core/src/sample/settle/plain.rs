@@ -1,10 +1,10 @@
 //! Plain arithmetic in single precision, which is the same on all processors.
 
-/// What a point keeps between itself and the end of its way, in units: more than rounding takes from the distance of two
+/// The length by which a move stays short of its limit, in units: more than rounding takes from the distance of two
 /// points, before the step and in it.
 pub(super) const SPARE: f32 = 2.0;
 
-/// Less than 1 by more than what rounds.
+/// A factor for lengths: less than 1 by more than their rounding errors.
 pub(super) const SURELY: f32 = 1.0 - 1.0 / 262_144.0;
 
 /// A number within ±`most`.

@@ -20,7 +20,8 @@ const NEAR: usize = 16;
 pub(super) struct Reach {
     /// Those of all points, in local spacings.
     all: f64,
-    /// Those of points of a kind, in local spacings of the kind, and the least part of all points that a kind counts as.
+    /// Those of points of a kind, in local spacings of the kind, and the least part of all points that a kind counts
+    /// as.
     kin: Option<[f64; 2]>,
 }
 
@@ -55,14 +56,14 @@ fn moved_before(t: usize) -> f64 {
     f64::from(WHOLE).min(f64::from(STEP) * t as f64)
 }
 
-/// How far from a point of a share, along each axis, others may be that push it in step number `t`, which counts from 0, if none is sparser
-/// than `least`: by the places where they were placed, in spacings at full density.
+/// How far from a point of a share, along each axis, others may be that push it in step number `t`, which counts from
+/// 0, if none is sparser than `least`: by the places where they were placed, in spacings at full density.
 fn room(reach: &Reach, t: usize, shares: [f64; 2]) -> f64 {
     let [a, b] = shares.map(local);
     reach.between(shares.map(|share| share.max(LEAST_SHARE))) + moved_before(t) * (a + b)
 }
 
-/// The same in units of a window, with room for what rounds.
+/// [`room`] in units of a window, and a little for what rounds.
 pub(super) fn step_room(reach: &Reach, t: usize, shares: [f64; 2], unit: f64) -> i64 {
     (room(reach, t, shares) * unit) as i64 + ROOM
 }

@@ -1,9 +1,47 @@
-//! One step: all pushes of neighbors on the points that move, in any order.
+//! One step: all pushes of neighbors on the points that move.
 //!
-//! Places are integers, in units of a window, that `f32` holds exactly. Each push is worked out in plain `f32` and rounded
-//! to an integer, and a point's move is the wrapping sum of these. So the sum does not depend on the order of neighbors, and
-//! a pair's pushes are equal and opposite to the last bit. Points beyond a pair's reach push by zero, so it does not
-//! matter which are looked at.
+//! # Sums in any order
+//!
+//! Two windows that have a point list its neighbors in different orders, with different points beyond its reach. The
+//! point must go to the same place in both, so its sum of pushes must not depend on the order. Places are integers, in
+//! units of a window, that `f32` holds exactly, and so are their differences. Each push is worked out in plain `f32`
+//! from the pair alone and rounded to an integer, and a point's move is the wrapping sum of these integers. Such a sum
+//! has no order. Besides, a pair's pushes are equal and opposite to the last bit, and points beyond a pair's reach push
+//! by exactly zero, so it does not matter which of them are looked at.
+//!
+//! # Neighbors
+//!
+//! [`Cells`] sorts the points by rows about as high as the mean reach, each cut into cells an eighth as wide. The
+//! points of a row of cells are neighbors in memory:
+//!
+//! ```text
+//!     ┌─┬─┬─┬─┬─┬─┬─┬─┐
+//!     │ │░│░│░│░│░│ │ │      1 to 8: a group, points of one row that move
+//!     ├─┼─┼─┼─┼─┼─┼─┼─┤
+//!     │ │░│1│2│8│░│ │ │      ░: all cells within the reach of the group;
+//!     ├─┼─┼─┼─┼─┼─┼─┼─┤      in each row one run of memory (not to scale)
+//!     │ │░│░│░│░│░│ │ │
+//!     └─┴─┴─┴─┴─┴─┴─┴─┘
+//! ```
+//!
+//! Up to eight points of a row make a group, one for each lane of a vector. The inner loop takes the points of those
+//! runs one after another and adds the push of each to all lanes, without a branch. The reach of a pair depends on the
+//! shares of both points. So the reach of a group is first bounded by the least weight of all points, and then by the
+//! least weight of the points within that bound, which are often denser.
+//!
+//! # The move
+//!
+//! The sum is scaled by the point's freedom and then limited, to [`STEP`] local spacings along each axis in this step
+//! and to [`WHOLE`] from the place in the full set. Where points keep a distance D, a move is no longer than half the
+//! amount by which the point's nearest neighbor is farther away than D. Two points that approach each other by that
+//! much still keep D. Where points of a kind push each other, `kin` has summed those pushes before, and `past` lets a
+//! point pass a near neighbor.
+//!
+//! # Cost
+//!
+//! A group costs one push of eight lanes for each point within its reach. Points that stay, those at the border of a
+//! window, join no group and only push. The loops are compiled once for each instruction set ([`compiled_loop`]), from
+//! the same operations in the same order.
 
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -39,7 +77,7 @@ const LANES: usize = 8;
 /// A group ends where it is wider than this, in rows of cells.
 const WIDEST: f32 = 2.0;
 
-/// What steps need to know of a set.
+/// The lengths of a set that all its steps share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scale {
     /// Units of a mean spacing at full density.

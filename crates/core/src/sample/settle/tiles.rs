@@ -38,8 +38,8 @@ impl SettledTiles {
         }))
     }
 
-    /// Calls `visit` for all points that settle in a box, and for others near it, until it breaks. `made` is called with
-    /// the number of points of each tile that was made.
+    /// Calls `visit` for all points that settle in a box, and for others near it, until it breaks. `made` is called
+    /// with the number of points of each tile that was made.
     pub(crate) fn visit(
         &mut self,
         within: &Box2,

@@ -18,7 +18,18 @@
 //! ```
 //!
 //! A sparse point reaches far, but one that stays needs no neighbors, as where a field fades out. So boxes grow by the
-//! points that move. How far these reach is known when they are listed: a window is guessed, and listed again if need be.
+//! points that move. How far these reach is known only once they are listed: so `guess` looks at the field in a few
+//! places, the window is listed, and if `prepare` finds that points beyond it matter, it is listed again, larger.
+//!
+//! # Invariants
+//!
+//! - A point that moves in step t has every point that can push it in the window, each of which has moved in the steps
+//!   before as far as it is free to. So wanted points end where they would if the whole plane moved.
+//! - Places are integers from a corner near the middle that `f32` holds exactly. Corners are multiples of a unit; the
+//!   bits of a place below a unit are set aside and added again at the end. So the choice of the corner shows nowhere.
+//!
+//! The cost is a listing and the steps of all points in box 0: many for one wanted point, few more than the wanted
+//! ones for a piece of many rows.
 
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -51,8 +62,8 @@ const CORNER_BITS: u32 = 26;
 /// The unit of a window in fixed-point units, in bits, where the pattern is not very sparse: some 10⁻⁵ spacings.
 const UNIT_BITS: u32 = 7;
 
-/// The largest distance from a window's corner, in the units of a window: single precision has all integers up to it, and
-/// their differences.
+/// The largest distance from a window's corner, in the units of a window: single precision has all integers up to it,
+/// and their differences.
 const FARTHEST: i64 = 1 << 23;
 
 /// Settles points, with memory of its own.
@@ -65,7 +76,7 @@ pub(crate) struct Settler {
     /// How far each step reaches.
     reaches: Vec<Reach>,
     scale: Scale,
-    /// What limits the step of sets with all points, where that is taken.
+    /// The limit of the step of sets with all points; `None` for other sets.
     near: Option<Near>,
     /// Windows count in units of this many fixed-point units, in bits.
     shift: u32,
@@ -359,7 +370,7 @@ impl Settler {
         all
     }
 
-    /// The same where all shares are alike, so that reaches are, too.
+    /// Does what [`prepare`](Self::prepare) does where all shares are alike, and with them all reaches.
     fn prepare_alike(&mut self, share: f64) -> Extent {
         let Places {
             placed: [xs, ys],
@@ -387,7 +398,8 @@ impl Settler {
         movers
     }
 
-    /// Finds the freedom of the points that move up to a step: of those in an extent, or without one, those that are wanted.
+    /// Finds the freedom of the points that move up to a step: of those in an extent, or without one, those that are
+    /// wanted.
     fn free(&mut self, corner: [i128; 2], step: u8, within: Option<Extent>) {
         let Places {
             placed: [xs, ys],

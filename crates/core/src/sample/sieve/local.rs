@@ -25,11 +25,11 @@
 //!
 //! # Few edges for each test
 //!
-//! A polygon notes, with each stretch to be tested, the edges that reach into it and whether points right of them
-//! are inside (`Near`). A ray to the right then crosses only these. This holds beyond the stretch as well, up to the next
-//! one with edges of its own. So a run of points to be tested carries its `Near` if it holds one such stretch
-//! alone; if there are several, or a sure stretch between them is too narrow to have a sure column, points
-//! are compared with the whole area, as far as [`LocalSieve::aim`] has left it.
+//! A polygon notes, with each stretch to be tested, the edges that reach into it and whether points right of them are
+//! inside (`Near`). A ray to the right then crosses only these. This holds beyond the stretch as well, up to the next
+//! one with edges of its own. So a run of points to be tested carries its `Near` if it holds one such stretch alone; if
+//! there are several, or a sure stretch between them is too narrow to have a sure column, points are compared with the
+//! whole area, as far as [`LocalSieve::aim`] has left it.
 //!
 //! # Invariants
 //!

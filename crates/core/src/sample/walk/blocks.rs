@@ -28,10 +28,10 @@
 //! # The idea
 //!
 //! Nothing is searched and few candidates are rejected. The pattern is a union of products of columns and rows: a row
-//! has points only if its own index dY lies in the set region, and then its *class* (the parities of row and
-//! column) says which columns hold its points. The displacement of a point depends on the interval of its dX and that of
-//! its dY. So all rows of a band that share class and interval of dY are the same list of columns with the same
-//! vectors, moved up by y. `template` has that list: a band needs at most 4·n of them, and most rows are copies.
+//! has points only if its own index dY lies in the set region, and then its *class* (the parities of row and column)
+//! says which columns hold its points. The displacement of a point depends on the interval of its dX and that of its
+//! dY. So all rows of a band that share class and interval of dY are the same list of columns with the same vectors,
+//! moved up by y. `template` has that list: a band needs at most 4·n of them, and most rows are copies.
 //!
 //! # The walks
 //!

@@ -2,9 +2,9 @@
 //!
 //! `blocks` fills blocks of points of a window or a tile (`tile` cuts a plan into tiles, which threads fill
 //! independently). Four walks make the points: `rows` in boxes and areas, `graded` in a field, `settled` where points
-//! settle, and `few` has those of small plans, which were found when `counted` counted them. `bands` is where a walk is,
-//! `strips` where one of points that settle is, `sifting` its state in a sieve, and `template` holds the columns that
-//! the rows of a band share.
+//! settle, and `few` has those of small plans, which were found when `counted` counted them. `bands` is where a walk
+//! is, `strips` where one of points that settle is, `sifting` its state in a sieve, and `template` holds the columns
+//! that the rows of a band share.
 
 mod bands;
 mod blocks;

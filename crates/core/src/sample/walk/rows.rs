@@ -17,8 +17,8 @@
 //!
 //! Four ways fill rows, each the fastest for its case. All find the same points with the same bits:
 //!
-//! 1. *Tall bands* keep a template for each class and block. A row is then a copy of its columns plus y, in vectors. This
-//!    pays from [`TALL`] rows on, where several rows share each template.
+//! 1. *Tall bands* keep a template for each class and block. A row is then a copy of its columns plus y, in vectors.
+//!    This pays from [`TALL`] rows on, where several rows share each template.
 //! 2. *Short bands without warp* would make templates that hardly any other row uses, so `write_row` goes from the
 //!    columns to the items in one pass. A row that the block cuts off uses a template, which knows how to stop.
 //! 3. *Short bands with warp* have rows too short to fill vectors. [`Flat`] lists the points of many rows

@@ -1,11 +1,40 @@
 //! The walk of points that settle: piece by piece, each with the points around it that matter.
 //!
-//! A piece is some rows of a band. Its points are placed by their ranks, together with those around it, settle, and are
-//! compared with the region where they end. The order is that of all walks, by address, so pieces show neither in the
-//! order nor in the places.
+//! # The problem
 //!
-//! Counting settles few of them: a point that was placed deeper in the region than it can move is inside, and one
-//! farther off is outside, so only points near the outline settle, in boxes that hold those of one or more tiles.
+//! Where a point settles depends on its neighbors, so it cannot be made from its row and column alone, and a region
+//! cannot be counted from its corners. Yet the count must be exact before the first point.
+//!
+//! # Filling
+//!
+//! A piece is up to [`PIECE`] rows of a band. Its points are placed by their ranks, together with those around it; the
+//! [`Settler`] moves them; and those that end inside the region are written in the order of their addresses, that of
+//! all walks. Pieces decide only the cost: a point goes to the same place in every piece.
+//!
+//! # Counting
+//!
+//! A point moves no farther than `most_move`. So most points are decided by the places where their ranks left them:
+//!
+//! ```text
+//!      far outside │ near: settle │ near: settle │ deep inside
+//!     ─────────────┼──────────────┼──────────────┼─────────────
+//!                    ← most_move  ▲  most_move →
+//!                              the outline
+//! ```
+//!
+//! - In a box with the same share everywhere, whole pieces whose points all stay inside are counted in closed form, as
+//!   a thinned set (`sure_rows`).
+//! - Else the points of a piece are listed, which takes no steps, and decided by the box, and by tiles that lie inside
+//!   or outside of the area as a whole.
+//! - Only the others settle, in boxes that join those of neighboring tiles, because each box needs the points around
+//!   it, too. Where the set keeps clear of others, that is all points but those far outside.
+//!
+//! # Invariants
+//!
+//! - No point that is decided before it settles can cross the outline, and the others meet the same [`Inside`] as in
+//!   filling. So the count is the number of points that filling writes.
+//! - A walk holds the points of one piece and those around it, whatever the size of the plan. Small scopes settle once:
+//!   `find_few_settled` keeps their points when they are counted.
 
 use alloc::{sync::Arc, vec, vec::Vec};
 use core::ops::Range;
@@ -48,7 +77,7 @@ pub(super) struct Pieces {
     clear: Vec<Guard>,
 }
 
-/// What of a scope restricts the points of a piece.
+/// The conditions of a scope that a settled point of a piece must meet.
 struct Inside<'a> {
     bounds: &'a Box2,
     area: Option<Area>,
@@ -364,8 +393,8 @@ fn found_at(origin: [i64; 2], settled: &Settled) -> Found {
     Found::new(place, [x - origin[0], y - origin[1]])
 }
 
-/// The number of settled points of a scope. `mark` is called with the first address of each piece and the number of points
-/// before it.
+/// The number of settled points of a scope. `mark` is called with the first address of each piece and the number of
+/// points before it.
 pub(super) fn count_settled(mut pieces: Pieces, mut mark: impl FnMut(PointId, u128)) -> u128 {
     let scope = pieces.scope.clone();
     let thinned = scope

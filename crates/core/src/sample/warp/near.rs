@@ -27,11 +27,11 @@ impl<'a> NearShears<'a> {
         let [x, y] = place.map(|v| (v >> CELL_BITS) as i64);
         let cells = across([x, y]);
         let relative = across(place.map(|v| (v & CELL_MASK) as i64)).map(|s| s >> CELL_BITS);
-        // The cells of the place itself, which one shear after another mostly leaves unchanged. Found
-        // beforehand, they do not wait for each other.
+        // Shears seldom move a place to another cell. So the quadratics of its own cells are the ones that it needs,
+        // and looking all four up before the first shear lets these lookups overlap.
         let last = core::array::from_fn(|i| {
             let cell = cells[i].wrapping_add(relative[i]);
-            // Positions are far from the last cell of all.
+            // The last cell of all marks an empty slot: no position comes near it.
             let mut last = [(i64::MAX, [0.0; 3]); KEPT];
             last[slot(relative[i])] = (relative[i], shears.quadratic(i, cell));
             last

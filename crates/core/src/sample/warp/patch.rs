@@ -117,7 +117,7 @@ impl PatchShears {
         })
     }
 
-    /// The tables of a direction, one after another, each of so many entries.
+    /// The three tables of a direction, one after another, and the number of entries of each.
     #[inline(always)]
     pub(crate) fn tables(&self, direction: usize) -> (&[f32], usize) {
         let length = self.length;
