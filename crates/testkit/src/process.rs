@@ -15,7 +15,7 @@ const IGNORED_IN_BACKGROUND: [(u32, &str); 3] = [(1, "HUP"), (2, "INT"), (3, "QU
 /// the tests run in the background and ignore them: children inherit that, and a test that interrupts
 /// one would wait for ever.
 pub fn command(program: impl AsRef<OsStr>) -> Command {
-    let ignored = ignored();
+    let ignored = ignored("self");
     let mut command = if ignored.is_empty() {
         Command::new(program)
     } else {
@@ -33,9 +33,9 @@ pub fn command(program: impl AsRef<OsStr>) -> Command {
     command
 }
 
-/// The names of the signals that this process ignores; none where there is no `/proc`.
-fn ignored() -> Vec<&'static str> {
-    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+/// The names of the signals that a process (its id, or `self`) ignores; none where there is no `/proc`.
+fn ignored(process: &str) -> Vec<&'static str> {
+    let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
     let is_ignored = |number: u32| mask.unwrap_or_default() >> (number - 1) & 1 == 1;
@@ -69,8 +69,13 @@ impl Running {
         self.0.as_ref().expect("running").id()
     }
 
-    /// Sends it a signal, such as `INT`.
+    /// Sends it a signal, such as `INT`, once it does not ignore this: a [`command`] begins as `env`, which inherits
+    /// what the tests ignore.
     pub fn signal(&self, name: &str) {
+        let process = self.id().to_string();
+        until("a command takes signals", || {
+            (!ignored(&process).contains(&name)).then_some(())
+        });
         signal(self.id(), name);
     }
 
