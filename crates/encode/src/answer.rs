@@ -13,7 +13,7 @@ use crate::{
     parquet,
 };
 use crate::{
-    blocks::Blocks,
+    blocks::{Blocks, Nothing},
     coordinates::Coordinates,
     csv,
     encoding::Encoding,
@@ -269,6 +269,7 @@ impl Answer {
             })
         });
         let blocks: Box<dyn Blocks> = match &plain {
+            _ if rows.count() == 0 => Box::new(Nothing),
             Some(Plain { plan, is_f32, .. }) if *is_f32 => {
                 Box::new(Packed::<F32>::new(plan, block_bytes))
             }

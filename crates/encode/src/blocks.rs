@@ -13,3 +13,17 @@ pub(super) trait Blocks: fmt::Debug + Send {
     /// The number of points encoded so far.
     fn points(&self) -> u64;
 }
+
+/// No blocks, of an answer without points.
+#[derive(Debug)]
+pub(super) struct Nothing;
+
+impl Blocks for Nothing {
+    fn next(&mut self) -> Option<Result<Bytes, EncodeError>> {
+        None
+    }
+
+    fn points(&self) -> u64 {
+        0
+    }
+}

@@ -14,7 +14,7 @@ use super::{
 const MOST_BYTES: usize = 4000;
 
 /// The legend of `f32` for points that have nothing but a place.
-const F32: &str = r#"[{"name":"x","type":"f32"},{"name":"y","type":"f32"}]"#;
+pub const F32: &str = r#"[{"name":"x","type":"f32"},{"name":"y","type":"f32"}]"#;
 
 /// A column of records.
 #[derive(Clone, Debug, Serialize)]

@@ -25,7 +25,7 @@ mod glb;
 mod head;
 mod ids;
 mod json;
-mod legend;
+pub mod legend;
 mod members;
 mod ndjson;
 mod npy;

@@ -1,5 +1,7 @@
 //! Packed coordinates: x and y by turns, little-endian, nothing else.
 
+use std::sync::LazyLock;
+
 use bytemuck::Pod;
 use bytes::Bytes;
 use strew_core::{F32, F64, Format, Plan};
@@ -10,17 +12,35 @@ use super::{EncodeError, blocks::Blocks, buffer::Pool};
 pub trait Scalars: Format<Item: Pod + std::fmt::Debug> {
     /// Turns an item around where memory order is not little-endian.
     fn to_little_endian(item: Self::Item) -> Self::Item;
+
+    /// The buffers of small answers, which would otherwise each clear one of their own.
+    fn small() -> &'static Pool<Self::Item>;
 }
+
+/// The items of a buffer for small answers.
+const SMALL: usize = 2048;
+/// Fewer items leave most of such a buffer unused.
+const FEW: usize = SMALL / 4;
 
 impl Scalars for F32 {
     fn to_little_endian(item: [f32; 2]) -> [f32; 2] {
         item.map(|v| f32::from_bits(v.to_bits().to_le()))
+    }
+
+    fn small() -> &'static Pool<[f32; 2]> {
+        static POOL: LazyLock<Pool<[f32; 2]>> = LazyLock::new(|| Pool::new(SMALL));
+        &POOL
     }
 }
 
 impl Scalars for F64 {
     fn to_little_endian(item: [f64; 2]) -> [f64; 2] {
         item.map(|v| f64::from_bits(v.to_bits().to_le()))
+    }
+
+    fn small() -> &'static Pool<[f64; 2]> {
+        static POOL: LazyLock<Pool<[f64; 2]>> = LazyLock::new(|| Pool::new(SMALL));
+        &POOL
     }
 }
 
@@ -32,6 +52,7 @@ pub struct Packed<F: Scalars> {
     /// The items of room that a buffer has before and after its points.
     room: [usize; 2],
     points: u64,
+    count: u128,
 }
 
 impl<F: Scalars> Packed<F> {
@@ -48,11 +69,18 @@ impl<F: Scalars> Packed<F> {
         let most = usize::try_from(plan.count()).unwrap_or(usize::MAX);
         let length = (block_bytes / size_of::<F::Item>()).min(most).max(1);
         let room = room.map(|bytes| bytes.div_ceil(size_of::<F::Item>()));
+        let items = room[0] + length + room[1];
+        // Longer buffers would make longer blocks, unless one block is all there is.
+        let pool = match length == most && (FEW..=SMALL).contains(&items) {
+            true => F::small().clone(),
+            false => Pool::new(items),
+        };
         Self {
             blocks: plan.blocks(),
-            pool: Pool::new(room[0] + length + room[1]),
+            pool,
             room,
             points: 0,
+            count: plan.count(),
         }
     }
 
@@ -62,6 +90,10 @@ impl<F: Scalars> Packed<F> {
         &mut self,
         around: impl FnOnce(usize, &strew_core::Blocks<F>) -> [Vec<u8>; 2],
     ) -> Option<Bytes> {
+        if u128::from(self.points) == self.count {
+            // Another buffer would be cleared for nothing.
+            return None;
+        }
         let mut buffer = self.pool.take();
         let end = buffer.len() - self.room[1];
         let filled = self.blocks.fill(&mut buffer[self.room[0]..end]);
