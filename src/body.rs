@@ -3,6 +3,7 @@
 use std::{
     fmt,
     pin::Pin,
+    sync::Arc,
     task::{Context, Poll},
 };
 
@@ -11,6 +12,7 @@ use futures_util::{Stream, TryStreamExt as _};
 use http_body::{Body as HttpBody, Frame, SizeHint};
 use http_body_util::{BodyDataStream, BodyExt as _, Limited, StreamBody};
 use hyper::body::Incoming;
+use strew_service::Held;
 
 /// An error of a body.
 pub type BoxError = Box<dyn std::error::Error + Send + Sync>;
@@ -28,7 +30,12 @@ pub type Response = http::Response<Body>;
 pub type Answering = Pin<Box<dyn Future<Output = Response> + Send>>;
 
 /// A body.
-pub struct Body(Inner);
+#[derive(Default)]
+pub struct Body {
+    inner: Inner,
+    /// The memory of an answer that is there as a whole.
+    held: Option<Arc<Held>>,
+}
 
 enum Inner {
     Bytes(Bytes),
@@ -42,22 +49,48 @@ impl fmt::Debug for Body {
     }
 }
 
-impl Default for Body {
+impl Default for Inner {
     fn default() -> Self {
-        Self::empty()
+        Self::Bytes(Bytes::new())
+    }
+}
+
+impl From<Inner> for Body {
+    fn from(inner: Inner) -> Self {
+        Self { inner, held: None }
     }
 }
 
 impl Body {
     /// No bytes.
     #[must_use]
-    pub const fn empty() -> Self {
-        Self(Inner::Bytes(Bytes::new()))
+    pub fn empty() -> Self {
+        Self::default()
     }
 
     /// The body of a client's request.
-    pub(crate) const fn incoming(body: Incoming) -> Self {
-        Self(Inner::Incoming(body))
+    pub(crate) fn incoming(body: Incoming) -> Self {
+        Inner::Incoming(body).into()
+    }
+
+    /// Frames of a body that breaks off with our own errors.
+    pub(crate) fn frames(
+        body: impl HttpBody<Data = Bytes, Error = BoxError> + Send + 'static,
+    ) -> Self {
+        Inner::Frames(Box::pin(body)).into()
+    }
+
+    /// This body, whose memory is held.
+    pub(crate) fn holding(self, held: Held) -> Self {
+        Self {
+            held: Some(Arc::new(held)),
+            ..self
+        }
+    }
+
+    /// The memory that is held for it, and the body without it.
+    pub(crate) fn release(self) -> (Option<Arc<Held>>, Self) {
+        (self.held, self.inner.into())
     }
 
     /// The frames of another body.
@@ -66,7 +99,7 @@ impl Body {
         B: HttpBody<Data = Bytes> + Send + 'static,
         B::Error: Into<BoxError>,
     {
-        Self(Inner::Frames(Box::pin(body.map_err(Into::into))))
+        Self::frames(body.map_err(Into::into))
     }
 
     /// The pieces of a stream; its length is not known.
@@ -89,16 +122,19 @@ impl Body {
     /// # Errors
     /// For longer ones, and those that break off.
     pub async fn whole(self, most: usize) -> Result<Bytes, BoxError> {
-        match self.0 {
+        match self.inner {
             Inner::Bytes(bytes) if bytes.len() <= most => Ok(bytes),
-            inner => Ok(Limited::new(Self(inner), most).collect().await?.to_bytes()),
+            inner => {
+                let limited = Limited::new(Self::from(inner), most);
+                Ok(limited.collect().await?.to_bytes())
+            }
         }
     }
 }
 
 impl<T: Into<Bytes>> From<T> for Body {
     fn from(bytes: T) -> Self {
-        Self(Inner::Bytes(bytes.into()))
+        Inner::Bytes(bytes.into()).into()
     }
 }
 
@@ -110,7 +146,7 @@ impl HttpBody for Body {
         mut self: Pin<&mut Self>,
         cx: &mut Context<'_>,
     ) -> Poll<Option<Result<Frame<Bytes>, BoxError>>> {
-        match &mut self.0 {
+        match &mut self.inner {
             Inner::Bytes(bytes) if bytes.is_empty() => Poll::Ready(None),
             Inner::Bytes(bytes) => Poll::Ready(Some(Ok(Frame::data(std::mem::take(bytes))))),
             Inner::Incoming(body) => Pin::new(body).poll_frame(cx).map_err(Into::into),
@@ -119,7 +155,7 @@ impl HttpBody for Body {
     }
 
     fn is_end_stream(&self) -> bool {
-        match &self.0 {
+        match &self.inner {
             Inner::Bytes(bytes) => bytes.is_empty(),
             Inner::Incoming(body) => body.is_end_stream(),
             Inner::Frames(body) => body.is_end_stream(),
@@ -127,7 +163,7 @@ impl HttpBody for Body {
     }
 
     fn size_hint(&self) -> SizeHint {
-        match &self.0 {
+        match &self.inner {
             Inner::Bytes(bytes) => SizeHint::with_exact(bytes.len() as u64),
             Inner::Incoming(body) => body.size_hint(),
             Inner::Frames(body) => body.size_hint(),

@@ -5,18 +5,21 @@
 //! gzip themselves, which is how libraries let a user ask (`compression=Gzip`, `UseCompressor`),
 //! and zstd, which clients list only on purpose, to all that accept it.
 
-use http::{HeaderMap, HeaderValue};
+use http::{HeaderMap, HeaderName, HeaderValue};
 use tonic::{codec::CompressionEncoding, metadata::MetadataMap};
 
 /// The codings that are read and written.
 pub(super) const COMPRESSIONS: [CompressionEncoding; 2] =
     [CompressionEncoding::Zstd, CompressionEncoding::Gzip];
 
-const ACCEPTED: &str = "grpc-accept-encoding";
-const SENT: &str = "grpc-encoding";
+const ACCEPTED: HeaderName = HeaderName::from_static("grpc-accept-encoding");
+pub(super) const SENT: HeaderName = HeaderName::from_static("grpc-encoding");
 
 /// Removes codings that a call accepts but does not request.
 pub(super) fn settle(headers: &mut HeaderMap) {
+    if !headers.contains_key(ACCEPTED) {
+        return;
+    }
     let text = |name| headers.get(name).and_then(|value| value.to_str().ok());
     let sends_gzip = text(SENT) == Some("gzip");
     let listed = text(ACCEPTED).unwrap_or_default();
@@ -33,7 +36,7 @@ pub(super) fn settle(headers: &mut HeaderMap) {
 
 /// Whether a settled call is answered compressed.
 pub(super) fn is_asked(metadata: &MetadataMap) -> bool {
-    metadata.contains_key(ACCEPTED)
+    metadata.contains_key(ACCEPTED.as_str())
 }
 
 #[cfg(test)]

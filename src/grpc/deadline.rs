@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use http::{HeaderMap, Response};
+use http::{HeaderMap, HeaderName, Response};
 use tokio::time::Instant;
 use tonic::Status;
 
@@ -24,7 +24,7 @@ pub struct Deadline {
 impl Deadline {
     /// The deadline of a call that begins now, if it has one.
     pub(super) fn of(headers: &HeaderMap) -> Result<Option<Self>, Status> {
-        let Some(value) = headers.get(HEADER) else {
+        let Some(value) = headers.get(HeaderName::from_static(HEADER)) else {
             return Ok(None);
         };
         let text = String::from_utf8_lossy(value.as_bytes());

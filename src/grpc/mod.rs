@@ -28,7 +28,7 @@ use std::sync::Arc;
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use bytes::Bytes;
-use http::{HeaderMap, HeaderValue};
+use http::{HeaderMap, HeaderName, HeaderValue};
 use tonic::{Status, server::NamedService};
 use tonic_health::server::HealthReporter;
 
@@ -205,5 +205,6 @@ const MALFORMED: [&str; 4] = [
     "Unexpected%20EOF%20decoding",
 ];
 
-const GRPC_STATUS: &str = "grpc-status";
-const GRPC_MESSAGE: &str = "grpc-message";
+/// The code of a call that has ended.
+pub const GRPC_STATUS: HeaderName = HeaderName::from_static("grpc-status");
+const GRPC_MESSAGE: HeaderName = HeaderName::from_static("grpc-message");

@@ -32,9 +32,11 @@ use super::{
 };
 
 /// A query as it was read.
-type Read = (Draft, Result<Encoding, Fault>);
+type Read = Box<(Draft, Result<Encoding, Fault>)>;
 /// A query as it was read, with its message.
-type Whole = (StreamPointsRequest, Read);
+type Whole = (Box<StreamPointsRequest>, Read);
+/// A checked query, with its message.
+type Checked = (Box<StreamPointsRequest>, Box<Query>, Encoding);
 
 /// Answers over gRPC.
 #[derive(Debug)]
@@ -51,16 +53,16 @@ impl Points {
     async fn read(
         &self,
         Received { message, effort }: Received<StreamPointsRequest>,
-    ) -> Result<(StreamPointsRequest, Query, Encoding), Error> {
+    ) -> Result<Checked, Error> {
         let read = move || {
-            let read = query::read(&message);
+            let read = Box::new(query::read(&message));
             Ok((message, read))
         };
-        let check = |service: &Service, (message, (draft, encoding)): Whole, stop: &Stop| {
-            let (query, _) = service.check(&draft, stop)?;
-            Ok((message, query, encoding?))
+        let check = |service: &Service, (message, read): Whole, stop: &Stop| {
+            let (query, _) = service.check(&read.0, stop)?;
+            Ok((message, query, read.1?))
         };
-        let price = |(_, (draft, _)): &Whole| draft.price();
+        let price = |(_, read): &Whole| read.0.price();
         self.service.read(effort, read, price, check).await
     }
 
@@ -126,9 +128,12 @@ impl Points {
     async fn point(
         &self,
         caller: &Caller,
-        Received { message, effort }: Received<GetPointRequest>,
+        Received {
+            mut message,
+            effort,
+        }: Received<GetPointRequest>,
     ) -> Result<GetPointResponse, Error> {
-        let id = message.id;
+        let id = std::mem::take(&mut message.id);
         let read = move || Ok(set::values(message.set.as_ref(), groups::SINGLE, ""));
         let check = |service: &Service, values: Values, stop: &Stop| {
             Set::single_within(&values, &service.catalog(), allowance(stop))
@@ -184,7 +189,7 @@ fn caller<T>(request: &Request<T>) -> Result<Caller, Status> {
 
 /// The query of a request, which must be there.
 fn required(
-    query: Option<StreamPointsRequest>,
+    query: Option<Box<StreamPointsRequest>>,
     effort: usize,
 ) -> Result<Received<StreamPointsRequest>, Status> {
     let message = query.ok_or_else(|| {
@@ -218,7 +223,7 @@ impl PointService for Points {
         request: Request<ForgeTableRequest>,
     ) -> Result<Response<JobStream>, Status> {
         let caller = caller(&request)?;
-        let states = self.forge(&caller, received(request).message).await;
+        let states = self.forge(&caller, *received(request).message).await;
         states
             .map(Response::new)
             .map_err(|error| status::status(&error))
@@ -240,7 +245,7 @@ impl PointService for Points {
     ) -> Result<Response<CountPointsResponse>, Status> {
         let caller = caller(&request)?;
         let Received { message, effort } = received(request);
-        let query = required(message.query, effort)?;
+        let query = required(message.query.map(Box::new), effort)?;
         let answer = self.count(&caller, query).await;
         answered(answer.map_err(|error| status::within("query", query::by_field(error))))
     }
@@ -251,8 +256,8 @@ impl PointService for Points {
     ) -> Result<Response<SplitPointsResponse>, Status> {
         let caller = caller(&request)?;
         let Received { message, effort } = received(request);
-        let SplitPointsRequest { query, parts } = message;
-        let query = required(query, effort)?;
+        let SplitPointsRequest { query, parts } = *message;
+        let query = required(query.map(Box::new), effort)?;
         let parts = split::check(&query.message, parts).map_err(|error| status::status(&error))?;
         let answer = self.split(&caller, query, parts).await;
         answered(answer.map_err(|error| status::within("query", query::by_field(error))))
@@ -292,7 +297,7 @@ impl PointService for Points {
         &self,
         request: Request<ListPeriodsRequest>,
     ) -> Result<Response<ListPeriodsResponse>, Status> {
-        let listed = periods::list(received(request).message, &self.service);
+        let listed = periods::list(*received(request).message, &self.service);
         listed
             .map(Response::new)
             .map_err(|error| status::status(&error))
@@ -303,7 +308,7 @@ impl PointService for Points {
         request: Request<GetMaskRequest>,
     ) -> Result<Response<GetMaskResponse>, Status> {
         let caller = caller(&request)?;
-        plainly(mask::mask(&self.service, &caller, received(request).message).await)
+        plainly(mask::mask(&self.service, &caller, *received(request).message).await)
     }
 
     async fn get_arrangement(

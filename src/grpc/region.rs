@@ -24,7 +24,10 @@ pub(super) fn draft(region: &Region, path: &str, depth: usize) -> Checked<Region
         }
     };
     let path = format!("{path}.{name}");
-    Ok(RegionDraft { path, shape })
+    Ok(RegionDraft {
+        path: path.into(),
+        shape,
+    })
 }
 
 fn bbox(b: BoundingBox) -> ShapeDraft {

@@ -57,6 +57,7 @@ impl Calls {
 
     /// Calls are answered as compressed as they ask, and in time.
     async fn on_terms(&self, mut visit: Box<Visit>) -> Response {
+        let is_of_page = visit.dialect != Dialect::Grpc;
         let mut response = match grpc::terms(visit.request.headers_mut()) {
             Err(refusal) => refusal.into_http::<tonic::body::Body>().map(Body::new),
             Ok(None) => self.admitted(visit).await,
@@ -77,6 +78,10 @@ impl Calls {
         };
         if let Some(code) = grpc_code(response.headers()) {
             record.ended(code);
+            return response;
+        }
+        if !is_of_page {
+            // The exchange sees the trailers.
             return response;
         }
         // Noted here, because the body of a web page's call has its trailers in data.

@@ -308,8 +308,8 @@ impl HyperService<Request<Incoming>> for Answers {
 
     fn call(&self, request: Request<Incoming>) -> Self::Future {
         let (front, peer, open) = (self.front.clone(), self.peer, self.open.clone());
-        let request = request.map(Body::incoming);
-        Box::pin(async move { Ok(front.answer(peer, &open, request).await) })
+        let visit = front.exchanges.visit(peer, request.map(Body::incoming));
+        Box::pin(async move { Ok(front.answer(peer, &open, visit).await) })
     }
 }
 

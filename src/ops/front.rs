@@ -65,13 +65,13 @@ impl Front {
         self: &Arc<Self>,
         peer: Peer,
         open: &Arc<OpenExchanges>,
-        request: Request,
+        visit: Box<Visit>,
     ) -> Response {
-        let is_head = *request.method() == Method::HEAD;
-        let place = self.place(request.uri().path());
+        let is_head = *visit.request.method() == Method::HEAD;
+        let place = self.place(visit.request.uri().path());
         let name = place.name();
         let answer = |visit| self.finished(place, visit);
-        let answered = self.exchanges.answer(peer, open, name, request, answer);
+        let answered = self.exchanges.answer(peer, open, name, visit, answer);
         let mut response = answered.await;
         if let Some(length) = response.body().size_hint().exact() {
             let slot = response.headers_mut().entry(header::CONTENT_LENGTH);

@@ -2,11 +2,12 @@
 
 use std::{collections::BTreeMap, convert::Infallible, pin::pin, sync::LazyLock};
 
+use bytes::Bytes;
 use futures_util::{StreamExt as _, stream};
 use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
 use schemars::JsonSchema;
 use strew_core::ALGORITHM_VERSION;
-use strew_encode::{Answer, Encoding, Output, write_number};
+use strew_encode::{Answer, Encoding, Output, legend, write_number};
 use strew_error::{Error, Kind};
 use strew_plan::{Planned, QueryEcho, TableEcho};
 use strew_query::{Options, Query};
@@ -29,6 +30,9 @@ const ALGORITHM: HeaderName = HeaderName::from_static("strew-algorithm");
 const ORIGIN: HeaderName = HeaderName::from_static("strew-origin");
 
 const COLUMNS: HeaderName = HeaderName::from_static("strew-columns");
+static VERSION: LazyLock<HeaderValue> = LazyLock::new(|| ALGORITHM_VERSION.into());
+/// The columns of what most requests ask for.
+const PLAIN_F32: HeaderValue = HeaderValue::from_static(legend::F32);
 const KINDS: HeaderName = HeaderName::from_static("strew-kinds");
 const WARNING: HeaderName = HeaderName::from_static("strew-warning");
 const NEXT: HeaderName = HeaderName::from_static("strew-next");
@@ -165,7 +169,7 @@ pub(super) fn described() -> api::Answer {
 pub(super) async fn stream(
     service: &Service,
     context: &Context,
-    query: Query,
+    query: Box<Query>,
     options: Options,
 ) -> Result<Response, Error> {
     let Context {
@@ -196,7 +200,7 @@ pub(super) async fn stream(
 async fn points(
     service: &Service,
     context: &Context,
-    query: Query,
+    query: Box<Query>,
     chosen: Chosen,
     output: Output,
 ) -> Result<Response, Error> {
@@ -241,7 +245,7 @@ async fn points(
 async fn part(
     service: &Service,
     context: &Context,
-    query: Query,
+    query: Box<Query>,
     chosen: Chosen,
     output: Output,
     wanted: Wanted,
@@ -299,13 +303,17 @@ pub(super) fn freshness(
     query: &Query,
     content_type: &'static str,
 ) -> Freshness {
-    let digests: Vec<&str> = query.digests().collect();
-    let made_of = (
-        digests,
-        service.limits().max_points,
-        query.world.as_ref().map(|world| &world.digest),
-    );
-    Freshness::of(&context.uri, &context.headers, content_type, &made_of).pinned(query.is_pinned())
+    let (limit, world) = (service.limits().max_points, query.world.as_ref());
+    let write = |written: &mut Vec<u8>| {
+        written.extend_from_slice(&limit.to_le_bytes());
+        let worlds = world.map(|world| world.digest.as_str());
+        for digest in worlds.into_iter().chain([""]).chain(query.digests()) {
+            written.extend_from_slice(digest.as_bytes());
+            written.push(b'\n');
+        }
+    };
+    let Context { uri, headers, .. } = context;
+    Freshness::made(uri, headers, content_type, write).pinned(query.is_pinned())
 }
 
 /// The name under which an answer is saved.
@@ -363,16 +371,18 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
     {
         headers.insert(CURSOR, text(&token.to_string())?);
     }
-    headers.insert(ALGORITHM, ALGORITHM_VERSION.into());
+    headers.insert(ALGORITHM, VERSION.clone());
     if let Some(world) = &planned.query.world {
         headers.insert(WORLD, text(&world.digest)?);
     }
     if let Some([x, y]) = answer.origin() {
-        let mut origin = vec![];
+        let mut origin = Vec::with_capacity(64);
         write_number(x, &mut origin);
         origin.push(b',');
         write_number(y, &mut origin);
-        headers.insert(ORIGIN, text(&String::from_utf8_lossy(&origin))?);
+        let origin = HeaderValue::from_maybe_shared(Bytes::from(origin));
+        let no_text = |_| Error::Internal("an origin is no text");
+        headers.insert(ORIGIN, origin.map_err(no_text)?);
     }
     if planned.sets.iter().any(|set| !set.kinds.is_empty())
         && let Some(kinds) = planned.resolved().kinds()
@@ -380,7 +390,13 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
         headers.insert(KINDS, text(&kinds.to_string())?);
     }
     if let Some(columns) = answer.legend() {
-        headers.insert(COLUMNS, text(columns)?);
+        headers.insert(
+            COLUMNS,
+            match columns {
+                legend::F32 => PLAIN_F32,
+                columns => text(columns)?,
+            },
+        );
     }
     if let Some(warning) = answer.warning() {
         headers.insert(WARNING, HeaderValue::from_static(warning));

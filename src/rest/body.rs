@@ -75,7 +75,7 @@ pub(super) async fn query(
     service: &Arc<Service>,
     body: Bytes,
     groups: &'static [Group],
-) -> Result<(Draft, Query, Options), Error> {
+) -> Result<(Draft, Box<Query>, Options), Error> {
     let (bytes, budget) = (body.len(), service.own_budget());
     let read = move || {
         let _held = budget.hold(COPIES * body.len())?;

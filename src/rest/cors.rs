@@ -6,6 +6,8 @@ use http::{HeaderMap, HeaderValue, Method, StatusCode, header};
 use super::vary;
 use crate::body::{Body, Request, Response};
 
+const ALL: HeaderValue = HeaderValue::from_static("*");
+
 /// The origins whose pages may send requests.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Origins {
@@ -31,7 +33,7 @@ impl Origins {
     /// The origins that may read the answer to a page of an origin.
     fn allowed(&self, origin: &HeaderValue) -> Option<HeaderValue> {
         match self {
-            Self::All => Some(HeaderValue::from_static("*")),
+            Self::All => Some(ALL),
             Self::Some(origins) => {
                 let lower = origin.as_bytes().to_ascii_lowercase();
                 let known = origins.iter().any(|known| known.as_bytes() == lower);
@@ -115,17 +117,16 @@ pub(super) fn preflight(
 /// may keep the answer to a request without an origin for pages.
 pub(super) fn allow(origins: &Origins, origin: Option<&HeaderValue>, answer: &mut HeaderMap) {
     let allowed = if *origins == Origins::All {
-        Some(HeaderValue::from_static("*"))
+        Some(ALL)
     } else {
-        vary::on(answer, "origin");
+        vary::on(answer, vary::ORIGIN);
         origin.and_then(|origin| origins.allowed(origin))
     };
     let Some(allowed) = allowed else {
         return;
     };
     answer.insert(header::ACCESS_CONTROL_ALLOW_ORIGIN, allowed);
-    let all = HeaderValue::from_static("*");
-    answer.insert(header::ACCESS_CONTROL_EXPOSE_HEADERS, all);
+    answer.insert(header::ACCESS_CONTROL_EXPOSE_HEADERS, ALL);
 }
 
 #[cfg(test)]

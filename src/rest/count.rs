@@ -90,7 +90,11 @@ async fn post(service: Arc<Service>, sent: Sent) -> Result<Response, Refused> {
     Ok(counted(&service, &context, query).await?)
 }
 
-async fn counted(service: &Service, context: &Context, query: Query) -> Result<Response, Error> {
+async fn counted(
+    service: &Service,
+    context: &Context,
+    query: Box<Query>,
+) -> Result<Response, Error> {
     let planned = service.count(&context.caller, query).await?;
     document::json(&Count {
         count: planned.count(),

@@ -93,6 +93,9 @@ impl Finish {
 
 /// The lines of one header.
 fn picked(headers: &HeaderMap, name: &HeaderName) -> HeaderMap {
+    if !headers.contains_key(name) {
+        return HeaderMap::new();
+    }
     let lines = headers.get_all(name).iter().cloned();
     lines.map(|line| (name.clone(), line)).collect()
 }

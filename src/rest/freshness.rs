@@ -22,6 +22,7 @@ use crate::body::{Body, Response};
 pub(super) struct Freshness {
     tag: HeaderValue,
     coding: Option<Coding>,
+    is_text: bool,
     pinned: bool,
     negotiated: bool,
 }
@@ -42,6 +43,19 @@ impl Freshness {
         content_type: &'static str,
         made_of: &impl Serialize,
     ) -> Self {
+        // Numbers and texts can always be written.
+        Self::made(uri, headers, content_type, |written| {
+            let _ = serde_json::to_writer(written, made_of);
+        })
+    }
+
+    /// As [`of`](Self::of), with a function that writes what decides the bytes.
+    pub(super) fn made(
+        uri: &Uri,
+        headers: &HeaderMap,
+        content_type: &'static str,
+        write: impl FnOnce(&mut Vec<u8>),
+    ) -> Self {
         let coding = Coding::chosen(headers, content_type);
         let asked = uri.path_and_query().map_or("", |asked| asked.as_str());
         let mut written = Vec::with_capacity(512);
@@ -51,14 +65,23 @@ impl Freshness {
             written.extend_from_slice(part.as_bytes());
             written.push(b'\n');
         }
-        // Numbers and texts can always be written.
-        let _ = serde_json::to_writer(&mut written, made_of);
-        let hash = blake3::hash(&written).to_hex();
-        let suffix = coding.map_or("", Coding::suffix);
-        let tag = ["\"", &hash[..32], suffix, "\""].concat();
+        write(&mut written);
+        let hash = blake3::hash(&written);
+        let mut tag = written;
+        tag.clear();
+        tag.push(b'"');
+        let digits: [u8; 32] = std::array::from_fn(|place| {
+            let byte = hash.as_bytes()[place / 2];
+            let digit = if place % 2 == 0 { byte >> 4 } else { byte & 15 };
+            b"0123456789abcdef"[usize::from(digit)]
+        });
+        tag.extend_from_slice(&digits);
+        tag.extend_from_slice(coding.map_or("", Coding::suffix).as_bytes());
+        tag.push(b'"');
         Self {
-            tag: HeaderValue::from_str(&tag).unwrap_or(HeaderValue::from_static("\"\"")),
+            tag: HeaderValue::from_bytes(&tag).unwrap_or(HeaderValue::from_static("\"\"")),
             coding,
+            is_text: Coding::is_for(content_type),
             pinned: false,
             negotiated: false,
         }
@@ -126,9 +149,12 @@ impl Freshness {
     pub(super) fn stamp(&self, response: &mut Response) {
         let tag = self.tag.clone();
         response.headers_mut().insert(header::ETAG, tag);
-        response.extensions_mut().insert(Decided(self.coding));
+        // Of another type than text no coding would be chosen later, either.
+        if self.is_text {
+            response.extensions_mut().insert(Decided(self.coding));
+        }
         if self.negotiated {
-            vary::on(response.headers_mut(), "accept");
+            vary::on(response.headers_mut(), vary::ACCEPT);
         }
         if self.pinned {
             response.extensions_mut().insert(Pinned);

@@ -2,28 +2,32 @@
 
 use http::{HeaderMap, HeaderName, HeaderValue, header};
 
+const NO_SNIFFING: HeaderValue = HeaderValue::from_static("nosniff");
+const NO_REFERRER: HeaderValue = HeaderValue::from_static("no-referrer");
 /// The policy of an answer that is no page: a browser that opens it loads and runs nothing. Pictures bring
 /// their own style.
-const NO_PAGE: &str =
-    "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'; sandbox";
+const NO_PAGE: HeaderValue = HeaderValue::from_static(
+    "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'; sandbox",
+);
 
 const RESOURCE_POLICY: HeaderName = HeaderName::from_static("cross-origin-resource-policy");
+const ANY_ORIGIN: HeaderValue = HeaderValue::from_static("cross-origin");
+const SAME_ORIGIN: HeaderValue = HeaderValue::from_static("same-origin");
 
 /// Sets the headers that an answer lacks. If all pages may read answers, they may also show them as pictures.
 pub(super) fn guard(headers: &mut HeaderMap, all_may_read: bool) {
     let resource = if all_may_read {
-        "cross-origin"
+        ANY_ORIGIN
     } else {
-        "same-origin"
+        SAME_ORIGIN
     };
-    for (name, value) in [
-        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
-        (header::REFERRER_POLICY, "no-referrer"),
+    let lines = [
+        (header::X_CONTENT_TYPE_OPTIONS, NO_SNIFFING),
+        (header::REFERRER_POLICY, NO_REFERRER),
         (header::CONTENT_SECURITY_POLICY, NO_PAGE),
         (RESOURCE_POLICY, resource),
-    ] {
-        if !headers.contains_key(&name) {
-            headers.insert(name, HeaderValue::from_static(value));
-        }
+    ];
+    for (name, value) in lines {
+        headers.entry(name).or_insert(value);
     }
 }

@@ -1,14 +1,33 @@
 //! The header `Vary`: the headers of requests that answers depend on.
 
-use http::{HeaderMap, HeaderValue, header};
+use http::{
+    HeaderMap, HeaderValue,
+    header::{self, Entry},
+};
+
+/// A header that answers depend on.
+pub(super) const ACCEPT: HeaderValue = HeaderValue::from_static("accept");
+/// As [`ACCEPT`].
+pub(super) const ACCEPT_ENCODING: HeaderValue = HeaderValue::from_static("accept-encoding");
+/// As [`ACCEPT`].
+pub(super) const ORIGIN: HeaderValue = HeaderValue::from_static("origin");
+/// What almost all answers with points depend on.
+const BOTH: HeaderValue = HeaderValue::from_static("accept, accept-encoding");
 
 /// Adds the name of a header.
-pub(super) fn on(headers: &mut HeaderMap, name: &'static str) {
-    let before = headers.insert(header::VARY, HeaderValue::from_static(name));
-    let Some(Ok(before)) = before.as_ref().map(HeaderValue::to_str) else {
-        return;
+pub(super) fn on(headers: &mut HeaderMap, name: HeaderValue) {
+    let line = match headers.entry(header::VARY) {
+        Entry::Vacant(line) => {
+            line.insert(name);
+            return;
+        }
+        Entry::Occupied(line) => line.into_mut(),
     };
-    if let Ok(joined) = HeaderValue::from_str(&[before, ", ", name].concat()) {
-        headers.insert(header::VARY, joined);
+    if *line == ACCEPT && name == ACCEPT_ENCODING {
+        *line = BOTH;
+    } else if let Ok(joined) =
+        HeaderValue::from_bytes(&[line.as_bytes(), b", ", name.as_bytes()].concat())
+    {
+        *line = joined;
     }
 }

@@ -63,22 +63,22 @@ impl From<Fault> for Faults {
 
 /// All values, or the faults of all.
 pub fn all<T>(checked: impl IntoIterator<Item = Checked<T>>) -> Checked<Vec<T>> {
-    let mut values = Ok(vec![]);
+    let (mut values, mut faults) = (vec![], None);
     for one in checked {
-        values = both(values, one).map(|(mut values, one)| {
-            values.push(one);
-            values
-        });
+        match one {
+            Ok(value) => values.push(value),
+            Err(more) => join(&mut faults, more),
+        }
     }
-    values
+    faults.map_or(Ok(values), Err)
 }
 
-fn both<A, B>(a: Checked<A>, b: Checked<B>) -> Checked<(A, B)> {
-    match (a, b) {
-        (Ok(a), Ok(b)) => Ok((a, b)),
-        (Err(a), Err(b)) => Err(a.and(b)),
-        (Err(faults), Ok(_)) | (Ok(_), Err(faults)) => Err(faults),
-    }
+/// Puts faults to those found so far.
+fn join(found: &mut Option<Faults>, more: Faults) {
+    *found = Some(match found.take() {
+        Some(faults) => faults.and(more),
+        None => more,
+    });
 }
 
 /// Checked values of different types that belong together.
@@ -93,35 +93,35 @@ pub trait Together {
     fn together(self) -> Checked<Self::Values>;
 }
 
-impl<A> Together for (Checked<A>,) {
-    type Values = (A,);
+/// Each value is moved once: some are large.
+macro_rules! together {
+    ($($kind:ident $name:ident),+) => {
+        impl<$($kind),+> Together for ($(Checked<$kind>,)+) {
+            type Values = ($($kind,)+);
 
-    fn together(self) -> Checked<Self::Values> {
-        self.0.map(|value| (value,))
-    }
-}
-
-/// A tuple is a shorter one and a last value.
-macro_rules! longer {
-    ($($kind:ident $name:ident),+; $last_kind:ident $last:ident) => {
-        impl<$($kind,)+ $last_kind> Together for ($(Checked<$kind>,)+ Checked<$last_kind>,) {
-            type Values = ($($kind,)+ $last_kind,);
-
+            #[inline]
             fn together(self) -> Checked<Self::Values> {
-                let ($($name,)+ $last,) = self;
-                let values = both(($($name,)+).together(), $last);
-                values.map(|(($($name,)+), $last)| ($($name,)+ $last,))
+                match self {
+                    ($(Ok($name),)+) => Ok(($($name,)+)),
+                    ($($name,)+) => {
+                        let mut faults = None;
+                        $(if let Err(more) = $name {
+                            join(&mut faults, more);
+                        })+
+                        Err(faults.expect("one of them is no value"))
+                    }
+                }
             }
         }
     };
 }
 
-longer!(A a; B b);
-longer!(A a, B b; C c);
-longer!(A a, B b, C c; D d);
-longer!(A a, B b, C c, D d; E e);
-longer!(A a, B b, C c, D d, E e; F f);
-longer!(A a, B b, C c, D d, E e, F f; G g);
+together!(A a, B b);
+together!(A a, B b, C c);
+together!(A a, B b, C c, D d);
+together!(A a, B b, C c, D d, E e);
+together!(A a, B b, C c, D d, E e, F f);
+together!(A a, B b, C c, D d, E e, F f, G g);
 
 #[cfg(test)]
 mod tests {

@@ -22,7 +22,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct Planned {
     /// The query.
-    pub query: Query,
+    pub query: Box<Query>,
     /// Its sets of points, each narrowed to the query's window.
     pub sets: Vec<PlannedSet>,
     /// The number of the query's points before the window.
@@ -38,7 +38,7 @@ pub struct Planned {
 #[derive(Clone, Debug)]
 pub struct Placed {
     /// The set.
-    pub set: Set,
+    pub set: Box<Set>,
     /// Its points.
     pub points: PlacedPoints,
     /// Their attributes.
@@ -54,7 +54,7 @@ impl Placed {
     ///
     /// # Errors
     /// As [`new`](Self::new), and as [`Planned::tables`].
-    pub fn at_once(set: Set) -> Result<Self, Error> {
+    pub fn at_once(set: Box<Set>) -> Result<Self, Error> {
         let ready = store::ready(&set, &Anew)?;
         Self::new(set, ready)
     }
@@ -63,7 +63,7 @@ impl Placed {
     ///
     /// # Errors
     /// [`Error::Invalid`] for a distance that cannot be kept, or a count.
-    pub fn new(set: Set, ready: Ready) -> Result<Self, Error> {
+    pub fn new(set: Box<Set>, ready: Ready) -> Result<Self, Error> {
         let resolve::Resolved::Known(spacing, density) = resolve::resolve(&set, &ready)? else {
             return Err(set.fault(
                 "count",
@@ -140,7 +140,11 @@ impl Planned {
     /// # Errors
     /// [`Error::Invalid`] if the region lies beyond the reach of `f64` coordinates, or an amount cannot be reached;
     /// [`Error::TooManyRows`] if counting would take too long.
-    pub fn new(query: Query, tables: &[Ready], limits: &Limits) -> Result<Self, Error> {
+    pub fn new(
+        query: impl Into<Box<Query>>,
+        tables: &[Ready],
+        limits: &Limits,
+    ) -> Result<Self, Error> {
         Self::unless_stopped(query, tables, limits, &Stop::default())
     }
 
@@ -149,12 +153,12 @@ impl Planned {
     /// # Errors
     /// As [`new`](Self::new), and [`Error::Internal`] once it is stopped; that error reaches no caller.
     pub fn unless_stopped(
-        query: Query,
+        query: impl Into<Box<Query>>,
         tables: &[Ready],
         limits: &Limits,
         stop: &Stop,
     ) -> Result<Self, Error> {
-        let planned = Self::plan(query, tables, limits, stop);
+        let planned = Self::plan(query.into(), tables, limits, stop);
         if stop.is_raised() {
             return Err(Error::Internal(
                 "a plan was stopped before its request ended",
@@ -163,7 +167,12 @@ impl Planned {
         planned
     }
 
-    fn plan(query: Query, tables: &[Ready], limits: &Limits, stop: &Stop) -> Result<Self, Error> {
+    fn plan(
+        query: Box<Query>,
+        tables: &[Ready],
+        limits: &Limits,
+        stop: &Stop,
+    ) -> Result<Self, Error> {
         let identity = OnceLock::new();
         if let Some(token) = query.window.cursor {
             let digests: Vec<&str> = tables.iter().map(|t| t.entry.digest.as_str()).collect();
@@ -171,7 +180,7 @@ impl Planned {
             token.check(identity)?;
         }
         let mut planner = Planner::new(&query, limits, stop);
-        let mut sets = vec![];
+        let mut sets = Vec::with_capacity(tables.len());
         for (i, (set, ready)) in query.sets.iter().zip(tables).enumerate() {
             sets.push(planner.plan(i, set, ready)?);
         }
@@ -220,7 +229,10 @@ impl Planned {
         self.offset = earlier.saturating_add(here);
         for (i, set) in self.sets.iter_mut().enumerate().skip(first) {
             let whole = &set.plan;
-            let part = whole.window(skip, Some(room));
+            let part = match skip == 0 && whole.count() <= room {
+                true => whole.clone(),
+                false => whole.window(skip, Some(room)),
+            };
             let left_out = skip.min(whole.count());
             set.before = earlier;
             earlier = earlier.saturating_add(whole.offset() + whole.count());

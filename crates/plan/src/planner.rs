@@ -114,13 +114,16 @@ impl<'a> Planner<'a> {
         // The points of a page may be the only ones in many tiles.
         let is_page = self.query.window != Window::default();
         let made = self.prices.test(set, places.filter(|_| !is_page));
-        self.prices.push(set, Some(spacing), region.bounds);
-        let whole = plan.placement().with_lod(Keep::ALL);
-        let layer = selection.set.placed(whole);
-        self.layers.push(match &set.region {
-            Some(own) => layer.limited_to(own.area.clone()),
-            None => layer,
-        });
+        // Only later layers look back.
+        if i + 1 < self.query.sets.len() {
+            self.prices.push(set, Some(spacing), region.bounds);
+            let whole = plan.placement().with_lod(Keep::ALL);
+            let layer = selection.set.placed(whole);
+            self.layers.push(match &set.region {
+                Some(own) => layer.limited_to(own.area.clone()),
+                None => layer,
+            });
+        }
         Ok(PlannedSet::new(
             ready.entry.clone(),
             match resolved {

@@ -12,6 +12,10 @@ use super::{
 
 /// Checks the attributes among some values.
 pub(super) fn check(values: &Values, kinds: Option<&Kinds>) -> Checked<Attributes> {
+    let own = [&ATTRIBUTES, &SCALE_RANGE, &SCALE_RANGES, &VARIANTS];
+    if !own.into_iter().any(|parameter| values.has(parameter)) {
+        return Ok(Attributes::default());
+    }
     let names = values.get::<Vec<String>>(&ATTRIBUTES);
     let named = names
         .iter()

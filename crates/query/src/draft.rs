@@ -153,7 +153,7 @@ impl Draft {
         self.check_vertices(most_vertices)?;
         let sets = match (&self.layers, known) {
             (Ok(_), Some(sets)) => Ok(sets),
-            (Ok(layers), None) if layers.is_empty() => self.alone(loaded).map(|set| [set].into()),
+            (Ok(layers), None) if layers.is_empty() => self.alone(loaded).map(|set| [*set].into()),
             (Ok(layers), None) => self.layers(layers, loaded).map(Into::into),
             (Err(faults), _) => Err(faults.clone()),
         };
@@ -222,11 +222,10 @@ impl Draft {
     }
 
     /// The one set.
-    fn alone(&self, loaded: &Loaded<'_>) -> Checked<Set> {
+    fn alone(&self, loaded: &Loaded<'_>) -> Checked<Box<Set>> {
         let except = except::of_set(&self.values, loaded.catalog);
-        let (set, except) = (Set::of(&self.values, loaded), except).together()?;
-        let mut set = set;
-        set.leave_out(except);
+        let (mut set, except) = (Set::of(&self.values, loaded), except).together()?;
+        set.except = except;
         Ok(set)
     }
 

@@ -237,7 +237,7 @@ impl Set {
                 .map(|terrain| terrain.field.digest.clone()),
             variant_field_digests: self.variant_field_digests(),
             except_digest: self.except.as_ref().map(Except::digest),
-            values: Echoed(self.values.clone()),
+            values: Echoed(self.values()),
             clear_of: self.named_clear_of(all),
             kinds: names.map(Into::into).zip(kinds.iter().copied()).collect(),
             kind_distances: kind_distances.into(),
@@ -286,11 +286,8 @@ impl Set {
         }
         let named = [&FIELD, &VARIANT_FIELDS, &TERRAIN, &EXCEPT];
         let is_named = |parameter: &Parameter| named.contains(&parameter);
-        for (parameter, value) in self
-            .values
-            .iter()
-            .filter(|(parameter, _)| !is_named(parameter))
-        {
+        let values = self.values();
+        for (parameter, value) in values.iter().filter(|(parameter, _)| !is_named(parameter)) {
             identity[parameter.name] = json!(value);
         }
         identity

@@ -138,6 +138,9 @@ impl Items {
 
 /// The points that a single set leaves out.
 pub(super) fn of_set(values: &Values, catalog: &Catalog) -> Checked<Option<Except>> {
+    if !values.has(&EXCEPT) {
+        return Ok(None);
+    }
     let items = Items::of(values, catalog)?;
     items.check(None)?;
     let mut except = Except::default();
@@ -165,7 +168,7 @@ pub(super) fn of_layers(
     };
     let all = all(layers.iter().zip(&names).map(of_layer))?;
     for (set, except) in sets.iter_mut().zip(all) {
-        set.leave_out(except);
+        set.except = except;
     }
     Ok(())
 }

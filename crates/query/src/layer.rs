@@ -95,7 +95,7 @@ impl LayerDraft {
             name,
             region,
             clear_of,
-            ..set
+            ..*set
         })
     }
 

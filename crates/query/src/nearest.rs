@@ -42,7 +42,7 @@ impl Nearest {
     ///
     /// # Errors
     /// As [`Set::single`], with every fault of both.
-    pub fn of_set(values: &Values, catalog: &Catalog) -> Result<(Set, Self), Error> {
+    pub fn of_set(values: &Values, catalog: &Catalog) -> Result<(Box<Set>, Self), Error> {
         Self::of_set_within(values, catalog, Allowance::UNLIMITED)
     }
 
@@ -54,7 +54,7 @@ impl Nearest {
         values: &Values,
         catalog: &Catalog,
         allowance: Allowance<'_>,
-    ) -> Result<(Set, Self), Error> {
+    ) -> Result<(Box<Set>, Self), Error> {
         match (
             Self::of(values),
             Set::single_within(values, catalog, allowance),

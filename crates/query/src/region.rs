@@ -1,5 +1,7 @@
 //! Regions: boxes, circles, polygons, chunks, and lists of them.
 
+use std::borrow::Cow;
+
 use serde_json::{Value as Json, json};
 use strew_core::{Area, Circle, ErrorKind, Polygon, Region, Spacing};
 use strew_error::{Checked, Error, Fault, Faults, Together as _, faults::all, number};
@@ -24,7 +26,7 @@ pub type Rings = Vec<Vec<[f64; 2]>>;
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegionDraft {
     /// The field it came from.
-    pub path: String,
+    pub path: Cow<'static, str>,
     /// The shape as it was read.
     pub shape: ShapeDraft,
 }
@@ -48,7 +50,7 @@ pub enum ShapeDraft {
 #[derive(Clone, Debug, PartialEq)]
 pub struct QueryRegion {
     /// The field it came from.
-    pub path: String,
+    pub path: Cow<'static, str>,
     /// The area; it has a box around it, which is not empty.
     pub area: Area,
     /// That box.

@@ -9,16 +9,8 @@ use strew_core::{
 use strew_error::{Error, Fault};
 
 use crate::{
-    amount::Amount,
-    field::SetField,
-    kinds::Kinds,
-    parameter::Parameter,
-    parameters::{EXCEPT, LOD},
-    period::Period,
-    region::QueryRegion,
-    resolved,
-    terrain::Terrain,
-    value::Value,
+    amount::Amount, field::SetField, kinds::Kinds, period::Period, region::QueryRegion,
+    resolved::Resolved, terrain::Terrain,
 };
 
 /// A set of points: a table laid into the world.
@@ -58,9 +50,8 @@ pub struct Set {
     pub period: Option<Period>,
     /// The points that it is without.
     pub except: Option<Except>,
-    /// The values of its parameters with everything filled in, in the order of the table: as answers echo them, and as
-    /// its identity has them.
-    pub values: Vec<(&'static Parameter, Value)>,
+    /// The values that were given, of those that answers echo.
+    pub(crate) given: Resolved,
     /// Where the layer is; everywhere if `None`.
     pub region: Option<QueryRegion>,
     /// The layers that are kept clear of, by position, with the distance; all before this one.
@@ -97,8 +88,6 @@ impl Set {
     pub(crate) fn show(&mut self, part: Keep) {
         let product = (self.lod.get() * part.get()).max(Keep::MIN);
         self.lod = Keep::new(product).unwrap_or(part);
-        let lod = (self.lod != Keep::ALL).then(|| Value::Number(self.lod.get()));
-        resolved::replace(&mut self.values, [(&LOD, lod)]);
     }
 
     /// The number of steps by which points settle; `None` in sets whose points do not settle by default: periods, and
@@ -120,14 +109,6 @@ impl Set {
     #[must_use]
     pub fn moves(&self) -> bool {
         self.steps().is_some_and(|steps| steps > 0)
-    }
-
-    /// Leaves out some points.
-    pub(crate) fn leave_out(&mut self, except: Option<Except>) {
-        let names = except.as_ref().map(|except| except.names.clone());
-        let names = names.filter(|names| !names.is_empty()).map(Value::Names);
-        resolved::replace(&mut self.values, [(&EXCEPT, names)]);
-        self.except = except;
     }
 
     /// All points that the table has for it, whatever its share, its kinds and its fields leave out.

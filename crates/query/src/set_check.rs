@@ -10,8 +10,8 @@ use crate::{
     field::Loaded,
     kinds::Kinds,
     parameters::{
-        ALPHA, ATTRIBUTES, HEIGHTS, KEEP, LOD, MAP, NORMALS, PROFILE, SCALE_RANGE, SEED, SETTLE,
-        SPREAD, WARP,
+        ALPHA, ATTRIBUTES, EXCEPT, HEIGHTS, KEEP, LOD, MAP, NORMALS, PROFILE, SCALE_RANGE, SEED,
+        SETTLE, SPREAD, WARP,
     },
     period::Period,
     resolved,
@@ -23,7 +23,7 @@ use crate::{
 
 impl Set {
     /// Checks the set of some values.
-    pub(super) fn of(values: &Values, loaded: &Loaded<'_>) -> Checked<Self> {
+    pub(super) fn of(values: &Values, loaded: &Loaded<'_>) -> Checked<Box<Self>> {
         let kinds = Kinds::check(values);
         let known = kinds.as_ref().ok().and_then(Option::as_ref);
         let checked = (
@@ -53,7 +53,7 @@ impl Set {
         };
         let period = Period::check(values, amount, &entry)?;
         let seed = Seed(seed.unwrap_or(0));
-        let mut set = Self {
+        Ok(Box::new(Self {
             path: values.path().into(),
             name: String::new(),
             entry,
@@ -72,15 +72,13 @@ impl Set {
             terrain,
             region: None,
             clear_of: vec![],
-            values: resolved::of(values),
-        };
-        set.fill();
-        Ok(set)
+            given: resolved::of(values),
+        }))
     }
 
-    /// Fills in the values that the query omits or expresses by other parameters, and removes those that change
-    /// nothing.
-    fn fill(&mut self) {
+    /// The values of its parameters in the order of the table: with those that the query omits or expresses by other
+    /// parameters, and without those that change nothing. Answers echo them, and its identity has them.
+    pub(crate) fn values(&self) -> resolved::Resolved {
         let text = |text: &str| Some(Value::Text(text.into()));
         let key = &self.entry.key;
         let attributes = self.attributes.as_slice();
@@ -93,6 +91,7 @@ impl Set {
             _ => None,
         });
         let terrain = self.terrain.as_ref();
+        let except = self.except.as_ref().map(|except| &except.names);
         let filled = [
             (&PROFILE, text(&key.profile)),
             (&ALPHA, text(&key.alpha.to_string())),
@@ -117,6 +116,12 @@ impl Set {
             ),
             (&SCALE_RANGE, scale),
             (
+                &EXCEPT,
+                except
+                    .filter(|names| !names.is_empty())
+                    .map(|names| Value::Names(names.clone())),
+            ),
+            (
                 &SPREAD,
                 self.kinds
                     .as_ref()
@@ -133,14 +138,16 @@ impl Set {
                     .map(|_| Value::Switch(true)),
             ),
         ];
-        resolved::replace(&mut self.values, filled);
+        let mut values = self.given.clone();
+        resolved::replace(&mut values, filled);
+        values
     }
 
     /// Checks a set without a region.
     ///
     /// # Errors
     /// As [`crate::Draft::check`].
-    pub fn single(values: &Values, catalog: &Catalog) -> Result<Self, Error> {
+    pub fn single(values: &Values, catalog: &Catalog) -> Result<Box<Self>, Error> {
         Self::single_within(values, catalog, Allowance::UNLIMITED)
     }
 
@@ -152,7 +159,7 @@ impl Set {
         values: &Values,
         catalog: &Catalog,
         allowance: Allowance<'_>,
-    ) -> Result<Self, Error> {
+    ) -> Result<Box<Self>, Error> {
         let loaded = Loaded::new(catalog, allowance);
         let set = Self::of(values, &loaded);
         loaded.had_room()?;

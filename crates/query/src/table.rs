@@ -24,34 +24,33 @@ pub(super) fn check(
         digest(values, &TABLE),
     )
         .together()?;
-    let profile = profile.map(Into::into).or(named);
-    let profile = profile.unwrap_or_else(|| DEFAULT_PROFILE.into());
-    let alpha_text = text.unwrap_or_else(|| DEFAULT_ALPHA.into());
+    let profile = profile.or(named.as_deref()).unwrap_or(DEFAULT_PROFILE);
+    let alpha_text = text.as_deref().unwrap_or(DEFAULT_ALPHA);
     let fault = |parameter: &Parameter, value: &str, detail: String, allowed: String| -> Faults {
         let field = format!("{}{}", values.path(), parameter.name);
         Fault::new(&field, value, detail, allowed).into()
     };
     let is_pattern = profile == PATTERN;
-    let is_known = is_pattern || catalog.has_profile(&profile);
-    let alpha = parse(&alpha_text).map_err(|error| {
+    let is_known = is_pattern || catalog.has_profile(profile);
+    let alpha = parse(alpha_text).map_err(|error| {
         let allowed = match is_known {
             _ if is_pattern => "any number between 1 and 2".into(),
-            true => some(catalog.alphas(&profile).iter().map(ToString::to_string)),
+            true => some(catalog.alphas(profile).iter().map(ToString::to_string)),
             false => loaded(catalog),
         };
-        fault(&ALPHA, &alpha_text, error.to_string(), allowed)
+        fault(&ALPHA, alpha_text, error.to_string(), allowed)
     });
     let known = match is_known {
         true => Ok(()),
         false => {
             let detail =
-                "no such profile is loaded".to_owned() + &catalog.offer().of_profile(&profile);
-            Err(fault(&PROFILE, &profile, detail, loaded(catalog)))
+                "no such profile is loaded".to_owned() + &catalog.offer().of_profile(profile);
+            Err(fault(&PROFILE, profile, detail, loaded(catalog)))
         }
     };
     let (alpha, ()) = (alpha, known).together()?;
     let wanted = Wanted {
-        profile: profile.as_str().into(),
+        profile: profile.into(),
         alpha,
         catalog,
     };
@@ -63,16 +62,16 @@ pub(super) fn check(
     if let Some(entry) = found {
         return Ok((entry, pin));
     }
-    let sizes = catalog.sizes(&profile, alpha);
+    let sizes = catalog.sizes(profile, alpha);
     let size = size.filter(|_| is_pattern || !sizes.is_empty());
     let Some((text, size)) = size else {
-        let offer = catalog.offer().of_table(&profile, alpha, map.as_deref());
+        let offer = catalog.offer().of_table(profile, alpha, map.as_deref());
         let detail = format!("the profile `{profile}` is not loaded for this alpha{offer}");
-        let allowed = some(catalog.alphas(&profile).iter().map(ToString::to_string));
-        return Err(fault(&ALPHA, &alpha_text, detail, allowed));
+        let allowed = some(catalog.alphas(profile).iter().map(ToString::to_string));
+        return Err(fault(&ALPHA, alpha_text, detail, allowed));
     };
     let offer = size.map_or(String::new(), |_| {
-        catalog.offer().of_table(&profile, alpha, Some(text))
+        catalog.offer().of_table(profile, alpha, Some(text))
     });
     let detail = format!("the profile `{profile}` is not loaded with this map size{offer}");
     let allowed = match is_pattern {

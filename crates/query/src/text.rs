@@ -1,5 +1,7 @@
 //! Queries as text: the parameters of an address.
 
+use std::{borrow::Cow, str::Utf8Error};
+
 use percent_encoding::percent_decode_str;
 use strew_error::Fault;
 
@@ -15,8 +17,9 @@ pub fn parse_pairs(text: &str, groups: &'static [Group]) -> Values {
             break;
         }
         let (raw_name, raw_value) = pair.split_once('=').unwrap_or((pair, ""));
-        let name = percent_decode_str(raw_name).decode_utf8_lossy();
-        match percent_decode_str(raw_value).decode_utf8() {
+        let name =
+            decoded(raw_name).unwrap_or_else(|_| percent_decode_str(raw_name).decode_utf8_lossy());
+        match decoded(raw_value) {
             Ok(value) => values.add_text(&name, &value),
             Err(_) => values.refuse(Fault::new(
                 &name,
@@ -27,6 +30,14 @@ pub fn parse_pairs(text: &str, groups: &'static [Group]) -> Values {
         }
     }
     values
+}
+
+/// A text without its percent-encoding, if that is UTF-8. Most have none.
+fn decoded(text: &str) -> Result<Cow<'_, str>, Utf8Error> {
+    match text.as_bytes().contains(&b'%') {
+        true => percent_decode_str(text).decode_utf8(),
+        false => Ok(text.into()),
+    }
 }
 
 #[cfg(test)]

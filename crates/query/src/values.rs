@@ -196,7 +196,12 @@ impl Values {
     /// Whether a parameter is given.
     #[must_use]
     pub fn has(&self, parameter: &Parameter) -> bool {
-        self.given.iter().any(|(known, _)| *known == parameter)
+        self.of(parameter).is_some()
+    }
+
+    /// A parameter with its value, if it is given.
+    fn of(&self, parameter: &Parameter) -> Option<&(&'static Parameter, Checked<Value>)> {
+        self.given.iter().find(|(known, _)| *known == parameter)
     }
 
     /// The given parameters of some groups, in the order of the table.
@@ -220,8 +225,7 @@ impl Values {
     where
         T: for<'a> TryFrom<&'a Value, Error = &'static str>,
     {
-        let Some((parameter, value)) = self.given.iter().find(|(known, _)| *known == parameter)
-        else {
+        let Some((parameter, value)) = self.of(parameter) else {
             return Ok(None);
         };
         let value = value.as_ref().map_err(Clone::clone)?;

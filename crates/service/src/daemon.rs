@@ -176,7 +176,7 @@ impl Service {
     ///
     /// # Errors
     /// As [`Draft::check`], and [`Error::Invalid`] for a format that is for files only.
-    pub fn check(&self, draft: &Draft, stop: &Stop) -> Result<(Query, Options), Error> {
+    pub fn check(&self, draft: &Draft, stop: &Stop) -> Result<(Box<Query>, Options), Error> {
         let (catalog, vertices) = (self.catalog(), self.limits.max_vertices);
         let allowance = allowance(stop);
         let (query, options) = draft.check_within(&catalog, vertices, allowance)?;
@@ -186,7 +186,7 @@ impl Service {
                 let detail = "written by `strew sample` only";
                 Err(draft.values.fault(format, detail).into())
             }
-            _ => Ok((query, options)),
+            _ => Ok((query.into(), options)),
         }
     }
 
@@ -198,7 +198,7 @@ impl Service {
     pub async fn open(
         &self,
         caller: &Caller,
-        query: Query,
+        query: Box<Query>,
         picture: Option<u32>,
     ) -> Result<(Permit, Planned), Error> {
         // Waiting for labels takes no place.
@@ -234,7 +234,7 @@ impl Service {
     /// [`Error::Invalid`] for a region out of reach or an amount that cannot be had,
     /// [`Error::TooManyRows`] if counting would take too long, and [`Error::Denied`] if the caller's
     /// rate does not allow it.
-    pub async fn count(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
+    pub async fn count(&self, caller: &Caller, query: Box<Query>) -> Result<Planned, Error> {
         let tables = self.tables(caller, &query).await?;
         let (planned, _) = self.charged(caller, query, tables).await?;
         Ok(planned)
@@ -242,7 +242,7 @@ impl Service {
 
     /// The tables of the sets of a query.
     async fn tables(&self, caller: &Caller, query: &Query) -> Result<Vec<Ready>, Error> {
-        let mut tables = vec![];
+        let mut tables = Vec::with_capacity(query.sets.len());
         for set in &*query.sets {
             tables.push(self.ready(caller, set).await?);
         }
@@ -253,16 +253,16 @@ impl Service {
     async fn charged(
         &self,
         caller: &Caller,
-        query: Query,
+        query: Box<Query>,
         tables: Vec<Ready>,
     ) -> Result<(Planned, u128), Error> {
         let mut charged = 0;
-        let limits = self.limits.clone();
         let planned = if query.is_small() {
             // Handing it over would take longer.
-            Planned::new(query, &tables, &limits)?
+            Planned::new(query, &tables, &self.limits)?
         } else {
             // On the heap, lest small boxes have room for it.
+            let limits = self.limits.clone();
             let turns = Box::pin(self.planned_in_turns(caller, query, tables, limits));
             let (planned, rows) = turns.await?;
             charged = rows;
@@ -279,7 +279,7 @@ impl Service {
     async fn planned_in_turns(
         &self,
         caller: &Caller,
-        query: Query,
+        query: Box<Query>,
         tables: Vec<Ready>,
         limits: Limits,
     ) -> Result<(Planned, u128), Error> {
@@ -349,7 +349,7 @@ impl Service {
     ///
     /// # Errors
     /// As [`count`](Self::count), and [`Error::TooManyPoints`] over the limit.
-    pub async fn plan(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
+    pub async fn plan(&self, caller: &Caller, query: Box<Query>) -> Result<Planned, Error> {
         let planned = self.count(caller, query).await?;
         self.check_points(caller, &planned)?;
         Ok(planned)
@@ -378,7 +378,7 @@ impl Service {
     ///
     /// # Errors
     /// [`Error::Invalid`] for an amount that the table cannot have.
-    pub async fn place(&self, caller: &Caller, set: Set) -> Result<Placed, Error> {
+    pub async fn place(&self, caller: &Caller, set: Box<Set>) -> Result<Placed, Error> {
         let ready = self.ready(caller, &set).await?;
         Placed::new(set, ready)
     }
@@ -392,7 +392,7 @@ impl Service {
     pub async fn nearest<T: Send + 'static>(
         &self,
         caller: &Caller,
-        set: Set,
+        set: Box<Set>,
         nearest: Nearest,
         answer: impl FnOnce(&Placed, Vec<Found>) -> Result<T, Error> + Send + 'static,
     ) -> Result<T, Error> {

@@ -58,7 +58,7 @@ const NONE: u32 = u32::MAX;
 impl Record {
     /// Of a request with this id, in a trace or in none, which takes its memory from a budget.
     #[must_use]
-    pub fn new(id: &str, trace: Option<&str>, budget: Budget) -> Arc<Self> {
+    pub fn new(id: impl Into<Box<str>>, trace: Option<&str>, budget: Budget) -> Arc<Self> {
         Arc::new(Self {
             id: id.into(),
             trace: trace.map(Into::into),

@@ -19,6 +19,7 @@ use strew_service::{Held, Service, segments::Segments, unpack::Coding};
 use tonic::{Status, body::Body};
 
 use super::{
+    compression::SENT,
     frames::{PREFIX, prefix},
     status,
 };
@@ -38,7 +39,7 @@ struct Carried {
 
 /// A request with its message.
 pub(super) struct Received<T> {
-    pub(super) message: T,
+    pub(super) message: Box<T>,
     /// As long as this many bytes of text it takes to check.
     pub(super) effort: usize,
 }
@@ -52,7 +53,7 @@ pub(super) fn received<T: 'static>(request: tonic::Request<T>) -> Received<T> {
         message.take()?.downcast::<T>().ok()
     });
     Received {
-        message: message.map_or(empty, |message| *message),
+        message: message.unwrap_or_else(|| empty.into()),
         effort: carried.map_or(0, |carried| carried.effort),
     }
 }
@@ -99,7 +100,7 @@ pub(super) async fn read(
 
 /// The coding of the messages of a call, if they have one; nothing if it is unknown here.
 fn coding(headers: &HeaderMap) -> Option<Option<Coding>> {
-    match headers.get("grpc-encoding").map(|value| value.as_bytes()) {
+    match headers.get(SENT).map(|value| value.as_bytes()) {
         None | Some(b"identity") => Some(None),
         Some(b"gzip") => Some(Some(Coding::Gzip)),
         Some(b"zstd") => Some(Some(Coding::Zstd)),

@@ -128,7 +128,7 @@ impl Shared {
                 true => budget.hold_anyway(bytes),
                 false => budget.hold(bytes)?,
             };
-            response.extensions_mut().insert(Arc::new(held));
+            response = response.map(|body| body.holding(held));
         }
         Ok(response)
     }

@@ -82,22 +82,31 @@ pub(super) fn terms(server: &Server) -> Terms {
 }
 
 impl Exchanges {
+    /// A request that begins its way. From here on it travels as a pointer.
+    pub(super) fn visit(&self, peer: Peer, request: Request) -> Box<Visit> {
+        Box::new(Visit {
+            dialect: Dialect::of(request.headers()),
+            client: self.client(peer, request.headers()),
+            request,
+            refused: None,
+        })
+    }
+
     /// Answers a request to a route; the answer leaves through its exchange.
     pub(super) async fn answer<A: Future<Output = Response>>(
         &self,
         peer: Peer,
         open: &Arc<OpenExchanges>,
         route: &'static str,
-        request: Request,
+        mut visit: Box<Visit>,
         answer: impl FnOnce(Box<Visit>) -> A,
     ) -> Response {
-        let dialect = Dialect::of(request.headers());
-        let mut client = self.client(peer, request.headers());
-        let usage = client.usage.clone();
+        let dialect = visit.dialect;
+        let usage = visit.client.usage.clone();
         let budget = self.budget.of_address(usage.clone());
         let report = {
             let asked = Asked {
-                request: &request,
+                request: &visit.request,
                 protocol: dialect.protocol(),
                 route,
                 peer,
@@ -106,25 +115,26 @@ impl Exchanges {
         };
         let record = report.record().clone();
 
-        let is_probe = PROBES.contains(&request.uri().path());
+        let is_probe = PROBES.contains(&visit.request.uri().path());
         let probe = is_probe.then(|| usage.probe()).flatten();
         // Refusals are answers, too: those beyond the limits are small, and beyond twice the limits they
         // have no body that a client could leave untouched.
-        client.is_probe = probe.is_some();
+        let is_probe = probe.is_some();
+        visit.client.is_probe = is_probe;
         let (used, limit) = (usage.requests.used(), usage.requests.limit());
-        let base = match client.is_probe {
+        let base = match is_probe {
             true => Ok(budget.hold_anyway(BASE)),
             false => budget.hold(BASE),
         };
         let refused = match base.as_ref().err() {
             Some(error) => Some(error.clone()),
-            None if client.is_probe || used < limit => None,
+            None if is_probe || used < limit => None,
             None => {
                 let what = "requests";
                 Some(Denied::Address { what, limit }.into())
             }
         };
-        let is_bare = base.is_err() || !client.is_probe && used >= limit.saturating_mul(2);
+        let is_bare = base.is_err() || !is_probe && used >= limit.saturating_mul(2);
         let places = Places {
             _request: usage.request(),
             _probe: probe,
@@ -136,18 +146,15 @@ impl Exchanges {
             match refused {
                 Some(error) if is_bare => bare(dialect, &error),
                 refused => {
-                    let visit = Visit {
-                        request,
-                        dialect,
-                        client,
-                        refused,
-                    };
-                    answer(Box::new(visit)).await
+                    visit.refused = refused;
+                    answer(visit).await
                 }
             }
         });
         let mut response = record.clone().scope(answered).await;
-        if let Ok(id) = HeaderValue::from_str(record.id()) {
+        if let Ok(mut id) = HeaderValue::from_str(record.id()) {
+            // Never indexed in HTTP/2: it is another one in each answer, and would push others out of the table.
+            id.set_sensitive(true);
             response.headers_mut().insert(REQUEST_ID, id);
         }
         exchange.answer(response)

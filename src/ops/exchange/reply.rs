@@ -127,7 +127,6 @@ impl Exchange {
     pub(super) fn answer(self: Arc<Self>, mut response: Response) -> Response {
         let extensions = response.extensions_mut();
         let deadline = extensions.remove::<grpc::Deadline>();
-        let held = extensions.remove::<Arc<Held>>();
         let end = {
             let mut end = self.end.lock();
             if let Some(deadline) = deadline
@@ -142,6 +141,7 @@ impl Exchange {
         };
         self.state.lock().report.head(&response);
         response.map(|body| {
+            let (held, body) = body.release();
             let whole = body.size_hint().exact();
             let whole = whole.and_then(|bytes| usize::try_from(bytes).ok());
             let mut state = self.state.lock();
@@ -151,7 +151,7 @@ impl Exchange {
             state.body = Some(body);
             state.progress.resume(Instant::now());
             drop(state);
-            Body::new(Reply {
+            Body::frames(Reply {
                 exchange: self,
                 end,
                 sleep: None,

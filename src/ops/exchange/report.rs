@@ -15,7 +15,7 @@ use crate::{
     body::{Request, Response},
     grpc,
     ops::{
-        identity::Identity,
+        identity::{Identity, Trace},
         metrics::{Broken, Metrics, NO_FORMAT, NO_ROUTE, Protocol, since},
         peer::Peer,
         spans::{Answered, Spans},
@@ -37,7 +37,7 @@ pub(super) struct Report {
     metrics: Arc<Metrics>,
     spans: Option<Spans>,
     record: Arc<Record>,
-    identity: Identity,
+    trace: Option<Trace>,
     start: Instant,
     protocol: Protocol,
     route: &'static str,
@@ -80,9 +80,11 @@ impl Report {
         let begins_one = || spans.is_some_and(Spans::begins_one);
         let identity = Identity::of(request.headers(), begins_one);
         metrics.in_flight(protocol).inc();
-        let trace = identity.trace.as_ref().map(|trace| &*trace.trace);
+        let Identity { id, trace } = identity;
+        let of = trace.as_ref().map(|trace| &*trace.trace);
         Self {
-            record: Record::new(&identity.id, trace, budget),
+            record: Record::new(id, of, budget),
+            trace,
             start: Instant::now(),
             route,
             method: request.method().clone(),
@@ -96,7 +98,6 @@ impl Report {
             counted: 0,
             metrics: metrics.clone(),
             spans: spans.cloned(),
-            identity,
             protocol,
         }
     }
@@ -229,15 +230,12 @@ impl Drop for Report {
             metrics.broken(protocol, by).inc();
         }
         let format = self.record.format();
-        let latencies = metrics.latencies(protocol, format.unwrap_or(NO_FORMAT));
-        for (latency, seconds) in latencies.into_iter().zip([first, total]) {
-            latency.observe(seconds);
-        }
+        metrics.took(protocol, format.unwrap_or(NO_FORMAT), [first, total]);
         let method = method_name(&self.method);
         let requests = metrics.requests(protocol, self.route, method, outcome);
         requests.inc();
 
-        let trace = self.identity.trace.as_ref();
+        let trace = self.trace.as_ref();
         let reason = self.record.refused().map(Kind::slug);
         macro_rules! line {
             ($level:ident) => {
@@ -314,5 +312,5 @@ fn method_name(method: &Method) -> &'static str {
 
 /// The code of a call that has ended.
 pub(in crate::ops) fn code(headers: &HeaderMap) -> Option<u32> {
-    headers.get("grpc-status")?.to_str().ok()?.parse().ok()
+    headers.get(grpc::GRPC_STATUS)?.to_str().ok()?.parse().ok()
 }

@@ -7,8 +7,12 @@
 mod process;
 mod scrape;
 
-use std::time::{Instant, SystemTime};
+use std::{
+    sync::Arc,
+    time::{Instant, SystemTime},
+};
 
+use parking_lot::RwLock;
 use prometheus::{
     Histogram, HistogramVec, IntCounter, IntCounterVec, IntGauge, Registry,
     register_histogram_vec_with_registry as histograms,
@@ -66,6 +70,16 @@ const BUCKETS: [f64; 17] = [
     60.0, 300.0,
 ];
 
+/// Points and bytes of answers in a format, and their latencies.
+#[derive(Debug)]
+struct OfFormat {
+    protocol: Protocol,
+    format: &'static str,
+    points: IntCounter,
+    bytes: IntCounter,
+    latencies: [Histogram; 2],
+}
+
 /// The format of answers without points.
 pub(super) const NO_FORMAT: &str = "none";
 /// The route of requests to unknown paths.
@@ -81,6 +95,8 @@ pub struct Metrics {
     in_flight: [IntGauge; 2],
     points: IntCounterVec,
     bytes: IntCounterVec,
+    /// Those of formats that have been answered, which are looked up for each frame and answer.
+    formats: Arc<RwLock<Vec<Arc<OfFormat>>>>,
     rejected: IntCounterVec,
     broken: IntCounterVec,
     first_byte: HistogramVec,
@@ -127,6 +143,7 @@ impl Default for Metrics {
                 "Bytes of bodies handed to connections",
                 &by_format,
             ),
+            formats: Arc::default(),
             rejected: counters(
                 "strew_rejected_total",
                 "Requests refused, by the kind of error",
@@ -175,7 +192,6 @@ impl Default for Metrics {
         // Both protocols show from the start, at zero: a rate needs a first value.
         for protocol in Protocol::ALL {
             metrics.made(protocol, NO_FORMAT, 0, 0);
-            metrics.latencies(protocol, NO_FORMAT);
             metrics.broken(protocol, Broken::Client);
             metrics.broken(protocol, Broken::Server);
             metrics.rejected(protocol, None);
@@ -194,16 +210,35 @@ impl Metrics {
     }
 
     /// Adds points and bytes that answers in a format were made of.
-    pub(super) fn made(&self, protocol: Protocol, format: &str, points: u64, bytes: u64) {
-        let labels = [protocol.name(), format];
-        self.points.with_label_values(&labels).inc_by(points);
-        self.bytes.with_label_values(&labels).inc_by(bytes);
+    pub(super) fn made(&self, protocol: Protocol, format: &'static str, points: u64, bytes: u64) {
+        let of = self.of_format(protocol, format);
+        of.points.inc_by(points);
+        of.bytes.inc_by(bytes);
     }
 
-    /// The seconds until the first byte of answers in a format, and until their end.
-    pub(super) fn latencies(&self, protocol: Protocol, format: &str) -> [Histogram; 2] {
+    /// Adds an answer in a format: the seconds until its first byte, and until its end.
+    pub(super) fn took(&self, protocol: Protocol, format: &'static str, seconds: [f64; 2]) {
+        let of = self.of_format(protocol, format);
+        for (latency, seconds) in of.latencies.iter().zip(seconds) {
+            latency.observe(seconds);
+        }
+    }
+
+    fn of_format(&self, protocol: Protocol, format: &'static str) -> Arc<OfFormat> {
+        let is_it = |of: &&Arc<OfFormat>| of.protocol == protocol && of.format == format;
+        if let Some(known) = self.formats.read().iter().find(is_it) {
+            return known.clone();
+        }
         let labels = [protocol.name(), format];
-        [&self.first_byte, &self.whole].map(|of| of.with_label_values(&labels))
+        let of = Arc::new(OfFormat {
+            protocol,
+            format,
+            points: self.points.with_label_values(&labels),
+            bytes: self.bytes.with_label_values(&labels),
+            latencies: [&self.first_byte, &self.whole].map(|of| of.with_label_values(&labels)),
+        });
+        self.formats.write().push(of.clone());
+        of
     }
 
     /// The counter of refused requests with a reason; `None` for errors that only the protocol has a name for.

@@ -40,9 +40,14 @@ impl Coding {
         }
     }
 
+    /// Whether any coding is for answers of a content type: text compresses well.
+    pub(in crate::rest) fn is_for(content_type: &str) -> bool {
+        is_text(content_type)
+    }
+
     /// The coding of an answer of a content type to a request with these headers.
     pub(in crate::rest) fn chosen(headers: &HeaderMap, content_type: &str) -> Option<Self> {
-        if !is_text(content_type) {
+        if !headers.contains_key(header::ACCEPT_ENCODING) || !Self::is_for(content_type) {
             return None;
         }
         let lines: Vec<String> = headers

@@ -8,8 +8,6 @@
 mod choice;
 mod encoder;
 
-use std::sync::Arc;
-
 use bytes::Bytes;
 use futures_util::{StreamExt as _, stream};
 use http::{HeaderMap, HeaderValue, header};
@@ -36,7 +34,7 @@ pub(super) async fn apply(
     let decided = response.extensions_mut().remove::<Decided>();
     let headers = response.headers_mut();
     // Also of answers that stay plain: with other headers they would not.
-    vary::on(headers, "accept-encoding");
+    vary::on(headers, vary::ACCEPT_ENCODING);
     if headers.contains_key(header::CONTENT_ENCODING) {
         return Ok(response);
     }
@@ -73,14 +71,14 @@ async fn applied(
         }
     }
     let (mut parts, body) = response.into_parts();
+    let (_held, body) = body.release();
     let body = match whole {
         // The length is not known, which an empty body would not say.
         _ if is_head => unknown_length(),
         Some(length) => {
             let encoded = whole_document(body, length, coding, service).await?;
             let held = service.hold(encoded.len())?;
-            parts.extensions.insert(Arc::new(held));
-            Body::from(encoded)
+            Body::from(encoded).holding(held)
         }
         None => {
             let held = service.hold(coding.memory())?;

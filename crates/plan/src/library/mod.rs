@@ -275,7 +275,7 @@ impl Library {
         Ok(held.name.clone())
     }
 
-    fn placed(&self, set: Set) -> Result<Placed, Error> {
+    fn placed(&self, set: Box<Set>) -> Result<Placed, Error> {
         let ready = store::ready(&set, self)?;
         Placed::new(set, ready)
     }

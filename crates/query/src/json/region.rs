@@ -165,10 +165,13 @@ pub(super) fn read(
         }
     };
     let path = match kind {
-        "include" => path.into(),
+        "include" => path.to_owned(),
         _ => field,
     };
-    Ok(RegionDraft { path, shape })
+    Ok(RegionDraft {
+        path: path.into(),
+        shape,
+    })
 }
 
 /// A list of regions, each with its faults in its place.

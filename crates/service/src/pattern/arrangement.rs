@@ -35,7 +35,7 @@ pub struct ArrangementQuery {
     /// The first place of the list.
     pub from: Option<(i64, i64)>,
     /// The set whose points' places are listed.
-    pub set: Option<Set>,
+    pub set: Option<Box<Set>>,
 }
 
 /// An arrangement of pattern points: a point and others at some offsets. Lengths are in turns of the index

@@ -160,6 +160,9 @@ impl PointSet {
 
     /// About the number of points that counting an area visits one by one; 0 without a field.
     pub(crate) fn candidates(&self, area: Area, pieces: usize) -> Result<u128, Error> {
+        if self.lattice.grade.is_none() {
+            return Ok(0);
+        }
         let scope = Scope::new(&self.lattice, &self.mask, area, Stop::default())?;
         let Some(grade) = &scope.lattice.grade else {
             return Ok(0);
