@@ -1,4 +1,5 @@
-//! Small boxes, each in another place, next to a constant answer of the same size.
+//! Small boxes, each in another place, next to constant answers of the same size: one that the daemon sends, and one of
+//! the HTTP library alone, the floor.
 
 use std::{
     net::SocketAddr,
@@ -15,7 +16,7 @@ use tokio::{
 };
 
 use super::{
-    host::Host,
+    host::{Host, SMALL},
     timing::{Effort, median},
 };
 
@@ -129,27 +130,43 @@ pub fn boxes(host: &Host, effort: Effort) {
         .expect("a runtime");
     println!("\nBoxes of 1,000 points as f32 (8 kB), HTTP/1.1, each in another place");
     println!(
-        "{:<14} {:>12} {:>12} {:>8} {:>10} {:>10} {:>8}",
-        "connections", "boxes/s", "constant/s", "ratio", "p99 µs", "const. µs", "ratio"
+        "{:<12} {:>10} {:>10} {:>6} {:>10} {:>6} {:>8} {:>8} {:>6} {:>8} {:>6}",
+        "connections",
+        "boxes/s",
+        "constant/s",
+        "ratio",
+        "alone/s",
+        "ratio",
+        "p99 µs",
+        "const.",
+        "ratio",
+        "alone",
+        "ratio"
     );
     for connections in [1, 16, 64] {
-        let mut figures: [Vec<f64>; 4] = Default::default();
+        let mut figures: [Vec<f64>; 6] = Default::default();
         for _ in 0..effort.rounds {
             let made = client.block_on(burst(host.address, connections, time, elsewhere));
-            let path = |_| "/bench/small/8000".to_owned();
+            let path = |_| format!("/bench/small/{SMALL}");
             let constant = client.block_on(burst(host.address, connections, time, path));
-            let all = [made.rate, constant.rate, made.p99, constant.p99];
-            for (figure, list) in all.into_iter().zip(&mut figures) {
+            let alone = client.block_on(burst(host.alone, connections, time, path));
+            let bursts = [made, constant, alone];
+            let all = bursts.iter().flat_map(|burst| [burst.rate, burst.p99]);
+            for (figure, list) in all.zip(&mut figures) {
                 list.push(figure);
             }
         }
-        let [made, constant, p99, constant_p99] = figures.map(median);
+        let [made, p99, constant, constant_p99, alone, alone_p99] = figures.map(median);
         println!(
-            "{connections:<14} {made:>12.0} {constant:>12.0} {:>8.2} {:>10.0} {:>10.0} {:>8.2}",
+            "{connections:<12} {made:>10.0} {constant:>10.0} {:>6.2} {alone:>10.0} {:>6.2} {:>8.0} {:>8.0} {:>6.2} \
+             {:>8.0} {:>6.2}",
             made / constant,
+            made / alone,
             p99 * 1e6,
             constant_p99 * 1e6,
-            p99 / constant_p99
+            p99 / constant_p99,
+            alone_p99 * 1e6,
+            p99 / alone_p99
         );
     }
 }

@@ -1,5 +1,5 @@
 //! The daemon inside this process, with further routes whose answers cost nothing to make: a
-//! prepared block sent again and again, or copied first.
+//! prepared block sent again and again, or copied first. Beside it, the HTTP library alone.
 
 use std::{
     convert::Infallible,
@@ -11,6 +11,8 @@ use std::{
 use bytes::Bytes;
 use futures_util::stream;
 use http::{Method, header};
+use hyper::{server::conn::http1, service::service_fn};
+use hyper_util::rt::TokioIo;
 use prost::Message as _;
 use strew::{
     body::{Body, BoxError, Response},
@@ -29,6 +31,8 @@ use strew_testkit::random::SplitMix;
 /// A daemon that serves until it is dropped.
 pub struct Host {
     pub address: SocketAddr,
+    /// Where the HTTP library alone answers every request with `SMALL` bytes.
+    pub alone: SocketAddr,
     _runtime: tokio::runtime::Runtime,
 }
 
@@ -47,10 +51,34 @@ impl Host {
             .build()
             .expect("a runtime");
         runtime.spawn(app.run(listener, std::future::pending()));
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
+        let alone = listener.local_addr().expect("bound");
+        runtime.spawn(answer_alone(listener, noise(SMALL).into()));
         Self {
             address,
+            alone,
             _runtime: runtime,
         }
+    }
+}
+
+/// The bytes of a small answer: those of 1,000 points as f32.
+pub const SMALL: usize = 8000;
+
+/// Answers every request with the same bytes, by nothing but the HTTP library: the floor of any answer.
+async fn answer_alone(listener: TcpListener, body: Bytes) {
+    listener.set_nonblocking(true).expect("a socket");
+    let listener = tokio::net::TcpListener::from_std(listener).expect("a listener");
+    loop {
+        let (socket, _) = listener.accept().await.expect("a client");
+        socket.set_nodelay(true).expect("a socket");
+        let body = body.clone();
+        let answer = service_fn(move |_| ready(Ok::<_, Infallible>(octets(body.clone().into()))));
+        let connection = http1::Builder::new().serve_connection(TokioIo::new(socket), answer);
+        tokio::spawn(async move {
+            // Clients hang up in the end.
+            let _ = connection.await;
+        });
     }
 }
 
