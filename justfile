@@ -27,6 +27,7 @@ bench:
 # What requests cost a daemon: instructions and allocations of each, beside those that are kept (needs valgrind).
 instructions *args:
     cargo build --locked --profile profiling
+    cargo build --locked --profile profiling -p strew-core --example counted
     benches/instructions.py target/profiling/strew {{args}}
 
 # The unsafe code of the kernel under AddressSanitizer, with every instruction set of this machine, and

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 """Counts what a request costs a daemon: instructions and allocations, the same in every run.
 
-    benches/instructions.py target/profiling/strew [CASE ...] [--check | --write] [--profile FOLDER]
+    benches/instructions.py PROGRAM [CASE ...] [--check | --write] [--few] [--kept FILE] [--profile FOLDER]
 
-Needs Linux, valgrind and nothing besides Python. The program is a release build with names (`cargo build --profile
-profiling`), since allocations are counted by the names of functions. One daemon runs under callgrind and logs warnings
+Needs Linux, valgrind and nothing besides Python. The program has names, since allocations are counted by the names of
+functions: `cargo build --profile profiling`, or a debug build. One daemon runs under callgrind and logs warnings
 only; each case is asked 40 times to warm up and 200 times to be counted, on one connection. Instructions are those of
-the whole process, the kernel's excluded.
+the whole process, the kernel's excluded. Cases of the library are boxes of the example `counted` of strew-core beside
+the program, if it is there: what the points of a box take without a daemon.
 
-`--write` keeps the figures in benches/instructions.txt; `--check` fails where one is more than 3 % above those kept.
+`--write` keeps the figures in benches/instructions.txt, or another file; `--check` fails where one is more than 3 %
+above those kept, if the compiler is the same. `--few` asks 10 and 40 times: for debug builds, which are slow.
 `--profile` keeps callgrind's files, one for each case, for callgrind_annotate.
 """
 
@@ -23,7 +25,8 @@ import subprocess
 import sys
 import tempfile
 
-WARM, COUNTED = 40, 200
+# How often a case is asked to warm up and to be counted.
+MANY, FEW = (40, 200), (10, 40)
 KEPT = pathlib.Path(__file__).with_suffix(".txt")
 # More than this above what is kept is too much.
 TOLERANCE = 1.03
@@ -222,8 +225,9 @@ class Http2:
 
 
 class Daemon:
-    def __init__(self, program, folder, certificate):
+    def __init__(self, program, folder, certificate, often):
         self.folder = folder
+        self.often = often
         command = ["valgrind", "--tool=callgrind", "-q", f"--callgrind-out-file={folder}/out"]
         command += [program, "serve", "--listen", "127.0.0.1:0", "--set", "log.filter=warn"]
         if certificate:
@@ -250,16 +254,36 @@ class Daemon:
 
     def count(self, ask):
         """Instructions and allocations of a request."""
-        for number in range(WARM):
+        warm, counted = self.often
+        for number in range(warm):
             ask(number)
         self.control("--zero")
-        for number in range(WARM, WARM + COUNTED):
+        for number in range(warm, warm + counted):
             ask(number)
         self.dumps += 1
         self.control(f"--dump={self.dumps}")
         text = next(pathlib.Path(self.folder).glob(f"out.{self.dumps}")).read_text()
-        instructions = int(re.search(r"^(?:totals|summary): (\d+)", text, re.M)[1])
-        return instructions / COUNTED, allocations(text) / COUNTED
+        return total(text) / counted, allocations(text) / counted
+
+
+def total(text):
+    """The instructions in one of callgrind's files."""
+    return int(re.search(r"^(?:totals|summary): (\d+)", text, re.M)[1])
+
+
+def alone(program, arguments, folder, often):
+    """Instructions and allocations of one of the boxes that a program makes."""
+
+    def of(boxes):
+        file = pathlib.Path(folder, "alone")
+        command = ["valgrind", "--tool=callgrind", "-q", f"--callgrind-out-file={file}", program, str(boxes)]
+        subprocess.run([*command, *arguments], check=True)
+        text = file.read_text()
+        return total(text), allocations(text)
+
+    warm, counted = often
+    pairs = zip(of(warm + counted), of(warm))
+    return tuple((all - before) / counted for all, before in pairs)
 
 
 def allocations(text):
@@ -279,7 +303,8 @@ def allocations(text):
 
 def cases(wanted=()):
     """The names of the cases, and what asks them: over HTTP/1.1, and as calls."""
-    chosen = [name for name in [*GETS, "unchanged (304)", *CALLS, *WEB, *TLS] if not wanted or name in wanted]
+    every = [*GETS, "unchanged (304)", *CALLS, *WEB, *TLS, *LIBRARY]
+    chosen = [name for name in every if not wanted or name in wanted]
     unknown = [name for name in wanted if name not in chosen]
     if unknown:
         sys.exit(f"no case {unknown[0]!r}; there are: {', '.join(cases([]))}")
@@ -289,6 +314,8 @@ def cases(wanted=()):
 # Calls as pages send them, and what is asked over TLS.
 WEB = {"gRPC-Web: CountPoints": "CountPoints", "gRPC-Web: StreamPoints, box, f32": "StreamPoints, box, f32"}
 TLS = {"TLS: livez": "livez", "TLS: box, f32": "box, f32"}
+# Boxes without a daemon, by the further arguments of the example.
+LIBRARY = {"library: box, f32": [], "library: box, f32, seeded": ["7"]}
 
 
 def good(answer):
@@ -334,12 +361,20 @@ def certificate(folder):
     return made
 
 
-def kept():
-    """The figures of the last `--write`, by case."""
-    if not KEPT.exists():
-        return {}
-    rows = (re.split(r"  +", line.strip()) for line in KEPT.read_text().splitlines()[1:])
-    return {name: (float(instructions.replace(",", "")), float(calls)) for name, instructions, calls in rows}
+def kept(file):
+    """The figures of the last `--write`, by case, and the compiler of the program that had them."""
+    if not file.exists():
+        return {}, None
+    compiler, _, *lines = file.read_text().splitlines()
+    rows = (re.split(r"  +", line.strip()) for line in lines)
+    figures = {name: (float(instructions.replace(",", "")), float(calls)) for name, instructions, calls in rows}
+    return figures, compiler
+
+
+def compiler():
+    """The version of the compiler, without its date."""
+    told = subprocess.run(["rustc", "--version"], stdout=subprocess.PIPE, text=True, check=True).stdout
+    return " ".join(told.split()[:2])
 
 
 def main():
@@ -348,24 +383,32 @@ def main():
     parser.add_argument("cases", nargs="*")
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--write", action="store_true")
+    parser.add_argument("--few", action="store_true")
+    parser.add_argument("--kept", type=pathlib.Path, default=KEPT)
     parser.add_argument("--profile", type=pathlib.Path)
     args = parser.parse_args()
-    before, found = kept(), {}
+    (before, before_by), found = kept(args.kept), {}
+    often = FEW if args.few else MANY
+    chosen = cases(args.cases)
+
+    def tell(name):
+        instructions, calls = found[name]
+        share = f"{instructions / before[name][0] - 1:+8.1%}" if name in before else ""
+        print(f"{name:34}  {instructions:11,.0f}  {calls:6.1f}{share}", flush=True)
+
     with tempfile.TemporaryDirectory() as folder:
         for is_tls in (False, True):
-            names = [name for name in cases(args.cases) if (name in TLS) == is_tls]
+            names = [name for name in chosen if name not in LIBRARY and (name in TLS) == is_tls]
             made = certificate(folder) if is_tls and names else None
             if not names or is_tls and not made:
                 continue
             here = pathlib.Path(folder, "tls" if is_tls else "plain")
             here.mkdir()
-            daemon = Daemon(args.program, here, made)
+            daemon = Daemon(args.program, here, made, often)
             try:
                 for name in names:
                     found[name] = daemon.count(asker(name, daemon))
-                    instructions, calls = found[name]
-                    share = f"{instructions / before[name][0] - 1:+8.1%}" if name in before else ""
-                    print(f"{name:34}  {instructions:11,.0f}  {calls:6.1f}{share}", flush=True)
+                    tell(name)
                     if args.profile:
                         args.profile.mkdir(parents=True, exist_ok=True)
                         kept_as = re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
@@ -373,13 +416,20 @@ def main():
             finally:
                 daemon.process.terminate()
                 daemon.process.wait()
+        example = pathlib.Path(args.program).with_name("examples") / "counted"
+        for name in [name for name in chosen if name in LIBRARY and example.exists()]:
+            found[name] = alone(example, LIBRARY[name], folder, often)
+            tell(name)
     if args.write:
         rows = (f"{name:34}  {instructions:11,.0f}  {calls:6.1f}" for name, (instructions, calls) in found.items())
-        KEPT.write_text("\n".join([f"{'request':34}  {'instructions':>11}  {'allocations'}", *rows]) + "\n")
-    if args.check:
+        head = [compiler(), f"{'request':34}  {'instructions':>11}  {'allocations'}"]
+        args.kept.write_text("\n".join([*head, *rows]) + "\n")
+    if args.check and compiler() != before_by:
+        print(f"not compared: {args.kept.name} is of {before_by}, this is {compiler()}")
+    elif args.check:
         above = [name for name, (counted, _) in found.items() if name in before and counted > TOLERANCE * before[name][0]]
         if above:
-            sys.exit(f"more instructions than in {KEPT.name}: {', '.join(above)}")
+            sys.exit(f"more instructions than in {args.kept.name}: {', '.join(above)}")
 
 
 if __name__ == "__main__":
