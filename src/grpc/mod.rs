@@ -15,7 +15,6 @@ mod pattern;
 mod periods;
 mod points;
 mod profile;
-pub mod proto;
 mod query;
 mod region;
 mod resolved;
@@ -40,10 +39,8 @@ pub use methods::unimplemented;
 use points::Points;
 use proto::point_service_server::PointServiceServer;
 use strew_error::Error;
+pub use strew_proto as proto;
 use strew_service::{Interrupted, Service};
-
-/// The contract as reflection serves it.
-const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/strew_descriptors.bin"));
 
 /// The longest message to the services of health and reflection, which take names: those of files and of
 /// symbols.
@@ -85,7 +82,7 @@ pub async fn calls(service: Arc<Service>) -> Result<(Calls, Health), BuildError>
     reporter.set_serving::<PointServiceServer<Points>>().await;
     let reflection = || {
         tonic_reflection::server::Builder::configure()
-            .register_encoded_file_descriptor_set(DESCRIPTORS)
+            .register_encoded_file_descriptor_set(proto::DESCRIPTORS)
             .register_encoded_file_descriptor_set(tonic_types::pb::FILE_DESCRIPTOR_SET)
             .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
     };

@@ -10,9 +10,8 @@ use super::{
     proto::{Heights, PointSet, ScaleRange, point_set::Amount},
 };
 
-// Made by build.rs from the contract: `fields`, the values of a message by name, and `put`, which sets
-// one.
-include!(concat!(env!("OUT_DIR"), "/point_set.rs"));
+// Made from the contract: `fields`, the values of a message by name, and `put`, which sets one.
+include!("generated/sets.rs");
 
 /// The values of a set, with `path` before names in faults; an absent one has none.
 pub(super) fn values(set: Option<&PointSet>, groups: &'static [Group], path: &str) -> Values {

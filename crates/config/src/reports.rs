@@ -193,7 +193,7 @@ impl Telemetry {
 /// Why a text is no filter of the log.
 #[cfg(feature = "log")]
 fn wrong_filter(text: &str) -> Option<String> {
-    let read = text.parse::<tracing_subscriber::EnvFilter>();
+    let read = text.parse::<tracing_subscriber::filter::Targets>();
     read.err().map(|error| error.to_string())
 }
 

@@ -1,8 +1,8 @@
 //! The bounds on repeated fields of a request, checked before its message is decoded.
 //!
-//! The names are those of the contract: `Layer.clear_of` is `LAYER_CLEAR_OF`. build.rs names one for every
-//! field that is repeated, so a new one does not compile without its limit. Queries are checked against the
-//! same limits once they are read; here they bound the memory of reading.
+//! The names are those of the contract: `Layer.clear_of` is `LAYER_CLEAR_OF`. The table made from it names one for
+//! every field that is repeated, so a new one does not compile without its limit. Queries are checked against the same
+//! limits once they are read; here they bound the memory of reading.
 
 use strew_catalog::except::MOST_GIVEN;
 use strew_config::Limits;

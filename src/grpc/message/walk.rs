@@ -61,8 +61,8 @@ fn decoded<M: Message + Default + 'static>(bytes: Bytes) -> Result<Decoded, Deco
     Ok(Box::new(M::decode(bytes)?))
 }
 
-// Made by build.rs from the contract: `SHAPES`, the messages that requests are made of, and `METHODS`.
-include!(concat!(env!("OUT_DIR"), "/shapes.rs"));
+// Made from the contract: `SHAPES`, the messages that requests are made of, and `METHODS`.
+include!("../generated/shapes.rs");
 
 /// The price of a message.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,51 +1,14 @@
-//! Compiles the gRPC contract.
+//! The conversions between the message of a set and values by name.
 
-use std::{
-    env,
-    error::Error,
-    fmt::Write as _,
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{error::Error, fmt::Write as _};
 
-use prost::Message as _;
 use prost_types::{
     FileDescriptorSet,
     field_descriptor_proto::{Label, Type},
 };
 
-#[path = "build/shapes.rs"]
-mod shapes;
-
-const CONTRACT: &str = "strew/v1/points.proto";
-
-fn main() -> Result<(), Box<dyn Error>> {
-    let out = PathBuf::from(env::var("OUT_DIR")?);
-    let contract = compile_contract(&out)?;
-    convert_sets(&contract, &out.join("point_set.rs"))?;
-    fs::write(out.join("shapes.rs"), shapes::code(&contract)?)?;
-    Ok(())
-}
-
-/// Messages, server and client from the contract, in pure Rust; its descriptor set for reflection.
-fn compile_contract(out: &Path) -> Result<FileDescriptorSet, Box<dyn Error>> {
-    println!("cargo::rerun-if-changed=proto");
-    let descriptors = protox::compile([CONTRACT], ["proto"])?;
-    fs::write(
-        out.join("strew_descriptors.bin"),
-        descriptors.encode_to_vec(),
-    )?;
-    tonic_prost_build::configure()
-        .build_transport(false)
-        .bytes(".strew.v1")
-        .btree_map(".strew.v1")
-        .compile_fds(descriptors.clone())?;
-    Ok(descriptors)
-}
-
-/// The conversions between the message of a set and values by name: a field that the contract has
-/// needs no code of its own.
-fn convert_sets(descriptors: &FileDescriptorSet, file: &Path) -> Result<(), Box<dyn Error>> {
+/// The code of the conversions: a field of the contract needs none of its own.
+pub fn code(descriptors: &FileDescriptorSet) -> Result<String, Box<dyn Error>> {
     let mut messages = descriptors.file.iter().flat_map(|file| &file.message_type);
     let set = messages.find(|message| message.name() == "PointSet");
     let set = set.ok_or("the contract has no message PointSet")?;
@@ -126,12 +89,10 @@ fn convert_sets(descriptors: &FileDescriptorSet, file: &Path) -> Result<(), Box<
             )?;
         }
     }
-    let code = format!(
+    Ok(format!(
         "fn fields(set: &PointSet) -> Vec<(&'static str, Value)> {{ let mut values = vec![]; {read} values }}\n\
          fn put(set: &mut PointSet, name: &str, value: Value) {{ match (name, value) {{ {write} _ => {{}} }} }}\n"
-    );
-    fs::write(file, code)?;
-    Ok(())
+    ))
 }
 
 /// `min_distance` as `MinDistance`.

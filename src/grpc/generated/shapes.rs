@@ -1,0 +1,975 @@
+// This file is @generated from proto/strew/v1.
+/// The most fields of a message.
+const MOST_FIELDS: usize = 27;
+pub(super) static SHAPES: [Shape; 47] = [
+    Shape {
+        bytes: size_of::<proto::StreamPointsRequest>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "region",
+                kind: Kind::Message(14),
+                most: most::ONCE,
+            },
+            Field {
+                number: 2,
+                name: "set",
+                kind: Kind::Message(15),
+                most: most::ONCE,
+            },
+            Field {
+                number: 3,
+                name: "layers",
+                kind: Kind::Message(16),
+                most: most::STREAM_POINTS_REQUEST_LAYERS,
+            },
+            Field {
+                number: 7,
+                name: "cursor",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 8,
+                name: "world",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 9,
+                name: "world_digest",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::CountPointsRequest>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "query",
+                kind: Kind::Message(0),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::SplitPointsRequest>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "query",
+                kind: Kind::Message(0),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::GetPointRequest>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "id",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 2,
+                name: "set",
+                kind: Kind::Message(15),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::FindNearestRequest>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "at",
+                kind: Kind::Message(17),
+                most: most::ONCE,
+            },
+            Field {
+                number: 4,
+                name: "set",
+                kind: Kind::Message(15),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::ListProfilesRequest>(),
+        is_field: false,
+        fields: &[],
+    },
+    Shape {
+        bytes: size_of::<proto::ListPeriodsRequest>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "profile",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 2,
+                name: "alpha",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 3,
+                name: "map",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::GetMaskRequest>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "profile",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 2,
+                name: "alpha",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 3,
+                name: "map",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 4,
+                name: "table",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::ListFieldsRequest>(),
+        is_field: false,
+        fields: &[],
+    },
+    Shape {
+        bytes: size_of::<proto::ListWorldsRequest>(),
+        is_field: false,
+        fields: &[],
+    },
+    Shape {
+        bytes: size_of::<proto::ForgeTableRequest>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "profile",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 2,
+                name: "alpha",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 3,
+                name: "map",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 4,
+                name: "target",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::ArrangementRequest>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "set",
+                kind: Kind::Message(15),
+                most: most::ONCE,
+            },
+            Field {
+                number: 2,
+                name: "offsets",
+                kind: Kind::Message(18),
+                most: most::ARRANGEMENT_REQUEST_OFFSETS,
+            },
+            Field {
+                number: 3,
+                name: "grid",
+                kind: Kind::Message(19),
+                most: most::ONCE,
+            },
+            Field {
+                number: 5,
+                name: "cursor",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::ClustersRequest>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "alpha",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::MapRequest>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "alpha",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 4,
+                name: "block",
+                kind: Kind::Message(20),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::Region>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "bbox",
+                kind: Kind::Message(21),
+                most: most::ONCE,
+            },
+            Field {
+                number: 2,
+                name: "circle",
+                kind: Kind::Message(22),
+                most: most::ONCE,
+            },
+            Field {
+                number: 3,
+                name: "polygons",
+                kind: Kind::Message(23),
+                most: most::ONCE,
+            },
+            Field {
+                number: 4,
+                name: "chunk",
+                kind: Kind::Message(24),
+                most: most::ONCE,
+            },
+            Field {
+                number: 5,
+                name: "combined",
+                kind: Kind::Message(25),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::PointSet>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 5,
+                name: "profile",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 6,
+                name: "alpha",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 7,
+                name: "map",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 8,
+                name: "table",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 12,
+                name: "attributes",
+                kind: Kind::Text,
+                most: most::POINT_SET_ATTRIBUTES,
+            },
+            Field {
+                number: 13,
+                name: "scale_range",
+                kind: Kind::Message(26),
+                most: most::ONCE,
+            },
+            Field {
+                number: 14,
+                name: "variants",
+                kind: Kind::Message(27),
+                most: most::POINT_SET_VARIANTS,
+            },
+            Field {
+                number: 15,
+                name: "field",
+                kind: Kind::Message(28),
+                most: most::ONCE,
+            },
+            Field {
+                number: 16,
+                name: "spread",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 17,
+                name: "only",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 18,
+                name: "scale_ranges",
+                kind: Kind::Message(29),
+                most: most::POINT_SET_SCALE_RANGES,
+            },
+            Field {
+                number: 20,
+                name: "variant_fields",
+                kind: Kind::Message(30),
+                most: most::POINT_SET_VARIANT_FIELDS,
+            },
+            Field {
+                number: 21,
+                name: "terrain",
+                kind: Kind::Message(28),
+                most: most::ONCE,
+            },
+            Field {
+                number: 22,
+                name: "heights",
+                kind: Kind::Message(31),
+                most: most::ONCE,
+            },
+            Field {
+                number: 25,
+                name: "except",
+                kind: Kind::Text,
+                most: most::POINT_SET_EXCEPT,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::Layer>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "name",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 2,
+                name: "region",
+                kind: Kind::Message(14),
+                most: most::ONCE,
+            },
+            Field {
+                number: 3,
+                name: "clear_of",
+                kind: Kind::Message(32),
+                most: most::LAYER_CLEAR_OF,
+            },
+            Field {
+                number: 4,
+                name: "set",
+                kind: Kind::Message(15),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::Position>(),
+        is_field: false,
+        fields: &[],
+    },
+    Shape {
+        bytes: size_of::<proto::GridOffset>(),
+        is_field: false,
+        fields: &[],
+    },
+    Shape {
+        bytes: size_of::<proto::GridBox>(),
+        is_field: false,
+        fields: &[],
+    },
+    Shape {
+        bytes: size_of::<proto::Block>(),
+        is_field: false,
+        fields: &[],
+    },
+    Shape {
+        bytes: size_of::<proto::BoundingBox>(),
+        is_field: false,
+        fields: &[],
+    },
+    Shape {
+        bytes: size_of::<proto::Circle>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "center",
+                kind: Kind::Message(17),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::Polygons>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "polygons",
+                kind: Kind::Message(33),
+                most: most::POLYGONS_POLYGONS,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::Chunk>(),
+        is_field: false,
+        fields: &[],
+    },
+    Shape {
+        bytes: size_of::<proto::Combined>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "include",
+                kind: Kind::Message(14),
+                most: most::COMBINED_INCLUDE,
+            },
+            Field {
+                number: 2,
+                name: "exclude",
+                kind: Kind::Message(14),
+                most: most::COMBINED_EXCLUDE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::ScaleRange>(),
+        is_field: false,
+        fields: &[],
+    },
+    Shape {
+        bytes: size_of::<(String, f64)>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "key",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::Field>(),
+        is_field: true,
+        fields: &[
+            Field {
+                number: 1,
+                name: "name",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 3,
+                name: "ramp",
+                kind: Kind::Message(34),
+                most: most::ONCE,
+            },
+            Field {
+                number: 4,
+                name: "radial",
+                kind: Kind::Message(35),
+                most: most::ONCE,
+            },
+            Field {
+                number: 5,
+                name: "distance",
+                kind: Kind::Message(36),
+                most: most::ONCE,
+            },
+            Field {
+                number: 6,
+                name: "noise",
+                kind: Kind::Message(37),
+                most: most::ONCE,
+            },
+            Field {
+                number: 7,
+                name: "raster",
+                kind: Kind::Message(38),
+                most: most::ONCE,
+            },
+            Field {
+                number: 8,
+                name: "height",
+                kind: Kind::Message(39),
+                most: most::ONCE,
+            },
+            Field {
+                number: 9,
+                name: "slope",
+                kind: Kind::Message(40),
+                most: most::ONCE,
+            },
+            Field {
+                number: 10,
+                name: "multiply",
+                kind: Kind::Message(41),
+                most: most::ONCE,
+            },
+            Field {
+                number: 11,
+                name: "min",
+                kind: Kind::Message(41),
+                most: most::ONCE,
+            },
+            Field {
+                number: 12,
+                name: "max",
+                kind: Kind::Message(41),
+                most: most::ONCE,
+            },
+            Field {
+                number: 13,
+                name: "invert",
+                kind: Kind::Message(28),
+                most: most::ONCE,
+            },
+            Field {
+                number: 14,
+                name: "curve",
+                kind: Kind::Message(42),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<(String, proto::ScaleRange)>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "key",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 2,
+                name: "value",
+                kind: Kind::Message(26),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<(String, proto::Field)>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "key",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+            Field {
+                number: 2,
+                name: "value",
+                kind: Kind::Message(28),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::Heights>(),
+        is_field: false,
+        fields: &[],
+    },
+    Shape {
+        bytes: size_of::<(String, f64)>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "key",
+                kind: Kind::Text,
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::Polygon>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "rings",
+                kind: Kind::Message(43),
+                most: most::POLYGON_RINGS,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::FieldRamp>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "from",
+                kind: Kind::Message(44),
+                most: most::ONCE,
+            },
+            Field {
+                number: 2,
+                name: "to",
+                kind: Kind::Message(44),
+                most: most::ONCE,
+            },
+            Field {
+                number: 3,
+                name: "shares",
+                kind: Kind::Message(44),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::FieldRadial>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "center",
+                kind: Kind::Message(44),
+                most: most::ONCE,
+            },
+            Field {
+                number: 2,
+                name: "radii",
+                kind: Kind::Message(44),
+                most: most::ONCE,
+            },
+            Field {
+                number: 3,
+                name: "shares",
+                kind: Kind::Message(44),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::FieldDistance>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "points",
+                kind: Kind::Message(44),
+                most: most::FIELD_DISTANCE_POINTS,
+            },
+            Field {
+                number: 2,
+                name: "lines",
+                kind: Kind::Message(45),
+                most: most::FIELD_DISTANCE_LINES,
+            },
+            Field {
+                number: 3,
+                name: "polygons",
+                kind: Kind::Message(45),
+                most: most::FIELD_DISTANCE_POLYGONS,
+            },
+            Field {
+                number: 4,
+                name: "distances",
+                kind: Kind::Message(44),
+                most: most::ONCE,
+            },
+            Field {
+                number: 5,
+                name: "shares",
+                kind: Kind::Message(44),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::FieldNoise>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 4,
+                name: "range",
+                kind: Kind::Message(44),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::FieldPixels>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "png",
+                kind: Kind::Pixels,
+                most: most::ONCE,
+            },
+            Field {
+                number: 2,
+                name: "f32",
+                kind: Kind::Pixels,
+                most: most::ONCE,
+            },
+            Field {
+                number: 5,
+                name: "bbox",
+                kind: Kind::Message(46),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::FieldHeight>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "terrain",
+                kind: Kind::Message(38),
+                most: most::ONCE,
+            },
+            Field {
+                number: 2,
+                name: "heights",
+                kind: Kind::Message(44),
+                most: most::ONCE,
+            },
+            Field {
+                number: 3,
+                name: "shares",
+                kind: Kind::Message(44),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::FieldSlope>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "terrain",
+                kind: Kind::Message(38),
+                most: most::ONCE,
+            },
+            Field {
+                number: 2,
+                name: "slopes",
+                kind: Kind::Message(44),
+                most: most::ONCE,
+            },
+            Field {
+                number: 3,
+                name: "shares",
+                kind: Kind::Message(44),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::FieldParts>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "fields",
+                kind: Kind::Message(28),
+                most: most::FIELD_PARTS_FIELDS,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::FieldCurve>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "of",
+                kind: Kind::Message(28),
+                most: most::ONCE,
+            },
+            Field {
+                number: 2,
+                name: "points",
+                kind: Kind::Message(44),
+                most: most::FIELD_CURVE_POINTS,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::Ring>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "positions",
+                kind: Kind::Message(17),
+                most: most::RING_POSITIONS,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::FieldPair>(),
+        is_field: false,
+        fields: &[],
+    },
+    Shape {
+        bytes: size_of::<proto::FieldLine>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "vertices",
+                kind: Kind::Message(44),
+                most: most::FIELD_LINE_VERTICES,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::FieldBox>(),
+        is_field: false,
+        fields: &[],
+    },
+];
+pub(super) static METHODS: &[Method] = &[
+    Method {
+        path: "/strew.v1.PointService/StreamPoints",
+        shape: 0,
+        decode: decoded::<proto::StreamPointsRequest>,
+    },
+    Method {
+        path: "/strew.v1.PointService/CountPoints",
+        shape: 1,
+        decode: decoded::<proto::CountPointsRequest>,
+    },
+    Method {
+        path: "/strew.v1.PointService/SplitPoints",
+        shape: 2,
+        decode: decoded::<proto::SplitPointsRequest>,
+    },
+    Method {
+        path: "/strew.v1.PointService/GetPoint",
+        shape: 3,
+        decode: decoded::<proto::GetPointRequest>,
+    },
+    Method {
+        path: "/strew.v1.PointService/FindNearest",
+        shape: 4,
+        decode: decoded::<proto::FindNearestRequest>,
+    },
+    Method {
+        path: "/strew.v1.PointService/ListProfiles",
+        shape: 5,
+        decode: decoded::<proto::ListProfilesRequest>,
+    },
+    Method {
+        path: "/strew.v1.PointService/ListPeriods",
+        shape: 6,
+        decode: decoded::<proto::ListPeriodsRequest>,
+    },
+    Method {
+        path: "/strew.v1.PointService/GetMask",
+        shape: 7,
+        decode: decoded::<proto::GetMaskRequest>,
+    },
+    Method {
+        path: "/strew.v1.PointService/ListFields",
+        shape: 8,
+        decode: decoded::<proto::ListFieldsRequest>,
+    },
+    Method {
+        path: "/strew.v1.PointService/ListWorlds",
+        shape: 9,
+        decode: decoded::<proto::ListWorldsRequest>,
+    },
+    Method {
+        path: "/strew.v1.PointService/ForgeTable",
+        shape: 10,
+        decode: decoded::<proto::ForgeTableRequest>,
+    },
+    Method {
+        path: "/strew.v1.PointService/GetArrangement",
+        shape: 11,
+        decode: decoded::<proto::ArrangementRequest>,
+    },
+    Method {
+        path: "/strew.v1.PointService/ListOccurrences",
+        shape: 11,
+        decode: decoded::<proto::ArrangementRequest>,
+    },
+    Method {
+        path: "/strew.v1.PointService/GetClusters",
+        shape: 12,
+        decode: decoded::<proto::ClustersRequest>,
+    },
+    Method {
+        path: "/strew.v1.PointService/GetMap",
+        shape: 13,
+        decode: decoded::<proto::MapRequest>,
+    },
+];
