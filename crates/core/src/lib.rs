@@ -53,6 +53,7 @@ mod once;
 pub mod pattern;
 mod sample;
 pub mod server;
+pub mod space;
 mod stop;
 pub mod table;
 

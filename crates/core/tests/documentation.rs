@@ -8,7 +8,15 @@ use std::{
 
 /// Types and traits that are public only because the sealed trait `Format` names them. They are not
 /// exported, and rustdoc does not show them.
-const SEALED: [&str; 5] = ["Emit", "Geometry", "Lanes", "PatchShears", "Row"];
+const SEALED: [&str; 7] = [
+    "Batch",
+    "Emit",
+    "Geometry",
+    "Lanes",
+    "PatchShears",
+    "Row",
+    "Scope",
+];
 
 /// The sources of the library, as (path from `src`, text).
 fn sources() -> Vec<(String, String)> {

@@ -35,6 +35,17 @@ mod sieve;
 mod walk;
 mod warp;
 
+pub(crate) use lattice::Multiple;
+pub(crate) use seed::split_mix;
+
+/// What points in space share with those in the plane.
+pub(crate) mod space {
+    pub(crate) use super::{
+        kernel::{compiled, warp_lists},
+        warp::{NearShears, PatchShears, Shears, Stretch},
+    };
+}
+
 pub use crate::stop::Stop;
 pub use area::{Area, Circle, Polygon, Region};
 pub use attribute::{

@@ -40,6 +40,7 @@ mod units;
 
 pub use digest::Digest;
 pub use displacement::Table;
+pub(crate) use file::CubeParts;
 pub use file::{FORMAT_VERSION, Head, MAX_FILE_BYTES};
 pub(crate) use mix::Labels;
 pub use mix::{Mix, Split};

@@ -46,11 +46,7 @@ impl Parts {
                 allowed,
             );
         }
-        let is_allowed = |c: u8| c.is_ascii_lowercase() || c.is_ascii_digit() || c == b'-';
-        if !(1..=32).contains(&self.profile.len()) || !self.profile.bytes().all(is_allowed) {
-            let allowed = "1 to 32 characters of a-z, 0-9 and -".into();
-            return refused("profile", format!("{:?}", self.profile), allowed);
-        }
+        check_profile(&self.profile)?;
         if let Some(ranks) = &self.ranks
             && ranks.positions().len() != expected
         {
@@ -66,4 +62,15 @@ impl Parts {
         }
         self.provenance.check()
     }
+}
+
+/// Refuses the name of a profile that is not allowed.
+pub(super) fn check_profile(profile: &str) -> Result<(), Error> {
+    let is_allowed = |c: u8| c.is_ascii_lowercase() || c.is_ascii_digit() || c == b'-';
+    if (1..=32).contains(&profile.len()) && profile.bytes().all(is_allowed) {
+        return Ok(());
+    }
+    let allowed = "1 to 32 characters of a-z, 0-9 and -";
+    let value = format!("{profile:?}");
+    Err(Error::new(ErrorKind::Table, "profile", value, allowed))
 }

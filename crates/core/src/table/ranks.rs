@@ -80,7 +80,7 @@ impl Ranks {
     }
 
     /// A hashed order, for tables without ranks.
-    pub(super) fn hashed(blocks: usize) -> Self {
+    pub(crate) fn hashed(blocks: usize) -> Self {
         let mut positions = vec![0; blocks];
         for (position, &block) in (0..).zip(&scattered(blocks)) {
             positions[block as usize] = position;
@@ -132,18 +132,23 @@ impl Order {
             let interval = map.interval(i);
             u128::from(interval.end - interval.start)
         };
+        // Exact: the set region has less than 2¹²⁶ units.
+        let side = u128::from(map.alpha().set_side());
+        Self::weighted(ranks, side * side, |block| length(block % n) * length(block / n))
+    }
+
+    /// The order of blocks of some sizes, whose sum is `all`.
+    pub(crate) fn weighted(ranks: &Ranks, all: u128, size: impl Fn(usize) -> u128) -> Self {
         let mut blocks = vec![0; ranks.positions.len()];
         for (block, &position) in (0..).zip(&ranks.positions) {
             blocks[position as usize] = block;
         }
-        // Exact: the set region has less than 2¹²⁶ units.
-        let side = u128::from(map.alpha().set_side());
-        let all = (side * side) as f64;
+        let all = all as f64;
         let mut below = 0u128;
         let mut floors = Vec::with_capacity(blocks.len() + 1);
         for &block in &blocks {
             floors.push(below as f64 / all);
-            below += length(block as usize % n) * length(block as usize / n);
+            below += size(block as usize);
         }
         floors.push(1.0);
         Self {
@@ -155,7 +160,7 @@ impl Order {
 
     /// The order of a table whose block at each place is block `source(place)` of this order's table. The two
     /// have the same size.
-    pub(super) fn turned(&self, source: impl Fn(usize) -> usize) -> Self {
+    pub(crate) fn turned(&self, source: impl Fn(usize) -> usize) -> Self {
         let positions = (0..self.positions.len()).map(|block| self.positions[source(block)]);
         let positions: Vec<u32> = positions.collect();
         let mut blocks = vec![0; positions.len()];
@@ -179,6 +184,11 @@ impl Order {
     #[inline]
     pub(crate) fn positions(&self, blocks: core::ops::Range<usize>) -> &[u32] {
         &self.positions[blocks]
+    }
+
+    /// The block at a position, if there are so many.
+    pub(crate) fn block_at(&self, position: usize) -> Option<usize> {
+        self.blocks.get(position).map(|&block| block as usize)
     }
 
     /// The ranks of the block at a position.

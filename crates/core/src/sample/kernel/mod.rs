@@ -41,7 +41,8 @@ mod tests;
 mod warped;
 
 pub use backend::Backend;
-pub(super) use backend::{compiled, compiled_loop, write_numbers};
+pub(crate) use backend::compiled;
+pub(super) use backend::{compiled_loop, write_numbers};
 pub use doubles::{F64, Points};
 pub use format::Format;
 pub(super) use format::{Geometry, Row};
@@ -49,4 +50,5 @@ pub(super) use lanes::PlainLoop;
 pub use offsets::Offsets;
 pub(super) use rows::fill_row;
 pub use singles::F32;
+pub(crate) use warped::warp_lists;
 pub(super) use warped::{Extent, WarpedColumns, add_first_shear, fill_warped_row, warp_all};

@@ -307,6 +307,16 @@ impl FirstShear<'_> {
     }
 }
 
+/// Warps positions of points that follow each other: as [`warp_all`], with the cells of a few of them at a time.
+pub(crate) fn warp_lists(
+    backend: Backend,
+    shears: &PatchShears,
+    displaced: [&[i32]; 2],
+    places: &mut [Vec<i32>; 2],
+) {
+    warp_in_passes(backend, shears, displaced, places, 2);
+}
+
 /// Warps positions: the x and y of all, whose number is a multiple of 32, into as many places.
 pub(crate) fn warp_all(
     backend: Backend,
@@ -314,12 +324,23 @@ pub(crate) fn warp_all(
     displaced: [&[i32]; 2],
     places: &mut [Vec<i32>; 2],
 ) {
+    warp_in_passes(backend, shears, displaced, places, PASS);
+}
+
+fn warp_in_passes(
+    backend: Backend,
+    shears: &PatchShears,
+    displaced: [&[i32]; 2],
+    places: &mut [Vec<i32>; 2],
+    pass: usize,
+) {
     let [x_places, y_places] = places;
     let length = displaced[0].len();
     let mut all = WarpAll {
         shears,
         displaced: displaced.map(|list| &list[..length]),
         places: [&mut x_places[..length], &mut y_places[..length]],
+        pass,
     };
     if run_vectors(backend, &mut all) < length {
         let [xs, ys] = displaced;
@@ -336,6 +357,8 @@ struct WarpAll<'a> {
     shears: &'a PatchShears,
     displaced: [&'a [i32]; 2],
     places: [&'a mut [i32]; 2],
+    /// The number of vectors whose cells are found together.
+    pass: usize,
 }
 
 impl VectorLoop for WarpAll<'_> {
@@ -347,7 +370,7 @@ impl VectorLoop for WarpAll<'_> {
         }
         let mut next = 0;
         while next < length {
-            let part = next..length.min(next + PASS * L::WIDTH);
+            let part = next..length.min(next + self.pass * L::WIDTH);
             next = part.end;
             // SAFETY: as the caller ensures, and parts lie within the slices.
             unsafe {

@@ -36,7 +36,7 @@ pub use keep::Keep;
 pub(super) use kinds::{OneKind, check_kind};
 pub(super) use line::Line;
 pub(super) use lines::{Columns, Listed, lines_of_class, places};
-pub(super) use multiple::Multiple;
+pub(crate) use multiple::Multiple;
 pub(super) use patch::{BAND_WIDTH, PATCH_HEIGHT, Patch, clip_to_band};
 pub use placement::Placement;
 pub use point::{Point, PointId};

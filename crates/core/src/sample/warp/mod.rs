@@ -20,9 +20,10 @@ mod shears;
 mod walk;
 mod wrapped;
 
-pub(super) use bounds::Stretch;
-pub(super) use near::NearShears;
-pub(super) use patch::PatchShears;
+pub(crate) use bounds::Stretch;
+pub(crate) use near::NearShears;
+pub(crate) use patch::PatchShears;
 pub use shears::Warp;
-pub(super) use shears::{CELL_BITS, KNOT_BITS, Shears, Waves};
+pub(super) use shears::{CELL_BITS, Waves};
+pub(crate) use shears::{KNOT_BITS, Shears};
 pub(super) use wrapped::WrappedShears;

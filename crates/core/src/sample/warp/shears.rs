@@ -259,6 +259,24 @@ impl Shears {
     }
 }
 
+/// The slope of the shears along the axes in space, where each axis has four of them and four diagonal ones.
+const SPACE_SLOPE: f64 = 0.045;
+
+impl Shears {
+    /// The shears of a plane of space, of which there are three, or `None` if the warp is off.
+    pub(crate) fn in_space(warp: Warp, seed: Seed, plane: u64) -> Option<Self> {
+        let step = SPACE_SLOPE * warp.strength() * f64::from(1 << CELL_BITS);
+        let seed = Seed(seed.0 ^ SPACE_KEY);
+        (!warp.is_off()).then(|| Self {
+            walks: directed(step, seed, 4 * plane + 1),
+            long: None,
+        })
+    }
+}
+
+/// Tells the walks of space from those of the plane: "SPACE  3".
+const SPACE_KEY: u64 = 0x5350_4143_4520_2033;
+
 /// The walks of a seed's four directions for knots at a distance in fixed-point units, or `None` if the warp
 /// is off.
 pub(super) fn short(warp: Warp, seed: Seed, knot: f64) -> Option<[Walk; 4]> {

@@ -6,7 +6,7 @@
 use alloc::{format, string::String, vec, vec::Vec};
 
 use super::{
-    layout::{DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, MAGIC, MAX_SECTIONS, MIX, check_size},
+    layout::{CUBE, DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, MAGIC, MAX_SECTIONS, MIX, check_size},
     read::{HeadSection, read_prov, wrong},
     wire::Reader,
 };
@@ -43,6 +43,8 @@ pub struct Head {
     pub intervals: u32,
     /// Whether the points have kinds.
     pub has_kinds: bool,
+    /// Whether the points lie in space: [`space::Table`](crate::space::Table) reads the file.
+    pub is_space: bool,
     /// The history.
     pub provenance: Provenance,
     /// The digest that the file states. [`Table::from_bytes`](crate::Table::from_bytes) checks it.
@@ -105,6 +107,7 @@ impl Head {
                 found.file(tag, payload, place as usize);
             }
             found.has_kinds |= tag == MIX;
+            found.is_space |= tag == CUBE;
             place += length;
         }
         let mut seal = [0; DIGEST_BYTES];
@@ -119,6 +122,7 @@ struct Found {
     head: Option<(Vec<u8>, usize)>,
     prov: Option<(Vec<u8>, usize)>,
     has_kinds: bool,
+    is_space: bool,
 }
 
 impl Found {
@@ -141,6 +145,7 @@ impl Found {
             radius: head.radius,
             intervals: head.intervals,
             has_kinds: self.has_kinds,
+            is_space: self.is_space,
             provenance: read_prov(&prov).map_err(|p| wrong(b"PROV", prov_at, p))?,
             digest,
         })

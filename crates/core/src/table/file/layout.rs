@@ -30,6 +30,8 @@ pub(super) const MAGIC: [u8; 8] = *b"\x89STREW\r\n";
 pub(super) const HEADER_BYTES: usize = 24;
 pub(super) const DIGEST_BYTES: usize = 32;
 pub(super) const MAX_SECTIONS: u32 = 64;
+/// The section of the vectors of points in space.
+pub(super) const CUBE: [u8; 4] = *b"CUBE";
 /// The section of the order in which blocks leave.
 pub(super) const RANKS: [u8; 4] = *b"rank";
 /// The section of the kinds of points.

@@ -17,8 +17,11 @@
 //! or 4 in maps of more than 2¹⁶ blocks. `kind`: a list of the parts of the shares as u16, ascending, in lowest
 //! terms, and for each block the number of its kind, one byte.
 //!
+//! A table of points in space has `CUBE` in place of `DISP` (`cube`).
+//!
 //! `write` and `read` are each other's inverse over the encodings of `wire`.
 
+mod cube;
 mod head;
 mod layout;
 mod read;
@@ -27,6 +30,7 @@ mod tests;
 mod wire;
 mod write;
 
+pub(crate) use cube::CubeParts;
 pub use head::Head;
 pub use layout::{FORMAT_VERSION, MAX_FILE_BYTES};
 pub(super) use read::read;

@@ -5,8 +5,8 @@ use alloc::{format, string::String, vec::Vec};
 
 use super::{
     layout::{
-        DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, MAGIC, MAX_SECTIONS, MIX, RANKS, check_size,
-        position_bytes,
+        CUBE, DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, MAGIC, MAX_SECTIONS, MIX, RANKS,
+        check_size, position_bytes,
     },
     wire::Reader,
 };
@@ -19,6 +19,12 @@ use crate::{
 
 /// The content of a table file, and its digest.
 pub(crate) fn read(bytes: &[u8]) -> Result<(Parts, Digest), Error> {
+    let (found, digest) = sections(bytes)?;
+    Ok((found.into_parts()?, digest))
+}
+
+/// The sections of a file, and its digest.
+pub(super) fn sections(bytes: &[u8]) -> Result<(Sections<'_>, Digest), Error> {
     check_size(bytes.len() as u64)?;
     let sections = check_frame(bytes)?;
     let body = &bytes[..bytes.len() - DIGEST_BYTES];
@@ -34,7 +40,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<(Parts, Digest), Error> {
     }
     // The digest of this very file. With optional sections that were skipped it is not the digest of
     // the parts when they are written again.
-    Ok((found.into_parts()?, Digest::of(body)))
+    Ok((found, Digest::of(body)))
 }
 
 /// Checks magic, version, size and digest. Returns the number of sections.
@@ -105,15 +111,16 @@ fn check_frame(bytes: &[u8]) -> Result<u32, Error> {
 }
 
 /// A section's payload and where it starts.
-type Payload<'a> = (&'a [u8], usize);
+pub(super) type Payload<'a> = (&'a [u8], usize);
 
 #[derive(Default)]
-struct Sections<'a> {
-    head: Option<Payload<'a>>,
-    prov: Option<Payload<'a>>,
-    disp: Option<Payload<'a>>,
-    rank: Option<Payload<'a>>,
-    kind: Option<Payload<'a>>,
+pub(super) struct Sections<'a> {
+    pub(super) head: Option<Payload<'a>>,
+    pub(super) prov: Option<Payload<'a>>,
+    pub(super) disp: Option<Payload<'a>>,
+    pub(super) cube: Option<Payload<'a>>,
+    pub(super) rank: Option<Payload<'a>>,
+    pub(super) kind: Option<Payload<'a>>,
 }
 
 impl<'a> Sections<'a> {
@@ -134,6 +141,7 @@ impl<'a> Sections<'a> {
             b"HEAD" => &mut self.head,
             b"PROV" => &mut self.prov,
             b"DISP" => &mut self.disp,
+            _ if tag == CUBE => &mut self.cube,
             _ if tag == RANKS => &mut self.rank,
             _ if tag == MIX => &mut self.kind,
             _ if tag[0].is_ascii_lowercase() => return Ok(at + 12 + length),
@@ -146,23 +154,16 @@ impl<'a> Sections<'a> {
     }
 
     fn into_parts(self) -> Result<Parts, Error> {
+        if let Some((_, at)) = self.cube {
+            return Err(wrong(&CUBE, at, "a table of points in space".into()));
+        }
         let missing = |tag: &[u8]| wrong(tag, HEADER_BYTES, "missing".into());
         let (head, head_at) = self.head.ok_or_else(|| missing(b"HEAD"))?;
         let (prov, prov_at) = self.prov.ok_or_else(|| missing(b"PROV"))?;
         let (disp, disp_at) = self.disp.ok_or_else(|| missing(b"DISP"))?;
 
         let head = HeadSection::read(head, head_at)?;
-        let alpha = head.alpha;
-        let map = Map::new(alpha, head.radius)?;
-        if map.intervals() != head.intervals as usize {
-            let problem = format!(
-                "states {} intervals, but alpha = {alpha} with R = {} has {}",
-                head.intervals,
-                head.radius,
-                map.intervals()
-            );
-            return Err(wrong(b"HEAD", head_at, problem));
-        }
+        let map = head.map(head_at)?;
         let provenance = read_prov(prov).map_err(|p| wrong(b"PROV", prov_at, p))?;
         let displacements =
             read_disp(disp, map.intervals()).map_err(|p| wrong(b"DISP", disp_at, p))?;
@@ -226,6 +227,22 @@ impl HeadSection {
             profile,
         })
     }
+
+    /// The map, whose number of intervals the section states.
+    pub(super) fn map(&self, at: usize) -> Result<Map, Error> {
+        let alpha = self.alpha;
+        let map = Map::new(alpha, self.radius)?;
+        if map.intervals() == self.intervals as usize {
+            return Ok(map);
+        }
+        let problem = format!(
+            "states {} intervals, but alpha = {alpha} with R = {} has {}",
+            self.intervals,
+            self.radius,
+            map.intervals()
+        );
+        Err(wrong(b"HEAD", at, problem))
+    }
 }
 
 pub(super) fn read_prov(bytes: &[u8]) -> Result<Provenance, String> {
@@ -274,7 +291,7 @@ fn read_disp(bytes: &[u8], intervals: usize) -> Result<Vec<[i32; 2]>, String> {
         .collect()
 }
 
-fn read_rank(bytes: &[u8], blocks: usize) -> Result<Vec<u32>, String> {
+pub(super) fn read_rank(bytes: &[u8], blocks: usize) -> Result<Vec<u32>, String> {
     let width = position_bytes(blocks);
     if bytes.len() != width * blocks {
         let need = width * blocks;

@@ -10,6 +10,7 @@ use super::{
 };
 use crate::{
     error::Error,
+    map::Map,
     table::{Digest, Mix, Provenance, Ranks, parts::Parts},
 };
 
@@ -31,12 +32,17 @@ pub(crate) fn digest(table: &Parts) -> Result<Digest, Error> {
 /// Everything before the digest.
 fn body(table: &Parts) -> Vec<u8> {
     let mut sections = vec![
-        (*b"HEAD", head(table)),
+        (*b"HEAD", head(&table.map, &table.profile)),
         (*b"PROV", prov(&table.provenance)),
         (*b"DISP", disp(table)),
     ];
     sections.extend(table.ranks.as_ref().map(|ranks| (RANKS, rank(ranks))));
     sections.extend(table.mix.as_ref().map(|mix| (MIX, kind(mix))));
+    framed(sections)
+}
+
+/// A file of some sections, without its digest.
+pub(super) fn framed(sections: Vec<([u8; 4], Vec<u8>)>) -> Vec<u8> {
     let payload: usize = sections.iter().map(|(_, bytes)| 12 + bytes.len()).sum();
     let mut out = Writer::default();
     out.bytes.extend(MAGIC);
@@ -51,16 +57,16 @@ fn body(table: &Parts) -> Vec<u8> {
     out.bytes
 }
 
-fn head(table: &Parts) -> Vec<u8> {
+pub(super) fn head(map: &Map, profile: &str) -> Vec<u8> {
     let mut out = Writer::default();
-    out.text(&alloc::format!("{}", table.map.alpha()));
-    out.u32(table.map.radius());
-    out.length(table.map.intervals());
-    out.text(&table.profile);
+    out.text(&alloc::format!("{}", map.alpha()));
+    out.u32(map.radius());
+    out.length(map.intervals());
+    out.text(profile);
     out.bytes
 }
 
-fn prov(provenance: &Provenance) -> Vec<u8> {
+pub(super) fn prov(provenance: &Provenance) -> Vec<u8> {
     let mut out = Writer::default();
     out.text(&provenance.optimizer);
     out.u64(provenance.seed);
@@ -97,7 +103,7 @@ fn disp(table: &Parts) -> Vec<u8> {
     out.bytes
 }
 
-fn rank(ranks: &Ranks) -> Vec<u8> {
+pub(super) fn rank(ranks: &Ranks) -> Vec<u8> {
     let width = position_bytes(ranks.positions().len());
     let bytes = |position: &u32| position.to_le_bytes().into_iter().take(width);
     ranks.positions().iter().flat_map(bytes).collect()

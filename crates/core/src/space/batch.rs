@@ -1,0 +1,53 @@
+//! Batches: the points of some rows, as offsets from an origin.
+
+use alloc::vec::Vec;
+
+/// Points as fixed-point offsets from a lattice address, axis by axis.
+#[derive(Clone, Debug, Default)]
+pub struct Batch {
+    /// The lattice address that offsets are relative to.
+    pub(super) origin: [i64; 3],
+    pub(super) places: [Vec<i32>; 3],
+    /// The addresses of the points relative to the origin, if they are wanted.
+    pub(super) ids: Vec<[i32; 3]>,
+}
+
+impl Batch {
+    pub(super) fn len(&self) -> usize {
+        self.places[0].len()
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.places[0].is_empty()
+    }
+
+    /// Removes all points and sets the origin of the next.
+    pub(super) fn restart(&mut self, origin: [i64; 3]) {
+        self.origin = origin;
+        self.places.iter_mut().for_each(Vec::clear);
+        self.ids.clear();
+    }
+
+    /// The lattice address of a point, if there are so many.
+    pub(super) fn address(&self, point: usize) -> Option<[i64; 3]> {
+        let id = self.ids.get(point)?;
+        Some([0, 1, 2].map(|axis| self.origin[axis] + i64::from(id[axis])))
+    }
+
+    /// Keeps the points for whose place the test holds.
+    pub(super) fn retain(&mut self, mut test: impl FnMut([i32; 3]) -> bool) {
+        let [x, y, z] = &mut self.places;
+        let has_ids = !self.ids.is_empty();
+        let mut kept = 0;
+        for i in 0..x.len() {
+            let place = [x[i], y[i], z[i]];
+            [x[kept], y[kept], z[kept]] = place;
+            if has_ids {
+                self.ids[kept] = self.ids[i];
+            }
+            kept += usize::from(test(place));
+        }
+        self.places.iter_mut().for_each(|list| list.truncate(kept));
+        self.ids.truncate(kept);
+    }
+}

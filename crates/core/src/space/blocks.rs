@@ -1,0 +1,193 @@
+//! Points block by block, and one by one.
+
+use alloc::{sync::Arc, vec, vec::Vec};
+use core::{marker::PhantomData, ops::Range};
+
+use super::{batch::Batch, format::Format, point::Point, scope::Scope, walk::Walk};
+use crate::{Points, sample::Backend};
+
+/// The points of a plan in a format, block by block.
+///
+/// ```
+/// use strew_core::space::{SpaceSet, Table};
+///
+/// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
+/// let (mut blocks, mut block) = (plan.blocks_f32(), [[0.0; 3]; 1000]);
+/// let mut points = 0;
+/// loop {
+///     match blocks.fill(&mut block) {
+///         0 => break,
+///         filled => points += filled,
+///     }
+/// }
+/// assert_eq!(points as u128, plan.count());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Blocks<F: Format> {
+    scope: Arc<Scope>,
+    source: Source,
+    /// The number of points to come.
+    left: u128,
+    format: PhantomData<F>,
+}
+
+/// Where points come from.
+#[derive(Clone, Debug)]
+enum Source {
+    Walk {
+        walk: Walk,
+        batch: Batch,
+        /// The points of the batch that were written.
+        written: usize,
+    },
+    Kept(Arc<Batch>, Range<usize>),
+}
+
+impl<F: Format> Blocks<F> {
+    /// The next `left` points of a scope from a place on.
+    pub(super) fn walk(scope: Arc<Scope>, start: Option<[i64; 3]>, left: u128) -> Self {
+        let walk = Walk::new(scope.clone(), &scope.all, start, F::HAS_IDS);
+        Self {
+            scope,
+            source: Source::Walk {
+                walk,
+                batch: Batch::default(),
+                written: 0,
+            },
+            left,
+            format: PhantomData,
+        }
+    }
+
+    /// Some points that were kept.
+    pub(super) fn kept(scope: Arc<Scope>, kept: Arc<Batch>, points: Range<usize>) -> Self {
+        Self {
+            scope,
+            left: points.len() as u128,
+            source: Source::Kept(kept, points),
+            format: PhantomData,
+        }
+    }
+
+    /// Sets the backend; see [`Backend`]. The points are the same.
+    ///
+    /// ```
+    /// use strew_core::{Backend, space::{SpaceSet, Table}};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [0, 0, 0])?;
+    /// let [mut a, mut b] = [[[0.0; 3]; 10]; 2];
+    /// plan.blocks_f64().fill(&mut a);
+    /// plan.blocks_f64().with_backend(Backend::Scalar).fill(&mut b);
+    /// assert_eq!(a, b);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn with_backend(mut self, backend: Backend) -> Self {
+        if let Source::Walk { walk, .. } = &mut self.source {
+            walk.backend = backend;
+        }
+        self
+    }
+
+    /// Fills a slice with the next points. Returns the number of points written: less than the slice holds only at the
+    /// end.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [0, 0, 0])?;
+    /// let mut all = vec![[0.0; 3]; 1000];
+    /// assert_eq!(plan.blocks_f64().fill(&mut all) as u128, plan.count());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn fill(&mut self, out: &mut [F::Item]) -> usize {
+        let most = usize::try_from(self.left).unwrap_or(usize::MAX).min(out.len());
+        let mut filled = 0;
+        while filled < most {
+            let room = &mut out[filled..most];
+            match &mut self.source {
+                Source::Kept(batch, points) => {
+                    let from = points.start;
+                    points.start += room.len();
+                    F::write(&self.scope, batch, from, Backend::best(), room);
+                    filled = most;
+                }
+                Source::Walk {
+                    walk,
+                    batch,
+                    written,
+                } => {
+                    if *written == batch.len() {
+                        *written = 0;
+                        if !walk.next(batch) {
+                            batch.restart([0; 3]);
+                            self.left = 0;
+                            return filled;
+                        }
+                    }
+                    let number = room.len().min(batch.len() - *written);
+                    let from = *written;
+                    *written += number;
+                    F::write(&self.scope, batch, from, walk.backend, &mut room[..number]);
+                    filled += number;
+                }
+            }
+        }
+        self.left -= filled as u128;
+        filled
+    }
+}
+
+/// The points of a plan, one by one.
+///
+/// ```
+/// use strew_core::space::{SpaceSet, Table};
+///
+/// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [0, 0, 0])?;
+/// let lowest = plan.iter().map(|point| point.z).reduce(f64::min);
+/// assert!(lowest.is_some_and(|z| z < 1.0));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Members {
+    blocks: Blocks<Points>,
+    block: Vec<Point>,
+    next: usize,
+}
+
+impl Members {
+    pub(super) fn new(blocks: Blocks<Points>) -> Self {
+        Self {
+            blocks,
+            block: Vec::new(),
+            next: 0,
+        }
+    }
+}
+
+impl Iterator for Members {
+    type Item = Point;
+
+    fn next(&mut self) -> Option<Point> {
+        /// The number of points that are made together.
+        const AT_ONCE: usize = 256;
+        if self.next == self.block.len() {
+            let mut block = core::mem::take(&mut self.block);
+            let most = usize::try_from(self.blocks.left).unwrap_or(usize::MAX).min(AT_ONCE);
+            block.clear();
+            block.extend(vec![Point::default(); most]);
+            let filled = self.blocks.fill(&mut block);
+            block.truncate(filled);
+            (self.block, self.next) = (block, 0);
+        }
+        let point = self.block.get(self.next).copied()?;
+        self.next += 1;
+        Some(point)
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let left = self.blocks.left + (self.block.len() - self.next) as u128;
+        (0, usize::try_from(left).ok())
+    }
+}

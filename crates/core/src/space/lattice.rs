@@ -1,0 +1,233 @@
+//! Which addresses have points, and where these are.
+
+use alloc::sync::Arc;
+
+use super::{
+    pattern::Pattern,
+    point::{Point, PointId},
+    symmetry::Symmetry,
+    table::{Table, Turned},
+    warp::Shears3,
+};
+use crate::{
+    sample::{Keep, Seed, Spacing, Warp},
+    table::FRACTION_BITS,
+};
+
+/// The largest absolute lattice coordinate of a region. Positions fit 64 bits, and `f64` coordinates keep neighbors a
+/// ten-thousandth of a spacing apart there.
+///
+/// ```
+/// use strew_core::{ErrorKind, space::{LATTICE_LIMIT, Region, SpaceSet, Table}};
+///
+/// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
+/// let far = LATTICE_LIMIT as f64;
+/// let region = Region::new([far, 0.0, 0.0], [far + 8.0, 8.0, 8.0])?;
+/// assert_eq!(set.within(region).unwrap_err().kind(), ErrorKind::TooFar);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+pub const LATTICE_LIMIT: i64 = 1 << 40;
+
+/// Spacing, seed, warp and share of a set in space.
+///
+/// ```
+/// use strew_core::{Seed, Warp, space::{SpaceSet, Table}};
+///
+/// let table = Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?;
+/// let placement = SpaceSet::new(table).spacing(2.0)?.seed(7).placement();
+/// assert_eq!((placement.spacing.get(), placement.seed, placement.warp), (2.0, Seed(7), Warp::ON));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// The mean spacing, in world units: density^−⅓.
+    pub spacing: Spacing,
+    /// The seed.
+    pub seed: Seed,
+    /// The strength of the warp.
+    pub warp: Warp,
+    /// The share of the points that is kept.
+    pub keep: Keep,
+}
+
+/// The points of a table at a placement.
+#[derive(Clone, Debug)]
+pub(super) struct Lattice {
+    pub(super) table: Table,
+    pub(super) placement: Placement,
+    pub(super) pattern: Pattern,
+    pub(super) turned: Arc<Turned>,
+    pub(super) shears: Option<Shears3>,
+    /// The world units of a fixed-point unit.
+    pub(super) step: f64,
+    /// The points that are kept, unless all are.
+    pub(super) cut: Option<Cut>,
+}
+
+/// The points of ranks below a share: those of some whole blocks, and a strip of one more.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cut {
+    /// The number of positions whose blocks are kept whole.
+    pub(super) whole: u32,
+    /// The block of which a strip is kept.
+    pub(super) partial: u32,
+    /// The dX at which the strip ends.
+    pub(super) strip_end: u64,
+}
+
+/// A lattice coordinate in fixed-point units.
+pub(super) const fn fixed(v: i64) -> i64 {
+    v << FRACTION_BITS
+}
+
+impl Lattice {
+    pub(super) fn new(table: Table, placement: Placement) -> Self {
+        let alpha = table.map().alpha();
+        let turned = table.turned(Symmetry::of(placement.seed));
+        let cut = (placement.keep != Keep::ALL).then(|| Cut::new(&table, &turned, placement.keep));
+        let units = f64::from(1u32 << FRACTION_BITS);
+        Self {
+            placement,
+            pattern: Pattern::new(alpha, Pattern::origin(placement.seed)),
+            shears: Shears3::new(placement.warp, placement.seed),
+            step: placement.spacing.get() * alpha.set_side_f64() / units,
+            cut,
+            turned,
+            table,
+        }
+    }
+
+    /// The blocks along the axes of an address, or `None` if the pattern has no point there.
+    pub(super) fn block(&self, id: PointId) -> Option<[usize; 3]> {
+        let at = id.lattice();
+        if at.iter().any(|v| v.unsigned_abs() > LATTICE_LIMIT as u64) {
+            return None;
+        }
+        let index = self.pattern.index(at);
+        let map = self.table.map();
+        let [i, j, k] = index.map(|index| map.interval_of(index));
+        Some([i?, j?, k?])
+    }
+
+    /// The number of a block.
+    pub(super) fn number(&self, [i, j, k]: [usize; 3]) -> usize {
+        let n = self.table.map().intervals();
+        (k * n + j) * n + i
+    }
+
+    /// Whether the cut keeps a point of a block.
+    #[inline]
+    pub(super) fn keeps(&self, block: usize, index_x: u64) -> bool {
+        self.cut.is_none_or(|cut| {
+            let position = self.turned.order.position(block) as u32;
+            position < cut.whole || (block as u32 == cut.partial && index_x < cut.strip_end)
+        })
+    }
+
+    /// The rank of a point of the pattern; the greatest for other addresses.
+    pub(super) fn rank(&self, id: PointId) -> f64 {
+        let Some(block) = self.block(id) else {
+            return 1f64.next_down();
+        };
+        let interval = self.table.map().interval(block[0]);
+        let [index, ..] = self.pattern.index(id.lattice());
+        let order = &self.turned.order;
+        let length = interval.end - interval.start;
+        order.rank(order.position(self.number(block)), index - interval.start, length)
+    }
+
+    /// The point of an address, or `None` if there is none.
+    pub(super) fn point(&self, id: PointId) -> Option<Point> {
+        let place = self.place(id)?;
+        Some(self.point_at(id, place))
+    }
+
+    /// The fixed-point place of an address, or `None` if it has no point.
+    pub(super) fn place(&self, id: PointId) -> Option<[i64; 3]> {
+        let number = self.number(self.block(id)?);
+        let at = id.lattice();
+        let is_kept = self.cut.is_none() || self.keeps(number, self.pattern.index(at)[0]);
+        is_kept.then(|| {
+            let vector = self.turned.vectors[number];
+            let displaced = [0, 1, 2].map(|axis| fixed(at[axis]) + i64::from(vector[axis]));
+            match &self.shears {
+                Some(shears) => shears.apply(displaced),
+                None => displaced,
+            }
+        })
+    }
+
+    /// The point at a fixed-point place.
+    pub(super) fn point_at(&self, id: PointId, place: [i64; 3]) -> Point {
+        let [x, y, z] = place.map(|k| self.world(k));
+        Point { id, x, y, z }
+    }
+
+    /// The world coordinate of a fixed-point one. Monotone.
+    #[inline(always)]
+    pub(super) fn world(&self, fixed: i64) -> f64 {
+        fixed as f64 * self.step
+    }
+
+    /// The largest absolute world coordinate of a region.
+    pub(super) fn limit(&self) -> f64 {
+        self.world(fixed(LATTICE_LIMIT))
+    }
+
+    /// The least fixed-point coordinate whose world coordinate is ≥ `bound`, for a bound within the limit. Exact: a
+    /// bisection on the conversion itself.
+    pub(super) fn first_at_or_above(&self, bound: f64) -> i64 {
+        let reaches = |k: i64| self.world(k) >= bound;
+        let guess = (bound / self.step) as i64;
+        let mut width = 2i64;
+        let (mut low, mut high) = (guess - 1, guess + 1);
+        while reaches(low) {
+            low -= width;
+            width *= 2;
+        }
+        while !reaches(high) {
+            high += width;
+            width *= 2;
+        }
+        while high - low > 1 {
+            let middle = low + (high - low) / 2;
+            if reaches(middle) {
+                high = middle
+            } else {
+                low = middle
+            }
+        }
+        high
+    }
+}
+
+impl Cut {
+    fn new(table: &Table, turned: &Turned, keep: Keep) -> Self {
+        let (order, share) = (&turned.order, keep.get());
+        let whole = order.whole(share);
+        let Some(block) = order.block_at(whole) else {
+            return Self {
+                whole: whole as u32,
+                partial: u32::MAX,
+                strip_end: 0,
+            };
+        };
+        let interval = table.map().interval(block % table.map().intervals());
+        let length = interval.end - interval.start;
+        // A bisection on the rank itself: below `low` all are kept, at `high` and above none.
+        let (mut low, mut high) = (0, length);
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if order.rank(whole, middle, length) < share {
+                low = middle + 1
+            } else {
+                high = middle
+            }
+        }
+        Self {
+            whole: whole as u32,
+            partial: block as u32,
+            strip_end: interval.start + low,
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! Points in space: three dimensions.
+//!
+//! The construction of the plane extends to space. The pattern is a union of eight Cartesian products of the same
+//! one-dimensional sets, a small table has a vector for each of n³ blocks, and a seed chooses an origin, one of the 48
+//! symmetries of the cube and a warp. [`SpaceSet`] has the words of [`PointSet`](crate::PointSet).
+//!
+//! ```
+//! use strew_core::space::{Ball, SpaceSet, Table};
+//!
+//! let set = SpaceSet::new(Table::undisplaced("(5-sqrt(3))/2".parse()?, 5, "pattern")?).spacing(2.0)?.seed(7);
+//! let plan = set.within(Ball::new([0.0; 3], 20.0)?)?;
+//! assert_eq!(plan.iter().count() as u128, plan.count());
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
+//! `pattern` and `symmetry` have the pattern, `table` the vectors, `warp` the shears, `lattice` which addresses have
+//! points and where; `volume` the parts of space, `scope` what of a lattice is requested. `walk` makes points batch by
+//! batch from `columns` of planes, `cells` and `template`s; `closed` and `count` count them. `plan` is a request made
+//! ready, whose points `blocks` writes in a `format`; `nearest` and `distance` are about neighbors. `set` is all of this.
+
+mod batch;
+mod blocks;
+mod cells;
+mod closed;
+mod columns;
+mod count;
+mod cursor;
+mod distance;
+mod format;
+mod lattice;
+mod nearest;
+mod pattern;
+mod plan;
+mod point;
+mod scope;
+mod set;
+mod symmetry;
+mod table;
+mod template;
+mod volume;
+mod walk;
+mod warp;
+
+pub use blocks::{Blocks, Members};
+pub use cursor::Cursor;
+pub use distance::LeastDistance;
+pub use format::Format;
+pub use lattice::{LATTICE_LIMIT, Placement};
+pub use nearest::Neighbor;
+pub use pattern::Pattern;
+pub use plan::Plan;
+pub use point::{Point, PointId};
+pub use set::SpaceSet;
+pub use table::Table;
+pub use volume::{Ball, Prism, Region, Volume};

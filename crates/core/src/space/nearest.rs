@@ -1,0 +1,147 @@
+//! The points nearest to a place.
+
+use alloc::{sync::Arc, vec::Vec};
+
+use super::{
+    batch::Batch,
+    lattice::{LATTICE_LIMIT, Lattice, fixed},
+    point::{Point, PointId},
+    scope::Scope,
+    volume::{Region, Volume},
+    walk::Walk,
+};
+use crate::{
+    error::{Error, ErrorKind, number},
+    stop::Stop,
+};
+
+/// A point near a place, and its distance.
+///
+/// ```
+/// use strew_core::space::{Neighbor, SpaceSet, Table};
+///
+/// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).seed(7);
+/// let Neighbor { point, distance } = set.nearest([10.0, 3.0, 0.0], 1)?[0];
+/// let [dx, dy, dz] = [point.x - 10.0, point.y - 3.0, point.z];
+/// assert_eq!(distance, (dx * dx + dy * dy + dz * dz).sqrt());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neighbor {
+    /// The point.
+    pub point: Point,
+    /// The distance from the place, in world units.
+    pub distance: f64,
+}
+
+/// The most neighbors that one search returns.
+pub(super) const MAX_NEAREST: usize = 10_000;
+/// The most points that a search visits.
+pub(super) const MAX_CANDIDATES: usize = 4_000_000;
+
+/// The `k` points nearest to a place, within a radius if there is one, nearest first; of equally near ones that with the
+/// smaller id.
+pub(super) fn nearest(
+    lattice: &Lattice,
+    at: [f64; 3],
+    k: usize,
+    within: Option<f64>,
+) -> Result<Vec<Neighbor>, Error> {
+    for (name, value) in ["x", "y", "z"].into_iter().zip(at) {
+        if !value.is_finite() {
+            let (value, allowed) = (number(value), "a finite number");
+            return Err(Error::new(ErrorKind::Place, name, value, allowed));
+        }
+    }
+    if k > MAX_NEAREST {
+        let allowed = alloc::format!("at most {MAX_NEAREST}");
+        return Err(Error::new(ErrorKind::Neighbors, "k", k, allowed));
+    }
+    if let Some(radius) = within
+        && !(radius.is_finite() && radius >= 0.0)
+    {
+        let (value, allowed) = (number(radius), "a finite number, 0 or greater");
+        return Err(Error::new(ErrorKind::Radius, "radius", value, allowed));
+    }
+    let share = lattice.placement.keep.get();
+    let spacing = lattice.placement.spacing.get() / libm::cbrt(share);
+    if k == 0 {
+        return Ok(Vec::new());
+    }
+    // A ball that holds k points on average, and a little more.
+    let mut radius = spacing * (libm::cbrt(k as f64 * 0.239) + 0.7);
+    loop {
+        if let Some(most) = within {
+            radius = radius.min(most);
+        }
+        check(lattice, at, radius)?;
+        let mut found = around(lattice, at, radius)?;
+        found.sort_unstable_by(|a, b| {
+            let by_distance = a.0.total_cmp(&b.0);
+            by_distance.then_with(|| a.1.id.cmp(&b.1.id))
+        });
+        if found.len() >= k || within == Some(radius) {
+            let neighbors = found.into_iter().take(k);
+            let neighbor = |(squared, point)| Neighbor {
+                point,
+                distance: libm::sqrt(squared),
+            };
+            return Ok(neighbors.map(neighbor).collect());
+        }
+        radius *= 1.4;
+    }
+}
+
+/// Refuses a search that leaves the lattice's limit or visits too many points.
+fn check(lattice: &Lattice, at: [f64; 3], radius: f64) -> Result<(), Error> {
+    /// Lattice units kept free at the limit: more than the longest displacement and warp.
+    const BORDER: i64 = 1 << 20;
+    let limit = lattice.world(fixed(LATTICE_LIMIT - BORDER));
+    for (name, value) in ["x", "y", "z"].into_iter().zip(at) {
+        if value.abs() + radius > limit {
+            let allowed = alloc::format!(
+                "within ±{limit:e}, with the radius searched, where f64 coordinates with this spacing still keep \
+                 neighbors apart"
+            );
+            let error = Error::new(ErrorKind::TooFar, name, number(value), allowed);
+            return Err(error.because("too far from the origin").with_limit(limit));
+        }
+    }
+    let spacings = radius / lattice.placement.spacing.get();
+    let about = 8.0 * spacings * spacings * spacings;
+    if about > MAX_CANDIDATES as f64 {
+        let problem = alloc::format!("about {about:.0} points lie within");
+        let allowed = alloc::format!("a radius with at most {MAX_CANDIDATES} points");
+        let error = Error::new(ErrorKind::TooMany, "radius", number(radius), allowed);
+        return Err(error.because(problem).with_limit(MAX_CANDIDATES as f64));
+    }
+    Ok(())
+}
+
+/// The points within a radius, its end included, with their squared distances.
+fn around(lattice: &Lattice, at: [f64; 3], radius: f64) -> Result<Vec<(f64, Point)>, Error> {
+    // Rounded coordinates of the box do not lose points at the radius.
+    let wide = radius * (1.0 + 1e-12);
+    let [min, max] = [
+        at.map(|v| (v - wide).next_down()),
+        at.map(|v| (v + wide).next_up().next_up()),
+    ];
+    let volume = Volume::Region(Region::between(min, max));
+    let scope = Arc::new(Scope::new(lattice, &volume, Stop::default())?);
+    let mut walk = Walk::new(scope.clone(), &scope.all, None, true);
+    let (mut batch, mut found) = (Batch::default(), Vec::new());
+    let farthest = radius * radius;
+    while walk.next(&mut batch) {
+        for (i, id) in batch.ids.iter().enumerate() {
+            let origin = batch.origin;
+            let place = [0, 1, 2].map(|axis| fixed(origin[axis]) + i64::from(batch.places[axis][i]));
+            let [dx, dy, dz] = [0, 1, 2].map(|axis| lattice.world(place[axis]) - at[axis]);
+            let squared = dx * dx + dy * dy + dz * dz;
+            if squared <= farthest {
+                let id = PointId::of([0, 1, 2].map(|axis| origin[axis] + i64::from(id[axis])));
+                found.push((squared, lattice.point_at(id, place)));
+            }
+        }
+    }
+    Ok(found)
+}

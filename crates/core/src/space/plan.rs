@@ -1,0 +1,450 @@
+//! Plans: the points of a request, counted, and windows of them.
+
+use alloc::{sync::Arc, vec, vec::Vec};
+use core::ops::Range;
+
+use super::{
+    batch::Batch,
+    blocks::{Blocks, Members},
+    count,
+    cursor::Cursor,
+    format::Format,
+    lattice::{Lattice, Placement},
+    point::{Point, PointId},
+    scope::Scope,
+    table::Table,
+    volume::{Region, Volume},
+};
+use crate::{F32, F64, Points, error::Error, stop::Stop};
+
+/// The points of a volume, counted exactly before the first is made.
+///
+/// Points come in an order of their own: columns of 1024 × 1024 lattice units by x, then y; in a column planes by z, in a
+/// plane rows by y, in a row points by x, all of them by their lattice addresses.
+///
+/// ```
+/// use strew_core::space::{Ball, SpaceSet, Table};
+///
+/// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).seed(7);
+/// let plan = set.within(Ball::new([0.0; 3], 9.0)?)?;
+/// assert_eq!(plan.iter().count() as u128, plan.count());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Plan {
+    scope: Arc<Scope>,
+    window: Window,
+    /// All points of the request, if they are few.
+    kept: Option<Arc<Batch>>,
+}
+
+/// A part of a request's points.
+#[derive(Clone, Copy, Debug)]
+struct Window {
+    /// The first point, unless that is the first of the request.
+    start: Option<[i64; 3]>,
+    offset: u128,
+    count: u128,
+    total: u128,
+}
+
+/// Requests with at most so many points to look at are walked once instead of counted.
+const FEW: f64 = 20_000.0;
+
+/// Whether a scope has few points, near each other.
+fn is_small(scope: &Scope) -> bool {
+    let is_short = |range: &Range<i64>| range.end - range.start <= 1024;
+    scope.all.iter().all(is_short) && scope.candidates(&scope.all) <= FEW
+}
+
+impl Plan {
+    /// The plan of a volume, which is counted unless its count is known.
+    pub(super) fn new(
+        lattice: &Lattice,
+        volume: &Volume,
+        stop: Stop,
+        total: Option<u128>,
+    ) -> Result<Self, Error> {
+        let scope = Arc::new(Scope::new(lattice, volume, stop)?);
+        let mut kept = None;
+        let total = match total {
+            Some(total) => total,
+            None if is_small(&scope) => {
+                let points = count::keep(&scope);
+                let count = points.len() as u128;
+                kept = Some(Arc::new(points));
+                count
+            }
+            None => count::count(&scope, &scope.all),
+        };
+        if scope.stop.is_raised() {
+            return Err(Stop::error());
+        }
+        let window = Window {
+            start: None,
+            offset: 0,
+            count: total,
+            total,
+        };
+        Ok(Self {
+            scope,
+            window,
+            kept,
+        })
+    }
+
+    /// The number of points.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
+    /// assert!((7800..8200).contains(&plan.count()));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn count(&self) -> u128 {
+        self.window.count
+    }
+
+    /// The number of points of the whole request, of which the plan may be a window.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
+    /// assert_eq!(plan.window(50, Some(10)).total(), plan.count());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn total(&self) -> u128 {
+        self.window.total
+    }
+
+    /// The number of points of the request that come before the plan's.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
+    /// assert_eq!(plan.window(50, None).window(5, None).offset(), 55);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn offset(&self) -> u128 {
+        self.window.offset
+    }
+
+    /// The points from number `offset` of this plan on, at most `limit`; none from its end on.
+    ///
+    /// ```
+    /// use strew_core::space::{Region, SpaceSet, Table};
+    ///
+    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
+    /// // 10¹⁸ points, of which two in the middle are made.
+    /// let plan = set.within(Region::new([-5e5; 3], [5e5; 3])?)?;
+    /// assert_eq!(plan.window(plan.count() / 2, Some(2)).to_vec().len(), 2);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn window(&self, offset: u128, limit: Option<u128>) -> Self {
+        let window = self.window;
+        let offset = offset.min(window.count);
+        let count = (window.count - offset).min(limit.unwrap_or(u128::MAX));
+        let mut start = window.start;
+        if offset > 0 && count > 0 {
+            start = self.locate(window.offset + offset);
+        }
+        self.with_window(Window {
+            start,
+            offset: window.offset + offset,
+            count,
+            total: window.total,
+        })
+    }
+
+    /// The points of the request from one of its [cursors](Cursor) on, found without counting.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
+    /// let cursor = plan.window(50, None).cursor().expect("not empty");
+    /// assert_eq!(plan.from_cursor(cursor).to_vec(), plan.to_vec()[50..]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn from_cursor(&self, cursor: Cursor) -> Self {
+        let total = self.window.total;
+        let offset = cursor.offset.min(total);
+        self.with_window(Window {
+            start: (offset > 0).then_some(cursor.at.lattice()),
+            offset,
+            count: total - offset,
+            total,
+        })
+    }
+
+    /// The plan cut into `parts` windows, one after another, whose sizes differ by at most one. 0 parts count as 1.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
+    /// let counts: Vec<u128> = plan.window(0, Some(10)).split(4).map(|part| part.count()).collect();
+    /// assert_eq!(counts, [3, 3, 2, 2]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn split(&self, parts: u32) -> impl Iterator<Item = Self> + use<> {
+        let parts = u128::from(parts.max(1));
+        let (quotient, rest) = (self.count() / parts, self.count() % parts);
+        let start = move |i: u128| i * quotient + i.min(rest);
+        let plan = self.clone();
+        (0..parts).map(move |i| plan.window(start(i), Some(start(i + 1) - start(i))))
+    }
+
+    /// The place of the first point, or `None` if there are no points.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
+    /// let cursor = plan.window(50, None).cursor().expect("not empty");
+    /// assert_eq!((cursor.offset, cursor.at), (50, plan.to_vec()[50].id));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn cursor(&self) -> Option<Cursor> {
+        let Window {
+            start,
+            offset,
+            count,
+            total,
+        } = self.window;
+        if count == 0 {
+            return None;
+        }
+        let at = PointId::of(start.or_else(|| self.locate(offset))?);
+        Some(Cursor { offset, total, at })
+    }
+
+    /// The place of the first point of the request after the plan's last, or `None` at the end.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
+    /// let next = plan.window(0, Some(50)).next_cursor().expect("there are more");
+    /// assert_eq!(plan.from_cursor(next).offset(), 50);
+    /// assert_eq!(plan.next_cursor(), None);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn next_cursor(&self) -> Option<Cursor> {
+        let total = self.window.total;
+        let offset = self.window.offset + self.window.count;
+        let at = PointId::of(self.locate(offset)?);
+        Some(Cursor { offset, total, at })
+    }
+
+    /// The address of point number `k` of the request; `None` from its end on.
+    fn locate(&self, k: u128) -> Option<[i64; 3]> {
+        if k >= self.window.total {
+            return None;
+        }
+        match &self.kept {
+            Some(kept) => kept.address(usize::try_from(k).ok()?),
+            None => count::locate(&self.scope, k),
+        }
+    }
+
+    fn with_window(&self, window: Window) -> Self {
+        Self {
+            window,
+            ..self.clone()
+        }
+    }
+
+    /// The points in a format, block by block.
+    ///
+    /// ```
+    /// use strew_core::{F64, space::{SpaceSet, Table}};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [0, 0, 0])?;
+    /// let mut block = [[0.0; 3]; 10];
+    /// assert_eq!(plan.blocks::<F64>().fill(&mut block), 10);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn blocks<F: Format>(&self) -> Blocks<F> {
+        let Window {
+            start,
+            offset,
+            count,
+            ..
+        } = self.window;
+        match &self.kept {
+            Some(kept) => {
+                let points = offset as usize..(offset + count) as usize;
+                Blocks::kept(self.scope.clone(), kept.clone(), points)
+            }
+            None => Blocks::walk(self.scope.clone(), start, count),
+        }
+    }
+
+    /// The points as `f32` triples relative to [`origin`](Self::origin), block by block.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [3, -2, 0])?;
+    /// let mut block = [[0f32; 3]; 10];
+    /// plan.blocks_f32().fill(&mut block);
+    /// assert!(block.iter().flatten().all(|offset| (0.0..4.0).contains(offset)));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn blocks_f32(&self) -> Blocks<F32> {
+        self.blocks()
+    }
+
+    /// The points as `f64` triples in world coordinates, block by block.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [3, -2, 0])?;
+    /// let mut block = [[0f64; 3]; 10];
+    /// plan.blocks_f64().fill(&mut block);
+    /// assert_eq!(block[0], plan.to_vec()[0].at());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn blocks_f64(&self) -> Blocks<F64> {
+        self.blocks()
+    }
+
+    /// The points with their ids, block by block.
+    ///
+    /// ```
+    /// use strew_core::space::{Point, SpaceSet, Table};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [0, 0, 0])?;
+    /// let mut block = [Point::default(); 10];
+    /// plan.blocks_points().fill(&mut block);
+    /// assert_eq!(block[..], plan.to_vec()[..10]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn blocks_points(&self) -> Blocks<Points> {
+        self.blocks()
+    }
+
+    /// The points, one by one.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [0, 0, 0])?;
+    /// assert!(plan.iter().all(|point| plan.region().contains(point.at())));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn iter(&self) -> Members {
+        Members::new(self.blocks())
+    }
+
+    /// All points.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [0, 0, 0])?;
+    /// assert_eq!(plan.to_vec().len() as u128, plan.count());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn to_vec(&self) -> Vec<Point> {
+        let count = usize::try_from(self.count()).unwrap_or(usize::MAX);
+        let mut points = vec![Point::default(); count];
+        let filled = self.blocks_points().fill(&mut points);
+        points.truncate(filled);
+        points
+    }
+
+    /// A box around all points: the requested region, if that was a box.
+    ///
+    /// ```
+    /// use strew_core::space::{Region, SpaceSet, Table};
+    ///
+    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
+    /// let chunk = Region::chunk(8.0, [3, -2, 0])?;
+    /// assert_eq!(set.within(chunk)?.region(), chunk);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn region(&self) -> Region {
+        self.scope.region
+    }
+
+    /// The lower corner of the requested chunk, or else of the [region](Self::region), in world coordinates. `f32`
+    /// coordinates are relative to it.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
+    /// assert_eq!(set.chunk(8.0, [3, -2, 0])?.origin(), [24.0, -16.0, 0.0]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn origin(&self) -> [f64; 3] {
+        self.scope.corner.at
+    }
+
+    /// The table of the set.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let table = Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?;
+    /// assert_eq!(SpaceSet::new(table.clone()).chunk(8.0, [0, 0, 0])?.table(), &table);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn table(&self) -> &Table {
+        &self.scope.lattice.table
+    }
+
+    /// Spacing, seed, warp and share of the set.
+    ///
+    /// ```
+    /// use strew_core::{Seed, space::{SpaceSet, Table}};
+    ///
+    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).seed(7);
+    /// assert_eq!(set.chunk(8.0, [0, 0, 0])?.placement().seed, Seed(7));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn placement(&self) -> Placement {
+        self.scope.lattice.placement
+    }
+}
+
+impl IntoIterator for Plan {
+    type Item = Point;
+    type IntoIter = Members;
+
+    fn into_iter(self) -> Members {
+        self.iter()
+    }
+}
+
+impl IntoIterator for &Plan {
+    type Item = Point;
+    type IntoIter = Members;
+
+    fn into_iter(self) -> Members {
+        self.iter()
+    }
+}

@@ -1,0 +1,125 @@
+//! Points in space and their ids.
+
+use core::{fmt, str::FromStr};
+
+use crate::error::{Error, ErrorKind, shown};
+
+/// The stable id of a point: its lattice address. The text form is `x:y:z`, three decimal integers.
+///
+/// ```
+/// use strew_core::space::PointId;
+///
+/// let id: PointId = "-31:52:7".parse()?;
+/// assert_eq!(id, PointId { x: -31, y: 52, z: 7 });
+/// assert_eq!(id.to_string(), "-31:52:7");
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[repr(C)]
+pub struct PointId {
+    /// The lattice coordinate along x.
+    pub x: i64,
+    /// The lattice coordinate along y.
+    pub y: i64,
+    /// The lattice coordinate along z.
+    pub z: i64,
+}
+
+/// A point with its id, in world coordinates.
+///
+/// ```
+/// use strew_core::space::{Point, SpaceSet, Table};
+///
+/// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
+/// let Point { id, x, .. } = set.chunk(8.0, [0, 0, 0])?.to_vec()[0];
+/// assert!((0.0..8.0).contains(&x));
+/// assert_eq!(set.point(id).map(|point| point.x), Some(x));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct Point {
+    /// The stable id.
+    pub id: PointId,
+    /// The world coordinate along x.
+    pub x: f64,
+    /// The world coordinate along y.
+    pub y: f64,
+    /// The world coordinate along z.
+    pub z: f64,
+}
+
+impl Point {
+    /// The world coordinates.
+    ///
+    /// ```
+    /// use strew_core::space::{Point, PointId};
+    ///
+    /// let point = Point { id: PointId { x: 4, y: 9, z: 0 }, x: 1.5, y: -2.0, z: 0.5 };
+    /// assert_eq!(point.at(), [1.5, -2.0, 0.5]);
+    /// ```
+    #[must_use]
+    pub const fn at(&self) -> [f64; 3] {
+        [self.x, self.y, self.z]
+    }
+}
+
+impl PointId {
+    /// The id of a lattice address.
+    pub(super) const fn of([x, y, z]: [i64; 3]) -> Self {
+        Self { x, y, z }
+    }
+
+    /// The lattice address.
+    pub(super) const fn lattice(self) -> [i64; 3] {
+        [self.x, self.y, self.z]
+    }
+}
+
+impl fmt::Display for PointId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}:{}", self.x, self.y, self.z)
+    }
+}
+
+impl FromStr for PointId {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        const ALLOWED: &str = "three integers joined by colons, such as -31:52:7";
+        let refused = || Error::new(ErrorKind::PointId, "id", shown(text), ALLOWED);
+        let mut parts = text.split(':');
+        let mut number = || {
+            let part = parts.next().and_then(|part| part.parse().ok());
+            part.ok_or_else(refused)
+        };
+        // An id has one text: no plus sign, no leading zeros, no minus zero.
+        let id = Self {
+            x: number()?,
+            y: number()?,
+            z: number()?,
+        };
+        let canonical = alloc::format!("{id}") == text;
+        canonical.then_some(id).ok_or_else(refused)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_round_trips_and_is_unique() {
+        for lattice in [[0, 0, 0], [-31, 52, 7], [i64::MIN, i64::MAX, -1]] {
+            let id = PointId::of(lattice);
+            assert_eq!(alloc::format!("{id}").parse(), Ok(id));
+        }
+        for bad in [
+            "", "::", "1", "1:2", "1:2:", "1:2:3:4", "+1:2:3", "01:2:3", "-0:2:3", " 1:2:3",
+            "1:2:99999999999999999999",
+        ] {
+            let error = bad.parse::<PointId>().expect_err(bad);
+            assert_eq!(error.kind(), ErrorKind::PointId);
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! Scopes: the part of a lattice that a request covers.
+
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use super::{
+    lattice::{Lattice, fixed},
+    volume::{CORNERS, Chunk, Region, Volume},
+};
+use crate::{
+    error::{Error, ErrorKind, number},
+    sample::Multiple,
+    stop::Stop,
+    table::FRACTION_BITS,
+};
+
+/// What of a lattice is requested.
+#[derive(Clone, Debug)]
+pub struct Scope {
+    pub(super) lattice: Lattice,
+    /// The fixed-point coordinates of the points inside.
+    pub(super) bounds: [Range<i64>; 3],
+    /// The positions before the warp from which points may get inside.
+    pub(super) before: [Range<i64>; 3],
+    /// The lattice coordinates of these points, and a few more.
+    pub(super) all: [Range<i64>; 3],
+    /// What points must satisfy beside the bounds.
+    pub(super) volume: Option<Volume>,
+    /// The box around all points.
+    pub(super) region: Region,
+    /// The place that offsets are relative to.
+    pub(super) corner: Corner,
+    /// Ends counting early.
+    pub(super) stop: Stop,
+}
+
+/// The place that offsets of points are relative to, on the fixed-point grid.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    /// The place in world coordinates, rounded.
+    pub(super) at: [f64; 3],
+    /// The first fixed-point coordinates from there on.
+    pub(super) first: [i64; 3],
+    /// The distances from the exact place to these, in steps.
+    pub(super) lead: [f64; 3],
+    /// Offsets are below this.
+    pub(super) extent: [f64; 3],
+}
+
+/// Whether the points of a box of the lattice lie inside.
+#[derive(Clone, Debug)]
+pub(super) enum State {
+    In,
+    Out,
+    /// Each has to be tested, by this volume beside the bounds.
+    Test(Option<Volume>),
+}
+
+impl Corner {
+    fn of_box(lattice: &Lattice, region: &Region, first: [i64; 3]) -> Self {
+        let (min, max) = (region.min(), region.max());
+        let lead = |axis: usize| {
+            let sign = if min[axis] < 0.0 { -1 } else { 1 };
+            let corner = Multiple::new(lattice.step, min[axis].abs(), sign);
+            // Reported coordinates decide which is first, so it is a little beside the corner far out.
+            let [gap, error] = corner.gap;
+            let beside = (i128::from(first[axis]) - corner.first) as f64 * lattice.step;
+            ((gap + (error + beside)) / lattice.step).max(0.0)
+        };
+        Self {
+            at: min,
+            first,
+            lead: [lead(0), lead(1), lead(2)],
+            extent: [0, 1, 2].map(|axis| max[axis] - min[axis]),
+        }
+    }
+
+    fn of_chunk(lattice: &Lattice, Chunk { size, at }: Chunk) -> Self {
+        let multiples = at.map(|index| Multiple::new(lattice.step, size, index));
+        Self {
+            at: at.map(|index| index as f64 * size),
+            first: multiples.map(|multiple| multiple.first as i64),
+            lead: multiples.map(|multiple| {
+                let [gap, error] = multiple.gap;
+                ((gap + error) / lattice.step).max(0.0)
+            }),
+            extent: [size; 3],
+        }
+    }
+}
+
+/// The chunks of which a volume is the intersection with [`beside_chunks`]. Membership of a chunk is exact, which
+/// reported coordinates cannot decide, so integers decide these and coordinates the rest.
+fn chunks(volume: &Volume) -> Vec<Chunk> {
+    match volume {
+        Volume::Region(region) => region.as_chunk().into_iter().collect(),
+        Volume::AllOf(volumes) => volumes.iter().flat_map(chunks).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// The volume without the restriction to its [`chunks`]; `None` if nothing else restricts it.
+fn beside_chunks(volume: &Volume) -> Option<Volume> {
+    match volume {
+        Volume::Region(region) if region.as_chunk().is_some() => None,
+        Volume::AllOf(volumes) => {
+            let mut rest: Vec<Volume> = volumes.iter().filter_map(beside_chunks).collect();
+            if rest.len() > 1 {
+                Some(Volume::AllOf(rest))
+            } else {
+                rest.pop()
+            }
+        }
+        other => Some(other.clone()),
+    }
+}
+
+impl Scope {
+    /// The part of a lattice that lies in a volume.
+    pub(super) fn new(lattice: &Lattice, volume: &Volume, stop: Stop) -> Result<Self, Error> {
+        let region = volume.bounds().ok_or_else(|| {
+            Error::new(ErrorKind::Unbounded, "area", "unbounded", "within a box")
+        })?;
+        let limit = lattice.limit();
+        let corners = region.min().into_iter().chain(region.max());
+        for (name, value) in CORNERS.into_iter().zip(corners) {
+            if value.is_nan() || value.abs() > limit {
+                let allowed = alloc::format!(
+                    "within ±{limit:e} with this spacing, where f64 coordinates still keep neighbors apart"
+                );
+                let error = Error::new(ErrorKind::TooFar, name, number(value), allowed);
+                return Err(error.because("too far from the origin").with_limit(limit));
+            }
+        }
+        let (chunks, rest) = (chunks(volume), beside_chunks(volume));
+        let bounds = bounds(lattice, &chunks, rest.as_ref());
+        let corner = match chunks.last() {
+            Some(chunk) => Corner::of_chunk(lattice, *chunk),
+            None => Corner::of_box(lattice, &region, bounds.clone().map(|range| range.start)),
+        };
+        let volume = rest.filter(|rest| !matches!(rest, Volume::Region(_)));
+        let before = before(lattice, &bounds);
+        let all = [0, 1, 2].map(|axis| {
+            let ([least, most], range) = (lattice.turned.reach[axis], &before[axis]);
+            if range.is_empty() {
+                return 0..0;
+            }
+            let start = -((i64::from(most) - range.start) >> FRACTION_BITS);
+            start..((range.end - 1 - i64::from(least)) >> FRACTION_BITS) + 1
+        });
+        Ok(Self {
+            lattice: lattice.clone(),
+            bounds,
+            before,
+            all,
+            volume,
+            region,
+            corner,
+            stop,
+        })
+    }
+
+    /// The states of the points of a box of the lattice, which is not empty, if their number is not known to be 0.
+    pub(super) fn state(&self, ranges: &[Range<i64>; 3], volume: Option<&Volume>) -> State {
+        let lattice = &self.lattice;
+        let displaced = [0, 1, 2].map(|axis| {
+            let [least, most] = lattice.turned.reach[axis].map(i64::from);
+            let range = &ranges[axis];
+            [fixed(range.start) + least, fixed(range.end - 1) + most]
+        });
+        let places = match &lattice.shears {
+            Some(shears) => shears.spread(displaced),
+            None => displaced,
+        };
+        let mut is_inside = true;
+        for ([least, most], bounds) in places.iter().zip(&self.bounds) {
+            if *most < bounds.start || bounds.end <= *least {
+                return State::Out;
+            }
+            is_inside &= bounds.start <= *least && *most < bounds.end;
+        }
+        let Some(volume) = volume else {
+            return if is_inside { State::In } else { State::Test(None) };
+        };
+        let [min, max] = [0, 1].map(|end| places.map(|ends| lattice.world(ends[end])));
+        let near = volume.focus(&Region::between(min, max));
+        match near.is_all_or_nothing() {
+            Some(false) => State::Out,
+            Some(true) if is_inside => State::In,
+            Some(true) => State::Test(None),
+            None => State::Test(Some(near)),
+        }
+    }
+
+    /// The box of the lattice that both have.
+    pub(super) fn clip(&self, ranges: &[Range<i64>; 3]) -> [Range<i64>; 3] {
+        [0, 1, 2].map(|axis| common(&self.all[axis], &ranges[axis]))
+    }
+
+    /// About the number of points that are looked at for those of a box of the lattice.
+    pub(super) fn candidates(&self, ranges: &[Range<i64>; 3]) -> f64 {
+        let t = self.lattice.pattern.alpha().set_side_f64();
+        let sides = ranges.iter().map(|range| (range.end - range.start).max(0) as f64 * t);
+        sides.product()
+    }
+}
+
+/// The part that two ranges have in common.
+pub(super) fn common(a: &Range<i64>, b: &Range<i64>) -> Range<i64> {
+    let start = a.start.max(b.start);
+    start..a.end.min(b.end).max(start)
+}
+
+/// The fixed-point coordinates of the points of a volume: of its chunks exactly, of everything else by the reported
+/// coordinates. The bounds of the volume are within the lattice's limit.
+fn bounds(lattice: &Lattice, chunks: &[Chunk], rest: Option<&Volume>) -> [Range<i64>; 3] {
+    let of_box = rest.and_then(Volume::bounds).map(|region| {
+        [0, 1, 2].map(|axis| {
+            let limit = lattice.limit();
+            let end = |bound: f64| lattice.first_at_or_above(bound.clamp(-limit, limit));
+            end(region.min()[axis])..end(region.max()[axis])
+        })
+    });
+    let of_chunks = chunks.iter().map(|chunk| {
+        chunk.at.map(|index| {
+            let first = |index| Multiple::new(lattice.step, chunk.size, index).first as i64;
+            first(index)..first(index + 1)
+        })
+    });
+    let all = of_box.into_iter().chain(of_chunks);
+    let all = all.reduce(|a, b| [0, 1, 2].map(|axis| common(&a[axis], &b[axis])));
+    all.unwrap_or([0..0, 0..0, 0..0])
+}
+
+/// The positions from which the warp takes points into bounds.
+fn before(lattice: &Lattice, bounds: &[Range<i64>; 3]) -> [Range<i64>; 3] {
+    match &lattice.shears {
+        Some(shears) if bounds.iter().all(|range| !range.is_empty()) => {
+            let ends = bounds.clone().map(|range| [range.start, range.end - 1]);
+            shears.gather(ends).map(|[first, last]| first..last + 1)
+        }
+        _ => bounds.clone(),
+    }
+}

@@ -1,0 +1,125 @@
+//! The pairs of blocks whose points are near each other, with their exact frequencies.
+
+use strew_core::Map;
+
+use super::meetings::Meetings;
+
+/// Pairs within a distance, by the block of their first point.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Pairs {
+    /// Where the pairs of each block begin, and the end of the last.
+    pub(super) starts: Vec<usize>,
+    /// The block of the second point.
+    pub(super) blocks: Vec<u16>,
+    /// The offset of the lattice from the first point to the second.
+    pub(super) offsets: Vec<[i8; 3]>,
+    /// How often the pair occurs, per point of the whole set.
+    pub(super) shares: Vec<f32>,
+}
+
+/// The greatest displacement, in mean spacings.
+pub const LONGEST: f64 = 2.5;
+
+/// The geometry of a map's blocks.
+#[derive(Clone, Debug)]
+pub(super) struct Blocks {
+    pub(super) intervals: usize,
+    /// The share of points of each block.
+    pub(super) shares: Vec<f64>,
+    meetings: Meetings,
+    /// Mean spacings per grid unit.
+    pub(super) step: f64,
+}
+
+impl Blocks {
+    /// The blocks of a map, with pairs up to `reach` mean spacings.
+    pub(super) fn new(map: &Map, reach: f64) -> Self {
+        let (n, side) = (map.intervals(), map.alpha().set_side() as f64);
+        let length = |i: usize| {
+            let interval = map.interval(i);
+            (interval.end - interval.start) as f64 / side
+        };
+        let share = |b: usize| length(b % n) * length(b / n % n) * length(b / (n * n));
+        let step = map.alpha().set_side_f64();
+        let far = ((reach + 2.0 * LONGEST) / step) as i64 + 1;
+        Self {
+            intervals: n,
+            shares: (0..n.pow(3)).map(share).collect(),
+            meetings: Meetings::new(map, far),
+            step,
+        }
+    }
+
+    /// Calls `each` for the pairs of blocks that can meet within `reach` mean spacings: with the block numbers, the
+    /// offset and the frequency. Every pair comes in both directions, and no point meets itself.
+    pub(super) fn each_pair(
+        &self,
+        moves: &[[f32; 3]],
+        reach: f64,
+        mut each: impl FnMut(usize, usize, [i8; 3], f32),
+    ) {
+        let (n, far) = (self.intervals, self.meetings.far());
+        let longest = moves
+            .iter()
+            .map(|v| v.iter().map(|v| f64::from(*v).powi(2)).sum::<f64>())
+            .fold(0.0, f64::max)
+            .sqrt();
+        let widest = reach + 2.0 * longest;
+        let (limit, step) = ((reach * reach) as f32, self.step as f32);
+        for z in -far..=far {
+            for y in -far..=far {
+                for x in -far..=far {
+                    let squared = (x * x + y * y + z * z) as f64 * self.step * self.step;
+                    if squared > widest * widest || (x, y, z) == (0, 0, 0) {
+                        continue;
+                    }
+                    let along_x = self.meetings.across(x, y + z);
+                    let offset = [x, y, z].map(|v| v as f32 * step);
+                    for k in self.meetings.across(z, x + y) {
+                        for j in self.meetings.across(y, x + z) {
+                            let share = k.share * j.share;
+                            let from = (usize::from(k.from) * n + usize::from(j.from)) * n;
+                            let to = (usize::from(k.to) * n + usize::from(j.to)) * n;
+                            let (from_row, to_row) = (&moves[from..from + n], &moves[to..to + n]);
+                            for i in along_x {
+                                let (a, b) = (&from_row[usize::from(i.from)], &to_row[usize::from(i.to)]);
+                                let d = [0, 1, 2].map(|axis| offset[axis] + b[axis] - a[axis]);
+                                if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < limit {
+                                    let blocks = (from + usize::from(i.from), to + usize::from(i.to));
+                                    let at = [x as i8, y as i8, z as i8];
+                                    each(blocks.0, blocks.1, at, share * i.share);
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// The pairs within `reach` mean spacings.
+    pub(super) fn pairs(&self, moves: &[[f32; 3]], reach: f64) -> Pairs {
+        let mut starts = vec![0usize; moves.len() + 1];
+        self.each_pair(moves, reach, |from, _, _, _| starts[from + 1] += 1);
+        for block in 0..moves.len() {
+            starts[block + 1] += starts[block];
+        }
+        let count = starts[moves.len()];
+        let mut pairs = Pairs {
+            blocks: vec![0; count],
+            offsets: vec![[0; 3]; count],
+            shares: vec![0.0; count],
+            starts: Vec::new(),
+        };
+        let mut next = starts.clone();
+        self.each_pair(moves, reach, |from, to, offset, share| {
+            let at = next[from];
+            next[from] += 1;
+            pairs.blocks[at] = to as u16;
+            pairs.offsets[at] = offset;
+            pairs.shares[at] = share;
+        });
+        pairs.starts = starts;
+        pairs
+    }
+}
