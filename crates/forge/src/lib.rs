@@ -55,6 +55,7 @@ mod plan;
 pub mod profile;
 mod prospect;
 mod report;
+pub mod space;
 mod thinned;
 mod twins;
 mod watch;

@@ -59,11 +59,11 @@ fn meet(map: &Map, shift: u64) -> Vec<Meeting> {
         let end = start + u128::from(own.end - own.start);
         for to in 0..map.intervals() {
             let other = map.interval(to);
-            let shared = [0, circle].iter().map(|turn| {
+            let part = |turn: u128| {
                 let (low, high) = (u128::from(other.start) + turn, u128::from(other.end) + turn);
                 high.min(end).saturating_sub(low.max(start))
-            });
-            let shared: u128 = shared.sum();
+            };
+            let shared = part(0) + part(circle);
             if shared > 0 {
                 found.push(Meeting {
                     from: from as u16,

@@ -260,7 +260,7 @@ impl Shears {
 }
 
 /// The slope of the shears along the axes in space, where each axis has four of them and four diagonal ones.
-const SPACE_SLOPE: f64 = 0.045;
+const SPACE_SLOPE: f64 = 0.09;
 
 impl Shears {
     /// The shears of a plane of space, of which there are three, or `None` if the warp is off.

@@ -1,0 +1,237 @@
+//! A slow program written from the section "Points in space" of docs/algorithm.md alone, compared with the library.
+
+use proptest::prelude::*;
+use strew_core::{
+    Map,
+    space::{PointId, SpaceSet, Table},
+    table::{Provenance, Ranks},
+};
+
+/// The sizes of the shears' slopes: along axes, and along diagonals.
+const SLOPES: [f64; 2] = [0.045, 0.0225];
+
+fn mix(state: u64) -> u64 {
+    let z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// A name of eight bytes as an integer.
+fn named(name: &[u8; 8]) -> u64 {
+    u64::from_be_bytes(*name)
+}
+
+/// The control value of a knot.
+fn control(key: u64, step: i64, knot: i64) -> i64 {
+    let knot = knot + (key >> 61) as i64;
+    let (group, place) = (knot.div_euclid(8), knot.rem_euclid(8) as usize);
+    let h = mix(key ^ (group as u64).wrapping_mul(0xd6e8_feb8_6659_fd93));
+    let mut order = [0, 1, 2, 3, 4, 5, 6, 7];
+    for (i, last) in (1..8).rev().enumerate() {
+        let byte = (h >> (8 * i)) & 255;
+        order.swap(last, (byte * (last as u64 + 1) / 256) as usize);
+    }
+    let phase = (h >> 56) % 16;
+    let at = |place: usize| {
+        let angle = (16 * order[place] as u64 + phase) as f64 / 128.0;
+        let sine = (f64::from(1 << 30) * (std::f64::consts::TAU * angle).sin()).round() as i64;
+        sine * step / (1 << 30)
+    };
+    (0..=place).map(at).sum()
+}
+
+/// g of one shear.
+fn g(key: u64, step: i64, s: i64) -> i64 {
+    let (cell, w) = (s >> 25, (s & ((1 << 25) - 1)) as f32);
+    let [a, b, c] = [cell - 1, cell, cell + 1].map(|knot| control(key, step, knot));
+    let c0 = (a + b) as f32 * 0.5;
+    let c1 = (b - a) as f32 * (1.0 / f64::from(1 << 25)) as f32;
+    let c2 = (a - 2 * b + c) as f32 * (0.5f64.powi(51)) as f32;
+    ((c2 * w + c1) * w + c0) as i64
+}
+
+/// The set of a table, a spacing, a seed and a strength of the warp.
+struct Definition<'a> {
+    table: &'a Table,
+    spacing: f64,
+    seed: u64,
+    strength: f64,
+}
+
+impl Definition<'_> {
+    fn origin(&self) -> [u64; 3] {
+        if self.seed == 0 {
+            return [0; 3];
+        }
+        let x = mix(self.seed);
+        let y = mix(x ^ self.seed);
+        [x, y, mix(y ^ self.seed)]
+    }
+
+    /// The axes that the axes of the set show, and whether they are reversed.
+    fn symmetry(&self) -> ([usize; 3], [bool; 3]) {
+        if self.seed == 0 {
+            return ([0, 1, 2], [false; 3]);
+        }
+        let h = mix(self.seed ^ named(b"SYMMETRY"));
+        let orders = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+        let order = orders[((h % (1 << 32)) * 6 >> 32) as usize];
+        (order, [61, 62, 63].map(|bit| h >> bit & 1 == 1))
+    }
+
+    fn indices(&self, [x, y, z]: [i64; 3]) -> [u64; 3] {
+        let half = self.table.map().alpha().half();
+        let others = [(x, y + z), (y, x + z), (z, x + y)];
+        let origin = self.origin();
+        [0, 1, 2].map(|axis| {
+            let (own, others) = others[axis];
+            let index = half.wrapping_mul(own as u64).wrapping_add(origin[axis]);
+            index.wrapping_add((others.rem_euclid(2) as u64) << 63)
+        })
+    }
+
+    /// The number of the table's block of a point.
+    fn block(&self, at: [i64; 3]) -> Option<usize> {
+        let map = self.table.map();
+        let n = map.intervals();
+        let mut intervals = [0; 3];
+        for (interval, index) in intervals.iter_mut().zip(self.indices(at)) {
+            *interval = (0..n).find(|&i| map.interval(i).contains(&index))?;
+        }
+        let (axes, reversed) = self.symmetry();
+        let mut source = [0; 3];
+        for axis in 0..3 {
+            let i = intervals[axis];
+            source[axes[axis]] = if reversed[axis] { n - 1 - i } else { i };
+        }
+        let [i, j, k] = source;
+        Some((k * n + j) * n + i)
+    }
+
+    fn position(&self, at: [i64; 3]) -> Option<[i64; 3]> {
+        let vector = self.table.vectors()[self.block(at)?];
+        let (axes, reversed) = self.symmetry();
+        let mut p = [0, 1, 2].map(|axis| {
+            let v = i64::from(vector[axes[axis]]);
+            (at[axis] << 20) + 256 * if reversed[axis] { -v } else { v }
+        });
+        if self.strength == 0.0 {
+            return Some(p);
+        }
+        let common = mix(self.seed ^ named(b"SPACE  3") ^ named(b"WEAVERS!"));
+        for (group, [a, b]) in [[0, 1], [1, 2], [2, 0]].into_iter().enumerate() {
+            for i in 1..=4u64 {
+                let key = mix(common.wrapping_add((4 * group as u64 + i) << 56));
+                let slope = SLOPES[usize::from(i > 2)];
+                let step = (slope * self.strength * f64::from(1 << 25)).round() as i64;
+                let g = |s| g(key, step, s);
+                match i {
+                    1 => p[b] += g(p[a]),
+                    2 => p[a] += g(p[b]),
+                    3 => {
+                        let d = g(p[a] - p[b]);
+                        p[a] += d;
+                        p[b] += d;
+                    }
+                    _ => {
+                        let d = g(p[a] + p[b]);
+                        p[a] += d;
+                        p[b] -= d;
+                    }
+                }
+            }
+        }
+        Some(p)
+    }
+
+    fn coordinates(&self, at: [i64; 3]) -> Option<[f64; 3]> {
+        let side = self.table.map().alpha().set_side() as f64;
+        let t = side * 0.5f64.powi(64);
+        let step = self.spacing * t / f64::from(1 << 20);
+        Some(self.position(at)?.map(|p| p as f64 * step))
+    }
+
+    fn rank(&self, at: [i64; 3]) -> Option<f64> {
+        let map = self.table.map();
+        let n = map.intervals();
+        let length = |i: usize| u128::from((map.interval(i).end - map.interval(i).start) >> 24);
+        let size = |b: usize| length(b % n) * length(b / n % n) * length(b / n / n);
+        let positions = self.table.ranks().expect("ranks").positions();
+        let below = |position: u32| -> f64 {
+            let blocks = (0..positions.len()).filter(|&b| positions[b] < position);
+            blocks.map(size).sum::<u128>() as f64 / (0..positions.len()).map(size).sum::<u128>() as f64
+        };
+        let position = positions[self.block(at)?];
+        let is_last = position as usize + 1 == positions.len();
+        let (floor, next) = (below(position), if is_last { 1.0 } else { below(position + 1) });
+        let index = self.indices(at)[0];
+        let interval = (0..n).map(|i| map.interval(i)).find(|i| i.contains(&index))?;
+        let part = (index - interval.start) as f64 / (interval.end - interval.start) as f64;
+        Some((floor + (next - floor) * part).min(next.next_down()))
+    }
+}
+
+fn table() -> Table {
+    let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), 5).expect("small");
+    let blocks = map.intervals().pow(3);
+    let vector = |i: usize| [7919, 104_729, 1_299_709].map(|f| ((i * f) % 65_535) as u16 as i16);
+    let vectors = (0..blocks).map(vector).map(|v| v.map(|v| v.max(-32_767))).collect();
+    let order = (0..blocks as u32).map(|i| i * 11 % blocks as u32).collect();
+    let ranks = Ranks::new(order).expect("an order");
+    Table::new(map, "test", vectors, Provenance::default(), Some(ranks)).expect("valid")
+}
+
+/// The addresses of a cube that the definition has points at, in the library's order.
+fn addresses(corner: [i64; 3], side: i64) -> Vec<[i64; 3]> {
+    let [x, y, z] = corner;
+    let mut all = Vec::new();
+    for z in z..z + side {
+        for y in y..y + side {
+            all.extend((x..x + side).map(|x| [x, y, z]));
+        }
+    }
+    all.sort_by_key(|&[x, y, z]| (x >> 10, y >> 10, z, y, x));
+    all
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn the_library_has_the_points_of_the_definition(
+        seed in prop_oneof![Just(0), any::<u64>()], spacing in 0.1..9.0f64, strength in prop_oneof![Just(0.0), Just(1.0), 0.1..2.0f64],
+        corner in prop::array::uniform3(prop_oneof![-3000i64..3000, -1i64 << 39..1 << 39]),
+    ) {
+        let table = table();
+        let strength = (strength * 256.0).round() / 256.0;
+        let set = SpaceSet::new(table.clone()).seed(seed).warp(strength).expect("in range");
+        let set = set.spacing(spacing).expect("in range");
+        let definition = Definition { table: &table, spacing, seed, strength };
+        let mut inside = Vec::new();
+        let unit = spacing * table.map().alpha().set_side_f64();
+        let region = strew_core::space::Region::new(
+            corner.map(|v| (v as f64 + 4.0) * unit),
+            corner.map(|v| (v as f64 + 20.0) * unit),
+        ).expect("ordered");
+        for at in addresses(corner.map(|v| v - 40), 104) {
+            let [x, y, z] = at;
+            let place = definition.coordinates(at);
+            let near = (0..3).all(|axis| (corner[axis]..corner[axis] + 24).contains(&at[axis]));
+            if near {
+                let point = set.point(PointId { x, y, z });
+                prop_assert_eq!(point.map(|p| p.at()), place, "{:?}", at);
+                if let Some(rank) = definition.rank(at) {
+                    prop_assert_eq!(set.rank(PointId { x, y, z }), rank);
+                }
+            }
+            if let Some(place) = place && region.contains(place) {
+                inside.push((PointId { x, y, z }, place));
+            }
+        }
+        let found = set.within(region).expect("near enough");
+        prop_assert_eq!(found.count(), inside.len() as u128);
+        let found: Vec<_> = found.iter().map(|point| (point.id, point.at())).collect();
+        prop_assert_eq!(found, inside);
+    }
+}

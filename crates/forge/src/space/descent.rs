@@ -1,0 +1,132 @@
+//! Descent with momentum over the vectors of a table.
+
+use super::{
+    energy::Gaussian,
+    pairs::{Blocks, LONGEST, Pairs},
+};
+
+/// A descent of one energy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Phase {
+    /// The σ of the energy, in mean spacings.
+    pub(super) sigma: f64,
+    pub(super) steps: u32,
+}
+
+/// The state between two steps: all that decides the next.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct State {
+    /// The vectors, in mean spacings.
+    pub(super) moves: Vec<[f64; 3]>,
+    pub(super) momentum: Vec<[f64; 3]>,
+    /// The vectors that the pairs were listed for; empty before the first step.
+    pub(super) listed: Vec<[f32; 3]>,
+    pub(super) step: u32,
+}
+
+impl State {
+    pub(super) fn start(moves: Vec<[f64; 3]>) -> Self {
+        Self {
+            momentum: vec![[0.0; 3]; moves.len()],
+            listed: Vec::new(),
+            step: 0,
+            moves,
+        }
+    }
+}
+
+/// The part of the momentum that a step keeps.
+const MOMENTUM: f64 = 0.95;
+/// The longest step along an axis, in mean spacings.
+const CLIP: f64 = 0.12;
+/// Pairs are listed up to so much beyond the reach of the energy, and again once they may have come nearer.
+const SKIN: f64 = 0.5;
+
+/// A descent under way.
+pub(super) struct Descent<'a> {
+    blocks: &'a Blocks,
+    phase: Phase,
+    pairs: Pairs,
+    forces: Vec<[f64; 3]>,
+}
+
+/// The vectors as the energy takes them.
+pub(super) fn single(moves: &[[f64; 3]]) -> Vec<[f32; 3]> {
+    moves.iter().map(|v| v.map(|v| v as f32)).collect()
+}
+
+impl<'a> Descent<'a> {
+    pub(super) fn new(blocks: &'a Blocks, phase: Phase, state: &State) -> Self {
+        let mut descent = Self {
+            blocks,
+            phase,
+            pairs: Pairs::default(),
+            forces: vec![[0.0; 3]; state.moves.len()],
+        };
+        if !state.listed.is_empty() {
+            descent.pairs = blocks.pairs(&state.listed, descent.reach());
+        }
+        descent
+    }
+
+    fn reach(&self) -> f64 {
+        Gaussian { sigma: self.phase.sigma }.reach() + SKIN
+    }
+
+    /// Takes a step. Returns the energy before it, per point.
+    pub(super) fn step(&mut self, state: &mut State) -> f64 {
+        let moves = single(&state.moves);
+        let is_near = state.listed.len() == moves.len()
+            && moves.iter().zip(&state.listed).all(|(a, b)| {
+                let squared: f32 = (0..3).map(|i| (a[i] - b[i]) * (a[i] - b[i])).sum();
+                squared < (0.5 * SKIN * 0.5 * SKIN) as f32
+            });
+        if !is_near {
+            self.pairs = self.blocks.pairs(&moves, self.reach());
+            state.listed.clone_from(&moves);
+        }
+        let gaussian = Gaussian { sigma: self.phase.sigma };
+        let energy = gaussian.evaluate(self.blocks, &self.pairs, &moves, &mut self.forces);
+        let rate = self.rate(state.step);
+        for ((at, momentum), force) in state.moves.iter_mut().zip(&mut state.momentum).zip(&self.forces) {
+            for axis in 0..3 {
+                momentum[axis] = MOMENTUM * momentum[axis] + force[axis];
+                let by = (rate * momentum[axis]).clamp(-CLIP, CLIP);
+                momentum[axis] = by / rate;
+                at[axis] += by;
+            }
+        }
+        center(&self.blocks.shares, &mut state.moves);
+        for v in &mut state.moves {
+            let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+            if length > LONGEST {
+                *v = v.map(|v| v * (LONGEST / length));
+            }
+        }
+        state.step += 1;
+        energy
+    }
+
+    /// Mean spacings per unit of momentum: it grows at first, and falls at the end.
+    fn rate(&self, step: u32) -> f64 {
+        let part = f64::from(step) / f64::from(self.phase.steps);
+        let end = if part < 0.8 { 1.0 } else { 1.0 - (part - 0.8) / 0.2 * 0.95 };
+        let start = (f64::from(step + 5) / 30.0).min(1.0);
+        0.24 / self.phase.sigma.powi(3) * end * start
+    }
+}
+
+/// Moves all points together, so that the mean of their vectors is 0.
+fn center(shares: &[f64], moves: &mut [[f64; 3]]) {
+    let mut mean = [0.0; 3];
+    for (share, v) in shares.iter().zip(moves.iter()) {
+        for axis in 0..3 {
+            mean[axis] += share * v[axis];
+        }
+    }
+    for v in moves {
+        for axis in 0..3 {
+            v[axis] -= mean[axis];
+        }
+    }
+}
