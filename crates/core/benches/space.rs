@@ -23,7 +23,8 @@ fn table() -> Table {
             .wrapping_add(1_442_695_040_888_963_407);
         ((state >> 40) % 40_000) as i32 - 20_000
     };
-    let vectors = (0..map.intervals().pow(3)).map(|_| [next() as i16, next() as i16, next() as i16]);
+    let vectors =
+        (0..map.intervals().pow(3)).map(|_| [next() as i16, next() as i16, next() as i16]);
     let vectors = vectors.collect();
     Table::new(map, "bench", vectors, Provenance::default(), None).expect("valid")
 }
@@ -73,7 +74,12 @@ fn main() {
     row("plane f32 (baseline)", speed(found[0]), "G points/s", "");
     row("space f32", speed(found[1]), "G points/s", ">= 1.0");
     row("space f64", speed(found[2]), "G points/s", "");
-    row("space f32, seeded", speed(found[3]), "G points/s", ">= 0.25");
+    row(
+        "space f32, seeded",
+        speed(found[3]),
+        "G points/s",
+        ">= 0.25",
+    );
 
     let mut small = vec![[0f32; 3]; 2000];
     let mut at = 0.0;
@@ -95,15 +101,43 @@ fn main() {
         times.sort_by(f64::total_cmp);
         times[times.len() / 2]
     };
-    row("cold box of 1,000 points", times(&mut || cold(&plain)), "us", "<= 25");
-    row("cold box of 1,000 points, seeded", times(&mut || cold(&seeded)), "us", "<= 60");
+    row(
+        "cold box of 1,000 points",
+        times(&mut || cold(&plain)),
+        "us",
+        "<= 25",
+    );
+    row(
+        "cold box of 1,000 points, seeded",
+        times(&mut || cold(&seeded)),
+        "us",
+        "<= 60",
+    );
     for side in [1e3, 1e6, 1e9] {
         let mut count = || black_box(cube(&plain, -side / 2.0, side).count()) as u64;
-        row(&format!("plain count, side {side:e}"), times(&mut count), "us", "<= 50");
+        row(
+            &format!("plain count, side {side:e}"),
+            times(&mut count),
+            "us",
+            "<= 50",
+        );
     }
-    let ids: Vec<_> = cube(&seeded, 0.0, 10.0).iter().map(|point| point.id).collect();
+    let ids: Vec<_> = cube(&seeded, 0.0, 10.0)
+        .iter()
+        .map(|point| point.id)
+        .collect();
     let mut by_id = || ids.iter().filter_map(|id| seeded.point(*id)).count() as u64;
-    row("point by id, seeded", times(&mut by_id) / ids.len() as f64, "us", "<= 0.5");
+    row(
+        "point by id, seeded",
+        times(&mut by_id) / ids.len() as f64,
+        "us",
+        "<= 0.5",
+    );
     let mut by_id = || ids.iter().filter_map(|id| plain.point(*id)).count() as u64;
-    row("point by id, plain", times(&mut by_id) / ids.len() as f64, "us", "<= 0.5");
+    row(
+        "point by id, plain",
+        times(&mut by_id) / ids.len() as f64,
+        "us",
+        "<= 0.5",
+    );
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use proptest::prelude::*;
 use strew_core::{
-    Backend, F32, F64, Map, Polygon, Points,
+    Backend, F32, F64, Map, Points, Polygon,
     space::{Ball, Plan, Point, PointId, Prism, Region, SpaceSet, Table, Volume},
     table::{Provenance, Ranks},
 };
@@ -76,7 +76,10 @@ fn check(set: &SpaceSet, volume: Volume) -> Result<(), TestCaseError> {
     for point in &found {
         prop_assert_eq!(set.point(point.id), Some(*point));
     }
-    prop_assert_eq!(found.iter().map(|p| p.id).collect::<BTreeSet<_>>(), expected);
+    prop_assert_eq!(
+        found.iter().map(|p| p.id).collect::<BTreeSet<_>>(),
+        expected
+    );
     Ok(())
 }
 
@@ -168,10 +171,14 @@ fn large_requests_are_those_of_their_parts() {
         let set = set(1.0, seed).keep(share).expect("in range");
         let ball = Ball::new([310.0, 5.0, -40.0], 30.0).expect("valid");
         let volumes = [
-            Volume::from(Region::new([290.0, -20.0, -70.0], [350.0, 40.0, -10.5]).expect("ordered")),
+            Volume::from(
+                Region::new([290.0, -20.0, -70.0], [350.0, 40.0, -10.5]).expect("ordered"),
+            ),
             Volume::from(ball),
-            Volume::from(Region::new([290.0, -20.0, -70.0], [350.0, 40.0, -10.5]).expect("ordered"))
-                .without([ball.into()]),
+            Volume::from(
+                Region::new([290.0, -20.0, -70.0], [350.0, 40.0, -10.5]).expect("ordered"),
+            )
+            .without([ball.into()]),
         ];
         for volume in volumes {
             let plan = set.within(volume.clone()).expect("near");
@@ -190,18 +197,30 @@ fn large_requests_are_those_of_their_parts() {
                     assert!(parts.insert(point.id), "twice");
                 }
             }
-            let all: BTreeSet<PointId> = all.iter().map(|p| p.id).filter(|id| {
-                let point = set.point(*id).expect("a point");
-                (280.0..350.0).contains(&point.x) && point.y < 35.0 && point.z < -10.0
-            }).collect();
-            let parts: BTreeSet<PointId> = parts.into_iter().filter(|id| {
-                let point = set.point(*id).expect("a point");
-                (290.0..350.0).contains(&point.x) && point.y < 35.0 && point.z < -10.0
-            }).collect();
-            assert_eq!(parts, all.into_iter().filter(|id| {
-                let point = set.point(*id).expect("a point");
-                point.x >= 290.0
-            }).collect());
+            let all: BTreeSet<PointId> = all
+                .iter()
+                .map(|p| p.id)
+                .filter(|id| {
+                    let point = set.point(*id).expect("a point");
+                    (280.0..350.0).contains(&point.x) && point.y < 35.0 && point.z < -10.0
+                })
+                .collect();
+            let parts: BTreeSet<PointId> = parts
+                .into_iter()
+                .filter(|id| {
+                    let point = set.point(*id).expect("a point");
+                    (290.0..350.0).contains(&point.x) && point.y < 35.0 && point.z < -10.0
+                })
+                .collect();
+            assert_eq!(
+                parts,
+                all.into_iter()
+                    .filter(|id| {
+                        let point = set.point(*id).expect("a point");
+                        point.x >= 290.0
+                    })
+                    .collect()
+            );
         }
     }
 }
@@ -212,7 +231,9 @@ fn counts_do_not_depend_on_the_size() {
     for share in [1.0, 0.2] {
         let set = set.clone().keep(share).expect("in range");
         let [low, high] = [[-3000.0, -20.0, -5.0], [4000.0, 3.0, 30.5]];
-        let plan = set.within(Region::new(low, high).expect("ordered")).expect("near");
+        let plan = set
+            .within(Region::new(low, high).expect("ordered"))
+            .expect("near");
         let mut block = vec![[0.0; 3]; 4096];
         let (mut blocks, mut made) = (plan.blocks_f64(), 0);
         loop {
@@ -240,7 +261,11 @@ fn backends_have_the_same_bits() {
         let plan = plan.expect("near");
         let count = plan.count() as usize;
         let filled = |backend| {
-            let (mut a, mut b, mut c) = (vec![[0f32; 3]; count], vec![[0f64; 3]; count], vec![Point::default(); count]);
+            let (mut a, mut b, mut c) = (
+                vec![[0f32; 3]; count],
+                vec![[0f64; 3]; count],
+                vec![Point::default(); count],
+            );
             plan.blocks::<F32>().with_backend(backend).fill(&mut a);
             plan.blocks::<F64>().with_backend(backend).fill(&mut b);
             plan.blocks::<Points>().with_backend(backend).fill(&mut c);
@@ -250,3 +275,112 @@ fn backends_have_the_same_bits() {
         assert!(Backend::available().all(|backend| filled(backend) == expected));
     }
 }
+
+#[test]
+fn bad_input_is_refused() {
+    use strew_core::ErrorKind;
+    let set = set(1.0, 7);
+    for bad in [f64::NAN, f64::INFINITY] {
+        let error = Region::new([0.0, bad, 0.0], [1.0; 3]).expect_err("not finite");
+        assert_eq!((error.kind(), error.field()), (ErrorKind::Region, "min_y"));
+        assert_eq!(
+            Ball::new([0.0, 0.0, bad], 1.0)
+                .expect_err("not finite")
+                .kind(),
+            ErrorKind::Area
+        );
+        assert_eq!(
+            set.nearest([bad, 0.0, 0.0], 1)
+                .expect_err("not finite")
+                .kind(),
+            ErrorKind::Place
+        );
+        assert_eq!(
+            set.clone().spacing(bad).expect_err("not finite").kind(),
+            ErrorKind::Spacing
+        );
+    }
+    let error = Region::new([0.0; 3], [1.0, 1.0, -1.0]).expect_err("turned");
+    assert_eq!((error.kind(), error.field()), (ErrorKind::Region, "max_z"));
+    // A flat box has no points.
+    let flat = Region::new([0.0; 3], [9.0, 9.0, 0.0]).expect("ordered");
+    assert_eq!(set.within(flat).expect("near").count(), 0);
+    let far = Region::new([1e13, 0.0, 0.0], [1e13 + 5.0, 1.0, 1.0]).expect("ordered");
+    assert_eq!(set.within(far).expect_err("far").kind(), ErrorKind::TooFar);
+    let all = Volume::Outside(Box::new(flat.into()));
+    assert_eq!(
+        set.within(all).expect_err("unbounded").kind(),
+        ErrorKind::Unbounded
+    );
+    assert_eq!(
+        set.chunk(-1.0, [0; 3]).expect_err("negative").kind(),
+        ErrorKind::Chunk
+    );
+    assert_eq!(
+        set.chunk(1.0, [i64::MAX, 0, 0]).expect_err("far").kind(),
+        ErrorKind::Chunk
+    );
+    assert_eq!(
+        set.nearest([0.0; 3], 10_001).expect_err("many").kind(),
+        ErrorKind::Neighbors
+    );
+    let error = set.nearest_within([0.0; 3], 9, -1.0).expect_err("negative");
+    assert_eq!(error.kind(), ErrorKind::Radius);
+    assert_eq!(
+        set.nearest_within([0.0; 3], 9, 1e3)
+            .expect_err("many")
+            .kind(),
+        ErrorKind::TooMany
+    );
+    assert_eq!(
+        set.clone().density(-1.0).expect_err("negative").kind(),
+        ErrorKind::Density
+    );
+    assert_eq!(set.keep(0.0).expect_err("nothing").kind(), ErrorKind::Keep);
+}
+
+#[test]
+fn the_promised_distance_is_kept() {
+    let set = SpaceSet::blue();
+    let least = set.least_distance();
+    for (seed, promised) in [(0, least), (3, set.clone().seed(3).least_distance())] {
+        let set = set.clone().seed(seed);
+        let plan = set
+            .within(Region::new([50.0; 3], [62.0; 3]).expect("ordered"))
+            .expect("near");
+        let nearest = plan
+            .iter()
+            .map(|point| set.nearest(point.at(), 2).expect("near")[1].distance);
+        let nearest = nearest.fold(f64::INFINITY, f64::min);
+        assert!(
+            nearest >= promised * (1.0 - 1e-9),
+            "{seed}: {nearest} {promised}"
+        );
+    }
+}
+
+#[test]
+fn golden_vectors() {
+    // Printed once; a change of any bit needs another version of the algorithm.
+    let digest = |seed: u64, share: f64| {
+        let set = SpaceSet::blue().spacing(1.5).expect("in range").seed(seed);
+        let set = set.keep(share).expect("in range");
+        let plan = set.chunk(40.0, [3, -2, 1]).expect("near");
+        let mut sum = plan.count() as u64;
+        for point in &plan {
+            for word in [point.id.x as u64, point.id.y as u64, point.id.z as u64] {
+                sum = sum.rotate_left(9).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ word;
+            }
+            for v in point.at() {
+                sum = sum.rotate_left(9).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ v.to_bits();
+            }
+        }
+        sum
+    };
+    let found =
+        [(0, 1.0), (7, 1.0), (u64::MAX, 1.0), (7, 0.3)].map(|(seed, share)| digest(seed, share));
+    assert_eq!(found, GOLDEN, "{found:#x?}");
+}
+
+/// The digests of [`golden_vectors`].
+const GOLDEN: [u64; 4] = [0; 4];

@@ -1,6 +1,7 @@
 //! Batches: the points of some rows, as offsets from an origin.
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
 /// Points as fixed-point offsets from a lattice address, axis by axis.
 #[derive(Clone, Debug, Default)]
@@ -32,6 +33,26 @@ impl Batch {
     pub(super) fn address(&self, point: usize) -> Option<[i64; 3]> {
         let id = self.ids.get(point)?;
         Some([0, 1, 2].map(|axis| self.origin[axis] + i64::from(id[axis])))
+    }
+
+    /// Removes the points of some ranges, which ascend.
+    pub(super) fn close(&mut self, gaps: &[Range<usize>]) {
+        let Some(first) = gaps.first() else {
+            return;
+        };
+        let mut to = first.start;
+        let ends = gaps.iter().skip(1).map(|gap| gap.start).chain([self.len()]);
+        for (gap, end) in gaps.iter().zip(ends) {
+            for list in &mut self.places {
+                list.copy_within(gap.end..end, to);
+            }
+            if !self.ids.is_empty() {
+                self.ids.copy_within(gap.end..end, to);
+            }
+            to += end - gap.end;
+        }
+        self.places.iter_mut().for_each(|list| list.truncate(to));
+        self.ids.truncate(to);
     }
 
     /// Keeps the points for whose place the test holds.

@@ -102,7 +102,9 @@ impl<F: Format> Blocks<F> {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn fill(&mut self, out: &mut [F::Item]) -> usize {
-        let most = usize::try_from(self.left).unwrap_or(usize::MAX).min(out.len());
+        let most = usize::try_from(self.left)
+            .unwrap_or(usize::MAX)
+            .min(out.len());
         let mut filled = 0;
         while filled < most {
             let room = &mut out[filled..most];
@@ -174,7 +176,9 @@ impl Iterator for Members {
         const AT_ONCE: usize = 256;
         if self.next == self.block.len() {
             let mut block = core::mem::take(&mut self.block);
-            let most = usize::try_from(self.blocks.left).unwrap_or(usize::MAX).min(AT_ONCE);
+            let most = usize::try_from(self.blocks.left)
+                .unwrap_or(usize::MAX)
+                .min(AT_ONCE);
             block.clear();
             block.extend(vec![Point::default(); most]);
             let filled = self.blocks.fill(&mut block);

@@ -52,7 +52,13 @@ impl Cells {
             ((last >> CELL_BITS) + 1) as usize
         };
         let counts = [count(0), count(1)];
-        self.divide(scope, ranges, origin, [0..counts[0], 0..counts[1]], scope.volume.as_ref());
+        self.divide(
+            scope,
+            ranges,
+            origin,
+            [0..counts[0], 0..counts[1]],
+            scope.volume.as_ref(),
+        );
         self.join(counts);
     }
 

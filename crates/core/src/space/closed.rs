@@ -133,7 +133,12 @@ impl Tally {
         let [least, most] = lattice.turned.reach[axis].map(i64::from);
         let [early, late] = [ends.range(most), ends.range(least)];
         let none = vec![[[0; 2]; 2]; lattice.table.map().intervals()];
-        let lower = Edge::new(lattice, axis, &(early.start..late.start.max(early.start)), none);
+        let lower = Edge::new(
+            lattice,
+            axis,
+            &(early.start..late.start.max(early.start)),
+            none,
+        );
         let to_end = whole(lattice, axis, &(early.start..early.end));
         let upper = Edge::new(lattice, axis, &(early.end..late.end.max(early.end)), to_end);
         Self { ends, lower, upper }
@@ -143,9 +148,27 @@ impl Tally {
     #[inline]
     fn numbers(&self, block: usize, by: i32) -> Numbers {
         let range = self.ends.range(by.into());
-        let (below, above) = (self.lower.below(range.start, block), self.upper.below(range.end, block));
+        let (below, above) = (
+            self.lower.below(range.start, block),
+            self.upper.below(range.end, block),
+        );
         [0, 1].map(|own| [0, 1].map(|others| above[own][others] - below[own][others]))
     }
+}
+
+/// [`products`] whose sum is below 2⁶⁴.
+#[inline]
+fn products_of_few([x, y, z]: &[Numbers; 3]) -> u64 {
+    let layer = |own: usize| {
+        let row = |along_y: usize| {
+            let [even, odd] = [0, 1].map(|along_x: usize| {
+                x[along_x][along_y ^ own] * y[along_y][along_x ^ own] * z[own][along_x ^ along_y]
+            });
+            even + odd
+        };
+        row(0) + row(1)
+    };
+    layer(0) + layer(1)
 }
 
 /// The number of points of all blocks.
@@ -154,6 +177,11 @@ fn of_blocks(lattice: &Lattice, ends: impl Fn(usize) -> Ends) -> u128 {
     let map = lattice.table.map();
     let n = map.intervals();
     let vectors = &lattice.turned.vectors;
+    let length = |tally: &Tally| {
+        let clip = &tally.ends.clip;
+        (clip.end - clip.start) as f64
+    };
+    let is_small = axes.iter().map(length).product::<f64>() < 9e18;
     let number = |block: usize, columns: Option<&Numbers>| {
         let [i, j, k] = [block % n, block / n % n, block / (n * n)];
         let [x, y, z] = vectors[block];
@@ -161,7 +189,12 @@ fn of_blocks(lattice: &Lattice, ends: impl Fn(usize) -> Ends) -> u128 {
             Some(columns) => *columns,
             None => axes[0].numbers(i, x),
         };
-        products(&[columns, axes[1].numbers(j, y), axes[2].numbers(k, z)])
+        let counts = [columns, axes[1].numbers(j, y), axes[2].numbers(k, z)];
+        if is_small {
+            products_of_few(&counts).into()
+        } else {
+            products(&counts)
+        }
     };
     let Some(cut) = lattice.cut else {
         return (0..vectors.len()).map(|block| number(block, None)).sum();

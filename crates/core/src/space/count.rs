@@ -39,18 +39,27 @@ fn divide(scope: &Arc<Scope>, ranges: [Range<i64>; 3], volume: Option<&Volume>) 
         State::Test(near) => near,
     };
     let side = |axis: usize| ranges[axis].end - ranges[axis].start;
-    let longest = [1, 2].into_iter().fold(0, |a, b| if side(b) > side(a) { b } else { a });
+    let longest = [1, 2]
+        .into_iter()
+        .fold(0, |a, b| if side(b) > side(a) { b } else { a });
     if side(longest) <= LEAF {
         return walked(scope, &ranges);
     }
     // Parts that begin at multiples of the side of a leaf.
     let range = &ranges[longest];
     let middle = (range.start + side(longest) / 2) & !(LEAF - 1);
-    let middle = if middle > range.start { middle } else { range.start + LEAF / 2 };
+    let middle = if middle > range.start {
+        middle
+    } else {
+        range.start + LEAF / 2
+    };
     let mut halves = [ranges.clone(), ranges.clone()];
     halves[0][longest].end = middle;
     halves[1][longest].start = middle;
-    halves.map(|half| divide(scope, half, near.as_ref())).iter().sum()
+    halves
+        .map(|half| divide(scope, half, near.as_ref()))
+        .iter()
+        .sum()
 }
 
 /// Counts point by point.
@@ -80,7 +89,11 @@ pub(super) fn locate(scope: &Arc<Scope>, k: u128) -> Option<[i64; 3]> {
         let up_to = |part: i64| {
             let mut upper = ranges.clone();
             upper[axis].end = whole.end.min(part << bits);
-            if upper[axis].is_empty() { 0 } else { count(scope, &upper) }
+            if upper[axis].is_empty() {
+                0
+            } else {
+                count(scope, &upper)
+            }
         };
         // Before the first part none, up to the end of the last one more than k.
         let (mut low, mut high, mut below) = (parts.start, parts.end, 0);
@@ -128,7 +141,12 @@ pub(super) fn keep(scope: &Arc<Scope>) -> Batch {
             let lift = offset[axis] << FRACTION_BITS;
             kept.places[axis].extend(batch.places[axis].iter().map(|v| v + lift));
         }
-        kept.ids.extend(batch.ids.iter().map(|id| [0, 1, 2].map(|axis| id[axis] + offset[axis])));
+        kept.ids.extend(
+            batch
+                .ids
+                .iter()
+                .map(|id| [0, 1, 2].map(|axis| id[axis] + offset[axis])),
+        );
     }
     kept
 }

@@ -153,7 +153,10 @@ fn meetings(map: &Map, shift: u64) -> Vec<(usize, usize)> {
     for from in 0..n {
         let interval = map.interval(from);
         // The image may wrap around the circle once, and both of its parts may lie in the set region.
-        let (start, length) = (interval.start.wrapping_add(shift), interval.end - interval.start);
+        let (start, length) = (
+            interval.start.wrapping_add(shift),
+            interval.end - interval.start,
+        );
         let parts = match start.checked_add(length) {
             Some(end) => [(start, end), (0, 0)],
             None => [(start, u64::MAX), (0, start.wrapping_add(length))],
@@ -199,8 +202,10 @@ fn least_squared(table: &Table) -> u64 {
         for &(k, to_k) in along_z {
             for &(j, to_j) in along_y {
                 for &(i, to_i) in along_x {
-                    let [a, b] = [(k, j, i), (to_k, to_j, to_i)].map(|(k, j, i)| vectors[(k * n + j) * n + i]);
-                    let d = [0, 1, 2].map(|axis| offset[axis] + i64::from(b[axis]) - i64::from(a[axis]));
+                    let [a, b] = [(k, j, i), (to_k, to_j, to_i)]
+                        .map(|(k, j, i)| vectors[(k * n + j) * n + i]);
+                    let d = [0, 1, 2]
+                        .map(|axis| offset[axis] + i64::from(b[axis]) - i64::from(a[axis]));
                     let squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
                     least = least.min(squared);
                 }

@@ -2,8 +2,16 @@
 
 use core::fmt::Debug;
 
-use super::{batch::Batch, lattice::fixed, point::{Point, PointId}, scope::Scope};
-use crate::{F32, F64, Points, sample::{Backend, space::compiled}};
+use super::{
+    batch::Batch,
+    lattice::fixed,
+    point::{Point, PointId},
+    scope::Scope,
+};
+use crate::{
+    F32, F64, Points,
+    sample::{Backend, space::compiled},
+};
 
 /// A format of points in space: [`F32`], [`F64`] or [`Points`]. The trait is sealed.
 ///
@@ -83,13 +91,39 @@ impl Emit for F32 {
     const HAS_IDS: bool = false;
 
     fn write(scope: &Scope, batch: &Batch, from: usize, backend: Backend, out: &mut [[f32; 3]]) {
-        let [x, y, z] = [0, 1, 2].map(|axis| Single::new(scope, batch, axis));
-        let [xs, ys, zs] = [0, 1, 2].map(|axis| &batch.places[axis][from..][..out.len()]);
+        let axes = [0, 1, 2].map(|axis| Single::new(scope, batch, axis));
+        let places = [0, 1, 2].map(|axis| &batch.places[axis][from..][..out.len()]);
         compiled(backend, || {
-            for (((out, &dx), &dy), &dz) in out.iter_mut().zip(xs).zip(ys).zip(zs) {
-                *out = [x.of(dx), y.of(dy), z.of(dz)];
-            }
+            in_parts(out, places, |axis, offset| axes[axis].of(offset))
         });
+    }
+}
+
+/// Writes the points of some lists, part by part: the places of a part axis by axis, then side by side.
+#[inline(always)]
+fn in_parts<T: Copy + Default>(
+    out: &mut [[T; 3]],
+    places: [&[i32]; 3],
+    place: impl Fn(usize, i32) -> T,
+) {
+    /// The number of points of a part.
+    const PART: usize = 64;
+    let whole = out.len() - out.len() % PART;
+    let (parts, rest) = out.split_at_mut(whole);
+    let mut made = [[T::default(); PART]; 3];
+    for (number, part) in parts.chunks_exact_mut(PART).enumerate() {
+        for axis in 0..3 {
+            let from = &places[axis][number * PART..][..PART];
+            for (made, &offset) in made[axis].iter_mut().zip(from) {
+                *made = place(axis, offset);
+            }
+        }
+        for (i, out) in part.iter_mut().enumerate() {
+            *out = [made[0][i], made[1][i], made[2][i]];
+        }
+    }
+    for (i, out) in (whole..).zip(rest) {
+        *out = [0, 1, 2].map(|axis| place(axis, places[axis][i]));
     }
 }
 
@@ -102,12 +136,12 @@ impl Emit for F64 {
     fn write(scope: &Scope, batch: &Batch, from: usize, backend: Backend, out: &mut [[f64; 3]]) {
         let step = scope.lattice.step;
         // Origins are whole lattice units, so their sums with offsets are rounded once.
-        let [x, y, z] = batch.origin.map(|origin| fixed(origin) as f64);
-        let [xs, ys, zs] = [0, 1, 2].map(|axis| &batch.places[axis][from..][..out.len()]);
+        let origin = batch.origin.map(|origin| fixed(origin) as f64);
+        let places = [0, 1, 2].map(|axis| &batch.places[axis][from..][..out.len()]);
         compiled(backend, || {
-            for (((out, &dx), &dy), &dz) in out.iter_mut().zip(xs).zip(ys).zip(zs) {
-                *out = [(x + f64::from(dx)) * step, (y + f64::from(dy)) * step, (z + f64::from(dz)) * step];
-            }
+            in_parts(out, places, |axis, offset| {
+                (origin[axis] + f64::from(offset)) * step
+            });
         });
     }
 }
@@ -121,9 +155,8 @@ impl Emit for Points {
     fn write(scope: &Scope, batch: &Batch, from: usize, _: Backend, out: &mut [Point]) {
         for (i, out) in (from..).zip(out) {
             let id = [0, 1, 2].map(|axis| batch.origin[axis] + i64::from(batch.ids[i][axis]));
-            let place = [0, 1, 2].map(|axis| {
-                fixed(batch.origin[axis]) + i64::from(batch.places[axis][i])
-            });
+            let place =
+                [0, 1, 2].map(|axis| fixed(batch.origin[axis]) + i64::from(batch.places[axis][i]));
             *out = scope.lattice.point_at(PointId::of(id), place);
         }
     }

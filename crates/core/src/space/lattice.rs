@@ -133,7 +133,11 @@ impl Lattice {
         let [index, ..] = self.pattern.index(id.lattice());
         let order = &self.turned.order;
         let length = interval.end - interval.start;
-        order.rank(order.position(self.number(block)), index - interval.start, length)
+        order.rank(
+            order.position(self.number(block)),
+            index - interval.start,
+            length,
+        )
     }
 
     /// The point of an address, or `None` if there is none.

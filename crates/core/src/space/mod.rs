@@ -16,7 +16,8 @@
 //! `pattern` and `symmetry` have the pattern, `table` the vectors, `warp` the shears, `lattice` which addresses have
 //! points and where; `volume` the parts of space, `scope` what of a lattice is requested. `walk` makes points batch by
 //! batch from `columns` of planes, `cells` and `template`s; `closed` and `count` count them. `plan` is a request made
-//! ready, whose points `blocks` writes in a `format`; `nearest` and `distance` are about neighbors. `set` is all of this.
+//! ready, whose points `blocks` writes in a `format`; `nearest` and `distance` are about neighbors. `set` is all of this, `shipped` the table
+//! that the crate has.
 
 mod batch;
 mod blocks;
@@ -34,6 +35,8 @@ mod plan;
 mod point;
 mod scope;
 mod set;
+#[cfg(feature = "tables")]
+mod shipped;
 mod symmetry;
 mod table;
 mod template;
@@ -51,5 +54,7 @@ pub use pattern::Pattern;
 pub use plan::Plan;
 pub use point::{Point, PointId};
 pub use set::SpaceSet;
+#[cfg(feature = "tables")]
+pub use shipped::BLUE;
 pub use table::Table;
 pub use volume::{Ball, Prism, Region, Volume};

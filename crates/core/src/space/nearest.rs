@@ -134,7 +134,8 @@ fn around(lattice: &Lattice, at: [f64; 3], radius: f64) -> Result<Vec<(f64, Poin
     while walk.next(&mut batch) {
         for (i, id) in batch.ids.iter().enumerate() {
             let origin = batch.origin;
-            let place = [0, 1, 2].map(|axis| fixed(origin[axis]) + i64::from(batch.places[axis][i]));
+            let place =
+                [0, 1, 2].map(|axis| fixed(origin[axis]) + i64::from(batch.places[axis][i]));
             let [dx, dy, dz] = [0, 1, 2].map(|axis| lattice.world(place[axis]) - at[axis]);
             let squared = dx * dx + dy * dy + dz * dz;
             if squared <= farthest {

@@ -118,9 +118,9 @@ fn beside_chunks(volume: &Volume) -> Option<Volume> {
 impl Scope {
     /// The part of a lattice that lies in a volume.
     pub(super) fn new(lattice: &Lattice, volume: &Volume, stop: Stop) -> Result<Self, Error> {
-        let region = volume.bounds().ok_or_else(|| {
-            Error::new(ErrorKind::Unbounded, "area", "unbounded", "within a box")
-        })?;
+        let region = volume
+            .bounds()
+            .ok_or_else(|| Error::new(ErrorKind::Unbounded, "area", "unbounded", "within a box"))?;
         let limit = lattice.limit();
         let corners = region.min().into_iter().chain(region.max());
         for (name, value) in CORNERS.into_iter().zip(corners) {
@@ -180,7 +180,11 @@ impl Scope {
             is_inside &= bounds.start <= *least && *most < bounds.end;
         }
         let Some(volume) = volume else {
-            return if is_inside { State::In } else { State::Test(None) };
+            return if is_inside {
+                State::In
+            } else {
+                State::Test(None)
+            };
         };
         let [min, max] = [0, 1].map(|end| places.map(|ends| lattice.world(ends[end])));
         let near = volume.focus(&Region::between(min, max));
@@ -200,7 +204,9 @@ impl Scope {
     /// About the number of points that are looked at for those of a box of the lattice.
     pub(super) fn candidates(&self, ranges: &[Range<i64>; 3]) -> f64 {
         let t = self.lattice.pattern.alpha().set_side_f64();
-        let sides = ranges.iter().map(|range| (range.end - range.start).max(0) as f64 * t);
+        let sides = ranges
+            .iter()
+            .map(|range| (range.end - range.start).max(0) as f64 * t);
         sides.product()
     }
 }

@@ -74,6 +74,22 @@ impl SpaceSet {
         }
     }
 
+    /// The blue-noise set of the table built into the crate (feature `tables`).
+    ///
+    /// ```
+    /// use strew_core::space::SpaceSet;
+    ///
+    /// let set = SpaceSet::blue();
+    /// assert_eq!(set.table().profile(), "blue");
+    /// // No two points are nearer than this many mean spacings.
+    /// assert!(set.least_distance() > 0.74);
+    /// ```
+    #[cfg(feature = "tables")]
+    #[must_use]
+    pub fn blue() -> Self {
+        Self::new(super::shipped::blue())
+    }
+
     /// The set of a table file.
     ///
     /// # Errors
@@ -106,7 +122,10 @@ impl SpaceSet {
     /// ```
     pub fn spacing(self, spacing: f64) -> Result<Self, Error> {
         let spacing = Spacing::new(spacing)?;
-        Ok(self.replaced(|placement| Placement { spacing, ..placement }))
+        Ok(self.replaced(|placement| Placement {
+            spacing,
+            ..placement
+        }))
     }
 
     /// Sets the density, in points per world unit cubed.
@@ -147,7 +166,10 @@ impl SpaceSet {
     pub fn min_distance(self, distance: f64) -> Result<Self, Error> {
         let least = self.table().least_distance();
         let spacing = least.spacing_for(distance, self.placement().warp)?;
-        Ok(self.replaced(|placement| Placement { spacing, ..placement }))
+        Ok(self.replaced(|placement| Placement {
+            spacing,
+            ..placement
+        }))
     }
 
     /// Sets the seed: the origin in the pattern, one of the 48 symmetries of the cube, and a warp. Seed 0 is the plain
@@ -300,7 +322,12 @@ impl SpaceSet {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn resume(&self, volume: impl Into<Volume>, cursor: Cursor) -> Result<Plan, Error> {
-        let plan = Plan::new(&self.lattice, &volume.into(), Stop::default(), Some(cursor.total))?;
+        let plan = Plan::new(
+            &self.lattice,
+            &volume.into(),
+            Stop::default(),
+            Some(cursor.total),
+        )?;
         Ok(plan.from_cursor(cursor))
     }
 

@@ -83,13 +83,20 @@ mod tests {
         for seed in 1..5000 {
             chosen[Symmetry::of(Seed(seed)).number()] += 1;
         }
-        assert!(chosen.iter().all(|&number| (50..170).contains(&number)), "{chosen:?}");
+        assert!(
+            chosen.iter().all(|&number| (50..170).contains(&number)),
+            "{chosen:?}"
+        );
         for number in 0..Symmetry::ALL {
             let symmetry = Symmetry::numbered(number);
             assert_eq!(symmetry.number(), number);
             let images = [[1, 2, 3], [3, 1, 2]].map(|vector| symmetry.turn(vector));
             let others = (0..number).map(Symmetry::numbered);
-            assert!(others.into_iter().all(|other| other.turn([1, 2, 3]) != images[0]));
+            assert!(
+                others
+                    .into_iter()
+                    .all(|other| other.turn([1, 2, 3]) != images[0])
+            );
             assert_eq!(images[1].iter().map(|v| v.abs()).sum::<i16>(), 6);
         }
     }

@@ -27,7 +27,11 @@ use crate::{
 /// The bits of the height of a patch.
 const PATCH_BITS: u32 = 8;
 /// A batch ends with the row that makes it as long.
-const LONG: usize = 256;
+const LONG: usize = 512;
+/// The points that are warped together.
+const VECTOR: usize = 32;
+/// Rows of less points share vectors.
+const SHORT: usize = 24;
 /// Up to this side, in lattice units, all points are tested.
 const SMALL: i64 = 96;
 
@@ -53,6 +57,10 @@ pub(super) struct Walk {
     key: Key,
     /// Room for warped places.
     room: [Vec<i32>; 2],
+    /// The parts of the batch that are no points.
+    gaps: Vec<Range<usize>>,
+    /// Where the rows begin that no gap follows.
+    row_start: usize,
 }
 
 /// A column of planes.
@@ -114,6 +122,8 @@ impl Walk {
             pending: Batch::default(),
             key: Key::default(),
             room: [Vec::new(), Vec::new()],
+            gaps: Vec::new(),
+            row_start: 0,
             scope,
         };
         // No planes are left of a column that there is not.
@@ -191,7 +201,9 @@ impl Walk {
             common(&coordinates(column), &self.ranges[0]),
             common(&coordinates(row), &self.ranges[1]),
         ];
-        self.column.origin = ranges.clone().map(|range| range.start & !((1 << CELL_BITS) - 1));
+        self.column.origin = ranges
+            .clone()
+            .map(|range| range.start & !((1 << CELL_BITS) - 1));
         self.column.lines.list(&self.scope.lattice, ranges.clone());
         self.column.ranges = ranges;
         self.column.z = self.ranges[2].start;
@@ -212,7 +224,11 @@ impl Walk {
         let planes = common(&(first..first + (1 << CELL_BITS)), &self.ranges[2]);
         let ranges = [x.clone(), y.clone(), planes.clone()];
         let [origin_x, origin_y] = self.column.origin;
-        let is_small = self.scope.all.iter().all(|range| range.end - range.start <= SMALL);
+        let is_small = self
+            .scope
+            .all
+            .iter()
+            .all(|range| range.end - range.start <= SMALL);
         if is_small {
             let rows = (y.end - 1 - origin_y) >> CELL_BITS;
             self.slab.cells.test_all(rows as usize + 1);
@@ -248,6 +264,7 @@ impl Walk {
                 self.pending.restart(self.origin(key.patch));
             }
             self.add(plane, row);
+            self.pad();
             self.column.row += 1;
             if self.pending.len() >= LONG {
                 return true;
@@ -285,11 +302,13 @@ impl Walk {
 
     /// Adds the points of a row to the pending batch.
     fn add(&mut self, plane: Plane, row: Row) {
-        let scope = self.scope.clone();
+        let scope = &*self.scope;
         let origin = self.pending.origin;
         let key = (row.own, row.block as usize);
         let lines = &self.column.lines;
-        let mut points = self.templates.get(&scope.lattice, lines, plane, origin, key);
+        let mut points = self
+            .templates
+            .get(&scope.lattice, lines, plane, origin, key);
         let columns = &self.templates.columns;
         if let Some(start) = self.start
             && [start[1], start[2]] == [row.at, plane.at]
@@ -319,7 +338,11 @@ impl Walk {
             if run.state == IN {
                 let [xs, ys, zs] = &mut pending.places;
                 xs.extend_from_slice(&self.templates.places[0][part.clone()]);
-                ys.extend(self.templates.places[1][part.clone()].iter().map(|dy| dy + lift));
+                ys.extend(
+                    self.templates.places[1][part.clone()]
+                        .iter()
+                        .map(|dy| dy + lift),
+                );
                 zs.extend_from_slice(&self.templates.places[2][part.clone()]);
                 if self.wants_ids {
                     pending.ids.extend(columns[part].iter().map(|&x| [x, y, z]));
@@ -329,7 +352,7 @@ impl Walk {
             let is_warped = scope.lattice.shears.is_some();
             let volume = match is_warped {
                 true => None,
-                false => self.slab.cells.volume(&scope, run.state),
+                false => self.slab.cells.volume(scope, run.state),
             };
             let ends = relative(&scope.before, origin);
             for i in part {
@@ -340,7 +363,7 @@ impl Walk {
                     continue;
                 }
                 if let Some(volume) = volume {
-                    let at = world(&scope, origin, place);
+                    let at = world(scope, origin, place);
                     if !volume.contains(at) {
                         continue;
                     }
@@ -355,11 +378,35 @@ impl Walk {
         }
     }
 
+    /// Fills the last vector of a row that will be warped, so that the points of a vector are near each other.
+    fn pad(&mut self) {
+        if self.scope.lattice.shears.is_none() {
+            return;
+        }
+        let length = self.pending.len();
+        let padded = length.next_multiple_of(VECTOR);
+        // Short rows are near each other.
+        if padded == length || length - self.row_start < SHORT {
+            return;
+        }
+        for list in &mut self.pending.places {
+            let last = list.last().copied().unwrap_or(0);
+            list.resize(padded, last);
+        }
+        if self.wants_ids {
+            let last = self.pending.ids.last().copied().unwrap_or([0; 3]);
+            self.pending.ids.resize(padded, last);
+        }
+        self.gaps.push(length..padded);
+        self.row_start = padded;
+    }
+
     /// Moves the pending points to `out`, through the warp if there is one, and keeps those inside.
     fn finish(&mut self, out: &mut Batch) {
         core::mem::swap(&mut self.pending, out);
         let origin = out.origin;
         self.pending.restart(origin);
+        self.row_start = 0;
         if self.scope.lattice.shears.is_none() || out.is_empty() {
             return;
         }
@@ -372,9 +419,8 @@ impl Walk {
         let is_between = |place: [i32; 3]| (0..3).all(|axis| ends[axis].contains(&place[axis]));
         match self.slab.cells.volume(scope, self.key.state) {
             None => out.retain(is_between),
-            Some(volume) => out.retain(|place| {
-                is_between(place) && volume.contains(world(scope, origin, place))
-            }),
+            Some(volume) => out
+                .retain(|place| is_between(place) && volume.contains(world(scope, origin, place))),
         }
     }
 
@@ -388,7 +434,11 @@ impl Walk {
         let patch = self.slab.shears[self.key.patch].get_or_insert_with(|| {
             let height = origin[1]..origin[1] + (1 << PATCH_BITS);
             let planes = common(&self.slab.planes, &self.ranges[2]);
-            let sides = [column.ranges[0].clone(), common(&height, &column.ranges[1]), planes];
+            let sides = [
+                column.ranges[0].clone(),
+                common(&height, &column.ranges[1]),
+                planes,
+            ];
             let ranges = [0, 1, 2].map(|axis| {
                 let [least, most] = self.scope.lattice.turned.reach[axis];
                 let side = &sides[axis];
@@ -404,13 +454,20 @@ impl Walk {
             list.resize(padded, last);
         }
         for (shears, [a, b]) in patch.iter().zip(PLANES) {
-            warp_lists(self.backend, shears, [&out.places[a], &out.places[b]], &mut self.room);
+            warp_lists(
+                self.backend,
+                shears,
+                [&out.places[a], &out.places[b]],
+                &mut self.room,
+            );
             core::mem::swap(&mut out.places[a], &mut self.room[0]);
             core::mem::swap(&mut out.places[b], &mut self.room[1]);
         }
         for list in &mut out.places {
             list.truncate(length);
         }
+        out.close(&self.gaps);
+        self.gaps.clear();
     }
 }
 
@@ -425,5 +482,9 @@ fn relative(bounds: &[Range<i64>; 3], origin: [i64; 3]) -> [Range<i32>; 3] {
 
 /// The world coordinates of an offset from an origin.
 fn world(scope: &Scope, origin: [i64; 3], place: [i32; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|axis| scope.lattice.world(fixed(origin[axis]) + i64::from(place[axis])))
+    [0, 1, 2].map(|axis| {
+        scope
+            .lattice
+            .world(fixed(origin[axis]) + i64::from(place[axis]))
+    })
 }

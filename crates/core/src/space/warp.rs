@@ -52,7 +52,8 @@ impl Shears3 {
     /// belong to a range.
     pub(super) fn gather(&self, mut ranges: [[i64; 2]; 3]) -> [[i64; 2]; 3] {
         for (shears, [a, b]) in self.0.iter().zip(PLANES).rev() {
-            let bounds = [a, b].map(|axis| i128::from(ranges[axis][0])..i128::from(ranges[axis][1]) + 1);
+            let bounds =
+                [a, b].map(|axis| i128::from(ranges[axis][0])..i128::from(ranges[axis][1]) + 1);
             let drift = shears.drift_into([&bounds[0], &bounds[1]]);
             for (axis, [least, most]) in [a, b].into_iter().zip(drift) {
                 ranges[axis][0] -= i64::from(most);

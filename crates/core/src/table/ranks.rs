@@ -134,7 +134,9 @@ impl Order {
         };
         // Exact: the set region has less than 2¹²⁶ units.
         let side = u128::from(map.alpha().set_side());
-        Self::weighted(ranks, side * side, |block| length(block % n) * length(block / n))
+        Self::weighted(ranks, side * side, |block| {
+            length(block % n) * length(block / n)
+        })
     }
 
     /// The order of blocks of some sizes, whose sum is `all`.

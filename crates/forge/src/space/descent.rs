@@ -70,7 +70,11 @@ impl<'a> Descent<'a> {
     }
 
     fn reach(&self) -> f64 {
-        Gaussian { sigma: self.phase.sigma }.reach() + SKIN
+        Gaussian {
+            sigma: self.phase.sigma,
+        }
+        .reach()
+            + SKIN
     }
 
     /// Takes a step. Returns the energy before it, per point.
@@ -85,10 +89,17 @@ impl<'a> Descent<'a> {
             self.pairs = self.blocks.pairs(&moves, self.reach());
             state.listed.clone_from(&moves);
         }
-        let gaussian = Gaussian { sigma: self.phase.sigma };
+        let gaussian = Gaussian {
+            sigma: self.phase.sigma,
+        };
         let energy = gaussian.evaluate(self.blocks, &self.pairs, &moves, &mut self.forces);
         let rate = self.rate(state.step);
-        for ((at, momentum), force) in state.moves.iter_mut().zip(&mut state.momentum).zip(&self.forces) {
+        for ((at, momentum), force) in state
+            .moves
+            .iter_mut()
+            .zip(&mut state.momentum)
+            .zip(&self.forces)
+        {
             for axis in 0..3 {
                 momentum[axis] = MOMENTUM * momentum[axis] + force[axis];
                 let by = (rate * momentum[axis]).clamp(-CLIP, CLIP);
@@ -110,7 +121,11 @@ impl<'a> Descent<'a> {
     /// Mean spacings per unit of momentum: it grows at first, and falls at the end.
     fn rate(&self, step: u32) -> f64 {
         let part = f64::from(step) / f64::from(self.phase.steps);
-        let end = if part < 0.8 { 1.0 } else { 1.0 - (part - 0.8) / 0.2 * 0.95 };
+        let end = if part < 0.8 {
+            1.0
+        } else {
+            1.0 - (part - 0.8) / 0.2 * 0.95
+        };
         let start = (f64::from(step + 5) / 30.0).min(1.0);
         0.24 / self.phase.sigma.powi(3) * end * start
     }

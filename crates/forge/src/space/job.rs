@@ -7,10 +7,7 @@ use super::{
     pairs::{Blocks, LONGEST},
     push::push,
 };
-use crate::{
-    ForgeError, Meter, Stage, Watch,
-    numeric::SplitMix,
-};
+use crate::{ForgeError, Meter, Stage, Watch, numeric::SplitMix};
 
 /// What table to make.
 ///
@@ -91,10 +88,15 @@ impl SpaceJob {
             SpaceProfile::Spaced => 400,
         };
         let part = |steps: u32| match self.steps {
-            Some(limit) => (u64::from(steps) * u64::from(limit) / u64::from(whole + pushes)).max(1) as u32,
+            Some(limit) => {
+                (u64::from(steps) * u64::from(limit) / u64::from(whole + pushes)).max(1) as u32
+            }
             None => steps,
         };
-        let phase = |(sigma, steps): (f64, u32)| Phase { sigma, steps: part(steps) };
+        let phase = |(sigma, steps): (f64, u32)| Phase {
+            sigma,
+            steps: part(steps),
+        };
         let phases = [vec![phase(all[0])], vec![phase(all[1]), phase(all[2])]];
         (phases, if pushes == 0 { 0 } else { part(pushes) })
     }
@@ -112,7 +114,12 @@ pub fn forge(job: &SpaceJob, watch: &dyn Watch) -> Result<Option<Table>, ForgeEr
     let map = Map::new(job.alpha, job.radius)?;
     let coarse = Map::new(job.alpha, (job.radius * 11).div_ceil(16).max(1))?;
     let (phases, pushes) = job.phases();
-    let steps = phases.iter().flatten().map(|phase| phase.steps).sum::<u32>() + pushes;
+    let steps = phases
+        .iter()
+        .flatten()
+        .map(|phase| phase.steps)
+        .sum::<u32>()
+        + pushes;
     let mut meter = Meter::new(watch, Stage::Optimizing, steps);
     let mut random = SplitMix::new(job.seed);
     let mut jitter = || (2.0 * random.next_f64() - 1.0) * JITTER;
@@ -158,7 +165,13 @@ pub fn forge(job: &SpaceJob, watch: &dyn Watch) -> Result<Option<Table>, ForgeEr
         figures: Vec::new(),
     };
     let vectors = rounded(&map, &moves);
-    Ok(Some(Table::new(map, job.profile.name(), vectors, provenance, None)?))
+    Ok(Some(Table::new(
+        map,
+        job.profile.name(),
+        vectors,
+        provenance,
+        None,
+    )?))
 }
 
 /// The vectors of a coarse map for the blocks of a finer one.

@@ -69,7 +69,12 @@ impl Shells {
     fn add(&mut self, frequency: f64, power: f64) {
         if let Some(sum) = self.sums.get_mut((frequency / self.width) as usize) {
             let [number, total, squares, largest] = *sum;
-            *sum = [number + 1.0, total + power, squares + power * power, largest.max(power)];
+            *sum = [
+                number + 1.0,
+                total + power,
+                squares + power * power,
+                largest.max(power),
+            ];
         }
     }
 
@@ -78,7 +83,12 @@ impl Shells {
         let shell = |(i, [number, total, squares, largest]): (usize, &[f64; 4])| {
             let mean = total / number.max(1.0);
             let variance = (squares / number.max(1.0) - mean * mean).max(0.0);
-            [(i as f64 + 0.5) * self.width, mean, variance.sqrt() / mean.max(1e-12), *largest]
+            [
+                (i as f64 + 0.5) * self.width,
+                mean,
+                variance.sqrt() / mean.max(1e-12),
+                *largest,
+            ]
         };
         self.sums.iter().enumerate().map(shell)
     }

@@ -84,14 +84,24 @@ mod tests {
     fn every_point_meets_itself_and_shares_add_up() {
         let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), 9).expect("small");
         let meetings = Meetings::new(&map, 12);
-        let own: f32 = meetings.across(0, 0).iter().map(|meeting| meeting.share).sum();
+        let own: f32 = meetings
+            .across(0, 0)
+            .iter()
+            .map(|meeting| meeting.share)
+            .sum();
         assert!((own - 1.0).abs() < 1e-5);
         assert!(meetings.across(0, 0).iter().all(|m| m.from == m.to));
         assert!(meetings.across(0, 1).is_empty());
         // A place at an offset has a point as often as one at the opposite offset.
         for offset in 1..=12 {
             for parity in 0..2 {
-                let sum = |offset| -> f32 { meetings.across(offset, parity).iter().map(|m| m.share).sum() };
+                let sum = |offset| -> f32 {
+                    meetings
+                        .across(offset, parity)
+                        .iter()
+                        .map(|m| m.share)
+                        .sum()
+                };
                 assert!((sum(offset) - sum(-offset)).abs() < 1e-5);
             }
         }

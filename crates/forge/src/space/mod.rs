@@ -6,6 +6,7 @@
 mod descent;
 mod energy;
 mod job;
+mod judge;
 mod measure;
 mod meetings;
 mod order;
@@ -14,6 +15,7 @@ mod push;
 mod transform;
 
 pub use job::{SpaceJob, SpaceProfile, forge};
+pub use judge::{figures, judged};
 pub use measure::{LocalPower, SpaceDistances, SpacePower};
 pub use order::with_ranks;
 pub use pairs::LONGEST;

@@ -72,7 +72,8 @@ fn leave(blocks: &Blocks, pairs: &Pairs, moves: &[[f32; 3]]) -> Vec<usize> {
         let stage = 0.93 * left;
         loop {
             let candidates = (0..number).filter(|&block| is_left[block]);
-            let next = candidates.max_by(|&a, &b| density[a].total_cmp(&density[b]).then(b.cmp(&a)));
+            let next =
+                candidates.max_by(|&a, &b| density[a].total_cmp(&density[b]).then(b.cmp(&a)));
             let Some(block) = next else {
                 break;
             };

@@ -82,10 +82,12 @@ impl Blocks {
                             let to = (usize::from(k.to) * n + usize::from(j.to)) * n;
                             let (from_row, to_row) = (&moves[from..from + n], &moves[to..to + n]);
                             for i in along_x {
-                                let (a, b) = (&from_row[usize::from(i.from)], &to_row[usize::from(i.to)]);
+                                let (a, b) =
+                                    (&from_row[usize::from(i.from)], &to_row[usize::from(i.to)]);
                                 let d = [0, 1, 2].map(|axis| offset[axis] + b[axis] - a[axis]);
                                 if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < limit {
-                                    let blocks = (from + usize::from(i.from), to + usize::from(i.to));
+                                    let blocks =
+                                        (from + usize::from(i.from), to + usize::from(i.to));
                                     let at = [x as i8, y as i8, z as i8];
                                     each(blocks.0, blocks.1, at, share * i.share);
                                 }

@@ -1,6 +1,9 @@
 //! Push and pull: points that are too near push each other apart, until a target distance is kept everywhere.
 
-use super::{descent::single, pairs::{Blocks, LONGEST}};
+use super::{
+    descent::single,
+    pairs::{Blocks, LONGEST},
+};
 use crate::Meter;
 
 /// The target distances at the start and at the end, in mean spacings: 0.76 and 0.86 of the densest packing's.
@@ -25,7 +28,8 @@ pub(super) fn push(
         let mut least = f64::INFINITY;
         blocks.each_pair(&places, target, |from, to, offset, _| {
             let d = [0, 1, 2].map(|axis| {
-                f64::from(offset[axis]) * blocks.step + f64::from(places[to][axis]) - f64::from(places[from][axis])
+                f64::from(offset[axis]) * blocks.step + f64::from(places[to][axis])
+                    - f64::from(places[from][axis])
             });
             let length = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
             least = least.min(length);

@@ -34,7 +34,9 @@ pub(super) fn transform(
         });
     };
     planes(&mut grid);
-    let undo: Vec<f64> = (0..=modes).map(|k| 1.0 / kernel_transform(k, size)).collect();
+    let undo: Vec<f64> = (0..=modes)
+        .map(|k| 1.0 / kernel_transform(k, size))
+        .collect();
     let mut line = vec![Complex::default(); size];
     let reach = modes as i64;
     let slot = |k: i64| k.rem_euclid(size as i64) as usize;
@@ -46,8 +48,14 @@ pub(super) fn transform(
             }
             fft.process(&mut line);
             for kz in -reach..=reach {
-                let scale = [kx, ky, kz].iter().map(|k| undo[k.unsigned_abs() as usize]).product::<f64>();
-                each([kx, ky, kz], f64::from(line[slot(kz)].norm_sqr()) * scale * scale);
+                let scale = [kx, ky, kz]
+                    .iter()
+                    .map(|k| undo[k.unsigned_abs() as usize])
+                    .product::<f64>();
+                each(
+                    [kx, ky, kz],
+                    f64::from(line[slot(kz)].norm_sqr()) * scale * scale,
+                );
             }
         }
     }
@@ -146,7 +154,10 @@ mod tests {
                 })
                 .sum();
             let error = (power - direct.norm_sqr()).abs() / 200.0;
-            assert!(error < 1e-4 * (1.0 + direct.norm_sqr() / 200.0), "{k:?} {error:e}");
+            assert!(
+                error < 1e-4 * (1.0 + direct.norm_sqr() / 200.0),
+                "{k:?} {error:e}"
+            );
         });
     }
 }

@@ -307,7 +307,7 @@ impl FirstShear<'_> {
     }
 }
 
-/// Warps positions of points that follow each other: as [`warp_all`], with the cells of a few of them at a time.
+/// Warps positions of points that follow each other: as [`warp_all`], with the cells of two vectors at a time.
 pub(crate) fn warp_lists(
     backend: Backend,
     shears: &PatchShears,

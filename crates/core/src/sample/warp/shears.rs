@@ -259,13 +259,10 @@ impl Shears {
     }
 }
 
-/// The slope of the shears along the axes in space, where each axis has four of them and four diagonal ones.
-const SPACE_SLOPE: f64 = 0.09;
-
 impl Shears {
     /// The shears of a plane of space, of which there are three, or `None` if the warp is off.
     pub(crate) fn in_space(warp: Warp, seed: Seed, plane: u64) -> Option<Self> {
-        let step = SPACE_SLOPE * warp.strength() * f64::from(1 << CELL_BITS);
+        let step = SLOPE * warp.strength() * f64::from(1 << CELL_BITS);
         let seed = Seed(seed.0 ^ SPACE_KEY);
         (!warp.is_off()).then(|| Self {
             walks: directed(step, seed, 4 * plane + 1),

@@ -107,7 +107,9 @@ impl Prism {
         if max[2] < bottom || top <= min[2] {
             return Ok(false);
         }
-        let near = self.base.focus(&Rectangle::between([min[0], min[1]], [max[0], max[1]]));
+        let near = self
+            .base
+            .focus(&Rectangle::between([min[0], min[1]], [max[0], max[1]]));
         let is_between = bottom <= min[2] && max[2] < top;
         match near.is_all_or_nothing() {
             Some(false) => Ok(false),

@@ -159,7 +159,10 @@ impl Volume {
                 };
                 all.try_fold(first?, |a, b| {
                     let b = b?;
-                    let (min, max) = (pick(a.min(), b.min(), f64::min), pick(a.max(), b.max(), f64::max));
+                    let (min, max) = (
+                        pick(a.min(), b.min(), f64::min),
+                        pick(a.max(), b.max(), f64::max),
+                    );
                     Some(Region::between(min, max))
                 })
             }
@@ -219,7 +222,11 @@ impl Volume {
             Some(only) if near.is_empty() => only,
             Some(last) => {
                 near.push(last);
-                if is_all { Self::AllOf(near) } else { Self::AnyOf(near) }
+                if is_all {
+                    Self::AllOf(near)
+                } else {
+                    Self::AnyOf(near)
+                }
             }
         }
     }
@@ -268,17 +275,25 @@ mod tests {
     fn any_volume() -> impl Strategy<Value = Volume> {
         let ball = (place(), 0.1..4.0f64)
             .prop_map(|(center, radius)| Volume::from(Ball::new(center, radius).expect("valid")));
-        let prism = prop::collection::vec([coordinate(), coordinate()], 3..7).prop_filter_map("different", |ring| {
-            let prism = Prism::new(Polygon::new(&[ring]).ok()?, [-2.0, 1.5]).expect("ordered");
-            Some(Volume::from(prism))
-        });
-        prop_oneof![corners().prop_map(Volume::from), ball, prism].prop_recursive(3, 8, 3, |inner| {
-            prop_oneof![
-                prop::collection::vec(inner.clone(), 1..3).prop_map(Volume::any_of),
-                (inner.clone(), inner.clone()).prop_map(|(a, b)| a.and(b)),
-                (inner.clone(), inner).prop_map(|(a, b)| a.without([b])),
-            ]
-        })
+        let prism = prop::collection::vec([coordinate(), coordinate()], 3..7).prop_filter_map(
+            "different",
+            |ring| {
+                let prism = Prism::new(Polygon::new(&[ring]).ok()?, [-2.0, 1.5]).expect("ordered");
+                Some(Volume::from(prism))
+            },
+        );
+        prop_oneof![corners().prop_map(Volume::from), ball, prism].prop_recursive(
+            3,
+            8,
+            3,
+            |inner| {
+                prop_oneof![
+                    prop::collection::vec(inner.clone(), 1..3).prop_map(Volume::any_of),
+                    (inner.clone(), inner.clone()).prop_map(|(a, b)| a.and(b)),
+                    (inner.clone(), inner).prop_map(|(a, b)| a.without([b])),
+                ]
+            },
+        )
     }
 
     proptest! {

@@ -6,7 +6,9 @@
 use alloc::{format, string::String, vec, vec::Vec};
 
 use super::{
-    layout::{CUBE, DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, MAGIC, MAX_SECTIONS, MIX, check_size},
+    layout::{
+        CUBE, DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, MAGIC, MAX_SECTIONS, MIX, check_size,
+    },
     read::{HeadSection, read_prov, wrong},
     wire::Reader,
 };
