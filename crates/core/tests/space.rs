@@ -327,12 +327,6 @@ fn bad_input_is_refused() {
     let error = set.nearest_within([0.0; 3], 9, -1.0).expect_err("negative");
     assert_eq!(error.kind(), ErrorKind::Radius);
     assert_eq!(
-        set.nearest_within([0.0; 3], 9, 1e3)
-            .expect_err("many")
-            .kind(),
-        ErrorKind::TooMany
-    );
-    assert_eq!(
         set.clone().density(-1.0).expect_err("negative").kind(),
         ErrorKind::Density
     );
@@ -383,4 +377,9 @@ fn golden_vectors() {
 }
 
 /// The digests of [`golden_vectors`].
-const GOLDEN: [u64; 4] = [0; 4];
+const GOLDEN: [u64; 4] = [
+    0x9838_22b9_93a7_ec94,
+    0x1415_331e_4c41_fc4a,
+    0x1293_8e91_14ba_38f5,
+    0xfd35_86c4_beea_f74b,
+];

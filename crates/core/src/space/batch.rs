@@ -55,6 +55,49 @@ impl Batch {
         self.ids.truncate(to);
     }
 
+    /// Keeps the points between bounds.
+    pub(super) fn retain_between(&mut self, ends: &[Range<i32>; 3]) {
+        /// The number of points that are looked at together.
+        const PART: usize = 16;
+        let length = self.len();
+        let mut kept = 0;
+        let mut from = 0;
+        while from < length {
+            let part = from..length.min(from + PART);
+            let mut is_inside = true;
+            for (list, ends) in self.places.iter().zip(ends) {
+                for &v in &list[part.clone()] {
+                    is_inside &= (ends.start <= v) & (v < ends.end);
+                }
+            }
+            if is_inside {
+                if kept != from {
+                    for list in &mut self.places {
+                        list.copy_within(part.clone(), kept);
+                    }
+                    if !self.ids.is_empty() {
+                        self.ids.copy_within(part.clone(), kept);
+                    }
+                }
+                kept += part.len();
+            } else {
+                for i in part.clone() {
+                    let place = [0, 1, 2].map(|axis| self.places[axis][i]);
+                    for (list, v) in self.places.iter_mut().zip(place) {
+                        list[kept] = v;
+                    }
+                    if !self.ids.is_empty() {
+                        self.ids[kept] = self.ids[i];
+                    }
+                    kept += usize::from((0..3).all(|axis| ends[axis].contains(&place[axis])));
+                }
+            }
+            from = part.end;
+        }
+        self.places.iter_mut().for_each(|list| list.truncate(kept));
+        self.ids.truncate(kept);
+    }
+
     /// Keeps the points for whose place the test holds.
     pub(super) fn retain(&mut self, mut test: impl FnMut([i32; 3]) -> bool) {
         let [x, y, z] = &mut self.places;

@@ -418,7 +418,7 @@ impl Walk {
         let ends = relative(&scope.bounds, origin);
         let is_between = |place: [i32; 3]| (0..3).all(|axis| ends[axis].contains(&place[axis]));
         match self.slab.cells.volume(scope, self.key.state) {
-            None => out.retain(is_between),
+            None => out.retain_between(&ends),
             Some(volume) => out
                 .retain(|place| is_between(place) && volume.contains(world(scope, origin, place))),
         }
