@@ -1,6 +1,6 @@
 //! Points block by block, and one by one.
 
-use alloc::{sync::Arc, vec, vec::Vec};
+use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
 use core::{marker::PhantomData, ops::Range};
 
 use super::{batch::Batch, format::Format, point::Point, scope::Scope, walk::Walk};
@@ -35,13 +35,17 @@ pub struct Blocks<F: Format> {
 /// Where points come from.
 #[derive(Clone, Debug)]
 enum Source {
-    Walk {
-        walk: Walk,
-        batch: Batch,
-        /// The points of the batch that were written.
-        written: usize,
-    },
+    Walk(Box<Walking>),
     Kept(Arc<Batch>, Range<usize>),
+}
+
+/// A walk and the batch that it filled last.
+#[derive(Clone, Debug)]
+struct Walking {
+    walk: Walk,
+    batch: Batch,
+    /// The points of the batch that were written.
+    written: usize,
 }
 
 impl<F: Format> Blocks<F> {
@@ -50,11 +54,11 @@ impl<F: Format> Blocks<F> {
         let walk = Walk::new(scope.clone(), &scope.all, start, F::HAS_IDS);
         Self {
             scope,
-            source: Source::Walk {
+            source: Source::Walk(Box::new(Walking {
                 walk,
                 batch: Batch::default(),
                 written: 0,
-            },
+            })),
             left,
             format: PhantomData,
         }
@@ -84,8 +88,8 @@ impl<F: Format> Blocks<F> {
     /// ```
     #[must_use]
     pub fn with_backend(mut self, backend: Backend) -> Self {
-        if let Source::Walk { walk, .. } = &mut self.source {
-            walk.backend = backend;
+        if let Source::Walk(walking) = &mut self.source {
+            walking.walk.backend = backend;
         }
         self
     }
@@ -115,11 +119,12 @@ impl<F: Format> Blocks<F> {
                     F::write(&self.scope, batch, from, Backend::best(), room);
                     filled = most;
                 }
-                Source::Walk {
-                    walk,
-                    batch,
-                    written,
-                } => {
+                Source::Walk(walking) => {
+                    let Walking {
+                        walk,
+                        batch,
+                        written,
+                    } = &mut **walking;
                     if *written == batch.len() {
                         *written = 0;
                         if !walk.next(batch) {

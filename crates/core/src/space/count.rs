@@ -22,7 +22,7 @@ pub(super) fn count(scope: &Arc<Scope>, ranges: &[Range<i64>; 3]) -> u128 {
     if ranges.iter().any(Range::is_empty) {
         return 0;
     }
-    if scope.volume.is_none() && scope.lattice.shears.is_none() {
+    if scope.is_box() {
         return closed::count(scope, &ranges);
     }
     divide(scope, ranges, scope.volume.as_ref())
@@ -137,8 +137,8 @@ pub(super) fn keep(scope: &Arc<Scope>) -> Batch {
             is_first = false;
         }
         let offset = [0, 1, 2].map(|axis| (batch.origin[axis] - kept.origin[axis]) as i32);
-        for axis in 0..3 {
-            let lift = offset[axis] << FRACTION_BITS;
+        for (axis, by) in offset.into_iter().enumerate() {
+            let lift = by << FRACTION_BITS;
             kept.places[axis].extend(batch.places[axis].iter().map(|v| v + lift));
         }
         kept.ids.extend(

@@ -196,6 +196,11 @@ impl Scope {
         }
     }
 
+    /// Whether all that is requested lies in a box without warp.
+    pub(super) fn is_box(&self) -> bool {
+        self.volume.is_none() && self.lattice.shears.is_none()
+    }
+
     /// The box of the lattice that both have.
     pub(super) fn clip(&self, ranges: &[Range<i64>; 3]) -> [Range<i64>; 3] {
         [0, 1, 2].map(|axis| common(&self.all[axis], &ranges[axis]))

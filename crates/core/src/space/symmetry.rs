@@ -31,8 +31,8 @@ impl Symmetry {
             return Self::numbered(0);
         }
         let hash = split_mix(seed.0 ^ 0x5359_4d4d_4554_5259);
-        let order = (hash & 0xffff_ffff) * 6 >> 32;
-        Self::numbered((order << 3 | hash >> 61) as usize)
+        let order = ((hash & 0xffff_ffff) * 6) >> 32;
+        Self::numbered(((order << 3) | (hash >> 61)) as usize)
     }
 
     /// Symmetry number `number`: the lowest three bits reverse axes.

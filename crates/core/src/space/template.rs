@@ -6,7 +6,10 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::{columns::Lines, lattice::Lattice};
+use super::{
+    columns::Lines,
+    lattice::{Lattice, fixed},
+};
 use crate::table::FRACTION_BITS;
 
 /// A plane of the lattice that holds points.
@@ -43,18 +46,18 @@ impl Templates {
         self.columns.clear();
     }
 
-    /// The template of the rows of a parity and an interval of dY.
+    /// The template of the rows of a parity and an interval of dY: with bounds, of the points between those along x and z.
     pub(super) fn get(
         &mut self,
         lattice: &Lattice,
         lines: &Lines,
         plane: Plane,
-        origin: [i64; 3],
+        (origin, bounds): ([i64; 3], Option<&[Range<i64>; 3]>),
         (own, block): (u8, usize),
     ) -> Range<usize> {
         let made = self.made[usize::from(own)][block];
         let (start, end) = made.unwrap_or_else(|| {
-            let made = self.make(lattice, lines, plane, origin, (own, block));
+            let made = self.make(lattice, lines, plane, (origin, bounds), (own, block));
             self.made[usize::from(own)][block] = Some(made);
             made
         });
@@ -66,7 +69,7 @@ impl Templates {
         lattice: &Lattice,
         lines: &Lines,
         plane: Plane,
-        origin: [i64; 3],
+        (origin, bounds): ([i64; 3], Option<&[Range<i64>; 3]>),
         (own, block): (u8, usize),
     ) -> (u32, u32) {
         let n = lattice.table.map().intervals();
@@ -82,6 +85,12 @@ impl Templates {
                 continue;
             }
             let vector = vectors[line.block as usize];
+            if let Some([x, _, z]) = bounds
+                && !(x.contains(&(fixed(line.at) + i64::from(vector[0])))
+                    && z.contains(&(fixed(plane.at) + i64::from(vector[2]))))
+            {
+                continue;
+            }
             let column = (line.at - origin[0]) as i32;
             self.columns.push(column);
             self.places[0].push((column << FRACTION_BITS) + vector[0]);

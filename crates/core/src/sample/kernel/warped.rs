@@ -374,7 +374,9 @@ impl VectorLoop for WarpAll<'_> {
             next = part.end;
             // SAFETY: as the caller ensures, and parts lie within the slices.
             unsafe {
-                let [x, y] = self.displaced.map(|list| extent::<L>(&list[part.clone()]));
+                // Closures would be compiled without the instructions.
+                let x = extent::<L>(&self.displaced[0][part.clone()]);
+                let y = extent::<L>(&self.displaced[1][part.clone()]);
                 let [along_y, along_x, rising, _] = self.shears.bounds;
                 let more = |[a, b]: [i32; 2], [c, d]: [i32; 2]| [a + c, b + d];
                 let first = x;
@@ -477,7 +479,7 @@ unsafe fn extent<L: Lanes>(all: &[i32]) -> [i32; 2] {
             let v = L::load_ints(all.as_ptr().add(start));
             (least, most) = (L::min_ints(least, v), L::max_ints(most, v));
         }
-        let [least, most] = [least, most].map(|v| stored::<L>(v));
+        let (least, most) = (stored::<L>(least), stored::<L>(most));
         let least = least[..L::WIDTH].iter().copied().fold(i32::MAX, i32::min);
         [
             least,

@@ -1,5 +1,7 @@
 //! Upright prisms.
 
+use alloc::boxed::Box;
+
 use super::Region;
 use crate::{
     error::{Error, ErrorKind, number},
@@ -19,7 +21,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prism {
     /// The polygon.
-    base: Area,
+    base: Box<Area>,
     /// The box around it.
     bounds: Region,
 }
@@ -52,7 +54,7 @@ impl Prism {
         }
         let ([x, y], [end_x, end_y]) = (base.bounds().min(), base.bounds().max());
         Ok(Self {
-            base: Area::Polygon(base),
+            base: Box::new(Area::Polygon(base)),
             bounds: Region::between([x, y, bottom], [end_x, end_y, top]),
         })
     }
@@ -115,7 +117,7 @@ impl Prism {
             Some(false) => Ok(false),
             Some(true) if is_between => Ok(true),
             _ => Err(Self {
-                base: near,
+                base: Box::new(near),
                 bounds: self.bounds,
             }),
         }

@@ -4,6 +4,8 @@
 //! Planes are walked in slabs of 32, whose [`Cells`] tell where points need a test. Positions are 32-bit offsets from
 //! the origin of a patch, a slab of 256 rows.
 
+mod finish;
+
 use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
@@ -14,13 +16,9 @@ use super::{
     lattice::fixed,
     scope::{Scope, common},
     template::{Plane, Templates},
-    warp::PLANES,
 };
 use crate::{
-    sample::{
-        Backend,
-        space::{PatchShears, warp_lists},
-    },
+    sample::{Backend, space::PatchShears},
     table::FRACTION_BITS,
 };
 
@@ -28,10 +26,6 @@ use crate::{
 const PATCH_BITS: u32 = 8;
 /// A batch ends with the row that makes it as long.
 const LONG: usize = 512;
-/// The points that are warped together.
-const VECTOR: usize = 32;
-/// Rows of less points share vectors.
-const SHORT: usize = 24;
 /// Up to this side, in lattice units, all points are tested.
 const SMALL: i64 = 96;
 
@@ -229,7 +223,7 @@ impl Walk {
             .all
             .iter()
             .all(|range| range.end - range.start <= SMALL);
-        if is_small {
+        if is_small || self.scope.is_box() {
             let rows = (y.end - 1 - origin_y) >> CELL_BITS;
             self.slab.cells.test_all(rows as usize + 1);
         } else {
@@ -306,15 +300,19 @@ impl Walk {
         let origin = self.pending.origin;
         let key = (row.own, row.block as usize);
         let lines = &self.column.lines;
-        let mut points = self
-            .templates
-            .get(&scope.lattice, lines, plane, origin, key);
+        let is_box = scope.is_box();
+        let place = (origin, is_box.then_some(&scope.bounds));
+        let mut points = self.templates.get(&scope.lattice, lines, plane, place, key);
         let columns = &self.templates.columns;
         if let Some(start) = self.start
             && [start[1], start[2]] == [row.at, plane.at]
         {
             let first = (start[0] - origin[0]) as i32;
             points.start += columns[points.clone()].partition_point(|&column| column < first);
+        }
+        if is_box {
+            self.add_of_box(row, plane, points);
+            return;
         }
         let below = |points: &Range<usize>, end: i32| {
             let part = &columns[points.clone()];
@@ -378,96 +376,38 @@ impl Walk {
         }
     }
 
-    /// Fills the last vector of a row that will be warped, so that the points of a vector are near each other.
-    fn pad(&mut self) {
-        if self.scope.lattice.shears.is_none() {
+    /// Adds points of a row of a box without warp, which lie between its bounds along x and z.
+    fn add_of_box(&mut self, row: Row, plane: Plane, points: Range<usize>) {
+        let scope = &*self.scope;
+        let pending = &mut self.pending;
+        let origin = pending.origin;
+        let [y, z] = [row.at - origin[1], plane.at - origin[2]].map(|v| v as i32);
+        let lift = y << FRACTION_BITS;
+        let [all_x, all_y, all_z] = &self.templates.places;
+        let columns = &self.templates.columns;
+        let [least, most] = scope.lattice.turned.reach[1].map(i64::from);
+        let (at, bounds) = (fixed(row.at), &scope.bounds[1]);
+        let [xs, ys, zs] = &mut pending.places;
+        if bounds.start <= at + least && at + most < bounds.end {
+            xs.extend_from_slice(&all_x[points.clone()]);
+            ys.extend(all_y[points.clone()].iter().map(|dy| dy + lift));
+            zs.extend_from_slice(&all_z[points.clone()]);
+            if self.wants_ids {
+                let ids = columns[points].iter().map(|&x| [x, y, z]);
+                pending.ids.extend(ids);
+            }
             return;
         }
-        let length = self.pending.len();
-        let padded = length.next_multiple_of(VECTOR);
-        // Short rows are near each other.
-        if padded == length || length - self.row_start < SHORT {
-            return;
+        for i in points {
+            if bounds.contains(&(at + i64::from(all_y[i]))) {
+                xs.push(all_x[i]);
+                ys.push(all_y[i] + lift);
+                zs.push(all_z[i]);
+                if self.wants_ids {
+                    pending.ids.push([columns[i], y, z]);
+                }
+            }
         }
-        for list in &mut self.pending.places {
-            let last = list.last().copied().unwrap_or(0);
-            list.resize(padded, last);
-        }
-        if self.wants_ids {
-            let last = self.pending.ids.last().copied().unwrap_or([0; 3]);
-            self.pending.ids.resize(padded, last);
-        }
-        self.gaps.push(length..padded);
-        self.row_start = padded;
-    }
-
-    /// Moves the pending points to `out`, through the warp if there is one, and keeps those inside.
-    fn finish(&mut self, out: &mut Batch) {
-        core::mem::swap(&mut self.pending, out);
-        let origin = out.origin;
-        self.pending.restart(origin);
-        self.row_start = 0;
-        if self.scope.lattice.shears.is_none() || out.is_empty() {
-            return;
-        }
-        self.warp(out);
-        if self.key.state == IN {
-            return;
-        }
-        let scope = &self.scope;
-        let ends = relative(&scope.bounds, origin);
-        let is_between = |place: [i32; 3]| (0..3).all(|axis| ends[axis].contains(&place[axis]));
-        match self.slab.cells.volume(scope, self.key.state) {
-            None => out.retain_between(&ends),
-            Some(volume) => out
-                .retain(|place| is_between(place) && volume.contains(world(scope, origin, place))),
-        }
-    }
-
-    /// Warps the points of a batch of the current patch.
-    fn warp(&mut self, out: &mut Batch) {
-        let Some(shears) = &self.scope.lattice.shears else {
-            return;
-        };
-        let origin = out.origin;
-        let column = &self.column;
-        let patch = self.slab.shears[self.key.patch].get_or_insert_with(|| {
-            let height = origin[1]..origin[1] + (1 << PATCH_BITS);
-            let planes = common(&self.slab.planes, &self.ranges[2]);
-            let sides = [
-                column.ranges[0].clone(),
-                common(&height, &column.ranges[1]),
-                planes,
-            ];
-            let ranges = [0, 1, 2].map(|axis| {
-                let [least, most] = self.scope.lattice.turned.reach[axis];
-                let side = &sides[axis];
-                let place = |v: i64| ((v - origin[axis]) << FRACTION_BITS) as i32;
-                [place(side.start) + least, place(side.end - 1) + most]
-            });
-            shears.patch(origin, ranges)
-        });
-        let length = out.len();
-        let padded = length.next_multiple_of(32);
-        for list in out.places.iter_mut().chain(&mut self.room) {
-            let last = list.last().copied().unwrap_or(0);
-            list.resize(padded, last);
-        }
-        for (shears, [a, b]) in patch.iter().zip(PLANES) {
-            warp_lists(
-                self.backend,
-                shears,
-                [&out.places[a], &out.places[b]],
-                &mut self.room,
-            );
-            core::mem::swap(&mut out.places[a], &mut self.room[0]);
-            core::mem::swap(&mut out.places[b], &mut self.room[1]);
-        }
-        for list in &mut out.places {
-            list.truncate(length);
-        }
-        out.close(&self.gaps);
-        self.gaps.clear();
     }
 }
 
