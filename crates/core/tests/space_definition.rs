@@ -83,8 +83,8 @@ impl Definition<'_> {
             [2, 0, 1],
             [2, 1, 0],
         ];
-        let order = orders[((h % (1 << 32)) * 6 >> 32) as usize];
-        (order, [61, 62, 63].map(|bit| h >> bit & 1 == 1))
+        let order = orders[(((h % (1 << 32)) * 6) >> 32) as usize];
+        (order, [61, 62, 63].map(|bit| (h >> bit) & 1 == 1))
     }
 
     fn indices(&self, [x, y, z]: [i64; 3]) -> [u64; 3] {
