@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::{
-    columns::Lines,
+    columns::{Line, Lines},
     lattice::{Lattice, fixed},
 };
 use crate::table::FRACTION_BITS;
@@ -79,24 +79,61 @@ impl Templates {
         let parity = usize::from(plane.others ^ own);
         let lines = &lines.x[parity][usize::from(own ^ plane.own)];
         let start = self.columns.len();
-        let z = ((plane.at - origin[2]) << FRACTION_BITS) as i32;
-        for line in lines {
-            if lattice.cut.is_some() && !lattice.keeps(first + line.block as usize, line.index) {
-                continue;
-            }
+        // Points of the lines between lie inside whatever their vectors are.
+        let mut whole = 0..lines.len();
+        if let Some([x, _, z]) = bounds {
+            let [reach_x, _, reach_z] = lattice.turned.reach.map(|ends| ends.map(i64::from));
+            let at = fixed(plane.at);
+            let is_inside = z.start <= at + reach_z[0] && at + reach_z[1] < z.end;
+            let first = lines.partition_point(|line| fixed(line.at) + reach_x[0] < x.start);
+            let last = lines.partition_point(|line| fixed(line.at) + reach_x[1] < x.end);
+            whole = if is_inside {
+                first..last.max(first)
+            } else {
+                0..0
+            };
+        }
+        if lattice.cut.is_some() {
+            whole = 0..0;
+        }
+        let test = |line: &Line| {
             let vector = vectors[line.block as usize];
-            if let Some([x, _, z]) = bounds
-                && !(x.contains(&(fixed(line.at) + i64::from(vector[0])))
-                    && z.contains(&(fixed(plane.at) + i64::from(vector[2]))))
-            {
-                continue;
-            }
-            let column = (line.at - origin[0]) as i32;
-            self.columns.push(column);
-            self.places[0].push((column << FRACTION_BITS) + vector[0]);
-            self.places[1].push(vector[1]);
-            self.places[2].push(z + vector[2]);
+            let is_inside = bounds.is_none_or(|[x, _, z]| {
+                x.contains(&(fixed(line.at) + i64::from(vector[0])))
+                    && z.contains(&(fixed(plane.at) + i64::from(vector[2])))
+            });
+            is_inside
+                && (lattice.cut.is_none() || lattice.keeps(first + line.block as usize, line.index))
+        };
+        let z = ((plane.at - origin[2]) << FRACTION_BITS) as i32;
+        let (before, rest) = lines.split_at(whole.start);
+        let (inside, after) = rest.split_at(whole.len());
+        for line in before.iter().filter(|line| test(line)) {
+            self.push(line, vectors[line.block as usize], origin[0], z);
+        }
+        let column = |line: &Line| (line.at - origin[0]) as i32;
+        let vector = |line: &Line| &vectors[line.block as usize];
+        self.columns.extend(inside.iter().map(column));
+        let [xs, ys, zs] = &mut self.places;
+        xs.extend(
+            inside
+                .iter()
+                .map(|line| (column(line) << FRACTION_BITS) + vector(line)[0]),
+        );
+        ys.extend(inside.iter().map(|line| vector(line)[1]));
+        zs.extend(inside.iter().map(|line| z + vector(line)[2]));
+        for line in after.iter().filter(|line| test(line)) {
+            self.push(line, vectors[line.block as usize], origin[0], z);
         }
         (start as u32, self.columns.len() as u32)
+    }
+
+    /// Adds the point of a line.
+    fn push(&mut self, line: &Line, vector: [i32; 3], origin: i64, z: i32) {
+        let column = (line.at - origin) as i32;
+        self.columns.push(column);
+        self.places[0].push((column << FRACTION_BITS) + vector[0]);
+        self.places[1].push(vector[1]);
+        self.places[2].push(z + vector[2]);
     }
 }
