@@ -441,8 +441,9 @@ impl SpaceSet {
     /// ```
     /// use strew_core::space::{SpaceSet, Table};
     ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).spacing(3.0)?;
-    /// assert!((set.least_distance() - 6.0 * set.table().map().alpha().set_side_f64()).abs() < 1e-9);
+    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
+    /// let wider = set.clone().spacing(3.0)?;
+    /// assert!((wider.least_distance() - 3.0 * set.least_distance()).abs() < 1e-12);
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     #[must_use]
