@@ -38,7 +38,7 @@ mod warp;
 pub(crate) use lattice::Multiple;
 pub(crate) use seed::split_mix;
 
-/// What points in space share with those in the plane.
+/// The parts of the plane that points in space share.
 pub(crate) mod space {
     pub(crate) use super::{
         kernel::{compiled, warp_lists},

@@ -29,7 +29,7 @@ impl Batch {
         self.ids.clear();
     }
 
-    /// The lattice address of a point, if there are so many.
+    /// The lattice address of the point at a position, if the batch has it.
     pub(super) fn address(&self, point: usize) -> Option<[i64; 3]> {
         let id = self.ids.get(point)?;
         Some([0, 1, 2].map(|axis| self.origin[axis] + i64::from(id[axis])))

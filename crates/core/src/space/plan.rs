@@ -48,7 +48,7 @@ struct Window {
     total: u128,
 }
 
-/// Requests with at most so many points to look at are walked once instead of counted.
+/// Requests with at most this number of candidates are walked once instead of counted.
 const FEW: f64 = 20_000.0;
 
 /// Whether a scope has few points, near each other.

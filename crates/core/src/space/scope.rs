@@ -14,7 +14,7 @@ use crate::{
     table::FRACTION_BITS,
 };
 
-/// What of a lattice is requested.
+/// The requested part of a lattice.
 #[derive(Clone, Debug)]
 pub struct Scope {
     pub(super) lattice: Lattice,
@@ -24,7 +24,7 @@ pub struct Scope {
     pub(super) before: [Range<i64>; 3],
     /// The lattice coordinates of these points, and a few more.
     pub(super) all: [Range<i64>; 3],
-    /// What points must satisfy beside the bounds.
+    /// The conditions that points must satisfy beside the bounds.
     pub(super) volume: Option<Volume>,
     /// The box around all points.
     pub(super) region: Region,

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{ForgeError, Meter, Stage, Watch, numeric::SplitMix};
 
-/// What table to make.
+/// The table to make.
 ///
 /// ```
 /// use strew_forge::space::{SpaceJob, SpaceProfile, forge};
@@ -102,7 +102,7 @@ impl SpaceJob {
     }
 }
 
-/// The random start is within so many mean spacings along each axis.
+/// The reach of the random start along each axis, in mean spacings.
 const JITTER: f64 = 0.2;
 
 /// Makes a table. Equal jobs make the same table, bit for bit, on every machine. Returns `None` if the watch stopped the

@@ -32,7 +32,7 @@ pub fn with_ranks(table: &Table) -> Result<Table, Error> {
     table.with_ranks(Ranks::new(positions)?)
 }
 
-/// Pairs are listed up to so many spacings of the whole set.
+/// Pairs are listed up to this distance, in spacings of the whole set.
 const REACH: f64 = 4.6;
 /// The scale of surroundings, in spacings of what is left.
 const SCALE: f64 = 0.55;

@@ -47,7 +47,7 @@ pub(super) struct Walk {
     templates: Templates,
     /// The points of the rows so far, before the warp if there is one.
     pending: Batch,
-    /// What these have in common.
+    /// The values that these have in common.
     key: Key,
     /// Room for warped places.
     room: [Vec<i32>; 2],
@@ -79,7 +79,7 @@ struct Slab {
     shears: Vec<Option<[PatchShears; 3]>>,
 }
 
-/// What the points of a batch have in common.
+/// The values that the points of a batch have in common.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Key {
     patch: usize,
@@ -411,7 +411,7 @@ impl Walk {
     }
 }
 
-/// Fixed-point bounds relative to an origin, as far as offsets reach.
+/// Fixed-point bounds relative to an origin, cut to the reach of offsets.
 fn relative(bounds: &[Range<i64>; 3], origin: [i64; 3]) -> [Range<i32>; 3] {
     [0, 1, 2].map(|axis| {
         let from = fixed(origin[axis]);
