@@ -130,7 +130,7 @@ pub fn text(host: &Host, effort: Effort) {
     let planned = Planned::at_once(query, &limits).expect("within reach");
     let side = (count as f64).sqrt();
     let mut points = vec![Point::default(); PREPARED];
-    planned.sets[0].plan.walk().fill(&mut points);
+    planned.sets[0].plan.walk().fill(&mut points, &mut vec![]);
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let alone = alone.expect("a thread");
 

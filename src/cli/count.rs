@@ -52,7 +52,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 /// Prints the count that a server returns.
 fn from_server(args: &Args) -> Result<(), Failure> {
     let body = args.query.for_server()?.to_body();
-    let mut answer = args.remote.request("/v1/count", &body)?;
+    let mut answer = args
+        .remote
+        .request(args.query.path("/v1/count", "/v1/space/count"), &body)?;
     let text = answer.rest(MOST_BYTES).context("the answer broke off")?;
     if args.json {
         let document: Box<RawValue> =

@@ -6,7 +6,7 @@ use std::{fmt, marker::PhantomData};
 use clap::{Arg, ArgAction, ArgMatches, Command, FromArgMatches};
 use strew_encode::Encoding;
 use strew_query::{
-    Group, Parameter, Shape, Values, groups,
+    BALL, Group, Parameter, Shape, Values, groups,
     parameters::{BBOX, FIELD, PARAMETERS, SETTLE, TABLE},
     patterns::PATTERN_PARAMETERS,
 };
@@ -17,6 +17,8 @@ use super::candidates;
 pub(super) trait Takes: fmt::Debug + Send + Sync + 'static {
     /// By their groups.
     const GROUPS: &'static [Group];
+    /// Those of a request about points in space, if there is one.
+    const IN_SPACE: &'static [Group] = &[];
     /// Defaults that differ from those of the parameters.
     const DEFAULTS: &'static [(&'static Parameter, &'static str)] = &[];
 
@@ -28,6 +30,7 @@ pub(super) trait Takes: fmt::Debug + Send + Sync + 'static {
     /// All that it takes, in the order of help texts.
     fn all() -> impl Iterator<Item = &'static Parameter> {
         let all = PARAMETERS.iter().chain(PATTERN_PARAMETERS).copied();
+        let all = all.chain([&BALL]);
         all.filter(|parameter| Self::takes(parameter))
     }
 
@@ -40,13 +43,14 @@ pub(super) trait Takes: fmt::Debug + Send + Sync + 'static {
 
 /// Declares commands by their groups of parameters, and by the exceptions.
 macro_rules! takes {
-    ($($(#[$doc:meta])* $name:ident = $groups:expr $(, $takes:expr)?;)+) => {$(
+    ($($(#[$doc:meta])* $name:ident = $groups:expr $(, in space $space:expr)? $(, $takes:expr)?;)+) => {$(
         $(#[$doc])*
         #[derive(Debug)]
         pub(super) struct $name;
 
         impl Takes for $name {
             const GROUPS: &'static [Group] = $groups;
+            $(const IN_SPACE: &'static [Group] = $space;)?
 
             $(fn takes(parameter: &Parameter) -> bool {
                 let takes: fn(&Parameter) -> bool = $takes;
@@ -58,29 +62,35 @@ macro_rules! takes {
 
 takes! {
     /// A query with its output, as `GET /v1/points` takes it.
-    Answered = groups::POINTS;
+    Answered = groups::POINTS, |parameter| {
+        *parameter == BALL || groups::POINTS.contains(&parameter.group)
+    };
     /// A query of which only the number of points matters, as for `GET /v1/count`.
-    Counted = groups::COUNT;
+    Counted = groups::COUNT, |parameter| {
+        *parameter == BALL || groups::COUNT.contains(&parameter.group)
+    };
     /// A query and a number of parts.
     Parted = groups::POINTS, |parameter| {
         parameter.group == Group::Split || Answered::takes(parameter)
     };
     /// A set without a region, as for `GET /v1/points/{id}`.
-    Single = groups::SINGLE;
+    Single = groups::SINGLE, in space groups::SPACE_SET;
     /// A table whose periods are listed, as for `GET /v1/periods`.
     Listed = groups::PERIODS;
     /// A table.
     Tabled = groups::TABLES;
     /// A set and a place, as for `GET /v1/nearest`.
-    Near = groups::NEAREST;
+    Near = groups::NEAREST, in space groups::SPACE_NEAREST;
     /// A set of points, or a world, in the chunks of a box.
     Exported = groups::POINTS, |parameter| {
         let others = [Group::Region, Group::Period, Group::Count, Group::Window];
-        *parameter == BBOX || Answered::takes(parameter) && !others.contains(&parameter.group)
+        let is_flat = *parameter != BALL && Answered::takes(parameter);
+        *parameter == BBOX || is_flat && !others.contains(&parameter.group)
     };
     /// A box and a set; its table is named by another flag.
     Measured = groups::MEASURED, |parameter| {
-        let others = [Group::Region, Group::Attributes].contains(&parameter.group)
+        let others = [Group::Region, Group::Attributes, Group::Choices];
+        let others = others.contains(&parameter.group)
             || [&TABLE, &FIELD].contains(&parameter);
         *parameter == BBOX || Measured::GROUPS.contains(&parameter.group) && !others
     };
@@ -134,6 +144,15 @@ impl<T> Flags<T> {
         values
     }
 
+    /// All given flags as values of a request about points in space, which some groups make.
+    pub(super) fn values_in_space(&self, groups: &'static [Group]) -> Values {
+        let mut values = Values::new(groups, "");
+        for (parameter, text) in &self.given {
+            values.add_text(parameter.name, text);
+        }
+        values
+    }
+
     /// The given parameters.
     pub(super) fn given(&self) -> impl Iterator<Item = &'static Parameter> {
         self.given.iter().map(|(parameter, _)| *parameter)
@@ -160,9 +179,10 @@ pub(super) fn flag(name: &str) -> String {
 /// The title under which `--help` lists the parameters of a group.
 const fn heading(group: Group) -> &'static str {
     match group {
-        Group::Region | Group::Period | Group::Nearest | Group::Path => WHERE,
+        Group::Region | Group::Volume | Group::Period | Group::Nearest | Group::Path => WHERE,
         Group::Window | Group::Split | Group::Listed => "Which of the points",
-        Group::Output => "Output",
+        Group::Neighbors => WHERE,
+        Group::Output | Group::Reference => "Output",
         Group::Pattern | Group::Occurrences => "Pattern",
         _ => "Set of points",
     }
@@ -182,6 +202,10 @@ fn own_words(parameter: &Parameter) -> Option<(String, &'static str)> {
         }
         ("offsets", _) => (
             "The offsets of the other points from the first, in grid units: pairs of integers, such as \"2,1 3,3\".",
+            "",
+        ),
+        ("ball", _) => (
+            "The region, with --space: the points nearer to x,y,z than the radius.",
             "",
         ),
         ("list", _) => (
@@ -359,6 +383,7 @@ mod tests {
     fn flags_are_a_loop_over_the_table() {
         let command = Flags::<Answered>::augment_args(clap::Command::new("sample"));
         let flags = command.get_arguments().map(|flag| flag.get_id().as_str());
-        assert!(flags.eq(of(groups::POINTS).map(|parameter| parameter.name)));
+        let all = of(groups::POINTS).map(|parameter| parameter.name);
+        assert!(flags.eq(all.chain(["ball"])));
     }
 }

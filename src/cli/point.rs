@@ -20,6 +20,9 @@ pub(super) struct SetArgs<T: Takes> {
     /// Print the document of the REST API instead: what is found, and the set with everything filled in.
     #[arg(long)]
     json: bool,
+    /// Points in space: ids are x:y:z, and places have three numbers.
+    #[arg(long)]
+    space: bool,
     #[command(flatten)]
     flags: Flags<T>,
     #[command(flatten)]
@@ -31,7 +34,7 @@ pub(super) struct SetArgs<T: Takes> {
 /// Flags of `strew point`.
 #[derive(Debug, clap::Args)]
 pub(super) struct PointArgs {
-    /// The id of the point: its lattice address, such as -31:52.
+    /// The id of the point: its lattice address, such as -31:52, in space -31:52:7.
     #[arg(value_name = "ID", allow_hyphen_values = true)]
     id: String,
     #[command(flatten)]
@@ -56,7 +59,10 @@ struct Several {
 impl<T: Takes> SetArgs<T> {
     fn load(&self) -> Result<(Values, Catalog), Failure> {
         let config = self.settings.merged(config::Uses::LOADED)?;
-        let mut values = self.flags.values();
+        let mut values = match self.space {
+            true => self.flags.values_in_space(T::IN_SPACE),
+            false => self.flags.values(),
+        };
         let catalog = self.field.load(&mut values, config.tables()?)?;
         Ok((values, catalog))
     }

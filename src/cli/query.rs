@@ -10,7 +10,8 @@ use strew_config::Config;
 use strew_error::Faults;
 use strew_plan::{Planned, PlannedSet};
 use strew_query::{
-    Draft, Group, Options, RegionDraft, Set, ShapeDraft, groups, of, read_body, read_region,
+    BALL, Draft, Group, Options, RegionDraft, Set, ShapeDraft, VolumeDraft, groups, of, read_body,
+    read_region,
 };
 
 use super::{
@@ -29,9 +30,13 @@ pub(super) struct QueryArgs<T: Takes> {
     /// than those of the output.
     #[arg(long, value_name = "FILE")]
     query: Option<PathBuf>,
+    /// Points in space: --bbox takes six numbers, --chunk SIZE/CX/CY/CZ, and --query is the body of POST
+    /// /v1/space/points.
+    #[arg(long, help_heading = WHERE)]
+    pub(super) space: bool,
     /// The region: a chunk of the world grid. Coordinates are relative to its corner,
     /// SIZE·CX,SIZE·CY.
-    #[arg(long, value_name = "SIZE/CX/CY", help_heading = WHERE, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SIZE/CX/CY[/CZ]", help_heading = WHERE, allow_hyphen_values = true)]
     chunk: Option<String>,
     /// The region: the polygons of a GeoJSON file; - is standard input.
     #[arg(long, value_name = "FILE", help_heading = WHERE)]
@@ -72,6 +77,11 @@ impl<T: Takes> QueryArgs<T> {
         })
     }
 
+    /// The path of a server's API in the plane, or the one in space.
+    pub(super) const fn path(&self, plane: &'static str, space: &'static str) -> &'static str {
+        if self.space { space } else { plane }
+    }
+
     /// The query for a server, whose tables and names this program does not know.
     pub(super) fn for_server(&self) -> Result<Draft, Failure> {
         let (draft, source) = self.read()?;
@@ -82,7 +92,10 @@ impl<T: Takes> QueryArgs<T> {
     }
 
     /// The parameters of a query in a file.
-    fn in_file() -> &'static [Group] {
+    fn in_file(&self) -> &'static [Group] {
+        if self.space {
+            return groups::SPACE_QUERY;
+        }
         match T::GROUPS.contains(&Group::Output) {
             true => groups::QUERY,
             false => groups::COUNTED,
@@ -95,7 +108,14 @@ impl<T: Takes> QueryArgs<T> {
                 true => groups::POINTS,
                 false => groups::COUNT,
             };
-            let draft = Draft::of(self.flags.values_of(groups));
+            if !self.space && self.flags.has(&BALL) {
+                refuse!("--ball is a region in space; allowed: --space beside it");
+            }
+            let values = match self.space {
+                true => self.flags.values_in_space(groups::SPACE_POINTS),
+                false => self.flags.values_of(groups),
+            };
+            let draft = Draft::of(values);
             let draft = match self.region()? {
                 Some(region) => draft.within(Ok(region)),
                 None => draft,
@@ -103,7 +123,7 @@ impl<T: Takes> QueryArgs<T> {
             return Ok((draft, Source::Flags));
         };
         let source = Source::File(format!("--query {}", file.display()));
-        let is_beside = |group| [Group::Output, Group::Split].contains(&group);
+        let is_beside = |group| [Group::Output, Group::Reference, Group::Split].contains(&group);
         let others = self
             .flags
             .given()
@@ -122,7 +142,7 @@ impl<T: Takes> QueryArgs<T> {
         }
         let bytes = read_file("--query", file)?;
         let refused = |faults: Faults| source.refused(faults.into());
-        let mut draft = read_body(&bytes, Self::in_file()).map_err(refused)?;
+        let mut draft = read_body(&bytes, self.in_file()).map_err(refused)?;
         // Flags of the output override the file.
         let output = self.flags.values_of(groups::OUTPUT);
         let read = output.read();
@@ -145,7 +165,7 @@ impl<T: Takes> QueryArgs<T> {
         let shapes = self
             .flags
             .given()
-            .filter(|parameter| parameter.group == Group::Region);
+            .filter(|parameter| [Group::Region, Group::Volume].contains(&parameter.group));
         let shapes = shapes.map(|parameter| parameter.name);
         let given: Vec<String> = shapes.chain(self.places()).map(flag).collect();
         if given.len() > 1 {
@@ -155,11 +175,20 @@ impl<T: Takes> QueryArgs<T> {
             );
         }
         if let Some(file) = &self.region {
+            if self.space {
+                refuse!(
+                    "--region is flat; in space a polygon between two heights is a prism of --query"
+                );
+            }
             let bytes = read_file("--region", file)?;
             let source = Source::File(format!("--region {}", file.display()));
             let read = read_region(&bytes);
             return Ok(Some(read.map_err(|fault| source.refused(fault.into()))?));
         }
+        let chunk = |text| match self.space {
+            true => cube(text),
+            false => chunk(text),
+        };
         self.chunk.as_deref().map(chunk).transpose()
     }
 }
@@ -172,11 +201,26 @@ fn chunk(text: &str) -> Result<RegionDraft, Failure> {
             [x.parse().ok()?, y.parse().ok()?],
         ))
     };
-    let shape = read().ok_or_else(|| {
-        Failure::Usage(anyhow!(
-            "--chunk {text}: not a chunk; allowed: SIZE/CX/CY, a size above 0 and two integers, \
-             such as 64/-3/2"
-        ))
+    let allowed = "SIZE/CX/CY, a size above 0 and two integers, such as 64/-3/2";
+    chunk_of(text, read(), allowed)
+}
+
+/// A chunk of space.
+fn cube(text: &str) -> Result<RegionDraft, Failure> {
+    let read = || {
+        let [size, x, y, z] = text.split('/').collect::<Vec<_>>().try_into().ok()?;
+        Some(ShapeDraft::Volume(VolumeDraft::Chunk(
+            size.parse().ok()?,
+            [x.parse().ok()?, y.parse().ok()?, z.parse().ok()?],
+        )))
+    };
+    let allowed = "SIZE/CX/CY/CZ, a size above 0 and three integers, such as 64/-3/2/0";
+    chunk_of(text, read(), allowed)
+}
+
+fn chunk_of(text: &str, shape: Option<ShapeDraft>, allowed: &str) -> Result<RegionDraft, Failure> {
+    let shape = shape.ok_or_else(|| {
+        Failure::Usage(anyhow!("--chunk {text}: not a chunk; allowed: {allowed}"))
     })?;
     Ok(RegionDraft {
         path: "chunk".into(),

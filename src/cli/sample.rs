@@ -123,7 +123,10 @@ fn from_server(args: &Args) -> Result<(), Failure> {
     check_terminal(args, encoding)?;
     let mut body = draft.to_body();
     body.insert(FORMAT.name.into(), encoding.name().into());
-    let answer = args.remote.request("/v1/points:query", &body)?;
+    let answer = {
+        let path = args.query.path("/v1/points:query", "/v1/space/points");
+        args.remote.request(path, &body)?
+    };
     let count = remote::promised(&answer)?;
     if !args.quiet {
         remote::announce(&answer, encoding.name());
@@ -181,12 +184,13 @@ fn announce(planned: &Planned, encoding: Encoding, answer: &Answer) {
         eprintln!("the rest begins at the cursor {next}");
     }
     if let Some(origin) = answer.origin() {
-        let [x, y] = origin.map(|v| {
+        let texts = origin.as_slice().iter().map(|&v| {
             let mut text = vec![];
             write_number(v, &mut text);
             String::from_utf8_lossy(&text).into_owned()
         });
-        eprintln!("coordinates are relative to the origin {x},{y}");
+        let place = texts.collect::<Vec<_>>().join(",");
+        eprintln!("coordinates are relative to the origin {place}");
     }
     if let Some(columns) = answer.legend() {
         eprintln!("columns: {columns}");

@@ -10,7 +10,8 @@ use prost::{
 use strew_core::{ALGORITHM_VERSION, Cursor, F32, F64};
 use strew_encode as encode;
 use strew_encode::{
-    Batch, Coordinates, Encoding as Format, Output, Packed, Rows, Values, id_text, schema::Kind,
+    Batch, Coordinates, Encoding as Format, Mark, Output, Packed, Rows, Values, id_text,
+    schema::Kind,
 };
 use strew_error::Error;
 use strew_plan::Planned;
@@ -19,10 +20,10 @@ use strew_service::Record;
 use super::{
     frames,
     proto::{
-        Column, ColumnHead, Encoding, PointBlock, Position, StreamHeader, StreamPointsRequest,
+        Column, ColumnHead, Encoding, PointBlock, StreamHeader, StreamPointsRequest,
         StreamPointsResponse, StreamSummary, stream_points_response::Message,
     },
-    resolved,
+    region, resolved,
 };
 
 /// The messages of an answer.
@@ -73,7 +74,7 @@ impl Messages {
             count,
             columns: heads.clone(),
             algorithm: ALGORITHM_VERSION,
-            origin: coordinates.origin().map(|[x, y]| Position { x, y }),
+            origin: coordinates.origin().map(region::position),
         };
         let blocks = match (encoding, rows.plain_plan()) {
             (Encoding::F32Le, Some(plan)) => {
@@ -121,9 +122,9 @@ impl Messages {
         mut around: impl FnMut(usize, PointBlock) -> [Vec<u8>; 2],
     ) -> Option<Bytes> {
         let (planned, made) = (&self.planned, noting(&self.record));
-        let mut noted = |bytes, point, cursor| {
+        let mut noted = |bytes, point, cursor: Option<Cursor>| {
             made(bytes / point);
-            around(bytes, after(planned, 0, cursor))
+            around(bytes, after(planned, 0, cursor.map(Mark::from)))
         };
         match &mut self.blocks {
             Blocks::F32(packed) => {
@@ -147,9 +148,8 @@ impl Messages {
         };
         let (points, block) = table.next()?;
         noting(&self.record)(points);
-        let (set, cursor) = table.rows.cursor().unzip();
-        let PointBlock { layer, cursor, .. } =
-            after(&self.planned, set.unwrap_or_default(), cursor);
+        let (set, mark) = table.rows.mark().unzip();
+        let PointBlock { layer, cursor, .. } = after(&self.planned, set.unwrap_or_default(), mark);
         Some(PointBlock {
             layer,
             cursor,
@@ -177,8 +177,8 @@ fn noting(record: &Option<Arc<Record>>) -> impl Fn(usize) + use<'_> {
 }
 
 /// A block without its points: its layer and the place after it.
-fn after(planned: &Planned, set: usize, cursor: Option<Cursor>) -> PointBlock {
-    let token = cursor.and_then(|cursor| planned.token(set, cursor));
+fn after(planned: &Planned, set: usize, mark: Option<Mark>) -> PointBlock {
+    let token = mark.and_then(|mark| planned.token(set, mark));
     PointBlock {
         layer: u32::try_from(set).unwrap_or(u32::MAX),
         cursor: token.map(|token| token.to_string()).unwrap_or_default(),
@@ -231,8 +231,7 @@ impl Iterator for Framed {
 
 /// The columns besides the layer's, which blocks have as a number of their own.
 fn own_columns(rows: &Rows) -> &[encode::Column] {
-    let schema = rows.schema();
-    &schema.columns()[usize::from(schema.is_layered())..]
+    rows.schema().own()
 }
 
 fn head(column: &encode::Column) -> ColumnHead {
@@ -263,6 +262,8 @@ impl Table {
             Encoding::F64Le => 16,
             Encoding::F32Le => 8,
         };
+        let is_in_space = rows.schema().is_in_space();
+        let coordinates = coordinates + if is_in_space { coordinates / 2 } else { 0 };
         // A number, or an index as a varint.
         let value = |head: &ColumnHead| if head.names.is_empty() { 8 } else { 2 };
         let columns: usize = heads.iter().map(value).sum();
@@ -276,10 +277,10 @@ impl Table {
 
     /// The next block, and how many points it has.
     fn next(&mut self) -> Option<(usize, PointBlock)> {
-        let layered = usize::from(self.rows.schema().is_layered());
+        let before = self.rows.schema().columns().len() - self.heads.len();
         let batch = self.rows.next(self.length)?;
         let mut block = coordinates(batch, self.encoding);
-        let values = self.heads.iter().zip(&batch.columns[layered..]);
+        let values = self.heads.iter().zip(&batch.columns[before..]);
         block.columns = values
             .filter_map(|(head, values)| column(head, values))
             .collect();
@@ -297,18 +298,40 @@ fn coordinates(batch: Batch<'_>, encoding: Encoding) -> PointBlock {
         Encoding::Points | Encoding::Unspecified => PointBlock {
             x: points.iter().map(|point| point.x).collect(),
             y: points.iter().map(|point| point.y).collect(),
-            id: points.iter().map(|point| id_text(point.id)).collect(),
+            id: (points.iter().enumerate())
+                .map(|(i, point)| id_text(point.id, batch.heights.get(i)))
+                .collect(),
+            z: batch.heights.iter().map(|height| height.z).collect(),
             ..PointBlock::default()
         },
         Encoding::F64Le => {
-            let values = points.iter().flat_map(|point| [point.x, point.y]);
-            packed(values.flat_map(f64::to_le_bytes).collect())
+            let places = points.iter().map(|point| [point.x, point.y]);
+            packed(by_turns(places, batch, f64::to_le_bytes))
         }
         Encoding::F32Le => {
-            let values = batch.near.iter().flatten();
-            packed(values.flat_map(|value| value.to_le_bytes()).collect())
+            // Heights are those of the kernel, which `f32` holds.
+            let places = batch.near.iter().map(|place| place.map(f64::from));
+            packed(by_turns(places, batch, |value| {
+                (value as f32).to_le_bytes()
+            }))
         }
     }
+}
+
+/// The coordinates of points by turns.
+fn by_turns<const N: usize>(
+    places: impl Iterator<Item = [f64; 2]>,
+    batch: Batch<'_>,
+    bytes: impl Fn(f64) -> [u8; N],
+) -> Vec<u8> {
+    let mut out = Vec::with_capacity(3 * N * batch.points.len());
+    for (i, place) in places.enumerate() {
+        let height = batch.heights.get(i).map(|height| height.z);
+        for value in place.into_iter().chain(height) {
+            out.extend_from_slice(&bytes(value));
+        }
+    }
+    out
 }
 
 /// The values of a column, if the points have them.

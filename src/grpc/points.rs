@@ -134,7 +134,12 @@ impl Points {
         }: Received<GetPointRequest>,
     ) -> Result<GetPointResponse, Error> {
         let id = std::mem::take(&mut message.id);
-        let read = move || Ok(set::values(message.set.as_ref(), groups::SINGLE, ""));
+        // An id in space has three parts.
+        let groups = match id.matches(':').count() {
+            2 => groups::SPACE_SET,
+            _ => groups::SINGLE,
+        };
+        let read = move || Ok(set::values(message.set.as_ref(), groups, ""));
         let check = |service: &Service, values: Values, stop: &Stop| {
             Set::single_within(&values, &service.catalog(), allowance(stop))
         };

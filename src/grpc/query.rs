@@ -2,7 +2,7 @@
 
 use strew_error::{Checked, Error, Fault};
 use strew_query::{
-    Draft, LayerDraft, Parameter, RegionDraft, Value, Values, groups,
+    Draft, LayerDraft, Parameter, RegionDraft, SPACE_AT, Value, Values, groups,
     parameters::{AT, CURSOR, K, LIMIT, OFFSET, RADIUS, WORLD, WORLD_DIGEST},
 };
 
@@ -40,7 +40,12 @@ pub(super) fn read(request: &StreamPointsRequest) -> (Draft, Result<Encoding, Fa
 }
 
 fn draft(request: &StreamPointsRequest) -> Draft {
-    let mut values = set::values(request.set.as_ref(), groups::QUERY, "");
+    let is_in_space = request.region.as_ref().is_some_and(region::is_volume);
+    let (whole, of_layer) = match is_in_space {
+        true => (groups::SPACE_QUERY, groups::SPACE_SET),
+        false => (groups::QUERY, groups::SET),
+    };
+    let mut values = set::values(request.set.as_ref(), whole, "");
     let cursor = &request.cursor;
     let others: [(&'static Parameter, Option<Value>); 5] = [
         (&WORLD, request.world.clone().map(Value::Text)),
@@ -59,7 +64,7 @@ fn draft(request: &StreamPointsRequest) -> Draft {
         layers.push(LayerDraft {
             name: Ok((!layer.name.is_empty()).then(|| layer.name.clone())),
             region: region_of(layer.region.as_ref(), &format!("{path}region")),
-            values: set::values(layer.set.as_ref(), groups::SET, &path),
+            values: set::values(layer.set.as_ref(), of_layer, &path),
             clear_of: Ok(layer.clear_of.clone().into_iter().collect()),
         });
     }
@@ -87,14 +92,16 @@ pub(super) fn by_field(error: Error) -> Error {
 
 /// The values of a request.
 pub(super) fn nearest(request: &FindNearestRequest) -> Values {
-    let mut values = set::values(request.set.as_ref(), groups::NEAREST, "");
+    let (groups, at, place) = match request.at {
+        Some(Position { x, y, z: Some(z) }) => {
+            (groups::SPACE_NEAREST, &SPACE_AT, Some(vec![x, y, z]))
+        }
+        Some(Position { x, y, z: None }) => (groups::NEAREST, &AT, Some(vec![x, y])),
+        None => (groups::NEAREST, &AT, None),
+    };
+    let mut values = set::values(request.set.as_ref(), groups, "");
     let given: [(&'static Parameter, Option<Value>); 3] = [
-        (
-            &AT,
-            request
-                .at
-                .map(|Position { x, y }| Value::Numbers(vec![x, y])),
-        ),
+        (at, place.map(Value::Numbers)),
         (&K, request.k.map(|k| Value::Integer(k.into()))),
         (&RADIUS, request.radius.map(Value::Number)),
     ];

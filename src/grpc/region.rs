@@ -1,11 +1,56 @@
 //! Regions of requests as drafts.
 
+use strew_encode::Place;
 use strew_error::{Checked, Fault};
-use strew_query::{MOST_LEVELS, RegionDraft, Rings, ShapeDraft};
+use strew_query::{MOST_LEVELS, RegionDraft, Rings, ShapeDraft, VolumeDraft};
 
 use super::proto::{
-    BoundingBox, Chunk, Circle, Combined, Polygon, Polygons, Position, Region, region::Shape,
+    Ball, BoundingBox, Chunk, Circle, Combined, Cube, Cuboid, Polygon, Polygons, Position, Prism,
+    Region, region::Shape,
 };
+
+/// Whether a region lies in space: of several, whether the first one does.
+pub(super) fn is_volume(region: &Region) -> bool {
+    match &region.shape {
+        Some(Shape::Cuboid(_) | Shape::Ball(_) | Shape::Prism(_) | Shape::Cube(_)) => true,
+        Some(Shape::Combined(combined)) => combined.include.first().is_some_and(is_volume),
+        _ => false,
+    }
+}
+
+/// A place as a message.
+pub(super) fn position(place: Place) -> Position {
+    let [x, y] = place.flat();
+    let z = matches!(place, Place::Space(_)).then(|| place.z());
+    Position { x, y, z }
+}
+
+/// The box of some corners as a message: of the plane, or of space.
+pub(super) fn boxed(corners: &[f64]) -> (Option<BoundingBox>, Option<Cuboid>) {
+    match *corners {
+        [min_x, min_y, max_x, max_y] => {
+            let flat = BoundingBox {
+                min_x,
+                min_y,
+                max_x,
+                max_y,
+            };
+            (Some(flat), None)
+        }
+        [min_x, min_y, min_z, max_x, max_y, max_z] => {
+            let cuboid = Cuboid {
+                min_x,
+                min_y,
+                min_z,
+                max_x,
+                max_y,
+                max_z,
+            };
+            (None, Some(cuboid))
+        }
+        _ => (None, None),
+    }
+}
 
 /// The draft of a region at a path, `depth` lists deep.
 pub(super) fn draft(region: &Region, path: &str, depth: usize) -> Checked<RegionDraft> {
@@ -14,12 +59,19 @@ pub(super) fn draft(region: &Region, path: &str, depth: usize) -> Checked<Region
         Some(Shape::Circle(circle)) => ("circle", self::circle(*circle)),
         Some(Shape::Polygons(polygons)) => ("polygons", self::polygons(polygons)),
         Some(Shape::Chunk(Chunk { size, x, y })) => ("chunk", ShapeDraft::Chunk(*size, [*x, *y])),
+        Some(Shape::Cuboid(b)) => ("cuboid", cuboid(*b)),
+        Some(Shape::Ball(ball)) => ("ball", self::ball(*ball)),
+        Some(Shape::Prism(prism)) => ("prism", self::prism(prism)),
+        Some(Shape::Cube(Cube { size, x, y, z })) => {
+            let cube = VolumeDraft::Chunk(*size, [*x, *y, *z]);
+            ("cube", ShapeDraft::Volume(cube))
+        }
         Some(Shape::Combined(combined)) => {
             let path = format!("{path}.combined");
             ("combined", self::combined(combined, &path, depth)?)
         }
         None => {
-            let kinds = "one of bbox, circle, polygons, chunk and combined";
+            let kinds = "one of bbox, circle, polygons, chunk and combined, or in space cuboid, ball, prism and cube";
             return Err(Fault::missing(path, kinds).into());
         }
     };
@@ -34,20 +86,43 @@ fn bbox(b: BoundingBox) -> ShapeDraft {
     ShapeDraft::Box([b.min_x, b.min_y, b.max_x, b.max_y])
 }
 
+fn cuboid(b: Cuboid) -> ShapeDraft {
+    let corners = [b.min_x, b.min_y, b.min_z, b.max_x, b.max_y, b.max_z];
+    ShapeDraft::Volume(VolumeDraft::Box(corners))
+}
+
+fn ball(ball: Ball) -> ShapeDraft {
+    let Position { x, y, z } = ball.center.unwrap_or_default();
+    ShapeDraft::Volume(VolumeDraft::Ball(
+        [x, y, z.unwrap_or_default()],
+        ball.radius,
+    ))
+}
+
+fn prism(prism: &Prism) -> ShapeDraft {
+    let base = prism.base.as_ref().map(rings).unwrap_or_default();
+    ShapeDraft::Volume(VolumeDraft::Prism(base, [prism.bottom, prism.top]))
+}
+
 fn circle(circle: Circle) -> ShapeDraft {
     let center = circle.center.unwrap_or_default();
     ShapeDraft::Circle([center.x, center.y], circle.radius)
 }
 
 fn polygons(polygons: &Polygons) -> ShapeDraft {
+    ShapeDraft::Polygons(rings(polygons))
+}
+
+/// The rings of polygons.
+fn rings(polygons: &Polygons) -> Vec<Rings> {
     let position = |p: &Position| [p.x, p.y];
-    let rings = |polygon: &Polygon| -> Rings {
+    let of_one = |polygon: &Polygon| -> Rings {
         let rings = polygon.rings.iter();
         rings
             .map(|ring| ring.positions.iter().map(position).collect())
             .collect()
     };
-    ShapeDraft::Polygons(polygons.polygons.iter().map(rings).collect())
+    polygons.polygons.iter().map(of_one).collect()
 }
 
 fn combined(
@@ -65,8 +140,9 @@ fn combined(
             .map(|(i, region)| draft(region, &format!("{path}.{name}[{i}]"), depth + 1))
             .collect()
     };
-    Ok(ShapeDraft::Combined(
-        list("include", include),
-        list("exclude", exclude),
-    ))
+    let (included, excluded) = (list("include", include), list("exclude", exclude));
+    Ok(match include.iter().any(is_volume) {
+        true => ShapeDraft::Volume(VolumeDraft::Combined(included, excluded)),
+        false => ShapeDraft::Combined(included, excluded),
+    })
 }

@@ -6,8 +6,8 @@ use strew_query::{Resolved, ResolvedSet, Value, parameters};
 
 use super::{
     periods,
-    proto::{self, BoundingBox, Encoding, Region, ResolvedQuery, StreamPointsRequest},
-    set,
+    proto::{self, Encoding, Region, ResolvedQuery, StreamPointsRequest},
+    region, set,
 };
 
 /// The query of a request, planned.
@@ -17,7 +17,7 @@ pub(super) fn query(
     encoding: Encoding,
 ) -> ResolvedQuery {
     let Resolved {
-        bbox: [min_x, min_y, max_x, max_y],
+        bbox,
         set: alone,
         layers,
         offset,
@@ -31,19 +31,16 @@ pub(super) fn query(
         .chain(layers)
         .zip(&planned.sets)
         .enumerate();
+    let (flat, cuboid) = region::boxed(&bbox);
     ResolvedQuery {
-        bbox: Some(BoundingBox {
-            min_x,
-            min_y,
-            max_x,
-            max_y,
-        }),
+        bbox: flat,
+        cuboid,
         region: request.region.clone(),
         sets: sets
             .map(|(i, (echo, planned))| {
                 let layer = request.layers.get(i);
-                let region = layer.and_then(|layer| layer.region.clone());
-                resolved(echo, &planned.entry, region)
+                let own = layer.and_then(|layer| layer.region.clone());
+                resolved(echo, &planned.entry, own)
             })
             .collect(),
         encoding: encoding.into(),

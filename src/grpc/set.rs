@@ -19,7 +19,7 @@ pub(super) fn values(set: Option<&PointSet>, groups: &'static [Group], path: &st
     let fields = set.map(fields).unwrap_or_default();
     let known = fields
         .into_iter()
-        .filter_map(|(name, value)| Some((Parameter::named(name)?, value)));
+        .filter_map(|(name, value)| Some((Parameter::taken(groups, name)?, value)));
     for (parameter, value) in known {
         values.add_value(parameter, value);
     }

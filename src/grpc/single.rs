@@ -17,6 +17,7 @@ pub(super) fn point(found: Found) -> Point {
         id: found.id,
         x: found.x,
         y: found.y,
+        z: found.z,
         distance: found.distance,
         attributes: found.attributes.into_iter().map(attribute).collect(),
         block: found.block.map(|block| {

@@ -116,12 +116,15 @@ struct PointsDocument {
 #[allow(dead_code, reason = "only described; the encoder writes it")]
 struct Point {
     /// The stable id: the lattice address.
-    #[schemars(regex(pattern = "^-?[0-9]+:-?[0-9]+$"))]
+    #[schemars(regex(pattern = "^-?[0-9]+:-?[0-9]+(:-?[0-9]+)?$"))]
     id: String,
     /// The x coordinate.
     x: f64,
     /// The y coordinate.
     y: f64,
+    /// The z coordinate of a point in space, or the height on a terrain.
+    #[schemars(default)]
+    z: Option<f64>,
     /// The name of its layer, if there are layers.
     #[schemars(default)]
     layer: Option<String>,
@@ -375,11 +378,14 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
     if let Some(world) = &planned.query.world {
         headers.insert(WORLD, text(&world.digest)?);
     }
-    if let Some([x, y]) = answer.origin() {
+    if let Some(place) = answer.origin() {
         let mut origin = Vec::with_capacity(64);
-        write_number(x, &mut origin);
-        origin.push(b',');
-        write_number(y, &mut origin);
+        for (i, &v) in place.as_slice().iter().enumerate() {
+            if i > 0 {
+                origin.push(b',');
+            }
+            write_number(v, &mut origin);
+        }
         let origin = HeaderValue::from_maybe_shared(Bytes::from(origin));
         let no_text = |_| Error::Internal("an origin is no text");
         headers.insert(ORIGIN, origin.map_err(no_text)?);

@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde_json::json;
 use strew_core::server::Stop;
 use strew_error::{Error, Kind};
-use strew_query::{Draft, Query, Resolved, groups};
+use strew_query::{Draft, Group, Query, Resolved, groups};
 use strew_service::Service;
 
 use super::{
@@ -28,15 +28,6 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     let about = "Exact, in closed form for a box without warp, whatever it holds; otherwise in time \
                  proportional to its rows.";
     let answers = || api::Answer::json::<Count>("The count.");
-    let problems = || {
-        vec![
-            Kind::Invalid,
-            Kind::OtherTable,
-            Kind::OtherWorld,
-            Kind::TooManyRows,
-            Kind::TooManyPoints,
-        ]
-    };
     let given = Operation {
         id: "getCount",
         summary: "The number of points of a region",
@@ -67,9 +58,20 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     Endpoint::new("/v1/count", operations)
 }
 
+/// The problems of counting.
+pub(super) fn problems() -> Vec<Kind> {
+    vec![
+        Kind::Invalid,
+        Kind::OtherTable,
+        Kind::OtherWorld,
+        Kind::TooManyRows,
+        Kind::TooManyPoints,
+    ]
+}
+
 /// The exact number of points of a query.
 #[derive(Serialize, JsonSchema)]
-struct Count {
+pub(super) struct Count {
     /// The number of points.
     count: u128,
     /// The query with everything filled in.
@@ -77,17 +79,35 @@ struct Count {
 }
 
 async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
-    let draft = Draft::of(context.values(groups::COUNT));
-    let (query, _) = service.check(&draft, &Stop::NEVER)?;
-    let freshness = answer::freshness(&service, &context, &query, document::JSON);
-    let make = pin!(counted(&service, &context, query));
-    Ok(freshness.answer(&context.headers, make).await?)
+    given(&service, &context, groups::COUNT).await
 }
 
 async fn post(service: Arc<Service>, sent: Sent) -> Result<Response, Refused> {
+    posted(&service, sent, groups::COUNTED).await
+}
+
+/// Counts the query of an address.
+pub(super) async fn given(
+    service: &Service,
+    context: &Context,
+    groups: &'static [Group],
+) -> Result<Response, Refused> {
+    let draft = Draft::of(context.values(groups));
+    let (query, _) = service.check(&draft, &Stop::NEVER)?;
+    let freshness = answer::freshness(service, context, &query, document::JSON);
+    let make = pin!(counted(service, context, query));
+    Ok(freshness.answer(&context.headers, make).await?)
+}
+
+/// Counts the query of a body.
+pub(super) async fn posted(
+    service: &Arc<Service>,
+    sent: Sent,
+    groups: &'static [Group],
+) -> Result<Response, Refused> {
     let Sent { context, body } = sent;
-    let (_, query, _) = body::query(&service, body, groups::COUNTED).await?;
-    Ok(counted(&service, &context, query).await?)
+    let (_, query, _) = body::query(service, body, groups).await?;
+    Ok(counted(service, &context, query).await?)
 }
 
 async fn counted(

@@ -31,6 +31,7 @@ mod query;
 mod range;
 mod routes;
 mod single;
+mod space;
 mod split;
 mod tables;
 mod unknown;
@@ -80,6 +81,7 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
         fields::endpoint(service.clone()),
         fields::picture(service.clone()),
     ];
+    all.extend(space::endpoints(service));
     all.extend(pattern::endpoints(service));
     all.extend(forge_endpoints(service));
     all

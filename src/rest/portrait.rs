@@ -4,7 +4,7 @@ use std::{pin::pin, sync::Arc};
 
 use schemars::JsonSchema;
 use serde::Serialize;
-use strew_catalog::Entry;
+use strew_catalog::{Dimension, Entry};
 use strew_error::{Error, Kind};
 use strew_forge::Aim;
 use strew_query as query;
@@ -125,8 +125,8 @@ fn chosen(
     content_type: &'static str,
 ) -> Result<(Arc<Entry>, Freshness), Error> {
     let catalog = service.catalog();
-    if catalog.alphas(name).is_empty() {
-        let profiles = catalog.profiles();
+    if catalog.alphas(Dimension::Plane, name).is_empty() {
+        let profiles = catalog.profiles(Dimension::Plane);
         let paths = profiles.iter().map(|name| format!("/v1/profiles/{name}"));
         return Err(context.nothing(paths.collect::<Vec<_>>().join(", ")));
     }

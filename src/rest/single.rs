@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use strew_error::Kind;
 use strew_plan::{Found, Placed};
-use strew_query::{Nearest, Parameter, ResolvedSet, Set, Shape, groups};
+use strew_query::{Group, Nearest, Parameter, ResolvedSet, Set, Shape, groups};
 use strew_service::Service;
 
 use super::{
@@ -66,7 +66,7 @@ pub(super) fn nearest(service: Arc<Service>) -> Endpoint {
 /// A point by its id.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "PointById")]
-struct One {
+pub(super) struct One {
     /// The point.
     point: Found,
     /// The set of points with everything filled in.
@@ -76,7 +76,7 @@ struct One {
 /// The points nearest to a place.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "Neighbors")]
-struct Several {
+pub(super) struct Several {
     /// The points, nearest first.
     neighbors: Vec<Found>,
     /// The set of points with everything filled in.
@@ -84,10 +84,23 @@ struct Several {
 }
 
 async fn point(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+    by_id_in(&service, &context, groups::SINGLE).await
+}
+
+async fn near(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+    near_in(&service, &context, groups::NEAREST).await
+}
+
+/// The point of a path, of a set of some parameters.
+pub(super) async fn by_id_in(
+    service: &Service,
+    context: &Context,
+    groups: &'static [Group],
+) -> Result<Response, Refused> {
     let [id] = context.path();
-    let values = context.values(groups::SINGLE);
+    let values = context.values(groups);
     let set = Set::single(&values, &service.catalog())?;
-    let freshness = freshness(&context, &set);
+    let freshness = freshness(context, &set);
     let make = async {
         let placed = service.place(&context.caller, set).await?;
         document::json(&One {
@@ -98,10 +111,15 @@ async fn point(service: Arc<Service>, context: Context) -> Result<Response, Refu
     Ok(freshness.answer(&context.headers, pin!(make)).await?)
 }
 
-async fn near(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
-    let values = context.values(groups::NEAREST);
+/// The neighbors of the place among some parameters.
+pub(super) async fn near_in(
+    service: &Service,
+    context: &Context,
+    groups: &'static [Group],
+) -> Result<Response, Refused> {
+    let values = context.values(groups);
     let (set, nearest) = Nearest::of_set(&values, &service.catalog())?;
-    let freshness = freshness(&context, &set);
+    let freshness = freshness(context, &set);
     let write = |placed: &Placed, neighbors| {
         document::json(&Several {
             neighbors,

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
+use bytes::Bytes;
 use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use strew_core::server::Stop;
 use strew_error::Kind;
-use strew_query::{Token, groups, parts};
+use strew_query::{Group, Token, groups, parts};
 use strew_service::Service;
 
 use super::{
@@ -54,7 +55,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
 
 /// A query in parts.
 #[derive(Serialize, JsonSchema)]
-struct Split {
+pub(super) struct Split {
     /// The number of points of all parts.
     count: u128,
     /// The parts in their order.
@@ -76,9 +77,19 @@ async fn post(
     context: Context,
     Whole(body): Whole,
 ) -> Result<Response, Refused> {
+    posted(service, context, body, groups::QUERY).await
+}
+
+/// Splits the query of a body.
+pub(super) async fn posted(
+    service: Arc<Service>,
+    context: Context,
+    body: Bytes,
+    groups: &'static [Group],
+) -> Result<Response, Refused> {
     let parts = parts(&context.values(groups::SPLIT));
     let size = body.len();
-    let (draft, query, _) = body::query(&service, body, groups::QUERY).await?;
+    let (draft, query, _) = body::query(&service, body, groups).await?;
     let parts = parts?;
     let planned = service.count(&context.caller, query).await?;
     let count = planned.count();

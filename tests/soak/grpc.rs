@@ -29,6 +29,7 @@ fn position(value: &Value) -> Position {
     Position {
         x: number(&value[0]),
         y: number(&value[1]),
+        z: None,
     }
 }
 

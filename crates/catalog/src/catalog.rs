@@ -14,10 +14,11 @@ use std::{
 };
 
 use bytes::Bytes;
-use strew_core::{Alpha, field::FieldSpec, map::Size, table::BLUE};
+use strew_core::{Alpha, field::FieldSpec, map::Size, space, table::BLUE};
 use strew_error::{Checked, Error};
 
 use crate::{
+    dimension::Dimension,
     entry::Entry,
     error::CatalogError,
     except::Lists,
@@ -31,8 +32,11 @@ use crate::{
 /// The tables that are built into the program beside the library's: (file name, content).
 static EMBEDDED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/tables.rs"));
 
-/// The table that is built into the library.
-const DEFAULT: (&str, &[u8]) = ("blue-5-sqrt3-over-2-m.strew", BLUE);
+/// The tables that are built into the library.
+const LIBRARY: [(&str, &[u8]); 2] = [
+    ("blue-5-sqrt3-over-2-m.strew", BLUE),
+    ("space-blue-5-sqrt3-over-2-r16.strew", space::BLUE),
+];
 
 /// The tables that are loaded, by key.
 #[derive(Clone, Debug, Default)]
@@ -94,7 +98,7 @@ impl Catalog {
             ..Self::default()
         };
         if embedded {
-            catalog.add([DEFAULT].iter().chain(EMBEDDED).map(|&(name, bytes)| {
+            catalog.add(LIBRARY.iter().chain(EMBEDDED).map(|&(name, bytes)| {
                 Entry::read(Bytes::from_static(bytes), Source::Embedded(name))
             }))?;
             catalog.built_in.clone_from(&catalog.entries);
@@ -285,8 +289,8 @@ impl Catalog {
     ) -> impl Iterator<Item = (&MixKey, &Arc<Entry>)> {
         self.entries.iter().filter_map(move |(key, entry)| {
             let mix = key.mix.as_deref()?;
-            let is_same =
-                (&key.profile, key.alpha, key.size) == (&of.key.profile, of.key.alpha, of.key.size);
+            let same = |key: &Key| (key.dimension, key.profile.clone(), key.alpha, key.size);
+            let is_same = same(key) == same(&of.key);
             // Only then the vectors matter, which may be on disk.
             let is_moved = || Some(mix.vectors) != of.vectors();
             (is_same && is_moved() == are_moved).then_some((mix, entry))
@@ -305,35 +309,39 @@ impl Catalog {
     }
 
     /// The names of the profiles, without repetition.
-    pub fn profiles(&self) -> Vec<&str> {
-        let mut names: Vec<&str> = self.entries().map(|entry| &*entry.key.profile).collect();
+    pub fn profiles(&self, dimension: Dimension) -> Vec<&str> {
+        let keys = self.entries().map(|entry| &entry.key);
+        let of = keys.filter(|key| key.dimension == dimension);
+        let mut names: Vec<&str> = of.map(|key| &*key.profile).collect();
         names.dedup();
         names
     }
 
     /// The values of α that a profile is loaded for, without repetition.
-    pub fn alphas(&self, profile: &str) -> Vec<Alpha> {
-        let mut alphas: Vec<Alpha> = self.of_profile(profile).map(|key| key.alpha).collect();
+    pub fn alphas(&self, dimension: Dimension, profile: &str) -> Vec<Alpha> {
+        let keys = self.of_profile(dimension, profile);
+        let mut alphas: Vec<Alpha> = keys.map(|key| key.alpha).collect();
         alphas.dedup();
         alphas
     }
 
     /// The sizes of map that a profile is loaded with for an α, smallest first.
-    pub fn sizes(&self, profile: &str, alpha: Alpha) -> Vec<Size> {
-        let keys = self.of_profile(profile).filter(|key| key.alpha == alpha);
+    pub fn sizes(&self, dimension: Dimension, profile: &str, alpha: Alpha) -> Vec<Size> {
+        let keys = self.of_profile(dimension, profile);
+        let keys = keys.filter(|key| key.alpha == alpha);
         keys.map(|key| key.size).collect()
     }
 
     /// Whether any table of a profile is loaded.
     #[must_use]
-    pub fn has_profile(&self, profile: &str) -> bool {
-        self.of_profile(profile).next().is_some()
+    pub fn has_profile(&self, dimension: Dimension, profile: &str) -> bool {
+        self.of_profile(dimension, profile).next().is_some()
     }
 
-    fn of_profile(&self, profile: &str) -> impl Iterator<Item = &Key> {
+    fn of_profile(&self, dimension: Dimension, profile: &str) -> impl Iterator<Item = &Key> {
         self.entries()
             .map(|entry| &entry.key)
-            .filter(move |key| &*key.profile == profile)
+            .filter(move |key| key.dimension == dimension && &*key.profile == profile)
     }
 }
 

@@ -16,12 +16,13 @@ use strew_config::bounded_file;
 use strew_core::{
     Table,
     map::Size,
+    space,
     table::{Head, MAX_FILE_BYTES, Provenance},
 };
 use strew_error::Error;
 use strew_forge::Aim;
 
-use super::{CatalogError, Key, MixKey, Source};
+use super::{CatalogError, Dimension, Key, MixKey, Source};
 
 /// A loaded table.
 #[derive(Clone, Debug)]
@@ -54,6 +55,8 @@ enum Content {
     OnDisk,
     /// Nowhere: all are zero.
     Zero,
+    /// In a table in space, which is small.
+    Space(Box<space::Table>),
 }
 
 impl PartialEq for Entry {
@@ -71,12 +74,48 @@ impl Entry {
 
     /// Reads and checks the bytes of a table, which are held.
     pub(super) fn read(bytes: Bytes, source: Source) -> Result<Self, CatalogError> {
-        let table = Table::from_bytes(&bytes).map_err(|error| CatalogError::Table {
+        let refused = |error| CatalogError::Table {
             source_name: source.clone(),
             error,
-        })?;
+        };
         let length = bytes.len() as u64;
+        if is_of_space(&bytes) {
+            let table = space::Table::from_bytes(&bytes).map_err(refused)?;
+            return Ok(Self::of_space(table, source, length));
+        }
+        let table = Table::from_bytes(&bytes).map_err(refused)?;
         Ok(Self::of(&table, source, length, Content::Held(bytes)))
+    }
+
+    fn of_space(table: space::Table, source: Source, bytes: u64) -> Self {
+        // Computed once, before the first query.
+        let _ = table.least_distance();
+        Self {
+            key: Key {
+                dimension: Dimension::Space,
+                profile: table.profile().into(),
+                alpha: table.map().alpha(),
+                size: table.map().size(),
+                mix: None,
+            },
+            source,
+            radius: table.map().radius(),
+            intervals: table.map().intervals(),
+            digest: table.digest().to_string(),
+            provenance: table.provenance().clone(),
+            bytes,
+            vectors: OnceLock::new(),
+            content: Content::Space(Box::new(table)),
+        }
+    }
+
+    /// The table, if its points lie in space.
+    #[must_use]
+    pub fn space(&self) -> Option<&space::Table> {
+        match &self.content {
+            Content::Space(table) => Some(table),
+            _ => None,
+        }
     }
 
     /// A pattern without displacements.
@@ -92,6 +131,7 @@ impl Entry {
         });
         Self {
             key: Key {
+                dimension: Dimension::Plane,
                 profile: table.profile().into(),
                 alpha: table.alpha(),
                 size: table.map().size(),
@@ -120,7 +160,7 @@ impl Entry {
         }
     }
 
-    /// Reads the head of a table file and leaves its vectors on disk. One with kinds is read whole.
+    /// Reads the head of a table file and leaves its vectors on disk. One with kinds or of space is read whole.
     ///
     /// # Errors
     /// As [`from_file`](Self::from_file); damage beyond the head shows when the table is needed.
@@ -134,11 +174,12 @@ impl Entry {
             source_name: source.clone(),
             error,
         })?;
-        if head.has_kinds {
+        if head.has_kinds || head.is_space {
             return Self::from_file(path);
         }
         Ok(Self {
             key: Key {
+                dimension: Dimension::Plane,
                 profile: head.profile.into(),
                 alpha: head.alpha,
                 size: Size::of_radius(head.radius),
@@ -158,7 +199,7 @@ impl Entry {
     /// The number of the table's blocks, one vector each.
     #[must_use]
     pub const fn blocks(&self) -> usize {
-        self.intervals * self.intervals
+        self.intervals.pow(self.key.dimension.axes())
     }
 
     /// Whether its vectors are on disk.
@@ -167,7 +208,7 @@ impl Entry {
         matches!(self.content, Content::OnDisk)
     }
 
-    /// The table. Waits for the disk if its vectors are on disk.
+    /// The table of a set of the plane. Waits for the disk if its vectors are on disk.
     ///
     /// # Errors
     /// [`Error::TableUnreadable`] if its file is gone, has changed or is damaged, and [`Error::Internal`] only if
@@ -180,6 +221,9 @@ impl Entry {
         match (&self.content, &self.source) {
             (Content::Held(bytes), _) => Table::from_bytes(bytes).map_err(damaged),
             (Content::OnDisk, Source::File(path)) => self.table_of(path),
+            (Content::Space(_), _) => {
+                Err(Error::Internal("a table in space for a set of the plane"))
+            }
             _ => {
                 let table = Table::undisplaced(self.key.alpha, self.radius, &self.key.profile);
                 table.map_err(damaged)
@@ -230,6 +274,20 @@ fn digest_of_vectors(table: &Table) -> [u8; 32] {
     let vectors = table.displacements().as_flattened();
     let vectors: Vec<u8> = vectors.iter().flat_map(|v| v.to_le_bytes()).collect();
     *blake3::hash(&vectors).as_bytes()
+}
+
+/// Whether a table file, which is checked later, is one of space.
+fn is_of_space(bytes: &[u8]) -> bool {
+    let part = |at: u64, part: &mut [u8]| {
+        let start = usize::try_from(at).unwrap_or(usize::MAX);
+        let whole = start
+            .checked_add(part.len())
+            .and_then(|end| bytes.get(start..end));
+        part.copy_from_slice(whole.ok_or(io::ErrorKind::UnexpectedEof)?);
+        Ok::<_, io::Error>(())
+    };
+    let head = Head::read(bytes.len() as u64, part);
+    matches!(head, Ok(Ok(head)) if head.is_space)
 }
 
 /// The head of a table file, and the size of the file.

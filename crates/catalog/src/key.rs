@@ -4,9 +4,14 @@ use std::{cmp::Ordering, fmt, path::PathBuf, sync::Arc};
 
 use strew_core::{Alpha, map::Size};
 
-/// The key of a table. Keys are in the order of their names, then of their numbers.
+use crate::dimension::Dimension;
+
+/// The key of a table. Those of the plane come first, then all are in the order of their names, then
+/// of their numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Key {
+    /// Whether its points lie in the plane or in space.
+    pub dimension: Dimension,
     /// The name of the noise profile.
     pub profile: Arc<str>,
     /// The number α.
@@ -30,7 +35,8 @@ impl Ord for Key {
     fn cmp(&self, other: &Self) -> Ordering {
         let rank = |key: &Self| (key.alpha.half(), key.alpha, key.size);
         let by_name = self.profile.cmp(&other.profile);
-        by_name
+        (self.dimension.cmp(&other.dimension))
+            .then(by_name)
             .then_with(|| rank(self).cmp(&rank(other)))
             .then_with(|| self.mix.cmp(&other.mix))
     }
@@ -58,6 +64,9 @@ impl fmt::Display for Key {
             "profile `{}`, alpha {}, map {}",
             self.profile, self.alpha, self.size
         )?;
+        if self.dimension == Dimension::Space {
+            f.write_str(", in space")?;
+        }
         match &self.mix {
             Some(mix) => write!(f, ", kinds {}", mix.text()),
             None => Ok(()),

@@ -7,6 +7,7 @@
 
 pub mod bounded_list;
 mod catalog;
+mod dimension;
 mod entry;
 mod error;
 pub mod except;
@@ -21,6 +22,7 @@ mod reload;
 pub mod sent;
 
 pub use catalog::{Built, Catalog};
+pub use dimension::Dimension;
 pub use entry::Entry;
 pub use error::CatalogError;
 pub use key::{Key, MixKey, Source};

@@ -14,7 +14,7 @@ use crate::{
 };
 use crate::{
     blocks::{Blocks, Nothing},
-    coordinates::Coordinates,
+    coordinates::{Coordinates, Place},
     csv,
     encoding::Encoding,
     error::EncodeError,
@@ -46,7 +46,7 @@ pub struct Answer {
     size: Option<u64>,
     /// The bytes of each point, if all points have the same number and nothing stands between or after them.
     record_bytes: Option<u64>,
-    origin: Option<[f64; 2]>,
+    origin: Option<Place>,
     legend: Option<String>,
     warning: Option<&'static str>,
     plain: Option<Plain>,
@@ -218,7 +218,7 @@ impl Answer {
     }
 
     /// Blocks of unknown size, without anything before them.
-    fn of_blocks(origin: Option<[f64; 2]>, blocks: impl Blocks + 'static) -> Self {
+    fn of_blocks(origin: Option<Place>, blocks: impl Blocks + 'static) -> Self {
         Self {
             head: None,
             size: None,
@@ -309,7 +309,7 @@ impl Answer {
 
     /// The origin of the coordinates, if it is not the world's.
     #[must_use]
-    pub const fn origin(&self) -> Option<[f64; 2]> {
+    pub const fn origin(&self) -> Option<Place> {
         self.origin
     }
 

@@ -1,6 +1,6 @@
 //! Rows as Arrow record batches: `id` as text, `x` and `y`, then the columns.
 //!
-//! Ids are `utf8` and not a pair of integers, because `x:y` is what an id is everywhere else: what a
+//! Ids are `utf8` and not integers, because `x:y`, or `x:y:z` in space, is what an id is everywhere else: what a
 //! table of one format holds joins with what another holds. Dictionaries are dictionary-encoded
 //! `utf8` with `int32` keys, which readers know best; their names are sent once. What a layer lacks
 //! is null.
@@ -78,6 +78,7 @@ impl Batches {
         self.make(Batch {
             points: &[],
             near: &[],
+            heights: &[],
             columns: &vec![Values::Missing; self.names.len()],
         })
     }
@@ -87,10 +88,13 @@ impl Batches {
         let points = batch.points;
         let mut ids = StringBuilder::with_capacity(points.len(), points.len() * ID_BYTES);
         let (mut x, mut y) = (itoa::Buffer::new(), itoa::Buffer::new());
-        for point in points {
+        for (i, point) in points.iter().enumerate() {
+            // Writing to memory cannot fail.
             for part in [x.format(point.id.x), ":", y.format(point.id.y)] {
-                // Writing to memory cannot fail.
                 let _ = ids.write_str(part);
+            }
+            if let Some(height) = batch.heights.get(i) {
+                let _ = write!(ids, ":{}", height.address);
             }
             ids.append_value("");
         }

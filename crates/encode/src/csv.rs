@@ -17,8 +17,8 @@ pub(super) struct Csv {
     /// The names of each column's dictionary, quoted where they need it.
     names: Vec<Vec<String>>,
     digits: Digits,
-    /// 1 if the first column is the layer, which comes before the id.
-    layered: usize,
+    /// The column of the layer, which comes before the id.
+    layer: Option<usize>,
 }
 
 impl Csv {
@@ -31,7 +31,7 @@ impl Csv {
         Self {
             names: names.collect(),
             digits: Digits::of(output.decimals),
-            layered: usize::from(schema.is_layered()),
+            layer: schema.layer(),
             schema,
         }
     }
@@ -49,13 +49,16 @@ impl Csv {
 
 impl TextFormat for Csv {
     fn begin(&self, out: &mut Vec<u8>) {
-        let (layer, columns) = self.schema.columns().split_at(self.layered);
-        for column in layer {
-            out.extend_from_slice(field(&column.name).as_bytes());
+        let columns = self.schema.columns();
+        if let Some(layer) = self.layer {
+            out.extend_from_slice(field(&columns[layer].name).as_bytes());
             out.push(b',');
         }
         out.extend_from_slice(b"id,x,y");
-        for column in columns {
+        for (i, column) in columns.iter().enumerate() {
+            if self.layer == Some(i) {
+                continue;
+            }
             out.push(b',');
             out.extend_from_slice(field(&column.name).as_bytes());
         }
@@ -63,16 +66,19 @@ impl TextFormat for Csv {
     }
 
     fn row(&self, row: Row<'_>, _first: bool, out: &mut Writer<'_>) {
-        if self.layered > 0 {
-            self.value(0, row, out);
+        if let Some(layer) = self.layer {
+            self.value(layer, row, out);
             out.push(b',');
         }
-        out.id(row.point.id);
+        out.id(row);
         out.push(b',');
         out.number(self.digits, row.point.x);
         out.push(b',');
         out.number(self.digits, row.point.y);
-        for column in self.layered..self.names.len() {
+        for column in 0..self.names.len() {
+            if self.layer == Some(column) {
+                continue;
+            }
             out.push(b',');
             self.value(column, row, out);
         }

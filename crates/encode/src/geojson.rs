@@ -91,12 +91,16 @@ const ROW_BYTES: usize = 240;
 
 fn write_feature(members: &Members, row: Row<'_>, out: &mut Writer<'_>) {
     out.constant(b"{\"type\":\"Feature\",\"id\":\"");
-    out.id(row.point.id);
+    out.id(row);
     out.constant(b"\",\"geometry\":{\"type\":\"Point\",");
     out.constant(b"\"coordinates\":[");
     out.number(members.digits(), row.point.x);
     out.push(b',');
     out.number(members.digits(), row.point.y);
+    if let Some(height) = row.height {
+        out.push(b',');
+        out.number(members.digits(), height.z);
+    }
     out.constant(b"]},\"properties\":");
     members.write_object(row, out);
     out.push(b'}');

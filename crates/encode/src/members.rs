@@ -65,7 +65,7 @@ impl Members {
     #[inline(always)]
     pub(super) fn write_point(&self, row: Row<'_>, out: &mut Writer<'_>) {
         out.constant(b"{\"id\":\"");
-        out.id(row.point.id);
+        out.id(row);
         out.constant(b"\",\"x\":");
         out.number(self.digits, row.point.x);
         out.constant(b",\"y\":");

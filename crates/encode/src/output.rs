@@ -1,6 +1,6 @@
 //! How an answer is to look: the format and its options.
 
-use crate::{crs::Crs, encoding::Encoding};
+use crate::{coordinates::Place, crs::Crs, encoding::Encoding};
 
 /// The default longer side of a picture, in pixels.
 pub const DEFAULT_SIZE: u32 = 512;
@@ -17,7 +17,7 @@ pub struct Output {
     pub decimals: Option<u8>,
     /// The point that coordinates are relative to; by default the world's origin, in `f32` the
     /// region's lower corner.
-    pub relative_to: Option<[f64; 2]>,
+    pub relative_to: Option<Place>,
     /// The longer side of a picture, in pixels.
     pub size: u32,
     /// Whether a stream of lines ends with a summary.

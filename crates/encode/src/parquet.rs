@@ -58,7 +58,7 @@ impl Parquet {
     pub(super) fn new(rows: Rows, head: &Head, crs: Option<&Crs>) -> Result<Self, EncodeError> {
         let schema = rows.schema();
         let metadata = [
-            ("geo", geo(crs)),
+            ("geo", geo(crs, schema.is_in_space())),
             ("ARROW:schema", arrow_schema(schema, head)),
         ];
         let metadata = metadata.map(|(key, value)| KeyValue::new(key.into(), value));
@@ -175,10 +175,10 @@ fn arrow_schema(schema: &Schema, head: &Head) -> String {
 
 /// The metadata of GeoParquet. `null` is its way to say that the plane is unknown; without the member
 /// readers would assume longitude and latitude.
-fn geo(crs: Option<&Crs>) -> String {
+fn geo(crs: Option<&Crs>, is_in_space: bool) -> String {
     let geometry = json!({
         "encoding": "WKB",
-        "geometry_types": ["Point"],
+        "geometry_types": [if is_in_space { "Point Z" } else { "Point" }],
         "crs": crs.and_then(Crs::projjson),
     });
     json!({

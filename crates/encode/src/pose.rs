@@ -168,6 +168,7 @@ mod tests {
         let row = |values: &[Values]| {
             let row = Row {
                 point: &Point::default(),
+                height: None,
                 index: 0,
                 columns: values,
             };

@@ -175,6 +175,7 @@ mod tests {
         ];
         let row = Row {
             point: &point,
+            height: None,
             index: 0,
             columns: &values,
         };

@@ -119,10 +119,11 @@ impl Frame {
                 return Ok(part);
             }
             let Some(plan) = whole else {
-                let detail = format!(
-                    "a part or a period of {} points is drawn",
-                    part.plan.count()
-                );
+                let what = match part.plan.space() {
+                    Some(_) => "a volume",
+                    None => "a part or a period",
+                };
+                let detail = format!("{what} of {} points is drawn", part.plan.count());
                 let allowed = format!(
                     "png of all points, or of at most {:.0} of them at this size",
                     4.0 * wanted

@@ -146,7 +146,7 @@ impl Blocks for Records {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Encoding, Output, sample_rows::answer};
+    use crate::{Encoding, Output, Place, sample_rows::answer};
 
     fn numbers<const N: usize>(bytes: &[u8], read: impl Fn([u8; N]) -> f64) -> Vec<f64> {
         let chunks = bytes.chunks_exact(N);
@@ -165,7 +165,7 @@ mod tests {
         assert_eq!(size, Some(bytes.len() as u64));
         let near = numbers(&bytes, |bytes| f32::from_le_bytes(bytes).into());
         let relative = Output {
-            relative_to: Some(origin),
+            relative_to: Some(Place::Plane(origin)),
             ..Output::new(Encoding::F64)
         };
         let relative = numbers(&answer(&relative, 1000).0, f64::from_le_bytes);

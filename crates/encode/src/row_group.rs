@@ -12,6 +12,7 @@ use strew_core::Point;
 
 use super::{
     EncodeError,
+    height::Height,
     rows::Batch,
     schema::{Kind, Schema, Values},
 };
@@ -71,11 +72,15 @@ impl RowGroup {
     /// Takes further rows.
     pub(super) fn push(&mut self, batch: Batch<'_>) -> Result<(), EncodeError> {
         let points = batch.points;
-        for point in points {
+        for (i, point) in points.iter().enumerate() {
+            let height = batch.heights.get(i);
             // Writing to memory cannot fail.
             let _ = write!(self.ids.bytes, "{}:{}", point.id.x, point.id.y);
+            if let Some(height) = height {
+                let _ = write!(self.ids.bytes, ":{}", height.address);
+            }
             self.ids.end();
-            self.geometry.bytes.extend_from_slice(&wkb(point));
+            write_wkb(point, height, &mut self.geometry.bytes);
             self.geometry.end();
         }
         self.x.extend(points.iter().map(|point| point.x));
@@ -197,11 +202,15 @@ fn next<'a>(
     group.next_column()?.ok_or_else(none)
 }
 
-/// A point as WKB: byte order, type 1, x, y.
-fn wkb(point: &Point) -> [u8; 21] {
-    let mut wkb = [0; 21];
-    wkb[..5].copy_from_slice(&[1, 1, 0, 0, 0]);
-    wkb[5..13].copy_from_slice(&point.x.to_le_bytes());
-    wkb[13..].copy_from_slice(&point.y.to_le_bytes());
-    wkb
+/// A point as WKB: byte order, type (1, or 1001 with a z), x, y and z.
+fn write_wkb(point: &Point, height: Option<&Height>, out: &mut Vec<u8>) {
+    let kind: u32 = if height.is_some() { 1001 } else { 1 };
+    out.push(1);
+    out.extend_from_slice(&kind.to_le_bytes());
+    for v in [point.x, point.y]
+        .into_iter()
+        .chain(height.map(|height| height.z))
+    {
+        out.extend_from_slice(&v.to_le_bytes());
+    }
 }

@@ -6,13 +6,17 @@
 
 use std::{ops::Range, sync::Arc, vec};
 
-use strew_core::{Cursor, Plan, Point};
+use strew_core::{Plan, Point};
 
 use super::{
     part::{Current, Part},
     schema::{Schema, Values},
 };
-use crate::coordinates::Coordinates;
+use crate::{
+    coordinates::{Coordinates, Place},
+    height::{Height, Located},
+    mark::Mark,
+};
 
 /// Some rows.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +25,8 @@ pub struct Batch<'a> {
     pub points: &'a [Point],
     /// The coordinates as `f32`; empty except for [`Coordinates::Near`].
     pub near: &'a [[f32; 2]],
+    /// The heights of points in space; empty in the plane. Their column has the same coordinates.
+    pub heights: &'a [Height],
     /// The values of each column of the schema.
     pub columns: &'a [Values],
 }
@@ -30,6 +36,8 @@ pub struct Batch<'a> {
 pub struct Row<'a> {
     /// Id and coordinates.
     pub point: &'a Point,
+    /// The height of a point in space.
+    pub height: Option<&'a Height>,
     /// The number of the row in the columns.
     pub index: usize,
     /// The values of each column of the schema.
@@ -47,6 +55,7 @@ impl<'a> Batch<'a> {
         let points = self.points[part.clone()].iter();
         points.zip(part).map(move |(point, index)| Row {
             point,
+            height: self.heights.get(index),
             index,
             columns: self.columns,
         })
@@ -63,6 +72,7 @@ pub struct Rows {
     current: Option<Current>,
     points: Vec<Point>,
     near: Vec<[f32; 2]>,
+    heights: Vec<Height>,
     columns: Vec<Values>,
 }
 
@@ -74,7 +84,12 @@ impl Rows {
             .iter()
             .map(|part| (part.layer.as_deref(), part.own_columns()))
             .collect();
-        let schema = Schema::joined(&described);
+        let heights = Part::heights(&parts).map(|bounds| {
+            // As far as the columns are relative, so are the bounds.
+            let lowest = coordinates.origin().map_or(0.0, Place::z);
+            bounds.map(|z| z - lowest)
+        });
+        let schema = Schema::with_heights(&described, heights);
         Self {
             columns: schema.empty_values(),
             schema: Arc::new(schema),
@@ -88,6 +103,7 @@ impl Rows {
             current: None,
             points: vec![],
             near: vec![],
+            heights: vec![],
         }
     }
 
@@ -119,7 +135,7 @@ impl Rows {
         self.coordinates
     }
 
-    /// The only plan, if its coordinates, as the kernel makes them, are the whole answer. Call it before the first
+    /// The only plan of the plane, if its coordinates, as the kernel makes them, are the whole answer. Call it before the first
     /// batch.
     #[must_use]
     pub fn plain_plan(&self) -> Option<&Plan> {
@@ -130,16 +146,16 @@ impl Rows {
         let as_made = match self.coordinates {
             Coordinates::World => true,
             Coordinates::Relative(_) => false,
-            Coordinates::Near(origin) => origin == plan.origin(),
+            Coordinates::Near(origin) => origin == Place::Plane(plan.origin()),
         };
         (as_made && self.schema.columns().is_empty()).then_some(plan)
     }
 
     /// The place after the rows so far: the number of the part, and the place in it.
     #[must_use]
-    pub fn cursor(&self) -> Option<(usize, Cursor)> {
+    pub fn mark(&self) -> Option<(usize, Mark)> {
         let current = self.current.as_ref()?;
-        Some((current.number, current.blocks.cursor()?))
+        Some((current.number, current.blocks.mark()?))
     }
 
     /// The next rows, at most `most` (and at least one); `None` after the last. All rows of a batch are of one part.
@@ -152,7 +168,9 @@ impl Rows {
         let most = most.min(self.points.len());
         let filled = loop {
             if let Some(current) = &mut self.current {
-                let filled = current.blocks.fill(&mut self.points[..most]);
+                let filled = current
+                    .blocks
+                    .fill(&mut self.points[..most], &mut self.heights);
                 if filled > 0 {
                     break filled;
                 }
@@ -164,18 +182,21 @@ impl Rows {
         let current = self.current.as_mut()?;
         let room = self.points.len();
         let points = &mut self.points[..filled];
-        current.fill_columns(points, &mut self.columns);
+        let heights = &mut self.heights[..];
+        current.fill_attributes(Located { points, heights });
         match self.coordinates {
             Coordinates::World => {}
-            Coordinates::Relative(origin) => current.move_to(origin, points),
+            Coordinates::Relative(origin) => current.move_to(origin, points, heights),
             Coordinates::Near(origin) => {
                 self.near.resize(room, [0.0; 2]);
-                current.fill_near(points, origin, &mut self.near[..filled]);
+                current.fill_near(points, heights, origin, &mut self.near[..filled]);
             }
         }
+        current.fill_columns(Located { points, heights }, &mut self.columns);
         Some(Batch {
             points: &self.points[..filled],
             near: self.near.get(..filled).unwrap_or_default(),
+            heights: &self.heights,
             columns: &self.columns,
         })
     }
@@ -247,8 +268,9 @@ mod tests {
     fn coordinates_relative_to_a_point_stay_inside_the_region() {
         let world = told(Coordinates::World, 100);
         let origin = [-10.0, 5.0];
-        let relative = told(Coordinates::Relative(origin), 100);
-        let near = told(Coordinates::Near(origin), 100);
+        let moved = Place::Plane(origin);
+        let relative = told(Coordinates::Relative(moved), 100);
+        let near = told(Coordinates::Near(moved), 100);
         for ((world, relative), near) in world.iter().zip(&relative).zip(&near) {
             for axis in 0..2 {
                 let expected = world.2[axis] - origin[axis];

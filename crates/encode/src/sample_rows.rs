@@ -5,7 +5,9 @@ use std::sync::Arc;
 use bytes::Bytes;
 use strew_core::{Point, PointSet, Region};
 
-use crate::{Answer, Attributes, Column, Head, Json, Output, Part, Source, Tables, Values};
+use crate::{
+    Answer, Attributes, Column, Head, Json, Located, Output, Part, Source, Tables, Values,
+};
 
 /// An angle for every point and a name out of a list; the angle is half the id's column.
 #[derive(Debug)]
@@ -24,7 +26,8 @@ impl Attributes for Marks {
         columns
     }
 
-    fn fill(&self, points: &[Point], values: &mut [Values]) {
+    fn fill(&self, places: Located<'_>, values: &mut [Values]) {
+        let points = places.points;
         for values in values {
             match values {
                 Values::Numbers(angles) => {

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::pose::Z;
+
 /// A column besides id, x and y.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
@@ -64,17 +66,29 @@ pub const LAYER: &str = "layer";
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Schema {
     columns: Vec<Column>,
+    is_in_space: bool,
     layered: bool,
 }
 
 impl Schema {
-    /// The columns of parts, each with its layer's name and its own columns: first the layer, if
-    /// any part has one, then the columns by name in the order in which they first occur.
-    /// Dictionaries of the same name are joined.
+    /// The columns of parts in the plane, each with its layer's name and its own columns: first the layer, if any part
+    /// has one, then the columns by name in the order in which they first occur. Dictionaries of the same name are
+    /// joined.
     #[must_use]
     pub fn joined(parts: &[(Option<&str>, Vec<Column>)]) -> Self {
+        Self::with_heights(parts, None)
+    }
+
+    /// The columns of parts in space, whose heights are between two bounds: first `z`, then as in the plane.
+    #[must_use]
+    pub(super) fn with_heights(
+        parts: &[(Option<&str>, Vec<Column>)],
+        heights: Option<[f64; 2]>,
+    ) -> Self {
         let layered = parts.iter().any(|(layer, _)| layer.is_some());
-        let mut columns: Vec<Column> = vec![];
+        let height = heights.map(|bounds| Column::number(Z).within(bounds));
+        let is_in_space = height.is_some();
+        let mut columns: Vec<Column> = height.into_iter().collect();
         if layered {
             let names = parts.iter().map(|(layer, _)| layer.unwrap_or_default());
             let names: Vec<String> = names.map(Into::into).collect();
@@ -88,11 +102,18 @@ impl Schema {
                 }
             }
         }
-        for column in columns.iter_mut().skip(usize::from(layered)) {
+        for column in columns
+            .iter_mut()
+            .skip(usize::from(is_in_space) + usize::from(layered))
+        {
             let has = |own: &[Column]| own.iter().any(|other| other.name == column.name);
             column.optional |= !parts.iter().all(|(_, own)| has(own));
         }
-        Self { columns, layered }
+        Self {
+            columns,
+            is_in_space,
+            layered,
+        }
     }
 
     /// The columns, in order.
@@ -106,10 +127,22 @@ impl Schema {
         self.columns.iter().map(|c| Values::of(&c.kind)).collect()
     }
 
-    /// Whether the first column is the layer's name.
+    /// Whether the first column is the height of points in space.
     #[must_use]
-    pub const fn is_layered(&self) -> bool {
-        self.layered
+    pub const fn is_in_space(&self) -> bool {
+        self.is_in_space
+    }
+
+    /// The place of the column with the layer's name.
+    #[must_use]
+    pub fn layer(&self) -> Option<usize> {
+        self.layered.then_some(usize::from(self.is_in_space))
+    }
+
+    /// The columns of parts' own, after those of height and layer.
+    #[must_use]
+    pub fn own(&self) -> &[Column] {
+        &self.columns[usize::from(self.is_in_space) + usize::from(self.layered)..]
     }
 }
 
@@ -201,7 +234,7 @@ mod tests {
                 vec![Column::dictionary("variant", names(&["granite", "oak"]))],
             ),
         ]);
-        assert!(schema.is_layered());
+        assert_eq!(schema.layer(), Some(0));
         let expected = [
             Column::dictionary("layer", names(&["trees", "rocks"])),
             Column {
@@ -216,5 +249,15 @@ mod tests {
     #[test]
     fn a_single_plan_has_no_columns() {
         assert_eq!(Schema::joined(&[(None, vec![])]), Schema::default());
+    }
+
+    #[test]
+    fn the_height_of_points_in_space_comes_before_the_layer() {
+        let parts = [(Some("rocks"), vec![Column::number("u1")])];
+        let schema = Schema::with_heights(&parts, Some([2.0, 5.0]));
+        let names: Vec<&str> = schema.columns().iter().map(|c| &*c.name).collect();
+        assert_eq!(names, ["z", "layer", "u1"]);
+        assert_eq!((schema.layer(), schema.own().len()), (Some(1), 1));
+        assert_eq!(schema.columns()[0].range, Some([2.0, 5.0]));
     }
 }

@@ -1,20 +1,31 @@
-//! Where the points of a part come from: an area of the plane, or one period.
+//! Where the points of a part come from: an area of the plane, one period, or a volume of space.
 //!
 //! Everything that plans, cuts and encodes points sees a [`Source`]; only packed coordinates without further columns
-//! come straight from a plan of the plane. A new kind of set, such as points in space, is one more implementation.
+//! come straight from a plan of the plane.
 
 use std::{fmt, sync::Arc};
 
 use strew_core::{
-    Attributes, Blocks, BoundAttributes, Cursor, Error, PeriodicBlocks, PeriodicPlan, Plan, Point,
-    PointId, Points, Region,
+    Attributes, Blocks, BoundAttributes, Error, PeriodicBlocks, PeriodicPlan, Plan, Point, Points,
+    Region,
     server::{self, Stop},
+    space,
+};
+
+use crate::{
+    height::{Height, Located},
+    mark::Mark,
 };
 
 /// Planned points: their exact number is known, and none is made yet.
 pub trait Source: fmt::Debug + Send + Sync {
     /// The plan of an area of the plane, if it is one.
     fn plane(&self) -> Option<&Plan> {
+        None
+    }
+
+    /// The plan of a volume of space, if it is one.
+    fn space(&self) -> Option<&space::Plan> {
         None
     }
 
@@ -34,25 +45,33 @@ pub trait Source: fmt::Debug + Send + Sync {
     fn window(&self, offset: u128, limit: Option<u128>) -> Arc<dyn Source>;
 
     /// The places of points of some numbers below the count, each greater than the one before.
-    fn cursors(&self, numbers: &[u128]) -> Vec<Option<Cursor>>;
+    fn marks(&self, numbers: &[u128]) -> Vec<Option<Mark>> {
+        let mark = |&number: &u128| self.window(number, None).mark();
+        numbers.iter().map(mark).collect()
+    }
 
     /// The place of the first point, if there is one.
-    fn cursor(&self) -> Option<Cursor>;
+    fn mark(&self) -> Option<Mark>;
 
-    /// A cursor from which the same points come, if there are any, where finding it takes no time, unlike
-    /// [`cursor`](Self::cursor).
-    fn beginning(&self) -> Option<Cursor> {
-        self.cursor()
+    /// A place from which the same points come, if there are any, where finding it takes no time, unlike
+    /// [`mark`](Self::mark).
+    fn beginning(&self) -> Option<Mark> {
+        self.mark()
     }
 
     /// The place of the first point after the window, if there is one.
-    fn next_cursor(&self) -> Option<Cursor>;
+    fn next_mark(&self) -> Option<Mark>;
 
-    /// A box around the points.
+    /// A box around the points; of a volume its shadow along z.
     fn region(&self) -> Region;
 
     /// Its lower corner.
     fn origin(&self) -> [f64; 2];
+
+    /// The bounds along z of points in space; `None` in the plane.
+    fn heights(&self) -> Option<[f64; 2]> {
+        None
+    }
 
     /// The mean spacing at full density.
     fn spacing(&self) -> f64;
@@ -61,7 +80,7 @@ pub trait Source: fmt::Debug + Send + Sync {
     ///
     /// # Errors
     /// If the table has other kinds than these attributes.
-    fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error>;
+    fn attributes(&self, attributes: &Attributes) -> Result<Bound, Error>;
 
     /// The points, block by block.
     fn walk(&self) -> Box<dyn Walk>;
@@ -70,18 +89,28 @@ pub trait Source: fmt::Debug + Send + Sync {
     fn stopped_by(&self, stop: &Stop) -> Arc<dyn Source>;
 }
 
-/// Points on their way out.
-pub trait Walk: fmt::Debug + Send {
-    /// Fills a block with the next points and returns their number.
-    fn fill(&mut self, out: &mut [Point]) -> usize;
-
-    /// The place after the points so far, if there are more.
-    fn cursor(&self) -> Option<Cursor>;
+/// The attributes of the points of a source.
+#[derive(Clone, Debug)]
+pub enum Bound {
+    /// In the plane.
+    Plane(BoundAttributes),
+    /// In space.
+    Space(space::BoundAttributes),
 }
 
-/// The methods that plans of the plane and of periods have under the same names.
+/// Points on their way out.
+pub trait Walk: fmt::Debug + Send {
+    /// Fills a block with the next points and returns their number. In space `heights` has theirs afterwards, and
+    /// nothing else.
+    fn fill(&mut self, out: &mut [Point], heights: &mut Vec<Height>) -> usize;
+
+    /// The place after the points so far, if there are more.
+    fn mark(&self) -> Option<Mark>;
+}
+
+/// The methods that all plans have under the same names.
 macro_rules! common {
-    () => {
+    ($bound:path) => {
         fn count(&self) -> u128 {
             self.count()
         }
@@ -102,50 +131,46 @@ macro_rules! common {
             Arc::new(self.window(offset, limit))
         }
 
-        fn cursor(&self) -> Option<Cursor> {
-            self.cursor()
+        fn mark(&self) -> Option<Mark> {
+            self.cursor().map(Into::into)
         }
 
-        fn next_cursor(&self) -> Option<Cursor> {
-            self.next_cursor()
+        fn next_mark(&self) -> Option<Mark> {
+            self.next_cursor().map(Into::into)
         }
 
-        fn region(&self) -> Region {
-            self.region()
-        }
-
-        fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
-            self.attributes(attributes)
-        }
-
-        fn walk(&self) -> Box<dyn Walk> {
-            Box::new(self.blocks())
+        fn attributes(&self, attributes: &Attributes) -> Result<Bound, Error> {
+            self.attributes(attributes).map($bound)
         }
     };
 }
 
 impl Source for Plan {
-    common!();
+    common!(Bound::Plane);
 
     fn plane(&self) -> Option<&Plan> {
         Some(self)
     }
 
-    fn cursors(&self, numbers: &[u128]) -> Vec<Option<Cursor>> {
+    fn marks(&self, numbers: &[u128]) -> Vec<Option<Mark>> {
         let windows = server::windows(self, numbers).into_iter();
-        windows.map(|window| window.cursor()).collect()
+        windows.map(|window| window.mark()).collect()
     }
 
     /// From the beginning on no address is needed.
-    fn beginning(&self) -> Option<Cursor> {
+    fn beginning(&self) -> Option<Mark> {
         if self.offset() != 0 {
-            return self.cursor();
+            return self.mark();
         }
-        (self.count() > 0).then(|| Cursor {
+        (self.count() > 0).then(|| Mark {
             offset: 0,
             total: self.total(),
-            at: PointId { x: 0, y: 0 },
+            at: [0; 3],
         })
+    }
+
+    fn region(&self) -> Region {
+        self.region()
     }
 
     fn origin(&self) -> [f64; 2] {
@@ -156,17 +181,20 @@ impl Source for Plan {
         self.placement().spacing.get()
     }
 
+    fn walk(&self) -> Box<dyn Walk> {
+        Box::new(self.blocks())
+    }
+
     fn stopped_by(&self, stop: &Stop) -> Arc<dyn Source> {
         Arc::new(server::stopped_by(self.clone(), stop.clone()))
     }
 }
 
 impl Source for PeriodicPlan {
-    common!();
+    common!(Bound::Plane);
 
-    fn cursors(&self, numbers: &[u128]) -> Vec<Option<Cursor>> {
-        let cursor = |&number: &u128| self.window(number, None).cursor();
-        numbers.iter().map(cursor).collect()
+    fn region(&self) -> Region {
+        self.region()
     }
 
     fn origin(&self) -> [f64; 2] {
@@ -177,25 +205,104 @@ impl Source for PeriodicPlan {
         self.set().spacing()
     }
 
+    fn walk(&self) -> Box<dyn Walk> {
+        Box::new(self.blocks())
+    }
+
     /// Windows of periods count little.
     fn stopped_by(&self, _: &Stop) -> Arc<dyn Source> {
         Arc::new(self.clone())
     }
 }
 
-/// The methods of both kinds of blocks.
+impl Source for space::Plan {
+    common!(Bound::Space);
+
+    fn space(&self) -> Option<&space::Plan> {
+        Some(self)
+    }
+
+    fn beginning(&self) -> Option<Mark> {
+        if self.offset() != 0 {
+            return self.mark();
+        }
+        (self.count() > 0).then(|| Mark {
+            offset: 0,
+            total: self.total(),
+            at: [0; 3],
+        })
+    }
+
+    fn region(&self) -> Region {
+        self.region().shadow()
+    }
+
+    fn heights(&self) -> Option<[f64; 2]> {
+        let region = self.region();
+        Some([region.min()[2], region.max()[2]])
+    }
+
+    fn origin(&self) -> [f64; 2] {
+        let [x, y, _] = self.origin();
+        [x, y]
+    }
+
+    fn spacing(&self) -> f64 {
+        self.placement().spacing.get()
+    }
+
+    fn walk(&self) -> Box<dyn Walk> {
+        Box::new(Volume {
+            blocks: self.blocks_points(),
+            points: vec![],
+        })
+    }
+
+    fn stopped_by(&self, stop: &Stop) -> Arc<dyn Source> {
+        Arc::new(self.clone().stopped_by(stop.clone()))
+    }
+}
+
+/// The methods of both kinds of blocks of the plane.
 macro_rules! walks {
     ($($blocks:ty),+) => {
         $(impl Walk for $blocks {
-            fn fill(&mut self, out: &mut [Point]) -> usize {
+            fn fill(&mut self, out: &mut [Point], _: &mut Vec<Height>) -> usize {
                 self.fill(out)
             }
 
-            fn cursor(&self) -> Option<Cursor> {
-                self.cursor()
+            fn mark(&self) -> Option<Mark> {
+                self.cursor().map(Into::into)
             }
         })+
     };
 }
 
 walks!(Blocks<Points>, PeriodicBlocks);
+
+/// The points of a volume on their way out.
+#[derive(Debug)]
+struct Volume {
+    blocks: space::Blocks<Points>,
+    points: Vec<space::Point>,
+}
+
+impl Walk for Volume {
+    fn fill(&mut self, out: &mut [Point], heights: &mut Vec<Height>) -> usize {
+        if self.points.len() < out.len() {
+            self.points.resize(out.len(), space::Point::default());
+        }
+        let filled = self.blocks.fill(&mut self.points[..out.len()]);
+        heights.clear();
+        for (out, point) in out.iter_mut().zip(&self.points[..filled]) {
+            let (flat, height) = Located::parted(point);
+            *out = flat;
+            heights.push(height);
+        }
+        filled
+    }
+
+    fn mark(&self) -> Option<Mark> {
+        self.blocks.cursor().map(Into::into)
+    }
+}

@@ -12,6 +12,7 @@ use super::{
     EncodeError,
     blocks::Blocks,
     buffer::Pool,
+    height::Height,
     rows::{Row, Rows},
     writer::Writer,
 };
@@ -132,11 +133,15 @@ impl<T: TextFormat + std::fmt::Debug + Send> Blocks for TextBlocks<T> {
     }
 }
 
-/// An id as a text of its own.
+/// An id as a text of its own; in space with the height of its point.
 #[must_use]
-pub fn id_text(id: PointId) -> String {
+pub fn id_text(id: PointId, height: Option<&Height>) -> String {
     let (mut x, mut y) = (itoa::Buffer::new(), itoa::Buffer::new());
-    [x.format(id.x), ":", y.format(id.y)].concat()
+    let (x, y) = (x.format(id.x), y.format(id.y));
+    match height {
+        Some(height) => [x, ":", y, ":", itoa::Buffer::new().format(height.address)].concat(),
+        None => [x, ":", y].concat(),
+    }
 }
 
 #[cfg(test)]
@@ -204,7 +209,9 @@ mod tests {
         #[test]
         fn ids_are_written_as_the_library_writes_them(x: i64, y: i64) {
             let id = PointId { x, y };
-            prop_assert_eq!(id_text(id), id.to_string());
+            prop_assert_eq!(id_text(id, None), id.to_string());
+            let height = Height { address: x ^ y, z: 0.0 };
+            prop_assert_eq!(id_text(id, Some(&height)), format!("{id}:{}", x ^ y));
         }
     }
 }

@@ -1,8 +1,8 @@
 //! USD as text: a `PointInstancer` for each chunk of points, with ids, and a prototype for each thing.
 //!
-//! z is up. Places are relative to the region's lower corner, where the instancers' parent stands, because they are
+//! z is up. Located are relative to the region's lower corner, where the instancers' parent stands, because they are
 //! `float`. Orientations are `half`, which is what all readers know. An id is one integer: its column in the upper 32
-//! bits, its row in the lower ones.
+//! bits, its row in the lower ones; in space 21 bits each for x, y and z.
 
 use std::fmt::Write as _;
 
@@ -13,6 +13,7 @@ use super::{
     EncodeError,
     blocks::Blocks,
     chunks::{Chunks, Things},
+    coordinates::Place,
     head::Head,
     ids,
     pose::Pose,
@@ -43,11 +44,13 @@ impl Usda {
     /// # Errors
     /// [`Error::Invalid`] for ids that it cannot hold.
     pub(super) fn new(rows: Rows, head: &Head) -> Result<Self, Error> {
-        ids::check("usda", &rows)?;
+        let bits = ids::bits_joined(rows.schema().is_in_space());
+        ids::check("usda", &rows, bits)?;
         let pose = Pose::new(rows.schema());
         let things = Things::new(rows.schema(), &pose);
         let spacing = rows.parts().next().map(|part| part.plan.spacing());
-        let origin = rows.coordinates().origin().unwrap_or_default();
+        let origin = rows.coordinates().origin();
+        let origin = origin.unwrap_or(Place::Plane([0.0; 2]));
         Ok(Self {
             begin: Some(begin(head, &things, origin, spacing.unwrap_or(1.0))),
             layers: rows.parts().map(|part| part.layer.clone()).collect(),
@@ -133,7 +136,7 @@ impl Arrays {
         // Writing to memory cannot fail.
         for row in batch.rows() {
             let _ = write!(self.things, "{}, ", things.of(row));
-            let _ = write!(self.ids, "{}, ", ids::joined(row.point.id));
+            let _ = write!(self.ids, "{}, ", ids::joined(row));
             let [x, y] = batch.near[row.index];
             let _ = write!(self.places, "({x}, {y}, {}), ", pose.z(row) as f32);
             if pose.is_turned() {
@@ -178,7 +181,8 @@ fn quoted(text: &str) -> String {
 
 /// The stage's head, and a cone for each thing, as high as points are apart. They stand under an `over`, so that
 /// they are not drawn by themselves.
-fn begin(head: &Head, things: &Things, [x, y]: [f64; 2], spacing: f64) -> String {
+fn begin(head: &Head, things: &Things, origin: Place, spacing: f64) -> String {
+    let ([x, y], z) = (origin.flat(), origin.z());
     let mut out = String::from("#usda 1.0\n(\n    customLayerData = {\n");
     for (name, value) in head.entries() {
         let name = name.replace('.', "_");
@@ -187,7 +191,7 @@ fn begin(head: &Head, things: &Things, [x, y]: [f64; 2], spacing: f64) -> String
     let _ = write!(
         out,
         "    }}\n    defaultPrim = \"points\"\n    metersPerUnit = 1\n    upAxis = \"Z\"\n)\n\n\
-         def Xform \"points\"\n{{\n    double3 xformOp:translate = ({x}, {y}, 0)\n    \
+         def Xform \"points\"\n{{\n    double3 xformOp:translate = ({x}, {y}, {z})\n    \
          uniform token[] xformOpOrder = [\"xformOp:translate\"]\n\n    over \"prototypes\"\n    {{\n"
     );
     for (i, name) in things.names.iter().enumerate() {

@@ -7,7 +7,10 @@
 
 use strew_core::PointId;
 
-use super::number::{Digits, Room, fixed, integer, write_exactly};
+use super::{
+    number::{Digits, Room, fixed, integer, write_exactly},
+    rows::Row,
+};
 
 /// The bytes that are gathered.
 const GATHERED: usize = 4096;
@@ -101,9 +104,19 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Writes an id: `column:row`.
+    /// Writes the id of a row: `column:row`, in space `x:y:z`.
     #[inline(always)]
-    pub(super) fn id(&mut self, id: PointId) {
+    pub(super) fn id(&mut self, row: Row<'_>) {
+        self.address(row.point.id);
+        if let Some(height) = row.height {
+            self.push(b':');
+            let length = self.room().map(|room| integer(height.address, room));
+            self.took(length.unwrap_or_default());
+        }
+    }
+
+    #[inline(always)]
+    fn address(&mut self, id: PointId) {
         let column = self.room().map(|room| integer(id.x, room));
         self.took(column.unwrap_or_default());
         if self.row.0 != id.y {
@@ -159,7 +172,7 @@ mod tests {
             let mut writer = Writer::new(&mut out);
             for &(any, usual, x, y) in &values {
                 let any = if any.is_finite() { any } else { 0.0 };
-                writer.id(PointId { x, y });
+                writer.address(PointId { x, y });
                 writer.constant(b", ");
                 expected.extend_from_slice(format!("{x}:{y}, ").as_bytes());
                 for value in [any, usual] {

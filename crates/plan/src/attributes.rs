@@ -2,33 +2,35 @@
 
 use std::f64::consts::TAU;
 
-use strew_core::{Attribute, Attributes, BoundAttributes, Column, Point};
+use strew_core::{Attribute, Attributes, Column, space};
 use strew_encode as encode;
-use strew_encode::Values;
+use strew_encode::{Bound, Located, POSE_ROTATION, Values};
 
 /// Attributes bound to the points of one set.
 #[derive(Clone, Debug)]
 pub struct PointAttributes {
     columns: Vec<encode::Column>,
-    bound: BoundAttributes,
+    bound: Bound,
 }
 
 impl PointAttributes {
     /// The columns of `list`, of which `bound` was made.
     #[must_use]
-    pub fn new(list: &Attributes, bound: BoundAttributes) -> Self {
-        let column = |attribute: &Attribute| match attribute.variants() {
-            Some(variants) => {
+    pub fn new(list: &Attributes, bound: Bound) -> Self {
+        let number = |name: &str, attribute: &Attribute| encode::Column {
+            range: range(attribute),
+            ..encode::Column::number(name)
+        };
+        let columns = |attribute: &Attribute| match (attribute, attribute.variants()) {
+            (Attribute::Rotation, _) => POSE_ROTATION.map(|name| number(name, attribute)).into(),
+            (_, Some(variants)) => {
                 let names: Vec<String> = variants.names().map(Into::into).collect();
-                encode::Column::dictionary(attribute.name(), names)
+                vec![encode::Column::dictionary(attribute.name(), names)]
             }
-            None => encode::Column {
-                range: range(attribute),
-                ..encode::Column::number(attribute.name())
-            },
+            (_, None) => vec![number(attribute.name(), attribute)],
         };
         Self {
-            columns: list.as_slice().iter().map(column).collect(),
+            columns: list.as_slice().iter().flat_map(columns).collect(),
             bound,
         }
     }
@@ -45,6 +47,7 @@ fn range(attribute: &Attribute) -> Option<[f64; 2]> {
             ranges.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
         }
         Attribute::Rank | Attribute::Uniform(_) => Some([0.0, 1.0]),
+        Attribute::Rotation => Some([-1.0, 1.0]),
         _ => None,
     }
 }
@@ -54,9 +57,15 @@ impl encode::Attributes for PointAttributes {
         self.columns.clone()
     }
 
-    fn fill(&self, points: &[Point], values: &mut [Values]) {
+    fn fill(&self, places: Located<'_>, values: &mut [Values]) {
         let mut made: Vec<Column> = vec![];
-        self.bound.write_points(points, &mut made);
+        match &self.bound {
+            Bound::Plane(bound) => bound.write_points(places.points, &mut made),
+            Bound::Space(bound) => {
+                let points: Vec<space::Point> = places.in_space().collect();
+                bound.write_points(&points, &mut made);
+            }
+        }
         for (values, column) in values.iter_mut().zip(made) {
             *values = match column {
                 Column::Numbers(numbers) => Values::Numbers(numbers),

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use strew_catalog::Entry;
 use strew_core::ALGORITHM_VERSION;
-use strew_encode::{Answer, Crs, Head, Json, Output, Tables};
+use strew_encode::{Answer, Crs, Head, Json, Output, Place, Tables};
 use strew_error::Error;
 use strew_query::Resolved;
 
@@ -19,7 +19,8 @@ pub struct QueryEcho {
     #[serde(skip_serializing_if = "Option::is_none")]
     decimals: Option<u8>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    relative_to: Option<[f64; 2]>,
+    #[schemars(with = "Vec<f64>")]
+    relative_to: Option<Place>,
     #[serde(skip_serializing_if = "Option::is_none")]
     size: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -31,6 +32,9 @@ pub struct QueryEcho {
 pub struct TableEcho {
     profile: String,
     alpha: String,
+    /// 3 if its points lie in space.
+    #[serde(skip_serializing_if = "is_plane")]
+    dimensions: u32,
     radius: u32,
     digest: String,
     algorithm: u32,
@@ -41,6 +45,10 @@ pub struct TableEcho {
     /// The mean one.
     #[serde(skip_serializing_if = "Option::is_none")]
     delta_avg: Option<f64>,
+}
+
+fn is_plane(dimensions: &u32) -> bool {
+    *dimensions == 2
 }
 
 impl Planned {
@@ -96,6 +104,7 @@ impl TableEcho {
         Self {
             profile: key.profile.as_ref().into(),
             alpha: key.alpha.to_string(),
+            dimensions: key.dimension.axes(),
             radius: *radius,
             digest: digest.clone(),
             algorithm: ALGORITHM_VERSION,

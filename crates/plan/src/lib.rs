@@ -18,6 +18,7 @@ mod resolve;
 mod single;
 pub mod store;
 mod terrain;
+mod volume;
 
 pub use effort::{Neighbors, considered};
 pub use head::{QueryEcho, TableEcho};

@@ -4,8 +4,8 @@ use std::sync::{Arc, OnceLock};
 
 use strew_catalog::{Entry, Ready};
 use strew_config::Limits;
-use strew_core::{BoundAttributes, Cursor, Member, PeriodicSet, PointId, PointSet, server::Stop};
-use strew_encode::{Attributes, Part};
+use strew_core::{Member, PeriodicSet, PointId, PointSet, server::Stop, space::SpaceSet};
+use strew_encode::{Attributes, Bound, Mark, Part};
 use strew_error::Error;
 use strew_query::{Amount, Query, Resolved, ResolvedSet, Set, Token, other_kinds};
 
@@ -16,6 +16,7 @@ use crate::{
     resolve,
     store::{self, Anew},
     terrain::{Ground, OnTerrain},
+    volume,
 };
 
 /// A query with its tables and plans: the exact count is known, no point is made yet.
@@ -42,7 +43,7 @@ pub struct Placed {
     /// Its points.
     pub points: PlacedPoints,
     /// Their attributes.
-    pub(super) attributes: BoundAttributes,
+    pub(super) attributes: Bound,
     /// The ground of its points.
     pub(super) ground: Option<Ground>,
     /// As answers echo it.
@@ -55,11 +56,37 @@ impl Placed {
     /// # Errors
     /// As [`new`](Self::new), and as [`Planned::tables`].
     pub fn at_once(set: Box<Set>) -> Result<Self, Error> {
+        if set.space().is_some() {
+            return Self::in_space(set);
+        }
         let ready = store::ready(&set, &Anew)?;
         Self::new(set, ready)
     }
 
-    /// A set laid into the world.
+    /// A set in space laid into the world.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); [`Error::Internal`] for a set of the plane.
+    pub fn in_space(set: Box<Set>) -> Result<Self, Error> {
+        let table = set
+            .space()
+            .ok_or(Error::Internal("a set of the plane in space"))?;
+        let (points, density) = volume::placed(&set, table)?;
+        let spacing = points.placement().spacing;
+        let least = volume::least_distance(&set, &points, 0.0);
+        Ok(Self {
+            resolved: set.resolved(&[], density, spacing, least, (&[], &[])),
+            attributes: points
+                .attributes(&set.attributes)
+                .map(Bound::Space)
+                .map_err(other_kinds)?,
+            points: PlacedPoints::Space(Box::new(points)),
+            ground: None,
+            set,
+        })
+    }
+
+    /// A set of the plane laid into the world.
     ///
     /// # Errors
     /// [`Error::Invalid`] for a distance that cannot be kept, or a count.
@@ -102,15 +129,18 @@ pub enum PlacedPoints {
     Plane(Box<PointSet>),
     /// Points of a period.
     Period(PeriodicSet),
+    /// Points in space.
+    Space(Box<SpaceSet>),
 }
 
 impl PlacedPoints {
-    /// The point of an id.
+    /// The point of an id in the plane.
     #[must_use]
     pub fn point(&self, id: PointId) -> Option<Member> {
         match self {
             Self::Plane(points) => points.point(id),
             Self::Period(points) => points.point(id),
+            Self::Space(_) => None,
         }
     }
 
@@ -120,16 +150,15 @@ impl PlacedPoints {
         match self {
             Self::Plane(points) => points.block(id),
             Self::Period(points) => points.block(id),
+            Self::Space(_) => None,
         }
     }
 
-    fn attributes(
-        &self,
-        attributes: &strew_core::Attributes,
-    ) -> Result<BoundAttributes, strew_core::Error> {
+    fn attributes(&self, attributes: &strew_core::Attributes) -> Result<Bound, strew_core::Error> {
         match self {
-            Self::Plane(points) => points.attributes(attributes),
-            Self::Period(points) => points.attributes(attributes),
+            Self::Plane(points) => points.attributes(attributes).map(Bound::Plane),
+            Self::Period(points) => points.attributes(attributes).map(Bound::Plane),
+            Self::Space(points) => points.attributes(attributes).map(Bound::Space),
         }
     }
 }
@@ -175,14 +204,17 @@ impl Planned {
     ) -> Result<Self, Error> {
         let identity = OnceLock::new();
         if let Some(token) = query.window.cursor {
-            let digests: Vec<&str> = tables.iter().map(|t| t.entry.digest.as_str()).collect();
-            let identity = identity.get_or_init(|| query.identity(&digests));
+            let identity = identity.get_or_init(|| {
+                let sets = query.sets.iter();
+                let digests: Vec<&str> = sets.map(|set| set.entry.digest.as_str()).collect();
+                query.identity(&digests)
+            });
             token.check(identity)?;
         }
         let mut planner = Planner::new(&query, limits, stop);
-        let mut sets = Vec::with_capacity(tables.len());
-        for (i, (set, ready)) in query.sets.iter().zip(tables).enumerate() {
-            sets.push(planner.plan(i, set, ready)?);
+        let mut sets = Vec::with_capacity(query.sets.len());
+        for (i, set) in query.sets.iter().enumerate() {
+            sets.push(planner.plan(i, set, tables.get(i))?);
         }
         let mut planned = Self {
             sets,
@@ -211,8 +243,9 @@ impl Planned {
     /// [`Error::Internal`] if a table cannot be read any more; [`Error::Invalid`] if it has too few blocks for its
     /// kinds.
     pub fn tables(query: &Query) -> Result<Vec<Ready>, Error> {
-        let tables = query.sets.iter().map(|set| store::ready(set, &Anew));
-        tables.collect()
+        // Tables in space are ready as they are.
+        let flat = query.sets.iter().filter(|set| set.space().is_none());
+        flat.map(|set| store::ready(set, &Anew)).collect()
     }
 
     /// Narrows the sets' plans to the query's window.
@@ -222,7 +255,7 @@ impl Planned {
         let (first, mut earlier) = window
             .cursor
             .map_or((0, 0), |token| (usize::from(token.set), token.before));
-        let here = window.cursor.map_or(0, |token| token.cursor.offset);
+        let here = window.cursor.map_or(0, |token| token.mark.offset);
         let mut skip = u128::from(window.offset);
         let mut room = window.limit.map_or(u128::MAX, u128::from);
         let mut rest = None;
@@ -245,7 +278,7 @@ impl Planned {
             self.count += part.count();
             set.plan = part;
         }
-        self.next = rest.and_then(|i| self.token(i, self.sets[i].plan.next_cursor()?));
+        self.next = rest.and_then(|i| self.token(i, self.sets[i].plan.next_mark()?));
     }
 
     fn digests(&self) -> Vec<&str> {
@@ -255,7 +288,7 @@ impl Planned {
 
     /// The token at which a later query resumes: a place in a set.
     #[must_use]
-    pub fn token(&self, i: usize, cursor: Cursor) -> Option<Token> {
+    pub fn token(&self, i: usize, mark: Mark) -> Option<Token> {
         let (asked, set) = (self.query.sets.get(i)?, self.sets.get(i)?);
         let spacing = matches!(asked.amount, Amount::Count(_)).then_some(set.spacing);
         let number = u16::try_from(i).ok()?;
@@ -264,7 +297,7 @@ impl Planned {
                 .get_or_init(|| self.query.identity(&self.digests())),
             number,
             set.before,
-            cursor,
+            mark,
             spacing,
         ))
     }
@@ -292,8 +325,8 @@ impl Planned {
     #[must_use]
     pub fn beginning(&self) -> Option<Token> {
         let mut sets = self.sets.iter().enumerate();
-        let (i, cursor) = sets.find_map(|(i, set)| Some((i, set.plan.beginning()?)))?;
-        self.token(i, cursor)
+        let (i, mark) = sets.find_map(|(i, set)| Some((i, set.plan.beginning()?)))?;
+        self.token(i, mark)
     }
 
     /// The first set's table: the only one's, without layers.
@@ -326,8 +359,8 @@ impl Planned {
             let own = &numbers[places.len()..];
             let own = own[..own.partition_point(|&k| k < end)].iter();
             let own: Vec<u128> = own.map(|k| k - before).collect();
-            let tokens = set.plan.cursors(&own).into_iter();
-            places.extend(tokens.map(|cursor| self.token(i, cursor?)));
+            let marks = set.plan.marks(&own).into_iter();
+            places.extend(marks.map(|mark| self.token(i, mark?)));
             before = end;
         }
         let sized = places.into_iter().zip(0..);
@@ -399,7 +432,7 @@ impl Planned {
         let world = self.query.world.as_ref();
         let only = self.query.only.and_then(|only| all.get(only));
         Resolved {
-            bbox: self.query.region.bbox(),
+            bbox: self.query.region.corners(),
             region: self.query.region.echo.clone(),
             world: world.map(|world| world.name.clone()),
             world_digest: world.map(|world| world.digest.clone()),

@@ -7,6 +7,7 @@ use strew_config::Limits;
 use strew_core::{
     Area, Cursor, ErrorKind, Keep, Placement, Plan, PointId, PointSet, Spacing,
     server::{self, Stop},
+    space::SpaceSet,
 };
 use strew_error::Error;
 use strew_query::{Amount, Kinds, Period, Query, Set, Token, Window, parameters};
@@ -19,10 +20,12 @@ use crate::{
 
 /// Plans sets one after another.
 pub(super) struct Planner<'a> {
-    query: &'a Query,
-    limits: &'a Limits,
-    stop: &'a Stop,
+    pub(super) query: &'a Query,
+    pub(super) limits: &'a Limits,
+    pub(super) stop: &'a Stop,
     layers: Vec<PointSet>,
+    /// The layers in space.
+    pub(super) volumes: Vec<SpaceSet>,
     prices: Layers,
     /// The number of points that all sets together may still leave out.
     room: usize,
@@ -36,6 +39,7 @@ impl<'a> Planner<'a> {
             limits,
             stop,
             layers: vec![],
+            volumes: vec![],
             prices: Layers::default(),
             room: MOST_HOLES,
         }
@@ -46,7 +50,16 @@ impl<'a> Planner<'a> {
     /// With a cursor, sets before the cursor's have given all they had, and the cursor's is found
     /// again without counting. Layers that are not wanted have no points, and others keep clear of them all the
     /// same.
-    pub(super) fn plan(&mut self, i: usize, set: &Set, ready: &Ready) -> Result<PlannedSet, Error> {
+    pub(super) fn plan(
+        &mut self,
+        i: usize,
+        set: &Set,
+        ready: Option<&Ready>,
+    ) -> Result<PlannedSet, Error> {
+        if let (Some(table), Some(volume)) = (set.space(), &self.query.region.volume) {
+            return self.space(i, set, table, volume);
+        }
+        let ready = ready.ok_or(Error::Internal("a set of the plane without its table"))?;
         if let Some(period) = set.period {
             return self.period(i, set, period, ready);
         }
@@ -73,7 +86,7 @@ impl<'a> Planner<'a> {
         let mut selection = Selection::new(set, points, area, test);
         let plan = match (known, here) {
             (Ok(spacing), _) if is_over || here.is_some() => {
-                let cursor = here.map_or_else(nothing, |token| token.cursor);
+                let cursor = here.map_or_else(nothing, |token| token.mark.in_plane());
                 let plan = selection.set.resume(selection.area.clone(), cursor);
                 let plan = plan.map_err(|error| region.too_far(spacing, &error))?;
                 let plan = server::stopped_by(plan, self.stop.clone());
@@ -93,7 +106,7 @@ impl<'a> Planner<'a> {
             }
             (Err(count), here) => {
                 let plan = self.count(set, count, &mut selection)?;
-                let start = here.map_or(0, |token: Token| token.cursor.offset);
+                let start = here.map_or(0, |token: Token| token.mark.offset);
                 plan.window(start, is_over.then_some(0))
             }
         };
@@ -178,7 +191,7 @@ impl<'a> Planner<'a> {
         let here = cursor.filter(|token| i == usize::from(token.set));
         let unfinished = |_| Error::Internal("a plan was stopped before its request ended");
         let plan = match here {
-            Some(token) => points.resume(token.cursor),
+            Some(token) => points.resume(token.mark.in_plane()),
             None => {
                 let rows = effort::rows_of_period(set);
                 let limit = self.limits.max_rows;

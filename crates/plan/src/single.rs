@@ -4,28 +4,33 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use strew_core::{
-    Attribute, ErrorKind, Member, Neighbor, PointId,
+    ErrorKind, Member, Neighbor, Point, PointId, PointSet,
     server::{self, Stop, Visits},
+    space::{self, SpaceSet},
 };
+use strew_encode::{Attributes as _, Column, Height, Kind, Located, Place, Values};
 use strew_error::{Error, Fault, number};
 use strew_query::{Nearest, parameters};
 
-use crate::{Placed, PlacedPoints, resolve, terrain::ANGLE};
+use crate::{Placed, PlacedPoints, attributes::PointAttributes, resolve, terrain::ANGLE};
 
 /// A point with its attributes.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Found {
     /// Its stable id: the lattice address.
-    #[schemars(regex(pattern = "^-?[0-9]+:-?[0-9]+$"))]
+    #[schemars(regex(pattern = "^-?[0-9]+:-?[0-9]+(:-?[0-9]+)?$"))]
     pub id: String,
     /// Its x.
     pub x: f64,
     /// Its y.
     pub y: f64,
+    /// Its z, in space.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub z: Option<f64>,
     /// Its distance from the given place.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub distance: Option<f64>,
-    /// Its block of the neighborhood map, column and row, where a single point is requested.
+    /// Its block of the neighborhood map, column and row, where a single point of the plane is requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<[usize; 2]>,
     /// Its attributes by name.
@@ -36,6 +41,35 @@ pub struct Found {
 /// The most points within a radius.
 pub const MOST_WITHIN: usize = 10_000;
 
+/// Points that were found, with the distances from a place, if there is one.
+#[derive(Default)]
+struct Spots {
+    points: Vec<Point>,
+    heights: Vec<Height>,
+    distances: Vec<Option<f64>>,
+}
+
+impl Spots {
+    fn push(&mut self, member: &Member, distance: Option<f64>) {
+        self.points.push(member.point());
+        self.distances.push(distance);
+    }
+
+    fn push_in_space(&mut self, point: &space::Point, distance: Option<f64>) {
+        let (flat, height) = Located::parted(point);
+        self.points.push(flat);
+        self.heights.push(height);
+        self.distances.push(distance);
+    }
+
+    /// The largest absolute coordinate.
+    fn reach(&self) -> f64 {
+        let flat = self.points.iter().flat_map(|point| [point.x, point.y]);
+        let all = flat.chain(self.heights.iter().map(|height| height.z));
+        all.map(f64::abs).fold(0.0, f64::max)
+    }
+}
+
 impl Placed {
     /// The point of an id.
     ///
@@ -44,15 +78,29 @@ impl Placed {
     /// there.
     pub fn point(&self, id: &str) -> Result<Found, Error> {
         const ID: &str = "two integers joined by a colon, such as -31:52";
-        let read = id
-            .parse::<PointId>()
-            .map_err(|_| Fault::new("id", id, "not a point id", ID))?;
-        let member = self.points.point(read);
-        let member = member.ok_or_else(|| Error::NoSuchPoint { id: id.into() })?;
-        self.check_reach([&member])?;
-        let mut found = self.found(&member, None);
-        found.block = self.points.block(member.id());
-        Ok(found)
+        const ID_IN_SPACE: &str = "three integers joined by colons, such as -31:52:7";
+        let wrong = |allowed| Fault::new("id", id, "not a point id", allowed);
+        let (mut spots, mut block) = (Spots::default(), None);
+        let found = match &self.points {
+            PlacedPoints::Space(points) => {
+                let read: space::PointId = id.parse().map_err(|_| wrong(ID_IN_SPACE))?;
+                points
+                    .point(read)
+                    .map(|point| spots.push_in_space(&point, None))
+            }
+            flat => {
+                let read: PointId = id.parse().map_err(|_| wrong(ID))?;
+                flat.point(read).map(|member| {
+                    block = flat.block(member.id());
+                    spots.push(&member, None);
+                })
+            }
+        };
+        found.ok_or_else(|| Error::NoSuchPoint { id: id.into() })?;
+        let found = self.described(&spots, &Visits::new(usize::MAX, Stop::default()))?;
+        let found = found.into_iter().next();
+        let found = found.ok_or(Error::Internal("a found point is not described"))?;
+        Ok(Found { block, ..found })
     }
 
     /// The nearest points of a place, nearest first: `k` at most and within `radius`, where these
@@ -69,61 +117,108 @@ impl Placed {
     /// # Errors
     /// As `nearest`, also for more points than may be visited.
     pub fn nearest_visiting(&self, nearest: Nearest, visits: &Visits) -> Result<Vec<Found>, Error> {
-        let Nearest { at, k, radius } = nearest;
-        let PlacedPoints::Plane(points) = &self.points else {
-            return Err(Error::Internal("neighbors of a period were not refused"));
+        let mut spots = Spots::default();
+        match (&self.points, nearest.at) {
+            (PlacedPoints::Plane(points), Place::Plane(at)) => {
+                for Neighbor { member, distance } in in_plane(points, at, nearest, visits)? {
+                    spots.push(&member, Some(distance));
+                }
+            }
+            (PlacedPoints::Space(points), Place::Space(at)) => {
+                for space::Neighbor { point, distance } in in_space(points, at, nearest)? {
+                    spots.push_in_space(&point, Some(distance));
+                }
+            }
+            _ => return Err(Error::Internal("neighbors of a period were not refused")),
+        }
+        self.described(&spots, visits)
+    }
+
+    /// Some points with their attributes.
+    fn described(&self, spots: &Spots, visits: &Visits) -> Result<Vec<Found>, Error> {
+        resolve::check_reach(&self.set, spots.reach())?;
+        let attributes = PointAttributes::new(&self.set.attributes, self.attributes.clone());
+        let columns = attributes.columns();
+        let mut values: Vec<Values> = columns.iter().map(|c| Values::of(&c.kind)).collect();
+        let located = Located {
+            points: &spots.points,
+            heights: &spots.heights,
         };
-        let found = match (k, radius) {
-            (None, Some(radius)) => server::around(points, at, radius, MOST_WITHIN, visits),
-            (k, radius) => server::nearest(points, at, k.unwrap_or(1), radius, visits),
-        };
-        let found = found.map_err(|error| fault(nearest, &error))?;
-        self.check_reach(found.iter().map(|neighbor| &neighbor.member))?;
-        let found = found.iter().map(|Neighbor { member, distance }| {
+        attributes.fill(located, &mut values);
+        let angle = columns.iter().position(|column| column.name == ANGLE);
+        let found = spots.points.iter().enumerate().map(|(i, point)| {
             if visits.is_stopped() {
                 return Err(Error::Internal(
                     "a search was stopped before its request ended",
                 ));
             }
-            Ok(self.found(member, Some(*distance)))
+            let height = spots.heights.get(i);
+            let own = columns.iter().zip(&values);
+            let own = own.map(|(column, values)| (column.name.clone(), value(column, values, i)));
+            let ground = self.ground.iter().flat_map(|ground| {
+                let angle = angle.and_then(|column| values[column].number(i));
+                let values = ground.values([point.x, point.y], angle.unwrap_or(0.0));
+                ground.names().map(Into::into).zip(values.map(Into::into))
+            });
+            Ok(Found {
+                id: strew_encode::id_text(point.id, height),
+                x: point.x,
+                y: point.y,
+                z: height.map(|height| height.z),
+                distance: spots.distances[i],
+                block: None,
+                attributes: own.chain(ground).collect(),
+            })
         });
         found.collect()
     }
+}
 
-    /// Refuses a least distance that the coordinates of some points do not keep.
-    fn check_reach<'a>(&self, members: impl IntoIterator<Item = &'a Member>) -> Result<(), Error> {
-        let coordinates = members.into_iter().flat_map(|member| member.at());
-        let reach = coordinates.map(f64::abs).fold(0.0, f64::max);
-        resolve::check_reach(&self.set, reach)
-    }
-
-    fn found(&self, member: &Member, distance: Option<f64>) -> Found {
-        let point = member.point();
-        let list = self.set.attributes.as_slice();
-        let value = |(i, attribute): (usize, &Attribute)| {
-            let number = self.attributes.value(i, point.id).unwrap_or_default();
-            let value = match attribute.variants() {
-                Some(variants) => variants.name(number as u32).into(),
-                None => number.into(),
-            };
-            (attribute.name().to_owned(), value)
-        };
-        let attributes = list.iter().enumerate().map(value);
-        let ground = self.ground.iter().flat_map(|ground| {
-            let angle = list.iter().position(|attribute| attribute.name() == ANGLE);
-            let angle = angle.and_then(|i| self.attributes.value(i, point.id));
-            let values = ground.values([point.x, point.y], angle.unwrap_or(0.0));
-            ground.names().map(Into::into).zip(values.map(Into::into))
-        });
-        Found {
-            id: point.id.to_string(),
-            x: point.x,
-            y: point.y,
-            distance,
-            block: None,
-            attributes: attributes.chain(ground).collect(),
+/// The value of a point in a column.
+fn value(column: &Column, values: &Values, row: usize) -> Value {
+    match &column.kind {
+        Kind::Number => values.number(row).unwrap_or_default().into(),
+        Kind::Dictionary(names) => {
+            let name = values
+                .index(row)
+                .and_then(|index| names.get(index as usize));
+            name.map(String::as_str).into()
         }
     }
+}
+
+fn in_plane(
+    points: &PointSet,
+    at: [f64; 2],
+    nearest: Nearest,
+    visits: &Visits,
+) -> Result<Vec<Neighbor>, Error> {
+    let found = match (nearest.k, nearest.radius) {
+        (None, Some(radius)) => server::around(points, at, radius, MOST_WITHIN, visits),
+        (k, radius) => server::nearest(points, at, k.unwrap_or(1), radius, visits),
+    };
+    found.map_err(|error| fault(nearest, &error))
+}
+
+fn in_space(
+    points: &SpaceSet,
+    at: [f64; 3],
+    nearest: Nearest,
+) -> Result<Vec<space::Neighbor>, Error> {
+    let found = match (nearest.k, nearest.radius) {
+        (None, Some(radius)) => {
+            let found = points.nearest_within(at, MOST_WITHIN, radius);
+            if matches!(&found, Ok(found) if found.len() == MOST_WITHIN) {
+                let allowed = format!("a radius with fewer than {MOST_WITHIN} points within");
+                let detail = "too many points lie within";
+                return Err(Fault::new("radius", number(radius), detail, allowed).into());
+            }
+            found
+        }
+        (k, Some(radius)) => points.nearest_within(at, k.unwrap_or(1), radius),
+        (k, None) => points.nearest(at, k.unwrap_or(1)),
+    };
+    found.map_err(|error| fault(nearest, &error))
 }
 
 fn fault(nearest: Nearest, error: &strew_core::Error) -> Error {
@@ -146,7 +241,8 @@ fn fault(nearest: Nearest, error: &strew_core::Error) -> Error {
             "fewer neighbors, a larger share to keep, or a place nearer to where the field leaves points",
         ),
         _ => {
-            let value = format!("{},{}", number(at[0]), number(at[1]));
+            let coordinates = at.as_slice().iter().copied().map(number);
+            let value = coordinates.collect::<Vec<_>>().join(",");
             let allowed = "a place near enough to the origin for points to be distinct";
             Fault::new("at", value, error.to_string(), allowed)
         }

@@ -8,9 +8,9 @@
 
 use std::sync::Arc;
 
-use strew_core::{Point, field::Field as _};
+use strew_core::field::Field as _;
 use strew_encode as encode;
-use strew_encode::{Column, POSE_ROTATION, POSE_Z, Values};
+use strew_encode::{Column, Located, POSE_ROTATION, POSE_Z, Values};
 use strew_query::Terrain;
 
 /// The attributes of points with what a terrain adds.
@@ -131,14 +131,14 @@ impl encode::Attributes for OnTerrain {
         own.into_iter().flatten().chain(added).collect()
     }
 
-    fn fill(&self, points: &[Point], values: &mut [Values]) {
+    fn fill(&self, places: Located<'_>, values: &mut [Values]) {
         let added = self.ground.names().count();
         let (own, ground) = values.split_at_mut(values.len() - added);
         if let Some(attributes) = &self.attributes {
-            attributes.fill(points, own);
+            attributes.fill(places, own);
         }
         let angles = self.angle.and_then(|i| own.get(i));
-        for (i, point) in points.iter().enumerate() {
+        for (i, point) in places.points.iter().enumerate() {
             let angle = angles.and_then(|angles| angles.number(i)).unwrap_or(0.0);
             let made = self.ground.values([point.x, point.y], angle);
             for (values, number) in ground.iter_mut().zip(made) {

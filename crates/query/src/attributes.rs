@@ -1,5 +1,6 @@
 //! Attributes: the values that points have besides their place.
 
+use strew_catalog::Dimension;
 use strew_core::{Attribute, Attributes, ScaleRange, VariantScales, Variants};
 use strew_error::{Checked, Fault, Faults, Together as _, all, unknown};
 
@@ -7,6 +8,7 @@ use super::{
     Kinds, Values,
     parameters::{ATTRIBUTES, SCALE_RANGE, SCALE_RANGES, VARIANTS},
     rules,
+    space::SPACE_ATTRIBUTES,
     variants::variants,
 };
 
@@ -52,10 +54,22 @@ fn other(values: &Values, name: &str) -> Checked<Option<Attribute>> {
     if matches!(name, "scale" | "variant") {
         return Ok(None);
     }
-    name.parse().map(Some).map_err(|error: strew_core::Error| {
-        let field = format!("{}{}", values.path(), ATTRIBUTES.name);
-        Fault::new(&field, name, error.to_string(), ATTRIBUTES.allowed()).into()
-    })
+    let parameter = match values.dimension() {
+        Dimension::Plane => &ATTRIBUTES,
+        Dimension::Space => &SPACE_ATTRIBUTES,
+    };
+    let fault = |detail: String| {
+        let field = format!("{}{}", values.path(), parameter.name);
+        Faults::from(Fault::new(&field, name, detail, parameter.allowed()))
+    };
+    match (name, values.dimension()) {
+        ("rotation", Dimension::Plane) => Err(fault("in the plane points have an angle".into())),
+        ("angle", Dimension::Space) => Err(fault("in space points have a whole rotation".into())),
+        _ => name
+            .parse()
+            .map(Some)
+            .map_err(|error: strew_core::Error| fault(error.to_string())),
+    }
 }
 
 fn scale_range(values: &Values) -> Checked<ScaleRange> {

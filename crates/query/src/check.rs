@@ -104,7 +104,12 @@ impl Draft {
 
     /// Whether all that a server could change comes from the world.
     fn adds_nothing(&self) -> bool {
-        let own = [Group::Profile, Group::Table, Group::Attributes];
+        let own = [
+            Group::Profile,
+            Group::Table,
+            Group::Attributes,
+            Group::Choices,
+        ];
         let is_own = |(parameter, _): (&'static _, &_)| {
             let parameter: &Parameter = parameter;
             [&FIELD, &TERRAIN, &EXCEPT].contains(&parameter)

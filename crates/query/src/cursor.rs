@@ -6,7 +6,8 @@
 
 use std::fmt;
 
-use strew_core::{Cursor, PointId, Spacing};
+use strew_core::Spacing;
+use strew_encode::Mark;
 use strew_error::Fault;
 
 /// The cursors that are allowed, in words.
@@ -20,7 +21,7 @@ pub struct Token {
     /// The number of points in the sets before it.
     pub before: u128,
     /// The place in that set.
-    pub cursor: Cursor,
+    pub mark: Mark,
     /// The spacing, if the amount is a count: to find it again would take counting.
     pub spacing: Option<Spacing>,
     seal: [u8; SEAL],
@@ -31,6 +32,8 @@ const SEAL: usize = 12;
 const PLAIN: u8 = 1;
 /// The first byte of one with a spacing.
 const SPACED: u8 = 2;
+/// The first byte of one in space, where the address has a third coordinate other than 0.
+const IN_SPACE: u8 = 3;
 
 impl Token {
     /// The token of a place in the answer to the query with this identity.
@@ -39,13 +42,13 @@ impl Token {
         identity: &[u8; 32],
         set: u16,
         before: u128,
-        cursor: Cursor,
+        mark: Mark,
         spacing: Option<Spacing>,
     ) -> Self {
         let mut token = Self {
             set,
             before,
-            cursor,
+            mark,
             spacing,
             seal: [0; SEAL],
         };
@@ -63,19 +66,23 @@ impl Token {
         let mut rest = bytes.as_slice();
         let mut read = || -> Option<Self> {
             let [version] = take(&mut rest)?;
-            if !(PLAIN..=SPACED).contains(&version) {
+            if !(PLAIN..=IN_SPACE).contains(&version) {
                 return None;
             }
             Some(Self {
                 set: u16::from_le_bytes(take(&mut rest)?),
                 before: u128::from_le_bytes(take(&mut rest)?),
-                cursor: Cursor {
+                mark: Mark {
                     offset: u128::from_le_bytes(take(&mut rest)?),
                     total: u128::from_le_bytes(take(&mut rest)?),
-                    at: PointId {
-                        x: i64::from_le_bytes(take(&mut rest)?),
-                        y: i64::from_le_bytes(take(&mut rest)?),
-                    },
+                    at: [
+                        i64::from_le_bytes(take(&mut rest)?),
+                        i64::from_le_bytes(take(&mut rest)?),
+                        match version {
+                            IN_SPACE => i64::from_le_bytes(take(&mut rest)?),
+                            _ => 0,
+                        },
+                    ],
                 },
                 spacing: match version {
                     SPACED => Some(Spacing::new(f64::from_le_bytes(take(&mut rest)?)).ok()?),
@@ -105,18 +112,22 @@ impl Token {
     }
 
     fn content(&self) -> Vec<u8> {
-        let Cursor { offset, total, at } = self.cursor;
-        let mut bytes = vec![if self.spacing.is_some() {
-            SPACED
-        } else {
-            PLAIN
+        let Mark { offset, total, at } = self.mark;
+        let [x, y, z] = at;
+        let mut bytes = vec![match (z, self.spacing) {
+            (0, None) => PLAIN,
+            (0, Some(_)) => SPACED,
+            _ => IN_SPACE,
         }];
         bytes.extend(self.set.to_le_bytes());
         bytes.extend(self.before.to_le_bytes());
         bytes.extend(offset.to_le_bytes());
         bytes.extend(total.to_le_bytes());
-        bytes.extend(at.x.to_le_bytes());
-        bytes.extend(at.y.to_le_bytes());
+        bytes.extend(x.to_le_bytes());
+        bytes.extend(y.to_le_bytes());
+        if z != 0 {
+            bytes.extend(z.to_le_bytes());
+        }
         bytes.extend(self.spacing.iter().flat_map(|s| s.get().to_le_bytes()));
         bytes
     }
@@ -163,14 +174,14 @@ mod tests {
 
     #[test]
     fn tokens_read_back_and_damage_shows() {
-        let cursor = Cursor {
+        let mark = |z| Mark {
             offset: 1 << 70,
             total: u128::MAX,
-            at: PointId { x: -5, y: i64::MAX },
+            at: [-5, i64::MAX, z],
         };
         let identity = [7; 32];
-        for spacing in [None, Spacing::new(0.25).ok()] {
-            let token = Token::new(&identity, 3, 99, cursor, spacing);
+        for (z, spacing) in [(0, None), (0, Spacing::new(0.25).ok()), (-9, None)] {
+            let token = Token::new(&identity, 3, 99, mark(z), spacing);
             let text = token.to_string();
             let read = Token::parse(&text).expect("whole");
             assert_eq!(read, token);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use serde_json::{Map, Value as Json};
-use strew_catalog::{Catalog, Entry, field::Allowance};
+use strew_catalog::{Catalog, Dimension, Entry, field::Allowance};
 use strew_encode::Encoding;
 use strew_error::{Checked, Error, Fault, Together as _, faults::all, unknown};
 
@@ -25,6 +25,7 @@ use crate::{
     text::parse_pairs,
     value::Value,
     values::Values,
+    volume::VOLUME,
 };
 
 /// A query as it was read.
@@ -216,7 +217,16 @@ impl Draft {
             Ok(None) if self.values.takes().any(|p| p.group == Group::Region) => Err(
                 Fault::missing(BBOX.name, "one of bbox, circle and polygon, or periodic").into(),
             ),
-            Ok(None) => Err(Fault::missing("region", REGION).into()),
+            Ok(None) if self.values.takes().any(|p| p.group == Group::Volume) => {
+                Err(Fault::missing(BBOX.name, "one of bbox and ball").into())
+            }
+            Ok(None) => {
+                let allowed = match self.values.dimension() {
+                    Dimension::Plane => REGION,
+                    Dimension::Space => VOLUME,
+                };
+                Err(Fault::missing("region", allowed).into())
+            }
             Err(faults) => Err(faults.clone()),
         }
     }

@@ -25,8 +25,9 @@ use crate::{
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[schemars(rename = "Query")]
 pub struct Resolved {
-    /// min x, min y, max x, max y: a box around the region.
-    pub bbox: [f64; 4],
+    /// A box around the region: min x, min y, max x, max y, or in space min x, min y, min z, max x, max y, max z.
+    #[schemars(length(min = 4, max = 6))]
+    pub bbox: Vec<f64>,
     /// The region, unless it is that box.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "RegionSchema")]
@@ -94,9 +95,9 @@ pub struct ResolvedSet {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "RegionSchema")]
     pub region: Option<Json>,
-    /// Points per unit of area, before keep and clear_of.
+    /// Points per unit of area, in space of volume, before keep and clear_of.
     pub density: f64,
-    /// The mean spacing: density^-1/2.
+    /// The mean spacing: density^-1/2, in space density^-1/3.
     pub spacing: f64,
     /// No two points are nearer, in world units, by their f64 coordinates.
     pub least_distance: f64,
@@ -298,7 +299,7 @@ impl QueryRegion {
     fn full_echo(&self) -> Json {
         self.echo
             .clone()
-            .unwrap_or_else(|| json!({ "bbox": self.bbox() }))
+            .unwrap_or_else(|| json!({ "bbox": self.corners() }))
     }
 }
 

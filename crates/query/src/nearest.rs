@@ -1,22 +1,31 @@
 //! The query for the points nearest to a place.
 
-use strew_catalog::{Catalog, field::Allowance};
+use strew_catalog::{Catalog, Dimension, field::Allowance};
+use strew_encode::Place;
 use strew_error::{Checked, Error, Together as _};
 
 use super::{
     Set, Values,
     parameters::{AT, K, RADIUS},
+    space::SPACE_AT,
 };
 
 /// A query for the points nearest to a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
     /// The place.
-    pub at: [f64; 2],
+    pub at: Place,
     /// The most points; by default 1, or all within the radius.
     pub k: Option<usize>,
     /// The largest distance; unlimited by default.
     pub radius: Option<f64>,
+}
+
+fn place(values: &Values) -> Checked<Place> {
+    match values.dimension() {
+        Dimension::Plane => values.require(&AT).map(Place::Plane),
+        Dimension::Space => values.require(&SPACE_AT).map(Place::Space),
+    }
 }
 
 impl Nearest {
@@ -25,12 +34,8 @@ impl Nearest {
     /// # Errors
     /// Every fault.
     pub fn of(values: &Values) -> Checked<Self> {
-        let (at, k, radius) = (
-            values.require(&AT),
-            values.get::<u64>(&K),
-            values.get(&RADIUS),
-        )
-            .together()?;
+        let (at, k, radius) =
+            (place(values), values.get::<u64>(&K), values.get(&RADIUS)).together()?;
         Ok(Self {
             at,
             k: k.map(|k| usize::try_from(k).unwrap_or(usize::MAX)),

@@ -59,16 +59,30 @@ pub enum Group {
     Table,
     /// The set of points.
     Points,
+    /// The part of a set of the plane that is there, from place to place, and how its points settle.
+    Thinned,
     /// Points that are left out one by one.
     Except,
     /// Values of points.
     Attributes,
+    /// The ranges of values and the names that they are chosen from.
+    Choices,
     /// The window of the points.
     Window,
     /// The form of the answer.
     Output,
+    /// What the plane is on Earth.
+    Reference,
+    /// The volume as text; JSON and messages have a member `region`.
+    Volume,
+    /// Values of points in space. All requests about points in space take it, and no others.
+    SpaceAttributes,
+    /// A place in space, to find its neighbors.
+    SpaceNearest,
     /// A place, to find its neighbors.
     Nearest,
+    /// How many neighbors, and how far.
+    Neighbors,
     /// Into how many parts a query is split.
     Split,
     /// The length of a list.
@@ -104,43 +118,54 @@ pub mod groups {
     use super::Group::{self, *};
 
     /// A set of points in a region: a layer.
-    pub const SET: &[Group] = &[Amount, Count, Profile, Table, Points, Except, Attributes];
+    pub const SET: &[Group] = &[
+        Amount, Count, Profile, Table, Points, Thinned, Except, Attributes, Choices,
+    ];
     /// A set without a region: single points.
-    pub const SINGLE: &[Group] = &[Period, Amount, Profile, Table, Points, Attributes];
+    pub const SINGLE: &[Group] = &[
+        Period, Amount, Profile, Table, Points, Thinned, Attributes, Choices,
+    ];
     /// `GET /v1/points`.
     pub const POINTS: &[Group] = &[
-        Region, Period, Amount, Count, World, WorldPin, Profile, Table, Points, Except, Attributes,
-        Window, Output,
+        Region, Period, Amount, Count, World, WorldPin, Profile, Table, Points, Thinned, Except,
+        Attributes, Choices, Window, Output, Reference,
     ];
     /// `GET /v1/chunks/…`, whose region is in the path.
     pub const CHUNK: &[Group] = &[
-        Amount, Count, World, WorldPin, Profile, Table, Points, Except, Attributes, Window, Output,
+        Amount, Count, World, WorldPin, Profile, Table, Points, Thinned, Except, Attributes,
+        Choices, Window, Output, Reference,
     ];
     /// `GET /v1/worlds/…`, whose world and region are in the path.
     pub const WORLD_CHUNK: &[Group] = &[
-        Amount, Count, WorldPin, Profile, Table, Points, Except, Attributes, Window, Output,
+        Amount, Count, WorldPin, Profile, Table, Points, Thinned, Except, Attributes, Choices,
+        Window, Output, Reference,
     ];
     /// Bodies, in which the region is a member.
     pub const QUERY: &[Group] = &[
-        Period, Amount, Count, World, WorldPin, Profile, Table, Points, Except, Attributes, Window,
-        Output,
+        Period, Amount, Count, World, WorldPin, Profile, Table, Points, Thinned, Except,
+        Attributes, Choices, Window, Output, Reference,
     ];
     /// `GET /v1/count`.
     pub const COUNT: &[Group] = &[
-        Region, Period, Amount, Count, World, WorldPin, Profile, Table, Points, Except, Attributes,
+        Region, Period, Amount, Count, World, WorldPin, Profile, Table, Points, Thinned, Except,
+        Attributes, Choices,
     ];
     /// `POST /v1/count`.
     pub const COUNTED: &[Group] = &[
-        Period, Amount, Count, World, WorldPin, Profile, Table, Points, Except, Attributes,
+        Period, Amount, Count, World, WorldPin, Profile, Table, Points, Thinned, Except,
+        Attributes, Choices,
     ];
     /// `GET /v1/periods`.
     pub const PERIODS: &[Group] = &[Period, Profile, Table, Listed];
     /// `strew measure`.
     pub const MEASURED: &[Group] = &[
-        Region, Amount, Count, World, WorldPin, Profile, Table, Points, Attributes,
+        Region, Amount, Count, World, WorldPin, Profile, Table, Points, Thinned, Attributes,
+        Choices,
     ];
     /// `GET /v1/nearest`.
-    pub const NEAREST: &[Group] = &[Nearest, Amount, Profile, Table, Points, Attributes];
+    pub const NEAREST: &[Group] = &[
+        Nearest, Neighbors, Amount, Profile, Table, Points, Thinned, Attributes, Choices,
+    ];
     /// `POST /v1/points:split`, beside the body.
     pub const SPLIT: &[Group] = &[Split];
     /// The choice of a table.
@@ -148,9 +173,9 @@ pub mod groups {
     /// The parameters of one table of a profile.
     pub const TABLE: &[Group] = &[Table];
     /// The parameters of an answer, without those of the points of a set.
-    pub const ANSWER: &[Group] = &[Window, Output];
+    pub const ANSWER: &[Group] = &[Window, Output, Reference];
     /// The parameters of the answer's form.
-    pub const OUTPUT: &[Group] = &[Output];
+    pub const OUTPUT: &[Group] = &[Output, Reference];
     /// Arrangements, with the set that displaces their points.
     pub const ARRANGEMENT: &[Group] = &[Pattern, Arrangement, Occurrences, Amount, Profile];
     /// Clusters.
@@ -177,6 +202,52 @@ pub mod groups {
     pub const MASK: &[Group] = &[Mask, MaskFile, Profile, Table];
     /// `GET /v1/mask/spectrum.svg`.
     pub const MASK_SPECTRUM: &[Group] = &[Mask, Profile, Table];
+    /// A set of points in space.
+    pub const SPACE_SET: &[Group] = &[Amount, Profile, Table, Points, SpaceAttributes, Choices];
+    /// `GET /v1/space/points`.
+    pub const SPACE_POINTS: &[Group] = &[
+        Volume,
+        Amount,
+        Profile,
+        Table,
+        Points,
+        SpaceAttributes,
+        Choices,
+        Window,
+        Output,
+    ];
+    /// `GET /v1/space/chunks/…`, whose region is in the path, and bodies, in which it is a member.
+    pub const SPACE_QUERY: &[Group] = &[
+        Amount,
+        Profile,
+        Table,
+        Points,
+        SpaceAttributes,
+        Choices,
+        Window,
+        Output,
+    ];
+    /// `GET /v1/space/count`.
+    pub const SPACE_COUNT: &[Group] = &[
+        Volume,
+        Amount,
+        Profile,
+        Table,
+        Points,
+        SpaceAttributes,
+        Choices,
+    ];
+    /// `GET /v1/space/nearest`.
+    pub const SPACE_NEAREST: &[Group] = &[
+        SpaceNearest,
+        Neighbors,
+        Amount,
+        Profile,
+        Table,
+        Points,
+        SpaceAttributes,
+        Choices,
+    ];
     /// For requests without parameters.
     pub const NONE: &[Group] = &[];
 }

@@ -94,7 +94,7 @@ parameters! {
     /// Points per unit of area.
     DENSITY = Parameter {
         name: "density",
-        about: "Points per unit of area.",
+        about: "Points per unit of area, in space of volume.",
         group: Group::Amount,
         shape: Shape::Number { min: Spacing::MIN_DENSITY, max: Spacing::MAX_DENSITY },
         example: "1",
@@ -103,7 +103,7 @@ parameters! {
     /// The mean spacing.
     SPACING = Parameter {
         name: "spacing",
-        about: "The mean spacing in world units: density^-1/2.",
+        about: "The mean spacing in world units: density^-1/2, in space density^-1/3.",
         group: Group::Amount,
         shape: SPACING_SHAPE,
         example: "1",
@@ -223,7 +223,7 @@ parameters! {
         name: "field",
         about: "The field that thins the points out, from place to place: a share of the density, which is \
                 that where the field is 1. The list of fields shows what is loaded.",
-        group: Group::Points,
+        group: Group::Thinned,
         shape: Shape::Field,
         default: Some("none"),
         example: "forest",
@@ -252,7 +252,7 @@ parameters! {
     SCALE_RANGE = Parameter {
         name: "scale_range",
         about: "The least and the greatest value of the attribute scale.",
-        group: Group::Attributes,
+        group: Group::Choices,
         shape: Shape::Numbers(&["min", "max"]),
         allowed: Some("two numbers min,max with 0 <= min <= max <= 1e9, beside the attribute scale"),
         default: Some("0,1"),
@@ -264,7 +264,7 @@ parameters! {
     SCALE_RANGES = Parameter {
         name: "scale_ranges",
         about: "The least and the greatest value of the attribute scale for each variant.",
-        group: Group::Attributes,
+        group: Group::Choices,
         shape: Shape::Ranges,
         allowed: Some("name:min:max for each of the variants, joined by commas, such as oak:0.8:1.2,birch:0.5:0.7, \
                        beside the attribute scale and variants; with 0 <= min <= max <= 1e9"),
@@ -278,7 +278,7 @@ parameters! {
         name: "variants",
         about: "The names that the attribute variant chooses from, with their weights. Their order does \
                 not matter.",
-        group: Group::Attributes,
+        group: Group::Choices,
         shape: Shape::Weights,
         allowed: Some("name:weight pairs joined by commas, such as oak:3,birch:1, beside the attribute \
                        variant or a spread other than chance: 1 to 256 different names of 1 to 64 letters, digits, _, - and ., \
@@ -407,7 +407,7 @@ parameters! {
         name: "crs",
         about: "The coordinate reference system of the plane, for geojson, geojsonseq and Parquet: by \
                 default readers of GeoJSON take coordinates for degrees. Coordinates do not change.",
-        group: Group::Output,
+        group: Group::Reference,
         shape: Shape::Pattern("^[A-Za-z]{1,16}:[A-Za-z0-9]{1,16}$"),
         allowed: Some(CRS_ALLOWED),
         default: Some("none"),
@@ -428,7 +428,7 @@ parameters! {
     K = Parameter {
         name: "k",
         about: "The number of nearest points.",
-        group: Group::Nearest,
+        group: Group::Neighbors,
         shape: Shape::Integer { min: 1, max: MOST_NEAREST },
         default: Some("1, or all within the radius"),
         example: "8",
@@ -438,7 +438,7 @@ parameters! {
     RADIUS = Parameter {
         name: "radius",
         about: "The greatest distance from the place, in world units.",
-        group: Group::Nearest,
+        group: Group::Neighbors,
         shape: Shape::Number { min: 0.0, max: f64::MAX },
         default: Some("unlimited"),
         example: "2",

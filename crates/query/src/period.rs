@@ -60,6 +60,7 @@ impl Period {
             path: PERIODIC.name.into(),
             area: bounds.into(),
             bounds,
+            volume: None,
             echo: None,
             corner: None,
         })

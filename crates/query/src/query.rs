@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use strew_core::{Area, server};
+use strew_core::{Area, server, space::Volume};
 
-use super::{QueryRegion, Token, amount::Amount, set::Set};
+use super::{QueryRegion, QueryVolume, Token, amount::Amount, set::Set};
 
 /// A checked query.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +63,10 @@ impl Query {
         if set.period.is_some() {
             return false;
         }
+        if let Some(volume) = &self.region.volume {
+            let is_box = matches!(volume.volume, Volume::Region(_));
+            return is_box && is_small_in_space(set.amount, volume);
+        }
         let spacing = match set.amount {
             Amount::Spacing(spacing) => spacing,
             Amount::Density(density) => density.sqrt().recip(),
@@ -90,6 +94,18 @@ impl Query {
         // A point may look around itself, too.
         is_quick && width * height * looks * 5.0 <= QUICK
     }
+}
+
+/// Whether a box in space has about a thousand points.
+fn is_small_in_space(amount: Amount, volume: &QueryVolume) -> bool {
+    let spacing = match amount {
+        Amount::Spacing(spacing) => spacing,
+        Amount::Density(density) => density.cbrt().recip(),
+        Amount::MinDistance(_) | Amount::Count(_) => return false,
+    };
+    let ([x, y, z], [max_x, max_y, max_z]) = (volume.bounds.min(), volume.bounds.max());
+    let longest = (max_x - x).max(max_y - y).max(max_z - z);
+    volume.spacings(spacing) <= 1024.0 && longest / spacing <= 64.0
 }
 
 /// The world that a query names.

@@ -3,13 +3,16 @@
 use std::borrow::Cow;
 
 use serde_json::{Value as Json, json};
+use strew_catalog::Dimension;
 use strew_core::{Area, Circle, ErrorKind, Polygon, Region, Spacing};
+use strew_encode::Place;
 use strew_error::{Checked, Error, Fault, Faults, Together as _, faults::all, number};
 
 use super::{
     Values,
     parameter::Group,
     parameters::{BBOX, CIRCLE, POLYGON},
+    volume::{QueryVolume, VolumeDraft},
 };
 
 /// The form of a chunk, as faults describe it.
@@ -44,6 +47,8 @@ pub enum ShapeDraft {
     Chunk(f64, [i64; 2]),
     /// The points in any region of the first list and in none of the second.
     Combined(Vec<Checked<RegionDraft>>, Vec<Checked<RegionDraft>>),
+    /// A volume of space.
+    Volume(VolumeDraft),
 }
 
 /// A checked region.
@@ -51,17 +56,36 @@ pub enum ShapeDraft {
 pub struct QueryRegion {
     /// The field it came from.
     pub path: Cow<'static, str>,
-    /// The area; it has a box around it, which is not empty.
+    /// The area; it has a box around it, which is not empty. Of a volume, the shadow along z.
     pub area: Area,
     /// That box.
     pub bounds: Region,
+    /// The volume, for points in space.
+    pub volume: Option<QueryVolume>,
     /// As answers echo it, unless it is just that box.
     pub echo: Option<Json>,
     /// The corner that answers are relative to, for a chunk.
-    pub corner: Option<[f64; 2]>,
+    pub corner: Option<Place>,
 }
 
 impl QueryRegion {
+    /// The coordinates of the box around it: the lower corner, then the upper one.
+    #[must_use]
+    pub fn corners(&self) -> Vec<f64> {
+        match &self.volume {
+            Some(volume) => volume.bbox().into(),
+            None => self.bbox().into(),
+        }
+    }
+
+    /// The area of the box around it, or in space its volume.
+    #[must_use]
+    pub fn measure(&self) -> f64 {
+        let corners = self.corners();
+        let (min, max) = corners.split_at(corners.len() / 2);
+        max.iter().zip(min).map(|(max, min)| max - min).product()
+    }
+
     /// min x, min y, max x, max y of the box around it.
     #[must_use]
     pub fn bbox(&self) -> [f64; 4] {
@@ -72,13 +96,12 @@ impl QueryRegion {
     /// The largest absolute coordinate of an answer, which a chunk's are not far from.
     #[must_use]
     pub fn reach(&self) -> f64 {
-        let [min_x, min_y, max_x, max_y] = self.bbox();
+        let corners = self.corners();
+        let (min, max) = corners.split_at(corners.len() / 2);
+        let sides = max.iter().zip(min).map(|(max, min)| max - min);
         match self.corner {
-            Some(_) => (max_x - min_x).max(max_y - min_y),
-            None => [min_x, min_y, max_x, max_y]
-                .map(f64::abs)
-                .into_iter()
-                .fold(0.0, f64::max),
+            Some(_) => sides.fold(0.0, f64::max),
+            None => corners.iter().copied().map(f64::abs).fold(0.0, f64::max),
         }
     }
 
@@ -95,6 +118,9 @@ impl RegionDraft {
     /// # Errors
     /// Faults if there are several, or one that cannot be read.
     pub fn of(values: &Values) -> Checked<Option<Self>> {
+        if values.dimension() == Dimension::Space {
+            return VolumeDraft::of(values);
+        }
         let given = values.given_of(&[Group::Region]);
         let shape = match given.as_slice() {
             [] => return Ok(None),
@@ -124,6 +150,9 @@ impl RegionDraft {
     /// # Errors
     /// Every fault.
     pub fn check(&self) -> Checked<QueryRegion> {
+        if let ShapeDraft::Volume(volume) = &self.shape {
+            return volume.check(self);
+        }
         let area = self.area()?;
         let bounds = area.bounds().filter(|bounds| !bounds.is_empty());
         let bounds = bounds.ok_or_else(|| {
@@ -134,7 +163,8 @@ impl RegionDraft {
             path: self.path.clone(),
             bounds,
             echo: (!matches!(self.shape, ShapeDraft::Box(_))).then(|| self.echo()),
-            corner: matches!(self.shape, ShapeDraft::Chunk(..)).then(|| bounds.min()),
+            corner: matches!(self.shape, ShapeDraft::Chunk(..)).then(|| Place::Plane(bounds.min())),
+            volume: None,
             area,
         })
     }
@@ -147,6 +177,7 @@ impl RegionDraft {
                 let all = include.iter().chain(exclude);
                 all.flatten().map(Self::vertices).sum()
             }
+            ShapeDraft::Volume(volume) => volume.vertices(),
             _ => 0,
         }
     }
@@ -179,6 +210,10 @@ impl RegionDraft {
                     return Err(Fault::missing(&field, "at least one region").into());
                 }
                 Ok(Area::any_of(include).without(exclude))
+            }
+            // Volumes are checked by themselves, and lists are read with regions of one kind.
+            ShapeDraft::Volume(_) => {
+                Err(Fault::new(&self.path, self.echo(), "a volume of space", REGION).into())
             }
         }
     }
@@ -262,6 +297,7 @@ impl RegionDraft {
             ShapeDraft::Combined(include, exclude) => {
                 json!({ "include": list(include), "exclude": list(exclude) })
             }
+            ShapeDraft::Volume(volume) => volume.echo(),
         }
     }
 }
@@ -275,6 +311,9 @@ impl QueryRegion {
     /// The error of a region that reaches too far for a spacing.
     pub fn too_far(&self, spacing: Spacing, error: &strew_core::Error) -> Error {
         let listed = || listed(&self.bbox());
+        if self.volume.is_some() {
+            return self.too_far_in_space(spacing, error);
+        }
         let value = self.echo.as_ref().map_or_else(listed, ToString::to_string);
         let fault = match (error.kind(), error.limit()) {
             (ErrorKind::TooFar, Some(limit)) => Fault::new(

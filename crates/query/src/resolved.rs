@@ -18,9 +18,7 @@ pub(crate) fn replace(
     others: impl IntoIterator<Item = (&'static Parameter, Option<Value>)>,
 ) {
     for (parameter, value) in others {
-        let known = all
-            .iter()
-            .position(|(known, _)| std::ptr::eq(*known, parameter));
+        let known = all.iter().position(|(known, _)| *known == parameter);
         match (known, value) {
             (Some(place), Some(value)) => all[place].1 = value,
             (Some(place), None) => drop(all.remove(place)),
@@ -29,6 +27,6 @@ pub(crate) fn replace(
     }
     all.sort_by_cached_key(|(parameter, _)| {
         let mut table = PARAMETERS.iter();
-        table.position(|known| std::ptr::eq(*known, *parameter))
+        table.position(|known| known == parameter)
     });
 }

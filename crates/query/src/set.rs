@@ -5,6 +5,7 @@ use std::{fmt, sync::Arc};
 use strew_catalog::{Entry, Ready, except::Except};
 use strew_core::{
     Area, Attributes, Keep, PeriodicSet, Placement, PointSet, Seed, Settle, Spacing, Table, Warp,
+    space::{self, SpaceSet},
 };
 use strew_error::{Error, Fault};
 
@@ -84,6 +85,31 @@ impl Set {
         })
     }
 
+    /// Its table, if its points lie in space.
+    #[must_use]
+    pub fn space(&self) -> Option<&space::Table> {
+        self.entry.space()
+    }
+
+    /// The points in space of a table at a spacing.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] unless the placement is one that points in space have.
+    pub fn points_in_space(
+        &self,
+        table: &space::Table,
+        spacing: Spacing,
+    ) -> Result<SpaceSet, Error> {
+        let placed = || {
+            SpaceSet::new(table.clone())
+                .seed(self.seed.0)
+                .warp(self.warp.strength())?
+                .keep(self.keep.get())?
+                .spacing(spacing.get())
+        };
+        placed().map_err(|_| Error::Internal("a checked set is out of range"))
+    }
+
     /// Shows a part of its points, while other layers keep clear of all of them.
     pub(crate) fn show(&mut self, part: Keep) {
         let product = (self.lod.get() * part.get()).max(Keep::MIN);
@@ -94,7 +120,7 @@ impl Set {
     /// sets of all points or of a tiny part of them.
     #[must_use]
     pub fn steps(&self) -> Option<u32> {
-        if self.period.is_some() {
+        if self.period.is_some() || self.space().is_some() {
             return None;
         }
         if self.field.is_some() {

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use strew_catalog::{Catalog, Entry, Key, MAX_PATTERN_RADIUS, PATTERN};
+use strew_catalog::{Catalog, Dimension, Entry, Key, MAX_PATTERN_RADIUS, Offer, PATTERN};
 use strew_core::{Alpha, map::Size};
 use strew_error::{Checked, Error, Fault, Faults, Together as _};
 
@@ -30,13 +30,24 @@ pub(super) fn check(
         let field = format!("{}{}", values.path(), parameter.name);
         Fault::new(&field, value, detail, allowed).into()
     };
-    let is_pattern = profile == PATTERN;
-    let is_known = is_pattern || catalog.has_profile(profile);
+    let dimension = values.dimension();
+    let is_pattern = profile == PATTERN && dimension == Dimension::Plane;
+    // Tables in space are not made on demand.
+    let offer = |of: &dyn Fn(Offer) -> String| match dimension {
+        Dimension::Plane => of(catalog.offer()),
+        Dimension::Space => String::new(),
+    };
+    let is_known = is_pattern || catalog.has_profile(dimension, profile);
     let alpha = parse(alpha_text).map_err(|error| {
         let allowed = match is_known {
             _ if is_pattern => "any number between 1 and 2".into(),
-            true => some(catalog.alphas(profile).iter().map(ToString::to_string)),
-            false => loaded(catalog),
+            true => some(
+                catalog
+                    .alphas(dimension, profile)
+                    .iter()
+                    .map(ToString::to_string),
+            ),
+            false => loaded(catalog, dimension),
         };
         fault(&ALPHA, alpha_text, error.to_string(), allowed)
     });
@@ -44,12 +55,13 @@ pub(super) fn check(
         true => Ok(()),
         false => {
             let detail =
-                "no such profile is loaded".to_owned() + &catalog.offer().of_profile(profile);
-            Err(fault(&PROFILE, profile, detail, loaded(catalog)))
+                "no such profile is loaded".to_owned() + &offer(&|offer| offer.of_profile(profile));
+            Err(fault(&PROFILE, profile, detail, loaded(catalog, dimension)))
         }
     };
     let (alpha, ()) = (alpha, known).together()?;
     let wanted = Wanted {
+        dimension,
         profile: profile.into(),
         alpha,
         catalog,
@@ -62,16 +74,21 @@ pub(super) fn check(
     if let Some(entry) = found {
         return Ok((entry, pin));
     }
-    let sizes = catalog.sizes(profile, alpha);
+    let sizes = catalog.sizes(dimension, profile, alpha);
     let size = size.filter(|_| is_pattern || !sizes.is_empty());
     let Some((text, size)) = size else {
-        let offer = catalog.offer().of_table(profile, alpha, map.as_deref());
+        let offer = offer(&|offer| offer.of_table(profile, alpha, map.as_deref()));
         let detail = format!("the profile `{profile}` is not loaded for this alpha{offer}");
-        let allowed = some(catalog.alphas(profile).iter().map(ToString::to_string));
+        let allowed = some(
+            catalog
+                .alphas(dimension, profile)
+                .iter()
+                .map(ToString::to_string),
+        );
         return Err(fault(&ALPHA, alpha_text, detail, allowed));
     };
     let offer = size.map_or(String::new(), |_| {
-        catalog.offer().of_table(profile, alpha, Some(text))
+        offer(&|offer| offer.of_table(profile, alpha, Some(text)))
     });
     let detail = format!("the profile `{profile}` is not loaded with this map size{offer}");
     let allowed = match is_pattern {
@@ -83,6 +100,7 @@ pub(super) fn check(
 
 /// The tables that a query could mean.
 struct Wanted<'a> {
+    dimension: Dimension,
     profile: Arc<str>,
     alpha: Alpha,
     catalog: &'a Catalog,
@@ -91,6 +109,7 @@ struct Wanted<'a> {
 impl Wanted<'_> {
     fn loaded(&self, size: Size) -> Option<Arc<Entry>> {
         self.catalog.entry(&Key {
+            dimension: self.dimension,
             profile: self.profile.clone(),
             alpha: self.alpha,
             size,
@@ -100,7 +119,7 @@ impl Wanted<'_> {
 
     /// The pattern itself needs no table.
     fn derived(&self, size: Size) -> Option<Arc<Entry>> {
-        let is_pattern = *self.profile == *PATTERN;
+        let is_pattern = *self.profile == *PATTERN && self.dimension == Dimension::Plane;
         is_pattern.then(|| self.catalog.pattern(self.alpha, size))?
     }
 
@@ -117,7 +136,9 @@ impl Wanted<'_> {
         };
         let usual = sizes.iter().find_map(|&size| self.loaded(size));
         let smallest = || {
-            let sizes = self.catalog.sizes(&self.profile, self.alpha);
+            let sizes = self
+                .catalog
+                .sizes(self.dimension, &self.profile, self.alpha);
             self.loaded(*sizes.first()?)
         };
         usual.or_else(smallest).or_else(|| self.derived(Size::S))
@@ -174,12 +195,17 @@ fn parse(text: &str) -> Result<Alpha, strew_core::Error> {
 }
 
 /// The loaded tables, in words for an error.
-fn loaded(catalog: &Catalog) -> String {
+fn loaded(catalog: &Catalog, dimension: Dimension) -> String {
     let of = |profile: &str| {
-        let alphas = some(catalog.alphas(profile).iter().map(ToString::to_string));
+        let alphas = some(
+            catalog
+                .alphas(dimension, profile)
+                .iter()
+                .map(ToString::to_string),
+        );
         format!("{profile} (alpha {alphas})")
     };
-    match catalog.profiles().as_slice() {
+    match catalog.profiles(dimension).as_slice() {
         [] => "nothing: no table is loaded".into(),
         profiles => some(profiles.iter().map(|profile| of(profile))),
     }

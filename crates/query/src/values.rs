@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use serde_json::{Map, Value as Json, value::RawValue};
-use strew_catalog::field;
+use strew_catalog::{Dimension, field};
 use strew_error::{Checked, Fault, Faults, unknown};
 
 use crate::{
@@ -42,6 +42,15 @@ impl Values {
     #[must_use]
     pub fn path(&self) -> &str {
         &self.path
+    }
+
+    /// Whether the request is about points of the plane or in space.
+    #[must_use]
+    pub fn dimension(&self) -> Dimension {
+        match self.groups.contains(&Group::SpaceAttributes) {
+            true => Dimension::Space,
+            false => Dimension::Plane,
+        }
     }
 
     /// The parameters that the request takes.
@@ -250,6 +259,8 @@ impl Values {
     /// The fault of a given value.
     #[must_use]
     pub fn fault(&self, parameter: &Parameter, detail: impl Into<String>) -> Fault {
+        // Parameters of space have names of the plane, and rules of their own.
+        let parameter = self.of(parameter).map_or(parameter, |(given, _)| given);
         let field = format!("{}{}", self.path, parameter.name);
         Fault::new(&field, self.text(parameter), detail, parameter.allowed())
     }
@@ -299,7 +310,8 @@ impl Values {
 
     /// The values as members of JSON.
     pub(crate) fn written(&self) -> Map<String, Json> {
-        let in_body = |group: &Group| groups::QUERY.contains(group);
+        let in_body =
+            |group: &Group| groups::QUERY.contains(group) || groups::SPACE_QUERY.contains(group);
         let given = self
             .given()
             .filter(|(parameter, _)| in_body(&parameter.group));

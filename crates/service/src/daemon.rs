@@ -243,7 +243,8 @@ impl Service {
     /// The tables of the sets of a query.
     async fn tables(&self, caller: &Caller, query: &Query) -> Result<Vec<Ready>, Error> {
         let mut tables = Vec::with_capacity(query.sets.len());
-        for set in &*query.sets {
+        // Tables in space are ready as they are.
+        for set in query.sets.iter().filter(|set| set.space().is_none()) {
             tables.push(self.ready(caller, set).await?);
         }
         Ok(tables)
@@ -379,6 +380,9 @@ impl Service {
     /// # Errors
     /// [`Error::Invalid`] for an amount that the table cannot have.
     pub async fn place(&self, caller: &Caller, set: Box<Set>) -> Result<Placed, Error> {
+        if set.space().is_some() {
+            return Placed::in_space(set);
+        }
         let ready = self.ready(caller, &set).await?;
         Placed::new(set, ready)
     }

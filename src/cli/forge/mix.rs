@@ -3,7 +3,7 @@
 use std::{path::Path, time::Duration};
 
 use anyhow::anyhow;
-use strew_catalog::{Catalog, Key};
+use strew_catalog::{Catalog, Dimension, Key};
 use strew_core::{Alpha, Table, map::Size, table::Shares};
 use strew_forge::{MixJob, mix, mix_file_name, read_table};
 use strew_query::{DEFAULT_ALPHA, DEFAULT_PROFILE};
@@ -54,6 +54,7 @@ impl Args {
         let catalog = Catalog::load(true, None).map_err(Failure::other)?;
         let alpha: Alpha = DEFAULT_ALPHA.parse().map_err(Failure::other)?;
         let key = Key {
+            dimension: Dimension::Plane,
             profile: self.table.as_str().into(),
             alpha,
             size: self.map,

@@ -31,8 +31,10 @@ pub(super) const MEMBERS: Section = Section {
         Group::Profile,
         Group::Table,
         Group::Points,
+        Group::Thinned,
         Group::Except,
         Group::Attributes,
+        Group::Choices,
         Group::Window,
     ],
 };
@@ -48,7 +50,7 @@ pub(super) const OUTPUT: Section = Section {
 pub(super) const NEIGHBORS: Section = Section {
     name: "Neighbors",
     about: "The bounds of a search for the nearest points.",
-    groups: &[Group::Nearest],
+    groups: &[Group::Nearest, Group::Neighbors],
 };
 
 impl Section {

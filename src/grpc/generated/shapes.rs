@@ -1,7 +1,7 @@
 // This file is @generated from proto/strew/v1.
 /// The most fields of a message.
 const MOST_FIELDS: usize = 27;
-pub(super) static SHAPES: [Shape; 47] = [
+pub(super) static SHAPES: [Shape; 51] = [
     Shape {
         bytes: size_of::<proto::StreamPointsRequest>(),
         is_field: false,
@@ -297,6 +297,30 @@ pub(super) static SHAPES: [Shape; 47] = [
                 kind: Kind::Message(25),
                 most: most::ONCE,
             },
+            Field {
+                number: 6,
+                name: "cuboid",
+                kind: Kind::Message(26),
+                most: most::ONCE,
+            },
+            Field {
+                number: 7,
+                name: "ball",
+                kind: Kind::Message(27),
+                most: most::ONCE,
+            },
+            Field {
+                number: 8,
+                name: "prism",
+                kind: Kind::Message(28),
+                most: most::ONCE,
+            },
+            Field {
+                number: 9,
+                name: "cube",
+                kind: Kind::Message(29),
+                most: most::ONCE,
+            },
         ],
     },
     Shape {
@@ -336,19 +360,19 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 13,
                 name: "scale_range",
-                kind: Kind::Message(26),
+                kind: Kind::Message(30),
                 most: most::ONCE,
             },
             Field {
                 number: 14,
                 name: "variants",
-                kind: Kind::Message(27),
+                kind: Kind::Message(31),
                 most: most::POINT_SET_VARIANTS,
             },
             Field {
                 number: 15,
                 name: "field",
-                kind: Kind::Message(28),
+                kind: Kind::Message(32),
                 most: most::ONCE,
             },
             Field {
@@ -366,25 +390,25 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 18,
                 name: "scale_ranges",
-                kind: Kind::Message(29),
+                kind: Kind::Message(33),
                 most: most::POINT_SET_SCALE_RANGES,
             },
             Field {
                 number: 20,
                 name: "variant_fields",
-                kind: Kind::Message(30),
+                kind: Kind::Message(34),
                 most: most::POINT_SET_VARIANT_FIELDS,
             },
             Field {
                 number: 21,
                 name: "terrain",
-                kind: Kind::Message(28),
+                kind: Kind::Message(32),
                 most: most::ONCE,
             },
             Field {
                 number: 22,
                 name: "heights",
-                kind: Kind::Message(31),
+                kind: Kind::Message(35),
                 most: most::ONCE,
             },
             Field {
@@ -414,7 +438,7 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 3,
                 name: "clear_of",
-                kind: Kind::Message(32),
+                kind: Kind::Message(36),
                 most: most::LAYER_CLEAR_OF,
             },
             Field {
@@ -469,7 +493,7 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 1,
                 name: "polygons",
-                kind: Kind::Message(33),
+                kind: Kind::Message(37),
                 most: most::POLYGONS_POLYGONS,
             },
         ],
@@ -496,6 +520,40 @@ pub(super) static SHAPES: [Shape; 47] = [
                 most: most::COMBINED_EXCLUDE,
             },
         ],
+    },
+    Shape {
+        bytes: size_of::<proto::Cuboid>(),
+        is_field: false,
+        fields: &[],
+    },
+    Shape {
+        bytes: size_of::<proto::Ball>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "center",
+                kind: Kind::Message(17),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::Prism>(),
+        is_field: false,
+        fields: &[
+            Field {
+                number: 1,
+                name: "base",
+                kind: Kind::Message(23),
+                most: most::ONCE,
+            },
+        ],
+    },
+    Shape {
+        bytes: size_of::<proto::Cube>(),
+        is_field: false,
+        fields: &[],
     },
     Shape {
         bytes: size_of::<proto::ScaleRange>(),
@@ -527,73 +585,73 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 3,
                 name: "ramp",
-                kind: Kind::Message(34),
+                kind: Kind::Message(38),
                 most: most::ONCE,
             },
             Field {
                 number: 4,
                 name: "radial",
-                kind: Kind::Message(35),
+                kind: Kind::Message(39),
                 most: most::ONCE,
             },
             Field {
                 number: 5,
                 name: "distance",
-                kind: Kind::Message(36),
+                kind: Kind::Message(40),
                 most: most::ONCE,
             },
             Field {
                 number: 6,
                 name: "noise",
-                kind: Kind::Message(37),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
             Field {
                 number: 7,
                 name: "raster",
-                kind: Kind::Message(38),
+                kind: Kind::Message(42),
                 most: most::ONCE,
             },
             Field {
                 number: 8,
                 name: "height",
-                kind: Kind::Message(39),
+                kind: Kind::Message(43),
                 most: most::ONCE,
             },
             Field {
                 number: 9,
                 name: "slope",
-                kind: Kind::Message(40),
+                kind: Kind::Message(44),
                 most: most::ONCE,
             },
             Field {
                 number: 10,
                 name: "multiply",
-                kind: Kind::Message(41),
+                kind: Kind::Message(45),
                 most: most::ONCE,
             },
             Field {
                 number: 11,
                 name: "min",
-                kind: Kind::Message(41),
+                kind: Kind::Message(45),
                 most: most::ONCE,
             },
             Field {
                 number: 12,
                 name: "max",
-                kind: Kind::Message(41),
+                kind: Kind::Message(45),
                 most: most::ONCE,
             },
             Field {
                 number: 13,
                 name: "invert",
-                kind: Kind::Message(28),
+                kind: Kind::Message(32),
                 most: most::ONCE,
             },
             Field {
                 number: 14,
                 name: "curve",
-                kind: Kind::Message(42),
+                kind: Kind::Message(46),
                 most: most::ONCE,
             },
         ],
@@ -611,7 +669,7 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 2,
                 name: "value",
-                kind: Kind::Message(26),
+                kind: Kind::Message(30),
                 most: most::ONCE,
             },
         ],
@@ -629,7 +687,7 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 2,
                 name: "value",
-                kind: Kind::Message(28),
+                kind: Kind::Message(32),
                 most: most::ONCE,
             },
         ],
@@ -658,7 +716,7 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 1,
                 name: "rings",
-                kind: Kind::Message(43),
+                kind: Kind::Message(47),
                 most: most::POLYGON_RINGS,
             },
         ],
@@ -670,19 +728,19 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 1,
                 name: "from",
-                kind: Kind::Message(44),
+                kind: Kind::Message(48),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "to",
-                kind: Kind::Message(44),
+                kind: Kind::Message(48),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "shares",
-                kind: Kind::Message(44),
+                kind: Kind::Message(48),
                 most: most::ONCE,
             },
         ],
@@ -694,19 +752,19 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 1,
                 name: "center",
-                kind: Kind::Message(44),
+                kind: Kind::Message(48),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "radii",
-                kind: Kind::Message(44),
+                kind: Kind::Message(48),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "shares",
-                kind: Kind::Message(44),
+                kind: Kind::Message(48),
                 most: most::ONCE,
             },
         ],
@@ -718,31 +776,31 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 1,
                 name: "points",
-                kind: Kind::Message(44),
+                kind: Kind::Message(48),
                 most: most::FIELD_DISTANCE_POINTS,
             },
             Field {
                 number: 2,
                 name: "lines",
-                kind: Kind::Message(45),
+                kind: Kind::Message(49),
                 most: most::FIELD_DISTANCE_LINES,
             },
             Field {
                 number: 3,
                 name: "polygons",
-                kind: Kind::Message(45),
+                kind: Kind::Message(49),
                 most: most::FIELD_DISTANCE_POLYGONS,
             },
             Field {
                 number: 4,
                 name: "distances",
-                kind: Kind::Message(44),
+                kind: Kind::Message(48),
                 most: most::ONCE,
             },
             Field {
                 number: 5,
                 name: "shares",
-                kind: Kind::Message(44),
+                kind: Kind::Message(48),
                 most: most::ONCE,
             },
         ],
@@ -754,7 +812,7 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 4,
                 name: "range",
-                kind: Kind::Message(44),
+                kind: Kind::Message(48),
                 most: most::ONCE,
             },
         ],
@@ -778,7 +836,7 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 5,
                 name: "bbox",
-                kind: Kind::Message(46),
+                kind: Kind::Message(50),
                 most: most::ONCE,
             },
         ],
@@ -790,19 +848,19 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 1,
                 name: "terrain",
-                kind: Kind::Message(38),
+                kind: Kind::Message(42),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "heights",
-                kind: Kind::Message(44),
+                kind: Kind::Message(48),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "shares",
-                kind: Kind::Message(44),
+                kind: Kind::Message(48),
                 most: most::ONCE,
             },
         ],
@@ -814,19 +872,19 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 1,
                 name: "terrain",
-                kind: Kind::Message(38),
+                kind: Kind::Message(42),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "slopes",
-                kind: Kind::Message(44),
+                kind: Kind::Message(48),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "shares",
-                kind: Kind::Message(44),
+                kind: Kind::Message(48),
                 most: most::ONCE,
             },
         ],
@@ -838,7 +896,7 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 1,
                 name: "fields",
-                kind: Kind::Message(28),
+                kind: Kind::Message(32),
                 most: most::FIELD_PARTS_FIELDS,
             },
         ],
@@ -850,13 +908,13 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 1,
                 name: "of",
-                kind: Kind::Message(28),
+                kind: Kind::Message(32),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "points",
-                kind: Kind::Message(44),
+                kind: Kind::Message(48),
                 most: most::FIELD_CURVE_POINTS,
             },
         ],
@@ -885,7 +943,7 @@ pub(super) static SHAPES: [Shape; 47] = [
             Field {
                 number: 1,
                 name: "vertices",
-                kind: Kind::Message(44),
+                kind: Kind::Message(48),
                 most: most::FIELD_LINE_VERTICES,
             },
         ],

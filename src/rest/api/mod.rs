@@ -87,6 +87,7 @@ macro_rules! tags {
 
 tags! {
     Points: "points", "Points of regions, counts, and single points.";
+    Space: "space", "Points in space: three dimensions.";
     Profiles: "profiles", "The noise profiles that are loaded.";
     Fields: "fields", "The fields that are loaded.";
     Worlds: "worlds", "The worlds that are loaded: queries that are described once.";

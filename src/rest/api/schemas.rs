@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator, generate::SchemaSettings, json_schema};
 use serde_json::Value;
 use strew_catalog::field::Document;
-use strew_query::{RegionSchema, groups};
+use strew_query::{RegionSchema, VolumeSchema, groups};
 
 use super::sets;
 
@@ -49,12 +49,19 @@ pub(in crate::rest) struct PointsQuery;
 #[derive(Debug)]
 pub(in crate::rest) struct CountQuery;
 
+/// The body of requests about points in space.
+#[derive(Debug)]
+pub(in crate::rest) struct SpaceQuery;
+
 /// The body of `POST /v1/pattern/arrangements`.
 #[derive(Debug)]
 pub(in crate::rest) struct ArrangementQuery;
 
-/// A layer of either.
+/// A layer of the plane.
 struct Layer;
+
+/// A layer in space.
+struct SpaceLayer;
 
 /// Schemas that are made of the table of parameters.
 macro_rules! from_table {
@@ -84,7 +91,13 @@ from_table! {
     ArrangementQuery = "ArrangementQuery", |_| {
         sets::body(groups::ARRANGEMENT, "An arrangement, and where its occurrences are wanted.")
     };
+    SpaceQuery = "SpaceQuery", |generator| {
+        of::<VolumeSchema>(generator);
+        of::<SpaceLayer>(generator);
+        sets::space_query()
+    };
     Layer = "Layer", |_| sets::layer();
+    SpaceLayer = "SpaceLayer", |_| sets::space_layer();
 }
 
 /// Defines what queries refer to.

@@ -39,9 +39,9 @@ fn nothing() -> Value {
 }
 
 /// The conditions on the members of a set, with a schema that may stand for the amount.
-fn rules_of_set(instead: Option<Value>) -> Vec<Value> {
+fn rules_of_set(set: &'static [Group], instead: Option<Value>) -> Vec<Value> {
     let is_amount = |group: Group| [Group::Amount, Group::Count].contains(&group);
-    let amounts = of(groups::SET).filter(|parameter| is_amount(parameter.group));
+    let amounts = of(set).filter(|parameter| is_amount(parameter.group));
     let one: Vec<Value> = amounts
         .map(|amount| json!({ "required": [amount.name] }))
         .collect();
@@ -66,24 +66,32 @@ fn rules_of_set(instead: Option<Value>) -> Vec<Value> {
 
 /// The schema of a query. The conditions of region, periodic, spread, only, scale_ranges, decimals, size, summary and
 /// crs are in `x-rules` only: schema-based test generators cannot satisfy that many.
-fn query(groups: &'static [Group], about: &str) -> Value {
+fn query(
+    groups: &'static [Group],
+    set: &'static [Group],
+    (region, layer): (&str, &str),
+    about: &str,
+) -> Value {
     let mut properties = members(groups);
-    properties.insert("region".into(), reference("Region"));
+    properties.insert("region".into(), reference(region));
     let layers = json!({
-        "type": "array", "minItems": 1, "maxItems": MOST_LAYERS, "items": reference("Layer"),
+        "type": "array", "minItems": 1, "maxItems": MOST_LAYERS, "items": reference(layer),
         "description": "Several sets of points, one after another, instead of one.",
     });
     properties.insert("layers".into(), layers);
     // The common seed and share, and the one layer that is wanted.
     let is_common = |parameter: &Parameter| [&SEED, &ONLY, &EXCEPT, &LOD].contains(&parameter);
-    let of_set = of(groups::SET).filter(|parameter| !is_common(parameter));
+    let of_set = of(set).filter(|parameter| !is_common(parameter));
     let of_set = of_set.map(|parameter| (parameter.name.to_owned(), nothing()));
     let mut of_set: Map<String, Value> = of_set.collect();
-    of_set.insert(PERIODIC.name.into(), nothing());
-    let world = json!({ "required": [WORLD.name] });
+    let takes = |wanted: &Parameter| of(groups).any(|parameter| parameter == wanted);
+    if takes(&PERIODIC) {
+        of_set.insert(PERIODIC.name.into(), nothing());
+    }
+    let world = takes(&WORLD).then(|| json!({ "required": [WORLD.name] }));
     let rules_of_all = vec![json!({ "oneOf": [
         { "required": ["layers"], "properties": of_set },
-        { "properties": { "layers": nothing() }, "allOf": rules_of_set(Some(world)) },
+        { "properties": { "layers": nothing() }, "allOf": rules_of_set(set, world) },
     ] })];
     let published = rules::of(groups);
     json!({
@@ -96,28 +104,47 @@ fn query(groups: &'static [Group], about: &str) -> Value {
     })
 }
 
+/// The schemas of regions and layers of the plane.
+const PLANE: (&str, &str) = ("Region", "Layer");
+
 /// A query for points.
 pub(super) fn points_query() -> Value {
     let about = "Which points, which part of them, and in which format: a region with one set of \
                  points, or with layers.";
-    query(groups::QUERY, about)
+    query(groups::QUERY, groups::SET, PLANE, about)
 }
 
 /// A query for a count.
 pub(super) fn count_query() -> Value {
     let about = "Which points: a region with one set of points, or with layers.";
-    query(groups::COUNTED, about)
+    query(groups::COUNTED, groups::SET, PLANE, about)
 }
 
-/// One of several sets of points.
+/// A query in space.
+pub(super) fn space_query() -> Value {
+    let about = "Which points in space: a region with one set of points, or with layers.";
+    let of_space = ("Volume", "SpaceLayer");
+    query(groups::SPACE_QUERY, groups::SPACE_SET, of_space, about)
+}
+
+/// One of several sets of points of the plane.
 pub(super) fn layer() -> Value {
-    let mut properties = members(groups::SET);
+    layer_of(groups::SET, "Region")
+}
+
+/// One of several sets of points in space.
+pub(super) fn space_layer() -> Value {
+    layer_of(groups::SPACE_SET, "Volume")
+}
+
+fn layer_of(set: &'static [Group], region: &str) -> Value {
+    let mut properties = members(set);
     let others = json!({
         "name": {
             "type": "string", "pattern": format!("^{NAME}$"),
             "description": "The layer's name; each layer has another one.",
         },
-        "region": reference("Region"),
+        "region": reference(region),
         "clear_of": {
             "type": "object", "additionalProperties": { "type": "number", "exclusiveMinimum": 0 },
             "description": "Names of earlier layers and the distances kept from their points, in \
@@ -127,7 +154,7 @@ pub(super) fn layer() -> Value {
     if let Value::Object(others) = others {
         properties.extend(others);
     }
-    let mut rules = rules_of_set(None);
+    let mut rules = rules_of_set(set, None);
     rules.push(json!({
         "if": { "required": ["clear_of"], "properties": { "clear_of": { "minProperties": 1 } } },
         "then": { "properties": { COUNT.name: nothing() } },

@@ -55,16 +55,25 @@ async fn fields_besides_the_query_are_checked_too() {
         .await;
     assert_faults(&answer.expect_err("too large"), &["parts"], &["1 to 2"]);
 
-    let at = Some(Position { x: 1.0, y: 2.0 });
+    let at = Some(Position {
+        x: 1.0,
+        y: 2.0,
+        z: None,
+    });
     let near = || FindNearestRequest {
         at,
         set: set(Amount::Spacing(1.0)),
         ..FindNearestRequest::default()
     };
-    let far = Some(Position { x: 1e300, y: 0.0 });
+    let far = Some(Position {
+        x: 1e300,
+        y: 0.0,
+        z: None,
+    });
     let nan = Some(Position {
         x: f64::NAN,
         y: 0.0,
+        z: None,
     });
     for (request, fields) in [
         (FindNearestRequest { at: None, ..near() }, vec!["at"]),

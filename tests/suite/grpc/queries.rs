@@ -28,7 +28,11 @@ fn variants(weights: [(&str, f64); 2]) -> BTreeMap<String, f64> {
 
 /// Queries as messages, with the same queries as JSON.
 fn queries() -> Vec<(StreamPointsRequest, Value)> {
-    let center = Some(Position { x: 100.0, y: -3.0 });
+    let center = Some(Position {
+        x: 100.0,
+        y: -3.0,
+        z: None,
+    });
     let circle = |radius| Shape::Circle(Circle { center, radius });
     let outline = [[0.0, 0.0], [40.0, 0.0], [40.0, 30.0], [0.0, 30.0]];
     let hole = [[10.0, 10.0], [20.0, 10.0], [15.0, 20.0]];

@@ -90,7 +90,11 @@ async fn neighbors_are_those_of_rest() {
         (Some(3), Some(2.0)),
     ] {
         let request = FindNearestRequest {
-            at: Some(Position { x: 100.5, y: -3.0 }),
+            at: Some(Position {
+                x: 100.5,
+                y: -3.0,
+                z: None,
+            }),
             k,
             radius,
             set: Some(set()),

@@ -64,7 +64,11 @@ async fn messages_take_png_alone() {
     let picture = wide_tiff([16, 200], 1 << 20);
     let mut client = PointServiceClient::new(daemon.channel().await);
     let nearest = |picture: &[u8]| FindNearestRequest {
-        at: Some(Position { x: 4.0, y: 4.0 }),
+        at: Some(Position {
+            x: 4.0,
+            y: 4.0,
+            z: None,
+        }),
         set: Some(PointSet {
             field: Some(Field {
                 shape: Some(Shape::Raster(FieldPixels {

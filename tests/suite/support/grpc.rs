@@ -51,7 +51,7 @@ pub fn square(side: f64) -> StreamPointsRequest {
 
 /// A ring of vertices.
 pub fn ring(vertices: &[[f64; 2]]) -> Ring {
-    let positions = vertices.iter().map(|&[x, y]| Position { x, y });
+    let positions = vertices.iter().map(|&[x, y]| Position { x, y, z: None });
     Ring {
         positions: positions.collect(),
     }

@@ -35,6 +35,7 @@ mod sieve;
 mod walk;
 mod warp;
 
+pub(crate) use attribute::hash;
 pub(crate) use lattice::Multiple;
 pub(crate) use seed::split_mix;
 

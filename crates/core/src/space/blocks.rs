@@ -3,7 +3,14 @@
 use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
 use core::{marker::PhantomData, ops::Range};
 
-use super::{batch::Batch, format::Format, point::Point, scope::Scope, walk::Walk};
+use super::{
+    batch::Batch,
+    cursor::Cursor,
+    format::Format,
+    point::{Point, PointId},
+    scope::Scope,
+    sieve::Sifted,
+};
 use crate::{Points, sample::Backend};
 
 /// The points of a plan in a format, block by block.
@@ -29,6 +36,9 @@ pub struct Blocks<F: Format> {
     source: Source,
     /// The number of points to come.
     left: u128,
+    /// The number of points of the request before these, and of all.
+    offset: u128,
+    total: u128,
     format: PhantomData<F>,
 }
 
@@ -42,7 +52,7 @@ enum Source {
 /// A walk and the batch that it filled last.
 #[derive(Clone, Debug)]
 struct Walking {
-    walk: Walk,
+    walk: Sifted,
     batch: Batch,
     /// The points of the batch that were written.
     written: usize,
@@ -51,7 +61,7 @@ struct Walking {
 impl<F: Format> Blocks<F> {
     /// The next `left` points of a scope from a place on.
     pub(super) fn walk(scope: Arc<Scope>, start: Option<[i64; 3]>, left: u128) -> Self {
-        let walk = Walk::new(scope.clone(), &scope.all, start, F::HAS_IDS);
+        let walk = Sifted::new(scope.clone(), &scope.all, start, F::HAS_IDS);
         Self {
             scope,
             source: Source::Walk(Box::new(Walking {
@@ -60,6 +70,8 @@ impl<F: Format> Blocks<F> {
                 written: 0,
             })),
             left,
+            offset: 0,
+            total: left,
             format: PhantomData,
         }
     }
@@ -69,9 +81,17 @@ impl<F: Format> Blocks<F> {
         Self {
             scope,
             left: points.len() as u128,
+            offset: 0,
+            total: points.len() as u128,
             source: Source::Kept(kept, points),
             format: PhantomData,
         }
+    }
+
+    /// The same blocks as a part of a request.
+    pub(super) fn of(mut self, offset: u128, total: u128) -> Self {
+        (self.offset, self.total) = (offset, total);
+        self
     }
 
     /// Sets the backend; see [`Backend`]. The points are the same.
@@ -89,7 +109,7 @@ impl<F: Format> Blocks<F> {
     #[must_use]
     pub fn with_backend(mut self, backend: Backend) -> Self {
         if let Source::Walk(walking) = &mut self.source {
-            walking.walk.backend = backend;
+            walking.walk.set_backend(backend);
         }
         self
     }
@@ -136,13 +156,57 @@ impl<F: Format> Blocks<F> {
                     let number = room.len().min(batch.len() - *written);
                     let from = *written;
                     *written += number;
-                    F::write(&self.scope, batch, from, walk.backend, &mut room[..number]);
+                    F::write(
+                        &self.scope,
+                        batch,
+                        from,
+                        walk.backend(),
+                        &mut room[..number],
+                    );
                     filled += number;
+                    // The cursor is the address of the next point.
+                    if *written == batch.len() && filled as u128 != self.left {
+                        *written = 0;
+                        if !walk.next(batch) {
+                            batch.restart([0; 3]);
+                        }
+                    }
                 }
             }
         }
         self.left -= filled as u128;
+        self.offset += filled as u128;
         filled
+    }
+}
+
+impl Blocks<Points> {
+    /// The place of the next point, if there is one and some were taken.
+    ///
+    /// ```
+    /// use strew_core::space::{Point, SpaceSet, Table};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(8.0, [0, 0, 0])?;
+    /// let mut blocks = plan.blocks_points();
+    /// blocks.fill(&mut [Point::default(); 100]);
+    /// let cursor = blocks.cursor().expect("there are more");
+    /// assert_eq!(plan.from_cursor(cursor).to_vec(), plan.to_vec()[100..]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn cursor(&self) -> Option<Cursor> {
+        if self.left == 0 {
+            return None;
+        }
+        let at = match &self.source {
+            Source::Kept(batch, points) => batch.address(points.start),
+            Source::Walk(walking) => walking.batch.address(walking.written),
+        };
+        Some(Cursor {
+            offset: self.offset,
+            total: self.total,
+            at: PointId::of(at?),
+        })
     }
 }
 

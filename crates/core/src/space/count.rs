@@ -8,8 +8,8 @@ use super::{
     closed,
     columns::{COLUMN_BITS, columns},
     scope::{Scope, State, common},
+    sieve::Sifted,
     volume::Volume,
-    walk::Walk,
 };
 use crate::table::FRACTION_BITS;
 
@@ -22,7 +22,7 @@ pub(super) fn count(scope: &Arc<Scope>, ranges: &[Range<i64>; 3]) -> u128 {
     if ranges.iter().any(Range::is_empty) {
         return 0;
     }
-    if scope.is_box() {
+    if scope.is_closed() {
         return closed::count(scope, &ranges);
     }
     divide(scope, ranges, scope.volume.as_ref())
@@ -35,7 +35,10 @@ fn divide(scope: &Arc<Scope>, ranges: [Range<i64>; 3], volume: Option<&Volume>) 
     }
     let near = match scope.state(&ranges, volume) {
         State::Out => return 0,
-        State::In => return closed::count_all(&scope.lattice, &ranges),
+        State::In if scope.clear.is_empty() => {
+            return closed::count_all(&scope.lattice, &ranges);
+        }
+        State::In => None,
         State::Test(near) => near,
     };
     let side = |axis: usize| ranges[axis].end - ranges[axis].start;
@@ -64,7 +67,7 @@ fn divide(scope: &Arc<Scope>, ranges: [Range<i64>; 3], volume: Option<&Volume>) 
 
 /// Counts point by point.
 fn walked(scope: &Arc<Scope>, ranges: &[Range<i64>; 3]) -> u128 {
-    let mut walk = Walk::new(scope.clone(), ranges, None, false);
+    let mut walk = Sifted::new(scope.clone(), ranges, None, false);
     let (mut batch, mut count) = (Batch::default(), 0);
     while walk.next(&mut batch) {
         count += batch.len() as u128;
@@ -113,7 +116,7 @@ pub(super) fn locate(scope: &Arc<Scope>, k: u128) -> Option<[i64; 3]> {
         let part = low << bits..(low + 1) << bits;
         ranges[axis] = common(&part, &whole);
     }
-    let mut walk = Walk::new(scope.clone(), &ranges, None, true);
+    let mut walk = Sifted::new(scope.clone(), &ranges, None, true);
     let mut batch = Batch::default();
     while walk.next(&mut batch) {
         let point = usize::try_from(k).ok();
@@ -127,7 +130,7 @@ pub(super) fn locate(scope: &Arc<Scope>, k: u128) -> Option<[i64; 3]> {
 
 /// All points of a scope of few, relative to one origin.
 pub(super) fn keep(scope: &Arc<Scope>) -> Batch {
-    let mut walk = Walk::new(scope.clone(), &scope.all, None, true);
+    let mut walk = Sifted::new(scope.clone(), &scope.all, None, true);
     let mut kept = Batch::default();
     let mut batch = Batch::default();
     let mut is_first = true;

@@ -16,9 +16,10 @@
 //! `pattern` and `symmetry` have the pattern, `table` the vectors, `warp` the shears, `lattice` which addresses have
 //! points and where; `volume` the parts of space, `scope` what of a lattice is requested. `walk` makes points batch by
 //! batch from `columns` of planes, `cells` and `template`s; `closed` and `count` count them. `plan` is a request made
-//! ready, whose points `blocks` writes in a `format`; `nearest` and `distance` are about neighbors. `set` is all of this, `shipped` the table
+//! ready, whose points `blocks` writes in a `format`; `attributes` are their further values; `nearest` and `distance` are about neighbors. `set` is all of this, `shipped` the table
 //! that the crate has.
 
+mod attributes;
 mod batch;
 mod blocks;
 mod cells;
@@ -29,6 +30,7 @@ mod cursor;
 mod distance;
 mod format;
 mod lattice;
+mod mask;
 mod nearest;
 mod pattern;
 mod plan;
@@ -37,6 +39,7 @@ mod scope;
 mod set;
 #[cfg(feature = "tables")]
 mod shipped;
+mod sieve;
 mod symmetry;
 mod table;
 mod template;
@@ -44,6 +47,7 @@ mod volume;
 mod walk;
 mod warp;
 
+pub use attributes::BoundAttributes;
 pub use blocks::{Blocks, Members};
 pub use cursor::Cursor;
 pub use distance::LeastDistance;

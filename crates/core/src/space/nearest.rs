@@ -5,10 +5,11 @@ use alloc::{sync::Arc, vec::Vec};
 use super::{
     batch::Batch,
     lattice::{LATTICE_LIMIT, Lattice, fixed},
+    mask::Mask,
     point::{Point, PointId},
     scope::Scope,
+    sieve::Sifted,
     volume::{Region, Volume},
-    walk::Walk,
 };
 use crate::{
     error::{Error, ErrorKind, number},
@@ -43,6 +44,7 @@ pub(super) const MAX_CANDIDATES: usize = 4_000_000;
 /// smaller id.
 pub(super) fn nearest(
     lattice: &Lattice,
+    mask: &Mask,
     at: [f64; 3],
     k: usize,
     within: Option<f64>,
@@ -75,7 +77,7 @@ pub(super) fn nearest(
             radius = radius.min(most);
         }
         check(lattice, at, radius)?;
-        let mut found = around(lattice, at, radius)?;
+        let mut found = around(lattice, mask, at, radius)?;
         found.sort_unstable_by(|a, b| {
             let by_distance = a.0.total_cmp(&b.0);
             by_distance.then_with(|| a.1.id.cmp(&b.1.id))
@@ -119,7 +121,12 @@ fn check(lattice: &Lattice, at: [f64; 3], radius: f64) -> Result<(), Error> {
 }
 
 /// The points within a radius, its end included, with their squared distances.
-fn around(lattice: &Lattice, at: [f64; 3], radius: f64) -> Result<Vec<(f64, Point)>, Error> {
+fn around(
+    lattice: &Lattice,
+    mask: &Mask,
+    at: [f64; 3],
+    radius: f64,
+) -> Result<Vec<(f64, Point)>, Error> {
     // Rounded coordinates of the box do not lose points at the radius.
     let wide = radius * (1.0 + 1e-12);
     let [min, max] = [
@@ -127,8 +134,8 @@ fn around(lattice: &Lattice, at: [f64; 3], radius: f64) -> Result<Vec<(f64, Poin
         at.map(|v| (v + wide).next_up().next_up()),
     ];
     let volume = Volume::Region(Region::between(min, max));
-    let scope = Arc::new(Scope::new(lattice, &volume, Stop::default())?);
-    let mut walk = Walk::new(scope.clone(), &scope.all, None, true);
+    let scope = Arc::new(Scope::new(lattice, mask, &volume, Stop::default())?);
+    let mut walk = Sifted::new(scope.clone(), &scope.all, None, true);
     let (mut batch, mut found) = (Batch::default(), Vec::new());
     let farthest = radius * radius;
     while walk.next(&mut batch) {

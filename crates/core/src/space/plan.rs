@@ -10,6 +10,7 @@ use super::{
     cursor::Cursor,
     format::Format,
     lattice::{Lattice, Placement},
+    mask::Mask,
     point::{Point, PointId},
     scope::Scope,
     table::Table,
@@ -60,12 +61,12 @@ fn is_small(scope: &Scope) -> bool {
 impl Plan {
     /// The plan of a volume, which is counted unless its count is known.
     pub(super) fn new(
-        lattice: &Lattice,
+        (lattice, mask): (&Lattice, &Mask),
         volume: &Volume,
         stop: Stop,
         total: Option<u128>,
     ) -> Result<Self, Error> {
-        let scope = Arc::new(Scope::new(lattice, volume, stop)?);
+        let scope = Arc::new(Scope::new(lattice, mask, volume, stop)?);
         let mut kept = None;
         let total = match total {
             Some(total) => total,
@@ -133,6 +134,20 @@ impl Plan {
     #[must_use]
     pub const fn offset(&self) -> u128 {
         self.window.offset
+    }
+
+    /// Whether the plan is less than the whole request.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
+    /// assert!(plan.window(50, None).is_window() && !plan.is_window());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn is_window(&self) -> bool {
+        self.window.count < self.window.total
     }
 
     /// The points from number `offset` of this plan on, at most `limit`; none from its end on.
@@ -281,15 +296,16 @@ impl Plan {
             start,
             offset,
             count,
-            ..
+            total,
         } = self.window;
-        match &self.kept {
+        let blocks = match &self.kept {
             Some(kept) => {
                 let points = offset as usize..(offset + count) as usize;
                 Blocks::kept(self.scope.clone(), kept.clone(), points)
             }
             None => Blocks::walk(self.scope.clone(), start, count),
-        }
+        };
+        blocks.of(offset, total)
     }
 
     /// The points as `f32` triples relative to [`origin`](Self::origin), block by block.
@@ -400,6 +416,31 @@ impl Plan {
     #[must_use]
     pub fn origin(&self) -> [f64; 3] {
         self.scope.corner.at
+    }
+
+    pub(super) fn lattice(&self) -> &Lattice {
+        &self.scope.lattice
+    }
+
+    /// The plan with a flag that stops counting and making points, in place of the one it had. Once it is raised, blocks
+    /// end early.
+    ///
+    /// ```
+    /// use strew_core::{server::Stop, space::{SpaceSet, Table}};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(99.0, [0, 0, 0])?;
+    /// let stop = Stop::new();
+    /// stop.raise();
+    /// assert!((plan.stopped_by(stop).to_vec().len() as u128) < 99 * 99 * 99);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn stopped_by(mut self, stop: Stop) -> Self {
+        self.scope = Arc::new(Scope {
+            stop,
+            ..(*self.scope).clone()
+        });
+        self
     }
 
     /// The table of the set.

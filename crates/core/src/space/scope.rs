@@ -1,10 +1,11 @@
 //! Scopes: the part of a lattice that a request covers.
 
-use alloc::vec::Vec;
+use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
 use super::{
     lattice::{Lattice, fixed},
+    mask::{ClearOf, Mask},
     volume::{CORNERS, Chunk, Region, Volume},
 };
 use crate::{
@@ -30,6 +31,8 @@ pub struct Scope {
     pub(super) region: Region,
     /// The place that offsets are relative to.
     pub(super) corner: Corner,
+    /// The sets that points keep clear of.
+    pub(super) clear: Arc<[ClearOf]>,
     /// Ends counting early.
     pub(super) stop: Stop,
 }
@@ -116,8 +119,14 @@ fn beside_chunks(volume: &Volume) -> Option<Volume> {
 }
 
 impl Scope {
-    /// The part of a lattice that lies in a volume.
-    pub(super) fn new(lattice: &Lattice, volume: &Volume, stop: Stop) -> Result<Self, Error> {
+    /// The part of a lattice under a mask that lies in a volume.
+    pub(super) fn new(
+        lattice: &Lattice,
+        mask: &Mask,
+        volume: &Volume,
+        stop: Stop,
+    ) -> Result<Self, Error> {
+        let volume = &mask.narrowed(volume);
         let region = volume
             .bounds()
             .ok_or_else(|| Error::new(ErrorKind::Unbounded, "area", "unbounded", "within a box"))?;
@@ -156,22 +165,14 @@ impl Scope {
             volume,
             region,
             corner,
+            clear: mask.clear.clone(),
             stop,
         })
     }
 
     /// The states of the points of a box of the lattice, which is not empty, if their number is not known to be 0.
     pub(super) fn state(&self, ranges: &[Range<i64>; 3], volume: Option<&Volume>) -> State {
-        let lattice = &self.lattice;
-        let displaced = [0, 1, 2].map(|axis| {
-            let [least, most] = lattice.turned.reach[axis].map(i64::from);
-            let range = &ranges[axis];
-            [fixed(range.start) + least, fixed(range.end - 1) + most]
-        });
-        let places = match &lattice.shears {
-            Some(shears) => shears.spread(displaced),
-            None => displaced,
-        };
+        let places = self.places(ranges);
         let mut is_inside = true;
         for ([least, most], bounds) in places.iter().zip(&self.bounds) {
             if *most < bounds.start || bounds.end <= *least {
@@ -186,14 +187,43 @@ impl Scope {
                 State::Test(None)
             };
         };
-        let [min, max] = [0, 1].map(|end| places.map(|ends| lattice.world(ends[end])));
-        let near = volume.focus(&Region::between(min, max));
+        let near = volume.focus(&self.between(places));
         match near.is_all_or_nothing() {
             Some(false) => State::Out,
             Some(true) if is_inside => State::In,
             Some(true) => State::Test(None),
             None => State::Test(Some(near)),
         }
+    }
+
+    /// A box around the points of a box of the lattice, which is not empty.
+    pub(super) fn spread(&self, ranges: &[Range<i64>; 3]) -> Region {
+        self.between(self.places(ranges))
+    }
+
+    /// The ends of the fixed-point coordinates of the points of a box of the lattice.
+    fn places(&self, ranges: &[Range<i64>; 3]) -> [[i64; 2]; 3] {
+        let lattice = &self.lattice;
+        let displaced = [0, 1, 2].map(|axis| {
+            let [least, most] = lattice.turned.reach[axis].map(i64::from);
+            let range = &ranges[axis];
+            [fixed(range.start) + least, fixed(range.end - 1) + most]
+        });
+        match &lattice.shears {
+            Some(shears) => shears.spread(displaced),
+            None => displaced,
+        }
+    }
+
+    fn between(&self, places: [[i64; 2]; 3]) -> Region {
+        let [min, max] = [0, 1].map(|end| places.map(|ends| self.lattice.world(ends[end])));
+        Region::between(min, max)
+    }
+
+    /// Whether points are counted in closed form: all that is requested lies in a box without warp, and is clear of
+    /// nothing.
+    pub(super) fn is_closed(&self) -> bool {
+        self.is_box() && self.clear.is_empty()
     }
 
     /// Whether all that is requested lies in a box without warp.

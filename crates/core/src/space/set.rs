@@ -5,9 +5,11 @@ use alloc::vec::Vec;
 use super::{
     cursor::Cursor,
     lattice::{Lattice, Placement},
+    mask::{ClearOf, Mask},
     nearest::{self, Neighbor},
     plan::Plan,
     point::{Point, PointId},
+    sieve,
     table::Table,
     volume::{Region, Volume},
 };
@@ -41,6 +43,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct SpaceSet {
     lattice: Lattice,
+    mask: Mask,
     /// Whether the warp was chosen, and so stays when the seed changes.
     has_own_warp: bool,
 }
@@ -70,6 +73,7 @@ impl SpaceSet {
         };
         Self {
             lattice: Lattice::new(table, placement),
+            mask: Mask::default(),
             has_own_warp: false,
         }
     }
@@ -234,12 +238,56 @@ impl SpaceSet {
         Ok(self.replaced(|placement| Placement { keep, ..placement }))
     }
 
+    pub(super) const fn lattice(&self) -> &Lattice {
+        &self.lattice
+    }
+
     fn replaced(mut self, change: impl FnOnce(Placement) -> Placement) -> Self {
         let placement = change(self.lattice.placement);
         if placement != self.lattice.placement {
             self.lattice = Lattice::new(self.lattice.table, placement);
         }
         self
+    }
+
+    /// Leaves only the points in a volume. Sets that keep clear of this one keep clear of these.
+    ///
+    /// ```
+    /// use strew_core::space::{Ball, SpaceSet, Table};
+    ///
+    /// let ball = Ball::new([0.0; 3], 5.0)?;
+    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).limited_to(ball);
+    /// assert!(set.chunk(16.0, [0, 0, 0])?.iter().all(|point| ball.contains(point.at())));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn limited_to(mut self, volume: impl Into<Volume>) -> Self {
+        self.mask = self.mask.and_within(volume.into());
+        self
+    }
+
+    /// Removes the points nearer than `distance` world units to any point of another set.
+    ///
+    /// The points of the other set near a point decide, wherever points are requested, so neighboring volumes agree.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Clearance`] unless the distance is above 0 and at most 16 mean spacings of the other set.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
+    /// let stars = set.clone().spacing(4.0)?.seed(1);
+    /// let dust = set.seed(2).clear_of(&stars, 1.5)?;
+    /// for grain in dust.chunk(8.0, [0, 0, 0])? {
+    ///     assert!(stars.nearest(grain.at(), 1)?[0].distance >= 1.5);
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn clear_of(mut self, other: &Self, distance: f64) -> Result<Self, Error> {
+        let other = ClearOf::new(&other.lattice, &other.mask, distance)?;
+        self.mask = self.mask.and_clear_of(other);
+        Ok(self)
     }
 
     /// The points in a volume.
@@ -279,7 +327,7 @@ impl SpaceSet {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn within_until(&self, volume: impl Into<Volume>, stop: Stop) -> Result<Plan, Error> {
-        Plan::new(&self.lattice, &volume.into(), stop, None)
+        Plan::new((&self.lattice, &self.mask), &volume.into(), stop, None)
     }
 
     /// The points of the chunk at the place `at` of a grid of cubes with a side of `size` world units. Chunks share no
@@ -323,7 +371,7 @@ impl SpaceSet {
     /// ```
     pub fn resume(&self, volume: impl Into<Volume>, cursor: Cursor) -> Result<Plan, Error> {
         let plan = Plan::new(
-            &self.lattice,
+            (&self.lattice, &self.mask),
             &volume.into(),
             Stop::default(),
             Some(cursor.total),
@@ -360,7 +408,7 @@ impl SpaceSet {
     /// ```
     #[must_use]
     pub fn point(&self, id: PointId) -> Option<Point> {
-        self.lattice.point(id)
+        sieve::point(&self.lattice, &self.mask, id)
     }
 
     /// The intervals of the three indices of a point, or `None` if the lattice has no point there.
@@ -411,7 +459,7 @@ impl SpaceSet {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn nearest(&self, at: [f64; 3], k: usize) -> Result<Vec<Neighbor>, Error> {
-        nearest::nearest(&self.lattice, at, k, None)
+        nearest::nearest(&self.lattice, &self.mask, at, k, None)
     }
 
     /// The nearest points of a place within a radius, its end included, at most `k`; see [`nearest`](Self::nearest).
@@ -433,7 +481,7 @@ impl SpaceSet {
         k: usize,
         radius: f64,
     ) -> Result<Vec<Neighbor>, Error> {
-        nearest::nearest(&self.lattice, at, k, Some(radius))
+        nearest::nearest(&self.lattice, &self.mask, at, k, Some(radius))
     }
 
     /// The distance that no two points of the set are nearer than, in world units; with warp it is a bound.

@@ -23,6 +23,8 @@ pub(super) struct Arrays {
     /// Whether points have a rotation, and whether they have a scale.
     pub(super) is_turned: bool,
     pub(super) is_scaled: bool,
+    /// Whether ids have a third part.
+    pub(super) is_in_space: bool,
     /// The names of the arrays of further numbers: `_` and the column's name in capitals.
     pub(super) others: Vec<String>,
 }
@@ -43,6 +45,7 @@ impl Arrays {
         Self {
             is_turned: pose.is_turned(),
             is_scaled: pose.is_scaled(),
+            is_in_space: schema.is_in_space(),
             others: others.collect(),
         }
     }
@@ -63,6 +66,12 @@ impl Arrays {
             numbers: 5123,
             bytes: 8,
         };
+        let third = self.is_in_space.then_some(Array {
+            name: "_ID_Z",
+            items: "VEC2",
+            numbers: 5123,
+            bytes: 4,
+        });
         let others = self.others.iter();
         let others = others.map(move |name| of_floats(name, "SCALAR", 4));
         [of_floats("TRANSLATION", "VEC3", 12)]
@@ -70,6 +79,7 @@ impl Arrays {
             .chain(rotation)
             .chain(scale)
             .chain([id])
+            .chain(third)
             .chain(others)
     }
 

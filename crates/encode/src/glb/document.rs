@@ -5,7 +5,7 @@ use std::{fmt::Write as _, ops::Range};
 use serde_json::Value;
 
 use super::{arrays::Arrays, placeholder::Placeholder};
-use crate::{chunks::Things, head::Head, members::write_json, preview::COLORS};
+use crate::{chunks::Things, coordinates::Place, head::Head, members::write_json, preview::COLORS};
 
 /// The points of a chunk that have the same thing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub(super) struct Described<'a> {
     pub(super) head: &'a Head,
     pub(super) layers: &'a [Option<String>],
     /// The origin of the places.
-    pub(super) origin: [f64; 2],
+    pub(super) origin: Place,
     pub(super) things: &'a Things,
     pub(super) arrays: &'a Arrays,
     pub(super) placeholder: &'a Placeholder,
@@ -57,8 +57,8 @@ impl Document {
     pub(super) fn new(of: Described<'_>, nodes: Vec<Node>) -> Self {
         let points: u64 = nodes.iter().map(|node| u64::from(node.count)).sum();
         let instance_bytes = points * of.arrays.point_bytes();
-        let [x, y] = of.origin;
-        let translation = [x, 0.0, 0.0 - y].map(|v| Value::from(v).to_string());
+        let [x, y] = of.origin.flat();
+        let translation = [x, of.origin.z(), 0.0 - y].map(|v| Value::from(v).to_string());
         let mut document = Self {
             begin: begin(of, instance_bytes),
             root: format!(

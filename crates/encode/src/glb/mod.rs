@@ -1,7 +1,7 @@
 //! glTF, binary: one mesh for each thing, drawn at every point by `EXT_mesh_gpu_instancing`.
 //!
 //! A node has the points of one chunk and thing. Its arrays lie one after another: TRANSLATION, ROTATION and SCALE
-//! where points have them, `_ID`, then further numbers. All is relative to the region's lower corner, where the
+//! where points have them, `_ID` (in space `_ID_Z`, too), then further numbers. All is relative to the region's lower corner, where the
 //! parent of the nodes stands, so that `f32` is exact enough; y is up, as glTF demands.
 //!
 //! The document stands before the arrays and says how long they are. So where there are several things, the points
@@ -22,6 +22,7 @@ use crate::{
     EncodeError,
     blocks::Blocks,
     chunks::{CHUNK, Chunks, Things},
+    coordinates::Place,
     head::Head,
     ids,
     pose::{Pose, y_up},
@@ -37,7 +38,7 @@ const MOST_POINTS: u128 = 1 << 24;
 pub(super) struct Glb {
     head: Head,
     layers: Vec<Option<String>>,
-    origin: [f64; 2],
+    origin: Place,
     pose: Pose,
     things: Things,
     arrays: Arrays,
@@ -59,7 +60,7 @@ impl Glb {
     /// # Errors
     /// [`Error::Invalid`] if there are too many points, or ids that it cannot hold.
     pub(super) fn new(rows: Rows, head: Head) -> Result<Self, Error> {
-        ids::check("glb", &rows)?;
+        ids::check("glb", &rows, 32)?;
         let count = rows.count();
         if count > MOST_POINTS {
             let detail = format!("the answer has {count} points");
@@ -72,7 +73,10 @@ impl Glb {
         let mut glb = Self {
             head,
             layers: rows.parts().map(|part| part.layer.clone()).collect(),
-            origin: rows.coordinates().origin().unwrap_or_default(),
+            origin: rows
+                .coordinates()
+                .origin()
+                .unwrap_or(Place::Plane([0.0; 2])),
             arrays: Arrays::new(rows.schema(), &pose),
             placeholder: Placeholder::new(spacing.unwrap_or(1.0)),
             pose,
@@ -204,7 +208,14 @@ fn push(batch: Batch<'_>, pose: &Pose, things: &Things, made: &mut [Vec<Vec<u8>>
             floats(arrays.next(), [pose.scale(row); 3]);
         }
         if let Some(out) = arrays.next() {
-            out.extend_from_slice(&ids::halves(row.point.id));
+            for part in [row.point.id.x, row.point.id.y] {
+                out.extend_from_slice(&ids::halves(part));
+            }
+        }
+        if let Some(height) = row.height
+            && let Some(out) = arrays.next()
+        {
+            out.extend_from_slice(&ids::halves(height.address));
         }
         for (out, column) in arrays.zip(&pose.others) {
             let value = row.columns.get(*column).and_then(|v| v.number(row.index));

@@ -41,8 +41,7 @@ pub fn block_bytes(planned: &Planned, most: usize) -> usize {
 /// field those that are counted and left out.
 #[must_use]
 pub fn considered(planned: &Planned) -> u128 {
-    let bounds = planned.query.region.bounds;
-    let [width, height] = bounds.sides();
+    let measure = planned.query.region.measure();
     let is_counted = planned.query.window.cursor.is_none();
     let considered = |(set, planned): (&Set, &PlannedSet)| {
         let count = planned.plan.count() as f64;
@@ -55,7 +54,7 @@ pub fn considered(planned: &Planned) -> u128 {
             };
             return all.max(microseconds);
         }
-        let most = width * height * planned.spacing.density();
+        let most = measure * planned.density;
         let all = ((count + 1.0) / set.share() - 1.0).min(most).max(count);
         all.max(microseconds)
     };

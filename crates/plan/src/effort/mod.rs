@@ -7,6 +7,7 @@ mod layers;
 mod making;
 mod neighbors;
 mod point;
+mod volume;
 
 use strew_core::{
     Area, Placement, PointSet, Region, Spacing, Warp,
@@ -27,6 +28,8 @@ pub use point::point;
 use strew_catalog::Ready;
 use strew_error::Error;
 use strew_query::{Amount, Query, Set};
+pub(super) use volume::CLEARED;
+pub use volume::rows_of_volume;
 
 /// The approximate number of lattice units in a mean spacing.
 const UNITS: f64 = 3.0;
@@ -151,6 +154,16 @@ pub fn planning(query: &Query, tables: &[Ready], limit: u64) -> Result<f64, Erro
     // With a cursor nothing is counted.
     if query.window.cursor.is_some() {
         return Ok(0.0);
+    }
+    if query.region.volume.is_some() {
+        let rows = volume::rows(query);
+        return match rows > limit as f64 {
+            true => Err(Error::TooManyRows {
+                rows: rows as u128,
+                limit,
+            }),
+            false => Ok(rows),
+        };
     }
     let mut layers = Layers::default();
     let (mut all, mut weighted) = (0.0, 0.0);

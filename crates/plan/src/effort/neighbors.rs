@@ -1,6 +1,7 @@
 //! The price of a search for neighbors.
 
 use strew_core::Region;
+use strew_encode::Place;
 use strew_query::Nearest;
 
 use super::{ROW, layers::look};
@@ -30,9 +31,12 @@ impl Neighbors {
         /// More points than this take milliseconds.
         const MANY: usize = 500;
         let within = nearest.radius.map_or(1.0, |radius| {
-            // The disk and its rim, generously.
-            let across = radius * placed.resolved.density.sqrt() + 2.0;
-            across * across * 4.0
+            // The disk or the ball and its rim, generously.
+            let density = placed.resolved.density;
+            match nearest.at {
+                Place::Plane(_) => (radius * density.sqrt() + 2.0).powi(2) * 4.0,
+                Place::Space(_) => (radius * density.cbrt() + 2.0).powi(3) * 5.0,
+            }
         });
         let most = nearest.k.unwrap_or(MOST_WITHIN).min(MOST_WITHIN);
         let most = match (nearest.k, nearest.radius) {
@@ -72,7 +76,7 @@ impl Neighbors {
 /// The box around a place where its neighbors are, unless it is too far out.
 fn around(nearest: &Nearest, density: f64) -> Option<Region> {
     let reach = nearest.radius.unwrap_or(0.0) + density.sqrt().recip();
-    let [x, y] = nearest.at;
+    let [x, y] = nearest.at.flat();
     let corners = [[x - reach, y - reach], [x + reach, y + reach]];
     Region::new(corners[0], corners[1]).ok()
 }

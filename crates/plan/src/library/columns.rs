@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use strew_core::{F32, F64, Point};
-use strew_encode::{Coordinates, Encoding, Kind, Output, Part, Rows, Values};
+use strew_encode::{Coordinates, Encoding, Kind, Output, Part, Place, Rows, Values};
 use strew_error::Error;
 
 use crate::Planned;
@@ -70,7 +70,7 @@ impl Columns {
             }
         }
         Ok(Self {
-            origin: coordinates.origin(),
+            origin: coordinates.origin().map(Place::flat),
             ids,
             at,
             further,
@@ -135,7 +135,7 @@ pub(super) fn fill_offsets(planned: &Planned, at: &mut [[f32; 2]]) -> Result<[f6
         let parts = window(&parts, i * size, at.len());
         if let [part] = parts.as_slice()
             && let Some(plan) = part.plan.plane()
-            && coordinates.origin() == Some(plan.origin())
+            && coordinates.origin() == Some(Place::Plane(plan.origin()))
         {
             plan.blocks::<F32>().fill(at);
             return;
@@ -147,7 +147,7 @@ pub(super) fn fill_offsets(planned: &Planned, at: &mut [[f32; 2]]) -> Result<[f6
             filled += batch.near.len();
         }
     });
-    Ok(coordinates.origin().unwrap_or_default())
+    Ok(coordinates.origin().map_or([0.0; 2], Place::flat))
 }
 
 /// The parts of a plan without layers and attributes.

@@ -117,7 +117,7 @@ fn offsets_are_those_of_the_format_f32_and_need_room() {
         assert_eq!((filled, at[count]), (count, [0.0; 2]));
         let answer = library.document(&planned, options, Encoding::F32);
         let answer = answer.expect("written");
-        assert_eq!(answer.origin(), Some(origin));
+        assert_eq!(answer.origin(), Some(strew_encode::Place::Plane(origin)));
         let bytes: Vec<u8> = answer.flat_map(|block| block.expect("whole")).collect();
         let record = bytes.len() / count;
         for (record, at) in bytes.chunks(record).zip(&at) {

@@ -457,7 +457,7 @@ impl JobState {
         }
     }
 }
-/// A place in the plane.
+/// A place in the plane or in space.
 #[derive(Clone, Copy, PartialEq, ::prost::Message)]
 pub struct Position {
     /// Its x coordinate.
@@ -466,13 +466,18 @@ pub struct Position {
     /// Its y coordinate.
     #[prost(double, tag = "2")]
     pub y: f64,
+    /// Its z coordinate; only in space, where it is 0 by default. A place whose neighbors are wanted is in space if it
+    /// has one.
+    #[prost(double, optional, tag = "3")]
+    pub z: ::core::option::Option<f64>,
 }
 /// Where. Half-open and exact: regions that share an edge share no point and
-/// lose none. The reported coordinates decide.
+/// lose none. The reported coordinates decide. A cuboid, a ball, a prism and a cube are volumes:
+/// with one of them the points lie in space, and their ids are `x:y:z`.
 #[derive(Clone, PartialEq, ::prost::Message)]
 pub struct Region {
     /// Required.
-    #[prost(oneof = "region::Shape", tags = "1, 2, 3, 4, 5")]
+    #[prost(oneof = "region::Shape", tags = "1, 2, 3, 4, 5, 6, 7, 8, 9")]
     pub shape: ::core::option::Option<region::Shape>,
 }
 /// Nested message and enum types in `Region`.
@@ -492,9 +497,21 @@ pub mod region {
         /// A square of the world grid. Coordinates of the answer are relative to its lower corner.
         #[prost(message, tag = "4")]
         Chunk(super::Chunk),
-        /// The points in some regions and not in others.
+        /// The points in some regions and not in others. All of them lie in the plane, or all in space.
         #[prost(message, tag = "5")]
         Combined(super::Combined),
+        /// A box in space.
+        #[prost(message, tag = "6")]
+        Cuboid(super::Cuboid),
+        /// A ball.
+        #[prost(message, tag = "7")]
+        Ball(super::Ball),
+        /// Polygons between two heights.
+        #[prost(message, tag = "8")]
+        Prism(super::Prism),
+        /// A cube of the world grid of space. Coordinates of the answer are relative to its lower corner.
+        #[prost(message, tag = "9")]
+        Cube(super::Cube),
     }
 }
 /// A half-open box: min <= p < max along both axes, in world units. It must not be empty, and its
@@ -570,6 +587,68 @@ pub struct Combined {
     #[prost(message, repeated, tag = "2")]
     pub exclude: ::prost::alloc::vec::Vec<Region>,
 }
+/// A half-open box in space: min <= p < max along all axes, in world units. It must not be empty, and its corners must be
+/// near enough to the origin for points to differ (2^40 lattice units, about a third of the mean spacing each).
+#[derive(Clone, Copy, PartialEq, ::prost::Message)]
+pub struct Cuboid {
+    /// The least x.
+    #[prost(double, tag = "1")]
+    pub min_x: f64,
+    /// The least y.
+    #[prost(double, tag = "2")]
+    pub min_y: f64,
+    /// The least z.
+    #[prost(double, tag = "3")]
+    pub min_z: f64,
+    /// The bound of x, not included.
+    #[prost(double, tag = "4")]
+    pub max_x: f64,
+    /// The bound of y, not included.
+    #[prost(double, tag = "5")]
+    pub max_y: f64,
+    /// The bound of z, not included.
+    #[prost(double, tag = "6")]
+    pub max_z: f64,
+}
+/// The points in space nearer to a place than a radius.
+#[derive(Clone, Copy, PartialEq, ::prost::Message)]
+pub struct Ball {
+    /// The place; the origin if absent.
+    #[prost(message, optional, tag = "1")]
+    pub center: ::core::option::Option<Position>,
+    /// The radius in world units, greater than 0. Required.
+    #[prost(double, tag = "2")]
+    pub radius: f64,
+}
+/// An upright prism: the points above some polygons, between two heights.
+#[derive(Clone, PartialEq, ::prost::Message)]
+pub struct Prism {
+    /// The polygons, in x and y. Required.
+    #[prost(message, optional, tag = "1")]
+    pub base: ::core::option::Option<Polygons>,
+    /// The lower end, included.
+    #[prost(double, tag = "2")]
+    pub bottom: f64,
+    /// The upper end, not included; greater than the lower one.
+    #[prost(double, tag = "3")]
+    pub top: f64,
+}
+/// A cube of the world grid of space: size * x <= p.x < size * (x + 1), and so for y and z.
+#[derive(Clone, Copy, PartialEq, ::prost::Message)]
+pub struct Cube {
+    /// The side in world units, greater than 0. Required.
+    #[prost(double, tag = "1")]
+    pub size: f64,
+    /// The place along x, within 2^52 of 0.
+    #[prost(int64, tag = "2")]
+    pub x: i64,
+    /// The place along y, within 2^52 of 0.
+    #[prost(int64, tag = "3")]
+    pub y: i64,
+    /// The place along z, within 2^52 of 0.
+    #[prost(int64, tag = "4")]
+    pub z: i64,
+}
 /// A set of points: how densely they lie, which table they come from, and which values they have.
 #[derive(Clone, PartialEq, ::prost::Message)]
 pub struct PointSet {
@@ -602,7 +681,8 @@ pub struct PointSet {
     pub keep: ::core::option::Option<f64>,
     /// Further values of each point, hashed from its id and the seed; none by default. Each once:
     /// `angle` (radians, 0 to 2 pi), `scale` (within scale_range), `variant` (one of variants, by
-    /// weight), `rank` (0 to 1, see keep), `u1` to `u16` (uniform, 0 to 1).
+    /// weight), `rank` (0 to 1, see keep), `u1` to `u16` (uniform, 0 to 1). In space there is no `angle`, but `rotation`, a
+    /// uniform unit quaternion `qx`, `qy`, `qz`, `qw`.
     #[prost(string, repeated, tag = "12")]
     pub attributes: ::prost::alloc::vec::Vec<::prost::alloc::string::String>,
     /// The range of the attribute `scale`, and only with it; 0 to 1 by default.
@@ -688,10 +768,10 @@ pub mod point_set {
     /// How densely points lie. Required.
     #[derive(Clone, Copy, PartialEq, ::prost::Oneof)]
     pub enum Amount {
-        /// Points per unit of area, 1e-200 to 1e200.
+        /// Points per unit of area, in space of volume, 1e-200 to 1e200.
         #[prost(double, tag = "1")]
         Density(f64),
-        /// The mean spacing in world units, density^(-1/2): 1e-100 to 1e100.
+        /// The mean spacing in world units, density^(-1/2), in space density^(-1/3): 1e-100 to 1e100.
         #[prost(double, tag = "2")]
         Spacing(f64),
         /// The least distance of any two points in world units, 1e-100 to 1e100: the density is the
@@ -1297,6 +1377,9 @@ pub struct ResolvedQuery {
     /// Its digest.
     #[prost(string, optional, tag = "8")]
     pub world_digest: ::core::option::Option<::prost::alloc::string::String>,
+    /// A box around a region in space, instead of bbox.
+    #[prost(message, optional, tag = "9")]
+    pub cuboid: ::core::option::Option<Cuboid>,
 }
 /// An attribute that blocks have a column of.
 #[derive(Clone, PartialEq, Eq, Hash, ::prost::Message)]
@@ -1317,10 +1400,10 @@ pub struct PointBlock {
     /// With ENCODING_POINTS: the y coordinates.
     #[prost(double, repeated, tag = "2")]
     pub y: ::prost::alloc::vec::Vec<f64>,
-    /// With ENCODING_POINTS: the stable ids, `column:row` of the lattice.
+    /// With ENCODING_POINTS: the stable ids, `column:row` of the lattice, in space `x:y:z`.
     #[prost(string, repeated, tag = "3")]
     pub id: ::prost::alloc::vec::Vec<::prost::alloc::string::String>,
-    /// With a packed encoding: x and y by turns.
+    /// With a packed encoding: x and y by turns, in space x, y and z.
     #[prost(bytes = "bytes", tag = "4")]
     pub data: ::prost::bytes::Bytes,
     /// Which of the header's query.sets the points are of, from 0 on; 0 without layers.
@@ -1333,6 +1416,9 @@ pub struct PointBlock {
     /// cursor, no offset, and the limit, if there was one, less the points received.
     #[prost(string, tag = "7")]
     pub cursor: ::prost::alloc::string::String,
+    /// With ENCODING_POINTS in space: the z coordinates.
+    #[prost(double, repeated, tag = "8")]
+    pub z: ::prost::alloc::vec::Vec<f64>,
 }
 /// The values of one attribute for the points of a block.
 #[derive(Clone, PartialEq, ::prost::Message)]
@@ -1473,9 +1559,12 @@ pub struct Point {
     /// Its attributes, in the order requested.
     #[prost(message, repeated, tag = "5")]
     pub attributes: ::prost::alloc::vec::Vec<Value>,
-    /// Its block of the neighborhood map; only of a point requested by its id.
+    /// Its block of the neighborhood map; only of a point of the plane requested by its id.
     #[prost(message, optional, tag = "6")]
     pub block: ::core::option::Option<Block>,
+    /// Its z coordinate, in space.
+    #[prost(double, optional, tag = "7")]
+    pub z: ::core::option::Option<f64>,
 }
 /// An attribute of a single point.
 #[derive(Clone, PartialEq, ::prost::Message)]
@@ -1606,9 +1695,10 @@ pub enum Encoding {
     Unspecified = 0,
     /// Coordinates and ids in fields of their own.
     Points = 1,
-    /// Bytes: x and y by turns as little-endian float64, without ids.
+    /// Bytes: x and y by turns, in space x, y and z, as little-endian float64, without ids.
     F64Le = 2,
-    /// Bytes: x and y by turns as little-endian float32 relative to the header's origin, without ids.
+    /// Bytes: x and y by turns, in space x, y and z, as little-endian float32 relative to the header's origin, without
+    /// ids.
     F32Le = 3,
 }
 impl Encoding {

@@ -7,14 +7,18 @@
 mod geojson;
 pub(crate) mod object;
 mod region;
+mod volume;
 
 use serde_json::value::RawValue;
+use strew_catalog::Dimension;
 use strew_error::{Checked, Fault, all, unknown};
 
 use super::{Draft, LayerDraft, MOST_LAYERS, Values, groups, lookup::names, parameter::Group};
 use object::{Object, of_text, parse, shown};
 
+use region::Forms;
 pub use region::{RegionSchema, read_region};
+pub use volume::VolumeSchema;
 
 /// The form of layers, as faults describe it.
 const LAYERS: &str = "an array of 1 to 16 layers, objects with a name and a set of points each";
@@ -40,10 +44,13 @@ pub fn read_body(bytes: &[u8], groups: &'static [Group]) -> Checked<Draft> {
             break;
         }
         match name {
-            "region" => draft.region = region::read(json, "region", 0, &mut listed).map(Some),
-            "layers" => draft.layers = layers(json, &mut listed),
+            "region" => {
+                let forms = Forms::of(draft.values.dimension());
+                draft.region = region::read(json, "region", 0, &mut listed, forms).map(Some);
+            }
+            "layers" => draft.layers = layers(json, &mut listed, draft.values.dimension()),
             // A common slip, which the list of members would not explain.
-            "bbox" | "circle" | "polygon" | "chunk" | "include" | "exclude" => {
+            "bbox" | "circle" | "polygon" | "ball" | "prism" | "chunk" | "include" | "exclude" => {
                 let detail = format!("belongs in `region`: {{\"region\": {{\"{name}\": …}}}}");
                 let allowed = members(&QUERY, groups);
                 draft
@@ -103,24 +110,34 @@ fn members(others: &[&str], groups: &'static [Group]) -> String {
     format!("{}, {}", others.join(", "), names(groups))
 }
 
-fn layers(json: &RawValue, listed: &mut usize) -> Checked<Vec<LayerDraft>> {
+fn layers(json: &RawValue, listed: &mut usize, dimension: Dimension) -> Checked<Vec<LayerDraft>> {
     let items = match object::elements(json, MOST_LAYERS, "layers") {
         Ok(items) if items.is_empty() => Err("empty".into()),
         read => read,
     };
     let items = items.map_err(|detail| Fault::new("layers", shown(json), detail, LAYERS))?;
     let items = items.into_iter().enumerate();
-    all(items.map(|(i, json)| Ok(layer(&format!("layers[{i}]"), json, listed)?)))
+    all(items.map(|(i, json)| Ok(layer(&format!("layers[{i}]"), json, listed, dimension)?)))
 }
 
-fn layer(path: &str, json: &RawValue, listed: &mut usize) -> Result<LayerDraft, Fault> {
+fn layer(
+    path: &str,
+    json: &RawValue,
+    listed: &mut usize,
+    dimension: Dimension,
+) -> Result<LayerDraft, Fault> {
+    let groups = match dimension {
+        Dimension::Plane => groups::SET,
+        Dimension::Space => groups::SPACE_SET,
+    };
     let fault = |detail| Fault::new(path, shown(json), detail, LAYERS);
     let object = Object::read(json).map_err(fault)?;
-    let mut layer = LayerDraft::new(Values::new(groups::SET, &format!("{path}.")));
+    let mut layer = LayerDraft::new(Values::new(groups, &format!("{path}.")));
     for (name, json) in object.members() {
         match name {
             "region" => {
-                let read = region::read(json, &format!("{path}.region"), 0, listed);
+                let (path, forms) = (format!("{path}.region"), Forms::of(dimension));
+                let read = region::read(json, &path, 0, listed, forms);
                 layer.region = read.map(Some);
             }
             "name" => {
@@ -136,7 +153,7 @@ fn layer(path: &str, json: &RawValue, listed: &mut usize) -> Result<LayerDraft, 
                 };
                 layer.clear_of = object::weights(json).map_err(wrong);
             }
-            name => add_member(&mut layer.values, name, json, &LAYER, groups::SET),
+            name => add_member(&mut layer.values, name, json, &LAYER, groups),
         }
     }
     Ok(layer)

@@ -3,12 +3,14 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::value::RawValue;
+use strew_catalog::Dimension;
 use strew_error::{Checked, Fault, Faults, all, unknown};
 
 use super::{
-    super::{MOST_LEVELS, MOST_REGIONS, RegionDraft, ShapeDraft, region::REGION},
+    super::{MOST_LEVELS, MOST_REGIONS, RegionDraft, ShapeDraft, region::REGION, volume::VOLUME},
     geojson::{GEOJSON, GeoJson, polygons},
     object::{Object, Only, elements, of_text, parse, read as typed, shown},
+    volume,
 };
 
 /// The form of a box, as faults describe it.
@@ -18,8 +20,37 @@ const CIRCLE: &str = r#"{"center": [x, y], "radius": r}, numbers with r above 0"
 /// The form of a chunk.
 const CHUNK: &str =
     r#"{"size": s, "x": column, "y": row}, a number above 0 and integers within ±4503599627370496"#;
-/// The shapes of regions, each a member.
-const SHAPES: [&str; 5] = ["bbox", "circle", "polygon", "chunk", "include"];
+/// The shapes that regions of one kind have.
+pub(super) struct Forms {
+    /// Their names, each a member.
+    names: [&'static str; 5],
+    /// All of them in words.
+    allowed: &'static str,
+    dimension: Dimension,
+}
+
+impl Forms {
+    /// Those of the plane.
+    pub(super) const PLANE: Self = Self {
+        names: ["bbox", "circle", "polygon", "chunk", "include"],
+        allowed: REGION,
+        dimension: Dimension::Plane,
+    };
+    /// Those of space.
+    pub(super) const SPACE: Self = Self {
+        names: ["bbox", "ball", "prism", "chunk", "include"],
+        allowed: VOLUME,
+        dimension: Dimension::Space,
+    };
+
+    /// Those of a dimension.
+    pub(super) const fn of(dimension: Dimension) -> &'static Self {
+        match dimension {
+            Dimension::Plane => &Self::PLANE,
+            Dimension::Space => &Self::SPACE,
+        }
+    }
+}
 
 /// A circle.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -118,17 +149,23 @@ pub(super) fn read(
     path: &str,
     depth: usize,
     listed: &mut usize,
+    forms: &Forms,
 ) -> Checked<RegionDraft> {
-    let wrong = |detail: String| Faults::from(Fault::new(path, shown(json), detail, REGION));
+    let wrong = |detail: String| Faults::from(Fault::new(path, shown(json), detail, forms.allowed));
     let object = Object::read(json).map_err(wrong)?;
     let mut members: Vec<_> = object.members().collect();
     members.sort_by_key(|(name, _)| *name);
     let strange = members
         .iter()
-        .filter(|(name, _)| !SHAPES.contains(name) && *name != "exclude");
+        .filter(|(name, _)| !forms.names.contains(name) && *name != "exclude");
     all(strange.map(|(name, json)| -> Checked<()> {
-        let detail = unknown("member", name, SHAPES.into_iter());
-        Err(Fault::new(&format!("{path}.{name}"), shown(json), detail, REGION).into())
+        let detail = match (*name, forms.dimension) {
+            ("ball" | "prism", Dimension::Plane) => "a shape of space: see /v1/space".into(),
+            ("circle" | "polygon", Dimension::Space) => "a shape of the plane".into(),
+            _ => unknown("member", name, forms.names.into_iter()),
+        };
+        let field = format!("{path}.{name}");
+        Err(Fault::new(&field, shown(json), detail, forms.allowed).into())
     }))?;
     let (kind, json, exclude) = match members.as_slice() {
         [] | [("exclude", _)] => return Err(wrong("has no shape".into())),
@@ -145,6 +182,11 @@ pub(super) fn read(
         move |detail: String| Fault::new(field, shown(json), detail, allowed)
     };
     let shape = match kind {
+        _ if forms.dimension == Dimension::Space => {
+            let excluded = format!("{path}.exclude");
+            let exclude = exclude.map(|json| (excluded.as_str(), json));
+            volume::shape(&field, (kind, json, exclude), depth, listed)?
+        }
         "bbox" => ShapeDraft::Box(typed(json, "").map_err(wrong(BOX))?),
         "circle" => {
             let Only(CircleJson { center, radius }) = typed(json, "").map_err(wrong(CIRCLE))?;
@@ -159,8 +201,9 @@ pub(super) fn read(
             return Err(wrong("8 levels at most")("regions are nested too deeply".into()).into());
         }
         _ => {
-            let include = list(&field, json, depth, listed)?;
-            let exclude = exclude.map(|json| list(&format!("{path}.exclude"), json, depth, listed));
+            let mut items = |field: &str, json| list(field, json, depth, listed, forms);
+            let include = items(&field, json)?;
+            let exclude = exclude.map(|json| items(&format!("{path}.exclude"), json));
             ShapeDraft::Combined(include, exclude.transpose()?.unwrap_or_default())
         }
     };
@@ -175,11 +218,12 @@ pub(super) fn read(
 }
 
 /// A list of regions, each with its faults in its place.
-fn list(
+pub(super) fn list(
     path: &str,
     json: &RawValue,
     depth: usize,
     listed: &mut usize,
+    forms: &Forms,
 ) -> Checked<Vec<Checked<RegionDraft>>> {
     let wrong = |detail: String| {
         let allowed =
@@ -193,6 +237,6 @@ fn list(
     }
     let items = items.into_iter().enumerate();
     Ok(items
-        .map(|(i, item)| read(item, &format!("{path}[{i}]"), depth + 1, listed))
+        .map(|(i, item)| read(item, &format!("{path}[{i}]"), depth + 1, listed, forms))
         .collect())
 }

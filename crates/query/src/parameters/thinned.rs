@@ -14,7 +14,7 @@ pub(super) const SETTLE: Parameter = Parameter {
             spread evenly: 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its \
             time. Sets with all points stay by default; for them 1 is one small step that moves the nearest \
             points apart, and more count as 1. Periods do not settle.",
-    group: Group::Points,
+    group: Group::Thinned,
     shape: Shape::Integer {
         min: 0,
         max: Settle::MAX_STEPS as u64,
@@ -31,7 +31,7 @@ pub(super) const LOD: Parameter = Parameter {
     about: "The level of detail: the part of the points that the answer has, at each place those of the lowest \
             rank. None of them moves, so a level has a part of the points of a finer one, in fields, of kinds \
             and of layers, too. Beside layers: of all of them; they keep clear of all points of each other.",
-    group: Group::Points,
+    group: Group::Thinned,
     shape: Shape::Number {
         min: Keep::MIN,
         max: 1.0,

@@ -2,7 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use strew_catalog::{Key, PATTERN};
+use strew_catalog::{Dimension, Key, PATTERN};
 use strew_core::{Alpha, map::Size};
 use strew_error::{Error, Fault};
 use strew_forge::{ForgeError, Job, MAX_RADIUS, Target};
@@ -170,6 +170,7 @@ impl Spec {
     pub(super) fn key(&self) -> Result<Key, Error> {
         let alpha: Result<Alpha, _> = self.alpha.parse();
         Ok(Key {
+            dimension: Dimension::Plane,
             profile: self.profile.as_str().into(),
             alpha: alpha.map_err(|_| Error::Internal("a checked alpha is not one"))?,
             size: self.size()?,

@@ -9,7 +9,7 @@ use super::{
     scales::{Spread, VariantScales},
 };
 use crate::{
-    error::Error,
+    error::{Error, ErrorKind},
     pattern::Pattern,
     sample::{
         kernel::{Backend, PlainLoop, compiled_loop, write_numbers},
@@ -211,6 +211,11 @@ impl BoundAttributes {
         indexed: Indexed,
     ) -> Result<Self, Error> {
         for attribute in attributes.as_slice() {
+            if *attribute == Attribute::Rotation {
+                let allowed = "angle, scale, variant, rank or u1 to u16, in the plane";
+                let (kind, name) = (ErrorKind::Attribute, attribute.name());
+                return Err(Error::new(kind, "attribute", name, allowed));
+            }
             let even = match attribute {
                 Attribute::EvenVariant(even) => Some(even),
                 Attribute::VariantScale(scales) => match scales.of() {
@@ -361,6 +366,8 @@ impl BoundAttributes {
     fn number(&self, attribute: &Attribute, key: u64, id: PointId) -> f64 {
         match attribute {
             Attribute::Angle => angle(hash(key, id)),
+            // Refused when the list was bound.
+            Attribute::Rotation => 0.0,
             Attribute::Scale(range) => scale(*range, hash(key, id)),
             Attribute::VariantScale(scales) => scale(self.range(scales, id), hash(key, id)),
             Attribute::Rank => self.indexed.rank(id),

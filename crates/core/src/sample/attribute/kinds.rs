@@ -21,6 +21,8 @@ use crate::error::{Error, ErrorKind, shown};
 pub enum Attribute {
     /// `angle`: a rotation in radians, uniform in [0, 2π).
     Angle,
+    /// `rotation`, of points in space: a uniform unit quaternion.
+    Rotation,
     /// `scale`: a factor, uniform in a range.
     Scale(ScaleRange),
     /// `scale`: a factor, uniform in a range that depends on the variant.
@@ -125,7 +127,7 @@ impl Attribute {
         UniformNumber::new(n).map(Self::Uniform)
     }
 
-    /// The name: `angle`, `scale`, `variant`, `rank`, `u1` to `u16`.
+    /// The name: `angle`, `rotation`, `scale`, `variant`, `rank`, `u1` to `u16`.
     ///
     /// ```
     /// use strew_core::Attribute;
@@ -138,6 +140,7 @@ impl Attribute {
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Angle => "angle",
+            Self::Rotation => "rotation",
             Self::Scale(_) | Self::VariantScale(_) => "scale",
             Self::Variant(_) | Self::EvenVariant(_) => "variant",
             Self::Rank => "rank",
@@ -149,6 +152,8 @@ impl Attribute {
     pub(crate) const ANGLE: u64 = 1;
     pub(crate) const SCALE: u64 = 2;
     pub(crate) const VARIANT: u64 = 3;
+    /// Of the first of three numbers; the next two codes are of the others.
+    pub(crate) const ROTATION: u64 = 4;
 
     pub(crate) const fn uniform_code(n: u8) -> u64 {
         0x100 + n as u64
@@ -174,10 +179,11 @@ impl Attribute {
     }
 
     /// The code of this attribute. Those that are not hashed have 0.
-    pub(super) const fn code(&self) -> u64 {
+    pub(crate) const fn code(&self) -> u64 {
         match self {
             Self::Rank | Self::EvenVariant(_) => 0,
             Self::Angle => Self::ANGLE,
+            Self::Rotation => Self::ROTATION,
             Self::Scale(_) | Self::VariantScale(_) => Self::SCALE,
             Self::Variant(_) => Self::VARIANT,
             Self::Uniform(n) => Self::uniform_code(n.0),
@@ -185,7 +191,7 @@ impl Attribute {
     }
 }
 
-/// Reads the attributes that consist of a name: `angle`, `rank`, `u1` to `u16`.
+/// Reads the attributes that consist of a name: `angle`, `rotation`, `rank`, `u1` to `u16`.
 impl FromStr for Attribute {
     type Err = Error;
 
@@ -196,6 +202,7 @@ impl FromStr for Attribute {
         };
         match text {
             "angle" => Ok(Self::Angle),
+            "rotation" => Ok(Self::Rotation),
             "rank" => Ok(Self::Rank),
             "scale" => incomplete("scale", "given with a range, such as 0.8 to 1.2"),
             "variant" => incomplete(
@@ -206,7 +213,8 @@ impl FromStr for Attribute {
                 Some((n, _)) => Self::uniform(n),
                 None => {
                     let value = alloc::format!("{:?}", shown(text));
-                    let allowed = "angle, scale, variant, rank or u1 to u16";
+                    let allowed =
+                        "angle, scale, variant, rank or u1 to u16, in space rotation for angle";
                     Err(Error::new(
                         ErrorKind::Attribute,
                         "attribute",

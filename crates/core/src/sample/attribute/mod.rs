@@ -11,7 +11,7 @@
 
 mod bound;
 mod even;
-pub(super) mod hash;
+pub(crate) mod hash;
 mod kinds;
 mod list;
 mod scales;

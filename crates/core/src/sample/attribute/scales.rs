@@ -209,8 +209,16 @@ impl VariantScales {
         &self.of
     }
 
+    /// The variants, if they are chosen by chance.
+    pub(crate) const fn by_chance(&self) -> Option<&Variants> {
+        match &self.of {
+            Spread::Chance(variants) => Some(variants),
+            Spread::Even(_) => None,
+        }
+    }
+
     /// The range of a variant.
-    pub(super) fn range(&self, index: u32) -> ScaleRange {
+    pub(crate) fn range(&self, index: u32) -> ScaleRange {
         self.ranges[index as usize]
     }
 }

@@ -148,6 +148,21 @@ impl Region {
         self.max
     }
 
+    /// Its shadow along z: the rectangle of its x and y.
+    ///
+    /// ```
+    /// use strew_core::space::Region;
+    ///
+    /// let shadow = Region::new([0.0; 3], [4.0, 5.0, 6.0])?.shadow();
+    /// assert_eq!(shadow.max(), [4.0, 5.0]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn shadow(&self) -> crate::Region {
+        let ([x, y, _], [max_x, max_y, _]) = (self.min, self.max);
+        crate::Region::between([x, y], [max_x, max_y])
+    }
+
     /// Whether the box has no extent along an axis, and so no points.
     ///
     /// ```

@@ -23,7 +23,9 @@ use crate::{
 };
 
 /// The bits of the height of a patch.
-const PATCH_BITS: u32 = 8;
+pub(super) const PATCH_BITS: u32 = 8;
+/// The bits of the height of a slab.
+pub(super) const SLAB_BITS: u32 = CELL_BITS;
 /// A batch ends with the row that makes it as long.
 const LONG: usize = 512;
 /// Up to this side, in lattice units, all points are tested.
@@ -151,6 +153,9 @@ impl Walk {
 
     /// Goes to the next plane, or to the next column. Returns false at the end.
     fn next_plane(&mut self) -> bool {
+        if self.scope.stop.is_raised() {
+            return false;
+        }
         if self.column.z >= self.ranges[2].end {
             return self.next_column();
         }

@@ -1,0 +1,73 @@
+//! Masks: the volume that a set is limited to, and the sets that it keeps clear of.
+
+use alloc::{sync::Arc, vec::Vec};
+
+use super::{lattice::Lattice, volume::Volume};
+use crate::error::{Error, ErrorKind, number};
+
+/// The conditions on the points of a set beside its share.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Mask {
+    /// Where points may be.
+    within: Option<Arc<Volume>>,
+    /// The sets that are kept clear of.
+    pub(super) clear: Arc<[ClearOf]>,
+}
+
+/// A set that another keeps clear of.
+#[derive(Clone, Debug)]
+pub(super) struct ClearOf {
+    pub(super) lattice: Lattice,
+    pub(super) mask: Mask,
+    pub(super) distance: f64,
+}
+
+impl ClearOf {
+    /// The most mean spacings of the other set that may be kept.
+    const MOST_SPACINGS: f64 = 16.0;
+
+    pub(super) fn new(lattice: &Lattice, mask: &Mask, distance: f64) -> Result<Self, Error> {
+        let most = Self::MOST_SPACINGS * lattice.placement.spacing.get();
+        if !(distance > 0.0 && distance <= most) {
+            let allowed = alloc::format!(
+                "above 0 and at most {}, 16 mean spacings of the other set",
+                number(most)
+            );
+            let value = number(distance);
+            return Err(Error::new(ErrorKind::Clearance, "distance", value, allowed));
+        }
+        Ok(Self {
+            lattice: lattice.clone(),
+            mask: mask.clone(),
+            distance,
+        })
+    }
+}
+
+impl Mask {
+    /// This mask, also limited to a volume.
+    pub(super) fn and_within(mut self, volume: Volume) -> Self {
+        self.within = Some(Arc::new(self.narrowed(&volume)));
+        self
+    }
+
+    /// This mask, also clear of another set.
+    pub(super) fn and_clear_of(mut self, other: ClearOf) -> Self {
+        let all: Vec<ClearOf> = self.clear.iter().cloned().chain([other]).collect();
+        self.clear = all.into();
+        self
+    }
+
+    /// The part of a volume in which points may be.
+    pub(super) fn narrowed(&self, volume: &Volume) -> Volume {
+        match &self.within {
+            Some(own) => volume.clone().and((**own).clone()),
+            None => volume.clone(),
+        }
+    }
+
+    /// Whether it leaves all points.
+    pub(super) fn is_none(&self) -> bool {
+        self.within.is_none() && self.clear.is_empty()
+    }
+}

@@ -1,0 +1,158 @@
+//! Planning sets of points in space.
+
+use std::sync::Arc;
+
+use strew_core::{
+    ErrorKind, Spacing,
+    space::{self, SpaceSet},
+};
+use strew_encode::Mark;
+use strew_error::{Error, number};
+use strew_query::{Amount, Parameter, QueryVolume, Set, parameters};
+
+use crate::{PlannedSet, effort, planner::Planner, resolve::check_reach};
+
+/// The set of some points in space at the spacing that its amount means, and its density.
+pub(super) fn placed(set: &Set, table: &space::Table) -> Result<(SpaceSet, f64), Error> {
+    let (spacing, density) = spacing(set, table)?;
+    Ok((set.points_in_space(table, spacing)?, density))
+}
+
+/// The mean spacing of a set, and its density as requested.
+fn spacing(set: &Set, table: &space::Table) -> Result<(Spacing, f64), Error> {
+    let fault = |parameter: &Parameter, value: f64, error: &strew_core::Error| {
+        let detail = match error.kind() {
+            ErrorKind::NoLeastDistance => {
+                format!("profile `{}`: {}", set.entry.key.profile, error.problem())
+            }
+            _ => error.to_string(),
+        };
+        set.fault(parameter.name, value, detail, parameter.allowed())
+    };
+    match set.amount {
+        Amount::Density(density) => {
+            let placed = SpaceSet::new(table.clone()).density(density);
+            let placed = placed.map_err(|error| fault(&parameters::DENSITY, density, &error))?;
+            Ok((placed.placement().spacing, density))
+        }
+        Amount::Spacing(value) => {
+            let spacing = Spacing::new(value);
+            let spacing = spacing.map_err(|error| fault(&parameters::SPACING, value, &error))?;
+            Ok((spacing, density(spacing)))
+        }
+        Amount::MinDistance(distance) => {
+            let spacing = table.least_distance().spacing_for(distance, set.warp);
+            let spacing =
+                spacing.map_err(|error| fault(&parameters::MIN_DISTANCE, distance, &error))?;
+            Ok((spacing, density(spacing)))
+        }
+        Amount::Count(count) => Err(set.fault(
+            parameters::COUNT.name,
+            count,
+            "not for points in space",
+            "density, spacing or min_distance",
+        )),
+    }
+}
+
+/// The points per unit of volume.
+fn density(spacing: Spacing) -> f64 {
+    spacing.get().powi(-3)
+}
+
+/// The distance that the coordinates of a set within ±`reach` keep.
+pub(super) fn least_distance(set: &Set, points: &SpaceSet, reach: f64) -> f64 {
+    // Each coordinate is rounded by at most half a unit in its last place.
+    let rounding = 2.0 * 3f64.sqrt() * reach * f64::EPSILON;
+    let least = (points.least_distance() - rounding).max(0.0);
+    match set.amount {
+        // The spacing is a little wider than this takes.
+        Amount::MinDistance(distance) => least.min(distance),
+        _ => least,
+    }
+}
+
+impl Planner<'_> {
+    /// Plans set number `i` in space; those before it are planned. Cursors and layers are as in the plane.
+    pub(super) fn space(
+        &mut self,
+        i: usize,
+        set: &Set,
+        table: &space::Table,
+        whole: &QueryVolume,
+    ) -> Result<PlannedSet, Error> {
+        let region = &self.query.region;
+        let own = set.region.as_ref().and_then(|own| own.volume.as_ref());
+        let volume = whole.and(own);
+        let (points, density) = placed(set, table)?;
+        check_reach(set, region.reach())?;
+        let spacing = points.placement().spacing;
+        let points = self.keeping_clear_in_space(set, points)?;
+        let cursor = self.query.window.cursor;
+        let here = cursor.filter(|token| i == usize::from(token.set));
+        let is_unwanted = self.query.only.is_some_and(|only| only != i);
+        let is_over = is_unwanted || cursor.is_some_and(|token| i < usize::from(token.set));
+        let test = match set.clear_of.is_empty() {
+            true => 0.0,
+            false => effort::CLEARED,
+        };
+        let plan = match here.filter(|_| !is_unwanted) {
+            _ if is_over => points.resume(volume, NOTHING.in_space()),
+            Some(token) => points.resume(volume, token.mark.in_space()),
+            None => {
+                self.check_volume(set, &points, &volume)?;
+                points.within_until(volume, self.stop.clone())
+            }
+        };
+        let plan = plan.map_err(|error| match error.kind() {
+            ErrorKind::Stopped => Error::Internal("a plan was stopped before its request ended"),
+            _ => region.too_far(spacing, &error),
+        })?;
+        let least = least_distance(set, &points, region.reach());
+        if i + 1 < self.query.sets.len() {
+            self.volumes.push(match own {
+                Some(own) => points.limited_to(own.volume.clone()),
+                None => points,
+            });
+        }
+        let plan = Arc::new(plan.stopped_by(self.stop.clone()));
+        let planned = PlannedSet::new(set.entry.clone(), (density, spacing), least, plan, 0);
+        Ok(planned.priced(set, test, region.bounds))
+    }
+
+    /// The points of a set that keep clear of the layers it names.
+    fn keeping_clear_in_space(&self, set: &Set, points: SpaceSet) -> Result<SpaceSet, Error> {
+        let mut pairs = set.clear_of.iter();
+        pairs.try_fold(points, |points, &(place, distance)| {
+            let layer = self.volumes.get(place);
+            let layer = layer.ok_or(Error::Internal("a layer is not planned yet"))?;
+            points.clear_of(layer, distance).map_err(|error| {
+                let detail = "the distance is out of range";
+                set.fault("clear_of", number(distance), detail, error.allowed())
+            })
+        })
+    }
+
+    /// Checks that counting a volume stays within the limit.
+    fn check_volume(
+        &self,
+        set: &Set,
+        points: &SpaceSet,
+        volume: &space::Volume,
+    ) -> Result<(), Error> {
+        let limit = self.limits.max_rows;
+        let rows = effort::rows_of_volume(set, points, volume);
+        if rows > limit as f64 {
+            let rows = rows as u128;
+            return Err(Error::TooManyRows { rows, limit });
+        }
+        Ok(())
+    }
+}
+
+/// The place after the last point.
+const NOTHING: Mark = Mark {
+    offset: 0,
+    total: 0,
+    at: [0; 3],
+};

@@ -1,0 +1,290 @@
+//! Volumes: the regions of points in space.
+
+use serde_json::{Value as Json, json};
+use strew_core::{
+    Area, ErrorKind, Polygon, Spacing,
+    space::{Ball, Prism, Region, Volume},
+};
+use strew_encode::Place;
+use strew_error::{Checked, Error, Fault, Faults, Together as _, faults::all, number};
+
+use crate::{
+    QueryRegion, RegionDraft, Rings, ShapeDraft, Values,
+    parameter::Group,
+    region::listed,
+    space::{BALL, BOX},
+};
+
+/// The form of a chunk, as faults describe it.
+const CHUNK: &str = "a size above 0 and three integers within ±4503599627370496, the chunk's place along x, y and z";
+/// The form of a prism.
+pub(super) const PRISM: &str =
+    "a polygon (GeoJSON) between two heights, finite numbers with bottom below top";
+/// The forms of a volume.
+pub(super) const VOLUME: &str = "one of bbox, ball, prism, chunk, or include with exclude";
+
+/// The shape of a volume.
+#[derive(Clone, Debug, PartialEq)]
+pub enum VolumeDraft {
+    /// min x, min y, min z, max x, max y, max z.
+    Box([f64; 6]),
+    /// A center and a radius.
+    Ball([f64; 3], f64),
+    /// Polygons with their holes, between two heights.
+    Prism(Vec<Rings>, [f64; 2]),
+    /// A cube of the world grid of this size; answers are relative to its lower corner.
+    Chunk(f64, [i64; 3]),
+    /// The points in any region of the first list and in none of the second.
+    Combined(Vec<Checked<RegionDraft>>, Vec<Checked<RegionDraft>>),
+}
+
+/// A checked volume.
+#[derive(Clone, Debug, PartialEq)]
+pub struct QueryVolume {
+    /// The volume; it has a box around it, which is not empty.
+    pub volume: Volume,
+    /// That box.
+    pub bounds: Region,
+}
+
+impl VolumeDraft {
+    /// The volume among the parameters of an address or a command line.
+    pub(super) fn of(values: &Values) -> Checked<Option<RegionDraft>> {
+        let given = values.given_of(&[Group::Volume]);
+        let shape = match given.as_slice() {
+            [] => return Ok(None),
+            [only] if **only == BOX => values.get(&BOX)?.map(Self::Box),
+            [_] => {
+                let ball: Option<[f64; 4]> = values.get(&BALL)?;
+                ball.map(|[x, y, z, radius]| Self::Ball([x, y, z], radius))
+            }
+            [first, second, ..] => {
+                let detail = format!("a query has one region, and {} is given", first.name);
+                let allowed = "one of bbox and ball";
+                return Err(Fault::new(second.name, values.text(second), detail, allowed).into());
+            }
+        };
+        Ok(shape.map(|shape| RegionDraft {
+            path: given[0].name.into(),
+            shape: ShapeDraft::Volume(shape),
+        }))
+    }
+
+    /// The number of vertices of its polygons.
+    pub(super) fn vertices(&self) -> usize {
+        match self {
+            Self::Prism(polygons, _) => polygons.iter().flatten().map(Vec::len).sum(),
+            Self::Combined(include, exclude) => {
+                let all = include.iter().chain(exclude);
+                all.flatten().map(RegionDraft::vertices).sum()
+            }
+            _ => 0,
+        }
+    }
+
+    /// Checks it and everything in it; `draft` is the region that it is the shape of.
+    pub(super) fn check(&self, draft: &RegionDraft) -> Checked<QueryRegion> {
+        let volume = self.volume(draft)?;
+        let bounds = volume.bounds().filter(|bounds| !bounds.is_empty());
+        let bounds = bounds.ok_or_else(|| {
+            let detail = "empty: nothing is left of what it includes";
+            Faults::from(Fault::new(&draft.path, self.echo(), detail, VOLUME))
+        })?;
+        let shadow = bounds.shadow();
+        Ok(QueryRegion {
+            path: draft.path.clone(),
+            area: Area::from(shadow),
+            bounds: shadow,
+            volume: Some(QueryVolume { volume, bounds }),
+            echo: (!matches!(self, Self::Box(_))).then(|| self.echo()),
+            corner: matches!(self, Self::Chunk(..)).then(|| Place::Space(bounds.min())),
+        })
+    }
+
+    fn volume(&self, draft: &RegionDraft) -> Checked<Volume> {
+        let path = &draft.path;
+        match self {
+            Self::Box(corners) => Ok(region(path, *corners)?.into()),
+            Self::Ball(center, radius) => {
+                let value = || listed(&[center[0], center[1], center[2], *radius]);
+                let fault = |detail| Fault::new(path, value(), detail, BALL.allowed());
+                let ball = Ball::new(*center, *radius).map_err(|error| fault(error.to_string()))?;
+                let volume = Volume::from(ball);
+                match volume.bounds() {
+                    Some(_) => Ok(volume),
+                    None => Err(fault("too large".into()).into()),
+                }
+            }
+            Self::Prism(polygons, heights) => Ok(self.prism(path, polygons, *heights)?),
+            Self::Chunk(size, at) => {
+                let region = Region::chunk(*size, *at).map_err(|error| {
+                    let value = format!("{}/{}/{}/{}", number(*size), at[0], at[1], at[2]);
+                    Fault::new(path, value, error.problem(), CHUNK)
+                });
+                Ok(region?.into())
+            }
+            Self::Combined(include, exclude) => {
+                let volumes = |list: &[Checked<RegionDraft>]| {
+                    all(list.iter().map(|region| {
+                        let region = region.as_ref().map_err(Clone::clone)?;
+                        match &region.shape {
+                            ShapeDraft::Volume(own) => own.volume(region),
+                            // Lists are read with regions of one kind.
+                            _ => {
+                                Err(Fault::new(&region.path, region.echo(), "flat", VOLUME).into())
+                            }
+                        }
+                    }))
+                };
+                let (include, exclude) = (volumes(include), volumes(exclude)).together()?;
+                if include.is_empty() {
+                    let field = format!("{path}.include");
+                    return Err(Fault::missing(&field, "at least one region").into());
+                }
+                Ok(Volume::any_of(include).without(exclude))
+            }
+        }
+    }
+
+    fn prism(&self, path: &str, polygons: &[Rings], heights: [f64; 2]) -> Result<Volume, Fault> {
+        let [bottom, top] = heights.map(number);
+        let fault = |detail: String| {
+            let value = format!(
+                "{} polygons of {} vertices from {bottom} to {top}",
+                polygons.len(),
+                self.vertices()
+            );
+            Fault::new(path, value, detail, PRISM)
+        };
+        if heights[0] == heights[1] {
+            return Err(fault(format!("empty: bottom and top are both {bottom}")));
+        }
+        let read = |(i, rings): (usize, &Rings)| {
+            let prism = Polygon::new(rings).and_then(|base| Prism::new(base, heights));
+            prism
+                .map(Volume::from)
+                .map_err(|error| match polygons.len() {
+                    1 => fault(error.to_string()),
+                    _ => fault(format!("polygon {i}: {error}")),
+                })
+        };
+        let volumes: Vec<Volume> = (polygons.iter().enumerate())
+            .map(read)
+            .collect::<Result<_, _>>()?;
+        if volumes.is_empty() {
+            return Err(fault("there is no polygon".into()));
+        }
+        Ok(Volume::any_of(volumes))
+    }
+
+    /// As answers echo it, and as a query's body has it.
+    pub(super) fn echo(&self) -> Json {
+        let list = |regions: &[Checked<RegionDraft>]| {
+            let echoes = regions.iter().flatten().map(RegionDraft::echo);
+            echoes.collect::<Vec<_>>()
+        };
+        match self {
+            Self::Box(corners) => json!({ "bbox": corners }),
+            Self::Ball(center, radius) => {
+                json!({ "ball": { "center": center, "radius": radius } })
+            }
+            Self::Prism(polygons, [bottom, top]) => {
+                let polygon = match polygons.as_slice() {
+                    [rings] => json!({ "type": "Polygon", "coordinates": rings }),
+                    all => json!({ "type": "MultiPolygon", "coordinates": all }),
+                };
+                json!({ "prism": { "polygon": polygon, "bottom": bottom, "top": top } })
+            }
+            Self::Chunk(size, [x, y, z]) => {
+                json!({ "chunk": { "size": size, "x": x, "y": y, "z": z } })
+            }
+            Self::Combined(include, exclude) => {
+                json!({ "include": list(include), "exclude": list(exclude) })
+            }
+        }
+    }
+}
+
+/// The box of some corners.
+fn region(path: &str, corners: [f64; 6]) -> Result<Region, Fault> {
+    let [x, y, z, max_x, max_y, max_z] = corners;
+    let fault = |detail: String| Fault::new(path, listed(&corners), detail, BOX.allowed());
+    let region = Region::new([x, y, z], [max_x, max_y, max_z]).map_err(|error| {
+        let (corner, value) = (error.field(), error.value());
+        let axis = ["max_x", "max_y", "max_z"]
+            .iter()
+            .position(|name| *name == corner);
+        match axis.filter(|_| corners.iter().all(|v| v.is_finite())) {
+            Some(axis) => {
+                let lower = number(corners[axis]);
+                fault(format!(
+                    "reversed: {corner} is {value}, below the lower bound {lower}"
+                ))
+            }
+            None => fault(format!("{corner} is {value}")),
+        }
+    })?;
+    for (axis, i) in [("x", 0), ("y", 1), ("z", 2)] {
+        let (min, max) = (region.min()[i], region.max()[i]);
+        if min >= max {
+            let min = number(min);
+            return Err(fault(format!(
+                "empty: min_{axis} and max_{axis} are both {min}"
+            )));
+        }
+    }
+    Ok(region)
+}
+
+impl QueryVolume {
+    /// min x, min y, min z, max x, max y, max z of the box around it.
+    #[must_use]
+    pub fn bbox(&self) -> [f64; 6] {
+        let ([x, y, z], [max_x, max_y, max_z]) = (self.bounds.min(), self.bounds.max());
+        [x, y, z, max_x, max_y, max_z]
+    }
+
+    /// The volume of the box around it, in mean spacings cubed.
+    #[must_use]
+    pub fn spacings(&self, spacing: f64) -> f64 {
+        let ([x, y, z], [max_x, max_y, max_z]) = (self.bounds.min(), self.bounds.max());
+        [max_x - x, max_y - y, max_z - z]
+            .map(|side| side / spacing)
+            .into_iter()
+            .product()
+    }
+
+    /// The part of a layer's own volume that lies in it.
+    #[must_use]
+    pub fn and(&self, own: Option<&Self>) -> Volume {
+        match own {
+            Some(own) => own.volume.clone().and(self.volume.clone()),
+            None => self.volume.clone(),
+        }
+    }
+}
+
+impl QueryRegion {
+    /// The error of a volume that reaches too far for a spacing.
+    pub fn too_far_in_space(&self, spacing: Spacing, error: &strew_core::Error) -> Error {
+        let bbox = self.volume.as_ref().map(QueryVolume::bbox);
+        let listed = || bbox.map_or_else(String::new, |bbox| listed(&bbox));
+        let value = self.echo.as_ref().map_or_else(listed, ToString::to_string);
+        let fault = match (error.kind(), error.limit()) {
+            (ErrorKind::TooFar, Some(limit)) => {
+                let (field, reached) = (error.field(), error.value());
+                let detail = match &self.echo {
+                    None => format!("{field} is {reached}, too far from the origin"),
+                    Some(_) => format!("reaches to {reached}, too far from the origin"),
+                };
+                let [limit, spacing] = [limit, spacing.get()].map(number);
+                let allowed = format!(
+                    "within ±{limit} at spacing {spacing}, where f64 still tells neighbors apart"
+                );
+                Fault::new(&self.path, value, detail, allowed)
+            }
+            _ => Fault::new(&self.path, value, error.to_string(), VOLUME),
+        };
+        fault.into()
+    }
+}
