@@ -140,9 +140,8 @@ fn combined(
             .map(|(i, region)| draft(region, &format!("{path}.{name}[{i}]"), depth + 1))
             .collect()
     };
-    let (included, excluded) = (list("include", include), list("exclude", exclude));
-    Ok(match include.iter().any(is_volume) {
-        true => ShapeDraft::Volume(VolumeDraft::Combined(included, excluded)),
-        false => ShapeDraft::Combined(included, excluded),
-    })
+    Ok(ShapeDraft::Combined(
+        list("include", include),
+        list("exclude", exclude),
+    ))
 }

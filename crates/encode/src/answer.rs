@@ -14,7 +14,7 @@ use crate::{
 };
 use crate::{
     blocks::{Blocks, Nothing},
-    coordinates::{Coordinates, Place},
+    coordinates::Coordinates,
     csv,
     encoding::Encoding,
     error::EncodeError,
@@ -26,6 +26,7 @@ use crate::{
     output::Output,
     packed::Packed,
     part::Part,
+    place::Place,
     ply, png,
     pose::Pose,
     posed,

@@ -5,9 +5,9 @@ use serde::Serialize;
 use super::{
     Encoding,
     members::write_json,
-    pose::{Pose, Z},
+    pose::Pose,
     posed::MULTIMESH_OTHERS,
-    schema::{Column, Kind, LAYER, Schema},
+    schema::{Column, Kind, LAYER, Schema, Z},
 };
 
 /// Longer texts break proxies that hold the head of an answer in a page of memory.

@@ -37,6 +37,7 @@ mod packed;
 #[cfg(feature = "columnar")]
 mod parquet;
 pub mod part;
+mod place;
 mod ply;
 mod png;
 mod pose;
@@ -58,7 +59,7 @@ mod writer;
 
 pub use answer::{Answer, Plain};
 pub use buffer::Pool;
-pub use coordinates::{Coordinates, Place};
+pub use coordinates::Coordinates;
 pub use crs::{CRS, Crs};
 pub use encoding::Encoding;
 pub use error::EncodeError;
@@ -69,8 +70,9 @@ pub use number::{Digits, write_number};
 pub use output::{DEFAULT_SIZE, MOST_DECIMALS, Output};
 pub use packed::{Packed, Scalars};
 pub use part::{Attributes, Part};
-pub use pose::{ROTATION as POSE_ROTATION, Z as POSE_Z};
+pub use place::Place;
+pub use pose::ROTATION as POSE_ROTATION;
 pub use rows::{Batch, Row, Rows};
-pub use schema::{Column, Kind, LAYER, Schema, Values};
+pub use schema::{Column, Kind, LAYER, Schema, Values, Z as POSE_Z};
 pub use source::{Bound, Source, Walk};
 pub use text::id_text;

@@ -1,6 +1,6 @@
 //! How an answer is to look: the format and its options.
 
-use crate::{coordinates::Place, crs::Crs, encoding::Encoding};
+use crate::{crs::Crs, encoding::Encoding, place::Place};
 
 /// The default longer side of a picture, in pixels.
 pub const DEFAULT_SIZE: u32 = 512;

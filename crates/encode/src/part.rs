@@ -6,8 +6,9 @@ use std::{fmt, sync::Arc};
 use strew_core::{Blocks, F32, Offsets, Point, space};
 
 use super::{
-    coordinates::{Coordinates, Place},
+    coordinates::Coordinates,
     height::{Height, Located},
+    place::Place,
     schema::{Column, Kind, Schema, Values},
     shift::Shift,
 };

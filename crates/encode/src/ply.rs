@@ -7,9 +7,8 @@ use bytes::Bytes;
 
 use super::{
     head::{Head, Json},
-    pose::Z,
     rows::Rows,
-    schema::{Column, Kind},
+    schema::{Column, Kind, Z},
 };
 
 /// The header. Comments are JSON, whose escapes keep them on one line and in ASCII.

@@ -5,11 +5,9 @@
 
 use super::{
     rows::Row,
-    schema::{Column, Kind, LAYER, Schema},
+    schema::{Column, Kind, LAYER, Schema, Z},
 };
 
-/// The height of a point.
-pub const Z: &str = "z";
 /// A rotation as a quaternion, which an angle is part of.
 pub const ROTATION: [&str; 4] = ["qx", "qy", "qz", "qw"];
 const ANGLE: &str = "angle";

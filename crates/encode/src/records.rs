@@ -5,10 +5,10 @@ use bytes::Bytes;
 use super::{
     EncodeError,
     blocks::Blocks,
-    pose::{Pose, Z},
+    pose::Pose,
     posed,
     rows::{Batch, Rows},
-    schema::{Column, Kind, Schema},
+    schema::{Column, Kind, Schema, Z},
 };
 
 /// How a record's fields are laid out.

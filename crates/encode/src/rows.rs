@@ -13,9 +13,10 @@ use super::{
     schema::{Schema, Values},
 };
 use crate::{
-    coordinates::{Coordinates, Place},
+    coordinates::Coordinates,
     height::{Height, Located},
     mark::Mark,
+    place::Place,
 };
 
 /// Some rows.

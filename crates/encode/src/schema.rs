@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::pose::Z;
-
 /// A column besides id, x and y.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
@@ -58,6 +56,9 @@ impl Column {
         }
     }
 }
+
+/// The name of the column of heights.
+pub const Z: &str = "z";
 
 /// The name of the column of layers.
 pub const LAYER: &str = "layer";

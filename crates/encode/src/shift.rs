@@ -2,7 +2,7 @@
 
 use strew_core::Point;
 
-use crate::{coordinates::Place, source::Source};
+use crate::{place::Place, source::Source};
 
 /// Moves the points of a plan. Rounding never takes one out of the moved region: what would reach
 /// its upper bound takes the number before.

@@ -6,6 +6,7 @@
 //! calling thread: the bindings use it. Depends on the query, the catalog and the encoders; knows no async runtime, no
 //! cache and no protocol.
 
+mod amount_in_space;
 mod attributes;
 pub mod effort;
 mod head;

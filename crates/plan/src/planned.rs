@@ -10,13 +10,13 @@ use strew_error::Error;
 use strew_query::{Amount, Query, Resolved, ResolvedSet, Set, Token, other_kinds};
 
 use crate::{
+    amount_in_space,
     attributes::PointAttributes,
     planned_set::PlannedSet,
     planner::Planner,
     resolve,
     store::{self, Anew},
     terrain::{Ground, OnTerrain},
-    volume,
 };
 
 /// A query with its tables and plans: the exact count is known, no point is made yet.
@@ -71,9 +71,9 @@ impl Placed {
         let table = set
             .space()
             .ok_or(Error::Internal("a set of the plane in space"))?;
-        let (points, density) = volume::placed(&set, table)?;
+        let (points, density) = amount_in_space::placed(&set, table)?;
         let spacing = points.placement().spacing;
-        let least = volume::least_distance(&set, &points, 0.0);
+        let least = amount_in_space::least_distance(&set, &points, 0.0);
         Ok(Self {
             resolved: set.resolved(&[], density, spacing, least, (&[], &[])),
             attributes: points

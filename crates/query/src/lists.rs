@@ -8,6 +8,12 @@ use strew_error::number;
 /// A description of a faulty value.
 pub(super) type Detail = Cow<'static, str>;
 
+/// Numbers joined by commas.
+pub(super) fn listed(values: &[f64]) -> String {
+    let values: Vec<String> = values.iter().copied().map(number).collect();
+    values.join(",")
+}
+
 /// A number that is neither NaN nor infinite.
 pub(super) fn finite(text: &str) -> Result<f64, &'static str> {
     match text.parse::<f64>() {

@@ -4,15 +4,16 @@ use std::borrow::Cow;
 
 use serde_json::{Value as Json, json};
 use strew_catalog::Dimension;
-use strew_core::{Area, Circle, ErrorKind, Polygon, Region, Spacing};
+use strew_core::{Area, Circle, ErrorKind, Polygon, Region, Spacing, space::Volume};
 use strew_encode::Place;
 use strew_error::{Checked, Error, Fault, Faults, Together as _, faults::all, number};
 
 use super::{
     Values,
+    lists::listed,
     parameter::Group,
     parameters::{BBOX, CIRCLE, POLYGON},
-    volume::{QueryVolume, VolumeDraft},
+    volume::{QueryVolume, VOLUME, VolumeDraft},
 };
 
 /// The form of a chunk, as faults describe it.
@@ -119,7 +120,11 @@ impl RegionDraft {
     /// Faults if there are several, or one that cannot be read.
     pub fn of(values: &Values) -> Checked<Option<Self>> {
         if values.dimension() == Dimension::Space {
-            return VolumeDraft::of(values);
+            let volume = VolumeDraft::of(values)?;
+            return Ok(volume.map(|(name, shape)| Self {
+                path: name.into(),
+                shape: ShapeDraft::Volume(shape),
+            }));
         }
         let given = values.given_of(&[Group::Region]);
         let shape = match given.as_slice() {
@@ -150,8 +155,8 @@ impl RegionDraft {
     /// # Errors
     /// Every fault.
     pub fn check(&self) -> Checked<QueryRegion> {
-        if let ShapeDraft::Volume(volume) = &self.shape {
-            return volume.check(self);
+        if self.is_in_space() {
+            return self.check_volume();
         }
         let area = self.area()?;
         let bounds = area.bounds().filter(|bounds| !bounds.is_empty());
@@ -167,6 +172,70 @@ impl RegionDraft {
             volume: None,
             area,
         })
+    }
+
+    /// Whether it lies in space: of several regions, whether the first does.
+    pub(super) fn is_in_space(&self) -> bool {
+        match &self.shape {
+            ShapeDraft::Volume(_) => true,
+            ShapeDraft::Combined(include, _) => include.iter().flatten().any(Self::is_in_space),
+            _ => false,
+        }
+    }
+
+    fn check_volume(&self) -> Checked<QueryRegion> {
+        let volume = self.volume()?;
+        let bounds = volume.bounds().filter(|bounds| !bounds.is_empty());
+        let bounds = bounds.ok_or_else(|| {
+            let detail = "empty: nothing is left of what it includes";
+            Faults::from(Fault::new(&self.path, self.echo(), detail, VOLUME))
+        })?;
+        let shadow = bounds.shadow();
+        let of = |wanted: fn(&VolumeDraft) -> bool| matches!(&self.shape, ShapeDraft::Volume(own) if wanted(own));
+        let is_chunk = of(|own| matches!(own, VolumeDraft::Chunk(..)));
+        Ok(QueryRegion {
+            path: self.path.clone(),
+            area: Area::from(shadow),
+            bounds: shadow,
+            volume: Some(QueryVolume { volume, bounds }),
+            echo: (!of(|own| matches!(own, VolumeDraft::Box(_)))).then(|| self.echo()),
+            corner: is_chunk.then(|| Place::Space(bounds.min())),
+        })
+    }
+
+    fn volume(&self) -> Checked<Volume> {
+        match &self.shape {
+            ShapeDraft::Volume(own) => Ok(own.check(&self.path)?),
+            ShapeDraft::Combined(include, exclude) => {
+                let (include, exclude) = self.lists(include, exclude, Self::volume)?;
+                Ok(Volume::any_of(include).without(exclude))
+            }
+            _ => {
+                let detail = "a region of the plane among volumes";
+                Err(Fault::new(&self.path, self.echo(), detail, VOLUME).into())
+            }
+        }
+    }
+
+    /// What the regions of two lists are, of which the first must have some.
+    fn lists<T>(
+        &self,
+        include: &[Checked<Self>],
+        exclude: &[Checked<Self>],
+        of: fn(&Self) -> Checked<T>,
+    ) -> Checked<(Vec<T>, Vec<T>)> {
+        let listed = |list: &[Checked<Self>]| {
+            let all_of = list
+                .iter()
+                .map(|region| of(region.as_ref().map_err(Clone::clone)?));
+            all(all_of)
+        };
+        let (include, exclude) = (listed(include), listed(exclude)).together()?;
+        if include.is_empty() {
+            let field = format!("{}.include", self.path);
+            return Err(Fault::missing(&field, "at least one region").into());
+        }
+        Ok((include, exclude))
     }
 
     /// The number of vertices of its polygons.
@@ -199,21 +268,12 @@ impl RegionDraft {
             ShapeDraft::Polygons(polygons) => Ok(self.polygons(polygons)?),
             ShapeDraft::Chunk(size, at) => Ok(self.chunk(*size, *at)?.into()),
             ShapeDraft::Combined(include, exclude) => {
-                let areas = |list: &[Checked<Self>]| {
-                    all(list
-                        .iter()
-                        .map(|region| region.as_ref().map_err(Clone::clone)?.area()))
-                };
-                let (include, exclude) = (areas(include), areas(exclude)).together()?;
-                if include.is_empty() {
-                    let field = format!("{}.include", self.path);
-                    return Err(Fault::missing(&field, "at least one region").into());
-                }
+                let (include, exclude) = self.lists(include, exclude, Self::area)?;
                 Ok(Area::any_of(include).without(exclude))
             }
-            // Volumes are checked by themselves, and lists are read with regions of one kind.
             ShapeDraft::Volume(_) => {
-                Err(Fault::new(&self.path, self.echo(), "a volume of space", REGION).into())
+                let detail = "a volume among regions of the plane";
+                Err(Fault::new(&self.path, self.echo(), detail, REGION).into())
             }
         }
     }
@@ -302,18 +362,10 @@ impl RegionDraft {
     }
 }
 
-pub(super) fn listed(values: &[f64]) -> String {
-    let values: Vec<String> = values.iter().copied().map(number).collect();
-    values.join(",")
-}
-
 impl QueryRegion {
     /// The error of a region that reaches too far for a spacing.
     pub fn too_far(&self, spacing: Spacing, error: &strew_core::Error) -> Error {
-        let listed = || listed(&self.bbox());
-        if self.volume.is_some() {
-            return self.too_far_in_space(spacing, error);
-        }
+        let listed = || listed(&self.corners());
         let value = self.echo.as_ref().map_or_else(listed, ToString::to_string);
         let fault = match (error.kind(), error.limit()) {
             (ErrorKind::TooFar, Some(limit)) => Fault::new(
@@ -332,7 +384,14 @@ impl QueryRegion {
                     number(spacing.get())
                 ),
             ),
-            _ => Fault::new(&self.path, value, error.to_string(), REGION),
+            _ => {
+                let allowed = if self.volume.is_some() {
+                    VOLUME
+                } else {
+                    REGION
+                };
+                Fault::new(&self.path, value, error.to_string(), allowed)
+            }
         };
         fault.into()
     }

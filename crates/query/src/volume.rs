@@ -2,17 +2,16 @@
 
 use serde_json::{Value as Json, json};
 use strew_core::{
-    Area, ErrorKind, Polygon, Spacing,
+    Polygon,
     space::{Ball, Prism, Region, Volume},
 };
-use strew_encode::Place;
-use strew_error::{Checked, Error, Fault, Faults, Together as _, faults::all, number};
+use strew_error::{Checked, Fault, number};
 
 use crate::{
-    QueryRegion, RegionDraft, Rings, ShapeDraft, Values,
+    lists::listed,
     parameter::Group,
-    region::listed,
     space::{BALL, BOX},
+    values::Values,
 };
 
 /// The form of a chunk, as faults describe it.
@@ -31,11 +30,9 @@ pub enum VolumeDraft {
     /// A center and a radius.
     Ball([f64; 3], f64),
     /// Polygons with their holes, between two heights.
-    Prism(Vec<Rings>, [f64; 2]),
+    Prism(Vec<Vec<Vec<[f64; 2]>>>, [f64; 2]),
     /// A cube of the world grid of this size; answers are relative to its lower corner.
     Chunk(f64, [i64; 3]),
-    /// The points in any region of the first list and in none of the second.
-    Combined(Vec<Checked<RegionDraft>>, Vec<Checked<RegionDraft>>),
 }
 
 /// A checked volume.
@@ -48,8 +45,8 @@ pub struct QueryVolume {
 }
 
 impl VolumeDraft {
-    /// The volume among the parameters of an address or a command line.
-    pub(super) fn of(values: &Values) -> Checked<Option<RegionDraft>> {
+    /// The volume among the parameters of an address or a command line, with its parameter's name.
+    pub(super) fn of(values: &Values) -> Checked<Option<(&'static str, Self)>> {
         let given = values.given_of(&[Group::Volume]);
         let shape = match given.as_slice() {
             [] => return Ok(None),
@@ -64,45 +61,19 @@ impl VolumeDraft {
                 return Err(Fault::new(second.name, values.text(second), detail, allowed).into());
             }
         };
-        Ok(shape.map(|shape| RegionDraft {
-            path: given[0].name.into(),
-            shape: ShapeDraft::Volume(shape),
-        }))
+        Ok(shape.map(|shape| (given[0].name, shape)))
     }
 
     /// The number of vertices of its polygons.
     pub(super) fn vertices(&self) -> usize {
         match self {
             Self::Prism(polygons, _) => polygons.iter().flatten().map(Vec::len).sum(),
-            Self::Combined(include, exclude) => {
-                let all = include.iter().chain(exclude);
-                all.flatten().map(RegionDraft::vertices).sum()
-            }
             _ => 0,
         }
     }
 
-    /// Checks it and everything in it; `draft` is the region that it is the shape of.
-    pub(super) fn check(&self, draft: &RegionDraft) -> Checked<QueryRegion> {
-        let volume = self.volume(draft)?;
-        let bounds = volume.bounds().filter(|bounds| !bounds.is_empty());
-        let bounds = bounds.ok_or_else(|| {
-            let detail = "empty: nothing is left of what it includes";
-            Faults::from(Fault::new(&draft.path, self.echo(), detail, VOLUME))
-        })?;
-        let shadow = bounds.shadow();
-        Ok(QueryRegion {
-            path: draft.path.clone(),
-            area: Area::from(shadow),
-            bounds: shadow,
-            volume: Some(QueryVolume { volume, bounds }),
-            echo: (!matches!(self, Self::Box(_))).then(|| self.echo()),
-            corner: matches!(self, Self::Chunk(..)).then(|| Place::Space(bounds.min())),
-        })
-    }
-
-    fn volume(&self, draft: &RegionDraft) -> Checked<Volume> {
-        let path = &draft.path;
+    /// The volume, whose field is `path`.
+    pub(super) fn check(&self, path: &str) -> Result<Volume, Fault> {
         match self {
             Self::Box(corners) => Ok(region(path, *corners)?.into()),
             Self::Ball(center, radius) => {
@@ -112,10 +83,10 @@ impl VolumeDraft {
                 let volume = Volume::from(ball);
                 match volume.bounds() {
                     Some(_) => Ok(volume),
-                    None => Err(fault("too large".into()).into()),
+                    None => Err(fault("too large".into())),
                 }
             }
-            Self::Prism(polygons, heights) => Ok(self.prism(path, polygons, *heights)?),
+            Self::Prism(polygons, heights) => self.prism(path, polygons, *heights),
             Self::Chunk(size, at) => {
                 let region = Region::chunk(*size, *at).map_err(|error| {
                     let value = format!("{}/{}/{}/{}", number(*size), at[0], at[1], at[2]);
@@ -123,30 +94,15 @@ impl VolumeDraft {
                 });
                 Ok(region?.into())
             }
-            Self::Combined(include, exclude) => {
-                let volumes = |list: &[Checked<RegionDraft>]| {
-                    all(list.iter().map(|region| {
-                        let region = region.as_ref().map_err(Clone::clone)?;
-                        match &region.shape {
-                            ShapeDraft::Volume(own) => own.volume(region),
-                            // Lists are read with regions of one kind.
-                            _ => {
-                                Err(Fault::new(&region.path, region.echo(), "flat", VOLUME).into())
-                            }
-                        }
-                    }))
-                };
-                let (include, exclude) = (volumes(include), volumes(exclude)).together()?;
-                if include.is_empty() {
-                    let field = format!("{path}.include");
-                    return Err(Fault::missing(&field, "at least one region").into());
-                }
-                Ok(Volume::any_of(include).without(exclude))
-            }
         }
     }
 
-    fn prism(&self, path: &str, polygons: &[Rings], heights: [f64; 2]) -> Result<Volume, Fault> {
+    fn prism(
+        &self,
+        path: &str,
+        polygons: &[Vec<Vec<[f64; 2]>>],
+        heights: [f64; 2],
+    ) -> Result<Volume, Fault> {
         let [bottom, top] = heights.map(number);
         let fault = |detail: String| {
             let value = format!(
@@ -159,7 +115,7 @@ impl VolumeDraft {
         if heights[0] == heights[1] {
             return Err(fault(format!("empty: bottom and top are both {bottom}")));
         }
-        let read = |(i, rings): (usize, &Rings)| {
+        let read = |(i, rings): (usize, &Vec<Vec<[f64; 2]>>)| {
             let prism = Polygon::new(rings).and_then(|base| Prism::new(base, heights));
             prism
                 .map(Volume::from)
@@ -179,10 +135,6 @@ impl VolumeDraft {
 
     /// As answers echo it, and as a query's body has it.
     pub(super) fn echo(&self) -> Json {
-        let list = |regions: &[Checked<RegionDraft>]| {
-            let echoes = regions.iter().flatten().map(RegionDraft::echo);
-            echoes.collect::<Vec<_>>()
-        };
         match self {
             Self::Box(corners) => json!({ "bbox": corners }),
             Self::Ball(center, radius) => {
@@ -197,9 +149,6 @@ impl VolumeDraft {
             }
             Self::Chunk(size, [x, y, z]) => {
                 json!({ "chunk": { "size": size, "x": x, "y": y, "z": z } })
-            }
-            Self::Combined(include, exclude) => {
-                json!({ "include": list(include), "exclude": list(exclude) })
             }
         }
     }
@@ -261,30 +210,5 @@ impl QueryVolume {
             Some(own) => own.volume.clone().and(self.volume.clone()),
             None => self.volume.clone(),
         }
-    }
-}
-
-impl QueryRegion {
-    /// The error of a volume that reaches too far for a spacing.
-    pub fn too_far_in_space(&self, spacing: Spacing, error: &strew_core::Error) -> Error {
-        let bbox = self.volume.as_ref().map(QueryVolume::bbox);
-        let listed = || bbox.map_or_else(String::new, |bbox| listed(&bbox));
-        let value = self.echo.as_ref().map_or_else(listed, ToString::to_string);
-        let fault = match (error.kind(), error.limit()) {
-            (ErrorKind::TooFar, Some(limit)) => {
-                let (field, reached) = (error.field(), error.value());
-                let detail = match &self.echo {
-                    None => format!("{field} is {reached}, too far from the origin"),
-                    Some(_) => format!("reaches to {reached}, too far from the origin"),
-                };
-                let [limit, spacing] = [limit, spacing.get()].map(number);
-                let allowed = format!(
-                    "within ±{limit} at spacing {spacing}, where f64 still tells neighbors apart"
-                );
-                Fault::new(&self.path, value, detail, allowed)
-            }
-            _ => Fault::new(&self.path, value, error.to_string(), VOLUME),
-        };
-        fault.into()
     }
 }

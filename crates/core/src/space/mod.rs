@@ -30,6 +30,7 @@ mod cursor;
 mod distance;
 mod format;
 mod lattice;
+mod lookups;
 mod mask;
 mod nearest;
 mod pattern;

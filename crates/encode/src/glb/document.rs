@@ -5,7 +5,7 @@ use std::{fmt::Write as _, ops::Range};
 use serde_json::Value;
 
 use super::{arrays::Arrays, placeholder::Placeholder};
-use crate::{chunks::Things, coordinates::Place, head::Head, members::write_json, preview::COLORS};
+use crate::{chunks::Things, head::Head, members::write_json, place::Place, preview::COLORS};
 
 /// The points of a chunk that have the same thing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -22,9 +22,9 @@ use crate::{
     EncodeError,
     blocks::Blocks,
     chunks::{CHUNK, Chunks, Things},
-    coordinates::Place,
     head::Head,
     ids,
+    place::Place,
     pose::{Pose, y_up},
     rows::{Batch, Rows},
 };

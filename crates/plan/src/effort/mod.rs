@@ -12,6 +12,7 @@ mod volume;
 use strew_core::{
     Area, Placement, PointSet, Region, Spacing, Warp,
     server::{self, Stop},
+    space::{SpaceSet, Volume},
 };
 
 use crate::{
@@ -29,7 +30,6 @@ use strew_catalog::Ready;
 use strew_error::Error;
 use strew_query::{Amount, Query, Set};
 pub(super) use volume::CLEARED;
-pub use volume::rows_of_volume;
 
 /// The approximate number of lattice units in a mean spacing.
 const UNITS: f64 = 3.0;
@@ -156,7 +156,7 @@ pub fn planning(query: &Query, tables: &[Ready], limit: u64) -> Result<f64, Erro
         return Ok(0.0);
     }
     if query.region.volume.is_some() {
-        let rows = volume::rows(query);
+        let rows = volume::counting(query) / ROW;
         return match rows > limit as f64 {
             true => Err(Error::TooManyRows {
                 rows: rows as u128,
@@ -181,6 +181,11 @@ pub fn planning(query: &Query, tables: &[Ready], limit: u64) -> Result<f64, Erro
         }
     }
     Ok(weighted)
+}
+
+/// The rows that counting the points of a set in a volume takes.
+pub(super) fn rows_of_volume(set: &Set, points: &SpaceSet, volume: &Volume) -> f64 {
+    volume::counting_set(set, points, volume) / ROW
 }
 
 /// The price of counting a period, in rows: 0 if it has all points.

@@ -8,8 +8,7 @@ use strew_core::{
 };
 use strew_query::{Query, Set};
 
-use super::ROW;
-use crate::volume::placed;
+use crate::amount_in_space::placed;
 
 /// The nanoseconds that counting takes for each square of a spacing's side on the surface.
 const SURFACE: f64 = 150.0;
@@ -20,25 +19,25 @@ const BOX: f64 = 4e5;
 /// Those to test whether a point is clear of a layer.
 pub(crate) const CLEARED: f64 = 500.0;
 
-/// The rows that counting the sets of a query in space takes.
-pub(super) fn rows(query: &Query) -> f64 {
+/// The nanoseconds that counting the sets of a query in space takes.
+pub(super) fn counting(query: &Query) -> f64 {
     let Some(whole) = &query.region.volume else {
         return 0.0;
     };
     let of = |set: &Set| {
         let (points, _) = placed(set, set.space()?).ok()?;
         let own = set.region.as_ref().and_then(|own| own.volume.as_ref());
-        Some(rows_of_volume(set, &points, &whole.and(own)))
+        Some(counting_set(set, &points, &whole.and(own)))
     };
     // Planning refuses what cannot be planned.
     query.sets.iter().filter_map(of).sum()
 }
 
-/// The rows that counting the points of a set in a volume takes.
-pub fn rows_of_volume(set: &Set, points: &SpaceSet, volume: &Volume) -> f64 {
+/// The nanoseconds that counting the points of a set in a volume takes.
+pub(super) fn counting_set(set: &Set, points: &SpaceSet, volume: &Volume) -> f64 {
     let spacing = points.placement().spacing.get();
     let is_box = matches!(volume, Volume::Region(_));
-    let nanoseconds = match (set.clear_of.len(), points.placement().warp) {
+    match (set.clear_of.len(), points.placement().warp) {
         (0, Warp::OFF) if is_box => BOX,
         (0, _) => BOX + surface(volume) / (spacing * spacing) * SURFACE,
         (layers, _) => {
@@ -48,8 +47,7 @@ pub fn rows_of_volume(set: &Set, points: &SpaceSet, volume: &Volume) -> f64 {
             let all: f64 = sides.into_iter().product();
             all * (MADE + CLEARED * layers as f64)
         }
-    };
-    nanoseconds / ROW
+    }
 }
 
 /// The surface of the parts of a volume together.

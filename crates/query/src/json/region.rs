@@ -7,7 +7,8 @@ use strew_catalog::Dimension;
 use strew_error::{Checked, Fault, Faults, all, unknown};
 
 use super::{
-    super::{MOST_LEVELS, MOST_REGIONS, RegionDraft, ShapeDraft, region::REGION, volume::VOLUME},
+    super::{MOST_LEVELS, MOST_REGIONS, RegionDraft, ShapeDraft},
+    forms::Forms,
     geojson::{GEOJSON, GeoJson, polygons},
     object::{Object, Only, elements, of_text, parse, read as typed, shown},
     volume,
@@ -20,38 +21,6 @@ const CIRCLE: &str = r#"{"center": [x, y], "radius": r}, numbers with r above 0"
 /// The form of a chunk.
 const CHUNK: &str =
     r#"{"size": s, "x": column, "y": row}, a number above 0 and integers within ±4503599627370496"#;
-/// The shapes that regions of one kind have.
-pub(super) struct Forms {
-    /// Their names, each a member.
-    names: [&'static str; 5],
-    /// All of them in words.
-    allowed: &'static str,
-    dimension: Dimension,
-}
-
-impl Forms {
-    /// Those of the plane.
-    pub(super) const PLANE: Self = Self {
-        names: ["bbox", "circle", "polygon", "chunk", "include"],
-        allowed: REGION,
-        dimension: Dimension::Plane,
-    };
-    /// Those of space.
-    pub(super) const SPACE: Self = Self {
-        names: ["bbox", "ball", "prism", "chunk", "include"],
-        allowed: VOLUME,
-        dimension: Dimension::Space,
-    };
-
-    /// Those of a dimension.
-    pub(super) const fn of(dimension: Dimension) -> &'static Self {
-        match dimension {
-            Dimension::Plane => &Self::PLANE,
-            Dimension::Space => &Self::SPACE,
-        }
-    }
-}
-
 /// A circle.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -182,11 +151,10 @@ pub(super) fn read(
         move |detail: String| Fault::new(field, shown(json), detail, allowed)
     };
     let shape = match kind {
-        _ if forms.dimension == Dimension::Space => {
-            let excluded = format!("{path}.exclude");
-            let exclude = exclude.map(|json| (excluded.as_str(), json));
-            volume::shape(&field, (kind, json, exclude), depth, listed)?
-        }
+        _ if forms.dimension == Dimension::Space => match volume::shape(&field, kind, json)? {
+            Some(shape) => ShapeDraft::Volume(shape),
+            None => combined(path, (json, exclude), depth, listed, forms)?,
+        },
         "bbox" => ShapeDraft::Box(typed(json, "").map_err(wrong(BOX))?),
         "circle" => {
             let Only(CircleJson { center, radius }) = typed(json, "").map_err(wrong(CIRCLE))?;
@@ -197,15 +165,7 @@ pub(super) fn read(
             let Only(ChunkJson { size, x, y }) = typed(json, "").map_err(wrong(CHUNK))?;
             ShapeDraft::Chunk(size, [x, y])
         }
-        _ if depth == MOST_LEVELS => {
-            return Err(wrong("8 levels at most")("regions are nested too deeply".into()).into());
-        }
-        _ => {
-            let mut items = |field: &str, json| list(field, json, depth, listed, forms);
-            let include = items(&field, json)?;
-            let exclude = exclude.map(|json| items(&format!("{path}.exclude"), json));
-            ShapeDraft::Combined(include, exclude.transpose()?.unwrap_or_default())
-        }
+        _ => combined(path, (json, exclude), depth, listed, forms)?,
     };
     let path = match kind {
         "include" => path.to_owned(),
@@ -217,8 +177,30 @@ pub(super) fn read(
     })
 }
 
+/// What lies in some regions and not in others.
+fn combined(
+    path: &str,
+    (include, exclude): (&RawValue, Option<&RawValue>),
+    depth: usize,
+    listed: &mut usize,
+    forms: &Forms,
+) -> Checked<ShapeDraft> {
+    let field = format!("{path}.include");
+    if depth == MOST_LEVELS {
+        let detail = "regions are nested too deeply";
+        return Err(Fault::new(&field, shown(include), detail, "8 levels at most").into());
+    }
+    let mut items = |field: &str, json| list(field, json, depth, listed, forms);
+    let include = items(&field, include)?;
+    let exclude = exclude.map(|json| items(&format!("{path}.exclude"), json));
+    Ok(ShapeDraft::Combined(
+        include,
+        exclude.transpose()?.unwrap_or_default(),
+    ))
+}
+
 /// A list of regions, each with its faults in its place.
-pub(super) fn list(
+fn list(
     path: &str,
     json: &RawValue,
     depth: usize,

@@ -6,10 +6,9 @@ use serde_json::value::RawValue;
 use strew_error::{Checked, Fault};
 
 use super::{
-    super::{MOST_LEVELS, RegionDraft, ShapeDraft, VolumeDraft, volume::PRISM},
+    super::volume::{PRISM, VolumeDraft},
     geojson::{GEOJSON, GeoJson, polygons},
     object::{Object, Only, read as typed, shown},
-    region::{Forms, list},
 };
 
 /// The form of a box, as faults describe it.
@@ -126,15 +125,10 @@ pub struct CombinedVolume {
     exclude: Option<Vec<VolumeSchema>>,
 }
 
-/// A shape of a volume.
-pub(super) fn shape(
-    field: &str,
-    (kind, json, exclude): (&str, &RawValue, Option<(&str, &RawValue)>),
-    depth: usize,
-    listed: &mut usize,
-) -> Checked<ShapeDraft> {
+/// The shape of a volume; `None` for lists.
+pub(super) fn shape(field: &str, kind: &str, json: &RawValue) -> Checked<Option<VolumeDraft>> {
     let wrong = |allowed| move |detail: String| Fault::new(field, shown(json), detail, allowed);
-    let shape = match kind {
+    Ok(Some(match kind {
         "bbox" => VolumeDraft::Box(typed(json, "").map_err(wrong(BOX))?),
         "ball" => {
             let Only(BallJson { center, radius }) = typed(json, "").map_err(wrong(BALL))?;
@@ -145,17 +139,8 @@ pub(super) fn shape(
             let Only(CubeJson { size, x, y, z }) = typed(json, "").map_err(wrong(CHUNK))?;
             VolumeDraft::Chunk(size, [x, y, z])
         }
-        _ if depth == MOST_LEVELS => {
-            return Err(wrong("8 levels at most")("regions are nested too deeply".into()).into());
-        }
-        _ => {
-            let mut items = |field: &str, json| list(field, json, depth, listed, &Forms::SPACE);
-            let include: Vec<Checked<RegionDraft>> = items(field, json)?;
-            let exclude = exclude.map(|(path, json)| items(path, json)).transpose()?;
-            VolumeDraft::Combined(include, exclude.unwrap_or_default())
-        }
-    };
-    Ok(ShapeDraft::Volume(shape))
+        _ => return Ok(None),
+    }))
 }
 
 /// A prism, whose polygon is read as everywhere.
