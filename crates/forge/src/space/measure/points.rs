@@ -147,7 +147,7 @@ impl SpacePoints {
 /// ```
 #[must_use]
 pub const fn is_uniform_in_space(twin: Twin) -> bool {
-    twin.t() % 2 == 1 && twin.q() % 2 == 0
+    !twin.t().is_multiple_of(2) && twin.q().is_multiple_of(2)
 }
 
 #[cfg(test)]
