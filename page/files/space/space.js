@@ -11,12 +11,14 @@ import { cameraOf } from "../walk/camera.js";
 import { flatOn } from "./flat.js";
 import { sceneOn } from "./scene.js";
 import { Slabs } from "./slabs.js";
-import { PROFILES, REACH, fromHash, isSeed, isSpacing, toHash } from "./state.js";
+import { PROFILES, REACH, fromHash, isInReach, isSeed, isSpacing, toHash } from "./state.js";
 import { Viewer } from "./viewer.js";
 import { Volume, chunkAt, cornerOf, pathOf, sizeFor } from "./volume.js";
 
 /** Milliseconds without a byte after which the page says that it waits. */
 const PATIENCE = 1500;
+/** Milliseconds until slabs are requested again from a server that was busy. */
+const AGAIN = 1500;
 /** Pixels of the picture for each CSS pixel. */
 const RATIO = Math.min(2, devicePixelRatio);
 
@@ -146,7 +148,11 @@ const later = settled(350, () => {
   byId("command").textContent = `curl -f '${location.origin}${pathOf(state, here, "csv")}' -o chunk.csv`;
   const { points, chunks } = volume.sums;
   byId("spoken").textContent = `${counted(points)} in ${counted(chunks, "chunk")} around ${state.at.map((one) => formatPlace(one, 0)).join(", ")}`;
-  slabs.show(state).catch(failed);
+  slabs.show(state).catch((error) => {
+    // A busy server is asked again, as for chunks.
+    if (error.isPassing) setTimeout(later, AGAIN);
+    else failed(error);
+  });
 });
 
 /** Takes another value of a field. */
@@ -170,7 +176,8 @@ function text(id, words, isRight, wrong) {
 
 byId("fields").append(
   make("div", { class: "pair" },
-    text("spacing", "Mean spacing", isSpacing, "The mean spacing must be a number from 0.001 to 1000000."),
+    text("spacing", "Mean spacing", (value) => isSpacing(value) && isInReach(state.at, value),
+      "The mean spacing must be a number from 0.001 to 1000000; far from the origin it must not be small."),
     text("seed", "Seed", isSeed, "The seed must be a whole number from 0 to 18446744073709551615.")),
   make("div", { class: "pair" },
     field("Profile", "profile", select("profile", (value) => choose("profile", value))),

@@ -25,6 +25,11 @@ export function isSpacing(text) {
   return /^\d*\.?\d+(e[+-]?\d+)?$/i.test(text) && Number(text) >= 1e-3 && Number(text) <= 1e6;
 }
 
+/** Whether the server has points of this spacing around a place of three coordinates. */
+export function isInReach(at, spacing) {
+  return at.every((one) => one && Math.abs(toNumber(one)) <= FARTHEST * Number(spacing));
+}
+
 /** The state of an address, with what in it was not understood, as words for each. */
 export function fromHash(hash) {
   const given = new URLSearchParams(hash.slice(1));
@@ -41,7 +46,7 @@ export function fromHash(hash) {
   };
   const spacing = text("spacing", isSpacing, "The spacing in the address is no number from 0.001 to 1000000, so it is 1.");
   const at = given.has("at") ? given.get("at").split(",").map(parsePlace) : MIDDLE();
-  const isNear = at.length === 3 && at.every((one) => one && Math.abs(toNumber(one)) <= FARTHEST * Number(spacing));
+  const isNear = at.length === 3 && isInReach(at, spacing);
   if (!isNear) wrong.push("The place in the address is not in reach. Here is the beginning instead.");
   const turn = Math.PI / 180;
   return {
