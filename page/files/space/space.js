@@ -78,7 +78,7 @@ let isStale = true;
 
 function themed() {
   const of = (name) => themeColor(name).match(/[\d.]+/g).slice(0, 3).map((v) => Number(v) / 255);
-  colors = { ground: of("void"), near: of("near"), far: of("far"), slab: of("slab"), line: of("accent") };
+  colors = { ground: of("void"), near: of("near"), far: of("far"), slab: of("slab"), line: of("ink") };
   isStale = true;
   slabs.draw();
 }

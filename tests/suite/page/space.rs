@@ -169,3 +169,22 @@ fn without_webgl_a_plain_canvas_shows_the_points_and_says_so() {
     browser.until(&format!("{colors} > 10"));
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
+
+#[test]
+fn nothing_turns_by_itself_where_less_motion_is_wanted() {
+    let Some((daemon, browser)) = looking(640, 480) else {
+        return;
+    };
+    browser.go(&daemon.url("/space"));
+    browser.until(READY);
+    assert_eq!(browser.value("strew.viewer.isTurning"), true);
+    browser.reduce_motion();
+    browser.go("about:blank");
+    browser.go(&daemon.url("/space"));
+    browser.until(READY);
+    assert_eq!(browser.value("strew.viewer.isTurning"), false);
+    // The button turns all the same.
+    browser.click("#turn");
+    browser.until("document.querySelector('#turn').getAttribute('aria-pressed') === 'true'");
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
