@@ -62,6 +62,14 @@ const PAGES: &[Entry] = &[
         "For people: a forest whose trees are points of the plane, streamed by chunk. Loads nothing from elsewhere.",
         "walk/index.html",
     ),
+    (
+        "/space",
+        "getSpacePage",
+        "The page of points in space",
+        "For people: a volume of points to turn and to fly through, streamed by chunk, with slabs of other methods \
+         beside it. Loads nothing from elsewhere.",
+        "space/index.html",
+    ),
 ];
 
 /// All pages, joined, with their parts.

@@ -9,13 +9,20 @@ const PARALLEL = 5;
 /** Room for chunks in bytes, on machines with memory to spare and on others. */
 const ROOM = (navigator.deviceMemory ?? 8) >= 4 ? 256e6 : 96e6;
 
+/** How chunks of the plane are requested, the columns that follow x and y, and an address as text. */
+const PLANE = {
+  requestOf: chunkRequest,
+  columnsOf,
+  nameOf: ({ size, cx, cy }) => `${size}/${cx}/${cy}`,
+};
+
 /**
  * The chunks of the layers that are shown. `changed()` is called whenever points arrive, `failed`
- * with what the server refuses.
+ * with what the server refuses. `kind` is what they are chunks of.
  */
 export class Chunks {
-  constructor(changed, failed, { parallel = PARALLEL, room = ROOM } = {}) {
-    Object.assign(this, { changed, failed, parallel, room });
+  constructor(changed, failed, { parallel = PARALLEL, room = ROOM, kind = PLANE } = {}) {
+    Object.assign(this, { changed, failed, parallel, room, kind });
     /** Bytes that have come so far. */
     this.received = 0;
     this.all = new Map();
@@ -31,13 +38,19 @@ export class Chunks {
 
   /** Says what the points are; requests for other points are aborted. */
   show(layers) {
-    const identity = chunkRequestIdentity(layers);
+    const identity = this.identityOf(layers);
     if (identity === this.identity) return;
     this.identity = identity;
     this.layers = layers.map((layer) => ({ ...layer }));
-    this.columns = columnsOf(layers);
+    this.columns = this.kind.columnsOf(layers);
     this.refused = null;
     this.want([], 1);
+  }
+
+  /** Text that differs whenever the points or their columns do. */
+  identityOf(layers) {
+    const { path, body } = this.kind.requestOf(layers, { size: 1, cx: 0, cy: 0, cz: 0 }, 1);
+    return body ?? path;
   }
 
   /** Ends: what is being loaded is aborted. */
@@ -53,7 +66,7 @@ export class Chunks {
   }
 
   key(address, keep) {
-    return `${this.identity} ${keep} ${address.size}/${address.cx}/${address.cy}`;
+    return `${this.identity} ${keep} ${this.kind.nameOf(address)}`;
   }
 
   /** Says which chunks are looked at; returns these, whatever they hold by now. An address may have its own `keep`. */
@@ -115,7 +128,7 @@ export class Chunks {
     chunk.state = "loading";
     chunk.abort = new AbortController();
     try {
-      const { path, body } = chunkRequest(chunk.layers, chunk, chunk.keep);
+      const { path, body } = this.kind.requestOf(chunk.layers, chunk, chunk.keep);
       const answer = await ask(path, { body, signal: chunk.abort.signal });
       await this.receive(chunk, answer);
       chunk.state = "done";
@@ -173,12 +186,6 @@ export class Chunks {
       this.failed(error);
     }
   }
-}
-
-/** Text that differs whenever the points or their columns do. */
-function chunkRequestIdentity(layers) {
-  const { path, body } = chunkRequest(layers, { size: 1, cx: 0, cy: 0 }, 1);
-  return body ?? path;
 }
 
 /** The runs of a chunk's points by layer, as far as they have arrived: `[{ layer, first, count }]`. */

@@ -80,6 +80,7 @@ fn axe_finds_nothing_on_the_other_pages() {
         ),
         ("/walk#fly=0&quality=0", READY),
         ("/tile", READY),
+        ("/space#at=4,4,4", READY),
         ("/docs", READY),
         ("/docs#getCount", READY),
     ] {

@@ -63,6 +63,7 @@ fn the_first_key_leads_past_what_repeats() {
         ("/", "panel-body"),
         ("/compare", "methods"),
         ("/tile", "choices"),
+        ("/space#at=4,4,4", "choices"),
         ("/docs#getPoints", "main"),
     ] {
         browser.go("about:blank");

@@ -44,7 +44,7 @@ fn every_answer_has_security_headers() {
 fn pages_name_a_picture_for_those_who_pass_on_a_link() {
     let unknown = Daemon::start(&[]);
     let known = Daemon::start(&["http.public_url=https://points.example"]);
-    for path in ["/", "/compare", "/tile", "/walk"] {
+    for path in ["/", "/compare", "/tile", "/walk", "/space"] {
         let picture = |daemon: &Daemon| {
             let page = daemon.get(path);
             let (_, rest) = page

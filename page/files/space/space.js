@@ -1,0 +1,250 @@
+// The page of space: a volume to turn, zoom and fly through, the request for the chunk in the middle, and slabs beside
+// those of other methods.
+
+import { Gone, isAway, onPresence } from "../api.js";
+import { tools } from "../bar.js";
+import { byId, bytes, copy, counted, icon, make, settled, skipLinks } from "../dom.js";
+import { fault, field, refusal, select, setOptions } from "../form.js";
+import { formatPlace, place } from "../place.js";
+import { themeColor } from "../theme.js";
+import { cameraOf } from "../walk/camera.js";
+import { flatOn } from "./flat.js";
+import { sceneOn } from "./scene.js";
+import { Slabs } from "./slabs.js";
+import { PROFILES, REACH, fromHash, isInReach, isSeed, isSpacing, toHash } from "./state.js";
+import { Viewer } from "./viewer.js";
+import { Volume, chunkAt, cornerOf, pathOf, sizeFor } from "./volume.js";
+
+/** Milliseconds without a byte after which the page says that it waits. */
+const PATIENCE = 1500;
+/** Milliseconds until slabs are requested again from a server that was busy. */
+const AGAIN = 1500;
+/** Pixels of the picture for each CSS pixel. */
+const RATIO = Math.min(2, devicePixelRatio);
+
+const root = document.documentElement;
+const canvas = byId("view");
+const state = fromHash(location.hash);
+const scene = (!state.isFlat && sceneOn(canvas)) || flatOn(canvas);
+root.dataset.renderer = scene.isFlat ? "2d" : "webgl2";
+
+/** What the banner says, by subject; the first that there is is shown. */
+const notes = { gone: null, busy: null, refused: null, flat: null, link: state.wrong.join(" ") || null };
+if (scene.isFlat) notes.flat = "This browser draws without WebGL2, so the picture is plainer and slower.";
+
+function note(subject, words) {
+  if (notes[subject] === words) return;
+  notes[subject] = words;
+  banner();
+}
+
+function banner() {
+  const words = Object.values(notes).find(Boolean);
+  const box = byId("banner");
+  box.hidden = !words;
+  if (words instanceof Error) {
+    refusal(box, words, retry);
+    if (!words.isLocked) box.append(" ", make("button", { type: "button", onclick: retry }, "Try again"));
+  } else {
+    box.textContent = words ?? "";
+  }
+}
+
+function failed(error) {
+  if (error instanceof Gone) return;
+  note("refused", error);
+}
+
+function retry() {
+  note("refused", null);
+  volume.chunks.retry();
+  later();
+}
+
+onPresence((gone) => {
+  note("gone", gone ? "The server does not answer. This page tries again by itself; what is drawn stays." : null);
+  if (!gone) later();
+});
+
+const volume = new Volume(() => (isStale = true), failed);
+const viewer = new Viewer(canvas, state, () => {
+  note("link", null);
+  later();
+});
+const slabs = new Slabs(byId("slabs"));
+
+let colors = null;
+let isStale = true;
+
+function themed() {
+  const of = (name) => themeColor(name).match(/[\d.]+/g).slice(0, 3).map((v) => Number(v) / 255);
+  colors = { ground: of("void"), near: of("near"), far: of("far"), slab: of("slab"), line: of("ink") };
+  isStale = true;
+  slabs.draw();
+}
+
+/** What is seen from the eye, in mean spacings. */
+function look() {
+  const { at, yaw, pitch, away, reach, spacing } = state;
+  const unit = Number(spacing);
+  const camera = cameraOf({ yaw, pitch }, canvas.clientWidth / Math.max(1, canvas.clientHeight), away + 2 * reach + 10);
+  const middle = camera.ahead.map((v) => v * away);
+  const seen = (corner) => corner.map((v, axis) => v / unit + middle[axis]);
+  const here = chunkAt(at, sizeFor(unit));
+  const done = volume.chunks.wanted.filter((chunk) => chunk.state === "done");
+  return {
+    camera, middle, reach, colors,
+    scale: 1 / unit,
+    slab: 0.5,
+    depths: [Math.max(0, away - reach), away + reach],
+    chunks: done.map((chunk) => ({ chunk, corner: seen(cornerOf(chunk, at)) })),
+    box: { corner: seen(cornerOf(here, at)), side: here.size / unit },
+  };
+}
+
+let before = performance.now();
+let pictured = "";
+
+function frame(now) {
+  const seconds = Math.min(0.1, (now - before) / 1000);
+  before = now;
+  viewer.step(seconds);
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((v) => Math.round(v * RATIO));
+  const same = [...state.at.flatMap(({ i, f }) => [i, f]), state.yaw, state.pitch, state.away, state.reach, width, height].join();
+  // A still picture is drawn once.
+  if (isStale || same !== pictured) {
+    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    volume.move(state);
+    scene.draw(look());
+    [isStale, pictured] = [false, same];
+    tell(now);
+  } else if (root.dataset.state === "loading") {
+    tell(now);
+  }
+  requestAnimationFrame(frame);
+}
+
+let heard = { received: -1, at: 0 };
+
+/** The line below, and whether the server takes long. */
+function tell(now) {
+  const { points, chunks, wanted, received, isBusy } = volume.sums;
+  if (received !== heard.received || chunks === wanted) heard = { received, at: now };
+  const isLong = now - heard.at > PATIENCE && !isAway();
+  note("busy", isBusy ? "The server is busy. This page tries again by itself." : isLong ? "The server takes long to answer." : null);
+  root.dataset.state = notes.refused ? "failed" : chunks === wanted ? "ready" : "loading";
+  const parts = [`${counted(points)} in ${chunks === wanted ? counted(chunks, "chunk") : `${chunks} of ${wanted} chunks`}`, bytes(received),
+    `at ${state.at.map((one) => formatPlace(one, Number(state.spacing) < 1 ? 2 : 0)).join(", ")}`];
+  const text = parts.join(" · ");
+  if (byId("tally").textContent !== text) byId("tally").textContent = text;
+  byId("turn").setAttribute("aria-pressed", String(viewer.isTurning));
+}
+
+/** What follows a move, once it is over: the address, the request, the slabs. */
+const later = settled(350, () => {
+  const hash = toHash(state);
+  if (hash !== location.hash) history.replaceState(null, "", hash);
+  const here = chunkAt(state.at, sizeFor(Number(state.spacing)));
+  byId("command").textContent = `curl -f '${location.origin}${pathOf(state, here, "csv")}' -o chunk.csv`;
+  const { points, chunks } = volume.sums;
+  byId("spoken").textContent = `${counted(points)} in ${counted(chunks, "chunk")} around ${state.at.map((one) => formatPlace(one, 0)).join(", ")}`;
+  slabs.show(state).catch((error) => {
+    // A busy server is asked again, as for chunks.
+    if (error.isPassing) setTimeout(later, AGAIN);
+    else failed(error);
+  });
+});
+
+/** Takes another value of a field. */
+function choose(name, value) {
+  state[name] = value;
+  note("refused", null);
+  note("link", null);
+  isStale = true;
+  later();
+}
+
+function text(id, words, isRight, wrong) {
+  const changed = (event) => {
+    const value = event.target.value.trim();
+    fault(byId("fields"), id, isRight(value) ? null : wrong);
+    if (isRight(value)) choose(id, value);
+  };
+  const mode = id === "seed" ? "numeric" : "decimal";
+  return field(words, id, make("input", { id, inputmode: mode, autocomplete: "off", spellcheck: "false", oninput: changed }));
+}
+
+byId("fields").append(
+  make("div", { class: "pair" },
+    text("spacing", "Mean spacing", (value) => isSpacing(value) && isInReach(state.at, value),
+      "The mean spacing must be a number from 0.001 to 1000000; far from the origin it must not be small."),
+    text("seed", "Seed", isSeed, "The seed must be a whole number from 0 to 18446744073709551615.")),
+  make("div", { class: "pair" },
+    field("Profile", "profile", select("profile", (value) => choose("profile", value))),
+    field("Reach, in spacings", "reach", make("input", {
+      id: "reach", type: "range", min: REACH[0], max: REACH[1], oninput: (event) => choose("reach", Number(event.target.value)),
+    }))),
+);
+
+function fill() {
+  setOptions(byId("profile"), PROFILES, state.profile);
+  for (const id of ["spacing", "seed", "reach"]) {
+    byId(id).value = state[id];
+    fault(byId("fields"), id, null);
+  }
+}
+
+/** Goes to a state of an address. */
+function go(next) {
+  const { isFlat, ...rest } = next;
+  Object.assign(state, rest);
+  home = null;
+  byId("jump").textContent = "Jump far away";
+  note("link", state.wrong.join(" ") || null);
+  note("refused", null);
+  fill();
+  isStale = true;
+  later();
+}
+
+let home = null;
+
+/** Goes to where doubles have nine digits fewer left, and back to the same points. */
+function jump() {
+  const far = Math.min(1e9, 1e10 * Number(state.spacing));
+  const here = state.at;
+  state.at = home ?? [place(far), place(far), place(far)];
+  home = home ? null : here;
+  byId("jump").textContent = home ? "Jump back" : "Jump far away";
+  viewer.took();
+}
+
+const ICONS = {
+  up: "M5 13l7-7 7 7M12 6v14", down: "M5 11l7 7 7-7M12 18V4", left: "M15 5l-7 7 7 7", right: "M9 5l7 7-7 7",
+  forth: "M5 15l7-7 7 7", back: "M5 9l7 7 7-7",
+};
+for (const [move, path] of Object.entries(ICONS)) {
+  byId(`pad-${move}`).append(icon(path));
+  viewer.button(byId(`pad-${move}`), move);
+}
+byId("jump").addEventListener("click", jump);
+byId("inside").addEventListener("click", () => {
+  state.away = 0;
+  viewer.took();
+});
+byId("turn").addEventListener("click", () => {
+  viewer.isTurning = !viewer.isTurning;
+  isStale = true;
+});
+byId("copy").addEventListener("click", (event) => copy(byId("command"), event.currentTarget));
+tools(viewer, () => go({ ...fromHash(""), spacing: state.spacing, seed: state.seed, profile: state.profile }), themed);
+canvas.addEventListener("webglcontextlost", () => location.reload());
+addEventListener("hashchange", ({ newURL }) => go(fromHash(new URL(newURL).hash)));
+skipLinks();
+fill();
+banner();
+later();
+
+// For the curious, and for tests.
+globalThis.strew = { state, viewer, volume, slabs, scene };
+requestAnimationFrame(frame);

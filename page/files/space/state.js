@@ -1,0 +1,78 @@
+// What the page shows, as its address has it: a place in space, where the eye is from there, and what the points are.
+
+import { formatPlace, parsePlace, place, toNumber } from "../place.js";
+
+/** The profiles of points in space. */
+export const PROFILES = ["blue", "spaced"];
+/** The fewest and the most mean spacings that points are drawn within. */
+export const REACH = [8, 24];
+/** The steepest look up or down, in radians. */
+export const STEEPEST = 1.5;
+/** The farthest place in mean spacings: the server tells neighbors apart a little farther. */
+const FARTHEST = 1e11;
+
+/** The middle of a chunk, so that its outline is around the middle of the view. */
+const MIDDLE = () => [place(4), place(4), place(4)];
+const BEGINNING = { yaw: 30, pitch: -18, away: 30, reach: 16, spacing: "1", seed: "7", profile: "blue" };
+
+/** Whether a text is a seed: an integer of 64 bits. */
+export function isSeed(text) {
+  return /^\d{1,20}$/.test(text) && BigInt(text) < 2n ** 64n;
+}
+
+/** Whether a text is a spacing that this page shows. */
+export function isSpacing(text) {
+  return /^\d*\.?\d+(e[+-]?\d+)?$/i.test(text) && Number(text) >= 1e-3 && Number(text) <= 1e6;
+}
+
+/** Whether the server has points of this spacing around a place of three coordinates. */
+export function isInReach(at, spacing) {
+  return at.every((one) => one && Math.abs(toNumber(one)) <= FARTHEST * Number(spacing));
+}
+
+/** The state of an address, with what in it was not understood, as words for each. */
+export function fromHash(hash) {
+  const given = new URLSearchParams(hash.slice(1));
+  const wrong = [];
+  const text = (name, isRight, words) => {
+    const value = given.get(name);
+    if (value === null || isRight(value)) return value ?? BEGINNING[name];
+    wrong.push(words);
+    return BEGINNING[name];
+  };
+  const number = (name, [least, most]) => {
+    const value = given.has(name) ? Number(given.get(name)) : NaN;
+    return Number.isFinite(value) ? Math.max(least, Math.min(most, value)) : BEGINNING[name];
+  };
+  const spacing = text("spacing", isSpacing, "The spacing in the address is no number from 0.001 to 1000000, so it is 1.");
+  const at = given.has("at") ? given.get("at").split(",").map(parsePlace) : MIDDLE();
+  const isNear = at.length === 3 && isInReach(at, spacing);
+  if (!isNear) wrong.push("The place in the address is not in reach. Here is the beginning instead.");
+  const turn = Math.PI / 180;
+  return {
+    at: isNear ? at : MIDDLE(),
+    yaw: number("yaw", [-360, 360]) * turn,
+    pitch: Math.max(-STEEPEST, Math.min(STEEPEST, number("pitch", [-90, 90]) * turn)),
+    away: number("away", [0, 4 * REACH[1]]),
+    reach: Math.round(number("reach", REACH)),
+    spacing,
+    seed: text("seed", isSeed, "The seed in the address is no whole number below 2⁶⁴, so it is 7."),
+    profile: text("profile", (value) => PROFILES.includes(value), "The profile in the address is not for space, so it is blue."),
+    isFlat: given.get("renderer") === "2d",
+    isPlain: !given.has("at"),
+    wrong,
+  };
+}
+
+/** The address of a state. */
+export function toHash({ at, yaw, pitch, away, reach, spacing, seed, profile, isFlat }) {
+  const degrees = (angle) => String(Math.round((angle * 180) / Math.PI) % 360);
+  const decimals = Math.max(0, Math.ceil(2 - Math.log10(Number(spacing))));
+  const parts = [
+    `at=${at.map((one) => formatPlace(one, decimals)).join(",")}`, `yaw=${degrees(yaw)}`, `pitch=${degrees(pitch)}`,
+    `away=${Number(away.toFixed(1))}`, `reach=${reach}`, `spacing=${spacing}`, `seed=${seed}`,
+  ];
+  if (profile !== "blue") parts.push(`profile=${profile}`);
+  if (isFlat) parts.push("renderer=2d");
+  return `#${parts.join("&")}`;
+}

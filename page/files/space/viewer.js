@@ -1,0 +1,152 @@
+// The viewer: the place that is looked at, and the eye around it. A drag turns, a wheel or two fingers zoom, keys and
+// buttons that are held fly.
+
+import { moved } from "../place.js";
+import { REACH, STEEPEST } from "./state.js";
+
+/** Mean spacings a second; Shift makes it several times as many. */
+const PACE = 7;
+const RUN = 5;
+/** Radians a second that keys turn, a second that the volume turns by itself, and a pixel of a drag. */
+const TURN = 1.2;
+const SLOWLY = 0.12;
+const DRAG = 0.006;
+/** Nearer to the place than this, in mean spacings, the eye looks around instead of circling it. */
+const INSIDE = 1.5;
+
+const KEYS = {
+  w: "forth", s: "back", a: "left", d: "right", e: "up", q: "down", pageup: "up", pagedown: "down",
+  arrowleft: "turnLeft", arrowright: "turnRight", arrowup: "turnUp", arrowdown: "turnDown",
+};
+const ZOOMS = { "+": 1.25, "=": 1.25, "-": 0.8, _: 0.8 };
+
+export class Viewer {
+  /** `changed()` hears of whatever the visitor does. */
+  constructor(canvas, state, changed) {
+    Object.assign(this, { canvas, state, changed });
+    this.held = new Set();
+    // Readers who prefer reduced motion see nothing move by itself; the button still turns.
+    this.isTurning = state.isPlain && !matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.listenToKeys();
+    this.listenToPointers();
+  }
+
+  listenToKeys() {
+    this.canvas.addEventListener("keydown", (event) => {
+      this.isFast = event.shiftKey;
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      const move = KEYS[event.key.toLowerCase()];
+      if (move) this.hold(move);
+      else if (ZOOMS[event.key]) this.zoom(ZOOMS[event.key]);
+      else return;
+      event.preventDefault();
+    });
+    addEventListener("keyup", (event) => {
+      this.isFast = event.shiftKey;
+      this.held.delete(KEYS[event.key.toLowerCase()]);
+    });
+    addEventListener("blur", () => this.held.clear());
+  }
+
+  listenToPointers() {
+    const { canvas } = this;
+    const down = new Map();
+    const apart = () => {
+      const [a, b] = [...down.values()];
+      return Math.hypot(a[0] - b[0], a[1] - b[1]) || 1;
+    };
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      down.set(event.pointerId, [event.clientX, event.clientY]);
+      canvas.classList.add("held");
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      const before = down.get(event.pointerId);
+      if (!before) return;
+      const was = down.size === 2 ? apart() : 0;
+      down.set(event.pointerId, [event.clientX, event.clientY]);
+      const [dx, dy] = [event.clientX - before[0], event.clientY - before[1]];
+      if (was > 0) {
+        // Half of the way, because the other finger reports its own.
+        const step = (this.state.away + 4) / canvas.clientHeight / 2;
+        this.go(-dx * step, 0, dy * step);
+        this.zoom(apart() / was);
+      } else if (down.size === 1) {
+        const way = this.state.away > INSIDE ? 1 : -1;
+        this.turn(way * dx * DRAG, -way * dy * DRAG);
+        this.took();
+      }
+    });
+    const up = (event) => {
+      if (down.delete(event.pointerId) && down.size === 0) canvas.classList.remove("held");
+    };
+    canvas.addEventListener("pointerup", up);
+    canvas.addEventListener("pointercancel", up);
+    canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      const lines = event.deltaMode === 1 ? 16 : event.deltaMode === 2 ? 400 : 1;
+      const turn = Math.max(-240, Math.min(240, event.deltaY * lines));
+      this.zoom(Math.exp(-turn * (event.ctrlKey ? 0.01 : 0.002)));
+    }, { passive: false });
+  }
+
+  /** A button that moves while it is held. */
+  button(element, move) {
+    const hold = (event) => {
+      event.preventDefault();
+      this.hold(move);
+    };
+    const free = () => this.held.delete(move);
+    element.addEventListener("pointerdown", hold);
+    for (const name of ["pointerup", "pointerleave", "pointercancel", "blur", "keyup"]) element.addEventListener(name, free);
+    element.addEventListener("keydown", (event) => [" ", "Enter"].includes(event.key) && hold(event));
+    element.addEventListener("contextmenu", (event) => event.preventDefault());
+  }
+
+  hold(move) {
+    this.held.add(move);
+    this.took();
+  }
+
+  /** The visitor moves: nothing turns by itself until its button is pressed. */
+  took() {
+    this.isTurning = false;
+    this.changed();
+  }
+
+  turn(yaw, pitch) {
+    this.state.yaw = (this.state.yaw + yaw) % (2 * Math.PI);
+    this.state.pitch = Math.max(-STEEPEST, Math.min(STEEPEST, this.state.pitch + pitch));
+  }
+
+  /** Brings the eye nearer by a factor, up to the place itself. */
+  zoom(factor) {
+    const { state } = this;
+    const away = (state.away + 1) / factor - 1;
+    state.away = Math.max(0, Math.min(4 * REACH[1], away));
+    this.took();
+  }
+
+  /** Moves by mean spacings to the right, ahead and up, as seen from the eye. */
+  go(right, ahead, up) {
+    const { yaw, pitch, spacing, at } = this.state;
+    const [sy, cy, sp, cp] = [Math.sin(yaw), Math.cos(yaw), Math.sin(pitch), Math.cos(pitch)];
+    const by = [
+      right * cy + ahead * cp * sy - up * sy * sp,
+      -right * sy + ahead * cp * cy - up * cy * sp,
+      ahead * sp + up * cp,
+    ];
+    this.state.at = at.map((one, axis) => moved(one, by[axis] * Number(spacing)));
+    this.took();
+  }
+
+  /** Moves by some seconds. */
+  step(seconds) {
+    if (this.isTurning) this.turn(SLOWLY * seconds, 0);
+    if (this.held.size === 0) return;
+    const way = (one, other) => (this.held.has(one) ? 1 : 0) - (this.held.has(other) ? 1 : 0);
+    this.turn(way("turnRight", "turnLeft") * TURN * seconds, way("turnUp", "turnDown") * TURN * seconds);
+    const pace = PACE * (this.isFast ? RUN : 1) * seconds;
+    this.go(way("right", "left") * pace, way("forth", "back") * pace, way("up", "down") * pace);
+  }
+}
