@@ -23,6 +23,7 @@ pub mod spans;
 pub mod telemetry;
 mod throttle;
 pub mod tls;
+mod trim;
 
 pub use peer::Peer;
 pub use serve::{App, ServeError};

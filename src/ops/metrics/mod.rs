@@ -21,6 +21,7 @@ use prometheus::{
 };
 use strew_error::Kind;
 
+pub(super) use process::resident;
 pub(super) use scrape::endpoint;
 
 /// The protocols, as labels name them.
