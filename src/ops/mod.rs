@@ -12,6 +12,7 @@ mod front;
 mod gate;
 mod guarded;
 pub mod health;
+mod heard;
 mod identity;
 mod metrics;
 mod panics;
