@@ -26,7 +26,7 @@ WORKDIR /src
 COPY . .
 RUN --mount=type=cache,target=/usr/local/cargo/registry \
     --mount=type=cache,target=/src/target \
-    cargo build --release --locked --bin strew --features otlp \
+    cargo build --release --locked --bin strew --features jemalloc,otlp \
     && cp target/release/strew /strew
 
 FROM ${RUN_IMAGE}

@@ -24,9 +24,10 @@ lint:
 bench:
     cargo bench -p strew-core
 
-# What requests cost a daemon: instructions and allocations of each, beside those that are kept (needs valgrind).
+# What requests cost a daemon as images have it: instructions and allocations of each, beside those that are kept (needs
+# valgrind).
 instructions *args:
-    cargo build --locked --profile profiling
+    cargo build --locked --profile profiling --features jemalloc
     cargo build --locked --profile profiling -p strew-core --example counted
     benches/instructions.py target/profiling/strew {{args}}
 
@@ -70,7 +71,7 @@ contract:
 
 # The tests of exported spans, which need the feature that images are built with.
 otlp:
-    cargo clippy --locked --features otlp -- -D warnings
+    cargo clippy --locked --features jemalloc,otlp -- -D warnings
     cargo test --locked --features otlp --test suite -- ops::spans
 
 # The library without the standard library.

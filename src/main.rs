@@ -3,8 +3,7 @@
 #[path = "../page/mod.rs"]
 mod page;
 
-/// glibc keeps the pages of a burst for later; this allocator returns them to the system within
-/// some seconds, from a thread of its own.
+/// It takes fewer instructions than glibc's, and returns memory by itself. Without it, `ops::trim` does.
 #[cfg(all(target_os = "linux", feature = "jemalloc"))]
 #[global_allocator]
 static ALLOCATOR: tikv_jemallocator::Jemalloc = tikv_jemallocator::Jemalloc;

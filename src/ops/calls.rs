@@ -96,7 +96,7 @@ impl Calls {
     }
 
     async fn admitted(&self, mut visit: Box<Visit>) -> Response {
-        match gate::of_calls(&self.gate, &visit.client, &visit.request) {
+        match gate::of_calls(&self.gate, &visit) {
             Ok(Some(caller)) => {
                 visit.request.extensions_mut().insert(caller);
             }

@@ -24,7 +24,7 @@ use tokio::{
 use tokio_util::{sync::CancellationToken, task::TaskTracker};
 
 use super::{
-    exchange::{Fate, OpenExchanges},
+    exchange::{Fate, From},
     front::Front,
     guarded::{FirstWords, WriteTimeout},
     peer::Peer,
@@ -226,12 +226,9 @@ impl Shared {
     where
         S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
     {
-        let open = OpenExchanges::new();
-        let service = Answers {
-            front,
-            peer: Peer(peer),
-            open: open.clone(),
-        };
+        let from = front.exchanges.from(Peer(peer));
+        let open = from.open.clone();
+        let service = Answers { front, from };
         let stream = TokioIo::new(FirstWords::new(stream, self.patience.opening));
         let connection = self.http.serve_connection(stream, service);
         tokio::pin!(connection);
@@ -297,8 +294,7 @@ fn http(settings: &Server) -> Builder<TokioExecutor> {
 /// Answers the requests of one connection.
 struct Answers {
     front: Arc<Front>,
-    peer: Peer,
-    open: Arc<OpenExchanges>,
+    from: From,
 }
 
 impl HyperService<Request<Incoming>> for Answers {
@@ -307,9 +303,9 @@ impl HyperService<Request<Incoming>> for Answers {
     type Future = Pin<Box<dyn Future<Output = Result<Response<Body>, Self::Error>> + Send>>;
 
     fn call(&self, request: Request<Incoming>) -> Self::Future {
-        let (front, peer, open) = (self.front.clone(), self.peer, self.open.clone());
-        let visit = front.exchanges.visit(peer, request.map(Body::incoming));
-        Box::pin(async move { Ok(front.answer(peer, &open, visit).await) })
+        let (front, from) = (self.front.clone(), self.from.clone());
+        let visit = front.exchanges.visit(&from, request.map(Body::incoming));
+        Box::pin(async move { Ok(front.answer(&from, visit).await) })
     }
 }
 

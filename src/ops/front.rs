@@ -9,11 +9,10 @@ use strew_access::{Caller, Gate};
 
 use super::{
     calls::Calls,
-    exchange::{Exchanges, Intake, OpenExchanges, Visit},
+    exchange::{Exchanges, From, Intake, Visit},
     gate,
     metrics::NO_ROUTE,
     panics,
-    peer::Peer,
 };
 use crate::{
     body::{Answering, Body, Request, Response},
@@ -61,21 +60,22 @@ impl Place<'_> {
 
 impl Front {
     /// Answers a request of a connection.
-    pub(super) async fn answer(
-        self: &Arc<Self>,
-        peer: Peer,
-        open: &Arc<OpenExchanges>,
-        visit: Box<Visit>,
-    ) -> Response {
+    pub(super) async fn answer(self: &Arc<Self>, from: &From, visit: Box<Visit>) -> Response {
         let is_head = *visit.request.method() == Method::HEAD;
         let place = self.place(visit.request.uri().path());
         let name = place.name();
         let answer = |visit| self.finished(place, visit);
-        let answered = self.exchanges.answer(peer, open, name, visit, answer);
+        let answered = self.exchanges.answer(from, name, visit, answer);
         let mut response = answered.await;
-        if let Some(length) = response.body().size_hint().exact() {
+        // Of other answers the HTTP library says it.
+        if let Some(length) = response.body().size_hint().exact()
+            && (is_head || length == 0)
+        {
             let slot = response.headers_mut().entry(header::CONTENT_LENGTH);
-            slot.or_insert_with(|| HeaderValue::from(length));
+            slot.or_insert_with(|| match length {
+                0 => HeaderValue::from_static("0"),
+                length => length.into(),
+            });
         }
         if is_head {
             *response.body_mut() = Body::empty();
@@ -97,15 +97,16 @@ impl Front {
         if let Some(allowed) = self.finish.preflight(request) {
             return allowed;
         }
-        let wishes = Wishes::of(request);
-        let response = match self.finish.refusal(request) {
+        let wishes = Wishes::of(request, visit.heard.wishes);
+        let mut response = match self.finish.refusal(request) {
             Some(refusal) => refusal,
             None => {
                 let answer = pin!(self.placed(place, visit));
                 panics::answered(&self.exchanges.metrics, dialect, answer).await
             }
         };
-        self.finish.answer(&wishes, response).await
+        self.finish.answer(&wishes, &mut response).await;
+        response
     }
 
     /// The answer of what the path leads to.
@@ -121,7 +122,7 @@ impl Front {
             }
             (Place::Rest(found), _) => match &self.admission {
                 Admission::Gate(gate, intake) => {
-                    let admitted = gate::of_rest(gate, &visit.client, visit.request.headers());
+                    let admitted = gate::of_rest(gate, &visit);
                     let (mut response, level) = match admitted {
                         Ok(caller) => {
                             let charged = caller.clone();

@@ -8,11 +8,8 @@ use http::{HeaderMap, HeaderName, HeaderValue, header};
 use strew_access::{Caller, Gate};
 use strew_error::{Denied, Level};
 
-use super::exchange::Client;
-use crate::{
-    body::{Request, Response},
-    rest::Refused,
-};
+use super::exchange::Visit;
+use crate::{body::Response, rest::Refused};
 
 const API_KEY: HeaderName = HeaderName::from_static("x-api-key");
 const RATE_LIMIT: HeaderName = HeaderName::from_static("ratelimit");
@@ -22,8 +19,10 @@ const RATE_LIMIT_POLICY: HeaderName = HeaderName::from_static("ratelimit-policy"
 const OPEN: [&str; 2] = ["/grpc.health.", "/grpc.reflection."];
 
 /// The caller of a request of REST, if it is let in.
-pub(super) fn of_rest(gate: &Gate, client: &Client, headers: &HeaderMap) -> Result<Caller, Denied> {
-    gate.admit(shown(headers), client.address, client.usage.clone())
+pub(super) fn of_rest(gate: &Gate, visit: &Visit) -> Result<Caller, Denied> {
+    let key = visit.heard.key.then(|| shown(visit.request.headers()));
+    let client = &visit.client;
+    gate.admit(key.flatten(), client.address, client.usage.clone())
 }
 
 /// The answer to a request that is not let in, and the level of its rate.
@@ -36,16 +35,12 @@ pub(super) fn refused(denied: Denied) -> (Response, Option<Level>) {
 }
 
 /// The caller of a call, if it is let in; none for what is open to all.
-pub(super) fn of_calls(
-    gate: &Gate,
-    client: &Client,
-    request: &Request,
-) -> Result<Option<Caller>, Denied> {
-    let path = request.uri().path();
+pub(super) fn of_calls(gate: &Gate, visit: &Visit) -> Result<Option<Caller>, Denied> {
+    let path = visit.request.uri().path();
     if OPEN.iter().any(|open| path.starts_with(open)) {
         return Ok(None);
     }
-    of_rest(gate, client, request.headers()).map(Some)
+    of_rest(gate, visit).map(Some)
 }
 
 /// The gate of the administrators' own address: every client there is an administrator, except web

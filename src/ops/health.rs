@@ -137,8 +137,11 @@ struct Ready {
     streams: usize,
 }
 
+/// [`Alive`] as a document.
+const ALIVE: &str = "{\"alive\":true}\n";
+
 async fn live((): (), _: Context) -> Result<Response, Refused> {
-    Ok(momentary(StatusCode::OK, &Alive { alive: true })?)
+    Ok(rest::momentary(rest::file(ALIVE, rest::JSON)))
 }
 
 async fn ready(
@@ -166,4 +169,15 @@ fn momentary(status: StatusCode, value: &impl Serialize) -> Result<Response, Err
     let mut response = rest::momentary(rest::json(value)?);
     *response.status_mut() = status;
     Ok(response)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_what_is_described() {
+        let written = serde_json::to_string(&Alive { alive: true });
+        assert_eq!(ALIVE.trim_end(), written.expect("a document"));
+    }
 }

@@ -43,9 +43,9 @@ pub(super) struct Trace {
 }
 
 impl Identity {
-    /// That of a request with these headers; `begins_one` says whether one without a trace begins one.
-    pub(super) fn of(headers: &HeaderMap, begins_one: impl FnOnce() -> bool) -> Self {
-        let text = |name| headers.get(name)?.to_str().ok();
+    /// That of a request, by its headers if they name it; `begins_one` says whether one without a trace begins one.
+    pub(super) fn of(named: Option<&HeaderMap>, begins_one: impl FnOnce() -> bool) -> Self {
+        let text = |name| named?.get(name)?.to_str().ok();
         let id = text(REQUEST_ID).filter(|id| is_sane(id));
         Self {
             id: id.map_or_else(|| digits(next()), Into::into),
@@ -102,7 +102,7 @@ impl Trace {
 fn digits(number: u64) -> String {
     let digit = |place: usize| b"0123456789abcdef"[((number >> (60 - 4 * place)) & 15) as usize];
     let digits: [u8; 16] = std::array::from_fn(digit);
-    String::from_utf8_lossy(&digits).into_owned()
+    std::str::from_utf8(&digits).unwrap_or_default().into()
 }
 
 /// A number that no other process and no other request has, as good as surely: where the counter
@@ -131,7 +131,7 @@ mod tests {
         let of = |text: &str| {
             let mut headers = HeaderMap::new();
             headers.insert(REQUEST_ID, HeaderValue::from_str(text).expect("a header"));
-            Identity::of(&headers, || false).id
+            Identity::of(Some(&headers), || false).id
         };
         for kept in ["a", "3f1c-77", "Root=1-67891233-abcdef", &"x".repeat(128)] {
             assert_eq!(of(kept), kept);

@@ -12,6 +12,7 @@ mod front;
 mod gate;
 mod guarded;
 pub mod health;
+mod heard;
 mod identity;
 mod metrics;
 mod panics;
@@ -23,6 +24,7 @@ pub mod spans;
 pub mod telemetry;
 mod throttle;
 pub mod tls;
+mod trim;
 
 pub use peer::Peer;
 pub use serve::{App, ServeError};

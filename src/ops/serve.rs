@@ -27,6 +27,7 @@ use super::{
     shutdown::Hangups,
     spans::{Collector, Spans, SpansError},
     tls::{Tls, TlsError},
+    trim,
 };
 use crate::{
     grpc,
@@ -222,6 +223,8 @@ impl App {
         let watch = readiness.clone();
         let watch = watch.watch(self.service.workers().clone(), grpc_health.clone());
         let _pulse = AbortOnDropHandle::new(tokio::spawn(watch));
+        let trimming = trim::watch(self.service.budget().clone());
+        let _trimming = AbortOnDropHandle::new(tokio::spawn(trimming));
         let listener = asynchronous(listener)?;
         let handshakes = &self.metrics.failed_handshakes;
         let server = &self.config.server;

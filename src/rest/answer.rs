@@ -1,6 +1,6 @@
 //! Answers with points on every path: checked, planned, streamed.
 
-use std::{collections::BTreeMap, convert::Infallible, pin::pin, sync::LazyLock};
+use std::{cell::RefCell, collections::BTreeMap, convert::Infallible, pin::pin, sync::LazyLock};
 
 use bytes::Bytes;
 use futures_util::{StreamExt as _, stream};
@@ -223,14 +223,14 @@ async fn points(
     };
     let answer = planned.answer(&output, service.limits().block_bytes)?;
     let mut response_headers = describe(&planned, &answer, chosen)?;
+    let size = answer.size();
     let body = match permit {
         // Without a body there is nothing to stream, and HTTP wants to hear so at once.
-        _ if answer.size() == Some(0) => Body::empty(),
+        _ if size == Some(0) => Body::empty(),
         None => coding::unknown_length(),
         Some(permit) if planned.query.is_small() && !chosen.encoding.is_picture() => {
-            let is_known = answer.size().is_some();
             let whole = service.at_once(permit, answer)?;
-            if is_known {
+            if size.is_some() {
                 Body::from(whole)
             } else {
                 // As the answer to HEAD says: the size is not known before.
@@ -239,8 +239,12 @@ async fn points(
         }
         Some(permit) => Body::from_stream(service.blocks(permit, answer)),
     };
+    let is_told = http_body::Body::size_hint(&body).exact().is_some();
+    if let Some(size) = size.filter(|_| !is_told) {
+        response_headers.insert(header::CONTENT_LENGTH, size.into());
+    }
     let mut response = Response::new(body);
-    std::mem::swap(response.headers_mut(), &mut response_headers);
+    *response.headers_mut() = response_headers;
     Ok(response)
 }
 
@@ -311,7 +315,8 @@ pub(super) fn freshness(
         written.extend_from_slice(&limit.to_le_bytes());
         let worlds = world.map(|world| world.digest.as_str());
         for digest in worlds.into_iter().chain([""]).chain(query.digests()) {
-            written.extend_from_slice(digest.as_bytes());
+            // As much of it as the tag has of its own.
+            written.extend_from_slice(&digest.as_bytes()[..digest.len().min(32)]);
             written.push(b'\n');
         }
     };
@@ -339,6 +344,20 @@ fn disposition(encoding: Encoding) -> HeaderValue {
     })
 }
 
+/// The header of a table. Most answers of a thread are of one.
+fn table(digest: &str) -> Result<HeaderValue, Error> {
+    thread_local! {
+        static LAST: RefCell<HeaderValue> = const { RefCell::new(HeaderValue::from_static("")) };
+    }
+    LAST.with_borrow_mut(|last| {
+        if last.as_bytes() != digest.as_bytes() {
+            *last = HeaderValue::from_str(digest)
+                .map_err(|_| Error::Internal("a digest is no text"))?;
+        }
+        Ok(last.clone())
+    })
+}
+
 /// The headers of an answer.
 fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<HeaderMap, Error> {
     let text = |text: &str| {
@@ -352,10 +371,10 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
         header::CONTENT_TYPE,
         HeaderValue::from_static(chosen.content_type),
     );
-    headers.insert(COUNT, count.into());
+    headers.insert(COUNT, text(itoa::Buffer::new().format(count))?);
     let mut digests = planned.sets.iter().map(|set| set.entry.digest.as_str());
     let tables = match (digests.next(), planned.sets.len()) {
-        (Some(only), 1) => text(only)?,
+        (Some(only), 1) => table(only)?,
         (first, _) => text(
             &first
                 .into_iter()
@@ -408,9 +427,6 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
         headers.insert(WARNING, HeaderValue::from_static(warning));
     }
     headers.insert(header::CONTENT_DISPOSITION, disposition(chosen.encoding));
-    if let Some(size) = answer.size() {
-        headers.insert(header::CONTENT_LENGTH, size.into());
-    }
     if answer.record_bytes().is_some() {
         headers.insert(header::ACCEPT_RANGES, range::BYTES);
     }

@@ -46,11 +46,12 @@ impl Origins {
 /// Why a page of another origin may not send a request, if that is not only for reading: browsers send some with a
 /// body without a preflight. Any page may send requests that only read, and then cannot see the answer.
 pub(super) fn refusal(origins: &Origins, request: &Request) -> Option<String> {
-    let headers = request.headers();
-    let origin = headers.get(header::ORIGIN)?;
     let method = request.method();
-    let only_reads = [Method::GET, Method::HEAD, Method::OPTIONS].contains(method);
-    if only_reads || is_own(origin, request) || origins.allowed(origin).is_some() {
+    if [Method::GET, Method::HEAD, Method::OPTIONS].contains(method) {
+        return None;
+    }
+    let origin = request.headers().get(header::ORIGIN)?;
+    if is_own(origin, request) || origins.allowed(origin).is_some() {
         return None;
     }
     let origin: String = String::from_utf8_lossy(origin.as_bytes())
@@ -90,8 +91,11 @@ pub(super) fn preflight(
     method: &Method,
     headers: &HeaderMap,
 ) -> Option<Response> {
-    let asks = headers.contains_key(header::ACCESS_CONTROL_REQUEST_METHOD);
-    if method != Method::OPTIONS || !asks || !headers.contains_key(header::ORIGIN) {
+    let has = |name| headers.contains_key(name);
+    let is_one = method == Method::OPTIONS
+        && has(header::ACCESS_CONTROL_REQUEST_METHOD)
+        && has(header::ORIGIN);
+    if !is_one {
         return None;
     }
     let mut response = Response::new(Body::empty());

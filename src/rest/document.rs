@@ -7,7 +7,7 @@ use strew_error::Error;
 use crate::body::{Body, Response};
 
 /// The content type of JSON.
-pub(super) const JSON: &str = "application/json";
+pub const JSON: &str = "application/json";
 
 /// A document as an answer.
 pub fn json(document: &impl Serialize) -> Result<Response, Error> {

@@ -1,7 +1,7 @@
 //! The last step of every answer: CORS, problems instead of bare errors, how long
 //! it may be kept, compression. Answers to calls only get the first.
 
-use std::sync::Arc;
+use std::{mem::take, sync::Arc};
 
 use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Version, header};
 use strew_config::Http;
@@ -34,14 +34,15 @@ pub struct Wishes {
 }
 
 impl Wishes {
-    /// Those of a request.
+    /// Those of a request, which may have `Origin` and `Accept-Encoding` among its headers or not.
     #[must_use]
-    pub fn of(request: &Request) -> Self {
-        let headers = request.headers();
+    pub fn of(request: &Request, may_have_any: bool) -> Self {
+        let headers = Some(request.headers()).filter(|_| may_have_any);
+        let accept = headers.map(|headers| picked(headers, &header::ACCEPT_ENCODING));
         Self {
             is_head: *request.method() == Method::HEAD,
-            origin: headers.get(header::ORIGIN).cloned(),
-            accept: picked(headers, &header::ACCEPT_ENCODING),
+            origin: headers.and_then(|headers| headers.get(header::ORIGIN).cloned()),
+            accept: accept.unwrap_or_default(),
         }
     }
 }
@@ -74,20 +75,23 @@ impl Finish {
     }
 
     /// Puts onto an answer what all have.
-    pub async fn answer(&self, wishes: &Wishes, mut response: Response) -> Response {
+    pub async fn answer(&self, wishes: &Wishes, response: &mut Response) {
         let origin = wishes.origin.as_ref();
         cors::allow(&self.origins, origin, response.headers_mut());
         if is_grpc(response.headers()) {
-            return response;
+            return;
         }
-        let mut response = problem::instead_of_bare(response).await;
-        self.keeping.set(&mut response);
+        if problem::is_bare(response) {
+            *response = Box::pin(problem::instead(take(response))).await;
+        }
+        self.keeping.set(response);
         harden::guard(response.headers_mut(), self.origins == Origins::All);
-        let Wishes {
-            is_head, accept, ..
-        } = wishes;
-        let coded = coding::apply(accept, *is_head, &self.service, response).await;
-        coded.unwrap_or_else(|error| Problem::response(&error))
+        if let Some(chosen) = coding::choose(&wishes.accept, response) {
+            let plain = take(response);
+            // On the heap, lest plain answers have room for it.
+            let coded = Box::pin(chosen.apply(wishes.is_head, &self.service, plain)).await;
+            *response = coded.unwrap_or_else(|error| Problem::response(&error));
+        }
     }
 }
 

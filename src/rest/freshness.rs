@@ -154,7 +154,7 @@ impl Freshness {
             response.extensions_mut().insert(Decided(self.coding));
         }
         if self.negotiated {
-            vary::on(response.headers_mut(), vary::ACCEPT);
+            response.headers_mut().insert(header::VARY, vary::BOTH);
         }
         if self.pinned {
             response.extensions_mut().insert(Pinned);

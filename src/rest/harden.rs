@@ -14,20 +14,18 @@ const RESOURCE_POLICY: HeaderName = HeaderName::from_static("cross-origin-resour
 const ANY_ORIGIN: HeaderValue = HeaderValue::from_static("cross-origin");
 const SAME_ORIGIN: HeaderValue = HeaderValue::from_static("same-origin");
 
-/// Sets the headers that an answer lacks. If all pages may read answers, they may also show them as pictures.
+/// Sets the headers of an answer; pages have all but the last one. If all pages may read answers, they may also show
+/// them as pictures.
 pub(super) fn guard(headers: &mut HeaderMap, all_may_read: bool) {
     let resource = if all_may_read {
         ANY_ORIGIN
     } else {
         SAME_ORIGIN
     };
-    let lines = [
-        (header::X_CONTENT_TYPE_OPTIONS, NO_SNIFFING),
-        (header::REFERRER_POLICY, NO_REFERRER),
-        (header::CONTENT_SECURITY_POLICY, NO_PAGE),
-        (RESOURCE_POLICY, resource),
-    ];
-    for (name, value) in lines {
-        headers.entry(name).or_insert(value);
+    if !headers.contains_key(header::CONTENT_SECURITY_POLICY) {
+        headers.insert(header::X_CONTENT_TYPE_OPTIONS, NO_SNIFFING);
+        headers.insert(header::REFERRER_POLICY, NO_REFERRER);
+        headers.insert(header::CONTENT_SECURITY_POLICY, NO_PAGE);
     }
+    headers.insert(RESOURCE_POLICY, resource);
 }

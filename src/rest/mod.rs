@@ -45,7 +45,7 @@ use http::StatusCode;
 use api::Endpoint;
 pub use body::Whole;
 pub use context::{Context, Sent};
-pub use document::{file, json, momentary};
+pub use document::{JSON, file, json, momentary};
 pub use finish::{Finish, Wishes};
 pub use page::{Page, Pages};
 use problem::Problem;

@@ -188,14 +188,19 @@ impl<'a> Problem<'a> {
 /// The most text of a bare error that is passed on.
 const MOST_TEXT: usize = 1000;
 
-/// Answers that a library made, such as to a path that is not UTF-8, become problems, too.
-pub(super) async fn instead_of_bare(response: Response) -> Response {
+/// Whether an answer is an error that a library made, such as to a path that is not UTF-8.
+pub(super) fn is_bare(response: &Response) -> bool {
     let status = response.status();
-    let content_type = response.headers().get(header::CONTENT_TYPE);
-    let is_bare = content_type.is_none_or(|of| of.as_bytes().starts_with(b"text/plain"));
-    if !(status.is_client_error() || status.is_server_error()) || !is_bare {
-        return response;
+    if !(status.is_client_error() || status.is_server_error()) {
+        return false;
     }
+    let content_type = response.headers().get(header::CONTENT_TYPE);
+    content_type.is_none_or(|of| of.as_bytes().starts_with(b"text/plain"))
+}
+
+/// The problem in place of a bare error.
+pub(super) async fn instead(response: Response) -> Response {
+    let status = response.status();
     let (parts, body) = response.into_parts();
     let text = body.whole(MOST_TEXT).await.unwrap_or_default();
     let detail = match String::from_utf8_lossy(&text) {

@@ -6,13 +6,11 @@ use http::{
 };
 
 /// A header that answers depend on.
-pub(super) const ACCEPT: HeaderValue = HeaderValue::from_static("accept");
-/// As [`ACCEPT`].
 pub(super) const ACCEPT_ENCODING: HeaderValue = HeaderValue::from_static("accept-encoding");
-/// As [`ACCEPT`].
+/// As [`ACCEPT_ENCODING`].
 pub(super) const ORIGIN: HeaderValue = HeaderValue::from_static("origin");
-/// What almost all answers with points depend on.
-const BOTH: HeaderValue = HeaderValue::from_static("accept, accept-encoding");
+/// What almost all answers with points depend on: the second is added to all answers.
+pub(super) const BOTH: HeaderValue = HeaderValue::from_static("accept, accept-encoding");
 
 /// Adds the name of a header.
 pub(super) fn on(headers: &mut HeaderMap, name: HeaderValue) {
@@ -23,10 +21,10 @@ pub(super) fn on(headers: &mut HeaderMap, name: HeaderValue) {
         }
         Entry::Occupied(line) => line.into_mut(),
     };
-    if *line == ACCEPT && name == ACCEPT_ENCODING {
-        *line = BOTH;
-    } else if let Ok(joined) =
-        HeaderValue::from_bytes(&[line.as_bytes(), b", ", name.as_bytes()].concat())
+    if *line == BOTH && name == ACCEPT_ENCODING {
+        return;
+    }
+    if let Ok(joined) = HeaderValue::from_bytes(&[line.as_bytes(), b", ", name.as_bytes()].concat())
     {
         *line = joined;
     }

@@ -29,13 +29,17 @@ impl Amount {
     /// # Errors
     /// Faults if there is none, or more than one.
     pub(super) fn of(values: &Values) -> Checked<Self> {
-        match values.given_of(&AMOUNTS).as_slice() {
-            [] => Err(Fault::missing(&format!("{}spacing", values.path()), one_of(values)).into()),
-            [only] if **only == DENSITY => values.require(only).map(Self::Density),
-            [only] if **only == SPACING => values.require(only).map(Self::Spacing),
-            [only] if **only == MIN_DISTANCE => values.require(only).map(Self::MinDistance),
-            [only] => values.require(only).map(Self::Count),
-            [first, second, ..] => {
+        match values.two_of(&AMOUNTS) {
+            [None, _] => {
+                Err(Fault::missing(&format!("{}spacing", values.path()), one_of(values)).into())
+            }
+            [Some(only), None] if *only == DENSITY => values.require(only).map(Self::Density),
+            [Some(only), None] if *only == SPACING => values.require(only).map(Self::Spacing),
+            [Some(only), None] if *only == MIN_DISTANCE => {
+                values.require(only).map(Self::MinDistance)
+            }
+            [Some(only), None] => values.require(only).map(Self::Count),
+            [Some(first), Some(second)] => {
                 let field = format!("{}{}", values.path(), second.name);
                 let detail = format!("{} is given, too", first.name);
                 Err(Fault::new(&field, values.text(second), detail, one_of(values)).into())

@@ -126,26 +126,28 @@ impl RegionDraft {
                 shape: ShapeDraft::Volume(shape),
             }));
         }
-        let given = values.given_of(&[Group::Region]);
-        let shape = match given.as_slice() {
-            [] => return Ok(None),
-            [first, second, ..] => {
-                let detail = format!("a query has one region, and {} is given", first.name);
+        let (only, second) = match values.two_of(&[Group::Region]) {
+            [None, _] => return Ok(None),
+            [Some(only), second] => (only, second),
+        };
+        let shape = match second {
+            Some(second) => {
+                let detail = format!("a query has one region, and {} is given", only.name);
                 let allowed = "one of bbox, circle and polygon";
                 return Err(Fault::new(second.name, values.text(second), detail, allowed).into());
             }
-            [only] if **only == BBOX => values.get(&BBOX)?.map(ShapeDraft::Box),
-            [only] if **only == CIRCLE => {
+            None if *only == BBOX => values.get(&BBOX)?.map(ShapeDraft::Box),
+            None if *only == CIRCLE => {
                 let circle: Option<[f64; 3]> = values.get(&CIRCLE)?;
                 circle.map(|[x, y, radius]| ShapeDraft::Circle([x, y], radius))
             }
-            [_] => values.get::<Vec<f64>>(&POLYGON)?.map(|numbers| {
+            None => values.get::<Vec<f64>>(&POLYGON)?.map(|numbers| {
                 let (pairs, _) = numbers.as_chunks::<2>();
                 ShapeDraft::Polygons(vec![vec![pairs.to_vec()]])
             }),
         };
         Ok(shape.map(|shape| Self {
-            path: given[0].name.into(),
+            path: only.name.into(),
             shape,
         }))
     }

@@ -5,18 +5,19 @@ use std::{borrow::Cow, str::Utf8Error};
 use percent_encoding::percent_decode_str;
 use strew_error::Fault;
 
-use super::{Values, parameter::Group};
+use super::{Values, lists::parts, parameter::Group};
 
 /// The parameters of an address: `name=value` joined by `&`, percent-encoded. A plus is a plus, as
 /// in `1e+5` and `(1+sqrt(5))/2`, not a space.
 #[must_use]
 pub fn parse_pairs(text: &str, groups: &'static [Group]) -> Values {
     let mut values = Values::new(groups, "");
-    for pair in text.split('&').filter(|pair| !pair.is_empty()) {
+    for pair in parts(text, b'&').filter(|pair| !pair.is_empty()) {
         if values.is_full() {
             break;
         }
-        let (raw_name, raw_value) = pair.split_once('=').unwrap_or((pair, ""));
+        let raw_name = parts(pair, b'=').next().unwrap_or_default();
+        let raw_value = pair.get(raw_name.len() + 1..).unwrap_or_default();
         let name =
             decoded(raw_name).unwrap_or_else(|_| percent_decode_str(raw_name).decode_utf8_lossy());
         match decoded(raw_value) {

@@ -213,17 +213,18 @@ impl Values {
         self.given.iter().find(|(known, _)| *known == parameter)
     }
 
-    /// The given parameters of some groups, in the order of the table.
+    /// The first two given parameters of some groups, in the order of the table.
     #[must_use]
-    pub(crate) fn given_of(&self, groups: &[Group]) -> Vec<&'static Parameter> {
+    pub(crate) fn two_of(&self, groups: &[Group]) -> [Option<&'static Parameter>; 2] {
         let given = self.given.iter().map(|(parameter, _)| *parameter);
-        let mut found: Vec<_> = given
-            .filter(|parameter| groups.contains(&parameter.group))
-            .collect();
-        if found.len() > 1 {
-            found.sort_by_key(|parameter| self.takes().position(|taken| taken == *parameter));
+        let mut given = given.filter(|parameter| groups.contains(&parameter.group));
+        let first = given.next();
+        if given.next().is_none() {
+            return [first, None];
         }
-        found
+        let taken = self.takes();
+        let mut in_order = taken.filter(|of| groups.contains(&of.group) && self.has(of));
+        [in_order.next(), in_order.next()]
     }
 
     /// The value of a parameter, if it is given.

@@ -47,21 +47,22 @@ pub struct QueryVolume {
 impl VolumeDraft {
     /// The volume among the parameters of an address or a command line, with its parameter's name.
     pub(super) fn of(values: &Values) -> Checked<Option<(&'static str, Self)>> {
-        let given = values.given_of(&[Group::Volume]);
-        let shape = match given.as_slice() {
-            [] => return Ok(None),
-            [only] if **only == BOX => values.get(&BOX)?.map(Self::Box),
-            [_] => {
-                let ball: Option<[f64; 4]> = values.get(&BALL)?;
-                ball.map(|[x, y, z, radius]| Self::Ball([x, y, z], radius))
-            }
-            [first, second, ..] => {
-                let detail = format!("a query has one region, and {} is given", first.name);
-                let allowed = "one of bbox and ball";
-                return Err(Fault::new(second.name, values.text(second), detail, allowed).into());
-            }
+        let (only, second) = match values.two_of(&[Group::Volume]) {
+            [None, _] => return Ok(None),
+            [Some(only), second] => (only, second),
         };
-        Ok(shape.map(|shape| (given[0].name, shape)))
+        if let Some(second) = second {
+            let detail = format!("a query has one region, and {} is given", only.name);
+            let allowed = "one of bbox and ball";
+            return Err(Fault::new(second.name, values.text(second), detail, allowed).into());
+        }
+        let shape = if *only == BOX {
+            values.get(&BOX)?.map(Self::Box)
+        } else {
+            let ball: Option<[f64; 4]> = values.get(&BALL)?;
+            ball.map(|[x, y, z, radius]| Self::Ball([x, y, z], radius))
+        };
+        Ok(shape.map(|shape| (only.name, shape)))
     }
 
     /// The number of vertices of its polygons.

@@ -16,10 +16,14 @@ use std::{net::IpAddr, pin::pin, sync::Arc};
 
 use http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 
-use super::{dialect::Dialect, identity::REQUEST_ID, metrics::Metrics, peer::Peer, spans::Spans};
+use super::{
+    dialect::Dialect, heard::Heard, identity::REQUEST_ID, metrics::Metrics, peer::Peer,
+    spans::Spans,
+};
 use crate::body::{Body, Request, Response};
 pub(super) use intake::Intake;
-pub(super) use open::{Fate, OpenExchanges};
+pub(super) use open::Fate;
+use open::OpenExchanges;
 use progress::Terms;
 use reply::{Exchange, Places};
 pub(super) use report::code as grpc_code;
@@ -28,6 +32,7 @@ use strew_access::{Gate, Usage};
 use strew_config::{Server, seconds};
 use strew_error::{Denied, Error};
 use strew_service::{Budget, Record};
+use tokio::time::Instant;
 
 /// The state that all exchanges share. Cheap to clone.
 #[derive(Clone, Debug)]
@@ -52,11 +57,22 @@ pub(super) struct Client {
     pub(super) is_probe: bool,
 }
 
+/// Where the requests of a connection come from, and the exchanges that are open on it. Cheap to clone.
+#[derive(Clone, Debug)]
+pub(super) struct From {
+    pub(super) peer: Peer,
+    /// The address of the other end, and what that uses.
+    address: IpAddr,
+    usage: Arc<Usage>,
+    pub(super) open: Arc<OpenExchanges>,
+}
+
 /// A request on its way to its answer. On the heap: what waits for an answer then moves it as a pointer.
 #[derive(Debug)]
 pub(super) struct Visit {
     pub(super) request: Request,
     pub(super) dialect: Dialect,
+    pub(super) heard: Heard,
     pub(super) client: Client,
     /// Why the intake should refuse it.
     pub(super) refused: Option<Error>,
@@ -82,11 +98,29 @@ pub(super) fn terms(server: &Server) -> Terms {
 }
 
 impl Exchanges {
+    /// What the requests of a connection have in common.
+    pub(super) fn from(&self, peer: Peer) -> From {
+        let address = peer.0.ip().to_canonical();
+        From {
+            usage: self.gate.usage(address),
+            address,
+            open: OpenExchanges::new(),
+            peer,
+        }
+    }
+
     /// A request that begins its way. From here on it travels as a pointer.
-    pub(super) fn visit(&self, peer: Peer, request: Request) -> Box<Visit> {
+    pub(super) fn visit(&self, from: &From, request: Request) -> Box<Visit> {
+        let heard = Heard::of(request.headers());
+        let dialect = match heard.content_type {
+            true => Dialect::of(request.headers()),
+            false => Dialect::Rest,
+        };
+        let forwarded = heard.forwarded.then(|| request.headers());
         Box::new(Visit {
-            dialect: Dialect::of(request.headers()),
-            client: self.client(peer, request.headers()),
+            dialect,
+            client: self.client(from, forwarded),
+            heard,
             request,
             refused: None,
         })
@@ -95,21 +129,22 @@ impl Exchanges {
     /// Answers a request to a route; the answer leaves through its exchange.
     pub(super) async fn answer<A: Future<Output = Response>>(
         &self,
-        peer: Peer,
-        open: &Arc<OpenExchanges>,
+        from: &From,
         route: &'static str,
         mut visit: Box<Visit>,
         answer: impl FnOnce(Box<Visit>) -> A,
     ) -> Response {
-        let dialect = visit.dialect;
+        let (dialect, now) = (visit.dialect, Instant::now());
         let usage = visit.client.usage.clone();
         let budget = self.budget.of_address(usage.clone());
         let report = {
             let asked = Asked {
                 request: &visit.request,
+                has_identity: visit.heard.identity,
                 protocol: dialect.protocol(),
                 route,
-                peer,
+                peer: from.peer,
+                start: now,
             };
             Report::start(&self.metrics, self.spans.as_ref(), budget.clone(), &asked)
         };
@@ -140,7 +175,7 @@ impl Exchanges {
             _probe: probe,
             _base: base.unwrap_or_else(|_| budget.hold_anyway(BASE)),
         };
-        let exchange = Exchange::new(report, dialect, self.terms, places, open.begin());
+        let exchange = Exchange::new(report, dialect, self.terms, places, from.open.begin(), now);
 
         let answered = pin!(async {
             match refused {
@@ -157,16 +192,22 @@ impl Exchanges {
             id.set_sensitive(true);
             response.headers_mut().insert(REQUEST_ID, id);
         }
-        exchange.answer(response)
+        exchange.answer(&mut response);
+        response
     }
 
-    fn client(&self, Peer(peer): Peer, headers: &HeaderMap) -> Client {
-        let lines = headers.get_all(FORWARDED_FOR).iter();
-        let address = self
-            .gate
-            .client(peer.ip(), lines.map(HeaderValue::as_bytes));
+    /// The client of a request, of which the headers name another than the peer or do not.
+    fn client(&self, from: &From, forwarded: Option<&HeaderMap>) -> Client {
+        let address = forwarded.map_or(from.address, |headers| {
+            let lines = headers.get_all(FORWARDED_FOR).iter();
+            let lines = lines.map(HeaderValue::as_bytes);
+            self.gate.client(from.address, lines)
+        });
         Client {
-            usage: self.gate.usage(address),
+            usage: match address == from.address {
+                true => from.usage.clone(),
+                false => self.gate.usage(address),
+            },
             address,
             is_probe: false,
         }

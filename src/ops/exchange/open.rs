@@ -20,10 +20,14 @@ pub(super) trait Timed: Send + Sync {
 
 /// The exchanges of one connection.
 pub(in crate::ops) struct OpenExchanges {
-    all: Mutex<Vec<(u64, Weak<dyn Timed>)>>,
+    all: Mutex<Open>,
     next: AtomicU64,
+}
+
+struct Open {
+    exchanges: Vec<(u64, Weak<dyn Timed>)>,
     /// When the last one began or ended.
-    changed: Mutex<Instant>,
+    changed: Instant,
 }
 
 /// The fate of a connection.
@@ -46,7 +50,7 @@ const LONGEST: Duration = Duration::from_secs(5);
 impl fmt::Debug for OpenExchanges {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("OpenExchanges")
-            .field("open", &self.all.lock().len())
+            .field("open", &self.all.lock().exchanges.len())
             .finish_non_exhaustive()
     }
 }
@@ -54,9 +58,11 @@ impl fmt::Debug for OpenExchanges {
 impl OpenExchanges {
     pub(in crate::ops) fn new() -> Arc<Self> {
         Arc::new(Self {
-            all: Mutex::default(),
+            all: Mutex::new(Open {
+                exchanges: vec![],
+                changed: Instant::now(),
+            }),
             next: AtomicU64::new(0),
-            changed: Mutex::new(Instant::now()),
         })
     }
 
@@ -88,14 +94,13 @@ impl OpenExchanges {
     }
 
     fn fate(&self, now: Instant, idle: Duration, patience: Duration) -> Fate {
-        let all: Vec<_> = self
-            .all
-            .lock()
-            .iter()
-            .filter_map(|(_, exchange)| exchange.upgrade())
-            .collect();
+        let open = self.all.lock();
+        let changed = open.changed;
+        let exchanges = open.exchanges.iter();
+        let all: Vec<_> = exchanges.filter_map(|(_, one)| one.upgrade()).collect();
+        drop(open);
         if all.is_empty() {
-            let quiet = now.saturating_duration_since(*self.changed.lock());
+            let quiet = now.saturating_duration_since(changed);
             return if quiet >= idle {
                 Fate::Retire
             } else {
@@ -125,20 +130,20 @@ pub(super) struct Entry {
 
 impl Entry {
     /// Takes the place for an exchange.
-    pub(super) fn of(self, exchange: Weak<dyn Timed>) -> Self {
-        self.open.all.lock().push((self.number, exchange));
-        *self.open.changed.lock() = Instant::now();
-        self
+    pub(super) fn begin(&self, exchange: Weak<dyn Timed>, now: Instant) {
+        let mut open = self.open.all.lock();
+        open.exchanges.push((self.number, exchange));
+        open.changed = now;
     }
 }
 
 impl Drop for Entry {
     fn drop(&mut self) {
-        let mut all = self.open.all.lock();
+        let mut open = self.open.all.lock();
+        let all = &mut open.exchanges;
         if let Some(at) = all.iter().position(|(number, _)| *number == self.number) {
             all.swap_remove(at);
         }
-        drop(all);
-        *self.open.changed.lock() = Instant::now();
+        open.changed = Instant::now();
     }
 }

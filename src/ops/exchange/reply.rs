@@ -11,8 +11,9 @@
 
 use std::{
     fmt,
+    mem::take,
     pin::Pin,
-    sync::{Arc, Weak},
+    sync::Arc,
     task::{Context, Poll, Waker},
 };
 
@@ -45,7 +46,7 @@ pub(super) struct Exchange {
     /// The most time, if the client set a limit as well.
     end: Mutex<End>,
     /// Its place among the exchanges of the connection.
-    _entry: Entry,
+    entry: Entry,
     _places: Places,
 }
 
@@ -88,15 +89,15 @@ impl fmt::Debug for Exchange {
 }
 
 impl Exchange {
-    /// An exchange that begins now.
+    /// An exchange that begins.
     pub(super) fn new(
         report: Report,
         dialect: Dialect,
         terms: Terms,
         places: Places,
         entry: Entry,
+        now: Instant,
     ) -> Arc<Self> {
-        let now = Instant::now();
         let budget = report.record().budget().clone();
         let state = State {
             report,
@@ -113,18 +114,21 @@ impl Exchange {
             at: now.checked_add(terms.whole),
             why: Ending::Interrupted(Interrupted::TimeOver),
         };
-        Arc::new_cyclic(|exchange: &Weak<Self>| Self {
+        let exchange = Arc::new(Self {
             state: Mutex::new(state),
             budget,
             dialect,
             end: Mutex::new(end),
-            _entry: entry.of(exchange.clone()),
+            entry,
             _places: places,
-        })
+        });
+        let timed = Arc::downgrade(&exchange);
+        exchange.entry.begin(timed, now);
+        exchange
     }
 
     /// The answer, of which every byte counts until the socket has taken it.
-    pub(super) fn answer(self: Arc<Self>, mut response: Response) -> Response {
+    pub(super) fn answer(self: Arc<Self>, response: &mut Response) {
         let extensions = response.extensions_mut();
         let deadline = extensions.remove::<grpc::Deadline>();
         let end = {
@@ -139,24 +143,22 @@ impl Exchange {
             }
             *end
         };
-        self.state.lock().report.head(&response);
-        response.map(|body| {
-            let (held, body) = body.release();
-            let whole = body.size_hint().exact();
-            let whole = whole.and_then(|bytes| usize::try_from(bytes).ok());
-            let mut state = self.state.lock();
-            state.whole = whole
-                .filter(|&bytes| bytes > 0)
-                .map(|bytes| held.unwrap_or_else(|| Arc::new(self.budget.hold_anyway(bytes))));
-            state.body = Some(body);
-            state.progress.resume(Instant::now());
-            drop(state);
-            Body::frames(Reply {
-                exchange: self,
-                end,
-                sleep: None,
-            })
-        })
+        let mut state = self.state.lock();
+        state.report.head(response);
+        let (held, body) = take(response.body_mut()).release();
+        let whole = body.size_hint().exact();
+        let whole = whole.and_then(|bytes| usize::try_from(bytes).ok());
+        state.whole = whole
+            .filter(|&bytes| bytes > 0)
+            .map(|bytes| held.unwrap_or_else(|| Arc::new(self.budget.hold_anyway(bytes))));
+        state.body = Some(body);
+        state.progress.resume(Instant::now());
+        drop(state);
+        *response.body_mut() = Body::frames(Reply {
+            exchange: self,
+            end,
+            sleep: None,
+        });
     }
 
     /// The socket took bytes, or the connection is gone.
@@ -230,7 +232,7 @@ impl State {
             }
             None => Arc::new(exchange.budget.hold_anyway(bytes.len())),
         };
-        self.report.part(bytes.len());
+        self.report.part(bytes.len(), now);
         if self.rest.is_empty() && self.body.as_ref().is_some_and(Body::is_end_stream) {
             self.report.whole();
             self.whole = None;
@@ -269,7 +271,7 @@ impl HttpBody for Reply {
             return Poll::Ready(exchange.dialect.ending(why));
         }
         if !state.rest.is_empty() {
-            let rest = std::mem::take(&mut state.rest);
+            let rest = take(&mut state.rest);
             return Poll::Ready(Some(Ok(state.leave(&exchange, rest, now))));
         }
         let Some(body) = &mut state.body else {

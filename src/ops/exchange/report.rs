@@ -3,20 +3,21 @@
 //! It is made when the exchange is over. The access line (target `strew::access`) has the level
 //! `info`, for probes and scrapes `debug`.
 
-use std::{net::SocketAddr, sync::Arc, time::Instant};
+use std::{net::SocketAddr, sync::Arc};
 
 use bytes::Bytes;
 use http::{HeaderMap, Method, StatusCode, header, uri::PathAndQuery};
 use http_body::{Body as _, Frame};
 use strew_error::Kind;
 use strew_service::{Budget, Record};
+use tokio::time::Instant;
 
 use crate::{
     body::{Request, Response},
     grpc,
     ops::{
         identity::{Identity, Trace},
-        metrics::{Broken, Metrics, NO_FORMAT, NO_ROUTE, Protocol, since},
+        metrics::{Broken, Metrics, NO_FORMAT, NO_ROUTE, Protocol},
         peer::Peer,
         spans::{Answered, Spans},
         telemetry::ACCESS,
@@ -38,6 +39,7 @@ pub(super) struct Report {
     spans: Option<Spans>,
     record: Arc<Record>,
     trace: Option<Trace>,
+    /// When its head was there.
     start: Instant,
     protocol: Protocol,
     route: &'static str,
@@ -57,9 +59,12 @@ pub(super) struct Report {
 /// What a report begins with.
 pub(super) struct Asked<'a> {
     pub(super) request: &'a Request,
+    /// Whether its headers name it.
+    pub(super) has_identity: bool,
     pub(super) protocol: Protocol,
     pub(super) route: &'static str,
     pub(super) peer: Peer,
+    pub(super) start: Instant,
 }
 
 /// The bytes of an address that go into the log.
@@ -72,20 +77,23 @@ impl Report {
         budget: Budget,
         &Asked {
             request,
+            has_identity,
             protocol,
             route,
             peer,
+            start,
         }: &Asked<'_>,
     ) -> Self {
         let begins_one = || spans.is_some_and(Spans::begins_one);
-        let identity = Identity::of(request.headers(), begins_one);
+        let named = has_identity.then(|| request.headers());
+        let identity = Identity::of(named, begins_one);
         metrics.in_flight(protocol).inc();
         let Identity { id, trace } = identity;
         let of = trace.as_ref().map(|trace| &*trace.trace);
         Self {
             record: Record::new(id, of, budget),
             trace,
-            start: Instant::now(),
+            start,
             route,
             method: request.method().clone(),
             address: request.uri().path_and_query().cloned(),
@@ -128,12 +136,17 @@ impl Report {
     /// The head of the answer is made.
     pub(super) fn head(&mut self, response: &Response) {
         self.status = Some(response.status());
-        if let Some(code) = code(response.headers()) {
+        if self.protocol == Protocol::Grpc
+            && let Some(code) = code(response.headers())
+        {
             self.record.ended(code);
         }
-        let length = response.headers().get(header::CONTENT_LENGTH);
-        let length = length.and_then(|length| length.to_str().ok()?.parse().ok());
-        self.expected = length.or_else(|| response.body().size_hint().exact());
+        let length = || -> Option<u64> {
+            let length = response.headers().get(header::CONTENT_LENGTH)?;
+            length.to_str().ok()?.parse().ok()
+        };
+        let exact = response.body().size_hint().exact();
+        self.expected = exact.filter(|&exact| exact > 0).or_else(length).or(exact);
         // Such an answer has no body to read.
         let is_bodiless = self.method == Method::HEAD
             || response.body().is_end_stream()
@@ -144,10 +157,11 @@ impl Report {
     }
 
     /// A part of the body goes out.
-    pub(super) fn part(&mut self, bytes: usize) {
+    pub(super) fn part(&mut self, bytes: usize, now: Instant) {
         let bytes = bytes as u64;
         if self.first_byte.is_none() && bytes > 0 {
-            self.first_byte = Some(since(self.start));
+            let took = now.saturating_duration_since(self.start);
+            self.first_byte = Some(took.as_secs_f64());
         }
         self.bytes += bytes;
         // A reader that has all that was announced does not poll for an end.
@@ -217,7 +231,7 @@ impl Report {
 impl Drop for Report {
     fn drop(&mut self) {
         self.count(0);
-        let total = since(self.start);
+        let total = self.start.elapsed().as_secs_f64();
         let first = self.first_byte.unwrap_or(total);
         let broken = self.broken();
         let outcome = self.outcome();

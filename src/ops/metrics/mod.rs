@@ -7,10 +7,7 @@
 mod process;
 mod scrape;
 
-use std::{
-    sync::Arc,
-    time::{Instant, SystemTime},
-};
+use std::{sync::Arc, time::SystemTime};
 
 use parking_lot::RwLock;
 use prometheus::{
@@ -21,6 +18,7 @@ use prometheus::{
 };
 use strew_error::Kind;
 
+pub(super) use process::resident;
 pub(super) use scrape::endpoint;
 
 /// The protocols, as labels name them.
@@ -274,9 +272,4 @@ impl Metrics {
     pub(super) fn spans(&self, outcome: &str) -> IntCounter {
         self.spans.with_label_values(&[outcome])
     }
-}
-
-/// Seconds since a moment.
-pub(super) fn since(start: Instant) -> f64 {
-    start.elapsed().as_secs_f64()
 }

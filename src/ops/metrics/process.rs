@@ -22,19 +22,30 @@ impl Process {
     /// As of now.
     pub(super) fn now() -> Self {
         let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-        let of = |name: &str| -> Option<f64> {
-            let rest = status.lines().find_map(|line| line.strip_prefix(name))?;
-            rest.split_whitespace().next()?.parse().ok()
-        };
         Self {
-            memory: of("VmRSS:").map(|kibibytes| kibibytes * 1024.0),
+            memory: of(&status, MEMORY).map(|kibibytes| kibibytes * 1024.0),
             cpu: cpu(),
-            threads: of("Threads:"),
+            threads: of(&status, "Threads:"),
             files: fs::read_dir("/proc/self/fd")
                 .ok()
                 .map(|all| all.count() as f64),
         }
     }
+}
+
+/// Resident memory in bytes; 0 where it is not known.
+pub(in crate::ops) fn resident() -> u64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    of(&status, MEMORY).map_or(0, |kibibytes| kibibytes as u64 * 1024)
+}
+
+/// The line of resident memory, in KiB.
+const MEMORY: &str = "VmRSS:";
+
+/// The number in a line of the status.
+fn of(status: &str, name: &str) -> Option<f64> {
+    let rest = status.lines().find_map(|line| line.strip_prefix(name))?;
+    rest.split_whitespace().next()?.parse().ok()
 }
 
 fn cpu() -> Option<f64> {

@@ -24,71 +24,76 @@ use strew_service::{Held, Owner, Service, Workers};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Decided(pub(super) Option<Coding>);
 
-/// Compresses an answer as its content type and the client's headers say.
-pub(super) async fn apply(
-    accept: &HeaderMap,
-    is_head: bool,
-    service: &Service,
-    mut response: Response,
-) -> Result<Response, Error> {
+/// The coding that an answer gets.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Choice {
+    coding: Coding,
+    /// Whether its tag says so.
+    is_decided: bool,
+}
+
+/// Chooses a coding for an answer, as its content type and the client's headers say.
+pub(super) fn choose(accept: &HeaderMap, response: &mut Response) -> Option<Choice> {
     let decided = response.extensions_mut().remove::<Decided>();
     let headers = response.headers_mut();
     // Also of answers that stay plain: with other headers they would not.
     vary::on(headers, vary::ACCEPT_ENCODING);
-    if headers.contains_key(header::CONTENT_ENCODING) {
-        return Ok(response);
+    // Without a choice nothing else is looked at.
+    if accept.is_empty() && decided.is_none_or(|Decided(coding)| coding.is_none()) {
+        return None;
     }
-    let content_type = headers.get(header::CONTENT_TYPE);
-    let content_type = content_type.and_then(|value| value.to_str().ok());
-    let chosen = content_type.and_then(|of| match decided {
+    if headers.contains_key(header::CONTENT_ENCODING) {
+        return None;
+    }
+    let content_type = headers.get(header::CONTENT_TYPE)?.to_str().ok()?;
+    let coding = match decided {
         Some(Decided(coding)) => coding,
-        None => Coding::chosen(accept, of),
-    });
-    let Some(coding) = chosen else {
-        return Ok(response);
+        None => Coding::chosen(accept, content_type),
     };
-    // On the heap, lest plain answers have room for it.
-    Box::pin(applied(coding, decided, is_head, service, response)).await
+    let is_decided = decided.is_some();
+    coding.map(|coding| Choice { coding, is_decided })
 }
 
-/// The answer in a coding.
-async fn applied(
-    coding: Coding,
-    decided: Option<Decided>,
-    is_head: bool,
-    service: &Service,
-    response: Response,
-) -> Result<Response, Error> {
-    let whole = http_body::Body::size_hint(response.body()).exact();
-    // Without a tag, which names the coding, an answer may stay plain: where that is shorter, and where
-    // there is no room for a compressor.
-    if decided.is_none() {
-        let length = response.headers().get(header::CONTENT_LENGTH);
-        let length = length.and_then(|value| value.to_str().ok()?.parse::<u64>().ok());
-        let is_short = length.or(whole).is_some_and(|length| length < SHORT);
-        if is_short || service.hold(coding.memory()).is_err() {
-            return Ok(response);
+impl Choice {
+    /// The answer in the coding.
+    pub(super) async fn apply(
+        self,
+        is_head: bool,
+        service: &Service,
+        response: Response,
+    ) -> Result<Response, Error> {
+        let Self { coding, is_decided } = self;
+        let whole = http_body::Body::size_hint(response.body()).exact();
+        // Without a tag, which names the coding, an answer may stay plain: where that is shorter, and where
+        // there is no room for a compressor.
+        if !is_decided {
+            let length = response.headers().get(header::CONTENT_LENGTH);
+            let length = length.and_then(|value| value.to_str().ok()?.parse::<u64>().ok());
+            let is_short = length.or(whole).is_some_and(|length| length < SHORT);
+            if is_short || service.hold(coding.memory()).is_err() {
+                return Ok(response);
+            }
         }
+        let (mut parts, body) = response.into_parts();
+        let (_held, body) = body.release();
+        let body = match whole {
+            // The length is not known, which an empty body would not say.
+            _ if is_head => unknown_length(),
+            Some(length) => {
+                let encoded = whole_document(body, length, coding, service).await?;
+                let held = service.hold(encoded.len())?;
+                Body::from(encoded).holding(held)
+            }
+            None => {
+                let held = service.hold(coding.memory())?;
+                compressed(body, coding, service.workers().clone(), held)
+            }
+        };
+        let name = HeaderValue::from_static(coding.name());
+        parts.headers.insert(header::CONTENT_ENCODING, name);
+        parts.headers.remove(header::CONTENT_LENGTH);
+        Ok(Response::from_parts(parts, body))
     }
-    let (mut parts, body) = response.into_parts();
-    let (_held, body) = body.release();
-    let body = match whole {
-        // The length is not known, which an empty body would not say.
-        _ if is_head => unknown_length(),
-        Some(length) => {
-            let encoded = whole_document(body, length, coding, service).await?;
-            let held = service.hold(encoded.len())?;
-            Body::from(encoded).holding(held)
-        }
-        None => {
-            let held = service.hold(coding.memory())?;
-            compressed(body, coding, service.workers().clone(), held)
-        }
-    };
-    let name = HeaderValue::from_static(coding.name());
-    parts.headers.insert(header::CONTENT_ENCODING, name);
-    parts.headers.remove(header::CONTENT_LENGTH);
-    Ok(Response::from_parts(parts, body))
 }
 
 /// Compressing less than a packet gains nothing.

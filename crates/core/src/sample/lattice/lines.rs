@@ -27,8 +27,10 @@ impl Columns {
         let length = usize::try_from(range.end.saturating_sub(range.start)).unwrap_or(0);
         for list in &mut self.all {
             list.clear();
-            // A class has a quarter of all columns at most, where α is largest.
-            list.reserve(length / 4 + 4);
+            // A class has a quarter of all columns at most, where α is largest. Few columns take few lists.
+            if length >= 16 {
+                list.reserve(length / 4 + 4);
+            }
         }
         for at in range {
             if let Some((class, index)) = lattice.pattern.visit(Axis::X, at) {
