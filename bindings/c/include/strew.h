@@ -288,8 +288,8 @@ strew_code strew_nearest(const strew_library *library,
 // `query` is the JSON body of `POST /v1/space/points`, or the query string of `GET /v1/space/points`:
 // `ball=5,5,5,3&spacing=1&seed=7`.
 //
-// The plan's count, columns, documents and parts are had as in the plane; coordinates, ids and origin by the calls
-// for space.
+// Calls that begin with `strew_space_` write its coordinates, its ids and its origin. Counts, columns, documents and
+// parts come from the calls that plans of the plane have.
 //
 // Arguments:
 // `library` is a library, `query` a text, `plan` a place for a pointer.
