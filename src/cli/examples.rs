@@ -48,11 +48,13 @@ Examples:
   strew mask --size 128 --seed 1 -o mask.png --spectrum spectrum.svg";
 pub(super) const FORGE: &str = "\
 Examples:
-  strew forge --profile blue --alpha \"sqrt(2)\" --radius 49 --out-dir tables";
+  strew forge --profile blue --alpha \"sqrt(2)\" --radius 49 --out-dir tables
+  strew forge --space --profile blue -o mine.strew";
 pub(super) const MEASURE: &str = "\
 Examples:
   strew measure --profile blue --seed 7
-  strew measure --points points.csv --bbox 0,0,100,100";
+  strew measure --points points.csv --bbox 0,0,100,100
+  strew measure --table space-blue-5-sqrt3-over-2-r16.strew --window-seed 7";
 pub(super) const TABLE: &str = "\
 Examples:
   strew table show --profile blue

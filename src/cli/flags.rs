@@ -147,7 +147,10 @@ impl<T> Flags<T> {
     /// All given flags as values of a request about points in space, which some groups make.
     pub(super) fn values_in_space(&self, groups: &'static [Group]) -> Values {
         let mut values = Values::new(groups, "");
-        for (parameter, text) in &self.given {
+        // How a query is split is not a part of it.
+        let own = self.given.iter();
+        let own = own.filter(|(parameter, _)| parameter.group != Group::Split);
+        for (parameter, text) in own {
             values.add_text(parameter.name, text);
         }
         values

@@ -6,11 +6,19 @@ use super::{Failure, config, output};
 use crate::cli::load::Load as _;
 
 /// The titles of the columns.
-const TITLES: [&str; 5] = ["profile", "alpha", "map", "blocks", "joint kinds"];
+const TITLES: [&str; 6] = [
+    "profile",
+    "points in",
+    "alpha",
+    "map",
+    "blocks",
+    "joint kinds",
+];
 
-fn cells(entry: &Entry, catalog: &Catalog) -> [String; 5] {
+fn cells(entry: &Entry, catalog: &Catalog) -> [String; 6] {
     [
         entry.key.profile.to_string(),
+        entry.key.dimension.to_string(),
         entry.key.alpha.to_string(),
         entry.key.size.to_string(),
         entry.blocks().to_string(),
@@ -21,13 +29,14 @@ fn cells(entry: &Entry, catalog: &Catalog) -> [String; 5] {
 /// Prints the tables.
 pub(super) fn run(args: &config::Args) -> Result<(), Failure> {
     let catalog = args.merged(config::Uses::LOADED)?.tables()?;
-    let tables = catalog.entries().map(|entry| cells(entry, &catalog));
-    let rows: Vec<[String; 5]> = [TITLES.map(String::from)]
+    let tables = catalog.entries().chain(catalog.in_space());
+    let tables = tables.map(|entry| cells(entry, &catalog));
+    let rows: Vec<[String; 6]> = [TITLES.map(String::from)]
         .into_iter()
         .chain(tables)
         .collect();
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
-    let widths = [0, 1, 2, 3, 4].map(|column| width(column).unwrap_or(0));
+    let widths = [0, 1, 2, 3, 4, 5].map(|column| width(column).unwrap_or(0));
     let mut text = String::new();
     for row in &rows {
         let cells = row

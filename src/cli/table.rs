@@ -8,7 +8,11 @@ use std::{
 use anyhow::{Context as _, anyhow};
 use clap::Subcommand;
 use strew_catalog::{Entry, Source};
-use strew_core::{Alpha, Map, Table};
+use strew_core::{
+    Alpha, Map, Table,
+    table::{Digest, Provenance},
+};
+use strew_forge::ForgeError;
 
 use super::{Failure, config, output, refuse};
 use crate::cli::load::Load as _;
@@ -117,7 +121,7 @@ pub(super) fn run(command: &Command) -> Result<(), Failure> {
 
 impl Which {
     /// The chosen tables, each with its source; at least one.
-    fn tables(&self) -> Result<Vec<(String, Table)>, Failure> {
+    fn tables(&self) -> Result<Vec<(String, AnyTable)>, Failure> {
         if let Some(file) = &self.file {
             let table = read(file).map_err(Failure::Other)?;
             return Ok(vec![(file.display().to_string(), table)]);
@@ -138,7 +142,7 @@ impl Which {
                 Source::Memory(_) | Source::Pattern => entry.source.to_string(),
             };
             let table = entry.table().map_err(Failure::other)?;
-            Ok((place, table))
+            Ok((place, AnyTable::Plane(table)))
         };
         let tables = catalog
             .entries()
@@ -157,8 +161,81 @@ impl Which {
 }
 
 /// Reads and checks a table file; the error names it.
-fn read(file: &Path) -> anyhow::Result<Table> {
-    Ok(Entry::from_file(file.to_owned())?.table()?)
+fn read(file: &Path) -> anyhow::Result<AnyTable> {
+    // A file that is no table, or cannot be read, is that of the plane's reader, whose errors are complete.
+    let is_regular = std::fs::metadata(file).is_ok_and(|found| found.is_file());
+    if is_regular && let Some(table) = in_space(file)? {
+        return Ok(AnyTable::Space(table));
+    }
+    Ok(AnyTable::Plane(Entry::from_file(file.to_owned())?.table()?))
+}
+
+/// The table of a file, if its points are in space and the file can be read.
+fn in_space(file: &Path) -> anyhow::Result<Option<strew_core::space::Table>> {
+    match strew_forge::space::read_table(file) {
+        Err(ForgeError::NotATable { path, source }) => {
+            Err(ForgeError::NotATable { path, source }.into())
+        }
+        found => Ok(found.ok().flatten()),
+    }
+}
+
+/// A table of either kind.
+enum AnyTable {
+    Plane(Table),
+    Space(strew_core::space::Table),
+}
+
+impl AnyTable {
+    fn map(&self) -> &Map {
+        match self {
+            Self::Plane(table) => table.map(),
+            Self::Space(table) => table.map(),
+        }
+    }
+
+    fn profile(&self) -> &str {
+        match self {
+            Self::Plane(table) => table.profile(),
+            Self::Space(table) => table.profile(),
+        }
+    }
+
+    fn provenance(&self) -> &Provenance {
+        match self {
+            Self::Plane(table) => table.provenance(),
+            Self::Space(table) => table.provenance(),
+        }
+    }
+
+    fn digest(&self) -> Digest {
+        match self {
+            Self::Plane(table) => table.digest(),
+            Self::Space(table) => table.digest(),
+        }
+    }
+
+    fn to_bytes(&self) -> Vec<u8> {
+        match self {
+            Self::Plane(table) => table.to_bytes(),
+            Self::Space(table) => table.to_bytes(),
+        }
+    }
+
+    fn has_ranks(&self) -> bool {
+        match self {
+            Self::Plane(table) => table.ranks().is_some(),
+            Self::Space(table) => table.ranks().is_some(),
+        }
+    }
+
+    /// The dimensions of its points.
+    const fn dimensions(&self) -> u32 {
+        match self {
+            Self::Plane(_) => 2,
+            Self::Space(_) => 3,
+        }
+    }
 }
 
 fn show(which: &Which) -> Result<(), Failure> {
@@ -172,31 +249,32 @@ fn show(which: &Which) -> Result<(), Failure> {
     output::print(&text)
 }
 
-fn describe(text: &mut String, place: &str, table: &Table) -> std::fmt::Result {
+fn describe(text: &mut String, place: &str, table: &AnyTable) -> std::fmt::Result {
     let (map, provenance) = (table.map(), table.provenance());
     let n = map.intervals();
     writeln!(text, "{place}")?;
     writeln!(text, "  profile    {}", table.profile())?;
-    writeln!(
-        text,
-        "  alpha      {} = {}",
-        table.alpha(),
-        table.alpha().to_f64()
-    )?;
+    if let AnyTable::Space(_) = table {
+        writeln!(text, "  points     in space")?;
+    }
+    let alpha = map.alpha();
+    writeln!(text, "  alpha      {alpha} = {}", alpha.to_f64())?;
     writeln!(
         text,
         "  map        R = {}, {n} intervals, {} blocks",
         map.radius(),
-        n * n
+        n.pow(table.dimensions())
     )?;
     writeln!(text, "  bytes      {}", table.to_bytes().len())?;
     writeln!(text, "  digest     {}", table.digest())?;
-    let ranks = match table.ranks() {
-        Some(_) => "yes",
-        None => "none: thinned sets are no more even than random ones",
+    let ranks = match table.has_ranks() {
+        true => "yes",
+        false => "none: thinned sets are no more even than random ones",
     };
     writeln!(text, "  ranks      {ranks}")?;
-    if let Some(mix) = table.mix() {
+    if let AnyTable::Plane(table) = table
+        && let Some(mix) = table.mix()
+    {
         let (kinds, shares) = (mix.shares().kinds(), mix.shares());
         writeln!(text, "  kinds      {kinds}, in the ratio {shares}")?;
     }
@@ -231,10 +309,14 @@ fn verify(args: &Verify) -> Result<(), Failure> {
     for file in &args.files {
         match read(file) {
             Ok(table) => output::print(&format!(
-                "{}: good, profile {}, alpha {}, digest {}\n",
+                "{}: good, {}profile {}, alpha {}, digest {}\n",
                 file.display(),
+                match table {
+                    AnyTable::Plane(_) => "",
+                    AnyTable::Space(_) => "points in space, ",
+                },
                 table.profile(),
-                table.alpha(),
+                table.map().alpha(),
                 table.digest()
             ))?,
             Err(error) => {
@@ -254,13 +336,19 @@ fn verify(args: &Verify) -> Result<(), Failure> {
 
 fn export(args: &Export) -> Result<(), Failure> {
     let tables = args.which.tables()?;
-    let [(_, table)] = &tables[..] else {
+    let [(place, table)] = &tables[..] else {
         refuse!(
             "{} tables are loaded: choose one with --profile, --alpha and --map, or name a file",
             tables.len()
         );
     };
     let bytes = if args.text {
+        let AnyTable::Plane(table) = table else {
+            refuse!(
+                "--text: {place} is a table of points in space, which has no text form; allowed: no \
+                 --text, for the bytes of its file"
+            );
+        };
         let mut text = String::new();
         table.write_text(&mut text).context("cannot format")?;
         text.into_bytes()

@@ -294,6 +294,9 @@ impl PointService for Points {
             profiles: entries
                 .map(|entry| profile::profile(entry, &catalog))
                 .collect(),
+            in_space: (catalog.in_space())
+                .map(|entry| profile::profile(entry, &catalog))
+                .collect(),
             algorithm: ALGORITHM_VERSION,
         }))
     }

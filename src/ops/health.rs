@@ -153,7 +153,10 @@ async fn ready(
     };
     let state = Ready {
         ready,
-        tables: service.catalog().entries().count(),
+        tables: {
+            let catalog = service.catalog();
+            catalog.entries().chain(catalog.in_space()).count()
+        },
         streams: service.streams().open(),
     };
     Ok(momentary(status, &state)?)

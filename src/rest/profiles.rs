@@ -36,12 +36,21 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
 async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
+    list(&context, &catalog, &catalog.entries().collect::<Vec<_>>()).await
+}
+
+/// Lists some tables of a catalog.
+pub(super) async fn list(
+    context: &Context,
+    catalog: &Catalog,
+    entries: &[&Arc<Entry>],
+) -> Result<Response, Refused> {
     let made_of: Vec<&str> = catalog.digests().collect();
     let make = async {
         document::json(&Profiles {
             algorithm: ALGORITHM_VERSION,
-            profiles: (catalog.entries())
-                .map(|entry| Profile::new(entry, &catalog))
+            profiles: (entries.iter())
+                .map(|entry| Profile::new(entry, catalog))
                 .collect(),
         })
     };
@@ -51,7 +60,7 @@ async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refuse
 /// The tables that are loaded.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "Profiles")]
-struct Profiles<'a> {
+pub(super) struct Profiles<'a> {
     /// The version of the algorithm that answers.
     algorithm: u32,
     /// Sorted by profile, then alpha.
@@ -72,7 +81,7 @@ pub(super) struct Profile<'a> {
     radius: u32,
     /// The intervals per axis, n.
     intervals: usize,
-    /// The blocks, n².
+    /// The blocks, n², of a table in space n³.
     blocks: usize,
     /// The shares for which there is a table with joint kinds (`spread=joint`).
     joint_kinds: Vec<String>,

@@ -19,7 +19,7 @@ use super::{
     chunks::{COLUMN, ROW, SIZE},
     context::{Context, Sent},
     count::{self, Count},
-    query, single,
+    profiles, query, single,
     split::{self, Split},
 };
 use crate::{body::Response, rest::Refused};
@@ -33,6 +33,7 @@ pub(super) fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
         parts(service),
         by_id(service),
         nearest(service),
+        listed(service),
     ]
 }
 
@@ -244,6 +245,30 @@ fn nearest(service: &Arc<Service>) -> Endpoint {
         )
     };
     Endpoint::only("/v1/space/nearest", service.clone(), operation, get_nearest)
+}
+
+fn listed(service: &Arc<Service>) -> Endpoint {
+    let answer = api::Answer::json::<profiles::Profiles<'_>>("The tables.");
+    let operation = Operation {
+        id: "listSpaceProfiles",
+        summary: "The tables of points in space",
+        about: "The tables that are loaded, as GET /v1/profiles lists those of the plane.",
+        example: "/v1/space/profiles".into(),
+        ..Operation::new(Tag::Space, answer.or_unchanged())
+    };
+    Endpoint::only(
+        "/v1/space/profiles",
+        service.clone(),
+        operation,
+        get_profiles,
+    )
+}
+
+async fn get_profiles(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+    context.values(groups::NONE).read()?;
+    let catalog = service.catalog();
+    let entries: Vec<_> = catalog.in_space().collect();
+    profiles::list(&context, &catalog, &entries).await
 }
 
 async fn get_nearest(service: Arc<Service>, context: Context) -> Result<Response, Refused> {

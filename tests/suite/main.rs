@@ -10,4 +10,5 @@ mod grpc;
 mod ops;
 mod page;
 mod rest;
+mod space;
 mod support;

@@ -32,11 +32,11 @@ export interface Parameters {
      */
     periodic?: number;
     /**
-     * Points per unit of area. Allowed: a number from 1e-200 to 1e200.
+     * Points per unit of area, in space of volume. Allowed: a number from 1e-200 to 1e200.
      */
     density?: number;
     /**
-     * The mean spacing in world units: density^-1/2. Allowed: a number from 1e-100 to 1e100.
+     * The mean spacing in world units: density^-1/2, in space density^-1/3. Allowed: a number from 1e-100 to 1e100.
      */
     spacing?: number;
     /**

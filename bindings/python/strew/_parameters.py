@@ -35,9 +35,9 @@ class Parameters(TypedDict, total=False):
     #: maps have more periods: with map=m, the default, 5000 becomes 57121, with map=s 5041. The list of periods has
     #: all. Allowed: an integer from 1 to 4294967296. Default: the points of a region, on the unbounded plane.
     periodic: int
-    #: Points per unit of area. Allowed: a number from 1e-200 to 1e200.
+    #: Points per unit of area, in space of volume. Allowed: a number from 1e-200 to 1e200.
     density: float
-    #: The mean spacing in world units: density^-1/2. Allowed: a number from 1e-100 to 1e100.
+    #: The mean spacing in world units: density^-1/2, in space density^-1/3. Allowed: a number from 1e-100 to 1e100.
     spacing: float
     #: The least distance of any two points in world units: the density is the greatest that guarantees it, with the
     #: warp. Not for profiles that guarantee none. Allowed: a number from 1e-100 to 1e100.

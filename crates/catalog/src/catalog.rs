@@ -274,11 +274,20 @@ impl Catalog {
         self
     }
 
-    /// All tables without kinds, by profile, then α.
+    /// All tables of the plane without kinds, by profile, then α.
     pub fn entries(&self) -> impl Iterator<Item = &Arc<Entry>> {
-        self.entries
-            .values()
-            .filter(|entry| entry.key.mix.is_none())
+        self.of(Dimension::Plane)
+    }
+
+    /// All tables of points in space, by profile, then α.
+    pub fn in_space(&self) -> impl Iterator<Item = &Arc<Entry>> {
+        self.of(Dimension::Space)
+    }
+
+    /// All tables of a dimension without kinds.
+    fn of(&self, dimension: Dimension) -> impl Iterator<Item = &Arc<Entry>> {
+        let all = self.entries.values();
+        all.filter(move |entry| entry.key.mix.is_none() && entry.key.dimension == dimension)
     }
 
     /// The mixes of a table: those whose points are its own, or those whose points were moved.
@@ -310,9 +319,8 @@ impl Catalog {
 
     /// The names of the profiles, without repetition.
     pub fn profiles(&self, dimension: Dimension) -> Vec<&str> {
-        let keys = self.entries().map(|entry| &entry.key);
-        let of = keys.filter(|key| key.dimension == dimension);
-        let mut names: Vec<&str> = of.map(|key| &*key.profile).collect();
+        let of = self.of(dimension);
+        let mut names: Vec<&str> = of.map(|entry| &*entry.key.profile).collect();
         names.dedup();
         names
     }
@@ -339,9 +347,9 @@ impl Catalog {
     }
 
     fn of_profile(&self, dimension: Dimension, profile: &str) -> impl Iterator<Item = &Key> {
-        self.entries()
+        self.of(dimension)
             .map(|entry| &entry.key)
-            .filter(move |key| key.dimension == dimension && &*key.profile == profile)
+            .filter(move |key| &*key.profile == profile)
     }
 }
 

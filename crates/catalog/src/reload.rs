@@ -141,7 +141,9 @@ impl Catalog {
             Err(error) => {
                 let folder = folder.unwrap_or(Path::new(""));
                 reload.refuse_file(&folder.display().to_string(), &error);
-                reload.kept = self.entries().map(|old| Serving::new(old, None)).collect();
+                reload.kept = (self.entries().chain(self.in_space()))
+                    .map(|old| Serving::new(old, None))
+                    .collect();
                 return (self.clone(), reload);
             }
         };

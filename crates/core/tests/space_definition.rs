@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use strew_core::{
-    Map,
+    Attribute, Attributes, Map, Variants,
     space::{PointId, SpaceSet, Table},
     table::{Provenance, Ranks},
 };
@@ -249,5 +249,48 @@ proptest! {
         prop_assert_eq!(found.count(), inside.len() as u128);
         let found: Vec<_> = found.iter().map(|point| (point.id, point.at())).collect();
         prop_assert_eq!(found, inside);
+    }
+}
+
+/// The hash of a point for an attribute with a code.
+fn hash(seed: u64, code: u64, [x, y, z]: [i64; 3]) -> u64 {
+    let key = mix(mix(seed ^ named(b"ATTRIBUT")).wrapping_add(code << 32));
+    let round = |v: i64, factor: u64| (v as u64).wrapping_mul(factor);
+    let level = mix(key ^ round(z, 0xa076_1d64_78bd_642f)).wrapping_add(key);
+    let row = mix(level ^ round(y, 0xc2b2_ae3d_27d4_eb4f)).wrapping_add(level);
+    mix(row ^ round(x, 0xd6e8_feb8_6659_fd93))
+}
+
+/// The uniform number of such a hash.
+fn unit(seed: u64, code: u64, at: [i64; 3]) -> f64 {
+    (hash(seed, code, at) >> 11) as f64 / (1u64 << 53) as f64
+}
+
+proptest! {
+    #[test]
+    fn the_library_has_the_attributes_of_the_definition(
+        seed: u64, at in prop::array::uniform3(-1i64 << 40..1 << 40),
+    ) {
+        let set = SpaceSet::new(table()).seed(seed);
+        let variants: Variants = "ice:1,rock:3".parse().expect("valid");
+        let list = Attributes::new(vec![
+            "rotation".parse().expect("known"),
+            Attribute::scale(0.5, 2.0).expect("in range"),
+            Attribute::Variant(variants),
+            "u3".parse().expect("known"),
+        ]);
+        let bound = set.attributes(&list.expect("different")).expect("of space");
+        let [x, y, z] = at;
+        let columns = bound.columns([PointId { x, y, z }]);
+        let numbers: Vec<f64> = columns.iter().filter_map(|column| Some(column.numbers()?[0])).collect();
+        let [u, v, w] = [4, 5, 6].map(|code| unit(seed, code, at));
+        let turn = |v: f64| libm::sincos(std::f64::consts::TAU * v);
+        let ((a, b), (c, d)) = (turn(v), turn(w));
+        let (low, high) = ((1.0 - u).sqrt(), u.sqrt());
+        let scale = 0.5 + unit(seed, 2, at) * 1.5;
+        prop_assert_eq!(numbers, vec![low * a, low * b, high * c, high * d, scale, unit(seed, 0x103, at)]);
+        // A quarter of the weight is before the second name.
+        let variant = u32::from(hash(seed, 3, at) >= 1 << 62);
+        prop_assert_eq!(columns[5].variants(), Some(&[variant][..]));
     }
 }

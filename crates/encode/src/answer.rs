@@ -35,6 +35,7 @@ use crate::{
     rows::Rows,
     svg,
     text::{TextBlocks, TextFormat},
+    triples::Triples,
     usda,
 };
 
@@ -275,7 +276,11 @@ impl Answer {
                 Box::new(Packed::<F32>::new(plan, block_bytes))
             }
             Some(Plain { plan, .. }) => Box::new(Packed::<F64>::new(plan, block_bytes)),
-            None => Box::new(Records::new(rows, layout, block_bytes)),
+            None => match (rows.plain_volume(), layout.plain_f32()) {
+                (Some(plan), Some(true)) => Box::new(Triples::<F32>::new(plan, block_bytes)),
+                (Some(plan), Some(false)) => Box::new(Triples::<F64>::new(plan, block_bytes)),
+                _ => Box::new(Records::new(rows, layout, block_bytes)),
+            },
         };
         Self {
             head,

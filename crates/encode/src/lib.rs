@@ -54,6 +54,7 @@ mod shift;
 mod source;
 mod svg;
 mod text;
+mod triples;
 mod usda;
 mod writer;
 

@@ -6,7 +6,7 @@
 
 use std::{ops::Range, sync::Arc, vec};
 
-use strew_core::{Plan, Point};
+use strew_core::{Plan, Point, space};
 
 use super::{
     part::{Current, Part},
@@ -150,6 +150,22 @@ impl Rows {
             Coordinates::Near(origin) => origin == Place::Plane(plan.origin()),
         };
         (as_made && self.schema.columns().is_empty()).then_some(plan)
+    }
+
+    /// The only plan in space, if its coordinates, as the kernel makes them, are the whole answer. Call it before the
+    /// first batch.
+    pub(super) fn plain_volume(&self) -> Option<&space::Plan> {
+        let [(_, part)] = self.parts.as_slice() else {
+            return None;
+        };
+        let plan = part.plan.space()?;
+        let as_made = match self.coordinates {
+            Coordinates::World => true,
+            Coordinates::Relative(_) => false,
+            Coordinates::Near(origin) => origin == Place::Space(plan.origin()),
+        };
+        // Their heights are the one column.
+        (as_made && self.schema.columns().len() == 1).then_some(plan)
     }
 
     /// The place after the rows so far: the number of the part, and the place in it.

@@ -59,6 +59,12 @@ pub enum ForgeError {
         /// The problem with it.
         source: strew_core::Error,
     },
+    /// A file is a table of points in space, where one of the plane is wanted.
+    #[error("{}: a table of points in space; allowed here: a table of the plane", path.display())]
+    InSpace {
+        /// The file.
+        path: PathBuf,
+    },
     /// A file is larger than any table.
     #[error("{}: {bytes} bytes; a table file has at most {MAX_FILE_BYTES}", path.display())]
     TooLarge {

@@ -6,7 +6,11 @@ use std::{
     path::Path,
 };
 
-use strew_core::{Alpha, ErrorKind, Table, map::Size, table::MAX_FILE_BYTES};
+use strew_core::{
+    Alpha, ErrorKind, Table,
+    map::Size,
+    table::{Head, MAX_FILE_BYTES},
+};
 
 use crate::ForgeError;
 
@@ -37,12 +41,40 @@ pub fn file_name(profile: &str, alpha: Alpha, radius: u32) -> String {
     format!("{profile}-{alpha}-{size}.{EXTENSION}")
 }
 
-/// Reads and checks a table file.
+/// Reads and checks a table file of the plane.
 ///
 /// # Errors
 /// [`ForgeError::File`] if it cannot be read, [`ForgeError::TooLarge`] if it has more than
-/// [`MAX_FILE_BYTES`], [`ForgeError::NotATable`] if its content is not a valid table.
+/// [`MAX_FILE_BYTES`], [`ForgeError::NotATable`] if its content is not a valid table,
+/// [`ForgeError::InSpace`] if it is one of points in space.
 pub fn read_table(path: &Path) -> Result<Table, ForgeError> {
+    let content = read_bytes(path)?;
+    Table::from_bytes(&content).map_err(|source| match source {
+        // The file has grown meanwhile.
+        error if error.kind() == ErrorKind::TableTooLarge => too_large(path, content.len() as u64),
+        _ if is_space(&content) => ForgeError::InSpace {
+            path: path.to_owned(),
+        },
+        source => ForgeError::NotATable {
+            path: path.to_owned(),
+            source,
+        },
+    })
+}
+
+/// Whether the head of a table file says that its points are in space.
+pub(crate) fn is_space(bytes: &[u8]) -> bool {
+    let head = Head::read(bytes.len() as u64, |at, part: &mut [u8]| {
+        let from = at as usize;
+        let found = bytes.get(from..from + part.len()).ok_or(())?;
+        part.copy_from_slice(found);
+        Ok::<(), ()>(())
+    });
+    matches!(head, Ok(Ok(head)) if head.is_space)
+}
+
+/// The content of a table file, at most one byte more than such files may have.
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, ForgeError> {
     let failed = |action| {
         move |source| ForgeError::File {
             action,
@@ -52,26 +84,22 @@ pub fn read_table(path: &Path) -> Result<Table, ForgeError> {
     };
     let file = File::open(path).map_err(failed("open"))?;
     let bytes = file.metadata().map_err(failed("examine"))?.len();
-    let too_large = |bytes| ForgeError::TooLarge {
-        path: path.to_owned(),
-        bytes,
-    };
     if bytes > MAX_FILE_BYTES {
-        return Err(too_large(bytes));
+        return Err(too_large(path, bytes));
     }
     // The file may grow meanwhile, or be a pipe without a size: read one byte beyond the limit.
     let mut content = Vec::with_capacity(bytes as usize);
     file.take(MAX_FILE_BYTES + 1)
         .read_to_end(&mut content)
         .map_err(failed("read"))?;
-    Table::from_bytes(&content).map_err(|source| match source {
-        // The file has grown meanwhile.
-        error if error.kind() == ErrorKind::TableTooLarge => too_large(content.len() as u64),
-        source => ForgeError::NotATable {
-            path: path.to_owned(),
-            source,
-        },
-    })
+    Ok(content)
+}
+
+fn too_large(path: &Path, bytes: u64) -> ForgeError {
+    ForgeError::TooLarge {
+        path: path.to_owned(),
+        bytes,
+    }
 }
 
 /// Writes a table file, whole or not at all.
@@ -178,6 +206,32 @@ mod tests {
             read_table(&path),
             Err(ForgeError::TooLarge { bytes, .. }) if bytes == MAX_FILE_BYTES + 1
         ));
+    }
+
+    #[test]
+    fn a_table_of_points_in_space_is_read_by_its_own_reader() {
+        use strew_core::space::Table as InSpace;
+
+        use crate::space::{read_table as read_space, write_table as write_space};
+
+        let folder = tempfile::tempdir().expect("valid");
+        let path = folder.path().join("t.strew");
+        let alpha = "sqrt(3)".parse().expect("valid");
+        let other = InSpace::undisplaced(alpha, 4, "pattern").expect("valid");
+        write_space(&path, &other).expect("valid");
+        assert_eq!(read_space(&path).expect("valid"), Some(other.clone()));
+        let error = read_table(&path).expect_err("refused").to_string();
+        assert!(
+            error.contains("t.strew: a table of points in space"),
+            "{error}"
+        );
+        write_table(&path, &table()).expect("valid");
+        assert_eq!(read_space(&path).expect("valid"), None);
+        let mut damaged = other.to_bytes();
+        *damaged.last_mut().expect("bytes") ^= 1;
+        std::fs::write(&path, damaged).expect("valid");
+        let error = read_space(&path).expect_err("refused").to_string();
+        assert!(error.contains("t.strew: "), "{error}");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use strew_core::{Table, table::Provenance};
 
 use crate::{
     Checkpoint, ForgeError, Job,
+    checkpoint::{State, other_kind},
     judge::{Complaint, Nearness, complaints},
     optimize::DescentState,
     plan::Plan,
@@ -142,7 +143,10 @@ fn optimize(
         None => (0, DescentState::start(plan.start(job.seed))),
         Some(from) => {
             from.check(&identity, plan.blocks())?;
-            (from.phase as usize, from.state)
+            let State::Plane(state) = from.state else {
+                return Err(other_kind("points in space"));
+            };
+            (from.phase as usize, state)
         }
     };
     let checkpoint = |phase: usize, steps, state: &DescentState| Checkpoint {
@@ -150,7 +154,7 @@ fn optimize(
         phase: phase as u32,
         steps,
         of: plan.steps,
-        state: state.clone(),
+        state: State::Plane(state.clone()),
     };
     let before = phases.iter().take(first).map(|phase| phase.descent.steps);
     let mut steps: u32 = before.sum();

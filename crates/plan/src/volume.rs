@@ -33,20 +33,21 @@ impl Planner<'_> {
         let (points, density) = placed(set, table)?;
         check_reach(set, region.reach())?;
         let spacing = points.placement().spacing;
+        let others = set.clear_of.iter();
+        let others = others.filter_map(|&(place, distance)| {
+            Some(effort::cleared(&points, self.volumes.get(place)?, distance))
+        });
+        let test: f64 = others.sum();
         let points = self.keeping_clear_in_space(set, points)?;
         let cursor = self.query.window.cursor;
         let here = cursor.filter(|token| i == usize::from(token.set));
         let is_unwanted = self.query.only.is_some_and(|only| only != i);
         let is_over = is_unwanted || cursor.is_some_and(|token| i < usize::from(token.set));
-        let test = match set.clear_of.is_empty() {
-            true => 0.0,
-            false => effort::CLEARED,
-        };
         let plan = match here.filter(|_| !is_unwanted) {
             _ if is_over => points.resume(volume, NOTHING.in_space()),
             Some(token) => points.resume(volume, token.mark.in_space()),
             None => {
-                self.check_volume(set, &points, &volume)?;
+                self.check_volume(&points, &volume, test)?;
                 points.within_until(volume, self.stop.clone())
             }
         };
@@ -82,12 +83,12 @@ impl Planner<'_> {
     /// Checks that counting a volume stays within the limit.
     fn check_volume(
         &self,
-        set: &Set,
         points: &SpaceSet,
         volume: &space::Volume,
+        test: f64,
     ) -> Result<(), Error> {
         let limit = self.limits.max_rows;
-        let rows = effort::rows_of_volume(set, points, volume);
+        let rows = effort::rows_of_volume(points, volume, test);
         if rows > limit as f64 {
             let rows = rows as u128;
             return Err(Error::TooManyRows { rows, limit });

@@ -87,8 +87,8 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let Some(outcome) = outcome.map_err(Failure::usage)? else {
         return Err(Failure::Interrupted(anyhow!("interrupted")));
     };
-    let made = ("mix", &outcome.table);
-    work.conclude(&path, made, outcome.accepted, None, &outcome.complaints)?;
+    let (table, complaints) = (&outcome.table, &outcome.complaints);
+    work.conclude(&path, "mix", table, outcome.accepted, None, complaints)?;
     work.show(&outcome.figures);
     Ok(())
 }

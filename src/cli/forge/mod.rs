@@ -1,6 +1,7 @@
 //! `strew forge`: makes a table, judges it, writes it; kinds for a table.
 
 mod mix;
+mod space;
 mod table;
 mod work;
 

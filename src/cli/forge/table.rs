@@ -6,15 +6,21 @@ use anyhow::{Context as _, anyhow};
 use strew_config::bounded_file;
 use strew_core::Alpha;
 use strew_forge::{
-    Checkpoint, DEFAULT_SEED, Estimate, Job, Outcome, Prospect, Target, file_name, forge, resume,
+    Checkpoint, DEFAULT_SEED, Estimate, Job, Prospect, Target, file_name, forge, resume,
 };
 use strew_query::{DEFAULT_ALPHA, DEFAULT_PROFILE};
 
-use super::work::{Checkpoints, Work, write};
-use crate::cli::{Failure, refuse, watcher::Watcher};
+use super::{
+    space,
+    work::{Checkpoints, Work},
+};
+use crate::cli::Failure;
 
 /// The most bytes of a file with a curve.
 const MAX_TARGET_BYTES: u64 = 1 << 20;
+
+/// The half-width R of the map of a table of the plane.
+const DEFAULT_RADIUS: u32 = 49;
 
 /// Flags of a new table.
 #[derive(Debug, clap::Args)]
@@ -26,12 +32,16 @@ pub(super) struct TableArgs {
     /// The number alpha.
     #[arg(long, default_value = DEFAULT_ALPHA, allow_hyphen_values = true)]
     alpha: Alpha,
-    /// The half-width R of the map in grid units: 49 (S), 100 (M), 200 (L) or another.
-    #[arg(long, default_value_t = 49)]
-    radius: u32,
-    /// The seed of the random start.
-    #[arg(long, default_value_t = DEFAULT_SEED)]
-    seed: u64,
+    /// Make a table of points in space: three dimensions. Its profiles are blue and spaced.
+    #[arg(long, conflicts_with = "target")]
+    space: bool,
+    /// The half-width R of the map in grid units [default: 49; in space 16]. In the plane 49 is S, 100 M,
+    /// 200 L; in space 16 has 21 intervals and 20 has 27 at the default alpha, and 22 is the largest.
+    #[arg(long, value_name = "R")]
+    radius: Option<u32>,
+    /// The seed of the random start [default: 17; in space 1].
+    #[arg(long)]
+    seed: Option<u64>,
     /// A radial power curve to follow. Either lines of two columns, frequency and power, joined by
     /// straight pieces; or TOML: `[[piece]]` with `from` and `to`, each piece beginning at the end of the
     /// one before, and `power = P` (level), `power = [P0, P1]` (straight) or
@@ -45,9 +55,9 @@ impl TableArgs {
     fn job(&self, steps: Option<u32>) -> Result<Job, Failure> {
         Ok(Job {
             alpha: self.alpha,
-            radius: self.radius,
+            radius: self.radius.unwrap_or(DEFAULT_RADIUS),
             profile: self.profile.clone(),
-            seed: self.seed,
+            seed: self.seed.unwrap_or(DEFAULT_SEED),
             target: self.target()?,
             steps,
         })
@@ -73,15 +83,17 @@ pub(super) fn run(
     work: &Work,
     checkpoints: &Checkpoints,
 ) -> Result<(), Failure> {
+    if args.space {
+        let job = space::job(&args.profile, args.alpha, args.radius, args.seed, steps)?;
+        return space::run(&job, work, checkpoints);
+    }
     let job = args.job(steps)?;
     let path = work.path(&file_name(&job.profile, job.alpha, job.radius))?;
     let pool = work.pool()?;
     let estimate = pool.install(|| job.estimate()).map_err(Failure::usage)?;
     let kept = Checkpoints::path(&path);
-    let found = match checkpoints.restart {
-        true => None,
-        false => pool.install(|| found(&job, &kept, work.quiet))?,
-    };
+    let is_of = |found: &Checkpoint| found.is_of(&job);
+    let found = pool.install(|| checkpoints.found(&kept, work.quiet, is_of))?;
     if !work.quiet {
         announce(&path, &job.prospect(), &estimate);
         if let Some(found) = &found {
@@ -100,36 +112,23 @@ pub(super) fn run(
     let outcome = outcome.map_err(Failure::usage)?;
     watcher.finish();
     if outcome.interrupted {
-        return interrupted(work, &path, &outcome, &watcher);
+        let text = work.interrupted(&path, &outcome.table, &watcher)?;
+        return Err(Failure::Interrupted(anyhow!(text)));
     }
     let nearness = outcome.nearness.as_ref().map(|near| {
         let met = if outcome.accepted { "met" } else { "missed" };
         format!("the target is {met}: {near}")
     });
-    let (made, complaints) = (("table", &outcome.table), &outcome.complaints);
-    work.conclude(&path, made, outcome.accepted, nearness, complaints)?;
+    let (table, complaints) = (&outcome.table, &outcome.complaints);
+    work.conclude(
+        &path,
+        "table",
+        table,
+        outcome.accepted,
+        nearness,
+        complaints,
+    )?;
     Checkpoints::remove(&kept)
-}
-
-/// The checkpoint to resume from, if there is one of this job.
-fn found(job: &Job, path: &Path, quiet: bool) -> Result<Option<Checkpoint>, Failure> {
-    let advice = "--restart begins anew and replaces it";
-    let found = Checkpoint::read_file(path)
-        .map_err(|error| Failure::Usage(anyhow!("{error}; {advice}")))?;
-    let Some(found) = found else {
-        return Ok(None);
-    };
-    match found.is_of(job) {
-        Ok(()) => Ok(Some(found)),
-        Err(error) if found.is_optimized() => {
-            // It is that of a rejected table, and spares only the steps of that job.
-            if !quiet {
-                eprintln!("beginning anew: {}: {error}", path.display());
-            }
-            Ok(None)
-        }
-        Err(error) => refuse!("{}: {error}; finish that job, or {advice}", path.display()),
-    }
 }
 
 /// Announces the work, and whether it can succeed.
@@ -153,27 +152,4 @@ fn announce(path: &Path, prospect: &Prospect, estimate: &Estimate) {
             least.g, least.r
         );
     }
-}
-
-/// Reports where interrupted work can resume.
-fn interrupted(
-    work: &Work,
-    path: &Path,
-    outcome: &Outcome,
-    watcher: &Watcher,
-) -> Result<(), Failure> {
-    let mut text = String::from("interrupted");
-    if work.keep_rejected {
-        write(path, &outcome.table)?;
-        text += &format!("; {} holds the best so far, not judged", path.display());
-    }
-    if watcher.has_kept() {
-        let force = match work.keep_rejected {
-            true => " with --force",
-            false => "",
-        };
-        let kept = Checkpoints::path(path);
-        text += &format!("; the same command{force} resumes from {}", kept.display());
-    }
-    Err(Failure::Interrupted(anyhow!(text)))
 }

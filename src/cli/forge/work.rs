@@ -8,9 +8,9 @@ use std::{
 
 use anyhow::{Context as _, anyhow};
 use strew_core::{Table, table::Figures};
-use strew_forge::{Complaint, gravest, write_table};
+use strew_forge::{Checkpoint, Complaint, ForgeError, gravest, write_table};
 
-use crate::cli::{Failure, output, threads, watcher::Watcher};
+use crate::cli::{Failure, output, refuse, threads, watcher::Watcher};
 
 /// Flags of the threads and of the file.
 #[derive(Debug, clap::Args)]
@@ -52,12 +52,21 @@ impl Work {
         threads::pool(self.threads)
     }
 
+    /// The number of threads.
+    pub(super) fn threads(&self) -> usize {
+        match self.threads {
+            0 => std::thread::available_parallelism().map_or(1, usize::from),
+            threads => threads,
+        }
+    }
+
     /// Writes a table and reports it; `what` names the part that was made. Fails if that was rejected and is not to be
     /// kept, with `why` and the missed bounds.
     pub(super) fn conclude(
         &self,
         path: &Path,
-        (what, table): (&str, &Table),
+        what: &str,
+        table: &impl Made,
         is_accepted: bool,
         why: Option<String>,
         complaints: &[Complaint],
@@ -80,6 +89,29 @@ impl Work {
         Ok(())
     }
 
+    /// The message of interrupted work, which says where it resumes. Writes the best table so far if it is to be kept.
+    pub(super) fn interrupted(
+        &self,
+        path: &Path,
+        table: &impl Made,
+        watcher: &Watcher,
+    ) -> Result<String, Failure> {
+        let mut text = String::from("interrupted");
+        if self.keep_rejected {
+            write(path, table)?;
+            text += &format!("; {} holds the best so far, not judged", path.display());
+        }
+        if watcher.has_kept() {
+            let force = match self.keep_rejected {
+                true => " with --force",
+                false => "",
+            };
+            let kept = Checkpoints::path(path);
+            text += &format!("; the same command{force} resumes from {}", kept.display());
+        }
+        Ok(text)
+    }
+
     /// Shows the measurements of each point set.
     pub(super) fn show(&self, figures: &[Figures]) {
         for figures in figures.iter().filter(|_| !self.quiet) {
@@ -91,10 +123,23 @@ impl Work {
     }
 }
 
+/// A table that was made.
+pub(super) trait Made {
+    /// Writes its file. Returns its digest.
+    fn write(&self, path: &Path) -> Result<String, ForgeError>;
+}
+
+impl Made for Table {
+    fn write(&self, path: &Path) -> Result<String, ForgeError> {
+        write_table(path, self)?;
+        Ok(self.digest().to_string())
+    }
+}
+
 /// Writes a table, and prints its digest and its path.
-pub(super) fn write(path: &Path, table: &Table) -> Result<(), Failure> {
-    write_table(path, table).map_err(Failure::other)?;
-    output::print(&format!("{}  {}\n", table.digest(), path.display()))
+fn write(path: &Path, table: &impl Made) -> Result<(), Failure> {
+    let digest = table.write(path).map_err(Failure::other)?;
+    output::print(&format!("{digest}  {}\n", path.display()))
 }
 
 /// Flags of work that takes long.
@@ -103,7 +148,7 @@ pub(super) fn write(path: &Path, table: &Table) -> Result<(), Failure> {
 pub(super) struct Checkpoints {
     /// Ignore an existing checkpoint and begin anew.
     #[arg(long)]
-    pub(super) restart: bool,
+    restart: bool,
     /// Seconds between checkpoints; 0 writes one after every step.
     #[arg(long, value_name = "SECONDS", default_value_t = 10)]
     checkpoint_every: u64,
@@ -115,6 +160,35 @@ impl Checkpoints {
         let mut name = table.as_os_str().to_owned();
         name.push(".checkpoint");
         name.into()
+    }
+
+    /// The checkpoint to resume from, if there is one of the job, which `is_of` decides.
+    pub(super) fn found(
+        &self,
+        path: &Path,
+        quiet: bool,
+        is_of: impl Fn(&Checkpoint) -> Result<(), ForgeError>,
+    ) -> Result<Option<Checkpoint>, Failure> {
+        if self.restart {
+            return Ok(None);
+        }
+        let advice = "--restart begins anew and replaces it";
+        let found = Checkpoint::read_file(path)
+            .map_err(|error| Failure::Usage(anyhow!("{error}; {advice}")))?;
+        let Some(found) = found else {
+            return Ok(None);
+        };
+        match is_of(&found) {
+            Ok(()) => Ok(Some(found)),
+            Err(error) if found.is_optimized() => {
+                // It is that of a rejected table, and spares only the steps of that job.
+                if !quiet {
+                    eprintln!("beginning anew: {}: {error}", path.display());
+                }
+                Ok(None)
+            }
+            Err(error) => refuse!("{}: {error}; finish that job, or {advice}", path.display()),
+        }
     }
 
     /// Watches the work, and writes checkpoints.

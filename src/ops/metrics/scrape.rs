@@ -151,7 +151,8 @@ impl Metrics {
                 gauge(name, help, &[], value);
             }
         }
-        for entry in service.catalog().entries() {
+        let catalog = service.catalog();
+        for entry in catalog.entries().chain(catalog.in_space()) {
             let labels = [
                 ("profile", &*entry.key.profile),
                 ("alpha", &entry.key.alpha.to_string()),

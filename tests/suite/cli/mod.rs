@@ -15,6 +15,7 @@ mod patterns;
 mod probe;
 mod queries;
 mod remote;
+mod space_tables;
 mod worlds;
 
 use std::fs;

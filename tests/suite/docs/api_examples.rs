@@ -242,6 +242,11 @@ fn the_algorithm_shows_what_its_example_prints() {
 }
 
 #[test]
+fn the_examples_of_space_print_what_it_shows() {
+    check("docs/space.md");
+}
+
+#[test]
 fn the_page_of_samples_shows_what_its_examples_print() {
     check("examples/README.md");
 }

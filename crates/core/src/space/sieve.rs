@@ -19,7 +19,7 @@ use super::{
 use crate::{sample::Backend, stop::Stop};
 
 /// The most points of another set that are made together.
-const MANY: f64 = 200_000.0;
+const MANY: f64 = 500_000.0;
 
 /// A walk over the points of a scope that its mask leaves.
 #[derive(Clone, Debug)]

@@ -54,6 +54,12 @@ pub enum Figure {
     Q6,
     /// The error of the share of a kind, up or down.
     ShareError,
+    /// In space: the mean nearest-neighbor distance over that of the densest packing.
+    MeanDistance,
+    /// In space: the deviation of power over directions in small windows, divided by its mean.
+    LocalDeviation,
+    /// In space: the largest power of a frequency in small windows.
+    LocalLargest,
 }
 
 impl Figure {
@@ -80,6 +86,9 @@ impl Figure {
             Self::LargestHole => "largest_hole",
             Self::Q6 => "q6",
             Self::ShareError => "share_error",
+            Self::MeanDistance => "mean_distance",
+            Self::LocalDeviation => "local_deviation",
+            Self::LocalLargest => "local_largest",
         }
     }
 }

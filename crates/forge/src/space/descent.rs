@@ -2,7 +2,8 @@
 
 use super::{
     energy::Gaussian,
-    pairs::{Blocks, LONGEST, Pairs},
+    pairs::{Blocks, Pairs},
+    state::SpaceState,
 };
 
 /// A descent of one energy.
@@ -11,28 +12,6 @@ pub(super) struct Phase {
     /// The σ of the energy, in mean spacings.
     pub(super) sigma: f64,
     pub(super) steps: u32,
-}
-
-/// The state between two steps: all that decides the next.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct State {
-    /// The vectors, in mean spacings.
-    pub(super) moves: Vec<[f64; 3]>,
-    pub(super) momentum: Vec<[f64; 3]>,
-    /// The vectors that the pairs were listed for; empty before the first step.
-    pub(super) listed: Vec<[f32; 3]>,
-    pub(super) step: u32,
-}
-
-impl State {
-    pub(super) fn start(moves: Vec<[f64; 3]>) -> Self {
-        Self {
-            momentum: vec![[0.0; 3]; moves.len()],
-            listed: Vec::new(),
-            step: 0,
-            moves,
-        }
-    }
 }
 
 /// The part of the momentum that a step keeps.
@@ -56,7 +35,7 @@ pub(super) fn single(moves: &[[f64; 3]]) -> Vec<[f32; 3]> {
 }
 
 impl<'a> Descent<'a> {
-    pub(super) fn new(blocks: &'a Blocks, phase: Phase, state: &State) -> Self {
+    pub(super) fn new(blocks: &'a Blocks, phase: Phase, state: &SpaceState) -> Self {
         let mut descent = Self {
             blocks,
             phase,
@@ -78,7 +57,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Takes a step. Returns the energy before it, per point.
-    pub(super) fn step(&mut self, state: &mut State) -> f64 {
+    pub(super) fn step(&mut self, state: &mut SpaceState) -> f64 {
         let moves = single(&state.moves);
         let is_near = state.listed.len() == moves.len()
             && moves.iter().zip(&state.listed).all(|(a, b)| {
@@ -94,6 +73,7 @@ impl<'a> Descent<'a> {
         };
         let energy = gaussian.evaluate(self.blocks, &self.pairs, &moves, &mut self.forces);
         let rate = self.rate(state.step);
+        state.momentum.resize(moves.len(), [0.0; 3]);
         for ((at, momentum), force) in state
             .moves
             .iter_mut()
@@ -110,8 +90,8 @@ impl<'a> Descent<'a> {
         center(&self.blocks.shares, &mut state.moves);
         for v in &mut state.moves {
             let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-            if length > LONGEST {
-                *v = v.map(|v| v * (LONGEST / length));
+            if length > self.blocks.longest {
+                *v = v.map(|v| v * (self.blocks.longest / length));
             }
         }
         state.step += 1;

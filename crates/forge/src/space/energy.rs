@@ -1,5 +1,7 @@
 //! The Gaussian energy of a table, over all pairs of the unbounded set, and its gradient.
 
+use rayon::prelude::*;
+
 use super::pairs::{Blocks, Pairs};
 use crate::numeric::exp32;
 
@@ -31,8 +33,7 @@ impl Gaussian {
         let scale = (-0.5 / (self.sigma * self.sigma)) as f32;
         let limit = (self.reach() * self.reach()) as f32;
         let shift = exp32(scale * limit);
-        let mut energy = 0.0;
-        for (block, force) in forces.iter_mut().enumerate() {
+        let one = |block: usize, force: &mut [f64; 3]| {
             let all = pairs.starts[block]..pairs.starts[block + 1];
             let own = moves[block];
             let (mut sum, mut total) = ([0.0f64; 3], 0.0f64);
@@ -67,8 +68,11 @@ impl Gaussian {
             }
             let share = blocks.shares[block];
             *force = sum.map(|v| v / share);
-            energy += total;
-        }
-        energy
+            total
+        };
+        // Each sum is of one thread, and they are added in order.
+        let all = forces.par_iter_mut().enumerate();
+        let totals: Vec<f64> = all.map(|(block, force)| one(block, force)).collect();
+        totals.iter().sum()
     }
 }

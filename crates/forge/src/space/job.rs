@@ -1,24 +1,14 @@
-//! Making a table of points in space.
+//! A job: the table of points in space to make, and the phases of its making.
 
-use strew_core::{Alpha, Map, space::Table, table::Provenance};
+use strew_core::{Alpha, Map};
 
 use super::{
-    descent::{Descent, Phase, State},
-    pairs::{Blocks, LONGEST},
-    push::push,
+    descent::Phase,
+    pairs::{LONGEST, longest},
 };
-use crate::{ForgeError, Meter, Stage, Watch, numeric::SplitMix};
+use crate::{ForgeError, MAX_STEPS};
 
-/// The table to make.
-///
-/// ```
-/// use strew_forge::space::{SpaceJob, SpaceProfile, forge};
-///
-/// let job = SpaceJob { radius: 5, steps: Some(12), ..SpaceJob::new(SpaceProfile::Blue) };
-/// let table = forge(&job, &())?.expect("not stopped");
-/// assert_eq!((table.profile(), table.map().intervals()), ("blue", 7));
-/// # Ok::<(), strew_forge::ForgeError>(())
-/// ```
+/// The table to make. Equal jobs make the same table, bit for bit, on every machine and with any number of threads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpaceJob {
     /// The noise profile.
@@ -79,8 +69,39 @@ impl SpaceJob {
         }
     }
 
-    /// The phases on a coarse map, on the job's own, and the number of pushes.
-    fn phases(&self) -> ([Vec<Phase>; 2], u32) {
+    /// The maps of the coarse phase and of all others. Fails for a part of the job that is not allowed.
+    pub(super) fn maps(&self) -> Result<[Map; 2], ForgeError> {
+        let refused = |field, value: String, allowed: String| {
+            Err(ForgeError::Field {
+                field,
+                value,
+                allowed,
+            })
+        };
+        if longest(self.alpha) < LEAST_REACH {
+            let allowed = "in space at least 1.51: below, vectors are too short";
+            return refused("alpha", self.alpha.to_string(), allowed.into());
+        }
+        if let Some(steps) = self.steps.filter(|steps| !(1..=MAX_STEPS).contains(steps)) {
+            return refused("steps", steps.to_string(), format!("1 to {MAX_STEPS}"));
+        }
+        let allowed = format!("1 to {MAX_SPACE_RADIUS}");
+        if !(1..=MAX_SPACE_RADIUS).contains(&self.radius) {
+            return refused("R", self.radius.to_string(), allowed);
+        }
+        let coarse = (self.radius * 11).div_ceil(16).max(1);
+        let map = Map::new(self.alpha, self.radius)?;
+        let intervals = map.intervals();
+        // Block numbers fit 16 bits.
+        if intervals > MAX_INTERVALS {
+            let value = format!("{}, of {intervals} intervals", self.radius);
+            return refused("R", value, format!("at most {MAX_INTERVALS} intervals"));
+        }
+        Ok([Map::new(self.alpha, coarse)?, map])
+    }
+
+    /// All phases, in order. The first is on the coarse map.
+    pub(super) fn phases(&self) -> Vec<Work> {
         let all = [(1.0, 150), (1.0, 120), (0.84, 300)];
         let whole: u32 = all.iter().map(|(_, steps)| steps).sum();
         let pushes = match self.profile {
@@ -93,101 +114,129 @@ impl SpaceJob {
             }
             None => steps,
         };
-        let phase = |(sigma, steps): (f64, u32)| Phase {
-            sigma,
-            steps: part(steps),
+        let descent = |(sigma, steps): (f64, u32)| {
+            let steps = part(steps);
+            Work::Descent(Phase { sigma, steps })
         };
-        let phases = [vec![phase(all[0])], vec![phase(all[1]), phase(all[2])]];
-        (phases, if pushes == 0 { 0 } else { part(pushes) })
-    }
-}
-
-/// The reach of the random start along each axis, in mean spacings.
-const JITTER: f64 = 0.2;
-
-/// Makes a table. Equal jobs make the same table, bit for bit, on every machine. Returns `None` if the watch stopped the
-/// work.
-///
-/// # Errors
-/// [`ForgeError::Table`] for a part of the job that is not allowed.
-pub fn forge(job: &SpaceJob, watch: &dyn Watch) -> Result<Option<Table>, ForgeError> {
-    let map = Map::new(job.alpha, job.radius)?;
-    let coarse = Map::new(job.alpha, (job.radius * 11).div_ceil(16).max(1))?;
-    let (phases, pushes) = job.phases();
-    let steps = phases
-        .iter()
-        .flatten()
-        .map(|phase| phase.steps)
-        .sum::<u32>()
-        + pushes;
-    let mut meter = Meter::new(watch, Stage::Optimizing, steps);
-    let mut random = SplitMix::new(job.seed);
-    let mut jitter = || (2.0 * random.next_f64() - 1.0) * JITTER;
-    let mut moves: Vec<[f64; 3]> = (0..coarse.intervals().pow(3))
-        .map(|_| [jitter(), jitter(), jitter()])
-        .collect();
-    for (map, phases) in [&coarse, &map].into_iter().zip(&phases) {
-        let blocks = Blocks::new(map, 5.6);
-        if moves.len() != blocks.shares.len() {
-            moves = refined(&coarse, map, &moves)?;
+        let mut phases = all.map(descent).to_vec();
+        if pushes > 0 {
+            phases.push(Work::Pushes(part(pushes)));
         }
-        for phase in phases {
-            let mut state = State::start(moves);
-            let mut descent = Descent::new(&blocks, *phase, &state);
-            for _ in 0..phase.steps {
-                if meter.stop() {
-                    return Ok(None);
+        phases
+    }
+
+    /// Everything that decides the table, as lines of `name = value`.
+    pub(super) fn identity(&self) -> String {
+        let (profile, alpha) = (self.profile.name(), self.alpha);
+        let mut text = format!("points = in space\nprofile = {profile}\nalpha = {alpha}\n");
+        text += &format!("R = {}\nseed = {}\n", self.radius, self.seed);
+        text += &format!("jitter = {JITTER}\nlongest = {}\n", longest(self.alpha));
+        for phase in self.phases() {
+            text += &match phase {
+                Work::Descent(Phase { sigma, steps }) => {
+                    format!("phase = {steps} steps at sigma {sigma}\n")
                 }
-                let energy = descent.step(&mut state);
-                meter.advance(Some(energy));
-            }
-            moves = state.moves;
+                Work::Pushes(steps) => format!("phase = {steps} pushes\n"),
+            };
         }
+        text
     }
-    if pushes > 0 {
-        let blocks = Blocks::new(&map, 1.3);
-        if !push(&blocks, &mut moves, pushes, &mut meter) {
-            return Ok(None);
-        }
-    }
-    let provenance = Provenance {
-        optimizer: match job.profile {
-            SpaceProfile::Blue => "gaussian".into(),
-            SpaceProfile::Spaced => "gaussian-push".into(),
-        },
-        parameters: vec![
-            ("pairs".into(), "exact".into()),
-            ("longest".into(), LONGEST.to_string()),
-            ("steps".into(), steps.to_string()),
-        ],
-        seed: job.seed,
-        twins: Vec::new(),
-        figures: Vec::new(),
-    };
-    let vectors = rounded(&map, &moves);
-    Ok(Some(Table::new(
-        map,
-        job.profile.name(),
-        vectors,
-        provenance,
-        None,
-    )?))
 }
 
-/// The vectors of a coarse map for the blocks of a finer one.
-fn refined(coarse: &Map, fine: &Map, moves: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, ForgeError> {
-    let (fine, parents) = coarse.refine(fine.radius())?;
-    let (n, m) = (fine.intervals(), coarse.intervals());
-    let parent = |b: usize| {
-        let [i, j, k] = [b % n, b / n % n, b / (n * n)].map(|i| parents[i]);
-        moves[(k * m + j) * m + i]
-    };
-    Ok((0..n.pow(3)).map(parent).collect())
+/// A phase of the making.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Work {
+    Descent(Phase),
+    /// A number of pushes.
+    Pushes(u32),
 }
 
-/// Vectors in mean spacings as those of a table.
-fn rounded(map: &Map, moves: &[[f64; 3]]) -> Vec<[i16; 3]> {
-    let units = 4096.0 / map.alpha().set_side_f64();
-    let round = |v: f64| (v * units).round().clamp(-32_767.0, 32_767.0) as i16;
-    moves.iter().map(|v| v.map(round)).collect()
+impl Work {
+    pub(super) const fn steps(self) -> u32 {
+        match self {
+            Self::Descent(phase) => phase.steps,
+            Self::Pushes(steps) => steps,
+        }
+    }
+
+    /// The distance within which the blocks of the phase must know each other, in mean spacings.
+    pub(super) const fn reach(self) -> f64 {
+        match self {
+            Self::Descent(_) => 5.6,
+            Self::Pushes(_) => 1.3,
+        }
+    }
+}
+
+/// The largest half-width R of a map in space: at the default α 29 intervals.
+pub const MAX_SPACE_RADIUS: u32 = 22;
+/// The largest number of intervals of a map in space.
+const MAX_INTERVALS: usize = 40;
+/// The least reach of vectors, in mean spacings.
+const LEAST_REACH: f64 = 0.8 * LONGEST;
+/// The reach of the random start along each axis, in mean spacings.
+pub(super) const JITTER: f64 = 0.2;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bad_parts_are_refused_with_name_value_and_allowed_range() {
+        let good = SpaceJob::new(SpaceProfile::Blue);
+        let alpha = |text: &str| text.parse().expect("valid");
+        for (job, words) in [
+            (
+                SpaceJob {
+                    alpha: alpha("1.4"),
+                    ..good.clone()
+                },
+                ["alpha", "7/5", "1.51"],
+            ),
+            (
+                SpaceJob {
+                    radius: 0,
+                    ..good.clone()
+                },
+                ["R", "0", "1 to 22"],
+            ),
+            (
+                SpaceJob {
+                    radius: 23,
+                    ..good.clone()
+                },
+                ["R", "23", "1 to 22"],
+            ),
+            (
+                SpaceJob {
+                    steps: Some(0),
+                    ..good.clone()
+                },
+                ["steps", "0", "1 to 1000000"],
+            ),
+        ] {
+            let error = job.maps().expect_err("refused").to_string();
+            assert!(words.iter().all(|word| error.contains(word)), "{error}");
+        }
+        // Offsets fit 8 bits.
+        for text in ["1.51", "(5-sqrt(3))/2", "(1+sqrt(5))/2", "1.8"] {
+            let job = SpaceJob {
+                alpha: alpha(text),
+                radius: MAX_SPACE_RADIUS,
+                ..good.clone()
+            };
+            let [_, map] = job.maps().expect(text);
+            assert!((5.6 + 5.0) / map.alpha().set_side_f64() + 1.0 < 127.0);
+        }
+        let many = SpaceJob {
+            alpha: alpha("1.999"),
+            radius: MAX_SPACE_RADIUS,
+            ..good
+        };
+        let error = many.maps().expect_err("refused").to_string();
+        assert!(
+            error.contains("45 intervals; allowed: at most 40"),
+            "{error}"
+        );
+    }
 }

@@ -1,58 +1,198 @@
-//! Judging a table on served windows, whose figures its history then has.
+//! Judging a table: its figures on a twin and on served windows, none of which it was made on, and their bounds.
 
 use strew_core::{
-    Error,
+    Error, Map, Twin,
     space::{SpaceSet, Table},
-    table::{Figures, Provenance},
+    table::Figures,
 };
 
-use super::measure::{LocalPower, SpaceDistances, SpacePower};
+use super::{
+    job::SpaceProfile,
+    measure::{LocalPower, Shell, SpaceDistances, SpacePoints, SpacePower, is_uniform_in_space},
+};
+use crate::{
+    Figure, Meter,
+    judge::{Bound, Complaint, complaints as missed, round},
+    twins::{fraction, next_to_alpha},
+};
 
 /// The side of a window, in mean spacings: some 314,000 points.
-const SIDE: f64 = 68.0;
-/// The places in which local power is measured.
-const PLACES: u32 = 60;
+pub const SIDE: f64 = 68.0;
+/// The number of places in which local power is measured.
+pub const PLACES: u32 = 60;
+/// The least corner of the windows, in mean spacings, chosen arbitrarily.
+const AT: [f64; 3] = [100.0, -50.0, 20.0];
+/// The seeds of the windows: the plain set and two others, chosen arbitrarily.
+const SEEDS: [u64; 3] = [0, 1, 2];
+/// The seed of the places of local power.
+const PLACES_SEED: u64 = 12;
 
-/// The figures of a set: power and distances in a window, and local power.
-///
-/// # Errors
-/// As [`SpaceSet::within`].
-pub fn figures(set: &SpaceSet) -> Result<Figures, Error> {
-    let at = [100.0, -50.0, 20.0];
-    let power = SpacePower::of_window(set, at, SIDE)?;
-    let distances = SpaceDistances::of_window(set, at, SIDE)?;
-    let local = LocalPower::of(set, PLACES)?;
-    let values = [
-        ("low_power", power.low),
-        ("peak_power", power.peak),
-        ("peak_frequency", power.peak_at),
-        ("anisotropy", power.anisotropy),
-        ("delta_min", distances.least),
-        ("mean_distance", distances.mean),
-        ("local_deviation", local.deviation),
-        ("local_largest", local.largest),
-    ];
-    Ok(Figures {
-        subject: format!("window seed {}", set.placement().seed.0),
-        seen: false,
-        points: power.points as u64,
-        values: values.map(|(name, value)| (name.into(), value)).into(),
-    })
+/// The figures and the spectrum of a set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpaceReport {
+    /// The named figures, rounded to four significant digits.
+    pub figures: Figures,
+    /// The power over shells of frequencies.
+    pub shells: Vec<Shell>,
 }
 
-/// The table with the figures of its plain set and of two seeded ones in its history.
-///
-/// # Errors
-/// As [`SpaceSet::within`].
-pub fn judged(table: &Table) -> Result<Table, Error> {
-    let figures = [0, 1, 2].map(|seed| figures(&SpaceSet::new(table.clone()).seed(seed)));
-    let provenance = Provenance {
-        figures: figures
-            .into_iter()
-            .collect::<Result<Vec<Figures>, Error>>()?,
-        ..table.provenance().clone()
+impl SpaceReport {
+    /// Measures points, and local power if there is any.
+    #[must_use]
+    pub fn of(subject: String, points: &SpacePoints, local: Option<LocalPower>) -> Self {
+        let power = SpacePower::of(points);
+        let distances = SpaceDistances::of(points);
+        let mut values = vec![
+            (Figure::LowPower.name(), power.low),
+            (Figure::PeakPower.name(), power.peak),
+            ("peak_frequency", power.peak_at),
+            ("anisotropy", power.anisotropy),
+            (Figure::DeltaMin.name(), distances.least),
+            (Figure::MeanDistance.name(), distances.mean),
+        ];
+        if let Some(local) = local {
+            values.extend([
+                (Figure::LocalDeviation.name(), local.deviation),
+                (Figure::LocalLargest.name(), local.largest),
+            ]);
+        }
+        let values = values.into_iter();
+        Self {
+            figures: Figures {
+                subject,
+                seen: false,
+                points: points.points().len() as u64,
+                values: values
+                    .map(|(name, value)| (name.into(), round(value)))
+                    .collect(),
+            },
+            shells: power.shells,
+        }
+    }
+
+    /// Measures a cube of a set and local power, from a corner on, in mean spacings.
+    ///
+    /// # Errors
+    /// As [`SpaceSet::within`].
+    pub fn of_window(
+        set: &SpaceSet,
+        at: [f64; 3],
+        side: f64,
+        places: u32,
+        places_seed: u64,
+    ) -> Result<Self, Error> {
+        let points = SpacePoints::of_window(set, at, side)?;
+        let local = LocalPower::of(set, at, places, places_seed)?;
+        let subject = format!("window seed {}", set.placement().seed.0);
+        Ok(Self::of(subject, &points, Some(local)))
+    }
+}
+
+/// The twins of a map that have enough points to be measured, nearest to α and smallest first, endless. A table is made on
+/// none.
+pub fn unseen_twins(map: &Map, least: u64) -> impl Iterator<Item = Twin> {
+    next_to_alpha(map).filter(move |twin| twin.t().pow(3) >= least && is_uniform_in_space(*twin))
+}
+
+/// The points that a table is judged on, which grow with its map.
+pub(super) struct Judge {
+    twin: Option<Twin>,
+    side: f64,
+    places: u32,
+}
+
+/// The side of windows for a map: that of the default map is [`SIDE`].
+fn side(map: &Map) -> f64 {
+    (map.intervals() as f64 * (SIDE / 21.0)).min(SIDE)
+}
+
+/// The number of points that tables of a map are judged on, about.
+pub(super) fn planned_points(map: &Map) -> u64 {
+    let side = side(map);
+    ((side * side * side) * (SEEDS.len() as f64 + 1.0)) as u64
+}
+
+impl Judge {
+    pub(super) fn of(table: &Table) -> Self {
+        let side = side(table.map());
+        let volume = side * side * side;
+        let [least, most] = [0.25, 1.2].map(|part| (part * volume) as u64);
+        let alpha = table.map().alpha().to_f64();
+        let far = |twin: &Twin| (fraction(twin) - alpha).abs();
+        let all = unseen_twins(table.map(), least).take_while(|twin| twin.t().pow(3) <= most);
+        Self {
+            // The pattern of a twin differs from that of α the more, the farther they are apart.
+            twin: all.min_by(|a, b| far(a).total_cmp(&far(b))),
+            side,
+            places: (table.map().intervals() as u32 * 3).min(PLACES),
+        }
+    }
+
+    /// The number of point sets.
+    pub(super) fn subjects(&self) -> u32 {
+        SEEDS.len() as u32 + u32::from(self.twin.is_some())
+    }
+
+    /// The figures of all point sets, or `None` if the watch stops the work.
+    pub(super) fn figures(
+        &self,
+        table: &Table,
+        meter: &mut Meter<'_>,
+    ) -> Result<Option<Vec<Figures>>, Error> {
+        let mut all = Vec::new();
+        if let Some(twin) = self.twin {
+            if meter.stop() {
+                return Ok(None);
+            }
+            if let Some(points) = SpacePoints::of_twin(table, twin) {
+                all.push(SpaceReport::of(format!("twin {twin}"), &points, None).figures);
+            }
+            meter.advance(None);
+        }
+        for seed in SEEDS {
+            if meter.stop() {
+                return Ok(None);
+            }
+            let set = SpaceSet::new(table.clone()).seed(seed);
+            let window = SpaceReport::of_window(&set, AT, self.side, self.places, PLACES_SEED)?;
+            all.push(window.figures);
+            meter.advance(None);
+        }
+        Ok(Some(all))
+    }
+}
+
+/// The bounds that the figures of a table miss.
+pub(super) fn complaints(profile: SpaceProfile, figures: &[Figures]) -> Vec<Complaint> {
+    let [low, seeded_low, least, seeded_least] = match profile {
+        SpaceProfile::Blue => [6e-5, 8e-5, 0.66, 0.58],
+        SpaceProfile::Spaced => [5e-3, 5e-3, 0.80, 0.72],
     };
-    let vectors = table.vectors().to_vec();
-    let (map, ranks) = (table.map().clone(), table.ranks().cloned());
-    Table::new(map, table.profile(), vectors, provenance, ranks)
+    let plain = vec![
+        Bound::at_most(Figure::LowPower, low),
+        Bound::at_most(Figure::PeakPower, 2.5),
+        Bound::at_least(Figure::DeltaMin, least),
+        Bound::at_least(Figure::MeanDistance, 0.83),
+    ];
+    let seeded = vec![
+        Bound::at_most(Figure::LowPower, seeded_low),
+        Bound::at_most(Figure::PeakPower, 2.3),
+        Bound::at_least(Figure::DeltaMin, seeded_least),
+    ];
+    let local = [
+        Bound::at_most(Figure::LocalDeviation, 0.27),
+        Bound::at_most(Figure::LocalLargest, 5.0),
+    ];
+    let of = |figures: &Figures| {
+        let is_window = figures.subject.starts_with("window");
+        let is_seeded = is_window && figures.subject != "window seed 0";
+        let mut bounds = if is_seeded {
+            seeded.clone()
+        } else {
+            plain.clone()
+        };
+        bounds.extend(local.iter().filter(|_| is_window));
+        missed(&bounds, std::slice::from_ref(figures))
+    };
+    figures.iter().flat_map(of).collect()
 }

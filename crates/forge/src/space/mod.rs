@@ -1,21 +1,33 @@
 //! Tables of points in space: making and judging them.
 //!
-//! A table is made on the exact frequencies of pairs of its blocks in the unbounded set (`meetings`, `pairs`), so no
-//! twin is favored, and every periodic twin is one that the table was not made on.
+//! A [`SpaceJob`] is worked off in phases (`job`): descents of a Gaussian energy (`descent`, `energy`), first on a coarse
+//! map, and pushes (`push`), each between two steps no more than a `state`, which checkpoints keep. The table is made on
+//! the exact frequencies of pairs of its blocks in the unbounded set (`meetings`, `pairs`), so no twin is favored, and
+//! every periodic twin is one that it was not made on. `make` runs the phases, adds the `order` in which blocks leave and
+//! has the table judged; `measure` has the figures.
 
 mod descent;
 mod energy;
+mod estimate;
+mod file;
 mod job;
 mod judge;
+mod make;
 mod measure;
 mod meetings;
 mod order;
 mod pairs;
 mod push;
-mod transform;
+mod state;
 
-pub use job::{SpaceJob, SpaceProfile, forge};
-pub use judge::{figures, judged};
-pub use measure::{LocalPower, SpaceDistances, SpacePower};
+pub use estimate::SpaceEstimate;
+pub use file::{read_table, table_file_name, write_table};
+pub use job::{MAX_SPACE_RADIUS, SpaceJob, SpaceProfile};
+pub use judge::{PLACES, SIDE, SpaceReport, unseen_twins};
+pub use make::{SpaceOutcome, forge, resume};
+pub use measure::{
+    LocalPower, Shell, SpaceDistances, SpacePoints, SpacePower, SpaceShared, is_uniform_in_space,
+};
 pub use order::with_ranks;
 pub use pairs::LONGEST;
+pub(crate) use state::SpaceState;

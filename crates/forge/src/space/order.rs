@@ -45,7 +45,7 @@ fn leave(blocks: &Blocks, pairs: &Pairs, moves: &[[f32; 3]]) -> Vec<usize> {
     let mut order = Vec::with_capacity(number);
     // The scale changes in stages; at each the surroundings are summed up anew.
     while order.len() < number {
-        let spacing = left.max(FEW).cbrt().recip();
+        let spacing = libm::cbrt(left.max(FEW)).recip();
         let sigma = SCALE * spacing;
         let scale = -0.5 / (sigma * sigma);
         let weight = |block: usize, pair: usize| {

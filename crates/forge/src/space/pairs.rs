@@ -1,6 +1,6 @@
 //! The pairs of blocks whose points are near each other, with their exact frequencies.
 
-use strew_core::Map;
+use strew_core::{Alpha, Map};
 
 use super::meetings::Meetings;
 
@@ -17,7 +17,7 @@ pub(super) struct Pairs {
     pub(super) shares: Vec<f32>,
 }
 
-/// The greatest displacement, in mean spacings.
+/// The greatest displacement, in mean spacings, as far as the components of a table reach.
 pub const LONGEST: f64 = 2.5;
 
 /// The geometry of a map's blocks.
@@ -29,6 +29,15 @@ pub(super) struct Blocks {
     meetings: Meetings,
     /// Mean spacings per grid unit.
     pub(super) step: f64,
+    /// The greatest displacement, in mean spacings.
+    pub(super) longest: f64,
+}
+
+/// The greatest displacement at an α, in mean spacings: [`LONGEST`], or what a component of a table reaches.
+pub(super) fn longest(alpha: Alpha) -> f64 {
+    /// In grid units.
+    const COMPONENT: f64 = 7.99;
+    LONGEST.min(COMPONENT * alpha.set_side_f64())
 }
 
 impl Blocks {
@@ -41,12 +50,14 @@ impl Blocks {
         };
         let share = |b: usize| length(b % n) * length(b / n % n) * length(b / (n * n));
         let step = map.alpha().set_side_f64();
-        let far = ((reach + 2.0 * LONGEST) / step) as i64 + 1;
+        let longest = longest(map.alpha());
+        let far = ((reach + 2.0 * longest) / step) as i64 + 1;
         Self {
             intervals: n,
             shares: (0..n.pow(3)).map(share).collect(),
             meetings: Meetings::new(map, far),
             step,
+            longest,
         }
     }
 

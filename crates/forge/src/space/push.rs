@@ -1,65 +1,49 @@
 //! Push and pull: points that are too near push each other apart, until a target distance is kept everywhere.
 
-use super::{
-    descent::single,
-    pairs::{Blocks, LONGEST},
-};
-use crate::Meter;
+use super::{descent::single, pairs::Blocks, state::SpaceState};
 
 /// The target distances at the start and at the end, in mean spacings: 0.76 and 0.86 of the densest packing's.
 const TARGETS: [f64; 2] = [0.853, 0.965];
 
-/// Moves blocks apart. Returns false if the watch stopped the work.
-pub(super) fn push(
-    blocks: &Blocks,
-    moves: &mut [[f64; 3]],
-    steps: u32,
-    meter: &mut Meter<'_>,
-) -> bool {
-    let mut best = (0.0, moves.to_vec());
-    for step in 0..steps {
-        if meter.stop() {
-            return false;
-        }
-        let part = f64::from(step) / f64::from(steps.max(2) - 1);
-        let target = TARGETS[0] + (TARGETS[1] - TARGETS[0]) * part;
-        let places = single(moves);
-        let mut sums = vec![([0.0f64; 3], 0.0f64); moves.len()];
-        let mut least = f64::INFINITY;
-        blocks.each_pair(&places, target, |from, to, offset, _| {
-            let d = [0, 1, 2].map(|axis| {
-                f64::from(offset[axis]) * blocks.step + f64::from(places[to][axis])
-                    - f64::from(places[from][axis])
-            });
-            let length = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-            least = least.min(length);
-            if length > 1e-9 {
-                let lack = target - length;
-                let (sum, weight) = &mut sums[from];
-                // The nearest pairs count most.
-                let own = lack * lack;
-                for axis in 0..3 {
-                    sum[axis] -= d[axis] / length * lack * own;
-                }
-                *weight += own;
-            }
+/// Moves blocks apart, one step of `steps`. Returns the least distance before it, in mean spacings.
+pub(super) fn push(blocks: &Blocks, state: &mut SpaceState, steps: u32) -> f64 {
+    let part = f64::from(state.step) / f64::from(steps.max(2) - 1);
+    let target = TARGETS[0] + (TARGETS[1] - TARGETS[0]) * part;
+    let places = single(&state.moves);
+    let mut sums = vec![([0.0f64; 3], 0.0f64); places.len()];
+    let mut least = f64::INFINITY;
+    blocks.each_pair(&places, target, |from, to, offset, _| {
+        let d = [0, 1, 2].map(|axis| {
+            f64::from(offset[axis]) * blocks.step + f64::from(places[to][axis])
+                - f64::from(places[from][axis])
         });
-        if least > best.0 {
-            best = (least, moves.to_vec());
+        let length = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+        least = least.min(length);
+        if length > 1e-9 {
+            let lack = target - length;
+            let (sum, weight) = &mut sums[from];
+            // The nearest pairs count most.
+            let own = lack * lack;
+            for axis in 0..3 {
+                sum[axis] -= d[axis] / length * lack * own;
+            }
+            *weight += own;
         }
-        for (v, (sum, weight)) in moves.iter_mut().zip(&sums) {
-            if *weight > 0.0 {
-                for axis in 0..3 {
-                    v[axis] += 0.55 * sum[axis] / weight;
-                }
-                let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-                if length > LONGEST {
-                    *v = v.map(|v| v * (LONGEST / length));
-                }
+    });
+    if least > state.least {
+        (state.least, state.best) = (least, state.moves.clone());
+    }
+    for (v, (sum, weight)) in state.moves.iter_mut().zip(&sums) {
+        if *weight > 0.0 {
+            for axis in 0..3 {
+                v[axis] += 0.55 * sum[axis] / weight;
+            }
+            let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+            if length > blocks.longest {
+                *v = v.map(|v| v * (blocks.longest / length));
             }
         }
-        meter.advance(Some(least));
     }
-    moves.copy_from_slice(&best.1);
-    true
+    state.step += 1;
+    least
 }

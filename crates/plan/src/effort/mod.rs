@@ -29,7 +29,7 @@ pub use point::point;
 use strew_catalog::Ready;
 use strew_error::Error;
 use strew_query::{Amount, Query, Set};
-pub(super) use volume::CLEARED;
+pub(super) use volume::cleared;
 
 /// The approximate number of lattice units in a mean spacing.
 const UNITS: f64 = 3.0;
@@ -183,9 +183,10 @@ pub fn planning(query: &Query, tables: &[Ready], limit: u64) -> Result<f64, Erro
     Ok(weighted)
 }
 
-/// The rows that counting the points of a set in a volume takes.
-pub(super) fn rows_of_volume(set: &Set, points: &SpaceSet, volume: &Volume) -> f64 {
-    volume::counting_set(set, points, volume) / ROW
+/// The rows that counting the points of a set in a volume takes, where testing one against others takes `test`
+/// nanoseconds.
+pub(super) fn rows_of_volume(points: &SpaceSet, volume: &Volume, test: f64) -> f64 {
+    volume::counting_set(points, volume, test) / ROW
 }
 
 /// The price of counting a period, in rows: 0 if it has all points.

@@ -1173,12 +1173,15 @@ pub struct ListProfilesRequest {}
 /// The loaded tables.
 #[derive(Clone, PartialEq, ::prost::Message)]
 pub struct ListProfilesResponse {
-    /// Sorted by profile, then alpha.
+    /// The tables of the plane, sorted by profile, then alpha.
     #[prost(message, repeated, tag = "1")]
     pub profiles: ::prost::alloc::vec::Vec<Profile>,
     /// The version of the algorithm that answers.
     #[prost(uint32, tag = "2")]
     pub algorithm: u32,
+    /// The tables of points in space, sorted alike.
+    #[prost(message, repeated, tag = "3")]
+    pub in_space: ::prost::alloc::vec::Vec<Profile>,
 }
 /// A displacement table.
 #[derive(Clone, PartialEq, ::prost::Message)]
@@ -1195,7 +1198,7 @@ pub struct Profile {
     /// The intervals per axis, n.
     #[prost(uint32, tag = "4")]
     pub intervals: u32,
-    /// The blocks, n squared: how many vectors the table has.
+    /// The blocks, n squared, of a table in space n cubed: how many vectors the table has.
     #[prost(uint32, tag = "5")]
     pub blocks: u32,
     /// The size of the table file.

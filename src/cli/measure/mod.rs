@@ -1,5 +1,8 @@
 //! `strew measure`: the figures and curves of a table, of a region, or of a file of points.
 
+mod space;
+mod subjects;
+
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow, bail};
@@ -15,6 +18,7 @@ use strew_forge::{
 use strew_plan::library::measured::document;
 use strew_query::{Draft, parameters::BBOX};
 
+use self::subjects::Subjects;
 use super::{
     Failure, config,
     flags::{Flags, Measured},
@@ -33,13 +37,8 @@ pub(super) struct Args {
     /// A table file: measured on periodic twins and on windows of the unbounded pattern.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["points", "bbox"])]
     table: Option<PathBuf>,
-    /// With --table: a twin p/q; may be repeated [default: the first unseen ones with 70,225 points
-    /// or more].
-    #[arg(long, value_name = "P/Q", requires = "table")]
-    twin: Vec<String>,
-    /// With --table: the approximate number of points of a window.
-    #[arg(long, value_name = "N", requires = "table", default_value_t = 80_000)]
-    window_points: u64,
+    #[command(flatten)]
+    subjects: Subjects,
     /// A file of points: csv with the columns x and y, or f64 (little-endian pairs) by its ending;
     /// needs --bbox, the square that the points fill.
     #[arg(long, value_name = "FILE", requires = "bbox")]
@@ -53,9 +52,9 @@ pub(super) struct Args {
     #[arg(long, value_name = "N", default_value_t = 0, conflicts_with_all = ["table", "points"],
         value_parser = clap::value_parser!(u64).range(..=16))]
     seeds: u64,
-    /// The highest frequency to measure, in units of the square root of the density.
-    #[arg(long, default_value_t = 4.0)]
-    nu_max: f64,
+    /// The highest frequency to measure, in units of the square root of the density [default: 4].
+    #[arg(long, value_name = "NU")]
+    nu_max: Option<f64>,
     /// The width of the rings of radial power, in the same units; 0 is one mode [default: 1/64].
     #[arg(long, value_name = "WIDTH")]
     ring_width: Option<f64>,
@@ -77,12 +76,33 @@ const MAX_POINTS: u128 = 4_000_000;
 
 /// Measures.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    must_be_within("--nu-max", args.nu_max, [0.5, 8.0])?;
+    must_be_within("--nu-max", args.resolution().nu_max, [0.5, 8.0])?;
     must_be_within("--ring-width", args.resolution().ring_width, [0.0, 0.5])?;
     let nothing = args.table.is_none() && args.points.is_none();
     if nothing && !args.flags.has(&BBOX) {
         let problem = "nothing to measure: --table FILE, --points FILE or --bbox BOX is missing";
         refuse!(problem);
+    }
+    if let Some(file) = &args.table
+        && let Some(table) = in_space(file)?
+    {
+        for (flag, is_given) in [
+            ("--picture", args.picture.is_some()),
+            ("--nu-max", args.nu_max.is_some()),
+            ("--ring-width", args.ring_width.is_some()),
+        ] {
+            if is_given {
+                let file = file.display();
+                refuse!("{flag} is of points of the plane, and {file} has points in space");
+            }
+        }
+        let mut output = Output::open(args.output.as_deref())?;
+        let text = space::document(&args.subjects, &table)?;
+        output.write(format!("{text:#}\n").as_bytes())?;
+        return Ok(output.finish()?);
+    }
+    if args.subjects.window_at.is_some() {
+        refuse!("--window-at: only windows of tables of points in space have a place");
     }
     let mut output = Output::open(args.output.as_deref())?;
     let drawing = args.picture.as_deref();
@@ -120,6 +140,11 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     Ok(output.finish()?)
 }
 
+/// The table of a file, if its points are in space.
+fn in_space(file: &Path) -> Result<Option<strew_core::space::Table>, Failure> {
+    Ok(strew_forge::space::read_table(file).map_err(anyhow::Error::from)?)
+}
+
 /// A set to be measured.
 enum Subject {
     Torus(String, bool, Torus),
@@ -149,8 +174,12 @@ fn of_table(args: &Args, file: &Path) -> Result<(Vec<Report>, Option<Target>), F
         let seen = table.provenance().twins.contains(&twin);
         subjects.push(Subject::Torus(format!("twin {twin}"), seen, set));
     }
-    for seed in [1, 2] {
-        let set = window_set(&table, args.window_points, seed);
+    let seeds = match args.subjects.window_seed.as_slice() {
+        [] => &[1, 2],
+        seeds => seeds,
+    };
+    for &seed in seeds {
+        let set = window_set(&table, args.subjects.window_points.unwrap_or(80_000), seed);
         subjects.push(Subject::Window(format!("window seed {seed}"), set));
     }
     let reports = subjects
@@ -164,7 +193,7 @@ impl Args {
     fn resolution(&self) -> Resolution {
         let usual = Resolution::default();
         Resolution {
-            nu_max: self.nu_max,
+            nu_max: self.nu_max.unwrap_or(usual.nu_max),
             ring_width: self.ring_width.unwrap_or(usual.ring_width),
         }
     }
@@ -176,7 +205,7 @@ impl Args {
     }
 
     fn twins(&self, table: &Table) -> anyhow::Result<Vec<Twin>> {
-        if self.twin.is_empty() {
+        if self.subjects.twin.is_empty() {
             let seen = &table.provenance().twins;
             let large =
                 |twin: &Twin| twin.points() >= 70_225 && twin.is_uniform() && !seen.contains(twin);
@@ -195,7 +224,7 @@ impl Args {
                 None => bail!("--twin is `{text}`; allowed: coprime integers p/q with q < p < 2q"),
             }
         };
-        self.twin.iter().map(read).collect()
+        self.subjects.twin.iter().map(read).collect()
     }
 }
 

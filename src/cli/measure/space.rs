@@ -1,0 +1,155 @@
+//! `strew measure` of a table of points in space: twins, served windows plain and seeded, thinned sets, pairs of seeds.
+
+use anyhow::anyhow;
+use serde_json::{Map, Value, json};
+use strew_core::{
+    Twin,
+    space::{SpaceSet, Table},
+};
+use strew_forge::space::{
+    PLACES, SIDE, SpacePoints, SpacePower, SpaceReport, SpaceShared, is_uniform_in_space,
+    unseen_twins,
+};
+
+use super::subjects::{Corner, Subjects};
+use crate::cli::{Failure, refuse};
+
+/// The least and the greatest number of points of a set. The spectrum of the largest takes 400 MB.
+const POINTS: [u64; 2] = [1_000, 1_000_000];
+/// The least number of points of the twins that are measured unless some are named, and their number.
+const TWINS: (u64, usize) = (70_225, 2);
+/// The seeds of the windows unless some are named: the plain set and two others.
+const SEEDS: [u64; 3] = [0, 1, 2];
+/// The shares that are kept, as fractions of 1.
+const KEPT: [u32; 6] = [2, 4, 8, 16, 32, 64];
+/// The greatest side of windows of thinned sets, in spacings of what is left, and of windows that are compared.
+const THINNED_SIDE: f64 = 30.0;
+const SHARED_SIDE: f64 = 40.0;
+
+/// The figures of a table as JSON.
+pub(super) fn document(args: &Subjects, table: &Table) -> Result<Value, Failure> {
+    let side = match args.window_points {
+        None => SIDE,
+        Some(points) if (POINTS[0]..=POINTS[1]).contains(&points) => (points as f64).cbrt(),
+        Some(points) => refuse!(
+            "--window-points {points}: allowed in space: an integer from {} to {}",
+            POINTS[0],
+            POINTS[1]
+        ),
+    };
+    let at = args.window_at.map_or([0.0; 3], |Corner(at)| at);
+    let seeds = match args.window_seed.as_slice() {
+        [] => SEEDS.to_vec(),
+        seeds => seeds.to_vec(),
+    };
+    let set = |seed: u64| SpaceSet::new(table.clone()).seed(seed);
+    let mut subjects = Vec::new();
+    for (twin, points) in twins(args, table)? {
+        subjects.push(shown(&SpaceReport::of(
+            format!("twin {twin}"),
+            &points,
+            None,
+        )));
+    }
+    for &seed in &seeds {
+        let report = SpaceReport::of_window(&set(seed), at, side, PLACES, args.places_seed);
+        subjects.push(shown(&report.map_err(Failure::usage)?));
+    }
+    let mut thinned = Vec::new();
+    for &seed in seeds.iter().filter(|seed| **seed != 0) {
+        for part in KEPT {
+            let kept = set(seed)
+                .keep(1.0 / f64::from(part))
+                .map_err(Failure::usage)?;
+            let side = side.min(THINNED_SIDE) * f64::from(part).cbrt();
+            let points = SpacePoints::of_window(&kept, at, side).map_err(Failure::usage)?;
+            let low = SpacePower::of(&points).low;
+            let share = 1.0 / f64::from(part);
+            thinned.push(json!([seed, share, points.points().len(), low]));
+        }
+    }
+    let windows: Result<Vec<SpacePoints>, strew_core::Error> = { seeds.iter() }
+        .map(|&seed| SpacePoints::of_window(&set(seed), at, side.min(SHARED_SIDE)))
+        .collect();
+    let windows = windows.map_err(Failure::usage)?;
+    let mut pairs = Vec::new();
+    for (i, (a, first)) in seeds.iter().zip(&windows).enumerate() {
+        for (b, second) in seeds.iter().zip(&windows).skip(i + 1) {
+            let SpaceShared {
+                power_correlation,
+                power_by_chance,
+                phase_peak,
+                phase_by_chance,
+            } = SpaceShared::of(first, second);
+            let values = [
+                power_correlation,
+                power_by_chance,
+                phase_peak,
+                phase_by_chance,
+            ];
+            pairs.push(json!([a, b, values[0], values[1], values[2], values[3]]));
+        }
+    }
+    let compared = [
+        "a",
+        "b",
+        "power_correlation",
+        "power_by_chance",
+        "phase_peak",
+        "phase_by_chance",
+    ];
+    Ok(json!({
+        "subjects": subjects,
+        "thinned": { "columns": ["seed", "share", "points", "low_power"], "sets": thinned },
+        "shared": { "columns": compared, "pairs": pairs },
+    }))
+}
+
+/// The twins to measure, with their points.
+fn twins(args: &Subjects, table: &Table) -> Result<Vec<(Twin, SpacePoints)>, Failure> {
+    let points = |twin: Twin| Some((twin, SpacePoints::of_twin(table, twin)?));
+    if args.twin.is_empty() {
+        let (least, number) = TWINS;
+        let all = unseen_twins(table.map(), least).take_while(|twin| twin.t().pow(3) <= POINTS[1]);
+        return Ok(all.filter_map(points).take(number).collect());
+    }
+    let read = |text: &String| {
+        let twin = text
+            .split_once('/')
+            .and_then(|(p, q)| Twin::new(p.parse().ok()?, q.parse().ok()?));
+        let Some(twin) = twin else {
+            refuse!("--twin is `{text}`; allowed: coprime integers p/q with q < p < 2q");
+        };
+        if !is_uniform_in_space(twin) {
+            refuse!(
+                "--twin {text}: its points are on a sublattice; allowed in space: p - q odd and q even"
+            );
+        }
+        let count = u128::from(twin.t()).pow(3);
+        if count > u128::from(POINTS[1]) {
+            let most = POINTS[1];
+            refuse!("--twin {text} has {count} points; at most {most} are measured in space");
+        }
+        let other = || anyhow!("--twin {text} has another map than the table's alpha");
+        points(twin).ok_or_else(|| Failure::Usage(other()))
+    };
+    args.twin.iter().map(read).collect()
+}
+
+/// A report as JSON, as of sets of the plane.
+fn shown(report: &SpaceReport) -> Value {
+    let figures = &report.figures;
+    let values: Map<String, Value> = { figures.values.iter() }
+        .map(|(name, value)| (name.clone(), json!(value)))
+        .collect();
+    let shells: Vec<Value> = { report.shells.iter() }
+        .map(|shell| json!([shell.frequency, shell.power, shell.anisotropy()]))
+        .collect();
+    json!({
+        "subject": figures.subject,
+        "made_on_it": figures.seen,
+        "points": figures.points,
+        "figures": values,
+        "radial": { "columns": ["nu", "power", "anisotropy_db"], "rings": shells },
+    })
+}
