@@ -28,8 +28,11 @@ try {
 }
 
 mkdirSync(here("lib/tables"), { recursive: true });
-for (const folder of ["../../crates/core/tables/", "../../crates/catalog/tables/", "../../crates/catalog/tables/mix/"]) {
+const shipped = ["", "mix/", "space/"].map((folder) => `../../crates/catalog/tables/${folder}`);
+for (const folder of ["../../crates/core/tables/", ...shipped]) {
     for (const file of readdirSync(here(folder)).filter((name) => name.endsWith(".strew"))) {
-        copyFileSync(here(folder + file), here(`lib/tables/${file}`));
+        // Tables in space are named as such.
+        const name = folder.endsWith("/space/") ? `space-${file}` : file;
+        copyFileSync(here(folder + file), here(`lib/tables/${name}`));
     }
 }

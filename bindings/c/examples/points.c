@@ -1,4 +1,4 @@
-/* Points of a box, of a chunk and near a place: cc points.c $(pkg-config --cflags --libs strew) */
+/* Points of a box, of a chunk, near a place and in space: cc points.c $(pkg-config --cflags --libs strew) */
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -60,11 +60,26 @@ static void chunk(const strew_library *library) {
     strew_plan_free(plan);
 }
 
+/* Points in space: a ball, as x, y and z by turns. */
+static void ball(const strew_library *library) {
+    strew_plan *plan = NULL;
+    check(strew_space_plan_query(library, "ball=5,5,5,3&spacing=1&seed=7", &plan));
+    uint64_t count = 0;
+    check(strew_plan_count(plan, &count));
+    double *xyz = malloc(3 * count * sizeof *xyz);
+    if (!xyz) abort();
+    check(strew_space_fill_xyz(plan, xyz, count));
+    printf("%" PRIu64 " points in the ball, the first at %.3f, %.3f, %.3f\n", count, xyz[0], xyz[1], xyz[2]);
+    free(xyz);
+    strew_plan_free(plan);
+}
+
 int main(void) {
     strew_library *library = NULL;
     check(strew_library_open(NULL, &library));
     box(library);
     chunk(library);
+    ball(library);
     strew_point nearest[3];
     size_t found = 0;
     check(strew_nearest(library, "at=5,5&k=3&spacing=1&seed=7", nearest, 3, &found, NULL));

@@ -26,6 +26,10 @@ int main() {
     strew_point again = library.point("spacing=1&seed=7", nearest.id[0], nearest.id[1]);
     std::printf("found again by its id: %s\n", nearest.x == again.x ? "yes" : "no");
 
+    std::vector<double> ball = library.space("ball=5,5,5,3&spacing=1&seed=7").xyz();
+    strew_space_point center = library.space_nearest("at=5,5,5&spacing=1&seed=7").at(0);
+    std::printf("%zu points in a ball, the nearest to its center %.3f away\n", ball.size() / 3, center.distance);
+
     try {
         library.plan("bbox=0,0,10,10&spacing=-1");
     } catch (const strew::Error &error) {

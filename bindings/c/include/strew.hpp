@@ -52,44 +52,15 @@ inline std::string text(strew_bytes *handle) {
 } // namespace detail
 
 /* A planned query: its points are counted, and made when they are wanted. */
-class Plan {
+class AnyPlan {
 public:
-    explicit Plan(strew_plan *handle) : handle_(handle) {}
+    explicit AnyPlan(strew_plan *handle) : handle_(handle) {}
 
     /* The exact number of points. */
     std::uint64_t count() const {
         std::uint64_t count = 0;
         check(strew_plan_count(get(), &count));
         return count;
-    }
-
-    /* What the coordinates of xy() are relative to. */
-    std::array<double, 2> origin() const {
-        std::array<double, 2> origin{};
-        check(strew_plan_origin(get(), origin.data()));
-        return origin;
-    }
-
-    /* x and y of each point, by turns. */
-    std::vector<double> xy() const {
-        std::vector<double> xy(2 * count());
-        check(strew_plan_fill_xy(get(), xy.data(), xy.size() / 2));
-        return xy;
-    }
-
-    /* The same as float, relative to the lower corner of the region, which is written to `origin`. */
-    std::vector<float> xy_f32(std::array<double, 2> *origin = nullptr) const {
-        std::vector<float> xy(2 * count());
-        double *out = origin ? origin->data() : nullptr;
-        check(strew_plan_fill_xy_f32(get(), xy.data(), xy.size() / 2, out));
-        return xy;
-    }
-
-    /* The two integers of each id, by turns. */
-    std::vector<std::int64_t> ids() const {
-        std::vector<std::int64_t> ids(2 * count());
-        check(strew_plan_fill_ids(get(), ids.data(), ids.size() / 2));
-        return ids;
     }
 
     /* A column of numbers, such as angle. */
@@ -125,6 +96,76 @@ public:
 
 private:
     std::unique_ptr<strew_plan, detail::Free> handle_;
+};
+
+/* A planned query of the plane. */
+class Plan : public AnyPlan {
+public:
+    using AnyPlan::AnyPlan;
+
+    /* What the coordinates of xy() are relative to. */
+    std::array<double, 2> origin() const {
+        std::array<double, 2> origin{};
+        check(strew_plan_origin(get(), origin.data()));
+        return origin;
+    }
+
+    /* x and y of each point, by turns. */
+    std::vector<double> xy() const {
+        std::vector<double> xy(2 * count());
+        check(strew_plan_fill_xy(get(), xy.data(), xy.size() / 2));
+        return xy;
+    }
+
+    /* The same as float, relative to the lower corner of the region, which is written to `origin`. */
+    std::vector<float> xy_f32(std::array<double, 2> *origin = nullptr) const {
+        std::vector<float> xy(2 * count());
+        double *out = origin ? origin->data() : nullptr;
+        check(strew_plan_fill_xy_f32(get(), xy.data(), xy.size() / 2, out));
+        return xy;
+    }
+
+    /* The two integers of each id, by turns. */
+    std::vector<std::int64_t> ids() const {
+        std::vector<std::int64_t> ids(2 * count());
+        check(strew_plan_fill_ids(get(), ids.data(), ids.size() / 2));
+        return ids;
+    }
+};
+
+/* A planned query in space. */
+class SpacePlan : public AnyPlan {
+public:
+    using AnyPlan::AnyPlan;
+
+    /* What the coordinates of xyz() are relative to. */
+    std::array<double, 3> origin() const {
+        std::array<double, 3> origin{};
+        check(strew_space_origin(get(), origin.data()));
+        return origin;
+    }
+
+    /* x, y and z of each point, by turns. */
+    std::vector<double> xyz() const {
+        std::vector<double> xyz(3 * count());
+        check(strew_space_fill_xyz(get(), xyz.data(), xyz.size() / 3));
+        return xyz;
+    }
+
+    /* The same as float, relative to the lower corner of the region, which is written to `origin`. */
+    std::vector<float> xyz_f32(std::array<double, 3> *origin = nullptr) const {
+        std::vector<float> xyz(3 * count());
+        double *out = origin ? origin->data() : nullptr;
+        check(strew_space_fill_xyz_f32(get(), xyz.data(), xyz.size() / 3, out));
+        return xyz;
+    }
+
+    /* The three integers of each id, by turns. */
+    std::vector<std::int64_t> ids() const {
+        std::vector<std::int64_t> ids(3 * count());
+        check(strew_space_fill_ids(get(), ids.data(), ids.size() / 3));
+        return ids;
+    }
 };
 
 /* Tables, with which queries are answered. Threads may share one. */
@@ -164,6 +205,36 @@ public:
     strew_point point(const std::string &set, std::int64_t x, std::int64_t y) const {
         strew_point found{};
         check(strew_point_by_id(get(), set.c_str(), x, y, &found, nullptr));
+        return found;
+    }
+
+    /* Plans a query in space: JSON, or text such as ball=5,5,5,3&spacing=1&seed=7. */
+    SpacePlan space(const std::string &query) const {
+        strew_plan *plan = nullptr;
+        check(strew_space_plan_query(get(), query.c_str(), &plan));
+        return SpacePlan(plan);
+    }
+
+    /* Plans a chunk of space of a query without a region. */
+    SpacePlan space_chunk(const std::string &query, double size, const std::array<std::int64_t, 3> &at) const {
+        strew_plan *plan = nullptr;
+        check(strew_space_plan_chunk(get(), query.c_str(), size, at[0], at[1], at[2], &plan));
+        return SpacePlan(plan);
+    }
+
+    /* The points in space nearest to a place: at=5,5,5&k=3&spacing=1. At most `most` are returned. */
+    std::vector<strew_space_point> space_nearest(const std::string &query, std::size_t most = 1024) const {
+        std::vector<strew_space_point> found(most);
+        std::size_t count = 0;
+        check(strew_space_nearest(get(), query.c_str(), found.data(), most, &count, nullptr));
+        found.resize(count < most ? count : most);
+        return found;
+    }
+
+    /* The point in space of an id, in a set such as spacing=1&seed=7. */
+    strew_space_point space_point(const std::string &set, const std::array<std::int64_t, 3> &id) const {
+        strew_space_point found{};
+        check(strew_space_point_by_id(get(), set.c_str(), id[0], id[1], id[2], &found, nullptr));
         return found;
     }
 

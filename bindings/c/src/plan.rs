@@ -16,6 +16,9 @@ use crate::{
     memory::{borrowed, place, room, text},
 };
 
+/// The number of coordinates in the plane.
+const AXES: usize = 2;
+
 /// Plans a query and counts its points. Free the plan with `strew_plan_free`.
 ///
 /// `query` is the JSON body of `POST /v1/points:query`, or the query string of `GET /v1/points`:
@@ -30,7 +33,7 @@ pub unsafe extern "C" fn strew_plan_query(
     plan: *mut *mut strew_plan,
 ) -> Code {
     // SAFETY: as the caller promises.
-    guarded(|| unsafe { planned(library, query, plan, |draft| draft) })
+    guarded(|| unsafe { planned(library, query, plan, Library::read) })
 }
 
 /// Plans the points of a chunk, the square of the world grid with this size, column and row. Coordinates are
@@ -49,30 +52,30 @@ pub unsafe extern "C" fn strew_plan_chunk(
     row: i64,
     plan: *mut *mut strew_plan,
 ) -> Code {
-    let within = |draft: Draft| {
-        draft.within(Ok(RegionDraft {
+    let read = |text: &str| {
+        Ok(Library::read(text)?.within(Ok(RegionDraft {
             path: "chunk".into(),
             shape: ShapeDraft::Chunk(size, [column, row]),
-        }))
+        })))
     };
     // SAFETY: as the caller promises.
-    guarded(|| unsafe { planned(library, query, plan, within) })
+    guarded(|| unsafe { planned(library, query, plan, read) })
 }
 
 /// # Safety
 /// As [`strew_plan_query`].
-unsafe fn planned(
+pub unsafe fn planned(
     library: *const strew_library,
     query: *const c_char,
     plan: *mut *mut strew_plan,
-    within: impl FnOnce(Draft) -> Draft,
+    read: impl FnOnce(&str) -> Result<Draft, strew_error::Error>,
 ) -> Result<(), Failure> {
     // SAFETY: as the caller promises.
     let (library, query, out) = unsafe {
         let library = borrowed(library, "library")?;
         (library, text(query, "query")?, place(plan, "plan")?)
     };
-    let (planned, _) = library.0.plan_draft(&within(Library::read(query)?))?;
+    let (planned, _) = library.0.plan_draft(&read(query)?)?;
     out.put(Box::into_raw(Box::new(strew_plan {
         library: library.0.clone(),
         planned,
@@ -107,9 +110,8 @@ pub unsafe extern "C" fn strew_plan_count(plan: *const strew_plan, count: *mut u
 pub unsafe extern "C" fn strew_plan_origin(plan: *const strew_plan, origin: *mut f64) -> Code {
     guarded(|| {
         // SAFETY: as the caller promises.
-        let (plan, out) = unsafe { (borrowed(plan, "plan")?, room(origin, 2, "origin")?) };
-        out.copy_from_slice(&plan.planned.query.region.corner.unwrap_or_default());
-        Ok(())
+        let (plan, out) = unsafe { (borrowed(plan, "plan")?, room(origin, AXES, "origin")?) };
+        plan.write_origin(out)
     })
 }
 
@@ -127,11 +129,11 @@ pub unsafe extern "C" fn strew_plan_fill_xy(
     capacity: usize,
 ) -> Code {
     guarded(|| {
-        // SAFETY: as the caller promises; two numbers are as long as a pair.
+        // SAFETY: as the caller promises.
         let (plan, at) = unsafe {
             let plan = borrowed(plan, "plan")?;
-            let count = plan.count_for(capacity)?;
-            (plan, room(xy.cast::<[f64; 2]>(), count, "xy")?)
+            let count = plan.count_in(AXES, capacity)?;
+            (plan, room(xy, AXES * count, "xy")?)
         };
         plan.library.fill_coordinates(&plan.planned, at)?;
         Ok(())
@@ -151,16 +153,16 @@ pub unsafe extern "C" fn strew_plan_fill_xy_f32(
     origin: *mut f64,
 ) -> Code {
     guarded(|| {
-        // SAFETY: as the caller promises; two numbers are as long as a pair.
+        // SAFETY: as the caller promises.
         let (plan, at) = unsafe {
             let plan = borrowed(plan, "plan")?;
-            let count = plan.count_for(capacity)?;
-            (plan, room(xy.cast::<[f32; 2]>(), count, "xy")?)
+            let count = plan.count_in(AXES, capacity)?;
+            (plan, room(xy, AXES * count, "xy")?)
         };
         let (_, from) = plan.library.fill_offsets(&plan.planned, at)?;
         if !origin.is_null() {
             // SAFETY: as the caller promises.
-            unsafe { room(origin, 2, "origin")? }.copy_from_slice(&from);
+            unsafe { room(origin, AXES, "origin")? }.copy_from_slice(from.as_slice());
         }
         Ok(())
     })
@@ -179,11 +181,11 @@ pub unsafe extern "C" fn strew_plan_fill_ids(
     capacity: usize,
 ) -> Code {
     guarded(|| {
-        // SAFETY: as the caller promises; two numbers are as long as a pair.
+        // SAFETY: as the caller promises.
         unsafe {
             let plan = borrowed(plan, "plan")?;
-            let count = plan.count_for(capacity)?;
-            let ids = room(ids.cast::<[i64; 2]>(), count, "ids")?;
+            let count = plan.count_in(AXES, capacity)?;
+            let ids = room(ids, AXES * count, "ids")?;
             ids.copy_from_slice(&plan.columns()?.ids);
         }
         Ok(())
@@ -351,7 +353,32 @@ impl strew_plan {
         }
     }
 
-    fn columns(&self) -> Result<&::strew_plan::Columns, Failure> {
+    /// As `count_for`, for a plan whose points have this number of coordinates.
+    pub(crate) fn count_in(&self, axes: usize, capacity: usize) -> Result<usize, Failure> {
+        self.check_axes(axes)?;
+        self.count_for(capacity)
+    }
+
+    fn check_axes(&self, axes: usize) -> Result<(), Failure> {
+        let (detail, allowed) = match self.planned.axes() {
+            own if own == axes => return Ok(()),
+            AXES => ("points of the plane", "a plan of strew_space_plan_query"),
+            _ => ("points in space", "a plan of strew_plan_query"),
+        };
+        Err(Failure::argument("plan", detail, allowed))
+    }
+
+    /// Writes the place that coordinates are relative to.
+    pub(crate) fn write_origin(&self, out: &mut [f64]) -> Result<(), Failure> {
+        self.check_axes(out.len())?;
+        match &self.planned.query.region.corner {
+            Some(corner) => out.copy_from_slice(corner.as_slice()),
+            None => out.fill(0.0),
+        }
+        Ok(())
+    }
+
+    pub(crate) fn columns(&self) -> Result<&::strew_plan::Columns, Failure> {
         if let Some(made) = self.columns.get() {
             return Ok(made);
         }

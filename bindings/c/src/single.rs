@@ -106,7 +106,10 @@ pub unsafe extern "C" fn strew_nearest(
 
 /// # Safety
 /// `out` is null or a place for a pointer.
-unsafe fn documented(value: &serde_json::Value, out: *mut *mut strew_bytes) -> Result<(), Failure> {
+pub unsafe fn documented(
+    value: &serde_json::Value,
+    out: *mut *mut strew_bytes,
+) -> Result<(), Failure> {
     if out.is_null() {
         return Ok(());
     }

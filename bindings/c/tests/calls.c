@@ -109,6 +109,53 @@ static void buffers(void) {
     strew_plan_free(plan);
 }
 
+/* Points in space, and the calls for the plane that refuse them. */
+static void space(void) {
+    strew_plan *plan = NULL;
+    EXPECT(strew_space_plan_query(library, NULL, &plan) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_space_plan_query(library, "bbox=0,0,1,1&spacing=1", &plan) == STREW_INVALID_QUERY);
+    EXPECT(strew_space_plan_chunk(library, "spacing=1", -1, 0, 0, 0, &plan) == STREW_INVALID_QUERY);
+    EXPECT(strew_space_plan_chunk(library, "spacing=1&attributes=rotation", 4, -3, 2, 1, &plan) == STREW_OK);
+    uint64_t count = 0;
+    EXPECT(strew_plan_count(plan, &count) == STREW_OK && count > 40);
+    double *xyz = malloc(3 * count * sizeof *xyz), *turns = malloc(count * sizeof *turns), origin[3] = {1, 1, 1};
+    float *near = malloc(3 * count * sizeof *near);
+    int64_t *ids = malloc(3 * count * sizeof *ids);
+    EXPECT(xyz && turns && near && ids);
+    EXPECT(strew_space_fill_xyz(plan, xyz, count - 1) == STREW_BUFFER_TOO_SMALL);
+    EXPECT(strew_space_fill_xyz(plan, xyz, count) == STREW_OK);
+    EXPECT(strew_space_fill_xyz_f32(plan, near, count, NULL) == STREW_OK);
+    EXPECT(strew_space_fill_xyz_f32(plan, near, count, origin) == STREW_OK && origin[0] == -12);
+    EXPECT(strew_space_origin(plan, origin) == STREW_OK && origin[1] == 8 && origin[2] == 4);
+    EXPECT(strew_space_fill_ids(plan, ids, count) == STREW_OK);
+    EXPECT(strew_plan_fill_numbers(plan, "qw", turns, count) == STREW_OK);
+    EXPECT(strew_plan_fill_xy(plan, xyz, count) == STREW_INVALID_ARGUMENT);
+    EXPECT(strcmp(strew_error_message(), "`plan`: points in space; allowed: a plan of strew_plan_query") == 0);
+    EXPECT(strew_plan_fill_ids(plan, ids, count) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_plan_origin(plan, origin) == STREW_INVALID_ARGUMENT);
+    for (uint64_t i = 0; i < count; i++) {
+        strew_space_point found;
+        int64_t *id = ids + 3 * i;
+        EXPECT(strew_space_point_by_id(library, "spacing=1", id[0], id[1], id[2], &found, NULL) == STREW_OK);
+        EXPECT(found.id[2] == id[2] && found.z >= 4 && found.z < 8 && near[3 * i + 2] >= 0 && near[3 * i + 2] < 4);
+    }
+    strew_space_point nearest[2];
+    size_t some = 0;
+    EXPECT(strew_space_nearest(library, "at=1,2,3&k=2&spacing=1", nearest, 2, &some, NULL) == STREW_OK && some == 2);
+    EXPECT(nearest[0].distance <= nearest[1].distance);
+    EXPECT(strew_space_nearest(library, "at=1,2&spacing=1", nearest, 2, &some, NULL) == STREW_INVALID_QUERY);
+    EXPECT(strew_space_point_by_id(library, "spacing=1", 1, 0, 0, nearest, NULL) == STREW_NO_SUCH_POINT);
+    strew_plan_free(plan);
+    plan = planned("bbox=0,0,2,2&spacing=1");
+    EXPECT(strew_space_fill_xyz(plan, xyz, count) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_space_origin(plan, origin) == STREW_INVALID_ARGUMENT);
+    strew_plan_free(plan);
+    free(ids);
+    free(near);
+    free(turns);
+    free(xyz);
+}
+
 /* Words are those of the thread that made the mistake. */
 static void *mistaken(void *query) {
     strew_plan *plan = NULL;
@@ -124,6 +171,7 @@ int main(void) {
     EXPECT(strew_library_open(NULL, &library) == STREW_OK);
     arguments();
     buffers();
+    space();
     pthread_t threads[2];
     char queries[2][16] = {"one", "two"};
     for (int i = 0; i < 2; i++) EXPECT(pthread_create(&threads[i], NULL, mistaken, queries[i]) == 0);

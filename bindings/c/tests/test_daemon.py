@@ -1,4 +1,5 @@
-"""The library, called by ctypes, has the points, documents and words of the real daemon for 1,000 random queries.
+"""The library, called by ctypes, has the points, documents and words of the real daemon for 1,000 random queries,
+and for 200 in space.
 
 python3 test_daemon.py LIBRARY PROGRAM
 """
@@ -12,12 +13,13 @@ import subprocess
 import sys
 import urllib.error
 import urllib.request
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python/tests"))
 
-from queries import random_query  # noqa: E402
+from queries import random_query, random_query_in_space  # noqa: E402
 
 WRONG: list[str] = [
     "{}",
@@ -30,6 +32,15 @@ WRONG: list[str] = [
     '{"region": {"bbox": [0, 0, 1, 1]}, "spacing": 1, "table": "' + "0" * 64 + '"}',
     '{"region": {"bbox": [0, 0, 1, 1]}, "spacing": 1, "field": {"noise": {"wavelength": -1}}}',
     '{"region": {"bbox": [0, 0, 1, 1]}, "layers": [{"name": "a", "spacing": 1}, {"name": "a", "spacing": 0}]}',
+]
+
+WRONG_IN_SPACE: list[str] = [
+    "{}",
+    '{"region": {"bbox": [0, 0, 1, 1]}, "spacing": 1}',
+    '{"region": {"circle": {"center": [0, 0], "radius": 1}}, "spacing": 1}',
+    '{"region": {"ball": {"center": [0, 0, 0], "radius": -1}}, "spacing": 1, "field": "forest"}',
+    '{"region": {"bbox": [0, 0, 0, 1, 1, 1]}, "spacing": 1, "attributes": ["angle"]}',
+    '{"region": {"bbox": [0, 0, 0, 1, 1, 1]}, "spacing": 1, "profile": "pink"}',
 ]
 
 
@@ -49,9 +60,9 @@ class Strew:
         error: dict[str, Any] = json.loads(self.calls.strew_error_document())
         return error
 
-    def plan(self, query: str) -> ctypes.c_void_p | None:
+    def plan(self, query: str, kind: Kind) -> ctypes.c_void_p | None:
         plan = ctypes.c_void_p()
-        code = self.calls.strew_plan_query(self.library, query.encode(), ctypes.byref(plan))
+        code = getattr(self.calls, kind.plan)(self.library, query.encode(), ctypes.byref(plan))
         return plan if code == 0 else None
 
     def bytes(self, call: str, *arguments: Any) -> bytes:
@@ -61,16 +72,31 @@ class Strew:
         self.calls.strew_bytes_free(made)
         return content
 
-    def filled(self, call: str, kind: Any, count: int, *arguments: Any) -> list[Any]:
+    def filled(self, call: str, kind: Any, count: int, *arguments: Any, each: int = 1) -> list[Any]:
         buffer = (kind * max(count, 1))()
-        capacity = ctypes.c_size_t(count // 2 if call.endswith(("xy", "ids")) else count)
+        capacity = ctypes.c_size_t(count // each)
         assert getattr(self.calls, call)(*arguments, buffer, capacity) == 0, self.error()
         return list(buffer[:count])
 
 
+@dataclass(frozen=True)
+class Kind:
+    """The calls and the path for queries of the plane, or in space."""
+
+    axes: str
+    path: str
+    plan: str
+    coordinates: str
+    ids: str
+
+
+PLANE = Kind("xy", "/v1/points:query", "strew_plan_query", "strew_plan_fill_xy", "strew_plan_fill_ids")
+SPACE = Kind("xyz", "/v1/space/points", "strew_space_plan_query", "strew_space_fill_xyz", "strew_space_fill_ids")
+
+
 def answer(url: str, query: str) -> tuple[int, bytes]:
     try:
-        with urllib.request.urlopen(f"{url}/v1/points:query", query.encode()) as response:
+        with urllib.request.urlopen(url, query.encode()) as response:
             return 200, response.read()
     except urllib.error.HTTPError as refused:
         return refused.code, refused.read()
@@ -83,11 +109,11 @@ def same_words(strew: Strew, content: bytes) -> None:
     assert error["errors"] == problem.get("errors", [])
 
 
-def same_points(strew: Strew, plan: ctypes.c_void_p, document: dict[str, Any]) -> None:
-    rows, count = document["points"], len(document["points"])
-    xy = strew.filled("strew_plan_fill_xy", ctypes.c_double, 2 * count, plan)
-    assert xy == [row[axis] for row in rows for axis in "xy"]
-    ids = strew.filled("strew_plan_fill_ids", ctypes.c_int64, 2 * count, plan)
+def same_points(strew: Strew, plan: ctypes.c_void_p, document: dict[str, Any], kind: Kind) -> None:
+    rows, count, each = document["points"], len(document["points"]), len(kind.axes)
+    at = strew.filled(kind.coordinates, ctypes.c_double, each * count, plan, each=each)
+    assert at == [row[axis] for row in rows for axis in kind.axes]
+    ids = strew.filled(kind.ids, ctypes.c_int64, each * count, plan, each=each)
     assert ids == [int(part) for row in rows for part in row["id"].split(":")]
     for column in json.loads(strew.bytes("strew_plan_columns", plan)):
         name, expected = column["name"], [row.get(column["name"]) for row in rows]
@@ -99,6 +125,39 @@ def same_points(strew: Strew, plan: ctypes.c_void_p, document: dict[str, Any]) -
             assert [None if code < 0 else column["names"][code] for code in codes] == expected
 
 
+def compare(strew: Strew, url: str, kind: Kind, queries: list[dict[str, Any]], wrong: list[str]) -> None:
+    url, points = url + kind.path, 0
+    for query in map(json.dumps, queries):
+        status, content = answer(url, query)
+        plan = strew.plan(query, kind)
+        if plan is None:
+            same_words(strew, content)
+            continue
+        assert status == 200, content
+        assert strew.bytes("strew_plan_document", plan, b"format=json") == content
+        document = json.loads(content)
+        same_points(strew, plan, document, kind)
+        points += len(document["points"])
+        strew.calls.strew_plan_free(plan)
+    for query in wrong:
+        status, content = answer(url, query)
+        assert status == 400 or status == 409, (query, status)
+        assert strew.plan(query, kind) is None, query
+        same_words(strew, content)
+    asked = f"{len(queries)} random queries at {kind.path}"
+    print(f"{asked} with {points} points, and {len(wrong)} wrong ones, are the daemon's")
+
+
+def same_neighbors(strew: Strew, url: str) -> None:
+    """Single points in space are those of the daemon."""
+    address = "at=1e3,-2.5,40&k=3&radius=20&spacing=1.5&seed=9&attributes=rotation"
+    with urllib.request.urlopen(f"{url}/v1/space/nearest?{address}") as response:
+        there = json.loads(response.read())["neighbors"]
+    none = ctypes.c_void_p()
+    found = strew.bytes("strew_space_nearest", strew.library, address.encode(), none, ctypes.c_size_t(0), none)
+    assert len(there) == 3 and json.loads(found) == there
+
+
 def main(path: str, program: str) -> None:
     strew = Strew(path)
     command = [program, "serve", "--listen", "127.0.0.1:0"]
@@ -106,26 +165,9 @@ def main(path: str, program: str) -> None:
     assert daemon.stdout is not None
     url = daemon.stdout.readline().removeprefix("listening on ").strip()
     try:
-        points = 0
-        for seed in range(1000):
-            query = json.dumps(random_query(seed))
-            status, content = answer(url, query)
-            plan = strew.plan(query)
-            if plan is None:
-                same_words(strew, content)
-                continue
-            assert status == 200, content
-            assert strew.bytes("strew_plan_document", plan, b"format=json") == content
-            document = json.loads(content)
-            same_points(strew, plan, document)
-            points += len(document["points"])
-            strew.calls.strew_plan_free(plan)
-        for query in WRONG:
-            status, content = answer(url, query)
-            assert status == 400 or status == 409, (query, status)
-            assert strew.plan(query) is None, query
-            same_words(strew, content)
-        print(f"1000 random queries with {points} points, and {len(WRONG)} wrong ones, are the daemon's")
+        compare(strew, url, PLANE, [random_query(seed) for seed in range(1000)], WRONG)
+        compare(strew, url, SPACE, [random_query_in_space(seed) for seed in range(200)], WRONG_IN_SPACE)
+        same_neighbors(strew, url)
     finally:
         daemon.terminate()
         daemon.wait()

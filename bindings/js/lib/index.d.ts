@@ -18,6 +18,49 @@ export interface Query extends Shapes, Parameters {
     [member: string]: unknown;
 }
 
+/** The regions of space that are keywords. */
+export interface Volumes {
+    /** min_x, min_y, min_z, max_x, max_y, max_z of a box. */
+    bbox?: Numbers | null;
+    /** x, y, z and the radius of a ball. */
+    ball?: Numbers | object | null;
+    /** An upright prism: the vertices of its base, or GeoJSON, the height of its bottom, and of its top. */
+    prism?: [Iterable<Numbers>, number, number] | object | null;
+    /** Size, x, y, z of a cube of the world grid; coordinates are relative to its corner. */
+    chunk?: Numbers | object | null;
+    /** Any volume as JSON has it. */
+    region?: object | null;
+}
+
+/** The keywords of a query in space. */
+export interface SpaceQuery
+    extends Volumes,
+        Pick<
+            Parameters,
+            | "density"
+            | "spacing"
+            | "min_distance"
+            | "profile"
+            | "alpha"
+            | "map"
+            | "table"
+            | "seed"
+            | "warp"
+            | "keep"
+            | "scale_range"
+            | "scale_ranges"
+            | "variants"
+            | "offset"
+            | "limit"
+            | "cursor"
+        > {
+    /** rotation (the columns qx, qy, qz and qw of a unit quaternion), scale, variant, rank, u1 to u16. */
+    attributes?: string | string[];
+    /** Several sets at once. */
+    layers?: object[];
+    [member: string]: unknown;
+}
+
 /** One thing that is wrong with a query. */
 export interface Fault {
     field: string;
@@ -46,25 +89,23 @@ export interface Point {
     [attribute: string]: unknown;
 }
 
+/** A point in space, with its attributes by name. */
+export interface SpacePoint extends Point {
+    z: number;
+}
+
 /** A value now, in process, or later, from a daemon. */
 export type Answer<Where extends "here" | "there", T> = Where extends "here" ? T : Promise<T>;
 
-/** The points of a query, made when they are wanted. */
-export class PointSet<Where extends "here" | "there" = "here"> implements Iterable<Point> {
-    private constructor();
-    /** The body of `POST /v1/points:query`. */
+/** What sets of the plane and of space have in common: `One` is a point, `Regions` are keywords of regions. */
+interface Points<Where extends "here" | "there", One, Regions> extends Iterable<One> {
+    /** The body of `POST /v1/points:query`, in space of `POST /v1/space/points`. */
     readonly body: Record<string, unknown>;
     /** The exact number of points: a number, or a bigint from 2⁵³ on. */
     count(): Answer<Where, number | bigint>;
     /** The query with everything filled in. Integers from 2⁵³ on are bigints. */
     resolved(): Answer<Where, Record<string, unknown>>;
-    /** x and y of each point, by turns. */
-    xy(): Answer<Where, Float64Array>;
-    /** The coordinates as `f32`, relative to the lower corner of the region. */
-    xyF32(): Answer<Where, { xy: Float32Array; origin: [number, number] }>;
-    /** The place that the coordinates of `xy()` are relative to: the corner of a chunk, else 0, 0. */
-    origin(): Answer<Where, [number, number]>;
-    /** Two integers for each point; `x:y` as text. */
+    /** Two integers for each point, `x:y` as text; in space three, `x:y:z`. */
     ids(): Answer<Where, BigInt64Array>;
     /** The names of the columns beside ids and coordinates. */
     names(): Answer<Where, string[]>;
@@ -73,23 +114,58 @@ export class PointSet<Where extends "here" | "there" = "here"> implements Iterab
     /** A column of names as indices, −1 where it is lacking. */
     codes(name: string): Answer<Where, { codes: Int32Array; names: string[] }>;
     /** The same set in another region. */
-    within(shape: Shapes): PointSet<Where>;
-    /** The points of a square of the world grid. */
-    chunk(size: number, x: number, y: number): PointSet<Where>;
+    within(shape: Regions): this;
     /** The points in at most `parts` parts of the same size, give or take one. */
-    split(parts: number): Answer<Where, PointSet<Where>[]>;
+    split(parts: number): Answer<Where, this[]>;
     /** The points nearest to a place, nearest first: one, or `k`, or all within `radius`. */
-    nearest(at: Numbers, limits?: Neighbors): Answer<Where, Point[]>;
+    nearest(at: Numbers, limits?: Neighbors): Answer<Where, One[]>;
     /** The point of an id. */
-    point(id: string): Answer<Where, Point>;
+    point(id: string): Answer<Where, One>;
     /** The points in a format of REST, as bytes. */
     document(format: string, options?: Output): Answer<Where, Uint8Array>;
     /** The points one by one; in process only. */
-    [Symbol.iterator](): Iterator<Point>;
+    [Symbol.iterator](): Iterator<One>;
     /** Releases the memory of the points at once. A set that is used afterwards makes them again. */
     free(): void;
     /** Frees the set at the end of a `using` block, where the platform has `Symbol.dispose`. */
     [Symbol.dispose](): void;
+}
+
+/** The points of a query of the plane, made when they are wanted. */
+export interface PointSet<Where extends "here" | "there" = "here"> extends Points<Where, Point, Shapes> {}
+export class PointSet<Where extends "here" | "there" = "here"> {
+    private constructor();
+    /** x and y of each point, by turns. */
+    xy(): Answer<Where, Float64Array>;
+    /** The coordinates as `f32`, relative to the lower corner of the region. */
+    xyF32(): Answer<Where, { xy: Float32Array; origin: [number, number] }>;
+    /** The place that the coordinates of `xy()` are relative to: the corner of a chunk, else 0, 0. */
+    origin(): Answer<Where, [number, number]>;
+    /** The points of a square of the world grid. */
+    chunk(size: number, x: number, y: number): PointSet<Where>;
+}
+
+/** The points of a query in space, made when they are wanted. */
+export interface SpaceSet<Where extends "here" | "there" = "here"> extends Points<Where, SpacePoint, Volumes> {}
+export class SpaceSet<Where extends "here" | "there" = "here"> {
+    private constructor();
+    /** x, y and z of each point, by turns. */
+    xyz(): Answer<Where, Float64Array>;
+    /** The coordinates as `f32`, relative to the lower corner of the region. */
+    xyzF32(): Answer<Where, { xyz: Float32Array; origin: [number, number, number] }>;
+    /** The place that the coordinates of `xyz()` are relative to: the corner of a chunk, else 0, 0, 0. */
+    origin(): Answer<Where, [number, number, number]>;
+    /** The points of a cube of the world grid. */
+    chunk(size: number, x: number, y: number, z: number): SpaceSet<Where>;
+}
+
+/** Points in space. */
+export class Space<Where extends "here" | "there" = "here"> {
+    private constructor();
+    /** The points of a query in space by its keywords. */
+    points(query: SpaceQuery): SpaceSet<Where>;
+    /** The points of a query in JSON, the body of `POST /v1/space/points`. */
+    query(body: object): SpaceSet<Where>;
 }
 
 /** Where points come from. */
@@ -99,10 +175,15 @@ export class Source<Where extends "here" | "there" = "here"> {
     points(query: Query): PointSet<Where>;
     /** The points of a query in JSON, the body of `POST /v1/points:query`. */
     query(body: object): PointSet<Where>;
+    /** Points in space; in process `open` loads their table by its name. */
+    readonly space: Space<Where>;
 }
 
 /** The tables that are loaded by default. */
 export const DEFAULT_TABLES: string[];
+
+/** The table for points in space that a daemon answers with by default: `open({ tables: SPACE_TABLES })`. */
+export const SPACE_TABLES: string[];
 
 /** Loads the module and tables: names of this package's files, addresses, or bytes. */
 export function open(options?: {

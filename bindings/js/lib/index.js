@@ -2,6 +2,6 @@
 
 export { Disconnected, StrewError } from "./error.js";
 export { pixels, raster } from "./fields.js";
-export { DEFAULT_TABLES, open } from "./local.js";
-export { PointSet, Source } from "./points.js";
+export { DEFAULT_TABLES, SPACE_TABLES, open } from "./local.js";
+export { PointSet, Source, Space, SpaceSet } from "./points.js";
 export { connect } from "./remote.js";

@@ -2,9 +2,43 @@
 
 import { Module } from "./module.js";
 import { Source } from "./points.js";
+import { PLANE, SPACE } from "./query.js";
 
 /** The table that answers by default, and by default the only one that is loaded. */
 export const DEFAULT_TABLES = ["blue-5-sqrt3-over-2-m.strew"];
+
+/** The table for points in space that answers by default. */
+export const SPACE_TABLES = ["space-blue-5-sqrt3-over-2-r16.strew"];
+
+/** The calls of the module, and the bytes of a point. */
+const CALLS = new Map([
+    [
+        PLANE,
+        {
+            plan: "strew_plan_query",
+            origin: "strew_plan_origin",
+            fill: "strew_plan_fill_xy",
+            near: "strew_plan_fill_xy_f32",
+            ids: "strew_plan_fill_ids",
+            nearest: "strew_nearest",
+            point: "strew_point_by_id",
+            bytes: 40,
+        },
+    ],
+    [
+        SPACE,
+        {
+            plan: "strew_space_plan_query",
+            origin: "strew_space_origin",
+            fill: "strew_space_fill_xyz",
+            near: "strew_space_fill_xyz_f32",
+            ids: "strew_space_fill_ids",
+            nearest: "strew_space_nearest",
+            point: "strew_space_point_by_id",
+            bytes: 56,
+        },
+    ],
+]);
 
 /** This page or process. */
 export class Local extends Source {
@@ -18,28 +52,29 @@ export class Local extends Source {
         this.#library = library;
     }
 
-    plan(query) {
+    plan(query, _, dimension = PLANE) {
         const module = this.#module;
         return module.scoped((room) => {
             const out = room(4);
-            module.call("strew_plan_query", this.#library, module.text(room, query), out);
-            return new Plan(module, module.pointer(out));
+            module.call(CALLS.get(dimension).plan, this.#library, module.text(room, query), out);
+            return new Plan(module, module.pointer(out), dimension);
         });
     }
 
-    nearest(address) {
+    nearest(address, dimension) {
         const module = this.#module;
         return module.scoped((room) =>
-            module.json("strew_nearest", room, this.#library, module.text(room, address), 0, 0, 0),
+            module.json(CALLS.get(dimension).nearest, room, this.#library, module.text(room, address), 0, 0, 0),
         );
     }
 
-    point(id, address) {
+    point(id, address, dimension) {
         const module = this.#module;
+        const calls = CALLS.get(dimension);
         return module.scoped((room) => {
-            const [x, y] = pair(id);
+            const parts = integers(id, dimension);
             const set = module.text(room, address);
-            return module.json("strew_point_by_id", room, this.#library, set, x, y, room(40));
+            return module.json(calls.point, room, this.#library, set, ...parts, room(calls.bytes));
         });
     }
 
@@ -52,20 +87,28 @@ export class Local extends Source {
     }
 }
 
-function pair(id) {
-    const found = /^(-?\d+):(-?\d+)$/.exec(id);
-    if (!found) throw new TypeError(`${JSON.stringify(id)} is no id: two integers joined by a colon, such as -31:52`);
-    return [BigInt(found[1]), BigInt(found[2])];
+function integers(id, dimension) {
+    const parts = /^-?\d+(:-?\d+)+$/.test(id) ? id.split(":").map(BigInt) : [];
+    if (parts.length === dimension.axes.length) return parts;
+    const allowed =
+        dimension === SPACE
+            ? "three integers joined by colons, such as -31:52:7"
+            : "two integers joined by a colon, such as -31:52";
+    throw new TypeError(`${JSON.stringify(id)} is no id: ${allowed}`);
 }
 
 /** A planned query. */
 class Plan {
     #module;
     #plan;
+    #calls;
+    #axes;
 
-    constructor(module, plan) {
+    constructor(module, plan, dimension) {
         this.#module = module;
         this.#plan = plan;
+        this.#calls = CALLS.get(dimension);
+        this.#axes = dimension.axes.length;
         module.held(this, plan);
     }
 
@@ -100,37 +143,37 @@ class Plan {
         });
     }
 
-    xy() {
-        return this.#filled(Float64Array, 2, "strew_plan_fill_xy");
+    coordinates() {
+        return this.#filled(Float64Array, this.#axes, this.#calls.fill);
     }
 
-    xyF32() {
+    offsets() {
         const module = this.#module;
-        const count = this.#few();
+        const [count, axes] = [this.#few(), this.#axes];
         return module.scoped((room) => {
-            const from = room(16);
-            const fill = (at) => module.call("strew_plan_fill_xy_f32", this.#plan, at, count, from);
-            const xy = module.filled(Float32Array, 2 * count, room, fill);
-            return { xy, origin: [...new Float64Array(module.memory, from, 2)] };
+            const from = room(8 * axes);
+            const fill = (at) => module.call(this.#calls.near, this.#plan, at, count, from);
+            const at = module.filled(Float32Array, axes * count, room, fill);
+            return { at, origin: [...new Float64Array(module.memory, from, axes)] };
         });
     }
 
     origin() {
         return this.#module.scoped((room) => {
-            const out = room(16);
-            this.#module.call("strew_plan_origin", this.#plan, out);
-            return [...new Float64Array(this.#module.memory, out, 2)];
+            const out = room(8 * this.#axes);
+            this.#module.call(this.#calls.origin, this.#plan, out);
+            return [...new Float64Array(this.#module.memory, out, this.#axes)];
         });
     }
 
     columns() {
-        const ids = this.#filled(BigInt64Array, 2, "strew_plan_fill_ids");
+        const ids = this.#filled(BigInt64Array, this.#axes, this.#calls.ids);
         const listed = this.#module.scoped((room) => this.#module.json("strew_plan_columns", room, this.#plan));
         const further = listed.map(({ name, names }) => {
             const [kind, call] = names ? [Int32Array, "codes"] : [Float64Array, "numbers"];
             return [name, { names, values: this.#filled(kind, 1, `strew_plan_fill_${call}`, name) }];
         });
-        return { ids, xy: this.xy(), further: new Map(further) };
+        return { ids, at: this.coordinates(), further: new Map(further) };
     }
 
     resolved() {

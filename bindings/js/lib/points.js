@@ -1,7 +1,7 @@
 // Sets of points, over any source: this page, or a daemon. A daemon's answers are promises.
 
 import { KINDS, WINDOW } from "./parameters.js";
-import { OF_ANSWERS, SHAPES, address, body, isObject, text } from "./query.js";
+import { OF_ANSWERS, PLANE, SPACE, address, body, isObject, text } from "./query.js";
 import { StrewError } from "./error.js";
 
 /** Applies a function to a value, or to that of a promise once it is there. */
@@ -19,32 +19,63 @@ export class Source {
 
     /** The points of a query in JSON, the body of `POST /v1/points:query`. */
     query(query) {
-        const set = new PointSet(this, query);
-        if (this.isLocal && "region" in query) set.plan();
-        return set;
+        return PointSet.of(this, query);
+    }
+
+    /** Points in space: `space.points({ ball: [0, 0, 0, 9], spacing: 1 })`. */
+    get space() {
+        return new Space(this);
     }
 }
 
-/** The points of a query, made when they are wanted. */
-export class PointSet {
+/** Points in space, over a source. */
+export class Space {
+    #source;
+
+    constructor(source) {
+        this.#source = source;
+    }
+
+    /** The points of a query in space by its keywords. */
+    points(keywords) {
+        return this.query(body(keywords));
+    }
+
+    /** The points of a query in JSON, the body of `POST /v1/space/points`. */
+    query(query) {
+        return SpaceSet.of(this.#source, query);
+    }
+}
+
+/** The points of a query, made when they are wanted: what sets of the plane and of space have in common. */
+class Points {
     #source;
     #body;
+    #dimension;
     #plan;
     #columns;
 
-    constructor(source, query) {
+    constructor(source, query, dimension) {
         this.#source = source;
         this.#body = { ...query };
+        this.#dimension = dimension;
     }
 
-    /** The body of `POST /v1/points:query`. */
+    /** The points of a query, which is checked at once where that takes no request. */
+    static of(source, query) {
+        const set = new this(source, query);
+        if (source.isLocal && "region" in query) set.plan();
+        return set;
+    }
+
+    /** The body of `POST /v1/points:query`, in space of `POST /v1/space/points`. */
     get body() {
         return { ...this.#body };
     }
 
     /** The planned query of the set. */
     plan() {
-        this.#plan ??= this.#source.plan(text(this.#body), this.#body);
+        this.#plan ??= this.#source.plan(text(this.#body), this.#body, this.#dimension);
         return this.#plan;
     }
 
@@ -64,22 +95,17 @@ export class PointSet {
         return this.plan().resolved();
     }
 
-    /** x and y of each point, by turns: a Float64Array. */
-    xy() {
-        return this.#columns ? after(this.#columns, (columns) => columns.xy) : this.plan().xy();
+    /** The coordinates of each point, by turns. */
+    _coordinates() {
+        return this.#columns ? after(this.#columns, (columns) => columns.at) : this.plan().coordinates();
     }
 
-    /** The coordinates as a Float32Array, relative to an origin: `{ xy, origin }`. */
-    xyF32() {
-        return this.plan().xyF32();
-    }
-
-    /** The place that the coordinates of `xy()` are relative to: the corner of a chunk, else 0, 0. */
+    /** The place that coordinates are relative to: the corner of a chunk, else the origin of the world. */
     origin() {
         return this.plan().origin();
     }
 
-    /** The ids: two integers for each point in a BigInt64Array, `x:y` as text. */
+    /** The ids: two integers for each point in a BigInt64Array, `x:y` as text; in space three, `x:y:z`. */
     ids() {
         return after(this.#all(), (columns) => columns.ids);
     }
@@ -106,16 +132,17 @@ export class PointSet {
         return after(this.#all(), ({ further }) => {
             const column = further.get(name);
             if (column) return column;
-            const known = ["x", "y", ...further.keys()].join(", ");
+            const known = [...this.#dimension.axes, ...further.keys()].join(", ");
             throw new RangeError(`no column ${JSON.stringify(name)}; there are ${known}`);
         });
     }
 
     /** Numbers in a Float64Array, NaN where a layer lacks them; or a list of names, null where they are lacking. */
     column(name) {
-        if (name === "x" || name === "y") {
-            const axis = name === "x" ? 0 : 1;
-            return after(this.xy(), (xy) => Float64Array.from({ length: xy.length / 2 }, (_, i) => xy[2 * i + axis]));
+        const [axes, axis] = [this.#dimension.axes.length, [...this.#dimension.axes].indexOf(name)];
+        if (axis >= 0) {
+            const each = (at) => Float64Array.from({ length: at.length / axes }, (_, i) => at[axes * i + axis]);
+            return after(this._coordinates(), each);
         }
         return after(this.#further(name), ({ values, names }) =>
             names ? Array.from(values, (code) => names[code] ?? null) : values,
@@ -133,19 +160,14 @@ export class PointSet {
     #with(members) {
         const query = { ...this.#body, ...members };
         for (const [name, value] of Object.entries(members)) if (value === undefined) delete query[name];
-        return this.#source.query(query);
+        return this.constructor.of(this.#source, query);
     }
 
-    /** The same set in another region: `within({ circle: [0, 0, 5] })`. */
+    /** The same set in another region: `within({ bbox: [0, 0, 5, 5] })`. */
     within(shape) {
         const { region } = body(shape);
-        if (!region) throw new TypeError(`within takes one of region, ${SHAPES.join(", ")}`);
+        if (!region) throw new TypeError(`within takes one of region, ${this.#dimension.shapes.join(", ")}`);
         return this.#with({ region, ...Object.fromEntries(WINDOW.map((name) => [name, undefined])) });
-    }
-
-    /** The points of a square of the world grid. Coordinates are relative to its corner, `origin()`. */
-    chunk(size, x, y) {
-        return this.within({ chunk: [size, x, y] });
     }
 
     /** The points in at most `parts` parts of the same size, give or take one. A part's `body` can go to a worker. */
@@ -170,12 +192,12 @@ export class PointSet {
 
     /** The points nearest to a place, nearest first: one, or `k`, or all within `radius`. */
     nearest(at, { k, radius } = {}) {
-        return after(this.#set({ at, k, radius }), (where) => this.#source.nearest(where));
+        return after(this.#set({ at, k, radius }), (where) => this.#source.nearest(where, this.#dimension));
     }
 
     /** The point of an id. */
     point(id) {
-        return after(this.#set({}), (where) => this.#source.point(id, where));
+        return after(this.#set({}), (where) => this.#source.point(id, where, this.#dimension));
     }
 
     /** The points in a format of REST, as bytes: `document("csv", { decimals: 2 })`. */
@@ -183,18 +205,66 @@ export class PointSet {
         return this.plan().document({ format, ...options });
     }
 
-    /** The points one by one, as objects with an id, x, y and attributes; in process only. */
+    /** The points one by one, as objects with an id, coordinates and attributes; in process only. */
     *[Symbol.iterator]() {
-        if (!this.#source.isLocal) throw new StrewError("a daemon's points come as columns: await points.xy()");
-        const [ids, xy] = [this.ids(), this.xy()];
+        if (!this.#source.isLocal) {
+            throw new StrewError(`a daemon's points come as columns: await points.${this.#dimension.axes}()`);
+        }
+        const [ids, at, axes] = [this.ids(), this._coordinates(), [...this.#dimension.axes]];
         const columns = this.names().map((name) => [name, this.column(name)]);
-        for (let i = 0; i < xy.length / 2; i++) {
-            const point = { id: `${ids[2 * i]}:${ids[2 * i + 1]}`, x: xy[2 * i], y: xy[2 * i + 1] };
+        for (let i = 0; i < at.length / axes.length; i++) {
+            const first = i * axes.length;
+            const point = { id: ids.subarray(first, first + axes.length).join(":") };
+            axes.forEach((axis, k) => (point[axis] = at[first + k]));
             for (const [name, values] of columns) point[name] = values[i];
             yield point;
         }
     }
 }
 
+/** The points of a query of the plane. */
+export class PointSet extends Points {
+    constructor(source, query) {
+        super(source, query, PLANE);
+    }
+
+    /** x and y of each point, by turns: a Float64Array. */
+    xy() {
+        return this._coordinates();
+    }
+
+    /** The coordinates as a Float32Array, relative to an origin: `{ xy, origin }`. */
+    xyF32() {
+        return after(this.plan().offsets(), ({ at, origin }) => ({ xy: at, origin }));
+    }
+
+    /** The points of a square of the world grid. Coordinates are relative to its corner, `origin()`. */
+    chunk(size, x, y) {
+        return this.within({ chunk: [size, x, y] });
+    }
+}
+
+/** The points of a query in space. */
+export class SpaceSet extends Points {
+    constructor(source, query) {
+        super(source, query, SPACE);
+    }
+
+    /** x, y and z of each point, by turns: a Float64Array. */
+    xyz() {
+        return this._coordinates();
+    }
+
+    /** The coordinates as a Float32Array, relative to an origin: `{ xyz, origin }`. */
+    xyzF32() {
+        return after(this.plan().offsets(), ({ at, origin }) => ({ xyz: at, origin }));
+    }
+
+    /** The points of a cube of the world grid. Coordinates are relative to its corner, `origin()`. */
+    chunk(size, x, y, z) {
+        return this.within({ chunk: [size, x, y, z] });
+    }
+}
+
 // For `using points = strew.points(…)`, where the platform has it.
-if (Symbol.dispose) PointSet.prototype[Symbol.dispose] = PointSet.prototype.free;
+if (Symbol.dispose) Points.prototype[Symbol.dispose] = Points.prototype.free;

@@ -2,8 +2,16 @@
 
 import { KINDS, OUTPUT, REGIONS, WINDOW } from "./parameters.js";
 
-// Regions that are keywords.
+// Regions that are keywords: of the plane, and of space.
 export const SHAPES = [...REGIONS, "chunk"];
+export const VOLUMES = ["bbox", "ball", "prism", "chunk"];
+const KEYWORDS = [...new Set([...SHAPES, ...VOLUMES])];
+
+/** The plane: the coordinates of points, their regions, and the paths of REST. */
+export const PLANE = { axes: "xy", shapes: SHAPES, root: "/v1", queries: "/v1/points:query" };
+/** Space. */
+export const SPACE = { axes: "xyz", shapes: VOLUMES, root: "/v1/space", queries: "/v1/space/points" };
+
 // Members of a query that are not about its set of points.
 export const OF_ANSWERS = ["region", ...WINDOW, ...OUTPUT];
 
@@ -15,7 +23,12 @@ function region(shape, value) {
     if (isList(value)) {
         const list = Array.from(value);
         if (shape === "circle" && list.length === 3) return { center: [list[0], list[1]], radius: list[2] };
+        if (shape === "ball" && list.length === 4) return { center: list.slice(0, 3), radius: list[3] };
         if (shape === "chunk" && list.length === 3) return { size: list[0], x: list[1], y: list[2] };
+        if (shape === "chunk" && list.length === 4) return { size: list[0], x: list[1], y: list[2], z: list[3] };
+        if (shape === "prism" && list.length === 3) {
+            return { polygon: region("polygon", list[0]), bottom: list[1], top: list[2] };
+        }
         if (shape === "polygon") {
             const ring = list.map((vertex) => Array.from(vertex));
             const [first, last] = [ring[0], ring.at(-1)];
@@ -30,8 +43,8 @@ function region(shape, value) {
 export function body(keywords) {
     const made = {};
     for (const [name, value] of Object.entries(keywords)) {
-        if (value === undefined || (value === null && SHAPES.includes(name))) continue;
-        if (SHAPES.includes(name)) {
+        if (value === undefined || (value === null && KEYWORDS.includes(name))) continue;
+        if (KEYWORDS.includes(name)) {
             // Several shapes are refused together, with all their names.
             made.region = { ...made.region, [name]: region(name, value) };
         } else if (KINDS[name] === "names" && typeof value === "string") {

@@ -3,7 +3,7 @@
 import { StrewError } from "./error.js";
 import { OUTPUT } from "./parameters.js";
 import { Source } from "./points.js";
-import { parsed, text } from "./query.js";
+import { PLANE, parsed, text } from "./query.js";
 import { Elsewhere, Later, Replicas, broken, retryAfter } from "./replicas.js";
 
 // The statuses of refusals that pass: the same request may succeed later.
@@ -66,16 +66,16 @@ class Daemon extends Source {
         return (await this.request(path, body)).json();
     }
 
-    plan(_, query) {
-        return new RemotePlan(this, query);
+    plan(_, query, dimension = PLANE) {
+        return new RemotePlan(this, query, dimension);
     }
 
-    async nearest(address) {
-        return (await this.json(`/v1/nearest?${address}`)).neighbors;
+    async nearest(address, { root }) {
+        return (await this.json(`${root}/nearest?${address}`)).neighbors;
     }
 
-    async point(id, address) {
-        return (await this.json(`/v1/points/${encodeURIComponent(id)}?${address}`)).point;
+    async point(id, address, { root }) {
+        return (await this.json(`${root}/points/${encodeURIComponent(id)}?${address}`)).point;
     }
 
     /** Sends a field to all daemons that can be reached: its name is a digest, and any may be called next. */
@@ -109,16 +109,20 @@ function refusal(status, content) {
 }
 
 /** The header `strew-origin`. */
-const originOf = (response) => response.headers.get("strew-origin")?.split(",").map(Number) ?? [0, 0];
+const originOf = (response, axes) => response.headers.get("strew-origin")?.split(",").map(Number) ?? axes.map(() => 0);
 
 /** A query of a daemon. */
 class RemotePlan {
     #daemon;
     #query;
+    #dimension;
+    #axes;
     #known;
 
-    constructor(daemon, query) {
+    constructor(daemon, query, dimension) {
         this.#daemon = daemon;
+        this.#dimension = dimension;
+        this.#axes = [...dimension.axes];
         this.#query = { ...query };
         for (const name of OUTPUT) delete this.#query[name];
     }
@@ -129,7 +133,7 @@ class RemotePlan {
     }
 
     #points(more) {
-        return this.#daemon.request("/v1/points:query", text({ ...this.#query, ...more }));
+        return this.#daemon.request(this.#dimension.queries, text({ ...this.#query, ...more }));
     }
 
     async #json(path, more = {}) {
@@ -137,14 +141,14 @@ class RemotePlan {
     }
 
     async count() {
-        return (await this.#json("/v1/points:split?parts=1")).count;
+        return (await this.#json(`${this.#dimension.root}/points:split?parts=1`)).count;
     }
 
     async resolved() {
         const isWindow = ["offset", "limit", "cursor"].some((name) => name in this.#query);
-        if (!isWindow) return (await this.#json("/v1/count")).query;
+        if (!isWindow) return (await this.#json(`${this.#dimension.root}/count`)).query;
         // Windows are counted by `split`, which does not repeat the query: one point does.
-        const { query } = await this.#json("/v1/points:query", { format: "json", limit: 1 });
+        const { query } = await this.#json(this.#dimension.queries, { format: "json", limit: 1 });
         const { format, relative_to, limit, ...rest } = query;
         return "limit" in this.#query ? { ...rest, limit: this.#query.limit } : rest;
     }
@@ -153,7 +157,7 @@ class RemotePlan {
     async #requestHead() {
         const response = await this.#points({ format: "f64", limit: 1 });
         await response.arrayBuffer();
-        return { columns: JSON.parse(response.headers.get("strew-columns")), origin: originOf(response) };
+        return { columns: JSON.parse(response.headers.get("strew-columns")), origin: originOf(response, this.#axes) };
     }
 
     #head() {
@@ -171,42 +175,44 @@ class RemotePlan {
         return (await this.#head()).origin;
     }
 
-    /** The coordinates of an answer whose rows are numbers, x and y first. */
-    async #coordinates(format, kind) {
+    /** The coordinates of an answer whose rows are numbers, those of the place first. */
+    async #places(format, kind) {
         const each = ({ headers }) => JSON.parse(headers.get("strew-columns")).length * kind.BYTES_PER_ELEMENT;
         const whole = (bytes, response) => {
             const rows = Math.floor(bytes.length / each(response));
             return { rows, length: rows * each(response) };
         };
-        const { bytes, first } = await new Answer(this.#daemon, this.#query, { format }, whole).read();
+        const { bytes, first } = await new Answer(this.#daemon, this.#dimension, this.#query, { format }, whole).read();
         const values = new kind(bytes.buffer);
         const step = each(first) / kind.BYTES_PER_ELEMENT;
-        const pair = (_, i) => values[(i >> 1) * step + (i & 1)];
-        const xy = step === 2 ? values : kind.from({ length: (2 * values.length) / step }, pair);
-        return { xy, origin: originOf(first) };
+        const axes = this.#axes.length;
+        const one = (_, i) => values[Math.floor(i / axes) * step + (i % axes)];
+        const at = step === axes ? values : kind.from({ length: (axes * values.length) / step }, one);
+        return { at, origin: originOf(first, this.#axes) };
     }
 
-    async xy() {
-        return (await this.#coordinates("f64", Float64Array)).xy;
+    async coordinates() {
+        return (await this.#places("f64", Float64Array)).at;
     }
 
-    xyF32() {
-        return this.#coordinates("f32", Float32Array);
+    offsets() {
+        return this.#places("f32", Float32Array);
     }
 
     async columns() {
         // The numbers of JSON read back to the same bits.
-        const lines = new Answer(this.#daemon, this.#query, { format: "ndjson", summary: false }, wholeLines);
+        const form = { format: "ndjson", summary: false };
+        const lines = new Answer(this.#daemon, this.#dimension, this.#query, form, wholeLines);
         const [{ columns }, { bytes }] = await Promise.all([this.#head(), lines.read()]);
         const points = JSON.parse(`[${new TextDecoder().decode(bytes).trimEnd().replaceAll("\n", ",")}]`);
         const ids = BigInt64Array.from(points.flatMap(({ id }) => id.split(":").map(BigInt)));
-        const xy = Float64Array.from(points.flatMap(({ x, y }) => [x, y]));
-        const further = columns.slice(2).map((column) => [column.name, valuesOf(column, points)]);
-        return { ids, xy, further: new Map(further) };
+        const at = Float64Array.from(points.flatMap((point) => this.#axes.map((axis) => point[axis])));
+        const further = columns.slice(this.#axes.length).map((column) => [column.name, valuesOf(column, points)]);
+        return { ids, at, further: new Map(further) };
     }
 
     async split(parts) {
-        const answer = await this.#json(`/v1/points:split?parts=${encodeURIComponent(parts)}`);
+        const answer = await this.#json(`${this.#dimension.root}/points:split?parts=${encodeURIComponent(parts)}`);
         return answer.parts.map(({ query, count }) => ({ cursor: query.cursor, limit: count }));
     }
 
@@ -249,6 +255,7 @@ function joined(chunks) {
 /** The bytes of an answer of rows. After a break it resumes behind the last whole row, at any replica. */
 class Answer {
     #daemon;
+    #path;
     #query;
     #whole;
     #parts = [];
@@ -258,8 +265,9 @@ class Answer {
     #first;
 
     /** `whole(bytes, response)` returns the number of whole `rows` at the start of some bytes, and their `length`. */
-    constructor(daemon, query, form, whole) {
+    constructor(daemon, dimension, query, form, whole) {
         this.#daemon = daemon;
+        this.#path = dimension.queries;
         this.#query = { ...query, ...form };
         this.#whole = whole;
     }
@@ -282,7 +290,7 @@ class Answer {
             this.#parts = [];
             this.#rows = 0;
         }
-        const response = await call("/v1/points:query", text(this.#rest()));
+        const response = await call(this.#path, text(this.#rest()));
         const count = Number(response.headers.get("strew-count"));
         if (!this.#rows) {
             this.#count = count;

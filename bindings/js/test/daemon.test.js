@@ -27,8 +27,8 @@ const headers = { "content-type": "application/json" };
 const ask = (body) => fetch(`${remote.url}/v1/points:query`, { method: "POST", body, headers });
 
 function samePoints(plan, points) {
-    const { ids, xy, further } = plan.columns();
-    assert.deepEqual([...xy], points.flatMap(({ x, y }) => [x, y]));
+    const { ids, at, further } = plan.columns();
+    assert.deepEqual([...at], points.flatMap(({ x, y }) => [x, y]));
     assert.deepEqual([...ids], points.flatMap(({ id }) => id.split(":").map(BigInt)));
     for (const [name, { names, values }] of further) {
         const expected = points.map((point) => point[name] ?? null);

@@ -8,8 +8,8 @@ use strew_plan::{Columns, library::FurtherValues};
 /// The owner of an array's memory.
 #[derive(Clone)]
 pub enum Owner {
-    /// Pairs of coordinates.
-    Coordinates(Arc<Vec<[f64; 2]>>),
+    /// Coordinates, this number of them for each point.
+    Coordinates(Arc<Vec<f64>>, usize),
     /// The ids of columns.
     Ids(Arc<Columns>),
     /// The coordinates of columns.
@@ -28,13 +28,19 @@ impl Array {
     #[getter]
     fn __array_interface__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (address, shape, kind) = match &self.0 {
-            Owner::Coordinates(at) => (at.as_ptr().addr(), vec![at.len(), 2], "f8"),
+            Owner::Coordinates(at, axes) => {
+                (at.as_ptr().addr(), vec![at.len() / axes, *axes], "f8")
+            }
             Owner::Ids(columns) => (
                 columns.ids.as_ptr().addr(),
-                vec![columns.ids.len(), 2],
+                vec![columns.len(), columns.axes],
                 "i8",
             ),
-            Owner::At(columns) => (columns.at.as_ptr().addr(), vec![columns.at.len(), 2], "f8"),
+            Owner::At(columns) => (
+                columns.at.as_ptr().addr(),
+                vec![columns.len(), columns.axes],
+                "f8",
+            ),
             Owner::Further(columns, i) => match &columns.further[*i].values {
                 FurtherValues::Numbers(v) => (v.as_ptr().addr(), vec![v.len()], "f8"),
                 FurtherValues::Names(_, v) => (v.as_ptr().addr(), vec![v.len()], "i4"),

@@ -1,8 +1,8 @@
 //! Columns as an Arrow stream, by the Arrow C data and stream interfaces.
 //!
 //! <https://arrow.apache.org/docs/format/CStreamInterface.html>. The columns are those of the daemon's Arrow
-//! answers. Numbers and indices that no layer lacks are handed over without a copy; ids become text, and pairs of
-//! coordinates two columns, a batch at a time.
+//! answers. Numbers and indices that no layer lacks are handed over without a copy; ids become text, and
+//! coordinates columns of their own, a batch at a time.
 //!
 //! A reader owns what it is handed until it calls `release`, from any thread. Everything it may look at hangs on
 //! `private_data`, which `release` drops.
@@ -194,7 +194,9 @@ unsafe extern "C" fn release_schema(schema: *mut Schema) {
 
 fn schema(source: &Source) -> Schema {
     let plain = |name, format| field(format, name, false, vec![], None, None);
-    let mut children = vec![plain("id", "u"), plain("x", "g"), plain("y", "g")];
+    let axes = ["x", "y", "z"].into_iter().take(source.columns.axes);
+    let mut children = vec![plain("id", "u")];
+    children.extend(axes.map(|axis| plain(axis, "g")));
     for Further {
         name,
         is_optional,
@@ -318,11 +320,9 @@ impl Source {
         }
         let end = (first + BATCH).min(count);
         (self.next, self.is_over) = (end, end == count);
-        let mut children = vec![
-            self.ids(first, end),
-            self.axis(0, first, end),
-            self.axis(1, first, end),
-        ];
+        let mut children = vec![self.ids(first, end)];
+        let axes = 0..self.columns.axes;
+        children.extend(axes.map(|axis| self.axis(axis, first, end)));
         for column in &self.columns.further {
             children.push(self.further(column, first, end));
         }
@@ -333,19 +333,21 @@ impl Source {
         let mut text = String::with_capacity((end - first) * 12);
         let mut offsets = Vec::with_capacity(end - first + 1);
         offsets.push(0);
-        for [x, y] in &self.columns.ids[first..end] {
-            // Writing to memory cannot fail.
-            let _ = write!(text, "{x}:{y}");
+        let axes = self.columns.axes;
+        for id in self.columns.ids[axes * first..axes * end].chunks(axes) {
+            for (i, part) in id.iter().enumerate() {
+                // Writing to memory cannot fail.
+                let _ = write!(text, "{}{part}", if i == 0 { "" } else { ":" });
+            }
             offsets.push(i32::try_from(text.len()).unwrap_or(i32::MAX));
         }
         texts(offsets, text.into_bytes())
     }
 
     fn axis(&self, axis: usize, first: usize, end: usize) -> Array {
-        let numbers: Vec<f64> = self.columns.at[first..end]
-            .iter()
-            .map(|at| at[axis])
-            .collect();
+        let axes = self.columns.axes;
+        let at = self.columns.at[axes * first..axes * end].iter();
+        let numbers: Vec<f64> = at.skip(axis).step_by(axes).copied().collect();
         let buffers = vec![ptr::null(), numbers.as_ptr().cast()];
         array(
             end - first,

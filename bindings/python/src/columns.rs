@@ -8,6 +8,7 @@ use pyo3::{
     pybacked::PyBackedBytes,
     types::{PyCapsule, PyDict},
 };
+use strew_encode::Place;
 use strew_plan::library::{Further, FurtherValues};
 
 use crate::{
@@ -24,18 +25,26 @@ type Received = (String, bool, PyBackedBytes, Option<Vec<String>>);
 
 #[pymethods]
 impl Columns {
-    /// Columns that a daemon has sent, as bytes in the order of this machine.
+    /// Columns that a daemon has sent, as bytes in the order of this machine. Points have `axes` coordinates, 2 or 3.
     #[staticmethod]
     fn received(
+        axes: usize,
         ids: &[u8],
         at: &[u8],
         further: Vec<Received>,
-        origin: Option<[f64; 2]>,
+        origin: Option<Vec<f64>>,
     ) -> PyResult<Self> {
-        let pairs = |bytes: &[u8]| -> PyResult<Vec<[f64; 2]>> {
-            paired(numbers(&bytes, f64::from_ne_bytes)?)
-        };
-        let count = at.len() / 16;
+        let ids = numbers(ids, i64::from_ne_bytes)?;
+        let at = numbers(at, f64::from_ne_bytes)?;
+        let origin = origin.map(|origin| match (axes, origin.as_slice()) {
+            (2, &[x, y]) => Ok(Place::Plane([x, y])),
+            (3, &[x, y, z]) => Ok(Place::Space([x, y, z])),
+            _ => Err(damaged()),
+        });
+        if !(2..=3).contains(&axes) || at.len() % axes != 0 || ids.len() != at.len() {
+            return Err(damaged());
+        }
+        let count = at.len() / axes;
         let column = |(name, is_optional, bytes, names): Received| -> PyResult<Further> {
             let values = match names {
                 None => FurtherValues::Numbers(numbers(&bytes, f64::from_ne_bytes)?),
@@ -62,14 +71,12 @@ impl Columns {
             })
         };
         let columns = strew_plan::Columns {
-            origin,
-            ids: paired(numbers(ids, i64::from_ne_bytes)?)?,
-            at: pairs(at)?,
+            axes,
+            origin: origin.transpose()?,
+            ids,
+            at,
             further: further.into_iter().map(column).collect::<PyResult<_>>()?,
         };
-        if columns.ids.len() != count {
-            return Err(damaged());
-        }
         Ok(Self(Arc::new(columns)))
     }
 
@@ -79,16 +86,16 @@ impl Columns {
 
     /// The place that coordinates are relative to, if it is not the world's origin.
     #[getter]
-    fn origin(&self) -> Option<[f64; 2]> {
-        self.0.origin
+    fn origin(&self) -> Option<Vec<f64>> {
+        self.0.origin.map(|origin| origin.as_slice().to_vec())
     }
 
-    /// The ids, two integers each.
+    /// The ids, two integers each, three in space.
     fn ids(&self) -> Array {
         Array(Owner::Ids(self.0.clone()))
     }
 
-    /// The coordinates, two numbers each.
+    /// The coordinates, two numbers each, three in space.
     fn at(&self) -> Array {
         Array(Owner::At(self.0.clone()))
     }
@@ -130,11 +137,4 @@ fn numbers<T, const N: usize>(bytes: &[u8], read: fn([u8; N]) -> T) -> PyResult<
         return Err(damaged());
     };
     Ok(whole.iter().map(|bytes| read(*bytes)).collect())
-}
-
-fn paired<T: Copy>(numbers: Vec<T>) -> PyResult<Vec<[T; 2]>> {
-    let (pairs, []) = numbers.as_chunks::<2>() else {
-        return Err(damaged());
-    };
-    Ok(pairs.to_vec())
 }

@@ -33,29 +33,38 @@ fn library() -> PyResult<&'static Library> {
     library.as_ref().map_err(failed)
 }
 
-/// Plans the query of a body of `POST /v1/points:query`.
+/// Plans the query of a body of `POST /v1/points:query`, or of `POST /v1/space/points`.
 #[pyfunction]
 #[pyo3(name = "plan")]
-fn planned(py: Python<'_>, body: &str) -> PyResult<Plan> {
+fn planned(py: Python<'_>, body: &str, in_space: bool) -> PyResult<Plan> {
     let library = library()?;
-    let made = py.detach(|| library.plan(body.as_bytes()));
+    let made = py.detach(|| match in_space {
+        false => library.plan(body.as_bytes()),
+        true => library.plan_in_space(body.as_bytes()),
+    });
     let (planned, _) = made.map_err(|error| raised(py, &error))?;
     Ok(Plan::new(planned))
 }
 
-/// The document of `GET /v1/points/{id}` without its query.
+/// The document of `GET /v1/points/{id}`, or of `GET /v1/space/points/{id}`, without its query.
 #[pyfunction]
-fn point(py: Python<'_>, id: &str, address: &str) -> PyResult<String> {
+fn point(py: Python<'_>, id: &str, address: &str, in_space: bool) -> PyResult<String> {
     let library = library()?;
-    let found = py.detach(|| library.point(id, address));
+    let found = py.detach(|| match in_space {
+        false => library.point(id, address),
+        true => library.point_in_space(id, address),
+    });
     json(&found.map_err(|error| raised(py, &error))?)
 }
 
-/// The list of `GET /v1/nearest`.
+/// The list of `GET /v1/nearest`, or of `GET /v1/space/nearest`.
 #[pyfunction]
-fn nearest(py: Python<'_>, address: &str) -> PyResult<String> {
+fn nearest(py: Python<'_>, address: &str, in_space: bool) -> PyResult<String> {
     let library = library()?;
-    let found = py.detach(|| library.nearest(address));
+    let found = py.detach(|| match in_space {
+        false => library.nearest(address),
+        true => library.nearest_in_space(address),
+    });
     json(&found.map_err(|error| raised(py, &error))?)
 }
 

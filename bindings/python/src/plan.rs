@@ -60,7 +60,8 @@ impl Plan {
         let library = library()?;
         let made = py.detach(|| library.coordinates(&self.0));
         let made = made.map_err(|error| raised(py, &error))?;
-        Ok(Array(Owner::Coordinates(Arc::new(made))))
+        let axes = self.0.axes();
+        Ok(Array(Owner::Coordinates(Arc::new(made), axes)))
     }
 
     /// The parts: the cursor at which each begins, and its count.

@@ -10,6 +10,8 @@ region; the same query has the same points on every machine.
 >>> points.xy.shape
 (100, 2)
 
+``strew.space.points`` has the same in three dimensions, with boxes, balls, prisms and chunks.
+
 :func:`points` answers in this process. :func:`connect` asks a daemon instead; what it returns has the same
 functions and the same points.
 """
@@ -19,14 +21,16 @@ from ._fields import pixels, raster
 from ._local import LOCAL
 from ._measure import Measured, measure
 from ._points import Point, PointSet
-from ._query import Query
+from ._query import Query, SpaceQuery
 from ._remote import Daemon, connect
 from ._source import Source
+from ._space import SpacePoint, SpaceSet
 from ._strew import __version__
 
 points = LOCAL.points
 query = LOCAL.query
 stipple = LOCAL.stipple
+space = LOCAL.space
 
 __all__ = [
     "Daemon",
@@ -36,6 +40,9 @@ __all__ = [
     "PointSet",
     "Query",
     "Source",
+    "SpacePoint",
+    "SpaceQuery",
+    "SpaceSet",
     "StrewError",
     "__version__",
     "connect",
@@ -44,5 +51,6 @@ __all__ = [
     "points",
     "query",
     "raster",
+    "space",
     "stipple",
 ]

@@ -82,7 +82,7 @@ class Column:
 
 @dataclass
 class Batch:
-    """Some rows: ids as pairs, and the values of each further column."""
+    """Some rows: ids and coordinates as pairs, in space as triples, and the values of each further column."""
 
     ids: Array
     at: Array
@@ -92,8 +92,8 @@ class Batch:
 class Stream:
     """An IPC stream that is read batch by batch."""
 
-    def __init__(self, read: Read) -> None:
-        self._read = read
+    def __init__(self, read: Read, axes: str = "xy") -> None:
+        self._read, self._axes = read, len(axes)
         message = self._message()
         if message is None or message[0].number(1, "B") != SCHEMA:
             raise ValueError("an Arrow stream begins with a schema")
@@ -104,10 +104,11 @@ class Stream:
             dictionary = field.table(4)
             number = None if dictionary is None else dictionary.number(0, "q")
             columns.append(Column(field.text(0), bool(field.number(1, "?")), number, None if number is None else []))
-        if [column.name for column in columns[:3]] != ["id", "x", "y"]:
+        first = ["id", *axes]
+        if [column.name for column in columns[: len(first)]] != first:
             raise ValueError("not the columns of points")
-        #: The columns beside id, x and y.
-        self.columns = columns[3:]
+        #: The columns beside ids and coordinates.
+        self.columns = columns[len(first) :]
         #: What the stream says about itself.
         self.metadata = {pair.text(0): json.loads(pair.text(1)) for pair in schema.tables(2)}
 
@@ -146,18 +147,20 @@ class Stream:
         if head.table(3) is not None:
             raise ValueError("compressed batches are not read")
         offsets, text = _texts(rows, buffers[:3], body)
-        axes = [_numbers(rows, buffers[place], body, "<f8") for place in (4, 6)]
+        # An id has three buffers, a number two.
+        axes = [_numbers(rows, buffers[4 + 2 * axis], body, "<f8") for axis in range(self._axes)]
+        first = 3 + 2 * self._axes
         further = []
         for i, column in enumerate(self.columns):
-            validity, values = buffers[7 + 2 * i : 9 + 2 * i]
+            validity, values = buffers[first + 2 * i : first + 2 + 2 * i]
             kind = "<f8" if column.names is None else "<i4"
             numbers = _numbers(rows, values, body, kind).astype(kind[1:])
-            if nodes[3 + i][1]:
+            if nodes[1 + self._axes + i][1]:
                 bits = np.frombuffer(body, np.uint8, -(-rows // 8), validity[0])
                 is_there = np.unpackbits(bits, bitorder="little")[:rows].astype(bool)
                 numbers[~is_there] = np.nan if column.names is None else -1
             further.append(numbers)
-        return Batch(_ids(offsets, text), np.column_stack(axes), further)
+        return Batch(_ids(offsets, text, self._axes), np.column_stack(axes), further)
 
 
 def _numbers(rows: int, buffer: tuple[int, int], body: bytes, kind: str) -> Array:
@@ -171,10 +174,10 @@ def _texts(rows: int, buffers: list[tuple[int, int]], body: bytes) -> tuple[Arra
     return np.frombuffer(body, "<i4", rows + 1, offsets[0]), body[text[0] : text[0] + text[1]]
 
 
-def _ids(offsets: Array, text: bytes) -> Array:
-    """Texts ``x:y`` as pairs of integers."""
+def _ids(offsets: Array, text: bytes, axes: int) -> Array:
+    """Texts such as ``x:y`` as rows of integers."""
     if len(offsets) == 1:
-        return np.empty((0, 2), np.int64)
+        return np.empty((0, axes), np.int64)
     letters = np.frombuffer(text, np.uint8)[: offsets[-1]]
     lines = np.insert(letters, offsets[1:], ord("\n")).tobytes().replace(b":", b"\n")
-    return np.array(lines.split(), dtype=np.int64).reshape(-1, 2)
+    return np.array(lines.split(), dtype=np.int64).reshape(-1, axes)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from . import _strew
-from ._query import Body, text
+from ._query import PLANE, SPACE, Body, Dimension, text
 from ._source import Plan, Source
 
 
@@ -48,15 +48,15 @@ class Local(Source):
 
     checks_at_once = True
 
-    def plan(self, query: Body) -> Plan:
-        return _Planned(_strew.plan(text(query)))
+    def plan(self, query: Body, dimension: Dimension = PLANE) -> Plan:
+        return _Planned(_strew.plan(text(query), dimension is SPACE))
 
-    def point(self, id: str, address: str) -> dict[str, Any]:
-        point: dict[str, Any] = json.loads(_strew.point(id, address))
+    def point(self, id: str, address: str, dimension: Dimension = PLANE) -> dict[str, Any]:
+        point: dict[str, Any] = json.loads(_strew.point(id, address, dimension is SPACE))
         return point
 
-    def nearest(self, address: str) -> list[dict[str, Any]]:
-        neighbors: list[dict[str, Any]] = json.loads(_strew.nearest(address))
+    def nearest(self, address: str, dimension: Dimension = PLANE) -> list[dict[str, Any]]:
+        neighbors: list[dict[str, Any]] = json.loads(_strew.nearest(address, dimension is SPACE))
         return neighbors
 
     def hold_field(self, field: Any) -> str:

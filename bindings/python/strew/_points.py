@@ -6,15 +6,15 @@ import gzip
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from ._parameters import KINDS, WINDOW
-from ._query import OF_ANSWERS, SHAPES, Body, Shapes, address, body
+from ._query import OF_ANSWERS, PLANE, Body, Dimension, address, body
 
 if TYPE_CHECKING:
-    from typing_extensions import Unpack
+    from typing_extensions import Self, Unpack
 
     from ._parameters import Output
     from ._source import Plan, Source
@@ -47,28 +47,25 @@ class Point:
         return cls(**own, attributes=found)
 
 
-class PointSet:
-    """The points of a query, made when they are first needed.
+class Points:
+    """The points of a query, of the plane or in space: what :class:`PointSet` and ``SpaceSet`` have in common."""
 
-    A query without a region is the whole plane: it has :meth:`chunk`, :meth:`within`, :meth:`nearest` and
-    :meth:`point`. With a region it has a length and columns, too. A set is pickled as its query.
-
-    >>> import strew
-    >>> forest = strew.points(spacing=2, seed=5)
-    >>> chunk = forest.chunk(64, -3, 2)
-    >>> chunk.origin
-    (-192.0, 128.0)
-    >>> nearest = forest.nearest((100, -3), k=2)
-    >>> forest.point(nearest[0].id).x == nearest[0].x
-    True
-    """
+    _dimension: ClassVar[Dimension] = PLANE
 
     def __init__(self, source: Source, query: Body) -> None:
         self._source = source
         self._body = query
         self._plan: Plan | None = None
         self._made: Columns | None = None
-        self._xy: Floats | None = None
+        self._at: Floats | None = None
+
+    @classmethod
+    def of(cls, source: Source, query: Body) -> Self:
+        """The points of a query, which is checked at once where that costs no request."""
+        made = cls(source, dict(query))
+        if source.checks_at_once and "region" in query:
+            made.plan()
+        return made
 
     @property
     def source(self) -> Source:
@@ -77,13 +74,13 @@ class PointSet:
 
     @property
     def body(self) -> Body:
-        """The query in JSON: the body of ``POST /v1/points:query``."""
+        """The query in JSON: the body of ``POST /v1/points:query``, in space of ``POST /v1/space/points``."""
         return dict(self._body)
 
     def plan(self) -> Plan:
         """The plan: what the points are made from. Raises :class:`StrewError` for a query that is not valid."""
         if self._plan is None:
-            self._plan = self._source.plan(self._body)
+            self._plan = self._source.plan(self._body, self._dimension)
         return self._plan
 
     @property
@@ -115,24 +112,22 @@ class PointSet:
 
     # -- other regions and parts of the same points ------------------------------------------------------------
 
-    def _with(self, **members: Any) -> PointSet:
+    def _with(self, **members: Any) -> Self:
         kept = {name: value for name, value in self._body.items() if name not in members}
-        return self._source.query({**kept, **{name: value for name, value in members.items() if value is not None}})
+        more = {name: value for name, value in members.items() if value is not None}
+        return self.of(self._source, {**kept, **more})
 
-    def within(self, region: Any = None, **shape: Any) -> PointSet:
-        """The same set of points in another region: ``bbox``, ``circle``, ``polygon``, ``chunk`` or ``region``."""
+    def within(self, region: Any = None, **shape: Any) -> Self:
+        """The same set of points in another region: ``bbox``, ``circle``, ``polygon``, ``chunk`` or ``region``; in
+        space ``bbox``, ``ball``, ``prism``, ``chunk`` or ``region``."""
         if region is not None:
             shape["region"] = region
-        unknown = set(shape) - set(SHAPES) - {"region"}
+        unknown = set(shape) - set(self._dimension.shapes) - {"region"}
         if unknown or not shape:
-            raise TypeError(f"within takes one of region, {', '.join(SHAPES)}")
+            raise TypeError(f"within takes one of region, {', '.join(self._dimension.shapes)}")
         return self._with(region=body(shape)["region"], **dict.fromkeys(WINDOW))
 
-    def chunk(self, size: float, x: int, y: int) -> PointSet:
-        """The points of a square of the world grid. Coordinates are relative to its corner, :attr:`origin`."""
-        return self.within(chunk=(size, x, y))
-
-    def split(self, parts: int) -> list[PointSet]:
+    def split(self, parts: int) -> list[Self]:
         """The points in at most ``parts`` sets of the same size, give or take one, in their order.
 
         Each part is a set by itself, which another process or machine can make from its pickle.
@@ -159,14 +154,11 @@ class PointSet:
                 values[name] = self._source.hold_field(value)
         return address({name: value for name, value in values.items() if value is not None})
 
-    def nearest(self, at: Any, k: int | None = None, radius: float | None = None) -> list[Point]:
-        """The points nearest to a place, nearest first: one, or ``k``, or all within ``radius``."""
-        found = self._source.nearest(self._set(at=list(at), k=k, radius=radius))
-        return [Point._of(point) for point in found]
+    def _nearest(self, at: Any, k: int | None, radius: float | None) -> list[dict[str, Any]]:
+        return self._source.nearest(self._set(at=list(at), k=k, radius=radius), self._dimension)
 
-    def point(self, id: str) -> Point:
-        """The point of an id."""
-        return Point._of(self._source.point(id, self._set()))
+    def _point(self, id: str) -> dict[str, Any]:
+        return self._source.point(id, self._set(), self._dimension)
 
     # -- columns -----------------------------------------------------------------------------------------------
 
@@ -176,32 +168,14 @@ class PointSet:
             self._made = self.plan().columns()
         return self._made
 
-    @property
-    def xy(self) -> Floats:
-        """The coordinates: an array of pairs, read only."""
-        if self._xy is None:
-            self._xy = self.plan().coordinates() if self._made is None else np.asarray(self._made.at())
-        return self._xy
-
-    @property
-    def x(self) -> Floats:
-        """The first coordinates."""
-        return self.xy[:, 0]
-
-    @property
-    def y(self) -> Floats:
-        """The second coordinates."""
-        return self.xy[:, 1]
-
-    @property
-    def origin(self) -> tuple[float, float] | None:
-        """The place that coordinates are relative to, the corner of a chunk; `None` for the world's origin."""
-        origin = self.columns().origin
-        return None if origin is None else (origin[0], origin[1])
+    def _coordinates(self) -> Floats:
+        if self._at is None:
+            self._at = self.plan().coordinates() if self._made is None else np.asarray(self._made.at())
+        return self._at
 
     @property
     def ids(self) -> np.ndarray[Any, np.dtype[np.int64]]:
-        """The ids: an array of pairs of integers. As text an id is ``x:y``."""
+        """The ids: an array of pairs of integers, in space of triples. As text an id is ``x:y``, in space ``x:y:z``."""
         return np.asarray(self.columns().ids())
 
     @property
@@ -214,7 +188,7 @@ class PointSet:
         try:
             place = columns.names().index(name)
         except ValueError:
-            known = ", ".join(["x", "y", *columns.names()])
+            known = ", ".join([*self._dimension.axes, *columns.names()])
             raise KeyError(f"no column {name!r}; there are {known}") from None
         values, names = columns.further(place)
         return np.asarray(values), names
@@ -229,8 +203,8 @@ class PointSet:
         >>> trees.codes("variant")[0].dtype
         dtype('int32')
         """
-        if name in ("x", "y"):
-            return self.xy[:, "xy".index(name)]
+        if name in tuple(self._dimension.axes):
+            return self._coordinates()[:, self._dimension.axes.index(name)]
         values, names = self._further(name)
         # −1, the code of what is missing, is the last one.
         return values if names is None else np.array([*names, ""])[values]
@@ -242,16 +216,17 @@ class PointSet:
             raise KeyError(f"{name!r} is a column of numbers")
         return values, names
 
-    def __iter__(self) -> Iterator[Point]:
+    def _rows(self) -> Iterator[tuple[str, list[float], dict[str, Any]]]:
+        """The id, the coordinates and the attributes of each point."""
         columns = {name: self[name] for name in self.names}
-        for i, (id, at) in enumerate(zip(self.ids.tolist(), self.xy.tolist())):
-            attributes = {name: values[i].item() for name, values in columns.items()}
-            yield Point(f"{id[0]}:{id[1]}", at[0], at[1], attributes=attributes)
+        for i, (id, at) in enumerate(zip(self.ids.tolist(), self._coordinates().tolist())):
+            yield ":".join(map(str, id)), at, {name: values[i].item() for name, values in columns.items()}
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray[Any, Any]:
+        at = self._coordinates()
         if copy is None:
-            return self.xy if dtype is None else self.xy.astype(dtype, copy=False)
-        return np.array(self.xy, dtype=dtype, copy=copy)
+            return at if dtype is None else at.astype(dtype, copy=False)
+        return np.array(at, dtype=dtype, copy=copy)
 
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
         """All columns as an Arrow stream: what ``pyarrow.table``, polars and duckdb take."""
@@ -302,7 +277,7 @@ class PointSet:
     # -- identity ----------------------------------------------------------------------------------------------
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, PointSet):
+        if not isinstance(other, Points) or self._dimension is not other._dimension:
             return NotImplemented
         from ._query import text
 
@@ -314,7 +289,62 @@ class PointSet:
         from ._query import text
 
         shown = text(self._body)
-        return f"<points of {self._source!r}: {shown if len(shown) < 300 else shown[:300] + '…'}>"
+        kind = "points in space" if len(self._dimension.axes) == 3 else "points"
+        return f"<{kind} of {self._source!r}: {shown if len(shown) < 300 else shown[:300] + '…'}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return PointSet, (self._source, self._body)
+        return type(self), (self._source, self._body)
+
+
+class PointSet(Points):
+    """The points of a query of the plane, made when they are first needed.
+
+    A query without a region is the whole plane: it has :meth:`chunk`, :meth:`within`, :meth:`nearest` and
+    :meth:`point`. With a region it has a length and columns, too. A set is pickled as its query.
+
+    >>> import strew
+    >>> forest = strew.points(spacing=2, seed=5)
+    >>> chunk = forest.chunk(64, -3, 2)
+    >>> chunk.origin
+    (-192.0, 128.0)
+    >>> nearest = forest.nearest((100, -3), k=2)
+    >>> forest.point(nearest[0].id).x == nearest[0].x
+    True
+    """
+
+    def chunk(self, size: float, x: int, y: int) -> Self:
+        """The points of a square of the world grid. Coordinates are relative to its corner, :attr:`origin`."""
+        return self.within(chunk=(size, x, y))
+
+    def nearest(self, at: Any, k: int | None = None, radius: float | None = None) -> list[Point]:
+        """The points nearest to a place, nearest first: one, or ``k``, or all within ``radius``."""
+        return [Point._of(point) for point in self._nearest(at, k, radius)]
+
+    def point(self, id: str) -> Point:
+        """The point of an id."""
+        return Point._of(self._point(id))
+
+    @property
+    def xy(self) -> Floats:
+        """The coordinates: an array of pairs, read only."""
+        return self._coordinates()
+
+    @property
+    def x(self) -> Floats:
+        """The first coordinates."""
+        return self.xy[:, 0]
+
+    @property
+    def y(self) -> Floats:
+        """The second coordinates."""
+        return self.xy[:, 1]
+
+    @property
+    def origin(self) -> tuple[float, float] | None:
+        """The place that coordinates are relative to, the corner of a chunk; `None` for the world's origin."""
+        origin = self.columns().origin
+        return None if origin is None else (origin[0], origin[1])
+
+    def __iter__(self) -> Iterator[Point]:
+        for id, [x, y], attributes in self._rows():
+            yield Point(id, x, y, attributes=attributes)

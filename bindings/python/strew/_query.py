@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from keyword import iskeyword
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict
 from urllib.parse import quote
 
 import numpy as np
@@ -17,10 +18,28 @@ if TYPE_CHECKING:
 
 #: A query as the body of ``POST /v1/points:query``.
 Body: TypeAlias = "dict[str, Any]"
-#: Regions that are keywords.
+#: The regions of the plane that are keywords.
 SHAPES = (*REGIONS, "chunk")
+#: Those of space.
+VOLUMES = ("bbox", "ball", "prism", "chunk")
 #: Members of a query that are not about its set of points.
 OF_ANSWERS = ("region", *WINDOW, *OUTPUT)
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """The plane or space: the coordinates of points, the regions that are keywords, and the paths of REST."""
+
+    axes: str
+    shapes: tuple[str, ...]
+    #: What the paths begin with.
+    root: str
+    #: The path of queries that are bodies.
+    queries: str
+
+
+PLANE = Dimension("xy", SHAPES, "/v1", "/v1/points:query")
+SPACE = Dimension("xyz", VOLUMES, "/v1/space", "/v1/space/points")
 
 
 class Shapes(Regions, total=False):
@@ -42,6 +61,63 @@ class Query(Shapes, Parameters, total=False):
     layers: Sequence[Mapping[str, Any]]
 
 
+class Volumes(TypedDict, total=False):
+    """The regions of space that are keywords."""
+
+    #: The region as a box: min_x, min_y, min_z, max_x, max_y, max_z.
+    bbox: Numbers
+    #: The region as a ball: x, y, z and its radius.
+    ball: Numbers | Mapping[str, Any]
+    #: The region as an upright prism: the vertices of its base, or GeoJSON, the height of its bottom, and of its top.
+    prism: tuple[Any, float, float] | Mapping[str, Any]
+    #: size, x, y, z of a cube of the world grid; coordinates are relative to its corner.
+    chunk: Numbers | Mapping[str, Any]
+    #: Any volume as JSON has it, with ``include`` and ``exclude``.
+    region: Mapping[str, Any]
+
+
+class SpaceQuery(Volumes, total=False):
+    """The keywords of a query in space; those that the plane has, too, mean the same: see :class:`Query`."""
+
+    #: Several sets at once: a list of dicts with a ``name`` each.
+    layers: Sequence[Mapping[str, Any]]
+    #: Points per unit of volume.
+    density: float
+    #: The mean spacing in world units: density^-1/3.
+    spacing: float
+    #: The least distance of any two points in world units.
+    min_distance: float
+    #: The noise profile: blue or spaced, or what a daemon has.
+    profile: str
+    #: The number α of the pattern.
+    alpha: str | float
+    #: The size of the neighborhood map, such as r16.
+    map: str
+    #: The digest of the table that must answer.
+    table: str
+    #: Which set of points. Default: 0.
+    seed: int
+    #: The strength of the warp, from 0 to 2, ``"on"`` or ``"off"``.
+    warp: str | float
+    #: The share of points to keep, those of the lowest rank.
+    keep: float
+    #: Further values of each point: rotation (a uniform unit quaternion, the columns qx, qy, qz and qw), scale,
+    #: variant, rank, u1 to u16.
+    attributes: str | Sequence[str]
+    #: The least and the greatest value of the attribute scale.
+    scale_range: Numbers
+    #: The least and the greatest value of the attribute scale for each variant.
+    scale_ranges: Mapping[str, Numbers]
+    #: The names that the attribute variant chooses from, with their weights.
+    variants: Mapping[str, float]
+    #: The number of points to leave out.
+    offset: int
+    #: The greatest number of points.
+    limit: int
+    #: Where an earlier answer to the same query ended.
+    cursor: str
+
+
 def _region(shape: str, value: Any) -> dict[str, Any]:
     if hasattr(value, "__geo_interface__"):
         value = value.__geo_interface__
@@ -51,8 +127,13 @@ def _region(shape: str, value: Any) -> dict[str, Any]:
     if isinstance(value, (list, tuple)):
         if shape == "circle" and len(value) == 3:
             value = {"center": [value[0], value[1]], "radius": value[2]}
-        elif shape == "chunk" and len(value) == 3:
-            value = {"size": value[0], "x": value[1], "y": value[2]}
+        elif shape == "ball" and len(value) == 4:
+            value = {"center": list(value[:3]), "radius": value[3]}
+        elif shape == "chunk" and len(value) in (3, 4):
+            value = dict(zip(("size", "x", "y", "z"), value))
+        elif shape == "prism" and len(value) == 3:
+            base, bottom, top = value
+            value = {**_region("polygon", base), "bottom": bottom, "top": top}
         elif shape == "polygon":
             ring = [list(vertex) for vertex in value]
             if ring and ring[0] != ring[-1]:
@@ -69,7 +150,7 @@ def body(keywords: Mapping[str, Any]) -> Body:
             continue
         if iskeyword(name[:-1]) and name.endswith("_"):
             name = name[:-1]
-        if name in SHAPES:
+        if name in SHAPES or name in VOLUMES:
             # Several shapes are refused together, with all their names.
             made.setdefault("region", {})
             made["region"] = {**made["region"], **_region(name, value)}
@@ -110,25 +191,27 @@ def _plain(value: Any) -> Any:
 LONGEST = 2000
 
 
-def path(query: Body) -> str | None:
+def path(query: Body, dimension: Dimension = PLANE) -> str | None:
     """The address of a query that is short and means the same there, so that caches keep its answer."""
     values = {name: value for name, value in query.items() if name != "region"}
-    route = "/v1/points"
+    route = f"{dimension.root}/points"
+    circle, axes = ("ball", 3) if dimension is SPACE else ("circle", 2)
+    corner = ("size", *dimension.axes)
     if "region" in query:
         region = query["region"]
         if not isinstance(region, Mapping) or len(region) != 1:
             return None
         [(shape, place)] = region.items()
         place = place.tolist() if isinstance(place, np.ndarray) else place
-        if shape == "bbox" and _is_numbers(place, 4):
+        if shape == "bbox" and _is_numbers(place, 2 * axes):
             values["bbox"] = place
-        elif isinstance(place, Mapping) and shape == "circle" and set(place) == {"center", "radius"}:
-            values["circle"] = [*place["center"], place["radius"]] if _is_numbers(place["center"], 2) else None
-        elif isinstance(place, Mapping) and shape == "chunk" and set(place) == {"size", "x", "y"}:
-            parts = [place[name] for name in ("size", "x", "y")]
-            if not _is_numbers(parts, 3):
+        elif isinstance(place, Mapping) and shape == circle and set(place) == {"center", "radius"}:
+            values[circle] = [*place["center"], place["radius"]] if _is_numbers(place["center"], axes) else None
+        elif isinstance(place, Mapping) and shape == "chunk" and set(place) == set(corner):
+            parts = [place[name] for name in corner]
+            if not _is_numbers(parts):
                 return None
-            route = "/v1/chunks/" + "/".join(map(_text, parts))
+            route = f"{dimension.root}/chunks/" + "/".join(map(_text, parts))
         else:
             return None
     if not all(_is_plain(name, value) for name, value in values.items()):

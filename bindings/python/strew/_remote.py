@@ -14,7 +14,7 @@ import numpy as np
 
 from ._errors import Disconnected, StrewError
 from ._ipc import Batch, Column, Stream
-from ._query import Body, path, text
+from ._query import PLANE, Body, Dimension, path, text
 from ._replicas import Attempts, Elsewhere, Later, Replica, Replicas, retry_after
 from ._source import Plan, Source
 from ._strew import Columns
@@ -110,9 +110,11 @@ class Daemon(Source):
         self._replicas.answered(replica)
         raise Elsewhere(refusal) if _is_about_held(refusal) else refusal
 
-    def open_points(self, replica: Replica, query: Body) -> http.client.HTTPResponse:
+    def open_points(
+        self, replica: Replica, query: Body, dimension: Dimension = PLANE
+    ) -> http.client.HTTPResponse:
         """The points of a query: by GET if its address is short, because caches keep no answers to POST."""
-        short = path(query)
+        short = path(query, dimension)
         if short is not None:
             try:
                 return self.open(replica, "GET", short)
@@ -121,7 +123,7 @@ class Daemon(Source):
                 # An invalid query is sent again as a body, to be refused in the words of bodies.
                 if error.kind != "invalid-query":
                     raise
-        return self.open(replica, "POST", "/v1/points:query", text(query))
+        return self.open(replica, "POST", dimension.queries, text(query))
 
     def read(self, method: str, path: str, body: str | None = None) -> bytes:
         """The content of a response."""
@@ -140,15 +142,15 @@ class Daemon(Source):
     def json(self, method: str, path: str, body: str | None = None) -> Any:
         return json.loads(self.read(method, path, body))
 
-    def plan(self, query: Body) -> Plan:
-        return _Asked(self, query)
+    def plan(self, query: Body, dimension: Dimension = PLANE) -> Plan:
+        return _Asked(self, query, dimension)
 
-    def point(self, id: str, address: str) -> dict[str, Any]:
-        found: dict[str, Any] = self.json("GET", f"/v1/points/{quote(id, safe=':')}?{address}")["point"]
+    def point(self, id: str, address: str, dimension: Dimension = PLANE) -> dict[str, Any]:
+        found: dict[str, Any] = self.json("GET", f"{dimension.root}/points/{quote(id, safe=':')}?{address}")["point"]
         return found
 
-    def nearest(self, address: str) -> list[dict[str, Any]]:
-        found: list[dict[str, Any]] = self.json("GET", f"/v1/nearest?{address}")["neighbors"]
+    def nearest(self, address: str, dimension: Dimension = PLANE) -> list[dict[str, Any]]:
+        found: list[dict[str, Any]] = self.json("GET", f"{dimension.root}/nearest?{address}")["neighbors"]
         return found
 
     def hold_field(self, field: Any) -> str:
@@ -222,10 +224,16 @@ def _refusal(response: http.client.HTTPResponse, content: bytes) -> StrewError:
 class _Asked:
     """A query of a daemon."""
 
-    def __init__(self, daemon: Daemon, query: Body) -> None:
-        self._daemon, self._query = daemon, query
+    def __init__(self, daemon: Daemon, query: Body, dimension: Dimension) -> None:
+        self._daemon, self._query, self._dimension = daemon, query, dimension
         self._counted: tuple[int, dict[str, Any]] | None = None
         self._begun: tuple[str | None, list[str]] | None = None
+
+    def _split(self, parts: int) -> str:
+        return f"{self._dimension.root}/points:split?parts={quote(str(parts))}"
+
+    def _open(self, replica: Replica, **more: Any) -> http.client.HTTPResponse:
+        return self._daemon.open_points(replica, {**self._query, **more}, self._dimension)
 
     def _body(self, **more: Any) -> str:
         return text({**self._query, **more})
@@ -235,15 +243,16 @@ class _Asked:
             window = {"offset", "limit", "cursor"} & set(self._query)
             if window:
                 # The count of a window comes with its split into one part.
-                count = self._daemon.json("POST", "/v1/points:split?parts=1", self._body())["count"]
-                first = self._daemon.json("POST", "/v1/points:query", self._body(format="json", limit=1))["query"]
+                count = self._daemon.json("POST", self._split(1), self._body())["count"]
+                one = self._body(format="json", limit=1)
+                first = self._daemon.json("POST", self._dimension.queries, one)["query"]
                 # These members describe the document, not the points.
                 first = {name: first[name] for name in first if name not in ("format", "relative_to", "limit")}
                 if "limit" in window:
                     first["limit"] = self._query["limit"]
                 self._counted = count, first
             else:
-                counted = self._daemon.json("POST", "/v1/count", self._body())
+                counted = self._daemon.json("POST", f"{self._dimension.root}/count", self._body())
                 self._counted = counted["count"], counted["query"]
         return self._counted
 
@@ -255,9 +264,8 @@ class _Asked:
 
     def _first(self) -> tuple[str | None, list[str]]:
         if self._begun is None:
-            daemon = self._daemon
-            for attempt in daemon.attempts():
-                with attempt as replica, daemon.open_points(replica, {**self._query, "format": "f32"}) as response:
+            for attempt in self._daemon.attempts():
+                with attempt as replica, self._open(replica, format="f32") as response:
                     self._begun = response.headers.get("strew-next"), _tables(response)
                     break
         assert self._begun is not None
@@ -270,7 +278,7 @@ class _Asked:
         return self._first()[0]
 
     def split(self, parts: int) -> list[tuple[str, int]]:
-        answer = self._daemon.json("POST", f"/v1/points:split?parts={quote(str(parts))}", self._body())
+        answer = self._daemon.json("POST", self._split(parts), self._body())
         return [(part["query"]["cursor"], part["count"]) for part in answer["parts"]]
 
     def document(self, options: Sequence[tuple[str, str]]) -> bytes:
@@ -279,7 +287,7 @@ class _Asked:
             if given.get(name, "").isdigit():
                 given[name] = int(given[name])
         for attempt in self._daemon.attempts():
-            with attempt as replica, self._daemon.open_points(replica, {**self._query, **given}) as response:
+            with attempt as replica, self._open(replica, **given) as response:
                 return response.read()
         raise AssertionError("the last attempt raises")
 
@@ -287,14 +295,14 @@ class _Asked:
         return np.asarray(self.columns().at())
 
     def columns(self) -> Columns:
-        answer = _Answer(self._daemon, self._query)
+        answer = _Answer(self._daemon, self._query, self._dimension)
         batches, columns = answer.batches, answer.columns
         ids, at = (_joined([getattr(batch, name) for batch in batches]) for name in ("ids", "at"))
         further = []
         for i, column in enumerate(columns):
             values = _joined([batch.further[i] for batch in batches])
             further.append((column.name, column.is_optional, values, column.names))
-        return Columns.received(ids, at, further, answer.origin)
+        return Columns.received(len(self._dimension.axes), ids, at, further, answer.origin)
 
 
 def _tables(response: http.client.HTTPResponse) -> list[str]:
@@ -308,10 +316,10 @@ def _joined(arrays: list[np.ndarray[Any, Any]]) -> bytes:
 class _Answer:
     """The batches of an answer. One that breaks off goes on after the rows that came."""
 
-    def __init__(self, daemon: Daemon, query: Body) -> None:
-        self._daemon, self._query = daemon, query
+    def __init__(self, daemon: Daemon, query: Body, dimension: Dimension) -> None:
+        self._daemon, self._query, self._dimension = daemon, query, dimension
         self.columns: list[Column] = []
-        self.origin: tuple[float, float] | None = None
+        self.origin: tuple[float, ...] | None = None
         self.batches: list[Batch] = []
         self._rows = 0
         #: How many rows the answer has, and the cursor of its first point.
@@ -336,12 +344,12 @@ class _Answer:
         if self._cursor is None or not self._rows:
             # Short answers have no cursor: they begin again. So does one of which nothing came.
             self._rows, self._expected, self._cursor, self.batches = 0, None, None, []
-        with self._daemon.open_points(replica, self._rest()) as response:
+        with self._daemon.open_points(replica, self._rest(), self._dimension) as response:
             count = int(response.headers["strew-count"])
             if self._expected is None:
                 self._expected, self._cursor = count, response.headers.get("strew-cursor")
                 self.origin = _origin(response)
-            stream = Stream(_exactly(response))
+            stream = Stream(_exactly(response), self._dimension.axes)
             if self._rows:
                 self._check(count, stream.columns)
             self.columns = stream.columns
@@ -370,12 +378,9 @@ class _Answer:
             raise StrewError(f"the answer has {count} points in other columns or of another number", "other-answer")
 
 
-def _origin(response: http.client.HTTPResponse) -> tuple[float, float] | None:
+def _origin(response: http.client.HTTPResponse) -> tuple[float, ...] | None:
     origin = response.headers.get("strew-origin")
-    if origin is None:
-        return None
-    x, y = origin.split(",")
-    return float(x), float(y)
+    return None if origin is None else tuple(map(float, origin.split(",")))
 
 
 def _exactly(response: http.client.HTTPResponse) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -9,7 +10,8 @@ import numpy as np
 
 from ._fields import darkness, raster
 from ._points import PointSet
-from ._query import Body, Query, body
+from ._query import PLANE, Body, Dimension, Query, body
+from ._space import Space
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -33,13 +35,13 @@ class Plan(Protocol):
 class Source:
     """Where points come from."""
 
-    def plan(self, query: Body) -> Plan:
+    def plan(self, query: Body, dimension: Dimension = PLANE) -> Plan:
         raise NotImplementedError
 
-    def point(self, id: str, address: str) -> dict[str, Any]:
+    def point(self, id: str, address: str, dimension: Dimension = PLANE) -> dict[str, Any]:
         raise NotImplementedError
 
-    def nearest(self, address: str) -> list[dict[str, Any]]:
+    def nearest(self, address: str, dimension: Dimension = PLANE) -> list[dict[str, Any]]:
         raise NotImplementedError
 
     def hold_field(self, field: Any) -> str:
@@ -65,10 +67,12 @@ class Source:
         >>> strew.query({"region": {"bbox": [0, 0, 10, 10]}, "spacing": 1, "seed": 7}).count()
         100
         """
-        made = PointSet(self, dict(query))
-        if self.checks_at_once and "region" in query:
-            made.plan()
-        return made
+        return PointSet.of(self, query)
+
+    @functools.cached_property
+    def space(self) -> Space:
+        """Points in space: ``space.points(ball=(0, 0, 0, 9), spacing=1)``."""
+        return Space(self)
 
     def stipple(
         self,

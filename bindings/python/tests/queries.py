@@ -75,3 +75,61 @@ def _set(chance: random.Random) -> dict[str, Any]:
             ]
         )
     return query
+
+
+def random_query_in_space(seed: int) -> dict[str, Any]:
+    """A valid query in space of up to a few hundred points."""
+    chance = random.Random(seed)
+    query: dict[str, Any] = _set_in_space(chance)
+    if chance.random() < 0.15:
+        layers = [dict(_set_in_space(chance), name=f"layer{i}") for i in range(2)]
+        if chance.random() < 0.5:
+            layers[-1]["clear_of"] = {"layer0": chance.uniform(0.1, 1)}
+        query = {"layers": layers}
+    query["region"] = _volume(chance)
+    if chance.random() < 0.1:
+        query["offset"] = chance.randint(0, 20)
+    if chance.random() < 0.1:
+        query["limit"] = chance.randint(1, 50)
+    return query
+
+
+def _volume(chance: random.Random) -> dict[str, Any]:
+    x, y, z = (chance.uniform(-1, 1) * 10 ** chance.randint(0, 6) for _ in "xyz")
+    size = chance.uniform(2, 12)
+    kind = chance.randrange(5)
+    if kind == 0:
+        return {"ball": {"center": [x, y, z], "radius": size / 2}}
+    if kind == 1:
+        place = {axis: chance.randint(-9, 9) for axis in "xyz"}
+        return {"chunk": {"size": chance.choice([4, 8, 10.5]), **place}}
+    if kind == 2:
+        ring = [[x, y], [x + size, y + 1], [x + 2, y + size], [x, y]]
+        polygon = {"type": "Polygon", "coordinates": [ring]}
+        return {"prism": {"polygon": polygon, "bottom": z, "top": z + size}}
+    return {"bbox": [x, y, z, x + size, y + chance.uniform(2, 12), z + chance.uniform(2, 12)]}
+
+
+def _set_in_space(chance: random.Random) -> dict[str, Any]:
+    query: dict[str, Any] = {}
+    kind = chance.randrange(8)
+    if kind == 0:
+        query["density"] = chance.uniform(0.1, 2)
+    elif kind == 1:
+        query["min_distance"] = chance.uniform(0.5, 2)
+    else:
+        query["spacing"] = chance.uniform(0.8, 4)
+    if chance.random() < 0.8:
+        query["seed"] = chance.choice([chance.randrange(1 << 64), chance.randrange(100)])
+    if chance.random() < 0.2 and kind != 1:
+        query["profile"] = "spaced"
+    if chance.random() < 0.2:
+        query["warp"] = chance.choice(["off", "on", 0.5])
+    if chance.random() < 0.2:
+        query["keep"] = chance.uniform(0.1, 1)
+    if chance.random() < 0.4:
+        names = ["rotation", "scale", "rank", "u1", "u16", "variant"]
+        query["attributes"] = chance.sample(names, chance.randint(1, 4))
+        if "variant" in query["attributes"]:
+            query["variants"] = {name: chance.uniform(0.5, 3) for name in chance.sample(NAMES, chance.randint(1, 3))}
+    return query

@@ -309,6 +309,16 @@ impl Planned {
         self.count
     }
 
+    /// The number of coordinates of each point: 2, or 3 in space.
+    #[must_use]
+    pub const fn axes(&self) -> usize {
+        if self.query.region.volume.is_some() {
+            3
+        } else {
+            2
+        }
+    }
+
     /// The number of the query's points before those of the answer.
     #[must_use]
     pub const fn offset(&self) -> u128 {

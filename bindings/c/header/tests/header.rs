@@ -7,7 +7,7 @@ fn the_header_is_current() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let root = root.parent().expect("the folder of the library");
     let config = cbindgen::Config::from_file(root.join("cbindgen.toml")).expect("cbindgen.toml");
-    let sources = ["handles", "plan", "single", "failure"];
+    let sources = ["handles", "plan", "single", "space", "failure"];
     let builder = sources
         .iter()
         .fold(cbindgen::Builder::new(), |builder, name| {

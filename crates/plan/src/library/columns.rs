@@ -3,21 +3,23 @@
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use strew_core::{F32, F64, Point};
-use strew_encode::{Coordinates, Encoding, Kind, Output, Part, Place, Rows, Values};
+use strew_core::{F32, F64};
+use strew_encode::{Batch, Coordinates, Kind, Part, Place, Rows, Source, Values};
 use strew_error::Error;
 
 use crate::Planned;
 
 /// Points as columns of the same length.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
+    /// The number of coordinates of each point: 2, or 3 in space.
+    pub axes: usize,
     /// The origin of the coordinates, if it is not the world's: the corner of a chunk.
-    pub origin: Option<[f64; 2]>,
-    /// The stable ids: lattice addresses, `x:y` in text.
-    pub ids: Vec<[i64; 2]>,
-    /// The coordinates.
-    pub at: Vec<[f64; 2]>,
+    pub origin: Option<Place>,
+    /// The stable ids, lattice addresses: `axes` integers for each point, `x:y` or `x:y:z` in text.
+    pub ids: Vec<i64>,
+    /// The coordinates, `axes` numbers for each point.
+    pub at: Vec<f64>,
     /// The layer, if there are layers, then attributes, in the order of the query.
     pub further: Vec<Further>,
 }
@@ -51,12 +53,14 @@ impl Columns {
     /// The `count` points of a plan.
     pub(super) fn of(planned: &Planned, count: usize) -> Result<Self, Error> {
         let parts = planned.parts()?;
-        let coordinates = coordinates_of(planned);
-        let (mut ids, mut at) = (room::<[i64; 2]>(count)?, room::<[f64; 2]>(count)?);
+        let (axes, coordinates) = (planned.axes(), coordinates_of(planned));
+        let numbers = count.saturating_mul(axes);
+        let (mut ids, mut at) = (room::<i64>(numbers)?, room::<f64>(numbers)?);
         let size = piece(count);
-        let pieces = ids.par_chunks_mut(size).zip(at.par_chunks_mut(size));
+        let pieces = ids.par_chunks_mut(axes * size);
+        let pieces = pieces.zip(at.par_chunks_mut(axes * size));
         let pieces = pieces.enumerate().map(|(i, (ids, at))| {
-            let mut rows = Rows::new(window(&parts, i * size, ids.len()), coordinates);
+            let mut rows = Rows::new(window(&parts, i * size, at.len() / axes), coordinates);
             fill(&mut rows, ids, at)
         });
         let pieces: Vec<Vec<Further>> = pieces.collect();
@@ -70,7 +74,8 @@ impl Columns {
             }
         }
         Ok(Self {
-            origin: coordinates.origin().map(Place::flat),
+            axes,
+            origin: coordinates.origin(),
             ids,
             at,
             further,
@@ -80,7 +85,7 @@ impl Columns {
     /// The number of points.
     #[must_use]
     pub const fn len(&self) -> usize {
-        self.at.len()
+        self.at.len() / self.axes
     }
 
     /// Whether there are none.
@@ -90,64 +95,84 @@ impl Columns {
     }
 }
 
-/// The coordinates of the `count` points of a plan.
-pub(super) fn coordinates(planned: &Planned, count: usize) -> Result<Vec<[f64; 2]>, Error> {
-    let mut at = room::<[f64; 2]>(count)?;
+/// The coordinates of the `count` points of a plan, as many numbers for each as it has axes.
+pub(super) fn coordinates(planned: &Planned, count: usize) -> Result<Vec<f64>, Error> {
+    let mut at = room::<f64>(count.saturating_mul(planned.axes()))?;
     fill_coordinates(planned, &mut at)?;
     Ok(at)
 }
 
-/// Writes the coordinates of a plan's points to `at`, which has one place for each.
-pub(super) fn fill_coordinates(planned: &Planned, at: &mut [[f64; 2]]) -> Result<(), Error> {
-    let coordinates = coordinates_of(planned);
+/// Writes the coordinates of a plan's points to `at`, which has exactly the room for them.
+pub(super) fn fill_coordinates(planned: &Planned, at: &mut [f64]) -> Result<(), Error> {
+    let (axes, coordinates) = (planned.axes(), coordinates_of(planned));
     let parts = bare(planned)?;
-    let size = piece(at.len());
-    at.par_chunks_mut(size).enumerate().for_each(|(i, at)| {
-        let parts = window(&parts, i * size, at.len());
+    let size = piece(at.len() / axes);
+    let pieces = at.par_chunks_mut(axes * size).enumerate();
+    pieces.for_each(|(i, at)| {
+        let parts = window(&parts, i * size, at.len() / axes);
         if let ([part], Coordinates::World) = (parts.as_slice(), coordinates)
-            && let Some(plan) = part.plan.plane()
+            && write_world(&*part.plan, at)
         {
-            plan.blocks::<F64>().fill(at);
             return;
         }
         let mut rows = Rows::new(parts, coordinates);
         let mut filled = 0;
         while let Some(batch) = rows.next(BATCH) {
-            for point in batch.points {
-                at[filled] = [point.x, point.y];
-                filled += 1;
-            }
+            write_places(&batch, &mut at[filled..]);
+            filled += axes * batch.points.len();
         }
     });
     Ok(())
 }
 
-/// Writes the offsets of a plan's points to `at`, which has one place for each. Returns their origin.
-pub(super) fn fill_offsets(planned: &Planned, at: &mut [[f32; 2]]) -> Result<[f64; 2], Error> {
-    let parts = bare(planned)?;
-    let output = Output {
-        relative_to: planned.query.region.corner,
-        ..Output::new(Encoding::F32)
-    };
-    let coordinates = Coordinates::of(&output, || Part::corner(&parts));
-    let size = piece(at.len());
-    at.par_chunks_mut(size).enumerate().for_each(|(i, at)| {
-        let parts = window(&parts, i * size, at.len());
+/// Writes coordinates of the world as the kernel makes them. Returns false, without them, for a period.
+fn write_world(plan: &dyn Source, at: &mut [f64]) -> bool {
+    if let Some(plan) = plan.plane() {
+        plan.blocks::<F64>().fill(at.as_chunks_mut().0);
+    } else if let Some(plan) = plan.space() {
+        plan.blocks::<F64>().fill(at.as_chunks_mut().0);
+    } else {
+        return false;
+    }
+    true
+}
+
+/// Writes the offsets of a plan's points to `at`, which has exactly the room for them. Returns their origin.
+pub(super) fn fill_offsets(planned: &Planned, at: &mut [f32]) -> Result<Place, Error> {
+    let (axes, parts) = (planned.axes(), bare(planned)?);
+    let corner = planned.query.region.corner;
+    let origin = corner.unwrap_or_else(|| Part::corner(&parts));
+    let size = piece(at.len() / axes);
+    let pieces = at.par_chunks_mut(axes * size).enumerate();
+    pieces.for_each(|(i, at)| {
+        let parts = window(&parts, i * size, at.len() / axes);
         if let [part] = parts.as_slice()
-            && let Some(plan) = part.plan.plane()
-            && coordinates.origin() == Some(Place::Plane(plan.origin()))
+            && write_offsets(&*part.plan, origin, at)
         {
-            plan.blocks::<F32>().fill(at);
             return;
         }
-        let mut rows = Rows::new(parts, coordinates);
+        let mut rows = Rows::new(parts, Coordinates::Near(origin));
         let mut filled = 0;
         while let Some(batch) = rows.next(BATCH) {
-            at[filled..filled + batch.near.len()].copy_from_slice(batch.near);
-            filled += batch.near.len();
+            write_near(&batch, &mut at[filled..]);
+            filled += axes * batch.points.len();
         }
     });
-    Ok(coordinates.origin().map_or([0.0; 2], Place::flat))
+    Ok(origin)
+}
+
+/// Writes offsets as the kernel makes them. Returns false, without them, if its origin is another one.
+fn write_offsets(plan: &dyn Source, origin: Place, at: &mut [f32]) -> bool {
+    match (plan.plane(), plan.space(), origin) {
+        (Some(plan), _, Place::Plane(origin)) if plan.origin() == origin => {
+            plan.blocks::<F32>().fill(at.as_chunks_mut().0);
+        }
+        (_, Some(plan), Place::Space(origin)) if plan.origin() == origin => {
+            plan.blocks::<F32>().fill(at.as_chunks_mut().0);
+        }
+        _ => return false,
+    }
+    true
 }
 
 /// The parts of a plan without layers and attributes.
@@ -196,7 +221,7 @@ fn window(parts: &[Part], first: usize, count: usize) -> Vec<Part> {
     parts.iter().map(cut).collect()
 }
 
-/// The columns of some rows, without values.
+/// The columns of some rows, without values. Heights of points in space are among the coordinates.
 fn columns(rows: &Rows) -> Vec<Further> {
     let column = |column: &strew_encode::Column| Further {
         name: column.name.clone(),
@@ -206,26 +231,65 @@ fn columns(rows: &Rows) -> Vec<Further> {
             Kind::Dictionary(names) => FurtherValues::Names(names.clone(), vec![]),
         },
     };
-    rows.schema().columns().iter().map(column).collect()
+    let schema = rows.schema();
+    let heights = usize::from(schema.is_in_space());
+    schema.columns()[heights..].iter().map(column).collect()
 }
 
 /// Writes all rows; returns the values of their columns.
-fn fill(rows: &mut Rows, ids: &mut [[i64; 2]], at: &mut [[f64; 2]]) -> Vec<Further> {
+fn fill(rows: &mut Rows, ids: &mut [i64], at: &mut [f64]) -> Vec<Further> {
     let mut further = columns(rows);
+    let heights = usize::from(rows.schema().is_in_space());
+    let axes = 2 + heights;
     let mut filled = 0;
     while let Some(batch) = rows.next(BATCH) {
+        write_ids(&batch, &mut ids[filled..]);
+        write_places(&batch, &mut at[filled..]);
         let count = batch.points.len();
-        let (ids, at) = (&mut ids[filled..], &mut at[filled..]);
-        for ((id, at), point) in ids.iter_mut().zip(at).zip(batch.points) {
-            let Point { id: own, x, y } = *point;
-            (*id, *at) = ([own.x, own.y], [x, y]);
-        }
-        for (column, values) in further.iter_mut().zip(batch.columns) {
+        for (column, values) in further.iter_mut().zip(&batch.columns[heights..]) {
             column.values.extend(values, count);
         }
-        filled += count;
+        filled += axes * count;
     }
     further
+}
+
+fn write_ids(batch: &Batch<'_>, ids: &mut [i64]) {
+    if batch.heights.is_empty() {
+        for (own, point) in ids.as_chunks_mut().0.iter_mut().zip(batch.points) {
+            *own = [point.id.x, point.id.y];
+        }
+        return;
+    }
+    let points = batch.points.iter().zip(batch.heights);
+    for (own, (point, height)) in ids.as_chunks_mut().0.iter_mut().zip(points) {
+        *own = [point.id.x, point.id.y, height.address];
+    }
+}
+
+fn write_places(batch: &Batch<'_>, at: &mut [f64]) {
+    if batch.heights.is_empty() {
+        for (at, point) in at.as_chunks_mut().0.iter_mut().zip(batch.points) {
+            *at = [point.x, point.y];
+        }
+        return;
+    }
+    let points = batch.points.iter().zip(batch.heights);
+    for (at, (point, height)) in at.as_chunks_mut().0.iter_mut().zip(points) {
+        *at = [point.x, point.y, height.z];
+    }
+}
+
+fn write_near(batch: &Batch<'_>, at: &mut [f32]) {
+    if batch.heights.is_empty() {
+        at[..2 * batch.near.len()].copy_from_slice(batch.near.as_flattened());
+        return;
+    }
+    let places = batch.near.iter().zip(batch.heights);
+    for (at, ([x, y], height)) in at.as_chunks_mut().0.iter_mut().zip(places) {
+        // Heights beside `f32` coordinates are of that precision.
+        *at = [*x, *y, height.z as f32];
+    }
 }
 
 impl FurtherValues {

@@ -1,7 +1,7 @@
 //! The service within a program, without a daemon: queries go in as text, points come out as columns.
 //!
 //! The bindings for other languages use it. A [`Library`] reads the bodies and the addresses that
-//! REST takes, refuses them with the same words, and has the same points. It answers in the calling thread and
+//! REST takes, of the plane and of space, refuses them with the same words, and has the same points. It answers in the calling thread and
 //! fills large answers on all threads of rayon's pool.
 
 mod columns;
@@ -21,11 +21,12 @@ use strew_catalog::{
 };
 use strew_config::{ConfigError, Layers, Limits};
 use strew_core::{Table, server::Stop};
-use strew_encode::{Answer, Encoding, Output};
+use strew_encode::{Answer, Encoding, Output, Place};
 use strew_error::{Error, Fault};
 use strew_query as query;
 use strew_query::{
-    Assets, Draft, Nearest, Options, Query, Set, Token, groups, parse_pairs, read_body,
+    Assets, Draft, Group, Nearest, Options, Query, Set, Token, Values, groups, parse_pairs,
+    read_body,
 };
 
 use crate::{
@@ -131,16 +132,28 @@ impl Library {
         self.plan_draft(&Draft::of(parse_pairs(address, groups::POINTS)))
     }
 
+    /// Plans the query of a body of `POST /v1/space/points`.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    pub fn plan_in_space(&self, body: &[u8]) -> Result<(Planned, Options), Error> {
+        self.plan_draft(&read_body(body, groups::SPACE_QUERY)?)
+    }
+
     /// Reads a query: a body if it begins with `{`, else an address. It is not checked yet.
     ///
     /// # Errors
     /// [`Error::Invalid`] for a body that is not JSON.
     pub fn read(text: &str) -> Result<Draft, Error> {
-        let text = text.trim();
-        match text.starts_with('{') {
-            true => Ok(read_body(text.as_bytes(), groups::QUERY)?),
-            false => Ok(Draft::of(parse_pairs(text, groups::POINTS))),
-        }
+        read(text, groups::QUERY, groups::POINTS)
+    }
+
+    /// Reads a query in space: a body of `POST /v1/space/points`, or the text after `/v1/space/points?`.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_in_space(text: &str) -> Result<Draft, Error> {
+        read(text, groups::SPACE_QUERY, groups::SPACE_POINTS)
     }
 
     /// Plans a query.
@@ -153,7 +166,9 @@ impl Library {
     }
 
     fn planned(&self, query: Query) -> Result<Planned, Error> {
-        let tables = query.sets.iter().map(|set| store::ready(set, self));
+        // Tables in space are ready as they are.
+        let flat = query.sets.iter().filter(|set| set.space().is_none());
+        let tables = flat.map(|set| store::ready(set, self));
         let tables = tables.collect::<Result<Vec<_>, _>>()?;
         Planned::new(query, &tables, &self.limits)
     }
@@ -166,11 +181,12 @@ impl Library {
         Columns::of(planned, self.count_to_make(planned)?)
     }
 
-    /// The coordinates of a planned query's points alone, which takes a fraction of the time.
+    /// The coordinates of a planned query's points alone, which takes a fraction of the time: as many numbers for each
+    /// point as it has [`axes`](Planned::axes).
     ///
     /// # Errors
     /// As [`columns`](Self::columns).
-    pub fn coordinates(&self, planned: &Planned) -> Result<Vec<[f64; 2]>, Error> {
+    pub fn coordinates(&self, planned: &Planned) -> Result<Vec<f64>, Error> {
         columns::coordinates(planned, self.count_to_make(planned)?)
     }
 
@@ -178,10 +194,10 @@ impl Library {
     ///
     /// # Errors
     /// As [`columns`](Self::columns); [`Error::Invalid`] if `at` is too short.
-    pub fn fill_coordinates(&self, planned: &Planned, at: &mut [[f64; 2]]) -> Result<usize, Error> {
+    pub fn fill_coordinates(&self, planned: &Planned, at: &mut [f64]) -> Result<usize, Error> {
         let at = self.places(planned, at)?;
         columns::fill_coordinates(planned, at)?;
-        Ok(at.len())
+        Ok(at.len() / planned.axes())
     }
 
     /// Writes the offsets of a planned query's points to the beginning of `at`: the coordinates of the format `f32`.
@@ -189,20 +205,17 @@ impl Library {
     ///
     /// # Errors
     /// As [`fill_coordinates`](Self::fill_coordinates).
-    pub fn fill_offsets(
-        &self,
-        planned: &Planned,
-        at: &mut [[f32; 2]],
-    ) -> Result<(usize, [f64; 2]), Error> {
+    pub fn fill_offsets(&self, planned: &Planned, at: &mut [f32]) -> Result<(usize, Place), Error> {
         let at = self.places(planned, at)?;
         let origin = columns::fill_offsets(planned, at)?;
-        Ok((at.len(), origin))
+        Ok((at.len() / planned.axes(), origin))
     }
 
-    /// The places for all points of a plan.
+    /// The places for the coordinates of all points of a plan.
     fn places<'a, T>(&self, planned: &Planned, room: &'a mut [T]) -> Result<&'a mut [T], Error> {
-        let (count, length) = (self.count_to_make(planned)?, room.len());
-        room.get_mut(..count).ok_or_else(|| {
+        let (count, axes) = (self.count_to_make(planned)?, planned.axes());
+        let length = room.len() / axes;
+        room.get_mut(..count.saturating_mul(axes)).ok_or_else(|| {
             let detail = format!("has room for fewer than the {count} points");
             Fault::new("capacity", length, detail, format!("{count} or more")).into()
         })
@@ -234,7 +247,7 @@ impl Library {
     /// # Errors
     /// [`Error::Invalid`] for a number of parts that is not allowed, else as [`Planned::split`].
     pub fn split(&self, planned: &Planned, parts: &str) -> Result<Vec<(Token, u64)>, Error> {
-        let mut values = query::Values::new(groups::SPLIT, "");
+        let mut values = Values::new(groups::SPLIT, "");
         values.add_text(query::parameters::PARTS.name, parts);
         planned.split(query::parts(&values)?)
     }
@@ -244,8 +257,19 @@ impl Library {
     /// # Errors
     /// The error that the daemon answers.
     pub fn point(&self, id: &str, address: &str) -> Result<Found, Error> {
-        let values = parse_pairs(address, groups::SINGLE);
-        let set = Set::single(&values, &self.assets.catalog)?;
+        self.point_of(id, &parse_pairs(address, groups::SINGLE))
+    }
+
+    /// The point in space of an id, in the set of an address: the text after `/v1/space/points/{id}?`.
+    ///
+    /// # Errors
+    /// The error that the daemon answers.
+    pub fn point_in_space(&self, id: &str, address: &str) -> Result<Found, Error> {
+        self.point_of(id, &parse_pairs(address, groups::SPACE_SET))
+    }
+
+    fn point_of(&self, id: &str, set: &Values) -> Result<Found, Error> {
+        let set = Set::single(set, &self.assets.catalog)?;
         self.placed(set)?.point(id)
     }
 
@@ -254,8 +278,19 @@ impl Library {
     /// # Errors
     /// The error that the daemon answers.
     pub fn nearest(&self, address: &str) -> Result<Vec<Found>, Error> {
-        let values = parse_pairs(address, groups::NEAREST);
-        let (set, nearest) = Nearest::of_set(&values, &self.assets.catalog)?;
+        self.nearest_of(&parse_pairs(address, groups::NEAREST))
+    }
+
+    /// The points in space nearest to a place, by an address: the text after `/v1/space/nearest?`.
+    ///
+    /// # Errors
+    /// The error that the daemon answers.
+    pub fn nearest_in_space(&self, address: &str) -> Result<Vec<Found>, Error> {
+        self.nearest_of(&parse_pairs(address, groups::SPACE_NEAREST))
+    }
+
+    fn nearest_of(&self, values: &Values) -> Result<Vec<Found>, Error> {
+        let (set, nearest) = Nearest::of_set(values, &self.assets.catalog)?;
         self.placed(set)?.nearest(nearest)
     }
 
@@ -276,6 +311,9 @@ impl Library {
     }
 
     fn placed(&self, set: Box<Set>) -> Result<Placed, Error> {
+        if set.space().is_some() {
+            return Placed::in_space(set);
+        }
         let ready = store::ready(&set, self)?;
         Placed::new(set, ready)
     }
@@ -308,6 +346,15 @@ impl Library {
 
     fn known(&self) -> MutexGuard<'_, HashMap<String, Ready>> {
         self.ready.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Reads a query of some parameters: a body, or an address, which may have the region among them.
+fn read(text: &str, body: &'static [Group], address: &'static [Group]) -> Result<Draft, Error> {
+    let text = text.trim();
+    match text.starts_with('{') {
+        true => Ok(read_body(text.as_bytes(), body)?),
+        false => Ok(Draft::of(parse_pairs(text, address))),
     }
 }
 
@@ -355,5 +402,7 @@ pub fn hold_field(
     })
 }
 
+#[cfg(test)]
+mod space_tests;
 #[cfg(test)]
 mod tests;

@@ -31,7 +31,8 @@ fn columns_are_the_rows_of_the_answer() {
     assert_eq!(lines.remove(0), "layer,id,x,y,angle,variant");
     assert_eq!(lines.len(), columns.len());
     for (i, line) in lines.iter().enumerate() {
-        let ([x, y], [a, b]) = (columns.at[i], columns.ids[i]);
+        let [x, y] = [columns.at[2 * i], columns.at[2 * i + 1]];
+        let [a, b] = [columns.ids[2 * i], columns.ids[2 * i + 1]];
         let value = |column: &Further| match &column.values {
             FurtherValues::Numbers(v) if v[i].is_nan() => String::new(),
             FurtherValues::Numbers(v) => strew_error::number(v[i]),
@@ -85,8 +86,8 @@ fn chunks_are_relative_to_their_corner_and_parts_are_the_whole() {
     };
     let plan = |more: &str| library.plan(body(more).as_bytes()).expect("valid").0;
     let whole = library.columns(&plan("")).expect("few");
-    assert_eq!(whole.origin, Some([-192.0, 128.0]));
-    assert!(whole.at.iter().flatten().all(|v| (0.0..64.0).contains(v)));
+    assert_eq!(whole.origin, Some(Place::Plane([-192.0, 128.0])));
+    assert!(whole.at.iter().all(|v| (0.0..64.0).contains(v)));
     let mut joined = vec![];
     for (cursor, count) in library.split(&plan(""), "3").expect("three") {
         let part = plan(&format!(r#", "cursor": "{cursor}", "limit": {count}"#));
@@ -112,21 +113,21 @@ fn offsets_are_those_of_the_format_f32_and_need_room() {
         let draft = Library::read(query).expect("read");
         let (planned, options) = library.plan_draft(&draft).expect(query);
         let count = library.columns(&planned).expect("few").len();
-        let mut at = vec![[0_f32; 2]; count + 1];
+        let mut at = vec![0_f32; 2 * (count + 1)];
         let (filled, origin) = library.fill_offsets(&planned, &mut at).expect("room");
-        assert_eq!((filled, at[count]), (count, [0.0; 2]));
+        assert_eq!((filled, &at[2 * count..]), (count, &[0.0; 2][..]));
         let answer = library.document(&planned, options, Encoding::F32);
         let answer = answer.expect("written");
-        assert_eq!(answer.origin(), Some(strew_encode::Place::Plane(origin)));
+        assert_eq!(answer.origin(), Some(origin));
         let bytes: Vec<u8> = answer.flat_map(|block| block.expect("whole")).collect();
         let record = bytes.len() / count;
-        for (record, at) in bytes.chunks(record).zip(&at) {
+        for (record, at) in bytes.chunks(record).zip(at.chunks(2)) {
             assert_eq!(
                 record[..8],
                 [at[0].to_le_bytes(), at[1].to_le_bytes()].concat()
             );
         }
-        let few = library.fill_coordinates(&planned, &mut vec![[0.0; 2]; count - 1]);
+        let few = library.fill_coordinates(&planned, &mut vec![0.0; 2 * count - 1]);
         assert_eq!(few.expect_err("no room").faults()[0].field, "capacity");
     }
 }
@@ -190,6 +191,7 @@ fn points_of_a_square_are_measured() {
         .plan_address("bbox=0,0,60,60&spacing=1&seed=1")
         .expect("valid");
     let points = library.coordinates(&planned).expect("few");
+    let points = points.as_chunks::<2>().0.to_vec();
     let of = Measured {
         bbox: [0.0, 0.0, 60.0, 60.0],
         density: Some(1.0),
