@@ -1,6 +1,10 @@
 //! The table reader: any file, as it is and with a right digest and length put into it.
 
-use strew_core::{PointSet, Region, Table, table::Digest};
+use strew_core::{
+    PointSet, Region, Table,
+    space::{self, SpaceSet},
+    table::Digest,
+};
 
 const DIGEST_BYTES: usize = 32;
 /// Where the header has the size of the whole file.
@@ -25,6 +29,7 @@ fn sealed(data: &[u8]) -> Vec<u8> {
 }
 
 fn read(bytes: &[u8]) {
+    read_space(bytes);
     let Ok(table) = Table::from_bytes(bytes) else {
         return;
     };
@@ -39,6 +44,29 @@ fn read(bytes: &[u8]) {
     // It can be sampled, whatever its vectors.
     let set = PointSet::new(table);
     let region = Region::new([-3.0, -2.0], [5.0, 6.0]).expect("ordered");
+    for set in [set.clone(), set.seed(3)] {
+        let Ok(plan) = set.within(region) else {
+            continue;
+        };
+        let points = plan.to_vec();
+        assert_eq!(points.len() as u128, plan.count());
+        assert!(points.iter().all(|p| region.contains(p.at())));
+    }
+}
+
+/// A table of points in space.
+fn read_space(bytes: &[u8]) {
+    let Ok(table) = space::Table::from_bytes(bytes) else {
+        return;
+    };
+    let written = table.to_bytes();
+    let again = space::Table::from_bytes(&written).expect("written by ourselves");
+    assert_eq!(again.to_bytes(), written);
+    if table.vectors().len() > 1 << 14 {
+        return;
+    }
+    let set = SpaceSet::new(table);
+    let region = space::Region::new([-3.0, -2.0, 0.0], [2.0, 3.0, 4.0]).expect("ordered");
     for set in [set.clone(), set.seed(3)] {
         let Ok(plan) = set.within(region) else {
             continue;

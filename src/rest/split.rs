@@ -15,7 +15,7 @@ use strew_service::Service;
 use super::{
     api::{
         self, Endpoint, Operation, Tag,
-        schemas::{self, PointsQuery},
+        schemas::{self, AnyQuery, PointsQuery},
     },
     body::{self, Whole},
     context::Context,
@@ -67,8 +67,8 @@ pub(super) struct Split {
 struct Part {
     /// The number of points of the part.
     count: u64,
-    /// The body of POST /v1/points:query that requests it.
-    #[schemars(with = "PointsQuery")]
+    /// The body of POST /v1/points:query, in space of POST /v1/space/points, that requests it.
+    #[schemars(with = "AnyQuery")]
     query: Map<String, Value>,
 }
 

@@ -2,7 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::Serialize;
-use strew_catalog::Entry;
+use strew_catalog::{Dimension, Entry};
 use strew_core::ALGORITHM_VERSION;
 use strew_encode::{Answer, Crs, Head, Json, Output, Place, Tables};
 use strew_error::Error;
@@ -19,7 +19,7 @@ pub struct QueryEcho {
     #[serde(skip_serializing_if = "Option::is_none")]
     decimals: Option<u8>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Vec<f64>")]
+    #[schemars(with = "Option<Vec<f64>>")]
     relative_to: Option<Place>,
     #[serde(skip_serializing_if = "Option::is_none")]
     size: Option<u32>,
@@ -33,8 +33,8 @@ pub struct TableEcho {
     profile: String,
     alpha: String,
     /// 3 if its points lie in space.
-    #[serde(skip_serializing_if = "is_plane")]
-    dimensions: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    dimensions: Option<u32>,
     radius: u32,
     digest: String,
     algorithm: u32,
@@ -45,10 +45,6 @@ pub struct TableEcho {
     /// The mean one.
     #[serde(skip_serializing_if = "Option::is_none")]
     delta_avg: Option<f64>,
-}
-
-fn is_plane(dimensions: &u32) -> bool {
-    *dimensions == 2
 }
 
 impl Planned {
@@ -104,7 +100,7 @@ impl TableEcho {
         Self {
             profile: key.profile.as_ref().into(),
             alpha: key.alpha.to_string(),
-            dimensions: key.dimension.axes(),
+            dimensions: (key.dimension == Dimension::Space).then(|| key.dimension.axes()),
             radius: *radius,
             digest: digest.clone(),
             algorithm: ALGORITHM_VERSION,

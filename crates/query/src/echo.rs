@@ -9,7 +9,7 @@ use strew_catalog::{except::Except, field::Document};
 use strew_core::{ALGORITHM_VERSION, Spacing};
 
 use crate::{
-    json::RegionSchema,
+    json::AnyRegionSchema,
     parameter::{Group, Parameter},
     parameters::{EXCEPT, FIELD, PARAMETERS, SEED, TERRAIN, VARIANT_FIELDS, WARP},
     period::{Period, PeriodEcho},
@@ -30,7 +30,7 @@ pub struct Resolved {
     pub bbox: Vec<f64>,
     /// The region, unless it is that box.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "RegionSchema")]
+    #[schemars(with = "AnyRegionSchema")]
     pub region: Option<Json>,
     /// The world that a part of the query comes from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -93,7 +93,7 @@ pub struct ResolvedSet {
     pub name: String,
     /// The layer's own region.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "RegionSchema")]
+    #[schemars(with = "AnyRegionSchema")]
     pub region: Option<Json>,
     /// Points per unit of area, in space of volume, before keep and clear_of.
     pub density: f64,

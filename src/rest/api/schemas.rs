@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, generate::SchemaSettings, json_schema};
-use serde_json::Value;
+use serde_json::{Value, json};
 use strew_catalog::field::Document;
 use strew_query::{RegionSchema, VolumeSchema, groups};
 
@@ -53,6 +53,10 @@ pub(in crate::rest) struct CountQuery;
 #[derive(Debug)]
 pub(in crate::rest) struct SpaceQuery;
 
+/// A body of one kind or the other.
+#[derive(Debug)]
+pub(in crate::rest) struct AnyQuery;
+
 /// The body of `POST /v1/pattern/arrangements`.
 #[derive(Debug)]
 pub(in crate::rest) struct ArrangementQuery;
@@ -88,6 +92,10 @@ from_table! {
         refer(generator);
         sets::count_query()
     };
+    AnyQuery = "AnyQuery", |generator| json!({
+        "description": "A query for points of the plane or in space.",
+        "anyOf": [of::<PointsQuery>(generator), of::<SpaceQuery>(generator)],
+    });
     ArrangementQuery = "ArrangementQuery", |_| {
         sets::body(groups::ARRANGEMENT, "An arrangement, and where its occurrences are wanted.")
     };

@@ -81,12 +81,14 @@ fn the_flags_are_the_parameters_of_rest() {
         "set",
         "raster",
         "raster-bbox",
+        "space",
     ];
     // Where the query comes from, and a server that answers.
     let query = [
         "query",
         "region",
         "chunk",
+        "ball",
         "url",
         "key-file",
         "ca",

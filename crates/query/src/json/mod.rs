@@ -4,6 +4,7 @@
 //! value and says what is allowed. Nothing is built that the query does not need, and reading stops once
 //! there are as many faults as are reported.
 
+mod any;
 mod forms;
 mod geojson;
 pub(crate) mod object;
@@ -17,6 +18,7 @@ use strew_error::{Checked, Fault, all, unknown};
 use super::{Draft, LayerDraft, MOST_LAYERS, Values, groups, lookup::names, parameter::Group};
 use object::{Object, of_text, parse, shown};
 
+pub use any::AnyRegionSchema;
 use forms::Forms;
 pub use region::{RegionSchema, read_region};
 pub use volume::VolumeSchema;
