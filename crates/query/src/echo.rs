@@ -18,6 +18,7 @@ use crate::{
     schema::schema,
     set::Set,
     shape::Shape,
+    space::SPACE_PARAMETERS,
     value::Value,
 };
 
@@ -185,6 +186,10 @@ impl JsonSchema for Echoed {
                 Shape::Field => json!({ "type": "string" }),
                 shape => schema(shape),
             };
+            let in_space = SPACE_PARAMETERS.iter().find(|other| *other == parameter);
+            if let Some(in_space) = in_space.filter(|other| other.is_echoed) {
+                echoed = json!({ "anyOf": [echoed, schema(in_space.shape)] });
+            }
             echoed["description"] = parameter.about.into();
             properties.insert(parameter.name.into(), echoed);
             let is_always = [Group::Profile, Group::Table].contains(&parameter.group)

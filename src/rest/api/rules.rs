@@ -4,7 +4,7 @@
 use serde::Serialize;
 use strew_encode::Encoding;
 use strew_query::{
-    Group, Parameter, of as parameters_of,
+    Group, Parameter, SPACE_PARAMETERS, of as parameters_of,
     parameters::{FORMAT, ONLY, PARAMETERS, PROFILE, WORLD, WORLD_DIGEST},
     patterns::{
         CURSOR as PATTERN_CURSOR, GRID, LIMIT as PATTERN_LIMIT, LIST, MAP as PATTERN_MAP,
@@ -74,9 +74,15 @@ pub(super) struct Other {
 
 /// Whether a parameter is the first of those that exclude each other, or excludes none.
 pub(super) fn is_first_of_its_kind(parameter: &Parameter) -> bool {
-    let is_alternative =
-        |group: Group| [Group::Region, Group::Period, Group::Amount, Group::Count].contains(&group);
-    let mut same = PARAMETERS.iter().filter(|other| {
+    const ALTERNATIVES: [Group; 5] = [
+        Group::Region,
+        Group::Volume,
+        Group::Period,
+        Group::Amount,
+        Group::Count,
+    ];
+    let is_alternative = |group: Group| ALTERNATIVES.contains(&group);
+    let mut same = PARAMETERS.iter().chain(SPACE_PARAMETERS).filter(|other| {
         let both_amounts = other.group == Group::Amount && parameter.group == Group::Count;
         let both_places = other.group == Group::Region && parameter.group == Group::Period;
         other.group == parameter.group || both_amounts || both_places
@@ -93,7 +99,7 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
     let world = names(&[Group::World]).first().copied();
     // The world is in the path, and may have an amount.
     let is_of_world = world.is_none() && groups.contains(&Group::WorldPin);
-    let mut places = names(&[Group::Region, Group::Period]);
+    let mut places = names(&[Group::Region, Group::Period, Group::Volume]);
     let is_body = world.is_some() && names(&[Group::Region]).is_empty();
     match groups.contains(&Group::Period) {
         // The region is a member of its own.

@@ -70,14 +70,16 @@ def one_of(query, among, default):
     return chosen
 
 
-def tidy_set(query, is_text, rules, amounts):
+def tidy_set(query, is_text, rules, amounts, in_space=False):
     amount = one_of(query, amounts, "spacing")
     query[amount] = 1 + int(number(query[amount], 0, 300)) if amount == "count" else number(
         query[amount], 0.5, 4
     )
     drop(query, NAMED)
     if "profile" in query:
-        query["profile"] = "blue" if amount == "min_distance" else choose(query["profile"], PROFILES)
+        query["profile"] = "blue" if amount == "min_distance" else choose(
+            query["profile"], ["blue", "spaced"] if in_space else PROFILES
+        )
     if "keep" in query:
         query["keep"] = number(query["keep"], 0.1, 1)
     if "warp" in query:
@@ -88,6 +90,8 @@ def tidy_set(query, is_text, rules, amounts):
     names = []
     if "attributes" in query:
         names = NAMES[: 1 + len(str(query["attributes"])) % len(NAMES)]
+        if in_space:
+            names = ["rotation" if name == "angle" else name for name in names]
         query["attributes"] = ",".join(names) if is_text else names
     is_mixed = "variant" in names or spread == "even"
     has_ranges = "scale" in names and "scale_ranges" in query and is_mixed
@@ -134,6 +138,22 @@ def tidy_output(query, rules):
     obey(query, rules)
 
 
+def volume(value):
+    value = value if isinstance(value, dict) else {}
+    shift = number(len(str(value)), 0, 9)
+    ball = {"ball": {"center": [shift, -shift, 1], "radius": 2 + shift / 9}}
+    if "ball" in value:
+        return ball
+    if "prism" in value:
+        base = {"type": "Polygon", "coordinates": [[[0, 0], [4, shift - 5], [3, 4], [0, 0]]]}
+        return {"prism": {"polygon": base, "bottom": -shift, "top": 1}}
+    if "chunk" in value:
+        return {"chunk": {"size": 1 + shift / 3, "x": -3, "y": int(shift), "z": 1}}
+    if "include" in value:
+        return {"include": [ball, {"bbox": [0, 0, 0, 3, 2, 1]}], "exclude": []}
+    return {"bbox": [-shift / 3, 0, 1, 4, 3 + shift / 3, 3]}
+
+
 def region(value, depth=0):
     value = value if isinstance(value, dict) else {}
     kinds = ["bbox", "circle", "polygon", "chunk", "include"]
@@ -161,7 +181,7 @@ def region(value, depth=0):
     return {"bbox": [-shift, 0, 4, 9 + shift]}
 
 
-def tidy_body(schema, body):
+def tidy_body(schema, body, in_space):
     body = dict(body)
     rules = schema["x-rules"]
     amounts = amounts_of(rules)
@@ -169,7 +189,8 @@ def tidy_body(schema, body):
     is_layered = isinstance(layers, list) and bool(layers)
     is_periodic = "periodic" in body and not is_layered
     body.pop("periodic", None)
-    body["region"] = region(body.get("region"))
+    place = volume if in_space else region
+    body["region"] = place(body.get("region"))
     if is_layered:
         either = schema["allOf"][0]["oneOf"]
         excluded = next(one["properties"] for one in either if "layers" in one.get("required", []))
@@ -178,13 +199,14 @@ def tidy_body(schema, body):
         for i, layer in enumerate(layers[:4]):
             layer = dict(layer) if isinstance(layer, dict) else {}
             is_clear = "clear_of" in layer and i > 0
-            tidy_set(layer, False, rules, [name for name in amounts if not is_clear or name != "count"])
+            own = [name for name in amounts if not is_clear or name != "count"]
+            tidy_set(layer, False, rules, own, in_space)
             layer["name"] = f"layer-{i}"
             layer.pop("count" if is_clear else "clear_of", None)
             if is_clear:
                 layer["clear_of"] = {f"layer-{j}": 0.5 for j in range(i) if "count" not in tidy[j]}
             if "region" in layer:
-                layer["region"] = region(layer["region"])
+                layer["region"] = place(layer["region"])
                 if "count" in layer:
                     layer.pop("region")
             tidy.append(layer)
@@ -192,7 +214,7 @@ def tidy_body(schema, body):
     else:
         body.pop("layers", None)
         others = not_with(rules, "periodic") if is_periodic else []
-        tidy_set(body, False, rules, [name for name in amounts if name not in others])
+        tidy_set(body, False, rules, [name for name in amounts if name not in others], in_space)
         if is_periodic:
             drop(body, [*others, "region"])
             body["periodic"] = 900
@@ -272,15 +294,18 @@ def tidy_query(name, rules, query):
         if rule["rule"] == "exactly-one-of" and "bbox" in rule["parameters"]:
             shape = one_of(query, rule["parameters"], "bbox")
             shapes = {"bbox": "-5,0,7,9", "circle": "1,2,6", "polygon": "0,0,9,1,3,12", "periodic": 900}
+            if "Space" in name:
+                shapes = {"bbox": "-1,0,2,4,5,4", "ball": "1,2,3,3"}
             query[shape] = shapes[shape]
         elif rule["rule"] == "exactly-one-of":
             others = not_with(rules, "periodic") if "periodic" in query else []
             if "periodic" in query:
                 query["periodic"] = 900
             drop(query, others)
-            tidy_set(query, True, rules, [name for name in rule["parameters"] if name not in others])
-    if name == "getNearest":
-        query["at"] = "3,-2.5"
+            amounts = [one for one in rule["parameters"] if one not in others]
+            tidy_set(query, True, rules, amounts, "Space" in name)
+    if name in ["getNearest", "getSpaceNearest"]:
+        query["at"] = "3,-2.5" if name == "getNearest" else "3,-2.5,1"
         if "k" in query:
             query["k"] = 1 + int(number(query["k"], 0, 50))
         if "radius" in query:
@@ -291,10 +316,17 @@ def tidy_query(name, rules, query):
         drop(query, NAMED)
         if "profile" in query:
             query["profile"] = choose(query["profile"], PROFILES)
-    if name == "splitPoints":
+    if name in ["splitPoints", "splitSpacePoints"]:
         query["parts"] = 1 + int(number(query.get("parts"), 0, 50))
     tidy_output(query, rules)
     return query
+
+
+def query_of(name):
+    """The name of the schema of a body."""
+    if "Space" in name:
+        return "SpaceQuery"
+    return "CountQuery" if name == "countPoints" else "PointsQuery"
 
 
 @schemathesis.hook
@@ -309,15 +341,19 @@ def before_call(context, case, kwargs):
         case.body = (
             tidy_arrangement(dict(case.body), schemas["ArrangementQuery"]["x-rules"], False)
             if name == "findArrangement"
-            else tidy_body(schemas["CountQuery" if name == "countPoints" else "PointsQuery"], case.body)
+            else tidy_body(schemas[query_of(name)], case.body, "Space" in name)
         )
-    if "x-rules" in raw or name in ["getProfile", "getSpectrum", "listPeriods", "splitPoints"] + PATTERNS + MASKS:
+    if "x-rules" in raw or name in ["getProfile", "getSpectrum", "listPeriods", "splitPoints", "splitSpacePoints"] + PATTERNS + MASKS:
         case.query = tidy_query(name, raw.get("x-rules", []), case.query or {})
-    if name in ["getChunk", "getFieldChunk"]:
+    if name in ["getChunk", "getFieldChunk", "getSpaceChunk"]:
         path = dict(case.path_parameters or {})
         path["size"] = 1 + len(str(path)) % 9
         path["cx"] = int(number(path.get("cx"), 0, 1000))
         path["cy"] = -int(number(path.get("cy"), 0, 1000))
+        if "cz" in path:
+            path["cz"] = int(number(path["cz"], 0, 1000))
         case.path_parameters = path
     if name == "getPoint":
         case.path_parameters = {"id": f"{len(str(case.query))}:-3"}
+    if name == "getSpacePoint":
+        case.path_parameters = {"id": f"{len(str(case.query))}:-3:2"}
