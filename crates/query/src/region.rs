@@ -82,9 +82,10 @@ impl QueryRegion {
     /// The area of the box around it, or in space its volume.
     #[must_use]
     pub fn measure(&self) -> f64 {
-        let corners = self.corners();
-        let (min, max) = corners.split_at(corners.len() / 2);
-        max.iter().zip(min).map(|(max, min)| max - min).product()
+        match &self.volume {
+            Some(volume) => sides(&volume.bounds.min(), &volume.bounds.max()).product(),
+            None => sides(&self.bounds.min(), &self.bounds.max()).product(),
+        }
     }
 
     /// min x, min y, max x, max y of the box around it.
@@ -97,12 +98,15 @@ impl QueryRegion {
     /// The largest absolute coordinate of an answer, which a chunk's are not far from.
     #[must_use]
     pub fn reach(&self) -> f64 {
-        let corners = self.corners();
-        let (min, max) = corners.split_at(corners.len() / 2);
-        let sides = max.iter().zip(min).map(|(max, min)| max - min);
-        match self.corner {
-            Some(_) => sides.fold(0.0, f64::max),
-            None => corners.iter().copied().map(f64::abs).fold(0.0, f64::max),
+        let reach = |min: &[f64], max: &[f64]| match self.corner {
+            Some(_) => sides(min, max).fold(0.0, f64::max),
+            None => (min.iter().chain(max).copied())
+                .map(f64::abs)
+                .fold(0.0, f64::max),
+        };
+        match &self.volume {
+            Some(volume) => reach(&volume.bounds.min(), &volume.bounds.max()),
+            None => reach(&self.bounds.min(), &self.bounds.max()),
         }
     }
 
@@ -111,6 +115,11 @@ impl QueryRegion {
     pub fn and(&self, own: &Self) -> Area {
         own.area.clone().and(self.area.clone())
     }
+}
+
+/// The sides of a box.
+fn sides(min: &[f64], max: &[f64]) -> impl Iterator<Item = f64> {
+    max.iter().zip(min).map(|(max, min)| max - min)
 }
 
 impl RegionDraft {
