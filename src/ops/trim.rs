@@ -10,7 +10,7 @@ use strew_service::Budget;
 
 use super::metrics::resident;
 
-/// Whether the allocator keeps what is freed, and can be told to return it.
+/// Whether the allocator keeps freed memory and returns it on request.
 const KEEPS: bool = cfg!(all(
     target_os = "linux",
     target_env = "gnu",

@@ -76,10 +76,10 @@ proptest! {
         parts.sort_by_key(id);
         sorted.sort_by_key(id);
         prop_assert_eq!(&parts, &sorted);
-        let mut page = plan.window(0, Some(7));
+        let mut page = plan.window(0, Some(37));
         let mut pages = page.to_vec();
         while let Some(cursor) = page.next_cursor() {
-            page = clear.resume(region, cursor).expect("near").window(0, Some(7));
+            page = clear.resume(region, cursor).expect("near").window(0, Some(37));
             pages.extend(page.to_vec());
         }
         prop_assert_eq!(&pages, &expected);

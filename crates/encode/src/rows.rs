@@ -86,7 +86,7 @@ impl Rows {
             .map(|part| (part.layer.as_deref(), part.own_columns()))
             .collect();
         let heights = Part::heights(&parts).map(|bounds| {
-            // As far as the columns are relative, so are the bounds.
+            // The bounds are relative to the same place as the column.
             let lowest = coordinates.origin().map_or(0.0, Place::z);
             bounds.map(|z| z - lowest)
         });

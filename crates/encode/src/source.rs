@@ -157,16 +157,8 @@ impl Source for Plan {
         windows.map(|window| window.mark()).collect()
     }
 
-    /// From the beginning on no address is needed.
     fn beginning(&self) -> Option<Mark> {
-        if self.offset() != 0 {
-            return self.mark();
-        }
-        (self.count() > 0).then(|| Mark {
-            offset: 0,
-            total: self.total(),
-            at: [0; 3],
-        })
+        from_beginning(self)
     }
 
     fn region(&self) -> Region {
@@ -223,14 +215,7 @@ impl Source for space::Plan {
     }
 
     fn beginning(&self) -> Option<Mark> {
-        if self.offset() != 0 {
-            return self.mark();
-        }
-        (self.count() > 0).then(|| Mark {
-            offset: 0,
-            total: self.total(),
-            at: [0; 3],
-        })
+        from_beginning(self)
     }
 
     fn region(&self) -> Region {
@@ -261,6 +246,18 @@ impl Source for space::Plan {
     fn stopped_by(&self, stop: &Stop) -> Arc<dyn Source> {
         Arc::new(self.clone().stopped_by(stop.clone()))
     }
+}
+
+/// The beginning of a plan: from the first point of the whole on no address is needed.
+fn from_beginning(plan: &impl Source) -> Option<Mark> {
+    if plan.offset() != 0 {
+        return plan.mark();
+    }
+    (plan.count() > 0).then(|| Mark {
+        offset: 0,
+        total: plan.total(),
+        at: [0; 3],
+    })
 }
 
 /// The methods of both kinds of blocks of the plane.

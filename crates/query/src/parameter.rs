@@ -72,7 +72,7 @@ pub enum Group {
     Window,
     /// The form of the answer.
     Output,
-    /// What the plane is on Earth.
+    /// The coordinate reference system of the plane.
     Reference,
     /// The volume as text; JSON and messages have a member `region`.
     Volume,

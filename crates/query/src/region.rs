@@ -228,7 +228,7 @@ impl RegionDraft {
         }
     }
 
-    /// What the regions of two lists are, of which the first must have some.
+    /// The shapes of the regions in two lists. The first must not be empty.
     fn lists<T>(
         &self,
         include: &[Checked<Self>],

@@ -98,7 +98,7 @@ pub(super) fn terms(server: &Server) -> Terms {
 }
 
 impl Exchanges {
-    /// What the requests of a connection have in common.
+    /// The state that the requests of a connection share.
     pub(super) fn from(&self, peer: Peer) -> From {
         let address = peer.0.ip().to_canonical();
         From {

@@ -136,7 +136,9 @@ impl Others {
             points.push(at);
             true
         });
-        Self::Grid(Grid::new(&region, clear.distance.max(spacing), &points))
+        // A little wider, so that rounding puts no point that is near two cells away.
+        let side = clear.distance.max(spacing) * (1.0 + 1e-9);
+        Self::Grid(Grid::new(&region, side, &points))
     }
 }
 
@@ -180,10 +182,9 @@ impl Grid {
         (k * self.cells[1] + j) * self.cells[0] + i
     }
 
-    /// Whether a point is nearer to a place than a distance, at most the side of a cell.
+    /// Whether a point is nearer to a place than a distance, which is less than the side of a cell.
     fn has_near(&self, at: [f64; 3], distance: f64) -> bool {
         let cells = [0, 1, 2].map(|axis| {
-            // Cells on either side: rounding takes no point farther than into the next one.
             let own = self.cell(axis, at[axis]);
             own.saturating_sub(1)..(own + 2).min(self.cells[axis])
         });

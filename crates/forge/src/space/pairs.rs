@@ -17,7 +17,7 @@ pub(super) struct Pairs {
     pub(super) shares: Vec<f32>,
 }
 
-/// The greatest displacement, in mean spacings, as far as the components of a table reach.
+/// The greatest displacement, in mean spacings, that the components of a table can express.
 pub const LONGEST: f64 = 2.5;
 
 /// The geometry of a map's blocks.

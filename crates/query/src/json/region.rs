@@ -177,7 +177,7 @@ pub(super) fn read(
     })
 }
 
-/// What lies in some regions and not in others.
+/// The union of some regions without others.
 fn combined(
     path: &str,
     (include, exclude): (&RawValue, Option<&RawValue>),

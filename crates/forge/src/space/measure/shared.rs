@@ -66,7 +66,7 @@ impl SpaceShared {
             power_correlation: shared / (own[0] * own[1]).sqrt().max(f64::MIN_POSITIVE),
             power_by_chance: 1.0 / (all.len().max(1) as f64).sqrt(),
             phase_peak,
-            // The median of the greatest of so many normal numbers, to the first orders.
+            // The median of the greatest of this number of normal variables, to leading order.
             phase_by_chance: {
                 let spread = (2.0 * libm::log(places)).sqrt();
                 let lower = libm::log(libm::log(places)) + libm::log(4.0 * std::f64::consts::PI);
