@@ -61,9 +61,9 @@ impl SpaceSet {
     /// of the reported coordinates, compared as dx·dx + dy·dy + dz·dz in `f64`.
     ///
     /// # Errors
-    /// [`ErrorKind::Place`] if the place is not finite, [`ErrorKind::Neighbors`] above
-    /// [`MAX_NEAREST`](Self::MAX_NEAREST), [`ErrorKind::TooFar`] beyond the lattice's limit, and
-    /// [`ErrorKind::TooMany`] if too many points would have to be visited.
+    /// [`Place`](crate::ErrorKind::Place) if the place is not finite, [`Neighbors`](crate::ErrorKind::Neighbors) above
+    /// [`MAX_NEAREST`](Self::MAX_NEAREST), [`TooFar`](crate::ErrorKind::TooFar) beyond the lattice's limit, and
+    /// [`TooMany`](crate::ErrorKind::TooMany) if too many points would have to be visited.
     ///
     /// ```
     /// use strew_core::space::{SpaceSet, Table};
@@ -80,7 +80,8 @@ impl SpaceSet {
     /// The nearest points of a place within a radius, its end included, at most `k`; see [`nearest`](Self::nearest).
     ///
     /// # Errors
-    /// As [`nearest`](Self::nearest), and [`ErrorKind::Radius`] unless the radius is finite and not negative.
+    /// As [`nearest`](Self::nearest), and [`Radius`](crate::ErrorKind::Radius) unless the radius is finite and not
+    /// negative.
     ///
     /// ```
     /// use strew_core::space::{SpaceSet, Table};
