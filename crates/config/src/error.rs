@@ -47,6 +47,9 @@ pub enum ConfigError {
         /// The type it must have.
         allowed: &'static str,
     },
+    /// Faults of one file.
+    #[error("{}", each_on_a_line(.0))]
+    Several(Vec<ConfigError>),
     /// A flag that is not of the form `key=value`.
     #[error("--set {text}: expected key=value, for example limits.max_points=1000")]
     Assignment {
@@ -77,10 +80,10 @@ pub enum ConfigError {
         used: Vec<String>,
     },
     /// A value of the wrong type.
-    #[error("the merged configuration is not valid: {}", in_a_line(.0))]
+    #[error("the settings are not valid: {}", in_a_line(.0))]
     Invalid(Box<toml::de::Error>),
     /// Values out of range.
-    #[error("the merged configuration is not valid: {}", faults.join("; "))]
+    #[error("the settings are not valid: {}", faults.join("; "))]
     OutOfRange {
         /// The faults, each with its key, its value and the allowed values.
         faults: Vec<String>,
@@ -90,7 +93,18 @@ pub enum ConfigError {
 /// A message of the reader of TOML, which has lines.
 fn in_a_line(error: &toml::de::Error) -> String {
     let text = error.to_string();
-    text.trim().replace('\n', " ")
+    let text = text.trim();
+    // Some messages begin with their key, which the reader puts behind them once more.
+    let text = match text.rsplit_once("\nin `") {
+        Some((message, key)) if message.starts_with(key.trim_end_matches('`')) => message,
+        _ => text,
+    };
+    text.replace('\n', " ")
+}
+
+fn each_on_a_line(errors: &[ConfigError]) -> String {
+    let texts: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    texts.join("\n")
 }
 
 fn list(keys: &[String]) -> String {
@@ -104,6 +118,9 @@ fn suggestion(keys: &[String]) -> String {
     match keys {
         [] => "run `strew config` to see all".into(),
         [key] => format!("did you mean `{key}`?"),
-        keys => format!("there are {}", keys.join(", ")),
+        keys => format!(
+            "the nearest are {}; `strew config` prints all",
+            keys.join(", ")
+        ),
     }
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::{Config, ConfigError, DEFAULTS, validate::validate};
-use crate::bounded_file;
+use crate::{bounded_file, lines};
 
 /// Variables of the environment that begin so are settings.
 const PREFIX: &str = "STREW_";
@@ -59,10 +59,20 @@ impl Layers {
             })?;
         let name = path.display().to_string();
         let over = parse(&name, &text)?;
-        let keys = self.keys();
-        merge(&mut self.merged, over, "", &name, &keys)?;
+        let sections = self.merged.keys().cloned();
+        let keys: Vec<String> = self.keys().into_iter().chain(sections).collect();
+        let mut faults = Faults {
+            at: &|key| format!("{name}{}", lines::suffix(&text, key)),
+            keys: &keys,
+            found: vec![],
+        };
+        merge(&mut self.merged, over, "", &mut faults);
         self.file = Some(path.into());
-        Ok(self)
+        match faults.found.len() {
+            0 => Ok(self),
+            1 => Err(faults.found.remove(0)),
+            _ => Err(ConfigError::Several(faults.found)),
+        }
     }
 
     /// Lays the environment over the layers so far: `STREW_LIMITS_MAX_POINTS` is `limits.max_points`. Variables that
@@ -235,14 +245,17 @@ fn parse(source_name: &str, text: &str) -> Result<Table, ConfigError> {
     })
 }
 
+/// The faults of a file, all of them.
+struct Faults<'a> {
+    /// Names the place of a key.
+    at: &'a dyn Fn(&str) -> String,
+    /// Every key and section that exists.
+    keys: &'a [String],
+    found: Vec<ConfigError>,
+}
+
 /// Lays `over` on `under`; every key must exist there.
-fn merge(
-    under: &mut Table,
-    over: Table,
-    prefix: &str,
-    source_name: &str,
-    keys: &[String],
-) -> Result<(), ConfigError> {
+fn merge(under: &mut Table, over: Table, prefix: &str, faults: &mut Faults<'_>) {
     for (name, value) in over {
         let key = format!("{prefix}{name}");
         // Fields, worlds and lists have free names; their contents are read when they are loaded.
@@ -250,24 +263,24 @@ fn merge(
             under.insert(name, value);
             continue;
         }
-        let Some(slot) = under.get_mut(&name) else {
-            return Err(ConfigError::UnknownKey {
-                source_name: source_name.into(),
-                suggestions: closest(&key, keys),
+        let fault = match (under.get_mut(&name), value) {
+            (None, _) => ConfigError::UnknownKey {
+                source_name: (faults.at)(&key),
+                suggestions: closest(&key, faults.keys),
                 key,
-            });
+            },
+            (Some(Value::Table(under)), Value::Table(over)) => {
+                merge(under, over, &format!("{key}."), faults);
+                continue;
+            }
+            (Some(slot), value) if fits(slot, &value) => {
+                *slot = value;
+                continue;
+            }
+            (Some(slot), value) => wrong_type(&(faults.at)(&key), &key, &value.to_string(), slot),
         };
-        match (slot, value) {
-            (Value::Table(under), Value::Table(over)) => {
-                merge(under, over, &format!("{key}."), source_name, keys)?;
-            }
-            (slot, value) if fits(slot, &value) => *slot = value,
-            (slot, value) => {
-                return Err(wrong_type(source_name, &key, &value.to_string(), slot));
-            }
-        }
+        faults.found.push(fault);
     }
-    Ok(())
 }
 
 /// Whether a value has the type of a default. Seconds may have a fraction whatever the default
@@ -291,11 +304,12 @@ fn wrong_type(source_name: &str, key: &str, value: &str, default: &Value) -> Con
     }
 }
 
-/// The known keys most like an unknown one: the one that is nearly it, or all.
+/// The known keys most like an unknown one: the one that is nearly it, or three.
 fn closest(key: &str, known: &[String]) -> Vec<String> {
     let like = |other: &String| strsim::normalized_damerau_levenshtein(key, other);
-    match known.iter().max_by(|a, b| like(a).total_cmp(&like(b))) {
-        Some(best) if like(best) > 0.8 => vec![best.clone()],
-        _ => known.to_vec(),
-    }
+    let mut known = known.to_vec();
+    known.sort_by(|a, b| like(b).total_cmp(&like(a)));
+    let is_near = known.first().is_some_and(|best| like(best) > 0.8);
+    known.truncate(if is_near { 1 } else { 3 });
+    known
 }

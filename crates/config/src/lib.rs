@@ -14,6 +14,7 @@ mod error;
 mod forge;
 mod layers;
 mod limits;
+mod lines;
 mod listen;
 mod loaded;
 pub mod name;

@@ -302,10 +302,11 @@ fn of_query(args: &Args) -> Result<Compared, Failure> {
     };
     plan.blocks_f64().fill(&mut points);
     let name = described(&planned);
-    let report = window(corner, side, set.density, points, name).measured(args.resolution());
+    let density = set.density * planned.query.sets[0].share();
+    let report = window(corner, side, density, points, name).measured(args.resolution());
     let seeds = match args.seeds {
         0 => None,
-        seeds => Some(compared(plan, side, set.density, seeds)?),
+        seeds => Some(compared(plan, side, density, seeds)?),
     };
     Ok((report, set.entry.aim().and_then(|aim| aim.curve), seeds))
 }

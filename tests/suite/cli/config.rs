@@ -101,8 +101,19 @@ fn errors_name_the_setting_and_its_source() {
             "[limits]\nmax_point = 1",
             &["limits.max_point", "did you mean `limits.max_points`"],
         ),
-        ("[limit]\nmax_points = 1", &["`limit`", "limits.max_points"]),
-        ("colour = 1", &["colour", "log.filter"]),
+        (
+            "[limit]\nmax_points = 1",
+            &[":1: ", "`limit`; did you mean `limits`"],
+        ),
+        ("colour = 1", &["colour", "`strew config` prints all"]),
+        // All faults, each with its line.
+        (
+            "[server]\nnope = 1\n\n[limits]\nmax_points = true\n",
+            &[
+                ":2: there is no setting `server.nope`",
+                ":5: `limits.max_points` is true",
+            ],
+        ),
         (
             "[limits]\nmax_points = \"many\"",
             &["limits.max_points", "many", "a number"],
@@ -114,7 +125,13 @@ fn errors_name_the_setting_and_its_source() {
             "[limits]\nmax_points = 0\nblock_bytes = 1",
             &["limits.max_points = 0", "limits.block_bytes = 1", "4096"],
         ),
-        ("[server]\nlisten = \"nowhere\"", &["listen"]),
+        (
+            "[server]\nlisten = \"nowhere\"",
+            &[
+                "error: the settings are not valid: server.listen: \"nowhere\"",
+                "alone (8080)\n",
+            ],
+        ),
         (
             "[http]\ncors_origins = \"https://a.example http//typo\"",
             &["http.cors_origins", "\"http//typo\" is not an origin"],

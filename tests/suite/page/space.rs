@@ -113,10 +113,11 @@ fn wrong_values_are_said_at_their_fields_and_wrong_links_above() {
     browser.until("!document.querySelector('#wrong-seed').hidden");
     assert!(browser.text("#wrong-seed").contains("whole number"));
     browser.choose("#seed", "9");
-    browser.until(&format!(
-        "{READY} && document.querySelector('#wrong-seed').hidden"
-    ));
-    assert!(requested(&browser, "/0/0/0?").contains("seed=9"));
+    browser.until(
+        "document.querySelector('#wrong-seed').hidden && \
+         document.querySelector('#command').textContent.includes('seed=9')",
+    );
+    browser.until(READY);
     browser.go("about:blank");
     browser.go(&daemon.url("/space#at=1,2&seed=x&spacing=0"));
     browser.until(READY);

@@ -63,13 +63,13 @@ shapes! {
     /// A share that changes with the slope of a terrain.
     SlopeShape = slope: Slope;
     /// The product of fields.
-    MultiplyShape = multiply: Vec<FieldSchema>;
+    MultiplyShape = multiply: Vec<Document>;
     /// The least of fields.
-    MinShape = min: Vec<FieldSchema>;
+    MinShape = min: Vec<Document>;
     /// The greatest of fields.
-    MaxShape = max: Vec<FieldSchema>;
+    MaxShape = max: Vec<Document>;
     /// 1 − the share of a field.
-    InvertShape = invert: Box<FieldSchema>;
+    InvertShape = invert: Box<Document>;
     /// The share of a field, mapped by a curve.
     CurveShape = curve: Box<Curve>;
 }
