@@ -25,6 +25,15 @@ impl fmt::Display for Made {
 }
 
 impl Made {
+    /// A table with this, if that is built in.
+    #[must_use]
+    pub fn built_in(&self, of: &Table) -> Option<Table> {
+        match self {
+            Self::Labels(shares) => of.built_in_even(shares),
+            Self::SecondOrder => None,
+        }
+    }
+
     /// Whether a table has this, and equals the other one in everything else.
     pub fn is(&self, made: &Table, of: &Table) -> bool {
         let is_of = made.displacements() == of.displacements() && made.map() == of.map();
@@ -48,11 +57,14 @@ impl Watch for Until<'_> {
     }
 }
 
-/// Makes labels or a second order of a table. Takes seconds.
+/// Makes labels or a second order of a table, unless they are built in. Takes seconds.
 ///
 /// # Errors
 /// [`Error::Invalid`] if the table has too few blocks for the shares, [`Error::Internal`] once it is stopped.
 pub fn make(table: &Table, what: &Made, stop: &Stop) -> Result<Table, Error> {
+    if let Some(built_in) = what.built_in(table) {
+        return Ok(built_in);
+    }
     let began = std::time::Instant::now();
     let watch = Until(stop);
     let made = match what {

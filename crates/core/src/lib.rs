@@ -62,7 +62,7 @@ pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
 pub use sample::{
     Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column,
-    Cursor, EvenVariants, F32, F64, Field, Format, Keep, LATTICE_LIMIT, LeastDistance, Member,
+    Cursor, F32, F64, Field, Format, Keep, Kind, Kinds, LATTICE_LIMIT, LeastDistance, Member,
     Members, Neighbor, Offsets, Placement, Plan, Point, PointId, PointSet, Points, Polygon, Raster,
     Region, ScaleRange, Seed, Settle, Spacing, Tile, UniformNumber, VariantScales, Variants,
     VaryingKinds, Warp,

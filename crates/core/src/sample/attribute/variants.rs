@@ -198,6 +198,15 @@ impl FromStr for Variants {
     }
 }
 
+/// The same as parsing, for functions that take either, such as [`Kinds::even`](crate::Kinds::even).
+impl TryFrom<&str> for Variants {
+    type Error = Error;
+
+    fn try_from(text: &str) -> Result<Self, Error> {
+        text.parse()
+    }
+}
+
 impl fmt::Display for Variants {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, (name, weight)) in self.weights().enumerate() {
