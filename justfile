@@ -51,6 +51,10 @@ fuzz subject seconds="3600":
     cd fuzz && RUSTC_BOOTSTRAP=1 cargo fuzz run -O {{subject}} corpus/{{subject}} seeds/{{subject}} \
         -- -max_total_time={{seconds}} -timeout=20 -max_len=2048
 
+# The plugin for Bevy, which is a workspace of its own.
+bevy:
+    .ci/bevy
+
 # The npm package: its WebAssembly, beside the real daemon in Node and in Chromium, and packed.
 js:
     .ci/js

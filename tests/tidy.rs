@@ -29,6 +29,10 @@ fn sources() -> Vec<(String, String)> {
     .to_vec();
     let mut found = Vec::new();
     while let Some(path) = open.pop() {
+        // A crate of its own workspace has its build beside its sources.
+        if path.ends_with("target") {
+            continue;
+        }
         if path.is_dir() {
             let entries = fs::read_dir(&path).expect("readable");
             open.extend(entries.map(|entry| entry.expect("readable").path()));

@@ -28,8 +28,8 @@ try {
 }
 
 mkdirSync(here("lib/tables"), { recursive: true });
-const shipped = ["", "mix/", "space/"].map((folder) => `../../crates/catalog/tables/${folder}`);
-for (const folder of ["../../crates/core/tables/", ...shipped]) {
+const shipped = ["", "space/"].map((folder) => `../../crates/catalog/tables/${folder}`);
+for (const folder of ["../../crates/core/tables/", "../../crates/core/tables/joint/", ...shipped]) {
     for (const file of readdirSync(here(folder)).filter((name) => name.endsWith(".strew"))) {
         // Tables in space are named as such.
         const name = folder.endsWith("/space/") ? `space-${file}` : file;

@@ -14,7 +14,13 @@ use std::{
 };
 
 use bytes::Bytes;
-use strew_core::{Alpha, field::FieldSpec, map::Size, space, table::BLUE};
+use strew_core::{
+    Alpha,
+    field::FieldSpec,
+    map::Size,
+    space,
+    table::{BLUE, joint_files},
+};
 use strew_error::{Checked, Error};
 
 use crate::{
@@ -32,7 +38,7 @@ use crate::{
 /// The tables that are built into the program beside the library's: (file name, content).
 static EMBEDDED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/tables.rs"));
 
-/// The tables that are built into the library.
+/// The tables that are built into the library, beside its joint ones.
 const LIBRARY: [(&str, &[u8]); 2] = [
     ("blue-5-sqrt3-over-2-m.strew", BLUE),
     ("space-blue-5-sqrt3-over-2-r16.strew", space::BLUE),
@@ -98,7 +104,8 @@ impl Catalog {
             ..Self::default()
         };
         if embedded {
-            catalog.add(LIBRARY.iter().chain(EMBEDDED).map(|&(name, bytes)| {
+            let files = LIBRARY.iter().chain(EMBEDDED).copied().chain(joint_files());
+            catalog.add(files.map(|(name, bytes)| {
                 Entry::read(Bytes::from_static(bytes), Source::Embedded(name))
             }))?;
             catalog.built_in.clone_from(&catalog.entries);

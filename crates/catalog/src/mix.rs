@@ -25,6 +25,15 @@ impl fmt::Display for Made {
 }
 
 impl Made {
+    /// A table with this, if that is built in.
+    #[must_use]
+    pub fn built_in(&self, of: &Table) -> Option<Table> {
+        match self {
+            Self::Labels(shares) => of.built_in_even(shares),
+            Self::SecondOrder => None,
+        }
+    }
+
     /// Whether a table has this, and equals the other one in everything else.
     pub fn is(&self, made: &Table, of: &Table) -> bool {
         let is_of = made.displacements() == of.displacements() && made.map() == of.map();
@@ -48,11 +57,14 @@ impl Watch for Until<'_> {
     }
 }
 
-/// Makes labels or a second order of a table. Takes seconds.
+/// Makes labels or a second order of a table, unless they are built in. Takes seconds.
 ///
 /// # Errors
 /// [`Error::Invalid`] if the table has too few blocks for the shares, [`Error::Internal`] once it is stopped.
 pub fn make(table: &Table, what: &Made, stop: &Stop) -> Result<Table, Error> {
+    if let Some(built_in) = what.built_in(table) {
+        return Ok(built_in);
+    }
     let began = std::time::Instant::now();
     let watch = Until(stop);
     let made = match what {
@@ -69,4 +81,25 @@ pub fn make(table: &Table, what: &Made, stop: &Stop) -> Result<Table, Error> {
     made.ok_or(Error::Internal(
         "a mix was stopped before its request ended",
     ))
+}
+
+#[cfg(all(test, feature = "even"))]
+mod tests {
+    use strew_core::PointSet;
+
+    use super::*;
+
+    #[test]
+    fn labels_that_are_built_in_are_not_made() {
+        let blue = PointSet::blue().table().clone();
+        let stop = Stop::new();
+        stop.raise();
+        for shares in ["1:1", "1:3", "1:1:2", "1:3:10"] {
+            let what = Made::Labels(shares.parse().expect("shares"));
+            let made = make(&blue, &what, &stop).expect("built in");
+            assert!(what.is(&made, &blue), "{shares}");
+        }
+        let what = Made::Labels("1:5".parse().expect("shares"));
+        assert!(make(&blue, &what, &stop).is_err(), "stopped");
+    }
 }

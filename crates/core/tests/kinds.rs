@@ -4,8 +4,8 @@ mod subject;
 
 use proptest::prelude::*;
 use strew_core::{
-    Area, Attribute, Attributes, Backend, Circle, ErrorKind, F32, F64, Keep, Placement, Point,
-    PointId, PointSet, Points, Polygon, Region, ScaleRange, Seed, Spacing, Variants, Warp,
+    Area, Attribute, Attributes, Backend, Circle, ErrorKind, F32, F64, Keep, Kinds, Placement,
+    Point, PointId, PointSet, Points, Polygon, Region, ScaleRange, Seed, Spacing, Variants, Warp,
     server::{self, Stop},
 };
 use subject::{
@@ -422,14 +422,14 @@ fn kinds_keep_their_distances() {
 }
 
 #[test]
-fn even_variants_are_the_kinds() {
+fn named_kinds_are_the_kinds() {
     let set = PointSet::new(tables()[1].clone()).seed(11);
     let points = set.chunk(50.0, [0, 0]).expect("near").to_vec();
     let ids = || points.iter().map(|point| point.id);
     for text in ["oak:10,birch:1,elm:3", "elm:0.3,oak:1,birch:0.1"] {
         let chance: Variants = text.parse().expect("valid");
-        let even = chance.evenly().expect("shares");
-        let list = vec![Attribute::EvenVariant(even.clone()), Attribute::Angle];
+        let even = Kinds::even(&chance).expect("shares");
+        let list = vec![Attribute::Kind(even.clone()), Attribute::Angle];
         let bound = set.attributes(&Attributes::new(list).expect("different"));
         let bound = bound.expect("the table's shares");
         let columns = bound.columns(ids());
@@ -439,7 +439,7 @@ fn even_variants_are_the_kinds() {
             let kind = set.kind_of(id).expect("a kind");
             assert_eq!(even.index(kind), Some(index));
             let name = even.variants().name(index).expect("a name");
-            assert_eq!(even.kind(name), Some(kind));
+            assert_eq!(even.number(name), Some(kind));
             assert_eq!(name, ["birch", "elm", "oak"][usize::from(kind)]);
         }
         // Scales that depend on the kind.
@@ -455,17 +455,12 @@ fn even_variants_are_the_kinds() {
             assert_eq!(scale.floor(), f64::from(index));
         }
         // Other shares are another table's.
-        let list = vec![Attribute::EvenVariant(
-            "a:1,b:2"
-                .parse::<Variants>()
-                .expect("valid")
-                .evenly()
-                .expect("shares"),
-        )];
+        let list = vec![Attribute::Kind(Kinds::even("a:1,b:2").expect("shares"))];
         let list = Attributes::new(list).expect("different");
         let error = set.attributes(&list).expect_err("other shares");
         assert_eq!(error.kind(), ErrorKind::Kinds);
-        let says = "the kinds of the table is in the ratio 1:3:10; it must be those of a mix in the ratio 1:2";
+        let says =
+            "the ratio of the table's kinds is 1:3:10; it must be 1:2, that of the named kinds";
         assert_eq!(error.to_string(), says);
         let plain = PointSet::new(subject::tables()[0].clone());
         assert!(plain.attributes(&list).is_err());

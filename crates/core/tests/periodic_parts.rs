@@ -5,8 +5,7 @@ mod subject;
 use std::collections::BTreeSet;
 
 use strew_core::{
-    Attribute, Attributes, Cursor, EvenVariants, Map, PeriodicPlan, PeriodicSet, Point, PointId,
-    Table, Variants,
+    Attribute, Attributes, Cursor, Kinds, Map, PeriodicPlan, PeriodicSet, Point, PointId, Table,
     table::{Mix, Ranks, from_grid_units},
 };
 use subject::shipped;
@@ -197,14 +196,11 @@ fn a_field_with_the_period_is_followed_without_a_seam() {
 #[test]
 fn attributes_are_those_of_the_points() {
     let tile = tile();
-    let even: EvenVariants = "oak:10,birch:3,fir:1"
-        .parse::<Variants>()
-        .and_then(|variants| variants.evenly())
-        .expect("kinds");
+    let even = Kinds::even("oak:10,birch:3,fir:1").expect("kinds");
     let list = vec![
         Attribute::Rank,
         Attribute::Angle,
-        Attribute::EvenVariant(even.clone()),
+        Attribute::Kind(even.clone()),
     ];
     let list = Attributes::new(list).expect("different");
     let bound = tile.attributes(&list).expect("its shares");

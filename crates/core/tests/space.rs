@@ -320,10 +320,11 @@ fn bad_input_is_refused() {
         set.chunk(1.0, [i64::MAX, 0, 0]).expect_err("far").kind(),
         ErrorKind::Chunk
     );
-    assert_eq!(
-        set.nearest([0.0; 3], 10_001).expect_err("many").kind(),
-        ErrorKind::Neighbors
-    );
+    for k in [0, 10_001] {
+        let error = set.nearest([0.0; 3], k).expect_err("none or too many");
+        assert_eq!(error.kind(), ErrorKind::Neighbors);
+        assert!(set.nearest_within([0.0; 3], k, 1.0).is_err());
+    }
     let error = set.nearest_within([0.0; 3], 9, -1.0).expect_err("negative");
     assert_eq!(error.kind(), ErrorKind::Radius);
     assert_eq!(

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use proptest::prelude::*;
 use strew_core::{
-    Area, Attribute, Attributes, Backend, Circle, ErrorKind, F64, Field, Keep, Placement, Point,
-    PointId, PointSet, Points, Polygon, Region, Seed, Spacing, Table, VariantScales, Variants,
+    Area, Attribute, Attributes, Backend, Circle, ErrorKind, F64, Field, Keep, Kinds, Placement,
+    Point, PointId, PointSet, Points, Polygon, Region, Seed, Spacing, Table, VariantScales,
     VaryingKinds, Warp,
     server::{self, Stop},
     table::Ranks,
@@ -263,18 +263,14 @@ fn variants_and_their_scales_are_the_kinds() {
         weights: weights(1),
     };
     let set = subject.varied();
-    let even = "oak:10,birch:1,elm:3"
-        .parse::<Variants>()
-        .expect("valid")
-        .evenly()
-        .expect("shares");
+    let even = Kinds::even("oak:10,birch:1,elm:3").expect("shares");
     let range =
         |kind: u32| strew_core::ScaleRange::new(f64::from(kind), f64::from(kind)).expect("ordered");
     let scales: VariantScales = even
         .scales((0..3).map(range).collect())
         .expect("one for each");
     let list = vec![
-        Attribute::EvenVariant(even.clone()),
+        Attribute::Kind(even.clone()),
         Attribute::VariantScale(scales),
         Attribute::Rank,
     ];
@@ -297,12 +293,8 @@ fn variants_and_their_scales_are_the_kinds() {
         );
     }
     // Other shares are other kinds.
-    let other = "a:1,b:2"
-        .parse::<Variants>()
-        .expect("valid")
-        .evenly()
-        .expect("shares");
-    let list = Attributes::new(vec![Attribute::EvenVariant(other)]).expect("different");
+    let other = Kinds::even("a:1,b:2").expect("shares");
+    let list = Attributes::new(vec![Attribute::Kind(other)]).expect("different");
     assert_eq!(
         set.attributes(&list).expect_err("other shares").kind(),
         ErrorKind::Kinds

@@ -3,6 +3,7 @@
 mod shipped;
 
 use std::{
+    fs,
     path::Path,
     sync::atomic::{AtomicU32, Ordering},
 };
@@ -85,7 +86,7 @@ fn labels_of_the_default_table_are_even_on_another_twin_and_at_every_share() {
 
 #[test]
 fn shipped_joint_tables_keep_their_promises_on_another_twin() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../catalog/tables/mix");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/tables/joint");
     let plain = shipped::table("blue", "(5-sqrt(3))/2", 100);
     let anisotropy = |set: &Torus| Spectrum::of_torus(set, 1.5).summary(0.04);
     let before = ThinnedTwin::new(&plain, twin()).expect("a twin").at(1.0);
@@ -109,6 +110,24 @@ fn shipped_joint_tables_keep_their_promises_on_another_twin() {
             let found = Distances::of_torus(&set).delta_min;
             assert!(found > delta, "{shares}: {found}");
         }
+    }
+}
+
+#[test]
+fn labels_of_the_library_are_those_of_the_forge() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/tables/even");
+    let plain = shipped::table("blue", "(5-sqrt(3))/2", 100);
+    for shares in ["1:1", "1:3", "1:1:2", "1:3:10"] {
+        let made = labels(&plain, &shares.parse().expect("shares"), &());
+        let made = made.expect("valid").expect("not stopped");
+        let name = shares.replace(':', "-");
+        let path = folder.join(format!("blue-5-sqrt3-over-2-m-{name}.labels"));
+        if std::env::var_os("UPDATE_GOLDEN").is_some() {
+            let (mix, ranks) = (made.mix().expect("one"), made.ranks().expect("made"));
+            fs::write(&path, plain.labels_of(mix, ranks)).expect("written");
+        }
+        let file = fs::read(&path).expect("shipped");
+        assert_eq!(plain.with_labels(&file), Ok(made), "{shares}");
     }
 }
 

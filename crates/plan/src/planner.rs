@@ -205,8 +205,11 @@ impl<'a> Planner<'a> {
         let kinds = match &set.kinds {
             Some(kinds) if cursor.is_none() => {
                 let counts = server::kinds_of_period(&points, self.stop).map_err(unfinished)?;
-                let count =
-                    |name: &str| counts.get(usize::from(kinds.variants.kind(name)?)).copied();
+                let count = |name: &str| {
+                    counts
+                        .get(usize::from(kinds.variants.number(name)?))
+                        .copied()
+                };
                 let names = kinds.variants.variants().names();
                 names.map(|name| count(name).unwrap_or(0).into()).collect()
             }
@@ -250,7 +253,7 @@ impl<'a> Planner<'a> {
             }
         }
         let names = kinds.variants.variants().names();
-        let kind = |name: &str| Some(usize::from(kinds.variants.kind(name)?));
+        let kind = |name: &str| Some(usize::from(kinds.variants.number(name)?));
         let count = |name: &str| counts.get(kind(name)?).copied();
         Ok(names.map(|name| count(name).unwrap_or(0)).collect())
     }

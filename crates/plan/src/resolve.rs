@@ -104,7 +104,7 @@ pub(super) fn kind_distances(
     let mut all = vec![];
     for (i, one) in names.iter().enumerate() {
         for other in &names[i..] {
-            let (a, b) = (kinds.variants.kind(one), kinds.variants.kind(other));
+            let (a, b) = (kinds.variants.number(one), kinds.variants.number(other));
             let least = a
                 .zip(b)
                 .and_then(|(a, b)| ready.table.least_distance_of(a, b));

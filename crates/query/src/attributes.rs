@@ -40,7 +40,7 @@ pub(super) fn check(values: &Values, kinds: Option<&Kinds>) -> Checked<Attribute
             None => Attribute::Scale(range),
         }),
         "variant" => match kinds {
-            Some(kinds) => Some(Attribute::EvenVariant(kinds.variants.clone())),
+            Some(kinds) => Some(Attribute::Kind(kinds.variants.clone())),
             None => variants.clone().map(Attribute::Variant),
         },
         _ => other,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use strew_catalog::{Catalog, Entry, MixKey, Ready, field::Document, mix::Made};
-use strew_core::{EvenVariants, Field, PointSet, VaryingKinds, table::Shares};
+use strew_core::{Field, PointSet, VaryingKinds, table::Shares};
 use strew_error::{Checked, Error, Fault, Faults, Together as _, all, unknown};
 
 use super::{
@@ -19,7 +19,7 @@ use super::{
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kinds {
     /// Their names and weights, and the kind that each is.
-    pub variants: EvenVariants,
+    pub variants: strew_core::Kinds,
     /// How they are spread.
     pub spread: Spread,
     /// The name and the kind of the one to which points are limited.
@@ -56,7 +56,11 @@ impl Kinds {
                 .min_by(least)
                 .map_or("", |(name, _)| name)
         };
-        let variants = variants.evenly().map_err(|error| {
+        let named = match spread {
+            Spread::Joint => strew_core::Kinds::joint(&variants),
+            _ => strew_core::Kinds::even(&variants),
+        };
+        let variants = named.map_err(|error| {
             let detail = match variants.count() {
                 2..=Shares::MAX_KINDS => format!("`{}` is too rare: {error}", rarest()),
                 _ => error.to_string(),
@@ -65,7 +69,7 @@ impl Kinds {
             let field = format!("{}{}", values.path(), VARIANTS.name);
             Fault::new(&field, values.text(&VARIANTS), detail, allowed)
         })?;
-        let kind = |only: String| match variants.kind(&only) {
+        let kind = |only: String| match variants.number(&only) {
             Some(kind) => Ok((only, kind)),
             None => {
                 let names = || variants.variants().names();
@@ -137,7 +141,7 @@ impl Kinds {
             let second = ready.second.as_ref().ok_or(WITHOUT)?;
             let mut fields: Vec<Option<Arc<dyn Field>>> = vec![None; self.shares().kinds()];
             for (name, field) in &self.fields {
-                let kind = self.variants.kind(name).map(usize::from);
+                let kind = self.variants.number(name).map(usize::from);
                 let place = kind.and_then(|kind| fields.get_mut(kind));
                 *place.ok_or(WITHOUT)? = Some(Arc::new(field.spec.clone()));
             }

@@ -310,7 +310,7 @@ impl Service {
         let made = match store::needs(&ready, set) {
             None => return Ok(ready),
             Some(Need::Loaded(entry)) => self.samplers.get(&entry, &self.workers).await?,
-            Some(Need::Made(what)) => match self.mixes.known(&ready, &what).await {
+            Some(Need::Made(what)) => match self.mixes.known(&ready, &what, &self.workers).await? {
                 Some(known) => known,
                 None => {
                     caller.charge(POINTS * set.entry.blocks() as u128, 0)?;

@@ -99,9 +99,27 @@ impl Mixes {
         }
     }
 
-    /// The labels or the second order of a table, if they are in memory.
-    pub(super) async fn known(&self, plain: &Ready, what: &Made) -> Option<Ready> {
-        self.samplers.known(&name(plain, what)).await
+    /// The labels or the second order of a table, if they are in memory or built in.
+    ///
+    /// # Errors
+    /// Those of [`Workers::take_turn`].
+    pub(super) async fn known(
+        &self,
+        plain: &Ready,
+        what: &Made,
+        workers: &Workers,
+    ) -> Result<Option<Ready>, Error> {
+        let name = name(plain, what);
+        if let Some(known) = self.samplers.known(&name).await {
+            return Ok(Some(known));
+        }
+        let (Ready { entry, table, .. }, what) = (plain.clone(), what.clone());
+        let read = move |_: &Stop| Some(Ready::new(entry, what.built_in(&table)?));
+        let built_in = workers.take_turn(Lane::Short, read).await?;
+        if let Some(ready) = &built_in {
+            self.samplers.keep(name, ready.clone()).await;
+        }
+        Ok(built_in)
     }
 
     /// Makes the labels or the second order of a table for the request that is being answered, or joins those

@@ -187,7 +187,7 @@ fn kinds_are_made_for_who_waits_and_an_address_has_a_few_at_once() {
     let before = made();
     drop(waiting);
     // Another address does not wait for work that no client wants any more.
-    let answer = daemon.get(&query("oak:1,fir:3"));
+    let answer = daemon.get(&query("oak:1,fir:5"));
     assert_eq!(answer.status, 200, "{}", answer.text());
     // Its own, and at most one that was nearly made.
     let made = made() - before;

@@ -50,7 +50,7 @@ pub(crate) mod space {
 pub use crate::stop::Stop;
 pub use area::{Area, Circle, Polygon, Region};
 pub use attribute::{
-    Attribute, Attributes, BoundAttributes, Column, EvenVariants, ScaleRange, UniformNumber,
+    Attribute, Attributes, BoundAttributes, Column, Kinds, ScaleRange, UniformNumber,
     VariantScales, Variants,
 };
 pub use cursor::Cursor;
@@ -62,6 +62,6 @@ pub use near::{Clearance, LeastDistance, Visits};
 pub use periodic::{PeriodicBlocks, PeriodicPlan, PeriodicSet};
 pub use plan::Plan;
 pub use seed::Seed;
-pub use set::{Neighbor, PointSet};
+pub use set::{Kind, Neighbor, PointSet};
 pub use walk::{Blocks, Tile};
 pub use warp::Warp;

@@ -41,7 +41,7 @@ impl BoundAttributes {
     pub(super) fn new(attributes: &Attributes, lattice: &Lattice) -> Result<Self, Error> {
         for attribute in attributes.as_slice() {
             let is_even = match attribute {
-                Attribute::Angle | Attribute::EvenVariant(_) => true,
+                Attribute::Angle | Attribute::Kind(_) => true,
                 Attribute::VariantScale(scales) => scales.by_chance().is_none(),
                 _ => false,
             };
@@ -130,7 +130,7 @@ impl BoundAttributes {
                 return;
             }
             // Refused when the list was bound.
-            Attribute::Angle | Attribute::EvenVariant(_) => Column::Numbers(Vec::new()),
+            Attribute::Angle | Attribute::Kind(_) => Column::Numbers(Vec::new()),
         });
     }
 }

@@ -61,8 +61,8 @@ impl SpaceSet {
     /// of the reported coordinates, compared as dx·dx + dy·dy + dz·dz in `f64`.
     ///
     /// # Errors
-    /// [`Place`](crate::ErrorKind::Place) if the place is not finite, [`Neighbors`](crate::ErrorKind::Neighbors) above
-    /// [`MAX_NEAREST`](Self::MAX_NEAREST), [`TooFar`](crate::ErrorKind::TooFar) beyond the lattice's limit, and
+    /// [`Place`](crate::ErrorKind::Place) if the place is not finite, [`Neighbors`](crate::ErrorKind::Neighbors) unless
+    /// `k` is from 1 to [`MAX_NEAREST`](Self::MAX_NEAREST), [`TooFar`](crate::ErrorKind::TooFar) beyond the lattice's limit, and
     /// [`TooMany`](crate::ErrorKind::TooMany) if too many points would have to be visited.
     ///
     /// ```

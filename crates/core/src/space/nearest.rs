@@ -55,8 +55,8 @@ pub(super) fn nearest(
             return Err(Error::new(ErrorKind::Place, name, value, allowed));
         }
     }
-    if k > MAX_NEAREST {
-        let allowed = alloc::format!("at most {MAX_NEAREST}");
+    if !(1..=MAX_NEAREST).contains(&k) {
+        let allowed = alloc::format!("an integer from 1 to {MAX_NEAREST}");
         return Err(Error::new(ErrorKind::Neighbors, "k", k, allowed));
     }
     if let Some(radius) = within
@@ -67,9 +67,6 @@ pub(super) fn nearest(
     }
     let share = lattice.placement.keep.get();
     let spacing = lattice.placement.spacing.get() / libm::cbrt(share);
-    if k == 0 {
-        return Ok(Vec::new());
-    }
     // A ball that holds k points on average, and a little more.
     let mut radius = spacing * (libm::cbrt(k as f64 * 0.239) + 0.7);
     loop {

@@ -19,8 +19,8 @@
 //! `displacement` has the [`Table`], made of the `parts` that a `file` holds, and `derived` makes one from another;
 //! `units` the fixed point, `provenance` the history, `digest` the name, `text` the published text form. `ranks` is the
 //! order in which blocks leave when a set is thinned. `mix` has the kinds of points, in the ratio of `shares`.
-//! `symmetry` has the ways to turn all of these, `turned` a table that is turned, `shipped` the tables built into this
-//! crate.
+//! `symmetry` has the ways to turn all of these, `turned` a table that is turned, `shipped` the tables and labels built into
+//! this crate.
 
 mod derived;
 mod digest;
@@ -49,7 +49,7 @@ pub use ranks::Ranks;
 pub(crate) use ranks::{Cut, Order};
 pub use shares::Shares;
 #[cfg(feature = "tables")]
-pub use shipped::BLUE;
+pub use shipped::{BLUE, joint_files};
 pub(crate) use symmetry::Symmetry;
 pub(crate) use turned::TurnedTable;
 pub(crate) use units::fixed;

@@ -1,5 +1,7 @@
 //! A library has the points, the documents and the words of a daemon's service.
 
+use strew_core::{Kinds, PointSet, Region};
+
 use super::*;
 
 fn library() -> Library {
@@ -129,6 +131,56 @@ fn offsets_are_those_of_the_format_f32_and_need_room() {
         }
         let few = library.fill_coordinates(&planned, &mut vec![0.0; 2 * count - 1]);
         assert_eq!(few.expect_err("no room").faults()[0].field, "capacity");
+    }
+}
+
+#[test]
+fn kinds_of_the_core_are_those_of_queries() {
+    let library = library();
+    let names = |column: &Further| match &column.values {
+        FurtherValues::Names(names, values) => {
+            let name = |i: &i32| usize::try_from(*i).ok().map(|i| names[i].to_string());
+            values.iter().filter_map(name).collect::<Vec<_>>()
+        }
+        FurtherValues::Numbers(_) => vec![],
+    };
+    let region = Region::new([-30.0, 4.0], [50.0, 60.0]).expect("ordered");
+    for variants in [
+        "oak:1,birch:1",
+        "oak:3,birch:1",
+        "oak:2,birch:1,ash:1",
+        "oak:10,birch:3,ash:1",
+    ] {
+        for (spread, kinds) in [
+            ("even", Kinds::even(variants)),
+            ("joint", Kinds::joint(variants)),
+        ] {
+            let forest = PointSet::blue().spacing(1.5).expect("valid").seed(11);
+            let forest = forest.kinds(kinds.expect("shares")).expect("built in");
+            for (share, more) in [(1.0, ""), (0.4, "&keep=0.4")] {
+                let forest = forest.clone().keep(share).expect("a share");
+                let query = format!(
+                    "bbox=-30,4,50,60&spacing=1.5&seed=11&attributes=variant&variants={variants}&spread={spread}{more}"
+                );
+                let columns = |query: &str| {
+                    let (planned, _) = library.plan_address(query).expect("valid");
+                    library.columns(&planned).expect("few")
+                };
+                let whole = columns(&query);
+                let points = forest.within(region).expect("near").to_vec();
+                let at: Vec<f64> = points.iter().flat_map(|point| point.at()).collect();
+                assert_eq!(whole.at, at, "{query}");
+                let ids = points.iter().flat_map(|point| [point.id.x, point.id.y]);
+                assert_eq!(whole.ids, ids.collect::<Vec<_>>(), "{query}");
+                let own = points.iter().filter_map(|point| forest.kind_name(point.id));
+                assert_eq!(names(&whole.further[0]), own.collect::<Vec<_>>(), "{query}");
+                let birches = columns(&format!("{query}&only=birch"));
+                let own = forest.clone().only("birch").expect("a kind");
+                let own = own.within(region).expect("near").to_vec();
+                let at: Vec<f64> = own.iter().flat_map(|point| point.at()).collect();
+                assert_eq!(birches.at, at, "{query}");
+            }
+        }
     }
 }
 

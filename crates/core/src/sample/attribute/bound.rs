@@ -4,7 +4,7 @@ use alloc::{sync::Arc, vec::Vec};
 use core::fmt;
 
 use super::{
-    Attribute, Attributes, EvenVariants, ScaleRange,
+    Attribute, Attributes, Kinds, ScaleRange,
     hash::{angle, hash, in_row, key, of_row, scale, unit},
     scales::{Spread, VariantScales},
 };
@@ -216,15 +216,15 @@ impl BoundAttributes {
                 let (kind, name) = (ErrorKind::Attribute, attribute.name());
                 return Err(Error::new(kind, "attribute", name, allowed));
             }
-            let even = match attribute {
-                Attribute::EvenVariant(even) => Some(even),
+            let kinds = match attribute {
+                Attribute::Kind(kinds) => Some(kinds),
                 Attribute::VariantScale(scales) => match scales.of() {
-                    Spread::Even(even) => Some(even),
+                    Spread::Kinds(kinds) => Some(kinds),
                     Spread::Chance(_) => None,
                 },
                 _ => None,
             };
-            even.map_or(Ok(()), |even| even.check(shares))?;
+            kinds.map_or(Ok(()), |kinds| kinds.check(shares))?;
         }
         let bind = |attribute: &Attribute| Bound {
             key: key(seed, attribute.code()),
@@ -240,8 +240,8 @@ impl BoundAttributes {
     /// The value of attribute number `i` at one point, or `None` past the last attribute. A variant is
     /// its index as a number.
     ///
-    /// An id without a point has values as well; its rank is the greatest, 1 − 2⁻⁵³, and its even variant that of
-    /// the rarest kind.
+    /// An id without a point has values as well; its rank is the greatest, 1 − 2⁻⁵³, and its kind
+    /// the rarest.
     ///
     /// ```
     /// use strew_core::{Attribute, Attributes, PointId, PointSet, Table};
@@ -319,8 +319,8 @@ impl BoundAttributes {
                     replace(column, picked);
                     continue;
                 }
-                Attribute::EvenVariant(even) => {
-                    replace(column, ids.ids.iter().map(|&id| self.index(even, id)));
+                Attribute::Kind(kinds) => {
+                    replace(column, ids.ids.iter().map(|&id| self.index(kinds, id)));
                     continue;
                 }
                 _ => {}
@@ -373,7 +373,7 @@ impl BoundAttributes {
             Attribute::Rank => self.indexed.rank(id),
             Attribute::Uniform(_) => unit(hash(key, id)),
             Attribute::Variant(variants) => variants.pick(hash(key, id)).into(),
-            Attribute::EvenVariant(even) => self.index(even, id).into(),
+            Attribute::Kind(kinds) => self.index(kinds, id).into(),
         }
     }
 
@@ -381,14 +381,14 @@ impl BoundAttributes {
     fn range(&self, scales: &VariantScales, id: PointId) -> ScaleRange {
         scales.range(match scales.of() {
             Spread::Chance(variants) => variants.pick(hash(self.variant_key, id)),
-            Spread::Even(even) => self.index(even, id),
+            Spread::Kinds(kinds) => self.index(kinds, id),
         })
     }
 
     /// The index of the variant of a point's kind.
-    fn index(&self, even: &EvenVariants, id: PointId) -> u32 {
+    fn index(&self, kinds: &Kinds, id: PointId) -> u32 {
         let kind = self.indexed.kind(id).unwrap_or(0);
-        even.index(kind).unwrap_or(0)
+        kinds.index(kind).unwrap_or(0)
     }
 }
 

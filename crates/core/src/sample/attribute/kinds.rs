@@ -2,7 +2,7 @@
 
 use core::{fmt, str::FromStr};
 
-use super::{EvenVariants, ScaleRange, VariantScales, Variants};
+use super::{Kinds, ScaleRange, VariantScales, Variants};
 use crate::error::{Error, ErrorKind, shown};
 
 /// A value that every point has.
@@ -30,7 +30,7 @@ pub enum Attribute {
     /// `variant`: one of several named things, chosen by weight.
     Variant(Variants),
     /// `variant`: one of several named things, each spread evenly: the kind of the point.
-    EvenVariant(EvenVariants),
+    Kind(Kinds),
     /// `rank`: a number in [0, 1), uniform over the pattern. The points of rank below λ are a share λ of
     /// all, nested as λ grows.
     Rank,
@@ -142,7 +142,7 @@ impl Attribute {
             Self::Angle => "angle",
             Self::Rotation => "rotation",
             Self::Scale(_) | Self::VariantScale(_) => "scale",
-            Self::Variant(_) | Self::EvenVariant(_) => "variant",
+            Self::Variant(_) | Self::Kind(_) => "variant",
             Self::Rank => "rank",
             Self::Uniform(n) => UNIFORM_NAMES[n.0 as usize - 1],
         }
@@ -162,10 +162,10 @@ impl Attribute {
     /// The variants, if the attribute is a variant, however these are spread.
     ///
     /// ```
-    /// use strew_core::{Attribute, Variants};
+    /// use strew_core::{Attribute, Kinds, Variants};
     ///
     /// let trees: Variants = "oak:3,birch".parse()?;
-    /// assert_eq!(Attribute::EvenVariant(trees.evenly()?).variants(), Some(&trees));
+    /// assert_eq!(Attribute::Kind(Kinds::even(&trees)?).variants(), Some(&trees));
     /// assert_eq!(Attribute::Angle.variants(), None);
     /// # Ok::<(), strew_core::Error>(())
     /// ```
@@ -173,7 +173,7 @@ impl Attribute {
     pub const fn variants(&self) -> Option<&Variants> {
         match self {
             Self::Variant(variants) => Some(variants),
-            Self::EvenVariant(even) => Some(even.variants()),
+            Self::Kind(kinds) => Some(kinds.variants()),
             _ => None,
         }
     }
@@ -181,7 +181,7 @@ impl Attribute {
     /// The code of this attribute. Those that are not hashed have 0.
     pub(crate) const fn code(&self) -> u64 {
         match self {
-            Self::Rank | Self::EvenVariant(_) => 0,
+            Self::Rank | Self::Kind(_) => 0,
             Self::Angle => Self::ANGLE,
             Self::Rotation => Self::ROTATION,
             Self::Scale(_) | Self::VariantScale(_) => Self::SCALE,

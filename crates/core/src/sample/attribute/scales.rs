@@ -2,7 +2,7 @@
 
 use alloc::{sync::Arc, vec::Vec};
 
-use super::{EvenVariants, Variants};
+use super::{Kinds, Variants};
 use crate::error::{Error, ErrorKind, number};
 
 /// The range of a scale: 0 ≤ min ≤ max.
@@ -110,7 +110,7 @@ pub struct VariantScales {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Spread {
     Chance(Variants),
-    Even(EvenVariants),
+    Kinds(Kinds),
 }
 
 impl Variants {
@@ -132,22 +132,22 @@ impl Variants {
     }
 }
 
-impl EvenVariants {
-    /// A range of scales for each of these variants, in the order in which they were listed.
+impl Kinds {
+    /// A range of scales for each of these kinds, in the order in which they were listed.
     ///
     /// # Errors
     /// [`ErrorKind::Attribute`] unless there is one range for each.
     ///
     /// ```
-    /// use strew_core::{ScaleRange, Variants};
+    /// use strew_core::{Kinds, ScaleRange};
     ///
-    /// let trees = "oak:3,birch".parse::<Variants>()?.evenly()?;
+    /// let trees = Kinds::even("oak:3,birch")?;
     /// let (tall, short) = (ScaleRange::new(0.9, 1.3)?, ScaleRange::new(0.5, 0.8)?);
     /// assert_eq!(trees.scales(vec![tall, short])?.ranges(), [tall, short]);
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn scales(&self, ranges: Vec<ScaleRange>) -> Result<VariantScales, Error> {
-        VariantScales::new(Spread::Even(self.clone()), ranges)
+        VariantScales::new(Spread::Kinds(self.clone()), ranges)
     }
 }
 
@@ -155,7 +155,7 @@ impl VariantScales {
     fn new(of: Spread, ranges: Vec<ScaleRange>) -> Result<Self, Error> {
         let count = match &of {
             Spread::Chance(variants) => variants.count(),
-            Spread::Even(even) => even.variants().count(),
+            Spread::Kinds(kinds) => kinds.variants().count(),
         };
         if ranges.len() == count {
             let ranges = ranges.into();
@@ -200,7 +200,7 @@ impl VariantScales {
     pub const fn variants(&self) -> &Variants {
         match &self.of {
             Spread::Chance(variants) => variants,
-            Spread::Even(even) => even.variants(),
+            Spread::Kinds(kinds) => kinds.variants(),
         }
     }
 
@@ -213,7 +213,7 @@ impl VariantScales {
     pub(crate) const fn by_chance(&self) -> Option<&Variants> {
         match &self.of {
             Spread::Chance(variants) => Some(variants),
-            Spread::Even(_) => None,
+            Spread::Kinds(_) => None,
         }
     }
 

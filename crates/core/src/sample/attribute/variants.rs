@@ -198,6 +198,24 @@ impl FromStr for Variants {
     }
 }
 
+/// The same as parsing, for functions that take a text or variants, such as [`Kinds::even`](crate::Kinds::even).
+impl TryFrom<&str> for Variants {
+    type Error = Error;
+
+    fn try_from(text: &str) -> Result<Self, Error> {
+        text.parse()
+    }
+}
+
+/// The same variants, for functions that take a text or variants.
+impl TryFrom<&Self> for Variants {
+    type Error = Error;
+
+    fn try_from(variants: &Self) -> Result<Self, Error> {
+        Ok(variants.clone())
+    }
+}
+
 impl fmt::Display for Variants {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, (name, weight)) in self.weights().enumerate() {

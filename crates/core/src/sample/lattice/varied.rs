@@ -67,7 +67,7 @@ impl VaryingKinds {
     /// place for each kind, the smallest part first.
     ///
     /// # Errors
-    /// [`ErrorKind::Kinds`] unless the numbers of fields and kinds are equal and above 0.
+    /// [`ErrorKind::Kinds`] unless there is one place for each kind, and a field in one of them.
     ///
     /// ```
     /// use strew_core::{ErrorKind, Table, VaryingKinds};
@@ -75,6 +75,7 @@ impl VaryingKinds {
     /// let order = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
     /// let error = VaryingKinds::new(&order, "1:3".parse()?, vec![None, None]).unwrap_err();
     /// assert_eq!(error.kind(), ErrorKind::Kinds);
+    /// assert!(error.to_string().contains("it must be a field for at least one kind"));
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn new(
@@ -82,16 +83,16 @@ impl VaryingKinds {
         shares: Shares,
         fields: Vec<Option<Arc<dyn Field>>>,
     ) -> Result<Self, Error> {
-        let number = fields.iter().flatten().count();
-        if fields.len() != shares.kinds() || number == 0 {
-            let value = format!("{number} in {} places", fields.len());
-            let allowed = format!("at least one, in {} places", shares.kinds());
-            return Err(Error::new(
-                ErrorKind::Kinds,
-                "the fields of kinds",
-                value,
-                allowed,
-            ));
+        if fields.len() != shares.kinds() {
+            let allowed = format!("{}, one place for each kind", shares.kinds());
+            let field = "the length of the list of fields";
+            return Err(Error::new(ErrorKind::Kinds, field, fields.len(), allowed));
+        }
+        if fields.iter().all(Option::is_none) {
+            let allowed = "a field for at least one kind; kinds in the same shares everywhere need no \
+                           fields: see PointSet::kinds";
+            let field = "every place of the list of fields";
+            return Err(Error::new(ErrorKind::Kinds, field, "None", allowed));
         }
         Ok(Self {
             order: order.clone(),

@@ -110,6 +110,21 @@ impl Lattice {
         Self { kinds, ..self }
     }
 
+    /// This lattice with another table of the same map. It has points of all kinds.
+    pub(crate) fn of_table(self, table: Table) -> Self {
+        let placement = self.placement;
+        let all = Self {
+            kinds: None,
+            varied: None,
+            table,
+            ..self
+        };
+        match &all.grade {
+            Some(grade) if grade.known().is_none() => all.graded(placement, grade),
+            _ => all.at(placement),
+        }
+    }
+
     /// A lattice of the same table at another placement, of the same kind as this one.
     fn at(&self, placement: Placement) -> Self {
         let symmetry = placement.seed.symmetry();

@@ -363,10 +363,10 @@ impl PointSet {
     }
 
     /// The values that the points of this set have for some attributes. They depend on ids and the seed
-    /// alone, ranks and [even variants](crate::EvenVariants) also on the table.
+    /// alone, ranks and [kinds](crate::Kinds) also on the table.
     ///
     /// # Errors
-    /// [`ErrorKind::Kinds`](crate::ErrorKind::Kinds) for even variants of other shares than those of the table's
+    /// [`ErrorKind::Kinds`](crate::ErrorKind::Kinds) for kinds of other shares than those of the table's
     /// [mix](crate::Table::mix).
     ///
     /// ```

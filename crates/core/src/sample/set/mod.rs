@@ -7,12 +7,14 @@ mod kinds;
 mod lookups;
 mod requests;
 
+pub use kinds::Kind;
 pub use lookups::Neighbor;
 
 use alloc::sync::Arc;
 
 use super::{
     area::Area,
+    attribute::Kinds,
     field::Field,
     lattice::{Keep, Lattice, Placement, Settle, Spacing},
     near::{ClearOf, Mask},
@@ -51,6 +53,8 @@ use crate::{error::Error, table::Table};
 pub struct PointSet {
     lattice: Lattice,
     mask: Mask,
+    /// The names of the kinds, if they have names.
+    named: Option<Kinds>,
     /// Whether the warp was chosen, and so stays when the seed changes.
     has_own_warp: bool,
 }
@@ -72,6 +76,7 @@ impl PointSet {
         Self {
             lattice: Lattice::new(table, Placement::new(Spacing::ONE, Seed(0))),
             mask: Mask::default(),
+            named: None,
             has_own_warp: false,
         }
     }

@@ -34,6 +34,8 @@ pub(super) const MAX_SECTIONS: u32 = 64;
 pub(super) const CUBE: [u8; 4] = *b"CUBE";
 /// The section of the order in which blocks leave.
 pub(super) const RANKS: [u8; 4] = *b"rank";
+/// The section of the digest of the table that labels are of.
+pub(super) const BASE: [u8; 4] = *b"BASE";
 /// The section of the kinds of points.
 pub(super) const MIX: [u8; 4] = *b"kind";
 

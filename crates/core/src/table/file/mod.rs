@@ -17,12 +17,16 @@
 //! or 4 in maps of more than 2¹⁶ blocks. `kind`: a list of the parts of the shares as u16, ascending, in lowest
 //! terms, and for each block the number of its kind, one byte.
 //!
+//! Labels of a table that has none are a file of their own (`labels`): `BASE` with the digest of that table,
+//! `rank` and `kind`.
+//!
 //! A table of points in space has `CUBE` in place of `DISP` (`cube`).
 //!
 //! `write` and `read` are each other's inverse over the encodings of `wire`.
 
 mod cube;
 mod head;
+mod labels;
 mod layout;
 mod read;
 #[cfg(test)]
@@ -32,6 +36,7 @@ mod write;
 
 pub(crate) use cube::CubeParts;
 pub use head::Head;
+pub(super) use labels::{read_labels, write_labels};
 pub use layout::{FORMAT_VERSION, MAX_FILE_BYTES};
 pub(super) use read::read;
 pub(super) use write::{digest, write};

@@ -5,7 +5,7 @@ use alloc::{format, string::String, vec::Vec};
 
 use super::{
     layout::{
-        CUBE, DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, MAGIC, MAX_SECTIONS, MIX, RANKS,
+        BASE, CUBE, DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, MAGIC, MAX_SECTIONS, MIX, RANKS,
         check_size, position_bytes,
     },
     wire::Reader,
@@ -119,6 +119,7 @@ pub(super) struct Sections<'a> {
     pub(super) prov: Option<Payload<'a>>,
     pub(super) disp: Option<Payload<'a>>,
     pub(super) cube: Option<Payload<'a>>,
+    pub(super) base: Option<Payload<'a>>,
     pub(super) rank: Option<Payload<'a>>,
     pub(super) kind: Option<Payload<'a>>,
 }
@@ -142,6 +143,7 @@ impl<'a> Sections<'a> {
             b"PROV" => &mut self.prov,
             b"DISP" => &mut self.disp,
             _ if tag == CUBE => &mut self.cube,
+            _ if tag == BASE => &mut self.base,
             _ if tag == RANKS => &mut self.rank,
             _ if tag == MIX => &mut self.kind,
             _ if tag[0].is_ascii_lowercase() => return Ok(at + 12 + length),
@@ -157,6 +159,10 @@ impl<'a> Sections<'a> {
         if let Some((_, at)) = self.cube {
             return Err(wrong(&CUBE, at, "a table of points in space".into()));
         }
+        if let Some((_, at)) = self.base {
+            let problem = "labels of another table: Table::with_labels reads them";
+            return Err(wrong(&BASE, at, problem.into()));
+        }
         let missing = |tag: &[u8]| wrong(tag, HEADER_BYTES, "missing".into());
         let (head, head_at) = self.head.ok_or_else(|| missing(b"HEAD"))?;
         let (prov, prov_at) = self.prov.ok_or_else(|| missing(b"PROV"))?;
@@ -168,22 +174,15 @@ impl<'a> Sections<'a> {
         let displacements =
             read_disp(disp, map.intervals()).map_err(|p| wrong(b"DISP", disp_at, p))?;
         let blocks = displacements.len();
-        let ranks = self.rank.map(|(bytes, at)| {
-            let positions = read_rank(bytes, blocks).map_err(|p| wrong(&RANKS, at, p))?;
-            Ranks::new(positions)
-        });
-        let mix = self.kind.map(|(bytes, at)| {
-            let (shares, labels) = read_kind(bytes).map_err(|p| wrong(&MIX, at, p))?;
-            Mix::new(&map, shares, labels)
-        });
-        let mix = mix.transpose()?;
+        let ranks = self.rank.map(|payload| ranks(payload, blocks));
+        let mix = self.kind.map(|payload| mix(payload, &map));
         let parts = Parts {
             map,
             profile: head.profile,
             displacements,
             provenance,
             ranks: ranks.transpose()?,
-            mix,
+            mix: mix.transpose()?,
         };
         parts.check()?;
         Ok(parts)
@@ -306,6 +305,18 @@ pub(super) fn read_rank(bytes: &[u8], blocks: usize) -> Result<Vec<u32>, String>
         u32::from_le_bytes(wide)
     };
     Ok(bytes.chunks_exact(width).map(position).collect())
+}
+
+/// The section `rank` of a map of some blocks.
+pub(super) fn ranks((bytes, at): Payload<'_>, blocks: usize) -> Result<Ranks, Error> {
+    let positions = read_rank(bytes, blocks).map_err(|p| wrong(&RANKS, at, p))?;
+    Ranks::new(positions)
+}
+
+/// The section `kind` of a map.
+pub(super) fn mix((bytes, at): Payload<'_>, map: &Map) -> Result<Mix, Error> {
+    let (shares, labels) = read_kind(bytes).map_err(|p| wrong(&MIX, at, p))?;
+    Mix::new(map, shares, labels)
 }
 
 /// The shares of kinds, and the kind of each block.

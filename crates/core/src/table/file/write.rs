@@ -109,7 +109,7 @@ pub(super) fn rank(ranks: &Ranks) -> Vec<u8> {
     ranks.positions().iter().flat_map(bytes).collect()
 }
 
-fn kind(mix: &Mix) -> Vec<u8> {
+pub(super) fn kind(mix: &Mix) -> Vec<u8> {
     let mut out = Writer::default();
     let parts = mix.shares().parts();
     out.length(parts.len());
