@@ -23,3 +23,8 @@ struct ReadmeExamples;
 #[cfg(doctest)]
 #[doc = include_str!("../docs/fields.md")]
 struct FieldExamples;
+
+/// Compiles and runs the Rust example of the page for games.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/games.md")]
+struct GamesExamples;

@@ -28,6 +28,15 @@ def test_the_readme_is_true() -> None:
     assert result.attempted > 10 and not result.failed
 
 
+def test_the_page_for_python_is_true(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    docs = FOLDER.parents[1] / "docs"
+    monkeypatch.chdir(tmp_path)
+    result = doctest.testfile(str(docs / "python.md"), module_relative=False)
+    assert result.attempted > 10 and not result.failed
+    kept = (docs / "pictures/trades/ramp.png").read_bytes()
+    assert (tmp_path / "ramp.png").read_bytes() == kept
+
+
 def test_the_comparison_runs() -> None:
     command = [sys.executable, FOLDER / "examples/compare.py", "--points", "400"]
     run = subprocess.run(command, capture_output=True, text=True)

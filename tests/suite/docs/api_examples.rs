@@ -247,6 +247,38 @@ fn the_examples_of_space_print_what_it_shows() {
 }
 
 #[test]
+fn the_page_for_games_shows_what_its_example_draws() {
+    let folder = tempfile::tempdir().expect("a folder");
+    check_in("docs/games.md", folder.path(), &Daemon::built_in());
+    compare(folder.path(), "trades", &["forest.png"]);
+}
+
+/// Most commands of the page need what a test has not; its first example is for everyone.
+#[test]
+fn the_page_on_operations_begins_with_what_it_prints() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/operations.md");
+    let text = std::fs::read_to_string(file).expect("readable");
+    let opening = text.lines().take_while(|line| !line.starts_with("## "));
+    let lines: Vec<String> = opening.map(Into::into).collect();
+    let folder = tempfile::tempdir().expect("a folder");
+    let examples = examples(&lines);
+    let Some(Example { script, shown }) = examples.first() else {
+        return;
+    };
+    let printed = run(script, &Daemon::built_in(), folder.path());
+    assert_eq!(printed, lines[shown.clone()]);
+}
+
+#[test]
+fn the_page_for_rendering_shows_what_its_examples_print_and_draw() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    std::os::unix::fs::symlink(docs, folder.path().join("docs")).expect("writable");
+    check_in("docs/rendering.md", folder.path(), &Daemon::built_in());
+    compare(folder.path(), "fields", &["hills.png"]);
+}
+
+#[test]
 fn the_page_of_samples_shows_what_its_examples_print() {
     check("examples/README.md");
 }
