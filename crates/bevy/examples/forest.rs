@@ -1,8 +1,6 @@
 //! A camera that walks through a forest, and what is loaded around it, in a terminal: `cargo run --example forest`.
 
-use bevy_app::{App, TaskPoolPlugin};
-use bevy_ecs::prelude::*;
-use bevy_transform::{TransformPlugin, prelude::Transform};
+use bevy::prelude::*;
 use strew_bevy::{
     Level, LevelChanged, Removed, Scatter, ScatterAnchor, ScatterChunk, ScatterPlugin, ScatterPoint,
 };
@@ -37,9 +35,9 @@ fn fell(
 
 fn main() {
     let mut app = App::new();
-    app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, ScatterPlugin));
-    app.add_systems(bevy_app::Startup, plant);
-    app.add_systems(bevy_app::PostUpdate, fell);
+    app.add_plugins((MinimalPlugins, TransformPlugin, ScatterPlugin));
+    app.add_systems(Startup, plant)
+        .add_systems(PostUpdate, fell);
     app.update();
     for step in 0..5 {
         let world = app.world_mut();

@@ -6,9 +6,7 @@
 //! however often its chunk is loaded.
 //!
 //! ```
-//! use bevy_app::{App, TaskPoolPlugin};
-//! use bevy_ecs::prelude::*;
-//! use bevy_transform::{TransformPlugin, prelude::Transform};
+//! use bevy::prelude::*;
 //! use strew_bevy::{Level, Scatter, ScatterAnchor, ScatterPlugin, ScatterPoint};
 //! use strew_core::PointSet;
 //!
@@ -21,7 +19,7 @@
 //!     Ok(())
 //! }
 //!
-//! /// Gives each new tree its looks: in a game a mesh and a material.
+//! /// Dresses each new tree: in a game with a mesh and a material.
 //! fn dress(mut trees: Query<(&ScatterPoint, &mut Transform), Added<ScatterPoint>>) {
 //!     for (tree, mut transform) in &mut trees {
 //!         transform.rotate_y(tree.member.angle() as f32);
@@ -30,9 +28,9 @@
 //! }
 //!
 //! let mut app = App::new();
-//! // `DefaultPlugins` of a game has the first two.
-//! app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, ScatterPlugin));
-//! app.add_systems(bevy_app::Startup, plant).add_systems(bevy_app::PostUpdate, dress);
+//! // A game has `DefaultPlugins` in place of the first two.
+//! app.add_plugins((MinimalPlugins, TransformPlugin, ScatterPlugin));
+//! app.add_systems(Startup, plant).add_systems(PostUpdate, dress);
 //! app.update();
 //! ```
 //!

@@ -119,7 +119,7 @@ pub(crate) struct Leveled {
 /// The plane on which points lie.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ground {
-    /// Of three dimensions with y up: the set's y becomes z.
+    /// Of three dimensions with y up: the set's y becomes −z, so that, seen from above, the plane is not mirrored.
     #[default]
     Xz,
     /// Of two dimensions: the set's x and y.
@@ -130,7 +130,7 @@ impl Ground {
     /// The place of a point on the ground.
     pub(crate) const fn place(self, [x, y]: [f32; 2], height: f32) -> Vec3 {
         match self {
-            Self::Xz => Vec3::new(x, height, y),
+            Self::Xz => Vec3::new(x, height, -y),
             Self::Xy => Vec3::new(x, y, height),
         }
     }
@@ -138,7 +138,7 @@ impl Ground {
     /// The place in the set below an entity.
     pub(crate) const fn below(self, at: Vec3) -> [f64; 2] {
         match self {
-            Self::Xz => [at.x as f64, at.z as f64],
+            Self::Xz => [at.x as f64, -at.z as f64],
             Self::Xy => [at.x as f64, at.y as f64],
         }
     }

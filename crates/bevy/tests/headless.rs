@@ -121,7 +121,7 @@ fn lists_have_the_same_points_with_places_and_kinds() {
             let ScatterPoint { member, offset, .. } = point;
             assert_eq!(point.kind, forest.kind_of(member.id()));
             let [x, y] = member.at();
-            let place = Vec3::new(x as f32, hills([x, y]), y as f32);
+            let place = Vec3::new(x as f32, hills([x, y]), -y as f32);
             assert!((corner + offset).distance(place) < 1e-4);
             seen += 1;
         }
@@ -135,7 +135,7 @@ fn entities_lie_where_their_points_are_in_two_dimensions_too() {
         let levels = [Level::new(20.0, 1.0)];
         let scatter = Scatter::new(forest(), CHUNK, levels).expect("valid");
         let mut game = Game::new(scatter.on(ground));
-        game.move_to(Vec3::splat(4.0));
+        game.move_to(Vec3::new(4.0, 4.0, -4.0));
         game.until("some points", |game| game.all::<ScatterPoint>().len() > 100);
         // Places in the world follow at the end of the frame in which entities come.
         game.app.update();
@@ -143,7 +143,7 @@ fn entities_lie_where_their_points_are_in_two_dimensions_too() {
             let at = game.app.world().get::<GlobalTransform>(entity);
             let [x, y] = member.at().map(|v| v as f32);
             let place = match ground {
-                Ground::Xz => Vec3::new(x, 0.0, y),
+                Ground::Xz => Vec3::new(x, 0.0, -y),
                 Ground::Xy => Vec3::new(x, y, 0.0),
             };
             assert!(at.expect("a place").translation().distance(place) < 1e-4);

@@ -82,3 +82,24 @@ pub fn make(table: &Table, what: &Made, stop: &Stop) -> Result<Table, Error> {
         "a mix was stopped before its request ended",
     ))
 }
+
+#[cfg(all(test, feature = "even"))]
+mod tests {
+    use strew_core::PointSet;
+
+    use super::*;
+
+    #[test]
+    fn labels_that_are_built_in_are_not_made() {
+        let blue = PointSet::blue().table().clone();
+        let stop = Stop::new();
+        stop.raise();
+        for shares in ["1:1", "1:3", "1:1:2", "1:3:10"] {
+            let what = Made::Labels(shares.parse().expect("shares"));
+            let made = make(&blue, &what, &stop).expect("built in");
+            assert!(what.is(&made, &blue), "{shares}");
+        }
+        let what = Made::Labels("1:5".parse().expect("shares"));
+        assert!(make(&blue, &what, &stop).is_err(), "stopped");
+    }
+}

@@ -268,13 +268,6 @@ impl fmt::Debug for Error {
 
 impl core::error::Error for Error {}
 
-/// Conversions that cannot fail have the error of the others.
-impl From<core::convert::Infallible> for Error {
-    fn from(never: core::convert::Infallible) -> Self {
-        match never {}
-    }
-}
-
 /// A number for a message: plain digits, or an exponent where there would be too many.
 pub(crate) fn number(value: f64) -> String {
     let plain = value == 0.0 || !value.is_finite() || (1e-5..1e16).contains(&value.abs());

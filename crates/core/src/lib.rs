@@ -20,7 +20,7 @@
 //! # Ok::<(), strew_core::Error>(())
 //! ```
 //!
-//! [`cookbook`] has recipes for common tasks, [`comparison`] says how this differs from Poisson-disk
+//! [`cookbook`] has recipes for common tasks, and what a debug build needs to be fast; [`comparison`] says how this differs from Poisson-disk
 //! libraries, Wang tiles and jittered grids.
 //!
 //! # How it works
@@ -36,6 +36,9 @@
 //!   Without it the crate needs `alloc` only; all results have the same bits.
 //! - `tables` (default): [`PointSet::blue`] and its table, 0.2 MB. Others are read from files by
 //!   [`Table::from_bytes`].
+//! - `even-1-1`, `even-1-3`, `even-1-1-2`, `even-1-3-10`: labels of that table for [evenly spread kinds](Kinds::even) in
+//!   the ratio of the name, 50 kB each.
+//! - `joint-1-1`, `joint-1-3`, `joint-1-1-2`, `joint-1-3-10`: tables of [joint kinds](Kinds::joint), 0.19 MB each.
 //!
 //! The crate knows no network, no async runtime, no file system and no serialization framework.
 #![cfg_attr(not(feature = "std"), no_std)]

@@ -169,3 +169,31 @@ fn every_public_item_has_an_example() {
         missing.join("\n")
     );
 }
+
+/// The code of the cookbook, without the lines that rustdoc hides.
+fn shown_code(text: &str) -> Vec<&str> {
+    let lines = text.lines().filter_map(|line| line.strip_prefix("//!"));
+    let lines = lines.map(|line| line.strip_prefix(' ').unwrap_or(line));
+    lines.filter(|line| !line.starts_with("# ")).collect()
+}
+
+#[test]
+fn the_rust_of_the_documents_is_that_of_the_cookbook() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    // A published package has no documents beside it.
+    let Ok(text) = fs::read_to_string(root.join("../../docs/kinds.md")) else {
+        return;
+    };
+    let cookbook = fs::read_to_string(root.join("src/cookbook.rs")).expect("readable");
+    let recipes = shown_code(&cookbook);
+    let mut blocks = text.split("```rust\n").skip(1).peekable();
+    assert!(blocks.peek().is_some());
+    for block in blocks {
+        let code: Vec<&str> = block.lines().take_while(|line| *line != "```").collect();
+        assert!(
+            recipes.windows(code.len()).any(|part| part == code),
+            "not in the cookbook:\n{}",
+            code.join("\n")
+        );
+    }
+}

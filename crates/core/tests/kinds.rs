@@ -428,7 +428,7 @@ fn named_kinds_are_the_kinds() {
     let ids = || points.iter().map(|point| point.id);
     for text in ["oak:10,birch:1,elm:3", "elm:0.3,oak:1,birch:0.1"] {
         let chance: Variants = text.parse().expect("valid");
-        let even = Kinds::even(chance.clone()).expect("shares");
+        let even = Kinds::even(&chance).expect("shares");
         let list = vec![Attribute::Kind(even.clone()), Attribute::Angle];
         let bound = set.attributes(&Attributes::new(list).expect("different"));
         let bound = bound.expect("the table's shares");

@@ -57,8 +57,8 @@ impl Kinds {
                 .map_or("", |(name, _)| name)
         };
         let named = match spread {
-            Spread::Joint => strew_core::Kinds::joint(variants.clone()),
-            _ => strew_core::Kinds::even(variants.clone()),
+            Spread::Joint => strew_core::Kinds::joint(&variants),
+            _ => strew_core::Kinds::even(&variants),
         };
         let variants = named.map_err(|error| {
             let detail = match variants.count() {

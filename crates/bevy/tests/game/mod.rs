@@ -170,7 +170,7 @@ impl Game {
     }
 
     pub fn wait_at(&mut self, place: [f64; 2]) {
-        self.move_to(Vec3::new(place[0] as f32, 30.0, place[1] as f32));
+        self.move_to(Vec3::new(place[0] as f32, 30.0, -place[1] as f32));
         self.until("the chunks around a place", |game| game.is_right(place));
     }
 }

@@ -165,7 +165,7 @@ impl Attribute {
     /// use strew_core::{Attribute, Kinds, Variants};
     ///
     /// let trees: Variants = "oak:3,birch".parse()?;
-    /// assert_eq!(Attribute::Kind(Kinds::even(trees.clone())?).variants(), Some(&trees));
+    /// assert_eq!(Attribute::Kind(Kinds::even(&trees)?).variants(), Some(&trees));
     /// assert_eq!(Attribute::Angle.variants(), None);
     /// # Ok::<(), strew_core::Error>(())
     /// ```

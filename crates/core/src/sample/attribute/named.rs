@@ -47,7 +47,8 @@ pub struct Kinds {
 }
 
 impl Kinds {
-    /// Kinds of which each is spread evenly among points that stay where they are.
+    /// Kinds of which each is spread evenly among points that stay where they are, from a text such as `birch:1,oak:3` or
+    /// from [variants](Variants).
     ///
     /// # Errors
     /// [`ErrorKind::Variants`] as [`Variants::new`], [`ErrorKind::Shares`] as [`Shares::new`]: there are 2 to 32 kinds,
@@ -58,15 +59,12 @@ impl Kinds {
     ///
     /// let trees = Kinds::even("oak:0.75,birch:0.25")?;
     /// assert_eq!(trees.shares().to_string(), "1:3");
-    /// assert_eq!(Kinds::even(Variants::new([("birch", 1.0), ("oak", 3.0)])?)?.shares(), trees.shares());
+    /// assert_eq!(Kinds::even(&Variants::new([("birch", 1.0), ("oak", 3.0)])?)?.shares(), trees.shares());
     /// let error = Kinds::even("oak:1000000,birch").unwrap_err();
     /// assert_eq!(error.kind(), ErrorKind::Shares);
     /// # Ok::<(), strew_core::Error>(())
     /// ```
-    pub fn even<V: TryInto<Variants>>(variants: V) -> Result<Self, Error>
-    where
-        Error: From<V::Error>,
-    {
+    pub fn even(variants: impl TryInto<Variants, Error = Error>) -> Result<Self, Error> {
         Self::new(variants.try_into()?, false)
     }
 
@@ -81,10 +79,7 @@ impl Kinds {
     /// assert!(Kinds::joint("oak:10,birch:3,bush:1")?.is_joint());
     /// # Ok::<(), strew_core::Error>(())
     /// ```
-    pub fn joint<V: TryInto<Variants>>(variants: V) -> Result<Self, Error>
-    where
-        Error: From<V::Error>,
-    {
+    pub fn joint(variants: impl TryInto<Variants, Error = Error>) -> Result<Self, Error> {
         Self::new(variants.try_into()?, true)
     }
 
@@ -125,7 +120,7 @@ impl Kinds {
     /// use strew_core::{Kinds, Variants};
     ///
     /// let trees: Variants = "oak:3,birch".parse()?;
-    /// assert_eq!(Kinds::even(trees.clone())?.variants(), &trees);
+    /// assert_eq!(Kinds::even(&trees)?.variants(), &trees);
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     #[must_use]

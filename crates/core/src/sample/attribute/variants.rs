@@ -198,12 +198,21 @@ impl FromStr for Variants {
     }
 }
 
-/// The same as parsing, for functions that take either, such as [`Kinds::even`](crate::Kinds::even).
+/// The same as parsing, for functions that take a text or variants, such as [`Kinds::even`](crate::Kinds::even).
 impl TryFrom<&str> for Variants {
     type Error = Error;
 
     fn try_from(text: &str) -> Result<Self, Error> {
         text.parse()
+    }
+}
+
+/// The same variants, for functions that take a text or variants.
+impl TryFrom<&Self> for Variants {
+    type Error = Error;
+
+    fn try_from(variants: &Self) -> Result<Self, Error> {
+        Ok(variants.clone())
     }
 }
 
