@@ -189,7 +189,7 @@
 //! for (name, count) in names.zip(counts) {
 //!     println!("{count} × {name}");
 //! }
-//! # assert_eq!(forest.kind_counts(Region::new([0.0, 0.0], [2e3, 2e3])?)?, [249998, 750007]);
+//! # assert_eq!(forest.kind_counts(Region::new([0.0, 0.0], [2e3, 2e3])?)?, [249978, 750029]);
 //! # Ok::<(), strew_core::Error>(())
 //! ```
 //!
