@@ -18,6 +18,7 @@ fn sources() -> Vec<(String, String)> {
         "page",
         "bindings/python/src",
         "bindings/c/src",
+        "bindings/js/lite/src",
         "crates",
         "tests",
         "benches",
