@@ -51,9 +51,13 @@ fuzz subject seconds="3600":
     cd fuzz && RUSTC_BOOTSTRAP=1 cargo fuzz run -O {{subject}} corpus/{{subject}} seeds/{{subject}} \
         -- -max_total_time={{seconds}} -timeout=20 -max_len=2048
 
-# The npm package: its WebAssembly, beside the real daemon in Node and in Chromium, and packed.
+# The npm package: its WebAssembly, beside the real daemon in Node and in Chromium, its types, and packed, in bundlers.
 js:
     .ci/js
+
+# The npm package as it was built last, in new projects of bundlers (vite, webpack, next, esbuild; by default all).
+bundlers *names:
+    node bindings/js/test/bundlers.mjs {{names}}
 
 # The tests of the pages in Firefox (firefox-esr and geckodriver) instead of Chromium.
 firefox:
