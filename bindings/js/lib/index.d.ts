@@ -15,7 +15,7 @@ export type { Neighbors, Numbers, Output, Parameters, Regions, SpaceParameters, 
 /** The regions that are keywords. */
 export interface Shapes extends Regions {
     /** Size, column, row of a square of the world grid; coordinates are relative to its corner. */
-    chunk?: Tuple<[size: number, column: number, row: number]> | object | null;
+    chunk?: Tuple<[size: number, column: number, row: number]> | { size: number; x: number; y: number } | null;
     /** Any region as JSON has it. */
     region?: object | null;
 }
@@ -42,7 +42,7 @@ export interface Volumes extends VolumeParameters {
     /** An upright prism: the vertices of its base, or GeoJSON, the height of its bottom, and of its top. */
     prism?: readonly [Iterable<Numbers>, number, number] | object | null;
     /** Size, x, y, z of a cube of the world grid; coordinates are relative to its corner. */
-    chunk?: Tuple<[size: number, x: number, y: number, z: number]> | object | null;
+    chunk?: Tuple<[size: number, x: number, y: number, z: number]> | { size: number; x: number; y: number; z: number } | null;
     /** Any volume as JSON has it. */
     region?: object | null;
 }

@@ -17,7 +17,7 @@ export interface Regions {
      * The region as a circle: the points nearer to x,y than the radius. Allowed: three finite numbers x,y,radius with a
      * radius above 0.
      */
-    circle?: Tuple<[x: number, y: number, radius: number]> | object | null;
+    circle?: Tuple<[x: number, y: number, radius: number]> | { center: Tuple<[x: number, y: number]>; radius: number } | null;
     /**
      * The region as a polygon with these vertices. Polygons that share an edge share no point and leave none out.
      * Vertices, or GeoJSON.
@@ -243,7 +243,7 @@ export interface VolumeParameters {
      * The volume as a ball: the points nearer to x,y,z than the radius. Allowed: four finite numbers x,y,z,radius with
      * a radius above 0.
      */
-    ball?: Tuple<[x: number, y: number, z: number, radius: number]> | object | null;
+    ball?: Tuple<[x: number, y: number, z: number, radius: number]> | { center: Tuple<[x: number, y: number, z: number]>; radius: number } | null;
 }
 
 /** The parameters of a query in space: which points, and which part of them. */

@@ -17,6 +17,7 @@ strew.points({ circle: [0, 0, 3], spacing: 1, variant_fields: { oak: raster([1, 
 strew.points({ layers: [{ name: "trees", spacing: 2 }, { name: "grass", spacing: 1, clear_of: { trees: 1 } }], bbox });
 strew.space.points({ ball: [0, 0, 0, 9], spacing: 1, attributes: "rotation" }).nearest([1, 2, 3], { k: 2 });
 strew.space.points({ prism: [[[0, 0], [9, 0], [0, 9]], 0, 4], spacing: 1 }).chunk(16, 1, 2, 3);
+strew.points({ circle: { center: [0, 0], radius: 3 }, spacing: 1 }).within({ chunk: { size: 4, x: 1, y: 2 } });
 const remote: Promise<number> = connect("http://localhost:8080").points({ bbox, spacing: 1 }).count();
 const lite = await openLite();
 const few: number = lite.points({ chunk: [64, 0, 0], spacing: 2, variants: { oak: 1 }, attributes: "variant" }).count();

@@ -49,10 +49,19 @@ fn type_of(parameter: &Parameter) -> String {
         Shape::Numbers(names) => {
             let is_region = matches!(parameter.group, Group::Region | Group::Volume);
             let or_none = if is_region { " | null" } else { "" };
-            // Others than boxes have an object of the same numbers in JSON.
-            let or_object = if is_region && parameter.name != "bbox" { " | object" } else { "" };
-            let names: Vec<String> = names.iter().map(|name| format!("{name}: number")).collect();
-            return format!("Tuple<[{}]>{or_object}{or_none}", names.join(", "));
+            let tuple = |names: &[&str]| {
+                let names: Vec<String> =
+                    names.iter().map(|name| format!("{name}: number")).collect();
+                format!("Tuple<[{}]>", names.join(", "))
+            };
+            // Circles and balls, as JSON has them.
+            let or_object = match names {
+                [center @ .., "radius"] => {
+                    format!(" | {{ center: {}; radius: number }}", tuple(center))
+                }
+                _ => String::new(),
+            };
+            return format!("{}{or_object}{or_none}", tuple(names));
         }
         Shape::Vertices => "ArrayLike<Numbers> | object | null",
         Shape::Number { .. } | Shape::Signed { .. } => "number",

@@ -76,12 +76,7 @@ fn a_forest_of_three_js_grows_around_the_camera() {
         return;
     };
     let folder = tempfile::tempdir().expect("a folder");
-    for name in [
-        "index.html",
-        "main.js",
-        "package.json",
-        "package-lock.json",
-    ] {
+    for name in ["index.html", "main.js", "package.json", "package-lock.json"] {
         let from = Path::new(ROOT).join("examples/three").join(name);
         std::fs::copy(from, folder.path().join(name)).expect("copied");
     }
