@@ -3,11 +3,8 @@
 //!
 //! Calls take numbers. What is longer than a number goes through two buffers of the module: [`input`] makes room that
 //! the caller writes to, and after a call [`output`] is where its result lies, or the words of its error. Tables, sets
-//! and plans are numbers of their places in lists. A call returns −1 if it fails.
-#![expect(
-    unsafe_code,
-    reason = "exported functions keep their names; no block is unsafe"
-)]
+//! and plans are numbers of their places in lists. A call returns −1 if it fails. No block is unsafe: exported functions
+//! have attributes that keep their names.
 
 mod describe;
 mod output;
