@@ -55,9 +55,13 @@ fuzz subject seconds="3600":
 bevy:
     .ci/bevy
 
-# The npm package: its WebAssembly, beside the real daemon in Node and in Chromium, and packed.
+# The npm package: its WebAssembly, beside the real daemon in Node and in Chromium, its types, and packed, in bundlers.
 js:
     .ci/js
+
+# The npm package as it was built last, in new projects of bundlers (vite, webpack, next, esbuild; by default all).
+bundlers *names:
+    node bindings/js/test/bundlers.mjs {{names}}
 
 # The tests of the pages in Firefox (firefox-esr and geckodriver) instead of Chromium.
 firefox:

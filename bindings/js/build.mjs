@@ -1,38 +1,75 @@
-// Builds lib/strew.wasm from bindings/c and copies the tables beside it. With Binaryen's wasm-opt, as a program or as
-// the npm package `binaryen`, the module is made smaller.
+// Builds the two modules of WebAssembly, copies the tables beside them, and writes the package of all other tables.
 import { execFileSync } from "node:child_process";
-import { copyFileSync, mkdirSync, readdirSync, statSync } from "node:fs";
+import { copyFileSync, existsSync, mkdirSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { basename } from "node:path";
 import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
 
 const here = (path) => fileURLToPath(new URL(path, import.meta.url));
 const target = process.env.CARGO_TARGET_DIR ?? here("../c/target");
 const TARGET = "wasm32-unknown-unknown";
 
-const flags = `${process.env.RUSTFLAGS ?? ""} -C target-feature=+simd128,+bulk-memory`.trim();
-execFileSync(
-    "cargo",
-    ["build", "--locked", "--lib", "--profile", "wasm", "--target", TARGET, "--manifest-path", here("../c/Cargo.toml")],
-    { stdio: "inherit", env: { ...process.env, RUSTFLAGS: flags, CARGO_TARGET_DIR: target } },
-);
-const module = here("lib/strew.wasm");
-copyFileSync(`${target}/${TARGET}/wasm/strew_c.wasm`, module);
-const before = statSync(module).size;
-try {
-    const features = ["simd", "bulk-memory", "nontrapping-float-to-int", "sign-ext", "mutable-globals"];
-    const enabled = [...features, "multivalue", "reference-types"].map((feature) => `--enable-${feature}`);
-    execFileSync("wasm-opt", ["-Oz", ...enabled, module, "-o", module], { stdio: "inherit" });
-    console.log(`wasm-opt: ${before} to ${statSync(module).size} bytes`);
-} catch (error) {
-    if (error.code !== "ENOENT") throw error;
-    console.log(`${before} bytes; wasm-opt is not installed`);
+/** Binaryen's wasm-opt: of the development dependency, else of the machine. */
+function optimizer() {
+    const own = here("node_modules/binaryen/bin/wasm-opt");
+    return existsSync(own) ? [process.execPath, own] : ["wasm-opt"];
+}
+
+/** Builds a crate as a module. Features of WebAssembly are those that it is compiled for. */
+function built(manifest, crate, module, features) {
+    const flags = `${process.env.RUSTFLAGS ?? ""} -C target-feature=${features.map((name) => `+${name}`).join()}`.trim();
+    const how = ["--lib", "--profile", "wasm", "--target", TARGET, "--manifest-path", here(manifest)];
+    execFileSync("cargo", ["build", "--locked", ...how], {
+        stdio: "inherit",
+        env: { ...process.env, RUSTFLAGS: flags, CARGO_TARGET_DIR: target },
+    });
+    const from = `${target}/${TARGET}/wasm/${crate}.wasm`;
+    const known = ["nontrapping-float-to-int", "sign-ext", "mutable-globals", "multivalue", "reference-types"];
+    const enabled = [...known, ...features.map((name) => name.replace("128", ""))].map((name) => `--enable-${name}`);
+    const [program, ...first] = optimizer();
+    const options = [...first, "-Oz", "--strip-debug", "--strip-producers", ...enabled, from, "-o", module];
+    try {
+        execFileSync(program, options, { stdio: "inherit" });
+        console.log(`${basename(module)}: wasm-opt ${statSync(from).size} to ${statSync(module).size} bytes`);
+    } catch (error) {
+        if (error.code !== "ENOENT") throw error;
+        throw new Error("wasm-opt is missing: run `npm install` here, which installs binaryen", { cause: error });
+    }
 }
 
 mkdirSync(here("lib/tables"), { recursive: true });
+mkdirSync(here("lib/embedded"), { recursive: true });
+built("../c/Cargo.toml", "strew_c", here("lib/strew.wasm"), ["simd128", "bulk-memory"]);
+// Without vectors it is smaller by 8 kB, and has the same bits.
+built("lite/Cargo.toml", "strew_lite", here("lib/lite.wasm"), ["bulk-memory"]);
+
+// The tables of this package, and all of them in a package of their own, each with a module that bundlers understand.
+const OWN = ["blue-5-sqrt3-over-2-m.strew", "blue-5-sqrt3-over-2-s.strew", "space-blue-5-sqrt3-over-2-r16.strew"];
+for (const old of readdirSync(here("lib/tables"))) rmSync(here(`lib/tables/${old}`));
+rmSync(here("tables/files"), { recursive: true, force: true });
+mkdirSync(here("tables/files"), { recursive: true });
 const shipped = ["", "space/"].map((folder) => `../../crates/catalog/tables/${folder}`);
 for (const folder of ["../../crates/core/tables/", "../../crates/core/tables/joint/", ...shipped]) {
     for (const file of readdirSync(here(folder)).filter((name) => name.endsWith(".strew"))) {
         // Tables in space are named as such.
         const name = folder.endsWith("/space/") ? `space-${file}` : file;
-        copyFileSync(here(folder + file), here(`lib/tables/${name}`));
+        if (OWN.includes(name)) copyFileSync(here(folder + file), here(`lib/tables/${name}`));
+        const stem = name.replace(/\.strew$/, "");
+        copyFileSync(here(folder + file), here(`tables/files/${name}`));
+        const url = `new URL("./${name}", import.meta.url)`;
+        writeFileSync(here(`tables/files/${stem}.js`), `// The address of a table.\nexport default ${url};\n`);
+        writeFileSync(here(`tables/files/${stem}.d.ts`), "declare const table: URL;\nexport default table;\n");
     }
 }
+
+/** A module of files in base64 of gzip. */
+function embedded(module, files) {
+    const line = (file) => {
+        const name = basename(file).replace(/\.\w+$/, "").replaceAll("-", "_");
+        return `export const ${name} = "${gzipSync(readFileSync(here(file)), { level: 9 }).toString("base64")}";\n`;
+    };
+    writeFileSync(here(module), `// Files in base64 of gzip.\n${files.map(line).join("")}`);
+}
+
+embedded("lib/embedded/full.js", ["lib/strew.wasm", `lib/tables/${OWN[0]}`]);
+embedded("lib/embedded/lite.js", ["lib/lite.wasm", `lib/tables/${OWN[1]}`]);

@@ -1,10 +1,12 @@
 // A forest without end: chunks of a Strew daemon around a moving camera, as instanced meshes.
 //
-// Chunks come as f32, relative to their corner, so no coordinate is large. Points are sorted by their rank: those
-// that stay when a set is thinned come first, so a chunk that is far away draws the first part of its points and
-// no point ever jumps.
+// `strew/three` requests chunks, culls them, and draws a part of those that are far away. Chunks come as f32, relative to
+// their corner, so no coordinate is large.
 import * as THREE from "three";
-import { Chunks } from "./chunks.js";
+import { connect } from "strew";
+import { Chunks } from "strew/three";
+
+const SIDE = 32; // meters, along each side of a chunk
 
 const parameters = new URLSearchParams(location.search);
 const speed = Number(parameters.get("speed") ?? 8); // meters a second
@@ -43,7 +45,13 @@ const resize = () => {
 addEventListener("resize", resize);
 resize();
 
-const chunks = new Chunks(parameters.get("url") ?? "http://127.0.0.1:8080", kinds);
+const url = parameters.get("url") ?? "http://127.0.0.1:8080";
+// Chunks are requested again by `strew/three`.
+const points = connect(url, { retries: 0, patience: 0 }).points({
+    spacing: 2.2, seed: 7, attributes: "angle, scale, variant, rank", scale_range: [0.7, 1.3],
+    variants: { oak: 4, pine: 2, rock: 1 }, spread: "even",
+});
+const chunks = new Chunks(points, kinds, { side: SIDE, near: 96, far: 256 });
 scene.add(chunks.group);
 const said = document.querySelector("#said");
 const at = { x: Number(parameters.get("x") ?? 0), y: Number(parameters.get("y") ?? 0) };
@@ -53,11 +61,15 @@ renderer.setAnimationLoop((now) => {
     if (!still) at.y += speed * Math.min(now - before, 100) / 1000;
     before = now;
     // What is near the origin keeps its precision, however far the walk goes: the camera stays, the world moves.
-    const [cx, cy] = chunks.around(at);
-    camera.position.set(at.x - cx, 14, -(at.y - cy));
+    const origin = [at.x, at.y].map((v) => SIDE * Math.floor(v / SIDE));
+    camera.position.set(at.x - origin[0], 14, -(at.y - origin[1]));
     camera.rotation.set(-0.22, 0, 0);
+    chunks.update(camera, origin);
     ground.position.set(camera.position.x, 0, camera.position.z);
     renderer.render(scene, camera);
+    const [drawn, loaded] = [chunks.drawn, chunks.loaded].map((count) => count.toLocaleString("en"));
     said.textContent = chunks.error
-        ?? `${chunks.drawn.toLocaleString("en")} of ${chunks.loaded.toLocaleString("en")} points in ${chunks.size} chunks`;
+        ? `The daemon at ${url} does not answer: ${chunks.error.message}`
+        : `${drawn} of ${loaded} points in ${chunks.size} chunks`;
+    said.dataset.missing = chunks.missing;
 });

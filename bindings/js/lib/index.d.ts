@@ -1,64 +1,64 @@
 /// <reference lib="esnext.disposable" />
 
-import type { Neighbors, Numbers, Output, Parameters, Regions } from "./parameters.js";
-export type { Neighbors, Numbers, Output, Parameters, Regions };
+import type {
+    Neighbors,
+    Numbers,
+    Output,
+    Parameters,
+    Regions,
+    SpaceParameters,
+    Tuple,
+    VolumeParameters,
+} from "./parameters.js";
+export type { Neighbors, Numbers, Output, Parameters, Regions, SpaceParameters, Tuple };
 
 /** The regions that are keywords. */
 export interface Shapes extends Regions {
     /** Size, column, row of a square of the world grid; coordinates are relative to its corner. */
-    chunk?: Numbers | object | null;
+    chunk?: Tuple<[size: number, column: number, row: number]> | { size: number; x: number; y: number } | null;
     /** Any region as JSON has it. */
     region?: object | null;
 }
 
+/** Members of a document that a body may have. */
+type Form = Output & { format?: string };
+
+/** A layer: a set of points with a name. */
+export interface Layer extends Omit<Parameters, "periodic" | "world" | "world_digest" | "offset" | "limit" | "cursor"> {
+    /** Its name. */
+    name: string;
+    /** The layers whose points it keeps away from, with the least distances. */
+    clear_of?: Record<string, number> | readonly object[];
+}
+
 /** The keywords of a query: the members of REST's JSON, and the shapes of regions by themselves. */
-export interface Query extends Shapes, Parameters {
+export interface Query extends Shapes, Parameters, Form {
     /** Several sets at once. */
-    layers?: object[];
-    [member: string]: unknown;
+    layers?: readonly Layer[];
 }
 
 /** The regions of space that are keywords. */
-export interface Volumes {
-    /** min_x, min_y, min_z, max_x, max_y, max_z of a box. */
-    bbox?: Numbers | null;
-    /** x, y, z and the radius of a ball. */
-    ball?: Numbers | object | null;
+export interface Volumes extends VolumeParameters {
     /** An upright prism: the vertices of its base, or GeoJSON, the height of its bottom, and of its top. */
-    prism?: [Iterable<Numbers>, number, number] | object | null;
+    prism?: readonly [Iterable<Numbers>, number, number] | object | null;
     /** Size, x, y, z of a cube of the world grid; coordinates are relative to its corner. */
-    chunk?: Numbers | object | null;
+    chunk?: Tuple<[size: number, x: number, y: number, z: number]> | { size: number; x: number; y: number; z: number } | null;
     /** Any volume as JSON has it. */
     region?: object | null;
 }
 
+/** A layer in space. */
+export interface SpaceLayer extends Omit<SpaceParameters, "offset" | "limit" | "cursor"> {
+    /** Its name. */
+    name: string;
+    /** The layers whose points it keeps away from, with the least distances. */
+    clear_of?: Record<string, number> | readonly object[];
+}
+
 /** The keywords of a query in space. */
-export interface SpaceQuery
-    extends Volumes,
-        Pick<
-            Parameters,
-            | "density"
-            | "spacing"
-            | "min_distance"
-            | "profile"
-            | "alpha"
-            | "map"
-            | "table"
-            | "seed"
-            | "warp"
-            | "keep"
-            | "scale_range"
-            | "scale_ranges"
-            | "variants"
-            | "offset"
-            | "limit"
-            | "cursor"
-        > {
-    /** rotation (the columns qx, qy, qz and qw of a unit quaternion), scale, variant, rank, u1 to u16. */
-    attributes?: string | string[];
+export interface SpaceQuery extends Volumes, SpaceParameters, Form {
     /** Several sets at once. */
-    layers?: object[];
-    [member: string]: unknown;
+    layers?: readonly SpaceLayer[];
 }
 
 /** One thing that is wrong with a query. */
@@ -98,11 +98,14 @@ export interface SpacePoint extends Point {
 export type Answer<Where extends "here" | "there", T> = Where extends "here" ? T : Promise<T>;
 
 /** What sets of the plane and of space have in common: `One` is a point, `Regions` are keywords of regions. */
-interface Points<Where extends "here" | "there", One, Regions> extends Iterable<One> {
+interface Points<Where extends "here" | "there", One, Regions, Place> extends Iterable<One> {
     /** The body of `POST /v1/points:query`, in space of `POST /v1/space/points`. */
     readonly body: Record<string, unknown>;
-    /** The exact number of points: a number, or a bigint from 2⁵³ on. */
-    count(): Answer<Where, number | bigint>;
+    /**
+     * The exact number of points. It is typed as a number, which it is below 2⁵³; from there on it is a bigint of the
+     * same value, so that it is exact: `BigInt(points.count())` is right for both.
+     */
+    count(): Answer<Where, number>;
     /** The query with everything filled in. Integers from 2⁵³ on are bigints. */
     resolved(): Answer<Where, Record<string, unknown>>;
     /** Two integers for each point, `x:y` as text; in space three, `x:y:z`. */
@@ -118,7 +121,7 @@ interface Points<Where extends "here" | "there", One, Regions> extends Iterable<
     /** The points in at most `parts` parts of the same size, give or take one. */
     split(parts: number): Answer<Where, this[]>;
     /** The points nearest to a place, nearest first: one, or `k`, or all within `radius`. */
-    nearest(at: Numbers, limits?: Neighbors): Answer<Where, One[]>;
+    nearest(at: Place, limits?: Neighbors): Answer<Where, One[]>;
     /** The point of an id. */
     point(id: string): Answer<Where, One>;
     /** The points in a format of REST, as bytes. */
@@ -131,14 +134,28 @@ interface Points<Where extends "here" | "there", One, Regions> extends Iterable<
     [Symbol.dispose](): void;
 }
 
+/** The rows of an answer as `f32`, the form of instances. */
+export interface Rows {
+    /** x and y, then the attributes in the order of the query; names as indices of `names`. */
+    columns: string[];
+    /** The values of all rows, one row after another. */
+    values: Float32Array;
+    /** The names that a column's indices stand for. */
+    names: Record<string, string[]>;
+    /** The place that coordinates are relative to. */
+    origin: [number, number];
+}
+
 /** The points of a query of the plane, made when they are wanted. */
-export interface PointSet<Where extends "here" | "there" = "here"> extends Points<Where, Point, Shapes> {}
+export interface PointSet<Where extends "here" | "there" = "here"> extends Points<Where, Point, Shapes, Tuple<[x: number, y: number]>> {}
 export class PointSet<Where extends "here" | "there" = "here"> {
     private constructor();
     /** x and y of each point, by turns. */
     xy(): Answer<Where, Float64Array>;
     /** The coordinates as `f32`, relative to the lower corner of the region. */
     xyF32(): Answer<Where, { xy: Float32Array; origin: [number, number] }>;
+    /** One row for each point: `f32` coordinates relative to `origin`, and the numbers of attributes; see `rowsF32`. */
+    rowsF32(): Answer<Where, Rows>;
     /** The place that the coordinates of `xy()` are relative to: the corner of a chunk, else 0, 0. */
     origin(): Answer<Where, [number, number]>;
     /** The points of a square of the world grid. */
@@ -146,7 +163,7 @@ export class PointSet<Where extends "here" | "there" = "here"> {
 }
 
 /** The points of a query in space, made when they are wanted. */
-export interface SpaceSet<Where extends "here" | "there" = "here"> extends Points<Where, SpacePoint, Volumes> {}
+export interface SpaceSet<Where extends "here" | "there" = "here"> extends Points<Where, SpacePoint, Volumes, Tuple<[x: number, y: number, z: number]>> {}
 export class SpaceSet<Where extends "here" | "there" = "here"> {
     private constructor();
     /** x, y and z of each point, by turns. */
@@ -180,14 +197,17 @@ export class Source<Where extends "here" | "there" = "here"> {
 }
 
 /** The tables that are loaded by default. */
-export const DEFAULT_TABLES: string[];
+export const DEFAULT_TABLES: readonly string[];
 
 /** The table for points in space that a daemon answers with by default: `open({ tables: SPACE_TABLES })`. */
-export const SPACE_TABLES: string[];
+export const SPACE_TABLES: readonly string[];
 
-/** Loads the module and tables: names of this package's files, addresses, or bytes. */
+/**
+ * Loads the module and tables: names of this package's files, addresses, or bytes. The package `strew-tables` has the
+ * addresses of all others.
+ */
 export function open(options?: {
-    tables?: (string | URL | ArrayBuffer | ArrayBufferView)[];
+    tables?: readonly (string | URL | ArrayBuffer | ArrayBufferView)[];
     wasm?: string | URL | ArrayBuffer | ArrayBufferView | WebAssembly.Module;
 }): Promise<Source<"here">>;
 

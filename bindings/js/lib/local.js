@@ -1,8 +1,10 @@
 // Points that are made in this page or process.
 
+import { StrewError } from "./error.js";
+import { compile, content, isAddress } from "./files.js";
 import { Module } from "./module.js";
-import { Source } from "./points.js";
-import { PLANE, SPACE } from "./query.js";
+import { Source, rowsOf } from "./points.js";
+import { PLANE, SPACE, address, integers } from "./query.js";
 
 /** The table that answers by default, and by default the only one that is loaded. */
 export const DEFAULT_TABLES = ["blue-5-sqrt3-over-2-m.strew"];
@@ -61,19 +63,20 @@ export class Local extends Source {
         });
     }
 
-    nearest(address, dimension) {
+    nearest(values, dimension) {
         const module = this.#module;
-        return module.scoped((room) =>
-            module.json(CALLS.get(dimension).nearest, room, this.#library, module.text(room, address), 0, 0, 0),
-        );
+        return module.scoped((room) => {
+            const set = module.text(room, address(values));
+            return module.json(CALLS.get(dimension).nearest, room, this.#library, set, 0, 0, 0);
+        });
     }
 
-    point(id, address, dimension) {
+    point(id, values, dimension) {
         const module = this.#module;
         const calls = CALLS.get(dimension);
         return module.scoped((room) => {
             const parts = integers(id, dimension);
-            const set = module.text(room, address);
+            const set = module.text(room, address(values));
             return module.json(calls.point, room, this.#library, set, ...parts, room(calls.bytes));
         });
     }
@@ -85,16 +88,6 @@ export class Local extends Source {
         );
         return new TextDecoder().decode(held);
     }
-}
-
-function integers(id, dimension) {
-    const parts = /^-?\d+(:-?\d+)+$/.test(id) ? id.split(":").map(BigInt) : [];
-    if (parts.length === dimension.axes.length) return parts;
-    const allowed =
-        dimension === SPACE
-            ? "three integers joined by colons, such as -31:52:7"
-            : "two integers joined by a colon, such as -31:52";
-    throw new TypeError(`${JSON.stringify(id)} is no id: ${allowed}`);
 }
 
 /** A planned query. */
@@ -176,6 +169,10 @@ class Plan {
         return { ids, at: this.coordinates(), further: new Map(further) };
     }
 
+    rows() {
+        return rowsOf(this.offsets(), this.columns().further);
+    }
+
     resolved() {
         return this.#module.scoped((room) => this.#module.exact("strew_plan_resolved", room, this.#plan));
     }
@@ -194,28 +191,37 @@ class Plan {
     }
 }
 
-const isNode = typeof process !== "undefined" && Boolean(process.versions?.node);
+// Bundlers copy the files of literal URLs. Nothing is evaluated before it is loaded.
+const WASM = () => new URL("./strew.wasm", import.meta.url);
+const TABLES = new Map([
+    ["blue-5-sqrt3-over-2-m.strew", () => new URL("./tables/blue-5-sqrt3-over-2-m.strew", import.meta.url)],
+    ["blue-5-sqrt3-over-2-s.strew", () => new URL("./tables/blue-5-sqrt3-over-2-s.strew", import.meta.url)],
+    [
+        "space-blue-5-sqrt3-over-2-r16.strew",
+        () => new URL("./tables/space-blue-5-sqrt3-over-2-r16.strew", import.meta.url),
+    ],
+]);
 
-/** The bytes of a file of this package, of an address, or of bytes. */
-async function content(what, folder) {
-    if (what instanceof ArrayBuffer) return new Uint8Array(what);
-    if (ArrayBuffer.isView(what)) return new Uint8Array(what.buffer, what.byteOffset, what.byteLength);
-    const isAddress = what instanceof URL || /^[a-z]+:\/\//.test(what);
-    const url = isAddress ? new URL(what) : new URL(what, new URL(folder, import.meta.url));
-    if (isNode && url.protocol === "file:") {
-        const { readFile } = await import("node:fs/promises");
-        return readFile(url);
-    }
-    const response = await fetch(url);
-    if (!response.ok) throw new Error(`${url}: HTTP ${response.status}`);
-    return new Uint8Array(await response.arrayBuffer());
+/** A table by its name, or its address or bytes. */
+function table(what) {
+    if (typeof what !== "string" || isAddress(what)) return what;
+    const known = TABLES.get(what);
+    if (known) return known();
+    const names = [...TABLES.keys()].join(", ");
+    throw new StrewError(
+        `no table ${JSON.stringify(what)}; this package has ${names}, the package strew-tables all others, and ` +
+            "tables may be URLs or bytes",
+        "no-such-table",
+    );
 }
 
 /** Loads the module and tables. */
-export async function open({ tables = DEFAULT_TABLES, wasm = "strew.wasm" } = {}) {
-    const compiled = wasm instanceof WebAssembly.Module ? wasm : WebAssembly.compile(await content(wasm, "./"));
-    const files = await Promise.all(tables.map((table) => content(table, "./tables/")));
-    const module = new Module(await WebAssembly.instantiate(await compiled, {}));
+export async function open({ tables = DEFAULT_TABLES, wasm } = {}) {
+    const [compiled, ...files] = await Promise.all([
+        compile(wasm ?? WASM(), "wasm"),
+        ...tables.map((name) => content(table(name), "tables")),
+    ]);
+    const module = new Module(await WebAssembly.instantiate(compiled, {}));
     const library = module.scoped((room) => {
         const places = files.map((file) => {
             const at = room(file.length);

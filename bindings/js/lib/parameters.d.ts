@@ -3,18 +3,21 @@
 /** Numbers: a list or a typed array. */
 export type Numbers = ArrayLike<number>;
 
+/** A list of a known length, or a typed array, whose length types do not know. */
+export type Tuple<List extends readonly number[]> = Readonly<List> | Float64Array | Float32Array;
+
 /** Regions that are parameters by themselves: a query has one of them, or a member `region`. */
 export interface Regions {
     /**
      * The region as a box: min ≤ p < max on the reported coordinates. Allowed: four finite numbers
      * min_x,min_y,max_x,max_y with min_x < max_x and min_y < max_y.
      */
-    bbox?: Numbers | null;
+    bbox?: Tuple<[min_x: number, min_y: number, max_x: number, max_y: number]> | null;
     /**
      * The region as a circle: the points nearer to x,y than the radius. Allowed: three finite numbers x,y,radius with a
      * radius above 0.
      */
-    circle?: Numbers | object | null;
+    circle?: Tuple<[x: number, y: number, radius: number]> | { center: Tuple<[x: number, y: number]>; radius: number } | null;
     /**
      * The region as a polygon with these vertices. Polygons that share an edge share no point and leave none out.
      * Vertices, or GeoJSON.
@@ -120,22 +123,22 @@ export interface Parameters {
      * digests. Other layers keep clear of them all the same. Beside layers ids are layer/column:row. The list of lists
      * shows what is loaded. Default: none.
      */
-    except?: string | string[];
+    except?: string | readonly string[];
     /**
      * Further values of each point, hashed from its id and the seed: angle (radians, 0 to 2π), scale (within
      * scale_range), variant (one of variants, by weight), rank (0 to 1, see keep), u1 to u16 (uniform, 0 to 1).
      * Default: none.
      */
-    attributes?: string | string[];
+    attributes?: string | readonly string[];
     /**
      * The least and the greatest value of the attribute scale. Allowed: two numbers min,max with 0 <= min <= max <=
      * 1e9, beside the attribute scale. Default: 0,1.
      */
-    scale_range?: Numbers;
+    scale_range?: Tuple<[min: number, max: number]>;
     /**
      * The least and the greatest value of the attribute scale for each variant. Default: scale_range for all.
      */
-    scale_ranges?: Record<string, Numbers>;
+    scale_ranges?: Record<string, Tuple<[min: number, max: number]>>;
     /**
      * The names that the attribute variant chooses from, with their weights. Their order does not matter.
      */
@@ -180,7 +183,7 @@ export interface Parameters {
      * The heights of the terrain where its field is 0 and where it is 1, in world units. Allowed: two numbers low,high
      * with -1e9 <= low < high <= 1e9, beside a terrain. Default: 0,1.
      */
-    heights?: Numbers;
+    heights?: Tuple<[low: number, high: number]>;
     /**
      * Whether points have the normal nx, ny, nz of the terrain, of unit length. Default: off.
      */
@@ -227,4 +230,106 @@ export interface Neighbors {
      * The greatest distance from the place, in world units. Allowed: a finite number of at least 0. Default: unlimited.
      */
     radius?: number;
+}
+
+/** Volumes that are parameters by themselves: a query in space has one of them, or a member `region`. */
+export interface VolumeParameters {
+    /**
+     * The volume as a box: min ≤ p < max on the reported coordinates. Allowed: six finite numbers
+     * min_x,min_y,min_z,max_x,max_y,max_z, each min below its max.
+     */
+    bbox?: Tuple<[min_x: number, min_y: number, min_z: number, max_x: number, max_y: number, max_z: number]> | null;
+    /**
+     * The volume as a ball: the points nearer to x,y,z than the radius. Allowed: four finite numbers x,y,z,radius with
+     * a radius above 0.
+     */
+    ball?: Tuple<[x: number, y: number, z: number, radius: number]> | { center: Tuple<[x: number, y: number, z: number]>; radius: number } | null;
+}
+
+/** The parameters of a query in space: which points, and which part of them. */
+export interface SpaceParameters {
+    /**
+     * Points per unit of area, in space of volume. Allowed: a number from 1e-200 to 1e200.
+     */
+    density?: number;
+    /**
+     * The mean spacing in world units: density^-1/2, in space density^-1/3. Allowed: a number from 1e-100 to 1e100.
+     */
+    spacing?: number;
+    /**
+     * The least distance of any two points in world units: the density is the greatest that guarantees it, with the
+     * warp. Not for profiles that guarantee none. Allowed: a number from 1e-100 to 1e100.
+     */
+    min_distance?: number;
+    /**
+     * The noise profile. The list of profiles shows what is loaded. Allowed: the name of a loaded profile. Default:
+     * blue.
+     */
+    profile?: string;
+    /**
+     * The number α of the pattern, as a decimal, a fraction or a quadratic irrational. Allowed: a number for which the
+     * profile is loaded. Default: (5-sqrt(3))/2.
+     */
+    alpha?: string | number;
+    /**
+     * The size of the neighborhood map: larger maps have better quality and take more memory. Allowed: s, m or l, if
+     * the profile is loaded with it. Default: m, of pink l, if it is loaded, else s or the smallest.
+     */
+    map?: string;
+    /**
+     * The digest of the table that must answer: caches may keep the answer forever. If another table would answer, the
+     * query is refused. Allowed: 64 hexadecimal digits, as in the header strew-table. Default: any table that fits the
+     * query.
+     */
+    table?: string;
+    /**
+     * Which set of points. Seed 0 is the plain pattern, every other seed a set of its own. Beside layers: the common
+     * seed, from which each layer without a seed has one by its name. Allowed: an integer from 0 to
+     * 18446744073709551615. Default: 0.
+     */
+    seed?: number | bigint;
+    /**
+     * The strength of the warp that makes a set isotropic and unlike those of other seeds: 0 (off), 1 (on), or between
+     * 0 and 2. Allowed: off, on, or a number from 0 to 2. Default: off for seed 0, else on.
+     */
+    warp?: "on" | "off" | number;
+    /**
+     * The share of points to keep, those of the lowest rank. A smaller share keeps a subset of a larger one. Allowed: a
+     * number from 1e-6 to 1. Default: 1.
+     */
+    keep?: number;
+    /**
+     * The least and the greatest value of the attribute scale. Allowed: two numbers min,max with 0 <= min <= max <=
+     * 1e9, beside the attribute scale. Default: 0,1.
+     */
+    scale_range?: Tuple<[min: number, max: number]>;
+    /**
+     * The least and the greatest value of the attribute scale for each variant. Default: scale_range for all.
+     */
+    scale_ranges?: Record<string, Tuple<[min: number, max: number]>>;
+    /**
+     * The names that the attribute variant chooses from, with their weights. Their order does not matter.
+     */
+    variants?: Record<string, number>;
+    /**
+     * The number of points to leave out, in the fixed order, from the start or after the cursor. Allowed: an integer
+     * from 0 to 18446744073709551615. Default: 0.
+     */
+    offset?: number | bigint;
+    /**
+     * The greatest number of points in the answer. The header strew-next is the cursor of the rest. Allowed: an integer
+     * from 1 to 18446744073709551615. Default: all.
+     */
+    limit?: number | bigint;
+    /**
+     * Where an earlier answer to the same query ended: the value of its header strew-next. Allowed: the cursor of an
+     * earlier answer to the same query. Default: the beginning.
+     */
+    cursor?: string;
+    /**
+     * Further values of each point, hashed from its id and the seed: rotation (a uniform unit quaternion, as qx, qy, qz
+     * and qw), scale (within scale_range), variant (one of variants, by weight), rank (0 to 1, see keep), u1 to u16
+     * (uniform, 0 to 1). Default: none.
+     */
+    attributes?: string | readonly string[];
 }

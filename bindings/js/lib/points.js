@@ -1,8 +1,22 @@
 // Sets of points, over any source: this page, or a daemon. A daemon's answers are promises.
 
 import { KINDS, WINDOW } from "./parameters.js";
-import { OF_ANSWERS, PLANE, SPACE, address, body, isObject, text } from "./query.js";
+import { OF_ANSWERS, PLANE, SPACE, body, isObject, text } from "./query.js";
 import { StrewError } from "./error.js";
+
+/** Rows of coordinates with further columns. */
+export function rowsOf({ at, origin }, further) {
+    const columns = ["x", "y", ...further.keys()];
+    const [each, count] = [columns.length, at.length / 2];
+    const values = new Float32Array(each * count);
+    for (let i = 0; i < count; i++) {
+        values[each * i] = at[2 * i];
+        values[each * i + 1] = at[2 * i + 1];
+    }
+    [...further.values()].forEach((column, k) => column.values.forEach((v, i) => (values[each * i + 2 + k] = v)));
+    const named = [...further].filter(([, column]) => column.names).map(([name, column]) => [name, column.names]);
+    return { columns, values, names: Object.fromEntries(named), origin };
+}
 
 /** Applies a function to a value, or to that of a promise once it is there. */
 const after = (value, use) => (value instanceof Promise ? value.then(use) : use(value));
@@ -187,17 +201,17 @@ class Points {
             const hold = () => this.#source.holdField(text(values[name]));
             ready = after(after(ready, hold), (held) => void (values[name] = held));
         }
-        return after(ready, () => address(values));
+        return after(ready, () => values);
     }
 
     /** The points nearest to a place, nearest first: one, or `k`, or all within `radius`. */
     nearest(at, { k, radius } = {}) {
-        return after(this.#set({ at, k, radius }), (where) => this.#source.nearest(where, this.#dimension));
+        return after(this.#set({ at, k, radius }), (set) => this.#source.nearest(set, this.#dimension));
     }
 
     /** The point of an id. */
     point(id) {
-        return after(this.#set({}), (where) => this.#source.point(id, where, this.#dimension));
+        return after(this.#set({}), (set) => this.#source.point(id, set, this.#dimension));
     }
 
     /** The points in a format of REST, as bytes: `document("csv", { decimals: 2 })`. */
@@ -236,6 +250,14 @@ export class PointSet extends Points {
     /** The coordinates as a Float32Array, relative to an origin: `{ xy, origin }`. */
     xyF32() {
         return after(this.plan().offsets(), ({ at, origin }) => ({ xy: at, origin }));
+    }
+
+    /**
+     * The points as rows of `f32`, the form of instances: `{ columns, values, names, origin }`. `values` has x and y of
+     * each point, relative to the origin, then its attributes; those of names are indices into the lists of `names`.
+     */
+    rowsF32() {
+        return this.plan().rows();
     }
 
     /** The points of a square of the world grid. Coordinates are relative to its corner, `origin()`. */

@@ -95,3 +95,14 @@ export function address(values) {
     const there = Object.entries(values).filter(([, value]) => value !== undefined && value !== null);
     return there.map(([name, value]) => `${encodeURIComponent(name)}=${encodeURIComponent(word(value))}`).join("&");
 }
+
+/** The integers of an id. */
+export function integers(id, dimension) {
+    const parts = /^-?\d+(:-?\d+)+$/.test(id) ? id.split(":").map(BigInt) : [];
+    if (parts.length === dimension.axes.length) return parts;
+    const allowed =
+        dimension === SPACE
+            ? "three integers joined by colons, such as -31:52:7"
+            : "two integers joined by a colon, such as -31:52";
+    throw new TypeError(`${JSON.stringify(id)} is no id: ${allowed}`);
+}

@@ -3,7 +3,7 @@
 import { StrewError } from "./error.js";
 import { OUTPUT } from "./parameters.js";
 import { Source } from "./points.js";
-import { PLANE, parsed, text } from "./query.js";
+import { PLANE, address, parsed, text } from "./query.js";
 import { Elsewhere, Later, Replicas, broken, retryAfter } from "./replicas.js";
 
 // The statuses of refusals that pass: the same request may succeed later.
@@ -70,12 +70,12 @@ class Daemon extends Source {
         return new RemotePlan(this, query, dimension);
     }
 
-    async nearest(address, { root }) {
-        return (await this.json(`${root}/nearest?${address}`)).neighbors;
+    async nearest(values, { root }) {
+        return (await this.json(`${root}/nearest?${address(values)}`)).neighbors;
     }
 
-    async point(id, address, { root }) {
-        return (await this.json(`${root}/points/${encodeURIComponent(id)}?${address}`)).point;
+    async point(id, values, { root }) {
+        return (await this.json(`${root}/points/${encodeURIComponent(id)}?${address(values)}`)).point;
     }
 
     /** Sends a field to all daemons that can be reached: its name is a digest, and any may be called next. */
@@ -175,20 +175,30 @@ class RemotePlan {
         return (await this.#head()).origin;
     }
 
-    /** The coordinates of an answer whose rows are numbers, those of the place first. */
-    async #places(format, kind) {
-        const each = ({ headers }) => JSON.parse(headers.get("strew-columns")).length * kind.BYTES_PER_ELEMENT;
+    /** The rows of an answer, all of them numbers. */
+    async #rows(format, kind) {
+        const columns = ({ headers }) => JSON.parse(headers.get("strew-columns"));
         const whole = (bytes, response) => {
-            const rows = Math.floor(bytes.length / each(response));
-            return { rows, length: rows * each(response) };
+            const each = columns(response).length * kind.BYTES_PER_ELEMENT;
+            const rows = Math.floor(bytes.length / each);
+            return { rows, length: rows * each };
         };
         const { bytes, first } = await new Answer(this.#daemon, this.#dimension, this.#query, { format }, whole).read();
-        const values = new kind(bytes.buffer);
-        const step = each(first) / kind.BYTES_PER_ELEMENT;
-        const axes = this.#axes.length;
+        return { columns: columns(first), values: new kind(bytes.buffer), origin: originOf(first, this.#axes) };
+    }
+
+    async #places(format, kind) {
+        const { columns, values, origin } = await this.#rows(format, kind);
+        const [step, axes] = [columns.length, this.#axes.length];
         const one = (_, i) => values[Math.floor(i / axes) * step + (i % axes)];
         const at = step === axes ? values : kind.from({ length: (axes * values.length) / step }, one);
-        return { at, origin: originOf(first, this.#axes) };
+        return { at, origin };
+    }
+
+    async rows() {
+        const { columns, values, origin } = await this.#rows("f32", Float32Array);
+        const named = columns.filter((column) => column.names).map((column) => [column.name, column.names]);
+        return { columns: columns.map(({ name }) => name), values, names: Object.fromEntries(named), origin };
     }
 
     async coordinates() {

@@ -75,7 +75,8 @@ test("what is wrong has the words of REST", () => {
     assert.throws(() => strew.points({ spacing: NaN }).nearest([0, 0]), StrewError);
     for (const [odd, name] of [
         [{ spacing: NaN }, "spacing"], [{ spacing: 1, seed: Infinity }, "seed"], [{ spacing: 1, foo: null }, "foo"],
-        [{ spacing: 1, foo: () => 1 }, "foo"], [{ spacing: 1, keep: Symbol("x") }, "keep"],
+        [{ spacing: 1, foo: () => 1 }, "foo"], [{ spacing: 1, foo: Symbol("x") }, "foo"],
+        [{ spacing: 1, keep: Symbol("x") }, "keep"],
     ]) {
         assert.throws(() => strew.points({ bbox: [0, 0, 9, 9], ...odd }), (error) => {
             assert.match(error.message, /allowed: /);
@@ -90,6 +91,27 @@ test("a module without the default table says what is loaded", async () => {
     const small = await open({ tables: ["blue-5-sqrt3-over-2-s.strew"] });
     assert.ok(small.points({ bbox: [0, 0, 9, 9], spacing: 1, map: "s" }).count() > 70);
     await assert.rejects(open({ tables: [new Uint8Array(9)] }), StrewError);
+    await assert.rejects(open({ tables: ["pink.strew"] }), /no table "pink.strew".* the package strew-tables/);
+});
+
+test("a file that is not where the code is says so, with the way out", async (t) => {
+    const page = "<!doctype html><title>a page</title>";
+    const answers = { html: [page, { headers: { "content-type": "text/html" } }], other: [page, {}], none: ["", { status: 404 }] };
+    t.mock.method(globalThis, "fetch", async (url) => new Response(...answers[new URL(url).hostname]));
+    for (const [name, words] of [["html", /an HTML page/], ["other", /no WebAssembly module/], ["none", /HTTP 404/]]) {
+        await assert.rejects(open({ wasm: `http://${name}/strew.wasm` }), (error) => {
+            assert.match(error.message, words);
+            assert.match(error.message, /serve it there, pass its URL or its bytes as `open\(\{ wasm: … \}\)`/);
+            return error instanceof StrewError;
+        });
+    }
+    await assert.rejects(open({ tables: [new URL("./none.strew", import.meta.url)] }), /no such file.*open\(\{ tables: /);
+});
+
+test("a table of the other package", async () => {
+    const { default: green } = await import("../tables/files/green-5-sqrt3-over-2-s.js");
+    const strew = await open({ tables: [green] });
+    assert.equal(strew.points({ bbox: [0, 0, 9, 9], spacing: 1, profile: "green" }).resolved().profile, "green");
 });
 
 test("terrains of JSON have neighbors and points by id", () => {

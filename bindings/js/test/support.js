@@ -9,7 +9,9 @@ import { open } from "../lib/index.js";
 const here = (path) => fileURLToPath(new URL(path, import.meta.url));
 
 /** All tables that the daemon has. */
-export const ALL = readdirSync(here("../lib/tables"));
+export const ALL = readdirSync(here("../tables/files"))
+    .filter((name) => name.endsWith(".strew"))
+    .map((name) => new URL(`../tables/files/${name}`, import.meta.url));
 
 export const whole = () => open({ tables: ALL });
 

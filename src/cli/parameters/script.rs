@@ -1,9 +1,9 @@
 //! Parameters for JavaScript: their types (parameters.d.ts), and their names by what they are about (parameters.js).
 
-use strew_query::{Group, Parameter, Shape, groups, parameters::BBOX};
+use strew_query::{Group, Parameter, SPACE_PARAMETERS, Shape, groups};
 
 use super::{
-    section::{MEMBERS, NEIGHBORS, OUTPUT, REGIONS, Section, quoted, within},
+    section::{MEMBERS, NEIGHBORS, OUTPUT, REGIONS, SPACE, Section, VOLUMES, quoted, within},
     words,
 };
 
@@ -17,10 +17,17 @@ pub(super) fn types(table: &[&Parameter]) -> String {
 
 /** Numbers: a list or a typed array. */
 export type Numbers = ArrayLike<number>;
+
+/** A list of a known length, or a typed array, whose length types do not know. */
+export type Tuple<List extends readonly number[]> = Readonly<List> | Float64Array | Float32Array;
 "
     .to_owned();
     for section in [REGIONS, MEMBERS, OUTPUT, NEIGHBORS] {
         text += &interface(&section, table);
+    }
+    let in_space = [table, SPACE_PARAMETERS].concat();
+    for section in [VOLUMES, SPACE] {
+        text += &interface(&section, &in_space);
     }
     text
 }
@@ -39,19 +46,34 @@ fn interface(section: &Section, table: &[&Parameter]) -> String {
 /// The type of a parameter's values. A region that is null is no region.
 fn type_of(parameter: &Parameter) -> String {
     match parameter.shape {
-        _ if *parameter == BBOX => "Numbers | null",
-        Shape::Numbers(_) if parameter.group == Group::Region => "Numbers | object | null",
+        Shape::Numbers(names) => {
+            let is_region = matches!(parameter.group, Group::Region | Group::Volume);
+            let or_none = if is_region { " | null" } else { "" };
+            let tuple = |names: &[&str]| {
+                let names: Vec<String> =
+                    names.iter().map(|name| format!("{name}: number")).collect();
+                format!("Tuple<[{}]>", names.join(", "))
+            };
+            // Circles and balls, as JSON has them.
+            let or_object = match names {
+                [center @ .., "radius"] => {
+                    format!(" | {{ center: {}; radius: number }}", tuple(center))
+                }
+                _ => String::new(),
+            };
+            return format!("{}{or_object}{or_none}", tuple(names));
+        }
         Shape::Vertices => "ArrayLike<Numbers> | object | null",
         Shape::Number { .. } | Shape::Signed { .. } => "number",
         Shape::Integer { max, .. } if max > SAFE => "number | bigint",
         Shape::Integer { .. } => "number",
         Shape::Switch => "boolean",
         Shape::Strength { .. } => "\"on\" | \"off\" | number",
-        Shape::Numbers(_) | Shape::Integers { .. } => "Numbers",
+        Shape::Integers { .. } => "Numbers",
         Shape::Offsets { .. } => "ArrayLike<Numbers>",
-        Shape::Names { .. } => "string | string[]",
+        Shape::Names { .. } => "string | readonly string[]",
         Shape::Weights => "Record<string, number>",
-        Shape::Ranges => "Record<string, Numbers>",
+        Shape::Ranges => "Record<string, Tuple<[min: number, max: number]>>",
         Shape::Field => "string | object",
         Shape::Fields => "Record<string, string | object>",
         Shape::Choice(words) => {

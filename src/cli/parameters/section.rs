@@ -53,6 +53,28 @@ pub(super) const NEIGHBORS: Section = Section {
     groups: &[Group::Nearest, Group::Neighbors],
 };
 
+/// The shapes of volumes.
+pub(super) const VOLUMES: Section = Section {
+    name: "VolumeParameters",
+    about: "Volumes that are parameters by themselves: a query in space has one of them, or a member `region`.",
+    groups: &[Group::Volume],
+};
+
+/// The members of a query in space but its region.
+pub(super) const SPACE: Section = Section {
+    name: "SpaceParameters",
+    about: "The parameters of a query in space: which points, and which part of them.",
+    groups: &[
+        Group::Amount,
+        Group::Profile,
+        Group::Table,
+        Group::Points,
+        Group::SpaceAttributes,
+        Group::Choices,
+        Group::Window,
+    ],
+};
+
 impl Section {
     /// Its parameters in a table. Bindings have arguments of their own for what is required, and for the format.
     pub(super) fn of<'a>(&self, table: &[&'a Parameter]) -> Vec<&'a Parameter> {

@@ -1,0 +1,71 @@
+// The small WebAssembly module, the crate in `lite/`: its calls and its memory.
+
+import { StrewError } from "./error.js";
+
+const ENCODER = new TextEncoder();
+const DECODER = new TextDecoder();
+
+/** A compiled module. Its functions take numbers, and read and write two buffers of their own. */
+export class LiteModule {
+    #plans = new FinalizationRegistry((plan) => this.calls.free_plan(plan));
+
+    constructor(instance) {
+        this.calls = instance.exports;
+    }
+
+    /** Writes the input of the next call: numbers, then a text or bytes. */
+    write(numbers, content) {
+        const bytes = typeof content === "string" ? ENCODER.encode(content) : content;
+        const at = this.calls.input(8 * numbers.length + bytes.length) >>> 0;
+        const view = new DataView(this.calls.memory.buffer);
+        numbers.forEach((number, i) => view.setFloat64(at + 8 * i, number, true));
+        new Uint8Array(this.calls.memory.buffer, at + 8 * numbers.length, bytes.length).set(bytes);
+    }
+
+    /** Calls a function that returns −1 if it fails; `field` is what may be wrong with the query. */
+    call(name, field, ...values) {
+        const result = this.calls[name](...values);
+        if (result !== -1) return result;
+        const words = DECODER.decode(this.output());
+        const [part, value, problem, allowed] = words.split("\0");
+        const detail = problem || `${part} is ${value}`;
+        throw new StrewError(`\`${field}\`: ${detail}; allowed: ${allowed}`, "invalid-query", [
+            { field, value, detail, allowed },
+        ]);
+    }
+
+    /** A copy of the output, which is freed. */
+    output() {
+        const at = this.calls.output() >>> 0;
+        const copy = this.calls.memory.buffer.slice(at, at + (this.calls.output_length() >>> 0));
+        this.calls.free_output();
+        return copy;
+    }
+
+    /** The points of an output, as objects. */
+    points(count, { attributes, names }, hasDistance) {
+        const view = new DataView(this.output());
+        const each = 8 * (5 + attributes.length);
+        return Array.from({ length: count }, (_, i) => {
+            const number = (k) => view.getFloat64(i * each + 8 * k, true);
+            const integer = (k) => view.getBigInt64(i * each + 8 * k, true);
+            const point = { id: `${integer(0)}:${integer(1)}`, x: number(2), y: number(3) };
+            if (hasDistance) point.distance = number(4);
+            attributes.forEach((name, k) => {
+                point[name] = name === "variant" ? names[number(5 + k)] : number(5 + k);
+            });
+            return point;
+        });
+    }
+
+    /** Frees a plan once its owner is collected, unless `free` does so before. */
+    held(owner, plan) {
+        this.#plans.register(owner, plan, owner);
+    }
+
+    /** Frees a plan at once. */
+    free(owner, plan) {
+        this.#plans.unregister(owner);
+        this.calls.free_plan(plan);
+    }
+}

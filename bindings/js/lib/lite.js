@@ -1,0 +1,219 @@
+// Points of one table, by a small module: the core of Strew without its queries, formats and fields.
+
+import { StrewError } from "./error.js";
+import { compile, content } from "./files.js";
+import { LiteModule } from "./lite-module.js";
+import { checkReach, read } from "./lite-query.js";
+import { PointSet, rowsOf } from "./points.js";
+import { PLANE, body, integers } from "./query.js";
+
+export { StrewError } from "./error.js";
+export { PointSet } from "./points.js";
+
+/** Sets that are kept, with their attributes: those that were used last. */
+const KEPT = 16;
+/** The most points of an answer, as a daemon's by default. */
+const MOST_POINTS = 100_000_000n;
+const none = (what) => {
+    throw new StrewError(`strew/lite has no ${what}: import "strew"`, "unsupported");
+};
+
+/** This page or process, with one table. */
+class Lite {
+    isLocal = true;
+    #module;
+    #table;
+    #sets = new Map();
+
+    constructor(module, table) {
+        this.#module = module;
+        this.#table = table;
+    }
+
+    /** The points of a query by its keywords: `points({ bbox: [0, 0, 10, 10], spacing: 1, seed: 7 })`. */
+    points(keywords) {
+        const query = body(keywords);
+        // Sets without a region are checked as well.
+        const { region, ...set } = query;
+        this.#set(read({ ...set, region }));
+        return PointSet.of(this, query);
+    }
+
+    /** The place of a set in the module, with what is known of it. */
+    #set({ amount, attributes, key, numbers, range, variants }) {
+        const known = this.#sets.get(key);
+        if (known) {
+            this.#sets.delete(key);
+            this.#sets.set(key, known);
+            return known;
+        }
+        const at = this.#module.call("set", amount, this.#table, ...numbers);
+        const names = variants.map(([name]) => name);
+        try {
+            this.#module.write(variants.map(([, weight]) => weight), `${attributes.join()}\n${names.join()}`);
+            this.#module.call("attributes", "attributes", at, names.length, ...range);
+        } catch (error) {
+            this.#module.calls.free_set(at);
+            throw error;
+        }
+        const made = { at, attributes, names };
+        this.#sets.set(key, made);
+        if (this.#sets.size > KEPT) {
+            const [[oldest, { at: free }]] = this.#sets;
+            this.#sets.delete(oldest);
+            this.#module.calls.free_set(free);
+        }
+        return made;
+    }
+
+    plan(_, query) {
+        const wanted = read(query);
+        if (!wanted.region) throw fault("region", null, "is missing", "one of bbox, chunk, circle");
+        const set = this.#set(wanted);
+        const { call, values, reach } = wanted.region;
+        checkReach(wanted.least, reach);
+        const plan = this.#module.call(call, "region", set.at, ...values);
+        return new LitePlan(this.#module, plan, set, call === "chunk");
+    }
+
+    nearest(values) {
+        const { at, k, radius, ...set } = values;
+        const wanted = read(set, { at, k, radius });
+        const known = this.#set(wanted);
+        const [x, y] = wanted.at;
+        const few = wanted.k ?? (wanted.radius === undefined ? 1 : 0);
+        const count = this.#module.call("nearest", "at", known.at, x, y, few, wanted.radius ?? Infinity);
+        return this.#found(wanted, count, known, true);
+    }
+
+    point(id, set) {
+        const wanted = read(set);
+        const known = this.#set(wanted);
+        const count = this.#module.call("point", "id", known.at, ...integers(id, PLANE));
+        if (!count) throw new StrewError(`the set has no point ${id}`, "no-such-point");
+        return this.#found(wanted, count, known, false)[0];
+    }
+
+    #found({ least }, count, known, hasDistance) {
+        const found = this.#module.points(count, known, hasDistance);
+        checkReach(least, Math.max(0, ...found.flatMap(({ x, y }) => [Math.abs(x), Math.abs(y)])));
+        return found;
+    }
+
+    holdField() {
+        return none("fields");
+    }
+}
+
+const fault = (field, value, detail, allowed) => {
+    const shown = value === null ? "" : ` = \`${value}\``;
+    return new StrewError(`\`${field}\`${shown}: ${detail}; allowed: ${allowed}`, "invalid-query", [
+        { field, value, detail, allowed },
+    ]);
+};
+
+/** The points of an area. */
+class LitePlan {
+    #module;
+    #plan;
+    #set;
+    #isRelative;
+
+    constructor(module, plan, set, isRelative) {
+        this.#isRelative = isRelative;
+        this.#module = module;
+        this.#plan = plan;
+        this.#set = set;
+        module.held(this, plan);
+    }
+
+    /** Frees the memory. The plan has no points afterwards. */
+    free() {
+        if (this.#plan !== undefined) this.#module.free(this, this.#plan);
+        this.#plan = undefined;
+    }
+
+    #at() {
+        if (this.#plan === undefined) throw new StrewError("the plan is freed", "invalid-argument");
+        return this.#plan;
+    }
+
+    #count() {
+        const count = BigInt.asUintN(64, this.#module.calls.count(this.#at()));
+        if (count === 2n ** 64n - 1n) throw new StrewError("2^64 points or more", "too-many-points");
+        return count;
+    }
+
+    count() {
+        const count = this.#count();
+        return count <= BigInt(Number.MAX_SAFE_INTEGER) ? Number(count) : count;
+    }
+
+    #output(name, kind) {
+        const count = this.#count();
+        if (count > MOST_POINTS) {
+            throw new StrewError(`the answer has ${count} points; at most ${MOST_POINTS}`, "too-many-points");
+        }
+        this.#module.call(name, name, this.#at());
+        return new kind(this.#module.output());
+    }
+
+    coordinates() {
+        return this.#output("coordinates", Float64Array);
+    }
+
+    #corner() {
+        this.#module.call("origin", "origin", this.#at());
+        return [...new Float64Array(this.#module.output())];
+    }
+
+    offsets() {
+        return { at: this.#output("offsets", Float32Array), origin: this.#corner() };
+    }
+
+    origin() {
+        return this.#isRelative ? this.#corner() : [0, 0];
+    }
+
+    columns() {
+        const count = Number(this.#count());
+        const words = this.#output("columns", BigInt64Array).buffer;
+        const { attributes, names } = this.#set;
+        const column = (name, i) => {
+            const values = new Float64Array(words, 8 * count * (2 + i), count);
+            if (name !== "variant") return [name, { names: null, values: values.slice() }];
+            return [name, { names, values: Int32Array.from(values) }];
+        };
+        const further = new Map(attributes.map(column));
+        return { ids: new BigInt64Array(words.slice(0, 16 * count)), at: this.coordinates(), further };
+    }
+
+    rows() {
+        return rowsOf(this.offsets(), this.columns().further);
+    }
+
+    resolved() {
+        return none("echo of queries");
+    }
+
+    split() {
+        return none("parts of answers");
+    }
+
+    document() {
+        return none("formats");
+    }
+}
+
+// Bundlers copy the files of literal URLs.
+const WASM = () => new URL("./lite.wasm", import.meta.url);
+const TABLE = () => new URL("./tables/blue-5-sqrt3-over-2-s.strew", import.meta.url);
+
+/** Loads the module and its table. */
+export async function open({ table, wasm } = {}) {
+    const files = [compile(wasm ?? WASM(), "wasm"), content(table ?? TABLE(), "table")];
+    const [compiled, file] = await Promise.all(files);
+    const module = new LiteModule(await WebAssembly.instantiate(compiled, {}));
+    module.write([], file);
+    return new Lite(module, module.call("table", "table"));
+}

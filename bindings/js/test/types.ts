@@ -1,0 +1,96 @@
+// What compiles with the package's types, and what does not: `tsc --strict` over this file, by test/types.mjs.
+import { connect, open, raster, type Query } from "strew";
+import { open as openLite } from "strew/lite";
+import { Chunks } from "strew/three";
+import blueSmall from "strew-tables/green-5-sqrt3-over-2-s";
+
+const strew = await open({ tables: ["blue-5-sqrt3-over-2-m.strew", blueSmall] });
+const bbox = [0, 0, 10, 10] as const;
+
+// Everything that is right compiles.
+const points = strew.points({ bbox, spacing: 1, seed: 7n, warp: "on", keep: 0.5, attributes: ["angle", "variant"] });
+const more: number = points.count() + 1;
+const [x, y]: [number, number] = points.origin();
+strew.points({ bbox: new Float64Array(4), spacing: 1, scale_ranges: { oak: [0.5, 1] }, variants: { oak: 1 } });
+strew.points({ chunk: [64, -3, 2], spacing: 1, spread: "even", only: "oak", except: "cut", world: "w", periodic: 5 });
+strew.points({ circle: [0, 0, 3], spacing: 1, variant_fields: { oak: raster([1, 0], 2, 1) }, crs: "EPSG:3857" });
+strew.points({ layers: [{ name: "trees", spacing: 2 }, { name: "grass", spacing: 1, clear_of: { trees: 1 } }], bbox });
+strew.space.points({ ball: [0, 0, 0, 9], spacing: 1, attributes: "rotation" }).nearest([1, 2, 3], { k: 2 });
+strew.space.points({ prism: [[[0, 0], [9, 0], [0, 9]], 0, 4], spacing: 1 }).chunk(16, 1, 2, 3);
+strew.points({ circle: { center: [0, 0], radius: 3 }, spacing: 1 }).within({ chunk: { size: 4, x: 1, y: 2 } });
+const remote: Promise<number> = connect("http://localhost:8080").points({ bbox, spacing: 1 }).count();
+const lite = await openLite();
+const few: number = lite.points({ chunk: [64, 0, 0], spacing: 2, variants: { oak: 1 }, attributes: "variant" }).count();
+new Chunks(lite.points({ spacing: 2 }), [], { side: 64 }).update;
+new Chunks(connect("http://localhost:8080").points({ spacing: 2 }), { oak: [] });
+const kept: Query = { spacing: 1, bbox };
+export const used = [more, x, y, remote, few, kept];
+
+// @ts-expect-error: a name that is misspelled
+strew.points({ bbox, spacng: 1 });
+// @ts-expect-error: a box of three numbers
+strew.points({ bbox: [0, 0, 1], spacing: 1 });
+// @ts-expect-error: a box of five numbers
+strew.points({ bbox: [0, 0, 1, 1, 1], spacing: 1 });
+// @ts-expect-error: a circle without a radius
+strew.points({ circle: [0, 0], spacing: 1 });
+// @ts-expect-error: a chunk without a row
+strew.points({ chunk: [64, 0], spacing: 1 });
+// @ts-expect-error: a number as text
+strew.points({ bbox, spacing: "1" });
+// @ts-expect-error: a seed as text
+strew.points({ bbox, spacing: 1, seed: "7" });
+// @ts-expect-error: a limit as text
+strew.points({ bbox, spacing: 1, limit: "2" });
+// @ts-expect-error: no word of `spread`
+strew.points({ bbox, spacing: 1, spread: 5 });
+// @ts-expect-error: no word of `spread`
+strew.points({ bbox, spacing: 1, spread: "evn" });
+// @ts-expect-error: a range as text
+strew.points({ bbox, spacing: 1, scale_range: "huh" });
+// @ts-expect-error: a range of three numbers
+strew.points({ bbox, spacing: 1, scale_range: [0, 1, 2] });
+// @ts-expect-error: a range of one number
+strew.points({ bbox, spacing: 1, scale_ranges: { oak: [0] } });
+// @ts-expect-error: weights as text
+strew.points({ bbox, spacing: 1, variants: "oak:3" });
+// @ts-expect-error: attributes as a number
+strew.points({ bbox, spacing: 1, attributes: 1 });
+// @ts-expect-error: no word of `warp`
+strew.points({ bbox, spacing: 1, warp: "strong" });
+// @ts-expect-error: a number as `only`
+strew.points({ bbox, spacing: 1, only: 3 });
+// @ts-expect-error: a number as `world`
+strew.points({ bbox, spacing: 1, world: 3 });
+// @ts-expect-error: a number as `crs`
+strew.points({ bbox, spacing: 1, crs: 3857 });
+// @ts-expect-error: a function as a value
+strew.points({ bbox, spacing: 1, keep: () => 1 });
+// @ts-expect-error: null is no number
+strew.points({ bbox, spacing: null });
+// @ts-expect-error: a layer without a name
+strew.points({ bbox, layers: [{ spacing: 1 }] });
+// @ts-expect-error: a layer with a name that is misspelled
+strew.points({ bbox, layers: [{ name: "trees", spacng: 1 }] });
+// @ts-expect-error: a place of three numbers in the plane
+points.nearest([0, 0, 0]);
+// @ts-expect-error: neighbors with a name that is misspelled
+points.nearest([0, 0], { count: 3 });
+// @ts-expect-error: a box of the plane, in space
+strew.space.points({ bbox: [0, 0, 9, 9], spacing: 1 });
+// @ts-expect-error: a ball without a radius
+strew.space.points({ ball: [0, 0, 0], spacing: 1 });
+// @ts-expect-error: a parameter of the plane, in space
+strew.space.points({ ball: [0, 0, 0, 9], spacing: 1, periodic: 3 });
+// @ts-expect-error: a name that is misspelled, in space
+strew.space.points({ ball: [0, 0, 0, 9], spacng: 1 });
+// @ts-expect-error: a place of the plane, in space
+strew.space.points({ spacing: 1 }).nearest([0, 0]);
+// @ts-expect-error: what strew/lite does not know
+lite.points({ bbox, spacing: 1, field: "forest" });
+// @ts-expect-error: no formats in strew/lite
+lite.points({ bbox, spacing: 1 }).document("csv");
+// @ts-expect-error: an option of `open` that is misspelled
+open({ table: ["blue-5-sqrt3-over-2-m.strew"] });
+// @ts-expect-error: an option of chunks that is misspelled
+new Chunks(lite.points({ spacing: 2 }), [], { size: 64 });
