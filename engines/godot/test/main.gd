@@ -1,5 +1,5 @@
-## Grows chunks and scatters through the addon, first from a port that nothing listens at, and prints
-## what came. The addresses are the arguments "dead" and "url".
+## Grows chunks and scatters through the addon, first from a port that nothing listens at, and
+## prints what came. The addresses are the arguments "dead" and "url".
 extends Node3D
 
 var _count := 0
