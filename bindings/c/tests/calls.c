@@ -60,7 +60,7 @@ static void tables(void) {
     EXPECT(strew_plan_query(library, green, &plan) == STREW_INVALID_QUERY);
     EXPECT(strcmp(strew_error_field(), "profile") == 0);
     strew_library *whole = NULL;
-    EXPECT(strew_library_open(getenv("STREW_TABLES"), &whole) == STREW_OK);
+    EXPECT(strew_library_open(getenv("TABLES"), &whole) == STREW_OK);
     EXPECT(strew_plan_query(whole, green, &plan) == STREW_OK);
     strew_plan_free(plan);
     EXPECT(strew_plan_query(whole, "bbox=0,0,9,9&spacing=1&variants=a:1,b:3&spread=joint", &plan) == STREW_OK);
