@@ -12,12 +12,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let out = PathBuf::from(env::var("OUT_DIR")?);
     let tables = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?).join("tables");
     println!("cargo::rerun-if-changed=tables");
-    let folders = [tables.clone(), tables.join("space")];
-    list_tables(folders, &out.join("tables.rs"))
+    let folders = match env::var_os("CARGO_FEATURE_SHIPPED") {
+        Some(_) => vec![tables.clone(), tables.join("space")],
+        None => vec![],
+    };
+    list_tables(&folders, &out.join("tables.rs"))
 }
 
-/// A list of (file name, content) of every table in the folder, in the order of their names.
-fn list_tables(folders: [PathBuf; 2], list: &Path) -> Result<(), Box<dyn Error>> {
+/// A list of (file name, content) of every table in the folders, in the order of their names.
+fn list_tables(folders: &[PathBuf], list: &Path) -> Result<(), Box<dyn Error>> {
     let mut files: Vec<PathBuf> = vec![];
     for entries in folders
         .iter()

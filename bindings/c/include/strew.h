@@ -9,147 +9,153 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// The result of a function.
+/* The version of this header. strew_version() has that of the library that is loaded. */
+#define STREW_VERSION_MAJOR 0
+#define STREW_VERSION_MINOR 1
+#define STREW_VERSION_PATCH 0
+#define STREW_VERSION_STRING "0.1.0"
+
+/* The result of a function. */
 typedef enum {
-  // The call succeeded.
+  /* The call succeeded. */
   STREW_OK = 0,
-  // A query that is not valid.
+  /* A query that is not valid. */
   STREW_INVALID_QUERY = 1,
-  // More points than one answer may have.
+  /* More points than one answer may have. */
   STREW_TOO_MANY_POINTS = 2,
-  // Counting the points would take too long.
+  /* Counting the points would take too long. */
   STREW_TOO_MANY_ROWS = 3,
-  // Another table would answer than the one that the query pins.
+  /* Another table would answer than the one that the query pins. */
   STREW_OTHER_TABLE = 4,
-  // A table that cannot be read.
+  /* A table that cannot be read. */
   STREW_TABLE_UNREADABLE = 5,
-  // The set has no point with that id.
+  /* The set has no point with that id. */
   STREW_NO_SUCH_POINT = 6,
-  // An argument that is not valid: a null pointer, text that is not UTF-8, an unknown column.
+  /* An argument that is not valid: a null pointer, text that is not UTF-8, an unknown column. */
   STREW_INVALID_ARGUMENT = 7,
-  // A buffer with too little room.
+  /* A buffer with too little room. */
   STREW_BUFFER_TOO_SMALL = 8,
-  // A fault of the library itself. The handles of the call must not be used again.
-  STREW_INTERNAL = 9,
+  /* A fault of the library itself. The handles of the call must not be used again. */
+  STREW_INTERNAL = 9
 } strew_code;
 
-// Bytes that the library has allocated.
+/* Bytes that the library has allocated. */
 typedef struct strew_bytes strew_bytes;
 
-// Tables and limits, with which queries are answered. Threads may share one.
+/* Tables and limits, with which queries are answered. Threads may share one. */
 typedef struct strew_library strew_library;
 
-// A planned query: counted exactly, its points are made when a buffer is filled. Threads may share one.
+/* A planned query: counted exactly, its points are made when a buffer is filled. Threads may share one. */
 typedef struct strew_plan strew_plan;
 
-// A point of a set.
+/* A point of a set. */
 typedef struct {
-  // Its stable id, `x:y` in text.
+  /* Its stable id, `x:y` in text. */
   int64_t id[2];
-  // Its coordinate along x.
+  /* Its coordinate along x. */
   double x;
-  // Its coordinate along y.
+  /* Its coordinate along y. */
   double y;
-  // Its distance from the place whose neighbors were searched, else 0.
+  /* Its distance from the place whose neighbors were searched, else 0. */
   double distance;
 } strew_point;
 
-// A point in space.
+/* A point in space. */
 typedef struct {
-  // Its stable id, `x:y:z` in text.
+  /* Its stable id, `x:y:z` in text. */
   int64_t id[3];
-  // Its coordinate along x.
+  /* Its coordinate along x. */
   double x;
-  // Its coordinate along y.
+  /* Its coordinate along y. */
   double y;
-  // Its coordinate along z.
+  /* Its coordinate along z. */
   double z;
-  // Its distance from the place whose neighbors were searched, else 0.
+  /* Its distance from the place whose neighbors were searched, else 0. */
   double distance;
 } strew_space_point;
 
 #ifdef __cplusplus
 extern "C" {
-#endif // __cplusplus
+#endif
 
-// The version of the library, such as `0.1.0`.
+/* The version of the library, such as `0.1.0`. */
 const char *strew_version(void);
 
-// Opens a library of the built-in tables. Free it with `strew_library_free`.
-//
-// `folder`, unless it is null, is a folder of table files (`.strew`), which replace built-in ones of the same
-// profile, alpha and map.
-//
-// Returns `STREW_TABLE_UNREADABLE` if a file of the folder is no table.
-//
-// Arguments:
-// `folder` is null or a text; `library` is a place for a pointer.
+/* Opens a library of the built-in tables. Free it with `strew_library_free`.
+ *
+ * `folder`, unless it is null, is a folder of table files (`.strew`), which replace built-in ones of the same
+ * profile, alpha and map.
+ *
+ * Returns `STREW_TABLE_UNREADABLE` if a file of the folder is no table.
+ *
+ * Arguments:
+ * `folder` is null or a text; `library` is a place for a pointer. */
 strew_code strew_library_open(const char *folder, strew_library **library);
 
-// Opens a library of the tables that the caller has in memory, and no others, without built-in fields. The files
-// are copied. Free it with `strew_library_free`.
-//
-// Returns `STREW_TABLE_UNREADABLE` if one is no table.
-//
-// Arguments:
-// `files` are `count` pointers to files of `lengths` bytes; `library` is a place for a pointer.
+/* Opens a library of the tables that the caller has in memory, and no others, without built-in fields. The files
+ * are copied. Free it with `strew_library_free`.
+ *
+ * Returns `STREW_TABLE_UNREADABLE` if one is no table.
+ *
+ * Arguments:
+ * `files` are `count` pointers to files of `lengths` bytes; `library` is a place for a pointer. */
 strew_code strew_library_of_tables(const uint8_t *const *files,
                                    const size_t *lengths,
                                    size_t count,
                                    strew_library **library);
 
-// Frees a library. Its plans stay valid. Null is allowed.
-//
-// Arguments:
-// `library` is null or a library that is not freed yet.
+/* Frees a library. Its plans stay valid. Null is allowed.
+ *
+ * Arguments:
+ * `library` is null or a library that is not freed yet. */
 void strew_library_free(strew_library *library);
 
-// Frees a plan. Null is allowed.
-//
-// Arguments:
-// `plan` is null or a plan that is not freed yet.
+/* Frees a plan. Null is allowed.
+ *
+ * Arguments:
+ * `plan` is null or a plan that is not freed yet. */
 void strew_plan_free(strew_plan *plan);
 
-// Frees bytes. Null is allowed.
-//
-// Arguments:
-// `bytes` is null or bytes that are not freed yet.
+/* Frees bytes. Null is allowed.
+ *
+ * Arguments:
+ * `bytes` is null or bytes that are not freed yet. */
 void strew_bytes_free(strew_bytes *bytes);
 
-// The first of some bytes. After the last one stands a zero, so text can be read as such. Null for null.
-//
-// Arguments:
-// `bytes` is null or bytes that are not freed.
+/* The first of some bytes. After the last one stands a zero, so text can be read as such. Null for null.
+ *
+ * Arguments:
+ * `bytes` is null or bytes that are not freed. */
 const char *strew_bytes_data(const strew_bytes *bytes);
 
-// The number of bytes, without the zero after them. 0 for null.
-//
-// Arguments:
-// `bytes` is null or bytes that are not freed.
+/* The number of bytes, without the zero after them. 0 for null.
+ *
+ * Arguments:
+ * `bytes` is null or bytes that are not freed. */
 size_t strew_bytes_length(const strew_bytes *bytes);
 
-// Holds a field, a body of `POST /v1/fields`, and returns the name by which queries name it, as text.
-//
-// Arguments:
-// `library` is a library, `body` a text, `name` a place for a pointer.
+/* Holds a field, a body of `POST /v1/fields`, and returns the name by which queries name it, as text.
+ *
+ * Arguments:
+ * `library` is a library, `body` a text, `name` a place for a pointer. */
 strew_code strew_library_hold_field(const strew_library *library, const char *body, strew_bytes **name);
 
-// Plans a query and counts its points. Free the plan with `strew_plan_free`.
-//
-// `query` is the JSON body of `POST /v1/points:query`, or the query string of `GET /v1/points`:
-// `bbox=0,0,10,10&spacing=1&seed=7`.
-//
-// Arguments:
-// `library` is a library, `query` a text, `plan` a place for a pointer.
+/* Plans a query and counts its points. Free the plan with `strew_plan_free`.
+ *
+ * `query` is the JSON body of `POST /v1/points:query`, or the query string of `GET /v1/points`:
+ * `bbox=0,0,10,10&spacing=1&seed=7`.
+ *
+ * Arguments:
+ * `library` is a library, `query` a text, `plan` a place for a pointer. */
 strew_code strew_plan_query(const strew_library *library, const char *query, strew_plan **plan);
 
-// Plans the points of a chunk, the square of the world grid with this size, column and row. Coordinates are
-// relative to its corner (`strew_plan_origin`). Chunks that share an edge share no point and lose none.
-//
-// `query` is as in `strew_plan_query`, without a region: one text serves all chunks.
-//
-// Arguments:
-// As `strew_plan_query`.
+/* Plans the points of a chunk, the square of the world grid with this size, column and row. Coordinates are
+ * relative to its corner (`strew_plan_origin`). Chunks that share an edge share no point and lose none.
+ *
+ * `query` is as in `strew_plan_query`, without a region: one text serves all chunks.
+ *
+ * Arguments:
+ * As `strew_plan_query`. */
 strew_code strew_plan_chunk(const strew_library *library,
                             const char *query,
                             double size,
@@ -157,109 +163,109 @@ strew_code strew_plan_chunk(const strew_library *library,
                             int64_t row,
                             strew_plan **plan);
 
-// The exact number of points, which can be more than an answer may have.
-//
-// Returns `STREW_TOO_MANY_POINTS` for 2^64 points and more; the message has their number.
-//
-// Arguments:
-// `plan` is a plan, `count` a place for a number.
+/* The exact number of points, which can be more than an answer may have.
+ *
+ * Returns `STREW_TOO_MANY_POINTS` for 2^64 points and more; the message has their number.
+ *
+ * Arguments:
+ * `plan` is a plan, `count` a place for a number. */
 strew_code strew_plan_count(const strew_plan *plan, uint64_t *count);
 
-// The place that the `f64` coordinates are relative to: the corner of a chunk, else the origin of the world.
-//
-// Arguments:
-// `plan` is a plan, `origin` has room for two numbers.
+/* The place that the `f64` coordinates are relative to: the corner of a chunk, else the origin of the world.
+ *
+ * Arguments:
+ * `plan` is a plan, `origin` has room for two numbers. */
 strew_code strew_plan_origin(const strew_plan *plan, double *origin);
 
-// Writes the coordinates: x and y by turns, for each point, in the fixed order of the query.
-//
-// `capacity` is the number of points that `xy` has room for; `STREW_BUFFER_TOO_SMALL` if it is too little. No
-// other memory is needed. Large answers are made on all cores.
-//
-// Arguments:
-// `plan` is a plan, `xy` has room for 2 * `capacity` numbers.
+/* Writes the coordinates: x and y by turns, for each point, in the fixed order of the query.
+ *
+ * `capacity` is the number of points that `xy` has room for; `STREW_BUFFER_TOO_SMALL` if it is too little. No
+ * other memory is needed. Large answers are made on all cores.
+ *
+ * Arguments:
+ * `plan` is a plan, `xy` has room for 2 * `capacity` numbers. */
 strew_code strew_plan_fill_xy(const strew_plan *plan, double *xy, size_t capacity);
 
-// Writes the coordinates as `f32`, relative to the lower corner of the region, which is written to `origin` unless
-// that is null.
-//
-// Arguments:
-// `plan` is a plan, `xy` has room for 2 * `capacity` numbers, `origin` is null or has room for two.
+/* Writes the coordinates as `f32`, relative to the lower corner of the region, which is written to `origin` unless
+ * that is null.
+ *
+ * Arguments:
+ * `plan` is a plan, `xy` has room for 2 * `capacity` numbers, `origin` is null or has room for two. */
 strew_code strew_plan_fill_xy_f32(const strew_plan *plan,
                                   float *xy,
                                   size_t capacity,
                                   double *origin);
 
-// Writes the stable ids: two integers for each point, which are `x:y` in text.
-//
-// The first call that needs ids or a column makes all of them; they stay in memory until the plan is freed.
-//
-// Arguments:
-// `plan` is a plan, `ids` has room for 2 * `capacity` numbers.
+/* Writes the stable ids: two integers for each point, which are `x:y` in text.
+ *
+ * The first call that needs ids or a column makes all of them; they stay in memory until the plan is freed.
+ *
+ * Arguments:
+ * `plan` is a plan, `ids` has room for 2 * `capacity` numbers. */
 strew_code strew_plan_fill_ids(const strew_plan *plan, int64_t *ids, size_t capacity);
 
-// Writes a column of numbers, such as `angle` or `scale`; NaN where a layer lacks it.
-//
-// Returns `STREW_INVALID_ARGUMENT` if the query has no such column or its values are names.
-//
-// Arguments:
-// `plan` is a plan, `column` a text, `values` has room for `capacity` numbers.
+/* Writes a column of numbers, such as `angle` or `scale`; NaN where a layer lacks it.
+ *
+ * Returns `STREW_INVALID_ARGUMENT` if the query has no such column or its values are names.
+ *
+ * Arguments:
+ * `plan` is a plan, `column` a text, `values` has room for `capacity` numbers. */
 strew_code strew_plan_fill_numbers(const strew_plan *plan,
                                    const char *column,
                                    double *values,
                                    size_t capacity);
 
-// Writes a column of names, such as `variant` or `layer`, as indices into the list of `strew_plan_columns`; -1
-// where a layer lacks it.
-//
-// Returns `STREW_INVALID_ARGUMENT` if the query has no such column or its values are numbers.
-//
-// Arguments:
-// `plan` is a plan, `column` a text, `codes` has room for `capacity` numbers.
+/* Writes a column of names, such as `variant` or `layer`, as indices into the list of `strew_plan_columns`; -1
+ * where a layer lacks it.
+ *
+ * Returns `STREW_INVALID_ARGUMENT` if the query has no such column or its values are numbers.
+ *
+ * Arguments:
+ * `plan` is a plan, `column` a text, `codes` has room for `capacity` numbers. */
 strew_code strew_plan_fill_codes(const strew_plan *plan,
                                  const char *column,
                                  int32_t *codes,
                                  size_t capacity);
 
-// The columns beside ids and coordinates as JSON: a list of objects with `name` and `names`, which is the list of
-// names, or null for numbers.
-//
-// Arguments:
-// `plan` is a plan, `columns` a place for a pointer.
+/* The columns beside ids and coordinates as JSON: a list of objects with `name` and `names`, which is the list of
+ * names, or null for numbers.
+ *
+ * Arguments:
+ * `plan` is a plan, `columns` a place for a pointer. */
 strew_code strew_plan_columns(const strew_plan *plan,
                               strew_bytes **columns);
 
-// The points as a document of the daemon, by options as in an address: `format=csv&decimals=2`. The default is
-// `format=json`.
-//
-// Arguments:
-// `plan` is a plan, `wanted` a text, `document` a place for a pointer.
-strew_code strew_plan_document(const strew_plan *plan,
-                               const char *wanted,
-                               strew_bytes **document);
-
-// The query with everything filled in, as JSON.
-//
-// Arguments:
-// `plan` is a plan, `query` a place for a pointer.
+/* The query with everything filled in, as JSON.
+ *
+ * Arguments:
+ * `plan` is a plan, `query` a place for a pointer. */
 strew_code strew_plan_resolved(const strew_plan *plan, strew_bytes **query);
 
-// Splits the points into up to `parts` parts of the same size, give or take one, as JSON: a list of objects with
-// the `cursor` and the `limit` that, put into the query, make the part.
-//
-// Arguments:
-// `plan` is a plan, `list` a place for a pointer.
+/* Splits the points into up to `parts` parts of the same size, give or take one, as JSON: a list of objects with
+ * the `cursor` and the `limit` that, put into the query, make the part.
+ *
+ * Arguments:
+ * `plan` is a plan, `list` a place for a pointer. */
 strew_code strew_plan_split(const strew_plan *plan,
                             uint32_t parts,
                             strew_bytes **list);
 
-// The point of an id. `set` is the query string of `GET /v1/points/{id}`, such as `spacing=1&seed=7`.
-//
-// Returns `STREW_NO_SUCH_POINT` if the set has no point with that id. `attributes`, unless it is null, receives the
-// point with its attributes as JSON.
-//
-// Arguments:
-// `library` is a library, `set` a text, `found` a place for a point, `attributes` null or a place for a pointer.
+/* The points as a document of the daemon, by options as in an address: `format=csv&decimals=2`. The default is
+ * `format=json`. A library built without the feature `documents` lacks this function.
+ *
+ * Arguments:
+ * `plan` is a plan, `wanted` a text, `document` a place for a pointer. */
+strew_code strew_plan_document(const strew_plan *plan,
+                               const char *wanted,
+                               strew_bytes **document);
+
+/* The point of an id. `set` is the query string of `GET /v1/points/{id}`, such as `spacing=1&seed=7`.
+ *
+ * Returns `STREW_NO_SUCH_POINT` if the set has no point with that id. `attributes`, unless it is null, receives the
+ * point with its attributes as JSON.
+ *
+ * Arguments:
+ * `library` is a library, `set` a text, `found` a place for a point, `attributes` null or a place for a pointer. */
 strew_code strew_point_by_id(const strew_library *library,
                              const char *set,
                              int64_t x,
@@ -267,15 +273,15 @@ strew_code strew_point_by_id(const strew_library *library,
                              strew_point *found,
                              strew_bytes **attributes);
 
-// The points nearest to a place, nearest first. `query` is the query string of `GET /v1/nearest`, such as
-// `at=5,5&k=3&spacing=1&seed=7`.
-//
-// Up to `capacity` points are written, and the number of those found to `count`, unless that is null. `attributes`,
-// unless it is null, receives all points with their attributes as JSON.
-//
-// Arguments:
-// `library` is a library, `query` a text, `found` has room for `capacity` points, `count` is null or a place for a
-// number, `attributes` null or a place for a pointer.
+/* The points nearest to a place, nearest first. `query` is the query string of `GET /v1/nearest`, such as
+ * `at=5,5&k=3&spacing=1&seed=7`.
+ *
+ * Up to `capacity` points are written, and the number of those found to `count`, unless that is null. `attributes`,
+ * unless it is null, receives all points with their attributes as JSON.
+ *
+ * Arguments:
+ * `library` is a library, `query` a text, `found` has room for `capacity` points, `count` is null or a place for a
+ * number, `attributes` null or a place for a pointer. */
 strew_code strew_nearest(const strew_library *library,
                          const char *query,
                          strew_point *found,
@@ -283,27 +289,27 @@ strew_code strew_nearest(const strew_library *library,
                          size_t *count,
                          strew_bytes **attributes);
 
-// Plans a query in space and counts its points. Free the plan with `strew_plan_free`.
-//
-// `query` is the JSON body of `POST /v1/space/points`, or the query string of `GET /v1/space/points`:
-// `ball=5,5,5,3&spacing=1&seed=7`.
-//
-// Calls that begin with `strew_space_` write its coordinates, its ids and its origin. Counts, columns, documents and
-// parts come from the calls that plans of the plane have.
-//
-// Arguments:
-// `library` is a library, `query` a text, `plan` a place for a pointer.
+/* Plans a query in space and counts its points. Free the plan with `strew_plan_free`.
+ *
+ * `query` is the JSON body of `POST /v1/space/points`, or the query string of `GET /v1/space/points`:
+ * `ball=5,5,5,3&spacing=1&seed=7`.
+ *
+ * Calls that begin with `strew_space_` write its coordinates, its ids and its origin. Counts, columns, documents and
+ * parts come from the calls that plans of the plane have.
+ *
+ * Arguments:
+ * `library` is a library, `query` a text, `plan` a place for a pointer. */
 strew_code strew_space_plan_query(const strew_library *library,
                                   const char *query,
                                   strew_plan **plan);
 
-// Plans the points of a chunk of space, the cube of the world grid with this size and this place along x, y and z.
-// Coordinates are relative to its corner (`strew_space_origin`). Neighbors share no point and lose none.
-//
-// `query` is as in `strew_space_plan_query`, without a region: one text serves all chunks.
-//
-// Arguments:
-// As `strew_space_plan_query`.
+/* Plans the points of a chunk of space, the cube of the world grid with this size and this place along x, y and z.
+ * Coordinates are relative to its corner (`strew_space_origin`). Neighbors share no point and lose none.
+ *
+ * `query` is as in `strew_space_plan_query`, without a region: one text serves all chunks.
+ *
+ * Arguments:
+ * As `strew_space_plan_query`. */
 strew_code strew_space_plan_chunk(const strew_library *library,
                                   const char *query,
                                   double size,
@@ -312,51 +318,51 @@ strew_code strew_space_plan_chunk(const strew_library *library,
                                   int64_t z,
                                   strew_plan **plan);
 
-// The place that the `f64` coordinates are relative to: the corner of a chunk, else the origin of the world.
-//
-// Returns `STREW_INVALID_ARGUMENT` for a plan of the plane, as all calls for space do.
-//
-// Arguments:
-// `plan` is a plan, `origin` has room for three numbers.
+/* The place that the `f64` coordinates are relative to: the corner of a chunk, else the origin of the world.
+ *
+ * Returns `STREW_INVALID_ARGUMENT` for a plan of the plane, as all calls for space do.
+ *
+ * Arguments:
+ * `plan` is a plan, `origin` has room for three numbers. */
 strew_code strew_space_origin(const strew_plan *plan, double *origin);
 
-// Writes the coordinates: x, y and z by turns, for each point, in the fixed order of the query.
-//
-// `capacity` is the number of points that `xyz` has room for; `STREW_BUFFER_TOO_SMALL` if it is too little. No
-// other memory is needed. Large answers are made on all cores.
-//
-// Arguments:
-// `plan` is a plan, `xyz` has room for 3 * `capacity` numbers.
+/* Writes the coordinates: x, y and z by turns, for each point, in the fixed order of the query.
+ *
+ * `capacity` is the number of points that `xyz` has room for; `STREW_BUFFER_TOO_SMALL` if it is too little. No
+ * other memory is needed. Large answers are made on all cores.
+ *
+ * Arguments:
+ * `plan` is a plan, `xyz` has room for 3 * `capacity` numbers. */
 strew_code strew_space_fill_xyz(const strew_plan *plan,
                                 double *xyz,
                                 size_t capacity);
 
-// Writes the coordinates as `f32`, relative to the lower corner of the region, which is written to `origin` unless
-// that is null.
-//
-// Arguments:
-// `plan` is a plan, `xyz` has room for 3 * `capacity` numbers, `origin` is null or has room for three.
+/* Writes the coordinates as `f32`, relative to the lower corner of the region, which is written to `origin` unless
+ * that is null.
+ *
+ * Arguments:
+ * `plan` is a plan, `xyz` has room for 3 * `capacity` numbers, `origin` is null or has room for three. */
 strew_code strew_space_fill_xyz_f32(const strew_plan *plan,
                                     float *xyz,
                                     size_t capacity,
                                     double *origin);
 
-// Writes the stable ids: three integers for each point, which are `x:y:z` in text.
-//
-// The first call that needs ids or a column makes all of them; they stay in memory until the plan is freed.
-//
-// Arguments:
-// `plan` is a plan, `ids` has room for 3 * `capacity` numbers.
+/* Writes the stable ids: three integers for each point, which are `x:y:z` in text.
+ *
+ * The first call that needs ids or a column makes all of them; they stay in memory until the plan is freed.
+ *
+ * Arguments:
+ * `plan` is a plan, `ids` has room for 3 * `capacity` numbers. */
 strew_code strew_space_fill_ids(const strew_plan *plan, int64_t *ids, size_t capacity);
 
-// The point in space of an id. `set` is the query string of `GET /v1/space/points/{id}`, such as
-// `spacing=1&seed=7`.
-//
-// Returns `STREW_NO_SUCH_POINT` if the set has no point with that id. `attributes`, unless it is null, receives the
-// point with its attributes as JSON.
-//
-// Arguments:
-// `library` is a library, `set` a text, `found` a place for a point, `attributes` null or a place for a pointer.
+/* The point in space of an id. `set` is the query string of `GET /v1/space/points/{id}`, such as
+ * `spacing=1&seed=7`.
+ *
+ * Returns `STREW_NO_SUCH_POINT` if the set has no point with that id. `attributes`, unless it is null, receives the
+ * point with its attributes as JSON.
+ *
+ * Arguments:
+ * `library` is a library, `set` a text, `found` a place for a point, `attributes` null or a place for a pointer. */
 strew_code strew_space_point_by_id(const strew_library *library,
                                    const char *set,
                                    int64_t x,
@@ -365,15 +371,15 @@ strew_code strew_space_point_by_id(const strew_library *library,
                                    strew_space_point *found,
                                    strew_bytes **attributes);
 
-// The points in space nearest to a place, nearest first. `query` is the query string of `GET /v1/space/nearest`,
-// such as `at=5,5,5&k=3&spacing=1&seed=7`.
-//
-// Up to `capacity` points are written, and the number of those found to `count`, unless that is null. `attributes`,
-// unless it is null, receives all points with their attributes as JSON.
-//
-// Arguments:
-// `library` is a library, `query` a text, `found` has room for `capacity` points, `count` is null or a place for a
-// number, `attributes` null or a place for a pointer.
+/* The points in space nearest to a place, nearest first. `query` is the query string of `GET /v1/space/nearest`,
+ * such as `at=5,5,5&k=3&spacing=1&seed=7`.
+ *
+ * Up to `capacity` points are written, and the number of those found to `count`, unless that is null. `attributes`,
+ * unless it is null, receives all points with their attributes as JSON.
+ *
+ * Arguments:
+ * `library` is a library, `query` a text, `found` has room for `capacity` points, `count` is null or a place for a
+ * number, `attributes` null or a place for a pointer. */
 strew_code strew_space_nearest(const strew_library *library,
                                const char *query,
                                strew_space_point *found,
@@ -381,29 +387,29 @@ strew_code strew_space_nearest(const strew_library *library,
                                size_t *count,
                                strew_bytes **attributes);
 
-// The words of the last error in the calling thread, those of REST: field, value, what is allowed.
-//
-// Valid until the next call in this thread that fails. Empty if none has failed.
+/* The words of the last error in the calling thread, those of REST: field, value, what is allowed.
+ *
+ * Valid until the next call in this thread that fails. Empty if none has failed. */
 const char *strew_error_message(void);
 
-// The kind of the last error in the calling thread, as in the problem types of REST: `invalid-query`, ...
-//
-// Valid as long as `strew_error_message`.
+/* The kind of the last error in the calling thread, as in the problem types of REST: `invalid-query`, ...
+ *
+ * Valid as long as `strew_error_message`. */
 const char *strew_error_kind(void);
 
-// The field of the query, or the argument, that is wrong; of several the first. Empty if the error has none.
-//
-// Valid as long as `strew_error_message`.
+/* The field of the query, or the argument, that is wrong; of several the first. Empty if the error has none.
+ *
+ * Valid as long as `strew_error_message`. */
 const char *strew_error_field(void);
 
-// The last error in the calling thread as JSON: `kind`, `detail`, and `errors`, a list with the `field`, `value`,
-// `detail` and `allowed` of everything that is wrong.
-//
-// Valid as long as `strew_error_message`.
+/* The last error in the calling thread as JSON: `kind`, `detail`, and `errors`, a list with the `field`, `value`,
+ * `detail` and `allowed` of everything that is wrong.
+ *
+ * Valid as long as `strew_error_message`. */
 const char *strew_error_document(void);
 
 #ifdef __cplusplus
-}  // extern "C"
-#endif  // __cplusplus
+}
+#endif
 
 #endif  /* STREW_H */

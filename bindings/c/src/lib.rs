@@ -7,6 +7,9 @@
 //!
 //! `include/strew.h` is generated from this crate; a test compares both.
 
+mod coordinates;
+#[cfg(feature = "documents")]
+mod documents;
 mod failure;
 mod handles;
 mod memory;

@@ -7,10 +7,10 @@ use ::strew_plan::{
     library::{Further, FurtherValues},
 };
 use serde_json::json;
-use strew_encode::Encoding;
-use strew_query::{Draft, RegionDraft, ShapeDraft, Values, groups, options};
+use strew_query::{Draft, RegionDraft, ShapeDraft};
 
 use crate::{
+    coordinates::{fill, fill_f32, fill_ids, origin_of},
     failure::{Code, Failure, guarded},
     handles::{strew_bytes, strew_library, strew_plan},
     memory::{borrowed, place, room, text},
@@ -108,11 +108,8 @@ pub unsafe extern "C" fn strew_plan_count(plan: *const strew_plan, count: *mut u
 /// `plan` is a plan, `origin` has room for two numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn strew_plan_origin(plan: *const strew_plan, origin: *mut f64) -> Code {
-    guarded(|| {
-        // SAFETY: as the caller promises.
-        let (plan, out) = unsafe { (borrowed(plan, "plan")?, room(origin, AXES, "origin")?) };
-        plan.write_origin(out)
-    })
+    // SAFETY: as the caller promises.
+    guarded(|| unsafe { origin_of::<AXES>(plan, origin) })
 }
 
 /// Writes the coordinates: x and y by turns, for each point, in the fixed order of the query.
@@ -128,16 +125,8 @@ pub unsafe extern "C" fn strew_plan_fill_xy(
     xy: *mut f64,
     capacity: usize,
 ) -> Code {
-    guarded(|| {
-        // SAFETY: as the caller promises.
-        let (plan, at) = unsafe {
-            let plan = borrowed(plan, "plan")?;
-            let count = plan.count_in(AXES, capacity)?;
-            (plan, room(xy, AXES * count, "xy")?)
-        };
-        plan.library.fill_coordinates(&plan.planned, at)?;
-        Ok(())
-    })
+    // SAFETY: as the caller promises.
+    guarded(|| unsafe { fill::<AXES>(plan, xy, capacity, "xy") })
 }
 
 /// Writes the coordinates as `f32`, relative to the lower corner of the region, which is written to `origin` unless
@@ -152,20 +141,8 @@ pub unsafe extern "C" fn strew_plan_fill_xy_f32(
     capacity: usize,
     origin: *mut f64,
 ) -> Code {
-    guarded(|| {
-        // SAFETY: as the caller promises.
-        let (plan, at) = unsafe {
-            let plan = borrowed(plan, "plan")?;
-            let count = plan.count_in(AXES, capacity)?;
-            (plan, room(xy, AXES * count, "xy")?)
-        };
-        let (_, from) = plan.library.fill_offsets(&plan.planned, at)?;
-        if !origin.is_null() {
-            // SAFETY: as the caller promises.
-            unsafe { room(origin, AXES, "origin")? }.copy_from_slice(from.as_slice());
-        }
-        Ok(())
-    })
+    // SAFETY: as the caller promises.
+    guarded(|| unsafe { fill_f32::<AXES>(plan, xy, capacity, origin, "xy") })
 }
 
 /// Writes the stable ids: two integers for each point, which are `x:y` in text.
@@ -180,16 +157,8 @@ pub unsafe extern "C" fn strew_plan_fill_ids(
     ids: *mut i64,
     capacity: usize,
 ) -> Code {
-    guarded(|| {
-        // SAFETY: as the caller promises.
-        unsafe {
-            let plan = borrowed(plan, "plan")?;
-            let count = plan.count_in(AXES, capacity)?;
-            let ids = room(ids, AXES * count, "ids")?;
-            ids.copy_from_slice(&plan.columns()?.ids);
-        }
-        Ok(())
-    })
+    // SAFETY: as the caller promises.
+    guarded(|| unsafe { fill_ids::<AXES>(plan, ids, capacity) })
 }
 
 /// Writes a column of numbers, such as `angle` or `scale`; NaN where a layer lacks it.
@@ -272,37 +241,6 @@ pub unsafe extern "C" fn strew_plan_columns(
     })
 }
 
-/// The points as a document of the daemon, by options as in an address: `format=csv&decimals=2`. The default is
-/// `format=json`.
-///
-/// # Safety
-/// `plan` is a plan, `wanted` a text, `document` a place for a pointer.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn strew_plan_document(
-    plan: *const strew_plan,
-    wanted: *const c_char,
-    document: *mut *mut strew_bytes,
-) -> Code {
-    guarded(|| {
-        // SAFETY: as the caller promises.
-        let (plan, wanted) = unsafe { (borrowed(plan, "plan")?, text(wanted, "wanted")?) };
-        let mut values = Values::new(groups::OUTPUT, "");
-        for pair in wanted.split('&').filter(|pair| !pair.is_empty()) {
-            let (name, value) = pair.split_once('=').unwrap_or((pair, ""));
-            values.add_text(name, value);
-        }
-        values.read().map_err(strew_error::Error::from)?;
-        let chosen = options(&values).map_err(strew_error::Error::from)?;
-        let library = &plan.library;
-        let mut whole = vec![];
-        for block in library.document(&plan.planned, chosen, Encoding::Json)? {
-            whole.extend_from_slice(&block.map_err(strew_error::Error::from)?);
-        }
-        // SAFETY: as the caller promises.
-        unsafe { strew_bytes::hand_over(whole, document) }
-    })
-}
-
 /// The query with everything filled in, as JSON.
 ///
 /// # Safety
@@ -345,37 +283,12 @@ pub unsafe extern "C" fn strew_plan_split(
 
 impl strew_plan {
     /// The number of points, which a buffer must have room for.
-    fn count_for(&self, capacity: usize) -> Result<usize, Failure> {
+    pub(crate) fn count_for(&self, capacity: usize) -> Result<usize, Failure> {
         let count = self.library.count_to_make(&self.planned)?;
         match count <= capacity {
             true => Ok(count),
             false => Err(Failure::room(capacity, count)),
         }
-    }
-
-    /// As `count_for`, for a plan whose points have this number of coordinates.
-    pub(crate) fn count_in(&self, axes: usize, capacity: usize) -> Result<usize, Failure> {
-        self.check_axes(axes)?;
-        self.count_for(capacity)
-    }
-
-    fn check_axes(&self, axes: usize) -> Result<(), Failure> {
-        let (detail, allowed) = match self.planned.axes() {
-            own if own == axes => return Ok(()),
-            AXES => ("points of the plane", "a plan of strew_space_plan_query"),
-            _ => ("points in space", "a plan of strew_plan_query"),
-        };
-        Err(Failure::argument("plan", detail, allowed))
-    }
-
-    /// Writes the place that coordinates are relative to.
-    pub(crate) fn write_origin(&self, out: &mut [f64]) -> Result<(), Failure> {
-        self.check_axes(out.len())?;
-        match &self.planned.query.region.corner {
-            Some(corner) => out.copy_from_slice(corner.as_slice()),
-            None => out.fill(0.0),
-        }
-        Ok(())
     }
 
     pub(crate) fn columns(&self) -> Result<&::strew_plan::Columns, Failure> {

@@ -2,7 +2,7 @@
 
 use std::ffi::c_char;
 
-use ::strew_plan::Found;
+use ::strew_plan::{Found, Library};
 use serde_json::json;
 use strew_core::PointId;
 use strew_error::Error;
@@ -27,15 +27,19 @@ pub struct strew_point {
     pub distance: f64,
 }
 
-fn point(found: &Found) -> Result<strew_point, Failure> {
-    let id = found.id.parse::<PointId>();
-    let id = id.map_err(|_| Error::Internal("an id that cannot be read"))?;
-    Ok(strew_point {
-        id: [id.x, id.y],
-        x: found.x,
-        y: found.y,
-        distance: found.distance.unwrap_or(0.0),
-    })
+impl TryFrom<&Found> for strew_point {
+    type Error = Error;
+
+    fn try_from(found: &Found) -> Result<Self, Error> {
+        let id = found.id.parse::<PointId>();
+        let id = id.map_err(|_| Error::Internal("an id that cannot be read"))?;
+        Ok(Self {
+            id: [id.x, id.y],
+            x: found.x,
+            y: found.y,
+            distance: found.distance.unwrap_or(0.0),
+        })
+    }
 }
 
 /// The point of an id. `set` is the query string of `GET /v1/points/{id}`, such as `spacing=1&seed=7`.
@@ -54,17 +58,10 @@ pub unsafe extern "C" fn strew_point_by_id(
     found: *mut strew_point,
     attributes: *mut *mut strew_bytes,
 ) -> Code {
-    guarded(|| {
-        // SAFETY: as the caller promises.
-        let (library, set, out) = unsafe {
-            let library = borrowed(library, "library")?;
-            (library, text(set, "set")?, place(found, "found")?)
-        };
-        let there = library.0.point(&PointId { x, y }.to_string(), set)?;
-        out.put(point(&there)?);
-        // SAFETY: as the caller promises.
-        unsafe { documented(&json!(there), attributes) }
-    })
+    let id = PointId { x, y }.to_string();
+    let find = |library: &Library, set: &str| library.point(&id, set);
+    // SAFETY: as the caller promises.
+    guarded(|| unsafe { by_id(library, set, found, attributes, find) })
 }
 
 /// The points nearest to a place, nearest first. `query` is the query string of `GET /v1/nearest`, such as
@@ -85,31 +82,72 @@ pub unsafe extern "C" fn strew_nearest(
     count: *mut usize,
     attributes: *mut *mut strew_bytes,
 ) -> Code {
-    guarded(|| {
+    let find = Library::nearest;
+    // SAFETY: as the caller promises.
+    guarded(|| unsafe { near(library, query, found, capacity, count, attributes, find) })
+}
+
+/// Writes the point that `find` finds in a set, of the plane or in space.
+///
+/// # Safety
+/// As [`strew_point_by_id`].
+pub unsafe fn by_id<P>(
+    library: *const strew_library,
+    set: *const c_char,
+    found: *mut P,
+    attributes: *mut *mut strew_bytes,
+    find: impl FnOnce(&Library, &str) -> Result<Found, Error>,
+) -> Result<(), Failure>
+where
+    P: for<'a> TryFrom<&'a Found, Error = Error>,
+{
+    // SAFETY: as the caller promises.
+    let (library, set, out) = unsafe {
+        let library = borrowed(library, "library")?;
+        (library, text(set, "set")?, place(found, "found")?)
+    };
+    let there = find(&library.0, set)?;
+    out.put(P::try_from(&there)?);
+    // SAFETY: as the caller promises.
+    unsafe { documented(&json!(there), attributes) }
+}
+
+/// Writes the points that `find` finds near a place, in the plane or in space.
+///
+/// # Safety
+/// As [`strew_nearest`].
+pub unsafe fn near<P>(
+    library: *const strew_library,
+    query: *const c_char,
+    found: *mut P,
+    capacity: usize,
+    count: *mut usize,
+    attributes: *mut *mut strew_bytes,
+    find: impl FnOnce(&Library, &str) -> Result<Vec<Found>, Error>,
+) -> Result<(), Failure>
+where
+    P: Copy + for<'a> TryFrom<&'a Found, Error = Error>,
+{
+    // SAFETY: as the caller promises.
+    let (library, query) = unsafe { (borrowed(library, "library")?, text(query, "query")?) };
+    let there = find(&library.0, query)?;
+    let fitting = there.len().min(capacity);
+    // SAFETY: as the caller promises.
+    let out = unsafe { room(found, fitting, "found")? };
+    for (out, there) in out.iter_mut().zip(&there) {
+        *out = P::try_from(there)?;
+    }
+    if !count.is_null() {
         // SAFETY: as the caller promises.
-        let (library, query) = unsafe { (borrowed(library, "library")?, text(query, "query")?) };
-        let there = library.0.nearest(query)?;
-        let fitting = there.len().min(capacity);
-        // SAFETY: as the caller promises.
-        let out = unsafe { room(found, fitting, "found")? };
-        for (out, there) in out.iter_mut().zip(&there) {
-            *out = point(there)?;
-        }
-        if !count.is_null() {
-            // SAFETY: as the caller promises.
-            unsafe { place(count, "count")? }.put(there.len());
-        }
-        // SAFETY: as the caller promises.
-        unsafe { documented(&json!(there), attributes) }
-    })
+        unsafe { place(count, "count")? }.put(there.len());
+    }
+    // SAFETY: as the caller promises.
+    unsafe { documented(&json!(there), attributes) }
 }
 
 /// # Safety
 /// `out` is null or a place for a pointer.
-pub unsafe fn documented(
-    value: &serde_json::Value,
-    out: *mut *mut strew_bytes,
-) -> Result<(), Failure> {
+unsafe fn documented(value: &serde_json::Value, out: *mut *mut strew_bytes) -> Result<(), Failure> {
     if out.is_null() {
         return Ok(());
     }

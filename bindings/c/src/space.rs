@@ -5,17 +5,16 @@
 use std::ffi::c_char;
 
 use ::strew_plan::{Found, Library};
-use serde_json::json;
 use strew_core::space::PointId;
 use strew_error::Error;
 use strew_query::{RegionDraft, ShapeDraft, VolumeDraft};
 
 use crate::{
-    failure::{Code, Failure, guarded},
+    coordinates::{fill, fill_f32, fill_ids, origin_of},
+    failure::{Code, guarded},
     handles::{strew_bytes, strew_library, strew_plan},
-    memory::{borrowed, place, room, text},
     plan::planned,
-    single::documented,
+    single::{by_id, near},
 };
 
 /// The number of coordinates in space.
@@ -76,11 +75,8 @@ pub unsafe extern "C" fn strew_space_plan_chunk(
 /// `plan` is a plan, `origin` has room for three numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn strew_space_origin(plan: *const strew_plan, origin: *mut f64) -> Code {
-    guarded(|| {
-        // SAFETY: as the caller promises.
-        let (plan, out) = unsafe { (borrowed(plan, "plan")?, room(origin, AXES, "origin")?) };
-        plan.write_origin(out)
-    })
+    // SAFETY: as the caller promises.
+    guarded(|| unsafe { origin_of::<AXES>(plan, origin) })
 }
 
 /// Writes the coordinates: x, y and z by turns, for each point, in the fixed order of the query.
@@ -96,16 +92,8 @@ pub unsafe extern "C" fn strew_space_fill_xyz(
     xyz: *mut f64,
     capacity: usize,
 ) -> Code {
-    guarded(|| {
-        // SAFETY: as the caller promises.
-        let (plan, at) = unsafe {
-            let plan = borrowed(plan, "plan")?;
-            let count = plan.count_in(AXES, capacity)?;
-            (plan, room(xyz, AXES * count, "xyz")?)
-        };
-        plan.library.fill_coordinates(&plan.planned, at)?;
-        Ok(())
-    })
+    // SAFETY: as the caller promises.
+    guarded(|| unsafe { fill::<AXES>(plan, xyz, capacity, "xyz") })
 }
 
 /// Writes the coordinates as `f32`, relative to the lower corner of the region, which is written to `origin` unless
@@ -120,20 +108,8 @@ pub unsafe extern "C" fn strew_space_fill_xyz_f32(
     capacity: usize,
     origin: *mut f64,
 ) -> Code {
-    guarded(|| {
-        // SAFETY: as the caller promises.
-        let (plan, at) = unsafe {
-            let plan = borrowed(plan, "plan")?;
-            let count = plan.count_in(AXES, capacity)?;
-            (plan, room(xyz, AXES * count, "xyz")?)
-        };
-        let (_, from) = plan.library.fill_offsets(&plan.planned, at)?;
-        if !origin.is_null() {
-            // SAFETY: as the caller promises.
-            unsafe { room(origin, AXES, "origin")? }.copy_from_slice(from.as_slice());
-        }
-        Ok(())
-    })
+    // SAFETY: as the caller promises.
+    guarded(|| unsafe { fill_f32::<AXES>(plan, xyz, capacity, origin, "xyz") })
 }
 
 /// Writes the stable ids: three integers for each point, which are `x:y:z` in text.
@@ -148,16 +124,8 @@ pub unsafe extern "C" fn strew_space_fill_ids(
     ids: *mut i64,
     capacity: usize,
 ) -> Code {
-    guarded(|| {
-        // SAFETY: as the caller promises.
-        unsafe {
-            let plan = borrowed(plan, "plan")?;
-            let count = plan.count_in(AXES, capacity)?;
-            let ids = room(ids, AXES * count, "ids")?;
-            ids.copy_from_slice(&plan.columns()?.ids);
-        }
-        Ok(())
-    })
+    // SAFETY: as the caller promises.
+    guarded(|| unsafe { fill_ids::<AXES>(plan, ids, capacity) })
 }
 
 /// A point in space.
@@ -176,16 +144,20 @@ pub struct strew_space_point {
     pub distance: f64,
 }
 
-fn point(found: &Found) -> Result<strew_space_point, Failure> {
-    let id = found.id.parse::<PointId>();
-    let id = id.map_err(|_| Error::Internal("an id that cannot be read"))?;
-    Ok(strew_space_point {
-        id: [id.x, id.y, id.z],
-        x: found.x,
-        y: found.y,
-        z: found.z.unwrap_or(0.0),
-        distance: found.distance.unwrap_or(0.0),
-    })
+impl TryFrom<&Found> for strew_space_point {
+    type Error = Error;
+
+    fn try_from(found: &Found) -> Result<Self, Error> {
+        let id = found.id.parse::<PointId>();
+        let id = id.map_err(|_| Error::Internal("an id that cannot be read"))?;
+        Ok(Self {
+            id: [id.x, id.y, id.z],
+            x: found.x,
+            y: found.y,
+            z: found.z.unwrap_or(0.0),
+            distance: found.distance.unwrap_or(0.0),
+        })
+    }
 }
 
 /// The point in space of an id. `set` is the query string of `GET /v1/space/points/{id}`, such as
@@ -206,18 +178,10 @@ pub unsafe extern "C" fn strew_space_point_by_id(
     found: *mut strew_space_point,
     attributes: *mut *mut strew_bytes,
 ) -> Code {
-    guarded(|| {
-        // SAFETY: as the caller promises.
-        let (library, set, out) = unsafe {
-            let library = borrowed(library, "library")?;
-            (library, text(set, "set")?, place(found, "found")?)
-        };
-        let id = PointId { x, y, z }.to_string();
-        let there = library.0.point_in_space(&id, set)?;
-        out.put(point(&there)?);
-        // SAFETY: as the caller promises.
-        unsafe { documented(&json!(there), attributes) }
-    })
+    let id = PointId { x, y, z }.to_string();
+    let find = |library: &Library, set: &str| library.point_in_space(&id, set);
+    // SAFETY: as the caller promises.
+    guarded(|| unsafe { by_id(library, set, found, attributes, find) })
 }
 
 /// The points in space nearest to a place, nearest first. `query` is the query string of `GET /v1/space/nearest`,
@@ -238,21 +202,7 @@ pub unsafe extern "C" fn strew_space_nearest(
     count: *mut usize,
     attributes: *mut *mut strew_bytes,
 ) -> Code {
-    guarded(|| {
-        // SAFETY: as the caller promises.
-        let (library, query) = unsafe { (borrowed(library, "library")?, text(query, "query")?) };
-        let there = library.0.nearest_in_space(query)?;
-        let fitting = there.len().min(capacity);
-        // SAFETY: as the caller promises.
-        let out = unsafe { room(found, fitting, "found")? };
-        for (out, there) in out.iter_mut().zip(&there) {
-            *out = point(there)?;
-        }
-        if !count.is_null() {
-            // SAFETY: as the caller promises.
-            unsafe { place(count, "count")? }.put(there.len());
-        }
-        // SAFETY: as the caller promises.
-        unsafe { documented(&json!(there), attributes) }
-    })
+    let find = Library::nearest_in_space;
+    // SAFETY: as the caller promises.
+    guarded(|| unsafe { near(library, query, found, capacity, count, attributes, find) })
 }

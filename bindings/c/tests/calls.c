@@ -53,6 +53,22 @@ static void arguments(void) {
     strew_bytes_free(NULL);
 }
 
+/* Other tables than the embedded ones are files. */
+static void tables(void) {
+    strew_plan *plan = NULL;
+    const char *green = "bbox=0,0,10,10&spacing=1&profile=green&map=s";
+    EXPECT(strew_plan_query(library, green, &plan) == STREW_INVALID_QUERY);
+    EXPECT(strcmp(strew_error_field(), "profile") == 0);
+    strew_library *whole = NULL;
+    EXPECT(strew_library_open(getenv("TABLES"), &whole) == STREW_OK);
+    EXPECT(strew_plan_query(whole, green, &plan) == STREW_OK);
+    strew_plan_free(plan);
+    EXPECT(strew_plan_query(whole, "bbox=0,0,9,9&spacing=1&variants=a:1,b:3&spread=joint", &plan) == STREW_OK);
+    strew_plan_free(plan);
+    strew_library_free(whole);
+    EXPECT(strcmp(strew_version(), STREW_VERSION_STRING) == 0);
+}
+
 /* The buffers, to their last place and not beyond. */
 static void buffers(void) {
     strew_plan *plan = planned("bbox=0,0,10,10&spacing=1&seed=7&attributes=angle,variant&variants=oak:3,birch:1");
@@ -170,6 +186,7 @@ int main(void) {
     EXPECT(strlen(strew_version()) > 0);
     EXPECT(strew_library_open(NULL, &library) == STREW_OK);
     arguments();
+    tables();
     buffers();
     space();
     pthread_t threads[2];

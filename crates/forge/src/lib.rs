@@ -50,6 +50,7 @@ pub mod measure;
 mod mix;
 pub mod numeric;
 pub mod optimize;
+#[cfg(feature = "pictures")]
 mod picture;
 mod plan;
 pub mod profile;
@@ -69,6 +70,7 @@ pub use forge::{Outcome, forge, resume};
 pub use job::{DEFAULT_SEED, Job, MAX_RADIUS, MAX_STEPS};
 pub use judge::{Complaint, Figure, gravest};
 pub use mix::{MixJob, MixOutcome, labels, mix, mix_file_name, second_order};
+#[cfg(feature = "pictures")]
 pub use picture::{PictureError, picture};
 pub use profile::{Aim, Profile};
 pub use prospect::{FEW_INTERVALS, Hopeless, Prospect};

@@ -6,17 +6,22 @@
 //!
 //! Depends on the core alone, for its flags that stop long work. Knows no field and no query.
 
+#[cfg(feature = "tiff")]
 mod chunks;
 mod error;
 mod image;
 mod limits;
 mod npy;
+#[cfg(feature = "pictures")]
 mod picture;
 mod png;
 mod price;
 mod samples;
+#[cfg(feature = "tiff")]
 mod tags;
+#[cfg(feature = "tiff")]
 mod tiff;
+#[cfg(feature = "tiff")]
 mod tiff_faults;
 mod tone;
 mod wanted;
@@ -48,6 +53,7 @@ impl Image {
         let from = Wanted::new(from, stop);
         let read = match format {
             Some(Format::Png) => png::read(from, meaning, limits, stop),
+            #[cfg(feature = "tiff")]
             Some(Format::Tiff) => tiff::read(from, meaning, limits, stop),
             Some(Format::Npy) => npy::read(from, limits, stop),
             _ => Err(RasterError::Unknown("a PNG, TIFF or npy file")),
@@ -91,6 +97,7 @@ impl Image {
         unless_stopped(read, stop)
     }
 
+    #[cfg(feature = "pictures")]
     /// Reads a picture: also JPEG and WebP. Its numbers are shares of the greatest light.
     ///
     /// # Errors

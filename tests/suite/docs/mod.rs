@@ -5,5 +5,6 @@ mod api_contract;
 mod api_examples;
 mod deploy;
 mod generated_client;
+mod godot;
 mod openapi;
 mod samples;

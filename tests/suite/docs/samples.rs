@@ -37,13 +37,13 @@ fn blender_has_an_instance_for_each_point() {
 }
 
 /// A folder served over HTTP by Python; ends when dropped.
-struct Folder {
+pub struct Folder {
     server: Child,
-    url: String,
+    pub url: String,
 }
 
 impl Folder {
-    fn serve(folder: &Path) -> Option<Self> {
+    pub fn serve(folder: &Path) -> Option<Self> {
         let mut server = Command::new(clients::find("python3")?)
             .args(["-u", "-m", "http.server", "0", "--bind", "127.0.0.1"])
             .arg("--directory")

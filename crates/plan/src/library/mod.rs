@@ -5,6 +5,7 @@
 //! fills large answers on all threads of rayon's pool.
 
 mod columns;
+#[cfg(feature = "measure")]
 pub mod measured;
 
 use std::{
@@ -19,7 +20,9 @@ use strew_catalog::{
     mix::{self, Made},
     sent::Sender,
 };
-use strew_config::{ConfigError, Layers, Limits};
+#[cfg(feature = "shipped")]
+use strew_config::Layers;
+use strew_config::{ConfigError, Limits};
 use strew_core::{Table, server::Stop};
 use strew_encode::{Answer, Encoding, Output, Place};
 use strew_error::{Error, Fault};
@@ -35,6 +38,7 @@ use crate::{
 };
 
 pub use columns::{Columns, Further, FurtherValues};
+#[cfg(feature = "measure")]
 pub use measured::{Measured, measure};
 
 /// Tables, fields and limits, with which queries are answered.
@@ -80,10 +84,8 @@ impl Library {
     /// # Errors
     /// [`Unavailable`] with the file that cannot be read.
     pub fn open(folder: Option<&Path>) -> Result<Self, Unavailable> {
-        let config = Layers::new()?.finish()?;
-        let fields = Fields::load(&config.fields)?;
-        let catalog = Catalog::load(true, folder)?.with_fields(fields);
-        Ok(Self::of(catalog, config.limits))
+        let catalog = Catalog::load(true, folder)?.with_fields(shipped_fields()?);
+        Ok(Self::of(catalog, Limits::default()))
     }
 
     /// The tables of these files alone, without fields, with the limits that a daemon has by default.
@@ -347,6 +349,18 @@ impl Library {
     fn known(&self) -> MutexGuard<'_, HashMap<String, Ready>> {
         self.ready.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// The built-in fields.
+#[cfg(feature = "shipped")]
+fn shipped_fields() -> Result<Fields, Unavailable> {
+    Ok(Fields::load(&Layers::new()?.finish()?.fields)?)
+}
+
+/// No fields: they are written as TOML, whose parser is as large as a table.
+#[cfg(not(feature = "shipped"))]
+fn shipped_fields() -> Result<Fields, Unavailable> {
+    Ok(Fields::default())
 }
 
 /// Reads a query of some parameters: a body, or an address, which may have the region among them.
