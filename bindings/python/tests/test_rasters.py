@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -117,3 +118,20 @@ def test_datasets_of_rasterio_are_read(tmp_path: Path) -> None:
             strew.raster(dataset, band=1, crs="EPSG:4326")
         with pytest.raises(strew.StrewError, match=r"strew.raster\(array"):
             strew.points(bbox=box, spacing=1, field=dataset)
+
+
+def test_land_cover_as_the_readme_shows_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rasterio = pytest.importorskip("rasterio")
+    geopandas = pytest.importorskip("geopandas")
+    pytest.importorskip("pyarrow")
+    readme = (Path(__file__).resolve().parents[1] / "README.md").read_text()
+    [code] = [block for block in re.findall(r"```python\n(.*?)```", readme, re.S) if "cover.tif" in block]
+    monkeypatch.chdir(tmp_path)
+    transform = rasterio.Affine(100, 0, 500_000, 0, -100, 5_400_200)
+    form = {"driver": "GTiff", "width": 2, "height": 2, "count": 1, "dtype": "uint8", "crs": "EPSG:32633", "nodata": 43}
+    with rasterio.open("cover.tif", "w", transform=transform, **form) as made:
+        made.write(np.array([[41, 7], [43, 43]], np.uint8), 1)
+    exec(code, {})
+    trees = geopandas.read_parquet("trees.parquet")
+    assert trees.crs.to_epsg() == 32633 and 350 < len(trees) < 450
+    assert trees.geometry.x.max() < 500_100 and trees.geometry.y.min() >= 5_400_100
