@@ -67,7 +67,7 @@ bundlers *names:
 firefox:
     STREW_TEST_BROWSER=firefox cargo test --locked --test suite -- page:: --test-threads 1
 
-# The sample for Blender, whose module of 370 MB comes from PyPI for one version of Python.
+# The extension for Blender and its sample; Blender's module of 370 MB comes from PyPI for one version of Python.
 blender:
     python3 -m venv target/blender
     target/blender/bin/pip install -q bpy

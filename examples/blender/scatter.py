@@ -1,25 +1,23 @@
-"""Trees and rocks in Blender: points of a Strew daemon as instances with an angle and a scale.
+"""Trees and rocks in Blender by the extension of engines/blender: points of a daemon, or of the Python package.
 
     strew serve
     blender --background --python scatter.py -- --bbox 0,0,60,40 --spacing 2 --save forest.blend --render forest.png
 
-Runs in Blender 4.2 and newer (also in its text editor, then with the values below), and with `pip install bpy`. The
-points are vertices of one mesh with the attributes `angle`, `scale` and `variant`; a modifier of geometry nodes puts an
-object of the collection "strew kinds" on each. Put your own objects into that collection: they are taken in the order
-of their names.
+Runs in Blender 4.2 and newer, and with `pip install bpy`. It makes placeholders for three kinds, and presses the button
+of the extension's panel; in the saved file the panel changes everything, once the extension is installed.
 """
 
 import argparse
-import io
-import json
 import math
 import sys
-import urllib.error
-import urllib.parse
-import urllib.request
+import time
+from pathlib import Path
 
 import bpy
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "engines"))
+import blender as extension  # noqa: E402, the folder engines/blender
 
 KINDS = {"oak": 4, "pine": 2, "rock": 1}
 
@@ -39,34 +37,12 @@ def arguments():
     return parser.parse_args(given)
 
 
-def ask(options):
-    """The points as columns: name → array."""
-    query = {
-        "bbox": options.bbox,
-        "spacing": options.spacing,
-        "seed": options.seed,
-        "attributes": "angle,scale,variant",
-        "scale_range": "0.7,1.3",
-        "variants": ",".join(f"{name}:{share}" for name, share in KINDS.items()),
-        "spread": "even",
-        "format": "npy",
-    }
-    address = f"{options.url}/v1/points?{urllib.parse.urlencode(query)}"
-    try:
-        with urllib.request.urlopen(address) as answer:
-            rows = np.load(io.BytesIO(answer.read()))
-            columns = json.loads(answer.headers["strew-columns"])
-    except urllib.error.HTTPError as error:
-        sys.exit(f"{options.url}: {error.read().decode()}")
-    except urllib.error.URLError as error:
-        sys.exit(f"{options.url} does not answer ({error.reason}): start `strew serve`, or name a daemon by --url")
-    return {column["name"]: (rows[:, i], column.get("names")) for i, column in enumerate(columns)}
-
-
 def material(name, color):
     made = bpy.data.materials.new(name)
     made.diffuse_color = (*color, 1)
-    made.use_nodes = True
+    if bpy.app.version < (5, 0, 0):
+        # Newer materials always have nodes.
+        made.use_nodes = True
     made.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (*color, 1)
     return made
 
@@ -99,68 +75,6 @@ def placeholder(name):
     return bpy.data.objects.new(name, mesh)
 
 
-def point_mesh(columns):
-    """One vertex a point, with its values as attributes."""
-    count = len(columns["x"][0])
-    mesh = bpy.data.meshes.new("strew points")
-    mesh.vertices.add(count)
-    places = np.zeros((count, 3), np.float32)
-    places[:, 0], places[:, 1] = columns["x"][0], columns["y"][0]
-    mesh.vertices.foreach_set("co", places.ravel())
-    for name, kind in [("angle", "FLOAT"), ("scale", "FLOAT"), ("variant", "INT")]:
-        values = columns[name][0].astype(np.float32 if kind == "FLOAT" else np.int32)
-        mesh.attributes.new(name, kind, "POINT").data.foreach_set("value", values)
-    mesh.update()
-    return mesh
-
-
-def instances(kinds):
-    """Geometry nodes that put the kind of each point on it, turned and scaled."""
-    group = bpy.data.node_groups.new("strew instances", "GeometryNodeTree")
-    group.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
-    group.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
-
-    def node(kind, **values):
-        made = group.nodes.new(kind)
-        for name, value in values.items():
-            setattr(made, name, value)
-        return made
-
-    def value(name, kind):
-        made = node("GeometryNodeInputNamedAttribute", data_type=kind)
-        made.inputs["Name"].default_value = name
-        return made.outputs["Attribute"]
-
-    collection = node("GeometryNodeCollectionInfo")
-    collection.inputs["Collection"].default_value = kinds
-    collection.inputs["Separate Children"].default_value = True
-    collection.inputs["Reset Children"].default_value = True
-    place = node("GeometryNodeInstanceOnPoints")
-    place.inputs["Pick Instance"].default_value = True
-    turn = node("ShaderNodeCombineXYZ")
-    link = group.links.new
-    link(node("NodeGroupInput").outputs[0], place.inputs["Points"])
-    link(collection.outputs[0], place.inputs["Instance"])
-    link(value("variant", "INT"), place.inputs["Instance Index"])
-    link(value("angle", "FLOAT"), turn.inputs["Z"])
-    link(turn.outputs[0], place.inputs["Rotation"])
-    link(value("scale", "FLOAT"), place.inputs["Scale"])
-    link(place.outputs[0], node("NodeGroupOutput").inputs[0])
-    return group
-
-
-def scatter(columns):
-    """The points as an object of the scene, and the collection of what stands on them."""
-    kinds = bpy.data.collections.new("strew kinds")
-    # The names of variants come sorted, as a collection's children do.
-    for name in columns["variant"][1]:
-        kinds.objects.link(placeholder(name))
-    points = bpy.data.objects.new("strew points", point_mesh(columns))
-    bpy.context.scene.collection.objects.link(points)
-    points.modifiers.new("strew", "NODES").node_group = instances(kinds)
-    return points
-
-
 def ground(low, high):
     mesh = bpy.data.meshes.new("ground")
     margin = 4
@@ -183,7 +97,8 @@ def render(path, low, high):
     for thing in (sun, camera):
         scene.collection.objects.link(thing)
     scene.world = scene.world or bpy.data.worlds.new("world")
-    scene.world.use_nodes = True
+    if bpy.app.version < (5, 0, 0):
+        scene.world.use_nodes = True
     sky = scene.world.node_tree.nodes.get("Background") or scene.world.node_tree.nodes.new("ShaderNodeBackground")
     sky.inputs["Color"].default_value = (0.55, 0.68, 0.85, 1)
     scene.camera = camera
@@ -193,17 +108,36 @@ def render(path, low, high):
     bpy.ops.render.render(write_still=True)
 
 
+def scatter(options, box):
+    """Fills the panel of the extension in, and presses its button."""
+    settings = bpy.context.scene.strew
+    settings.source, settings.url = "DAEMON", options.url
+    settings.low, settings.high = box[:2], box[2:]
+    settings.spacing, settings.seed = float(options.spacing), int(options.seed)
+    for name, weight in KINDS.items():
+        kind = settings.kinds.add()
+        kind.collection, kind.weight = bpy.data.collections.new(name), weight
+        kind.collection.objects.link(placeholder(name))
+    bpy.ops.strew.scatter()
+    while "try again" in settings.error:
+        # The daemon makes labels of these kinds, once, so that each of them is evenly spread.
+        time.sleep(5)
+        bpy.ops.strew.scatter()
+    if settings.error:
+        sys.exit(settings.error)
+
+
 def main():
     options = arguments()
-    columns = ask(options)
+    extension.register()
     for thing in list(bpy.context.scene.objects):
         bpy.data.objects.remove(thing)
-    points = scatter(columns)
     box = np.array([float(v) for v in options.bbox.split(",")])
+    scatter(options, box)
     ground(box[:2], box[2:])
     placed = bpy.context.evaluated_depsgraph_get().object_instances
-    count = sum(1 for one in placed if one.is_instance and one.parent and one.parent.original == points)
-    print(f"{count} instances of {', '.join(columns['variant'][1])}")
+    count = sum(1 for one in placed if one.is_instance and one.parent and one.parent.original.name == "Strew")
+    print(f"{count} instances of {', '.join(KINDS)}")
     if options.save:
         bpy.ops.wm.save_as_mainfile(filepath=options.save)
     if options.render:

@@ -18,7 +18,9 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
         Ok(told)
     });
     let faults = faults.collect::<PyResult<Vec<_>>>()?;
-    let class = py.import("strew._errors")?.getattr("StrewError")?;
-    let made = class.call1((error.to_string(), error.kind().slug(), faults))?;
+    // Limits are those of this process here.
+    let message = error.to_string().replace("this server", "this process");
+    let refusal = py.import("strew._errors")?.getattr("refusal")?;
+    let made = refusal.call1((message, error.kind().slug(), faults))?;
     Ok(PyErr::from_value(made))
 }

@@ -7,6 +7,7 @@ mod array;
 mod arrow;
 mod columns;
 mod failure;
+mod mask;
 mod measured;
 mod plan;
 
@@ -112,5 +113,6 @@ fn _strew(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(nearest, module)?)?;
     module.add_function(wrap_pyfunction!(hold_field, module)?)?;
     module.add_function(wrap_pyfunction!(darkness, module)?)?;
+    module.add_function(wrap_pyfunction!(mask::mask, module)?)?;
     module.add_function(wrap_pyfunction!(measured::measure, module)?)
 }

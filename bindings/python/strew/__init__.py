@@ -13,19 +13,20 @@ region; the same query has the same points on every machine.
 ``strew.space.points`` has the same in three dimensions, with boxes, balls, prisms and chunks.
 
 :func:`points` answers in this process. :func:`connect` asks a daemon instead; what it returns has the same
-functions and the same points.
+functions and the same points. The package ``strew-client`` is this one without its native part: it has daemons alone.
 """
 
-from ._errors import Disconnected, StrewError
+from ._errors import Disconnected, NoSuchPoint, StrewError
 from ._fields import pixels, raster
 from ._local import LOCAL
+from ._mask import mask
 from ._measure import Measured, measure
 from ._points import Point, PointSet
 from ._query import Query, SpaceQuery
 from ._remote import Daemon, connect
 from ._source import Source
 from ._space import SpacePoint, SpaceSet
-from ._strew import __version__
+from ._version import VERSION as __version__
 
 points = LOCAL.points
 query = LOCAL.query
@@ -36,6 +37,7 @@ __all__ = [
     "Daemon",
     "Disconnected",
     "Measured",
+    "NoSuchPoint",
     "Point",
     "PointSet",
     "Query",
@@ -46,6 +48,7 @@ __all__ = [
     "StrewError",
     "__version__",
     "connect",
+    "mask",
     "measure",
     "pixels",
     "points",

@@ -12,8 +12,11 @@ class StrewError(ValueError):
     >>> strew.points(bbox=(0, 0, 10, 10), spacing=-1)
     Traceback (most recent call last):
         ...
-    strew._errors.StrewError: `spacing` = `-1`: out of range; allowed: a number from 1e-100 to 1e100
+    strew.StrewError: `spacing` = `-1`: out of range; allowed: a number from 1e-100 to 1e100
     """
+
+    # Tracebacks name the place that callers import it from.
+    __module__ = "strew"
 
     #: The kind of error, as in REST's problem documents: ``invalid-query``, ``too-many-points``, …
     kind: str
@@ -30,5 +33,26 @@ class StrewError(ValueError):
         return type(self), (str(self), self.kind, self.faults)
 
 
+class NoSuchPoint(StrewError, LookupError):
+    """An id that no point of the set has."""
+
+    __module__ = "strew"
+
+
 class Disconnected(ConnectionError):
     """A daemon that cannot be reached, or whose answers break off again and again."""
+
+    __module__ = "strew"
+
+
+def refusal(message: str, kind: str, faults: list[dict[str, Any]] | None = None) -> StrewError:
+    """The error of a refusal."""
+    return (NoSuchPoint if kind == "no-such-point" else StrewError)(message, kind, faults)
+
+
+def fault(field: str, value: Any, detail: str, allowed: str) -> StrewError:
+    """The error of a keyword that has no form in JSON, in the words of REST."""
+    shown = " ".join(repr(value).split())
+    shown = shown if len(shown) <= 60 else shown[:60] + "…"
+    told = {"field": field, "value": shown, "detail": detail, "allowed": allowed}
+    return StrewError(f"`{field}` = `{shown}`: {detail}; allowed: {allowed}", "invalid-query", [told])

@@ -6,21 +6,33 @@ import os
 import struct
 import zlib
 from base64 import b64encode
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from . import _strew
+from ._crs import joined, named
+from ._errors import fault
+from ._native import native
+from ._rasters import Pixels, checked, masked, of_classes, opened, placed, where_it_is
 
-Array = "np.ndarray[Any, Any]"
 
-
-def pixels(array: Any, **where: Any) -> dict[str, Any]:
+def pixels(
+    array: Any,
+    *,
+    bbox: Any = None,
+    transform: Any = None,
+    crs: Any = None,
+    nodata: float | None = None,
+    band: int | None = None,
+    **where: Any,
+) -> dict[str, Any]:
     """Pixels, the terrain of ``height`` and ``slope`` fields: rows from the top, where y is greatest.
 
-    ``where`` has the members of JSON's pixels: ``bbox``, ``edges``, ``filter``, … Integers of 8 and 16 bits are sent as
-    PNG, all other numbers as ``f32``.
+    ``array``, ``bbox``, ``transform``, ``crs`` and ``band`` are those of :func:`raster`. Pixels that are masked or
+    ``nodata`` are refused, because they have no height: fill them (``array.filled(0)``). ``where`` has the members of
+    JSON's pixels: ``edges``, ``filter``, … Integers of 8 and 16 bits are sent as PNG, all other numbers as ``f32``.
 
     >>> import numpy as np, strew
     >>> terrain = strew.pixels(np.linspace(0, 90, 64 * 64).reshape(64, 64), bbox=(0, 0, 64, 64))
@@ -29,24 +41,62 @@ def pixels(array: Any, **where: Any) -> dict[str, Any]:
     >>> bool(low.y.mean() > 32)
     True
     """
-    array = np.asarray(array)
+    array, read, own = opened(array, band)
+    plain, missing = masked(array, nodata)
+    if missing is not None:
+        detail = "of the pixels are masked: they have no height"
+        raise fault("array", int(missing.sum()), detail, "array.filled(height)")
+    crs = joined({"array": named(own), "crs": named(crs)})
+    return _pixels(plain, bbox, where_it_is(bbox, transform, read), crs, where)
+
+
+def _pixels(array: np.ndarray[Any, Any], bbox: Any, transform: Any, crs: Any, where: dict[str, Any]) -> Pixels:
+    if transform is not None and bbox is None:
+        array, bbox = placed(array, transform)
     if array.dtype == np.bool_:
         array = array.astype(np.uint8) * np.uint8(255)
-    if array.ndim != 2:
-        raise ValueError(f"pixels have 2 dimensions, not {array.ndim}: rows and columns")
-    made: dict[str, Any]
+    made = Pixels()
     if array.dtype in (np.uint8, np.uint16):
-        made = {"png": b64encode(_png(array)).decode()}
+        made["png"] = b64encode(_png(array)).decode()
     else:
         floats = np.ascontiguousarray(array, dtype="<f4")
         height, width = floats.shape
-        made = {"f32": b64encode(floats.tobytes()).decode(), "width": width, "height": height}
+        made.update(f32=b64encode(floats.tobytes()).decode(), width=width, height=height)
+    where = {"bbox": bbox, **where}
     made.update((name, _listed(value)) for name, value in where.items() if value is not None)
+    made.crs = crs
     return made
 
 
-def raster(array: Any, **where: Any) -> dict[str, Any]:
-    """A field of the pixels of an array: shares of the density from 0 to 1, or up to the greatest integer.
+def raster(
+    array: Any,
+    *,
+    bbox: Any = None,
+    transform: Any = None,
+    crs: Any = None,
+    nodata: float | None = None,
+    band: int | None = None,
+    shares: Mapping[float, float] | None = None,
+    **where: Any,
+) -> dict[str, Any]:
+    """A field of the pixels of an array: the share of the density that is left at each place.
+
+    ``array`` has rows and columns. Floats are shares from 0 to 1, ``bool`` is 0 or 1, and of ``uint8`` and ``uint16``
+    the greatest number of the type (255, 65535) is 1. ``white=`` and ``black=`` name other numbers for 1 and 0. Integers
+    that hold 0 and 1 alone are refused as ``uint8``: pass ``array.astype(bool)``. A rasterio dataset, or one of its
+    bands (``rasterio.band(dataset, 2)`` or ``band=2``), is read with its transform, its reference system and its mask.
+
+    Masked pixels, and those that equal ``nodata`` (which may be NaN), have the share 0.
+
+    ``bbox`` is the place of the whole array: its first row is at the top, where y is greatest. ``transform`` is an
+    Affine in its place, or its six numbers a, b, c, d, e, f as rasterio has them; rows may run in any direction along
+    the axes. Without both a pixel is a unit. ``crs`` names the reference system of that place; one that contradicts
+    that of the region is refused.
+
+    ``shares`` makes a raster of classes, such as land cover, a field: ``shares={3: 1, 4: 0.2}`` has the share of each
+    class, and 0 for all others; its pixels are not interpolated.
+
+    ``where`` has further members of JSON's rasters: ``edges``, ``filter``, ``low``, ``high``, ``gamma``, ….
 
     >>> import numpy as np, strew
     >>> mask = np.zeros((8, 8)); mask[:, 4:] = 1
@@ -54,7 +104,25 @@ def raster(array: Any, **where: Any) -> dict[str, Any]:
     >>> bool(points.x.min() >= 4)
     True
     """
-    return {"raster": pixels(array, **where)}
+    array, read, own = opened(array, band)
+    plain, missing = masked(array, nodata)
+    if shares is not None:
+        plain = of_classes(plain, shares)
+        where.setdefault("filter", "nearest")
+    black = where.get("black") or 0
+    if missing is not None:
+        low, high = where.get("low") or 0, where.get("high", 1)
+        if low != 0 and high != 0:
+            detail = "leaves a share where pixels are masked"
+            raise fault("low", low, detail, "low=0, or an array without a mask: array.filled(value)")
+        # The number whose share is 0.
+        empty = black if low == 0 else where.get("white", 1 if plain.dtype.kind == "f" else np.iinfo(plain.dtype).max)
+        plain = np.where(missing, np.asarray(empty).astype(plain.dtype), plain)
+    checked(plain, where.get("white"))
+    crs = joined({"array": named(own), "crs": named(crs)})
+    made = Pixels(raster=_pixels(plain, bbox, where_it_is(bbox, transform, read), crs, where))
+    made.crs = crs
+    return made
 
 
 def _listed(value: Any) -> Any:
@@ -103,7 +171,7 @@ def _darkness(image: Any, invert: bool) -> np.ndarray[Any, np.dtype[np.uint16]]:
             light = array if invert else 1.0 - array
             return (light * 65535.0 + 0.5).astype(np.uint16)
         picture = _picture(array)
-    width, height, words = _strew.darkness(picture, invert)
+    width, height, words = native().darkness(picture, invert)
     return np.frombuffer(words, dtype=np.uint16).reshape(height, width)
 
 

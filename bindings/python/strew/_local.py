@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _strew
+from ._native import native
 from ._query import PLANE, SPACE, Body, Dimension, text
 from ._source import Plan, Source
+
+if TYPE_CHECKING:
+    from . import _strew
 
 
 class _Planned:
@@ -49,18 +52,18 @@ class Local(Source):
     checks_at_once = True
 
     def plan(self, query: Body, dimension: Dimension = PLANE) -> Plan:
-        return _Planned(_strew.plan(text(query), dimension is SPACE))
+        return _Planned(native().plan(text(query), dimension is SPACE))
 
     def point(self, id: str, address: str, dimension: Dimension = PLANE) -> dict[str, Any]:
-        point: dict[str, Any] = json.loads(_strew.point(id, address, dimension is SPACE))
+        point: dict[str, Any] = json.loads(native().point(id, address, dimension is SPACE))
         return point
 
     def nearest(self, address: str, dimension: Dimension = PLANE) -> list[dict[str, Any]]:
-        neighbors: list[dict[str, Any]] = json.loads(_strew.nearest(address, dimension is SPACE))
+        neighbors: list[dict[str, Any]] = json.loads(native().nearest(address, dimension is SPACE))
         return neighbors
 
     def hold_field(self, field: Any) -> str:
-        return _strew.hold_field(text(field))
+        return str(native().hold_field(text(field)))
 
     def __repr__(self) -> str:
         return "strew"

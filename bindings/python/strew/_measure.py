@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from . import _strew
+from ._native import native
 from ._points import PointSet
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -16,9 +16,8 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 class Measured:
     """Figures and curves of a set of points. Frequencies ν are in units of the square root of the density."""
 
-    def __init__(self, report: _strew.Report) -> None:
-        self._report = report
-        document = json.loads(report.document())
+    def __init__(self, document: dict[str, Any], inputs: tuple[Any, ...], report: Any = None) -> None:
+        self._document, self._inputs, self._report = document, inputs, report
         #: The number of points.
         self.points: int = document["points"]
         #: Figures by name: ``delta_min``, ``low_power``, ``peak_power``, ``anisotropy_db``, …
@@ -30,7 +29,14 @@ class Measured:
 
     def svg(self, title: str = "points") -> str:
         """Points, spectrum and curves as a picture."""
-        return self._report.svg(title)
+        if self._report is None:
+            # It was pickled without what pictures are drawn from.
+            self._report = native().measure(*self._inputs)
+        drawn: str = self._report.svg(title)
+        return drawn
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self._document, self._inputs)
 
     def _repr_svg_(self) -> str:
         return self.svg()
@@ -44,11 +50,16 @@ def measure(
     *,
     bbox: Any = None,
     density: float | None = None,
-    periodic: bool = False,
+    periodic: bool | None = None,
     nu_max: float = 4.0,
     ring_width: float | None = None,
 ) -> Measured:
     """Measures points that fill a square: a :class:`PointSet` in a square box, or an array of pairs with ``bbox``.
+
+    ``periodic`` says whether the square continues itself, as a set of ``strew.points(periodic=…)`` does, of which that
+    is known. ``density`` is the number of points per unit of area, by default that of the query or the square.
+    ``nu_max`` is the greatest frequency and ``ring_width`` the width of a ring of frequencies, in units of the square
+    root of the density.
 
     >>> import strew
     >>> measured = strew.measure(strew.points(bbox=(0, 0, 60, 60), spacing=1, seed=1))
@@ -57,6 +68,8 @@ def measure(
     """
     if isinstance(points, PointSet):
         query = points.query
+        is_periodic = "periodic" in points.body
+        periodic = is_periodic if periodic is None else periodic
         if bbox is None:
             bbox = query["bbox"]
         if density is None and "layers" not in query and "field" not in query and "keep" not in query:
@@ -73,5 +86,6 @@ def measure(
     corners = tuple(float(corner) for corner in bbox)
     if len(corners) != 4:
         raise ValueError(f"bbox has four numbers, not {len(corners)}")
-    report = _strew.measure(np.ascontiguousarray(at).tobytes(), corners, density, periodic, nu_max, ring_width)
-    return Measured(report)
+    inputs = (np.ascontiguousarray(at).tobytes(), corners, density, bool(periodic), nu_max, ring_width)
+    report = native().measure(*inputs)
+    return Measured(json.loads(report.document()), inputs, report)

@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 import gzip
+import operator
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, overload
 
 import numpy as np
 
+from . import _crs, _frames
 from ._parameters import KINDS, WINDOW
-from ._query import OF_ANSWERS, PLANE, Body, Dimension, address, body
+from ._errors import fault
+from ._query import OF_ANSWERS, PLANE, Body, Dimension, Placed, address, body, text
 
 if TYPE_CHECKING:
     from typing_extensions import Self, Unpack
 
     from ._parameters import Output
     from ._source import Plan, Source
-    from ._strew import Columns
+    from ._columns import Columns
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
+
+#: The most points that a row by its number makes, and keeps.
+FEW = 1_000_000
 
 # Endings of files that are not the names of formats.
 _ENDINGS = {"jsonl": "ndjson", "geojsons": "geojsonseq", "geojsonl": "geojsonseq", "arrow": "feather", "arrows": "arrow"}
@@ -62,7 +68,9 @@ class Points:
     @classmethod
     def of(cls, source: Source, query: Body) -> Self:
         """The points of a query, which is checked at once where that costs no request."""
-        made = cls(source, dict(query))
+        if not isinstance(query, Mapping):
+            text(query)
+        made = cls(source, query if isinstance(query, Placed) else dict(query))
         if source.checks_at_once and "region" in query:
             made.plan()
         return made
@@ -110,12 +118,16 @@ class Points:
     def __len__(self) -> int:
         return self.count()
 
+    def __bool__(self) -> bool:
+        """Whether there is a point: always without a region."""
+        return not ("region" in self._body or "periodic" in self._body) or self.count() > 0
+
     # -- other regions and parts of the same points ------------------------------------------------------------
 
     def _with(self, **members: Any) -> Self:
         kept = {name: value for name, value in self._body.items() if name not in members}
         more = {name: value for name, value in members.items() if value is not None}
-        return self.of(self._source, {**kept, **more})
+        return self.of(self._source, Placed.of({**kept, **more}, self.crs))
 
     def within(self, region: Any = None, **shape: Any) -> Self:
         """The same set of points in another region: ``bbox``, ``circle``, ``polygon``, ``chunk`` or ``region``; in
@@ -125,7 +137,9 @@ class Points:
         unknown = set(shape) - set(self._dimension.shapes) - {"region"}
         if unknown or not shape:
             raise TypeError(f"within takes one of region, {', '.join(self._dimension.shapes)}")
-        return self._with(region=body(shape)["region"], **dict.fromkeys(WINDOW))
+        made = body(shape)
+        _crs.joined({"points": self.crs, "region": made.crs})
+        return self._with(region=made["region"], **dict.fromkeys(WINDOW))
 
     def split(self, parts: int) -> list[Self]:
         """The points in at most ``parts`` sets of the same size, give or take one, in their order.
@@ -157,7 +171,8 @@ class Points:
     def _nearest(self, at: Any, k: int | None, radius: float | None) -> list[dict[str, Any]]:
         return self._source.nearest(self._set(at=list(at), k=k, radius=radius), self._dimension)
 
-    def _point(self, id: str) -> dict[str, Any]:
+    def _point(self, id: Any) -> dict[str, Any]:
+        id = id if isinstance(id, str) else ":".join(str(int(part)) for part in id)
         return self._source.point(id, self._set(), self._dimension)
 
     # -- columns -----------------------------------------------------------------------------------------------
@@ -188,13 +203,28 @@ class Points:
         try:
             place = columns.names().index(name)
         except ValueError:
-            known = ", ".join([*self._dimension.axes, *columns.names()])
+            known = ", ".join(["id", *self._dimension.axes, *columns.names()])
             raise KeyError(f"no column {name!r}; there are {known}") from None
         values, names = columns.further(place)
         return np.asarray(values), names
 
-    def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
-        """A column: numbers, or names. Where a layer lacks it there is NaN, or the empty name.
+    @overload
+    def __getitem__(self, name: str) -> np.ndarray[Any, Any]: ...
+    @overload
+    def __getitem__(self, name: slice) -> Self: ...
+    @overload
+    def __getitem__(self, name: int) -> Any: ...
+    def __getitem__(self, name: str | int | slice) -> Any:
+        """A column by its name, a point by its number, or a set of the rows of a slice.
+
+        A column is of numbers, or of names; where a layer lacks it there is NaN, or the empty name. ``"id"`` is the
+        ids as text. Numbers count in the order of the answer. A slice makes no points: it is the same query with an
+        ``offset`` and a ``limit``.
+
+        >>> import strew
+        >>> row = strew.points(bbox=(0, 0, 9, 9), spacing=1)
+        >>> row[0].id == row["id"][0], row[-1].id == row["id"][-1], len(row[10:15])
+        (True, True, 5)
 
         >>> import strew
         >>> trees = strew.points(bbox=(0, 0, 9, 9), spacing=3, attributes=["variant"], variants={"oak": 3, "birch": 1})
@@ -203,11 +233,35 @@ class Points:
         >>> trees.codes("variant")[0].dtype
         dtype('int32')
         """
+        if isinstance(name, slice):
+            return self._rows_of(name)
+        if not isinstance(name, str):
+            return self._row(operator.index(name))
+        if name == "id":
+            return np.array([":".join(map(str, id)) for id in self.ids.tolist()], dtype=np.str_)
         if name in tuple(self._dimension.axes):
             return self._coordinates()[:, self._dimension.axes.index(name)]
         values, names = self._further(name)
         # −1, the code of what is missing, is the last one.
         return values if names is None else np.array([*names, ""])[values]
+
+    def _rows_of(self, rows: slice) -> Self:
+        first, end, step = rows.indices(self.count())
+        if step != 1:
+            raise fault("slice", rows, "skips rows", "a step of 1; columns are arrays, which take any slice")
+        if end <= first:
+            raise fault("slice", rows, "has no rows", "at least one row")
+        return self._with(offset=self._body.get("offset", 0) + first, limit=end - first)
+
+    def _row(self, i: int) -> Any:
+        count = self.count()
+        if not -count <= i < count:
+            raise IndexError(f"row {i} of {count} points")
+        i %= count
+        # Few points are made whole, so that a loop over them makes them once.
+        if self._made is None and count > FEW:
+            return next(iter(self._rows_of(slice(i, i + 1))))
+        return next(self._iterate(i, i + 1))
 
     def codes(self, name: str) -> tuple[np.ndarray[Any, np.dtype[np.int32]], list[str]]:
         """A column of names as indices, without a copy, and the names. −1 stands where a layer lacks it."""
@@ -216,10 +270,18 @@ class Points:
             raise KeyError(f"{name!r} is a column of numbers")
         return values, names
 
-    def _rows(self) -> Iterator[tuple[str, list[float], dict[str, Any]]]:
+    def _iterate(self, first: int = 0, end: int | None = None) -> Iterator[Any]:
+        """The points of some rows."""
+        raise NotImplementedError
+
+    def __iter__(self) -> Iterator[Any]:
+        return self._iterate()
+
+    def _rows(self, first: int, end: int | None) -> Iterator[tuple[str, list[float], dict[str, Any]]]:
         """The id, the coordinates and the attributes of each point."""
-        columns = {name: self[name] for name in self.names}
-        for i, (id, at) in enumerate(zip(self.ids.tolist(), self._coordinates().tolist())):
+        rows = slice(first, end)
+        columns = {name: self[name][rows] for name in self.names}
+        for i, (id, at) in enumerate(zip(self.ids[rows].tolist(), self._coordinates()[rows].tolist())):
             yield ":".join(map(str, id)), at, {name: values[i].item() for name, values in columns.items()}
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray[Any, Any]:
@@ -238,6 +300,25 @@ class Points:
             "strew.count": str(len(self.columns())),
         }
         return self.columns().arrow_stream(metadata)
+
+    def to_arrow(self, *, geometry: bool = False, crs: Any = None) -> Any:
+        """A ``pyarrow.Table`` of all columns. With ``geometry`` a column of GeoArrow points replaces the coordinates.
+
+        ``crs`` is the reference system of that column, :attr:`crs` by default.
+        """
+        return _frames.arrow(self, geometry, self._crs_or(crs))
+
+    def to_pandas(self) -> Any:
+        """A ``pandas.DataFrame`` of all columns: ids as text, names as categories."""
+        return _frames.pandas(self)
+
+    @property
+    def crs(self) -> str | None:
+        """The reference system that the region or a field brought along, such as ``EPSG:32633``; else ``None``."""
+        return self._body.crs if isinstance(self._body, Placed) else None
+
+    def _crs_or(self, crs: Any) -> str | None:
+        return _crs.joined({"points": self.crs, "crs": _crs.named(crs)})
 
     # -- documents ---------------------------------------------------------------------------------------------
 
@@ -279,15 +360,11 @@ class Points:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Points) or self._dimension is not other._dimension:
             return NotImplemented
-        from ._query import text
-
         return repr(self._source) == repr(other._source) and text(self._body) == text(other._body)
 
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        from ._query import text
-
         shown = text(self._body)
         kind = "points in space" if len(self._dimension.axes) == 3 else "points"
         return f"<{kind} of {self._source!r}: {shown if len(shown) < 300 else shown[:300] + '…'}>"
@@ -320,9 +397,24 @@ class PointSet(Points):
         """The points nearest to a place, nearest first: one, or ``k``, or all within ``radius``."""
         return [Point._of(point) for point in self._nearest(at, k, radius)]
 
-    def point(self, id: str) -> Point:
-        """The point of an id."""
+    def point(self, id: Any) -> Point:
+        """The point of an id: a text, or a pair of integers as in :attr:`ids`. Raises :class:`NoSuchPoint`."""
         return Point._of(self._point(id))
+
+    def to_geopandas(self, crs: Any = None) -> Any:
+        """A ``geopandas.GeoDataFrame``: ids, attributes, and points as geometry, with their height if they have one.
+
+        ``crs`` is the reference system, by default that of the region or of a raster (:attr:`crs`). Coordinates do not
+        change; points of chunks get those from the world's origin.
+        """
+        return _frames.geopandas(self, self._crs_or(crs))
+
+    def plot(self, ax: Any = None, *, by: str | None = None, **style: Any) -> Any:
+        """Draws the points by matplotlib, on ``ax`` or the current axes, which are returned.
+
+        ``by`` names the column that colors them. ``style`` is passed on to ``Axes.scatter``.
+        """
+        return _frames.plot(self, ax, by, style)
 
     @property
     def xy(self) -> Floats:
@@ -345,6 +437,6 @@ class PointSet(Points):
         origin = self.columns().origin
         return None if origin is None else (origin[0], origin[1])
 
-    def __iter__(self) -> Iterator[Point]:
-        for id, [x, y], attributes in self._rows():
+    def _iterate(self, first: int = 0, end: int | None = None) -> Iterator[Point]:
+        for id, [x, y], attributes in self._rows(first, end):
             yield Point(id, x, y, attributes=attributes)

@@ -5,12 +5,16 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
 from keyword import iskeyword
 from typing import TYPE_CHECKING, Any, TypedDict
 from urllib.parse import quote
 
 import numpy as np
 
+from . import _crs
+from ._errors import fault
 from ._parameters import KINDS, OUTPUT, REGIONS, WINDOW, Numbers, Parameters, Regions
 
 if TYPE_CHECKING:
@@ -24,6 +28,18 @@ SHAPES = (*REGIONS, "chunk")
 VOLUMES = ("bbox", "ball", "prism", "chunk")
 #: Members of a query that are not about its set of points.
 OF_ANSWERS = ("region", *WINDOW, *OUTPUT)
+
+
+class Placed(dict[str, Any]):
+    """A body, with the reference system of what it was made from."""
+
+    crs: str | None = None
+
+    @classmethod
+    def of(cls, body: Body, crs: str | None) -> Placed:
+        made = cls(body)
+        made.crs = crs
+        return made
 
 
 @dataclass(frozen=True)
@@ -45,7 +61,6 @@ SPACE = Dimension("xyz", VOLUMES, "/v1/space", "/v1/space/points")
 class Shapes(Regions, total=False):
     """The regions that are keywords."""
 
-    #: size, column, row of a square of the world grid; coordinates are relative to its corner.
     chunk: Numbers | Mapping[str, Any]
 
 
@@ -55,67 +70,81 @@ class Query(Shapes, Parameters, total=False):
     ``except`` is a word of Python: its keyword is ``except_``.
     """
 
-    #: Any region as JSON has it, with ``include`` and ``exclude``.
     region: Mapping[str, Any]
-    #: Several sets at once: a list of dicts with a ``name`` each.
     layers: Sequence[Mapping[str, Any]]
 
 
 class Volumes(TypedDict, total=False):
     """The regions of space that are keywords."""
 
-    #: The region as a box: min_x, min_y, min_z, max_x, max_y, max_z.
     bbox: Numbers
-    #: The region as a ball: x, y, z and its radius.
     ball: Numbers | Mapping[str, Any]
-    #: The region as an upright prism: the vertices of its base, or GeoJSON, the height of its bottom, and of its top.
     prism: tuple[Any, float, float] | Mapping[str, Any]
-    #: size, x, y, z of a cube of the world grid; coordinates are relative to its corner.
     chunk: Numbers | Mapping[str, Any]
-    #: Any volume as JSON has it, with ``include`` and ``exclude``.
     region: Mapping[str, Any]
 
 
 class SpaceQuery(Volumes, total=False):
     """The keywords of a query in space; those that the plane has, too, mean the same: see :class:`Query`."""
 
-    #: Several sets at once: a list of dicts with a ``name`` each.
     layers: Sequence[Mapping[str, Any]]
-    #: Points per unit of volume.
     density: float
-    #: The mean spacing in world units: density^-1/3.
     spacing: float
-    #: The least distance of any two points in world units.
     min_distance: float
-    #: The noise profile: blue or spaced, or what a daemon has.
     profile: str
-    #: The number α of the pattern.
     alpha: str | float
-    #: The size of the neighborhood map, such as r16.
     map: str
-    #: The digest of the table that must answer.
     table: str
-    #: Which set of points. Default: 0.
     seed: int
-    #: The strength of the warp, from 0 to 2, ``"on"`` or ``"off"``.
     warp: str | float
-    #: The share of points to keep, those of the lowest rank.
     keep: float
-    #: Further values of each point: rotation (a uniform unit quaternion, the columns qx, qy, qz and qw), scale,
-    #: variant, rank, u1 to u16.
     attributes: str | Sequence[str]
-    #: The least and the greatest value of the attribute scale.
     scale_range: Numbers
-    #: The least and the greatest value of the attribute scale for each variant.
     scale_ranges: Mapping[str, Numbers]
-    #: The names that the attribute variant chooses from, with their weights.
     variants: Mapping[str, float]
-    #: The number of points to leave out.
     offset: int
-    #: The greatest number of points.
     limit: int
-    #: Where an earlier answer to the same query ended.
     cursor: str
+
+
+#: The meanings of the keywords that are no parameters of addresses.
+ABOUT_MORE = {
+    "chunk": "size, column, row of a square of the world grid; coordinates are relative to its corner.",
+    "region": "Any region as JSON has it, with ``include`` and ``exclude``.",
+    "layers": "Several sets at once: a list of dicts with a ``name`` each.",
+}
+#: The meanings of the keywords in space.
+ABOUT_SPACE = {
+    "bbox": "The region as a box: min_x, min_y, min_z, max_x, max_y, max_z.",
+    "ball": "The region as a ball: x, y, z and its radius.",
+    "prism": (
+        "The region as an upright prism: the vertices of its base, or GeoJSON, the height of its bottom, and "
+        "of its top."
+    ),
+    "chunk": "size, x, y, z of a cube of the world grid; coordinates are relative to its corner.",
+    "region": "Any volume as JSON has it, with ``include`` and ``exclude``.",
+    "layers": "Several sets at once: a list of dicts with a ``name`` each.",
+    "density": "Points per unit of volume.",
+    "spacing": "The mean spacing in world units: density^-1/3.",
+    "min_distance": "The least distance of any two points in world units.",
+    "profile": "The noise profile: blue or spaced, or what a daemon has.",
+    "alpha": "The number α of the pattern.",
+    "map": "The size of the neighborhood map, such as r16.",
+    "table": "The digest of the table that must answer.",
+    "seed": "Which set of points. Default: 0.",
+    "warp": "The strength of the warp, from 0 to 2, ``'on'`` or ``'off'``.",
+    "keep": "The share of points to keep, those of the lowest rank.",
+    "attributes": (
+        "Further values of each point: rotation (a uniform unit quaternion, the columns qx, qy, qz and qw), "
+        "scale, variant, rank, u1 to u16."
+    ),
+    "scale_range": "The least and the greatest value of the attribute scale.",
+    "scale_ranges": "The least and the greatest value of the attribute scale for each variant.",
+    "variants": "The names that the attribute variant chooses from, with their weights.",
+    "offset": "The number of points to leave out.",
+    "limit": "The greatest number of points.",
+    "cursor": "Where an earlier answer to the same query ended.",
+}
 
 
 def _region(shape: str, value: Any) -> dict[str, Any]:
@@ -123,6 +152,8 @@ def _region(shape: str, value: Any) -> dict[str, Any]:
         value = value.__geo_interface__
     if isinstance(value, np.ndarray):
         value = value.tolist()
+    if isinstance(value, range):
+        value = list(value)
     # Other values are passed on unchanged, to be refused in the words of REST.
     if isinstance(value, (list, tuple)):
         if shape == "circle" and len(value) == 3:
@@ -135,6 +166,11 @@ def _region(shape: str, value: Any) -> dict[str, Any]:
             base, bottom, top = value
             value = {**_region("polygon", base), "bottom": bottom, "top": top}
         elif shape == "polygon":
+            if value and all(map(_is_number, value)) and len(value) % 2 == 0:
+                # x1, y1, x2, y2, …, as in addresses.
+                value = [value[i : i + 2] for i in range(0, len(value), 2)]
+            if not all(isinstance(vertex, (list, tuple, np.ndarray)) for vertex in value):
+                raise fault(shape, value, "not vertices", "pairs of numbers, x1, y1, x2, y2, …, or GeoJSON")
             ring = [list(vertex) for vertex in value]
             if ring and ring[0] != ring[-1]:
                 ring.append(ring[0])
@@ -142,14 +178,17 @@ def _region(shape: str, value: Any) -> dict[str, Any]:
     return {shape: value}
 
 
-def body(keywords: Mapping[str, Any]) -> Body:
+def body(keywords: Mapping[str, Any]) -> Placed:
     """Keywords as a body. Those that are ``None`` are left out."""
     made: Body = {}
+    places: dict[str, str | None] = {}
     for name, value in keywords.items():
         if value is None:
             continue
         if iskeyword(name[:-1]) and name.endswith("_"):
             name = name[:-1]
+        if name in SHAPES or name in VOLUMES or name == "region" or KINDS.get(name) == "field":
+            places[name] = _crs.of(value)
         if name in SHAPES or name in VOLUMES:
             # Several shapes are refused together, with all their names.
             made.setdefault("region", {})
@@ -158,21 +197,44 @@ def body(keywords: Mapping[str, Any]) -> Body:
             made[name] = [word.strip() for word in value.split(",")]
         else:
             made[name] = value
-    return made
+    return Placed.of(made, _crs.joined(places))
 
 
 def text(body: Mapping[str, Any]) -> str:
-    """A body as JSON."""
+    """A body as JSON. Raises :class:`StrewError` with the member that has no form in JSON."""
+    if not isinstance(body, Mapping):
+        raise fault("query", body, "not a body of REST", "a dict such as {'region': {'bbox': [0, 0, 9, 9]}, 'spacing': 1}")
+    for name, value in body.items():
+        _check(name, value)
     try:
         return json.dumps(body, default=_plain, separators=(",", ":"), allow_nan=False)
-    except ValueError:
+    except (TypeError, ValueError):
         for name, value in body.items():
-            try:
-                json.dumps(value, default=_plain, allow_nan=False)
-            except ValueError:
-                shown = value if isinstance(value, float) else "holds a number that"
-                raise ValueError(f"`{name}`: {shown} is not finite; allowed: finite numbers") from None
+            _written(name, value)
         raise
+
+
+def _check(name: str, value: Any) -> None:
+    """Refuses what JSON would take for something else."""
+    kind = KINDS.get(name)
+    of_fields = value.values() if kind == "fields" and isinstance(value, Mapping) else [value]
+    if kind in ("field", "fields"):
+        for field in of_fields:
+            if hasattr(field, "__array__") or hasattr(field, "read"):
+                raise fault(name, field, "an array is no field yet", "strew.raster(array, bbox=…), a name, or a field as in JSON")
+    if hasattr(value, "integers") and hasattr(value, "random"):
+        way_out = "an integer, such as int(generator.integers(2**63))"
+        raise fault(name, value, "a generator is not stored: the same query must have the same points", way_out)
+
+
+def _written(name: str, value: Any) -> None:
+    try:
+        json.dumps(value, default=_plain, allow_nan=False)
+    except TypeError as error:
+        raise fault(name, value, str(error), "what JSON has: numbers, texts, lists, dicts, True and False") from None
+    except ValueError:
+        detail = "not finite" if isinstance(value, float) else "holds a number that is not finite"
+        raise fault(name, value, detail, "finite numbers") from None
 
 
 def _plain(value: Any) -> Any:
@@ -180,6 +242,10 @@ def _plain(value: Any) -> Any:
         return value.tolist()
     if isinstance(value, np.generic):
         return value.item()
+    if isinstance(value, range):
+        return list(value)
+    if isinstance(value, (Decimal, Fraction)):
+        return float(value)
     if isinstance(value, Mapping):
         return dict(value)
     if hasattr(value, "__geo_interface__"):

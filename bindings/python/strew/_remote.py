@@ -12,12 +12,12 @@ from urllib.parse import SplitResult, quote, urlsplit
 
 import numpy as np
 
-from ._errors import Disconnected, StrewError
+from ._columns import Columns, Further, Received
+from ._errors import Disconnected, StrewError, refusal
 from ._ipc import Batch, Column, Stream
 from ._query import PLANE, Body, Dimension, path, text
 from ._replicas import Attempts, Elsewhere, Later, Replica, Replicas, retry_after
 from ._source import Plan, Source
-from ._strew import Columns
 
 #: The statuses after which a daemon wants to be called again.
 LATER = (429, 502, 503, 504)
@@ -98,7 +98,12 @@ class Daemon(Source):
         if self._key is not None:
             headers["authorization"] = f"Bearer {self._key}"
         connection = self._connection(parts)
-        connection.request(method, parts.path + path, None if body is None else body.encode(), headers)
+        try:
+            connection.request(method, parts.path + path, None if body is None else body.encode(), headers)
+        except (BrokenPipeError, ConnectionResetError):
+            # A body that is too large is refused before it was read: the refusal says so, and is not tried again.
+            if body is None:
+                raise
         response = connection.getresponse()
         if response.status == 200:
             self._replicas.answered(replica)
@@ -215,7 +220,7 @@ def _refusal(response: http.client.HTTPResponse, content: bytes) -> StrewError:
     try:
         problem = json.loads(content)
         kind = problem["type"].rsplit(":", 1)[-1]
-        return StrewError(problem["detail"], kind, problem.get("errors"))
+        return refusal(problem["detail"], kind, problem.get("errors"))
     except (ValueError, KeyError, TypeError):
         shown = content[:200].decode(errors="replace").strip()
         return StrewError(f"HTTP {response.status}: {shown or response.reason}", f"http-{response.status}")
@@ -298,19 +303,21 @@ class _Asked:
         answer = _Answer(self._daemon, self._query, self._dimension)
         batches, columns = answer.batches, answer.columns
         ids, at = (_joined([getattr(batch, name) for batch in batches]) for name in ("ids", "at"))
-        further = []
-        for i, column in enumerate(columns):
-            values = _joined([batch.further[i] for batch in batches])
-            further.append((column.name, column.is_optional, values, column.names))
-        return Columns.received(len(self._dimension.axes), ids, at, further, answer.origin)
+        further = [
+            Further(column.name, column.is_optional, _joined([batch.further[i] for batch in batches]), column.names)
+            for i, column in enumerate(columns)
+        ]
+        return Received(len(self._dimension.axes), ids, at, further, answer.origin)
 
 
 def _tables(response: http.client.HTTPResponse) -> list[str]:
     return (response.headers.get("strew-table") or "").split(", ")
 
 
-def _joined(arrays: list[np.ndarray[Any, Any]]) -> bytes:
-    return b"".join(np.ascontiguousarray(array).tobytes() for array in arrays)
+def _joined(arrays: list[np.ndarray[Any, Any]]) -> np.ndarray[Any, Any]:
+    made = np.concatenate(arrays)
+    made.flags.writeable = False
+    return made
 
 
 class _Answer:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from ._fields import darkness, raster
+from ._help import documented
 from ._points import PointSet
 from ._query import PLANE, Body, Dimension, Query, body
 from ._space import Space
@@ -16,7 +17,7 @@ from ._space import Space
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from ._strew import Columns
+    from ._columns import Columns
 
 
 class Plan(Protocol):
@@ -50,8 +51,9 @@ class Source:
     #: Whether a query is checked when it is made, and not when its answer is first needed.
     checks_at_once = False
 
+    @documented(Query)
     def points(self, **query: Unpack[Query]) -> PointSet:
-        """The points of a query.
+        """The points of a query: of a region, or without one the whole plane.
 
         >>> import strew
         >>> trees = strew.points(circle=(0, 0, 50), spacing=4, seed=3, attributes=["angle"])
@@ -85,7 +87,7 @@ class Source:
         profile: str = "blue",
         settle: int = 3,
     ) -> PointSet:
-        """A picture as exactly ``points`` dots, in pixels of the picture, x to the right and y upward.
+        """Draws a picture with exactly ``points`` dots, in pixels of the picture, x to the right and y upward.
 
         ``image`` is a path, the bytes of a PNG, JPEG, WebP, TIFF or npy file, or an array: rows of light from 0 to
         1 if it is of floats, else of sRGB with up to four channels. With ``invert`` dots are where it is light.

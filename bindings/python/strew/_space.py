@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from ._help import documented
 from ._points import Floats, Points
 from ._query import SPACE, Body, Dimension, SpaceQuery, body
 
@@ -61,8 +62,8 @@ class SpaceSet(Points):
         """The points nearest to a place, nearest first: one, or ``k``, or all within ``radius``."""
         return [SpacePoint._of(point) for point in self._nearest(at, k, radius)]
 
-    def point(self, id: str) -> SpacePoint:
-        """The point of an id."""
+    def point(self, id: Any) -> SpacePoint:
+        """The point of an id: a text, or three integers as in :attr:`ids`. Raises :class:`NoSuchPoint`."""
         return SpacePoint._of(self._point(id))
 
     @property
@@ -91,8 +92,8 @@ class SpaceSet(Points):
         origin = self.columns().origin
         return None if origin is None else (origin[0], origin[1], origin[2])
 
-    def __iter__(self) -> Iterator[SpacePoint]:
-        for id, [x, y, z], attributes in self._rows():
+    def _iterate(self, first: int = 0, end: int | None = None) -> Iterator[SpacePoint]:
+        for id, [x, y, z], attributes in self._rows(first, end):
             yield SpacePoint(id, x, y, z, attributes=attributes)
 
 
@@ -102,6 +103,7 @@ class Space:
     def __init__(self, source: Source) -> None:
         self._source = source
 
+    @documented(SpaceQuery)
     def points(self, **query: Unpack[SpaceQuery]) -> SpaceSet:
         """The points of a query in space.
 

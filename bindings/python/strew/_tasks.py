@@ -28,10 +28,15 @@ def schema(points: PointSet) -> pa.Schema:
     return pa.schema(list(columns))
 
 
-def split(points: PointSet, tasks: int | None = None, least: int = 1) -> list[tuple[PointSet, int]]:
-    """The parts of a set with their numbers of points; by default one for each million points, and ``least`` parts."""
+def count_of_tasks(count: int, tasks: int | None = None) -> int:
+    """The number of tasks for a number of points."""
+    return min(tasks or min(-(-count // TASK), MOST_TASKS), count)
+
+
+def split(points: PointSet, tasks: int | None = None) -> list[tuple[PointSet, int]]:
+    """The parts of a set with their numbers of points; by default one for each million points."""
     count = points.count()
-    tasks = min(tasks or max(least, min(-(-count // TASK), MOST_TASKS)), count)
+    tasks = count_of_tasks(count, tasks)
     if tasks <= 1:
         return [(points, count)]
     return [(part, part.body["limit"]) for part in points.split(tasks)]

@@ -17,6 +17,10 @@ and:
   Spark 4.3.0 uses the narrowed source again for the same DataFrame without its filter, and then points are missing.
   A second ``load()`` is independent. It is ``off`` by default.
 
+Workers run the ``python3`` of their path. In a virtual environment that is not activated they lack this package, and
+report ``ModuleNotFoundError: strew``: name its Python by ``PYSPARK_PYTHON`` before the session begins, of which importing
+this module warns.
+
 A task is a query with a cursor, a few hundred bytes. One that is lost is made again with the same points, bit for bit.
 Spark cannot pass the needed columns to a source written in Python: choose them by ``attributes``. A limit
 stops a task after the batch that fills it.
@@ -26,8 +30,13 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import shutil
+import sys
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
@@ -52,6 +61,20 @@ from ._query import body
 from ._remote import connect
 from ._source import Source
 from ._tasks import BATCH, batches, schema, split
+
+
+
+def _warn() -> None:
+    """Warns where workers on this machine would run another Python than this one."""
+    others = shutil.which("python3")
+    if sys.prefix == sys.base_prefix or os.environ.get("PYSPARK_PYTHON") or os.environ.get("SPARK_REMOTE"):
+        return
+    if others is None or Path(others).parent.resolve() != Path(sys.executable).parent.resolve():
+        way_out = f"set PYSPARK_PYTHON={sys.executable} before the session begins"
+        warnings.warn(f"Spark's workers run {others or 'python3'}, which may lack strew: {way_out}", stacklevel=3)
+
+
+_warn()
 
 #: What is an option and no part of a query.
 OWN = ("query", "url", "partitions", "batch", "narrow", "path")

@@ -238,7 +238,7 @@ def test_documents_and_iteration(tmp_path: Path) -> None:
     listed = list(points)
     assert [point.x for point in listed] == points.x.tolist()
     assert listed[0].attributes["layer"] == "trees"
-    with pytest.raises(KeyError, match="there are x, y, layer"):
+    with pytest.raises(KeyError, match="there are id, x, y, layer"):
         points["size"]
     assert points._repr_svg_()
     with pytest.raises(TypeError):

@@ -78,6 +78,16 @@ def test_empty_sets_limits_and_wrong_numbers(source: Any) -> None:
         source.read(strew.points(spacing=-1))
 
 
+def test_a_task_has_a_million_points(source: Any) -> None:
+    points = strew.points(bbox=(0, 0, 1700, 1700), spacing=1, seed=7)
+    for tasks, expected in ((None, 3), (5, 5)):
+        made = source.StrewDatasource(points, tasks).get_read_tasks(200)
+        assert len(made) == expected
+        blocks = source.read(points, tasks=tasks).materialize().num_blocks()
+        assert blocks <= -(-len(points) // (1 << 18)) + expected
+        assert sum(task.metadata.num_rows for task in made) == len(points)
+
+
 def readers() -> list[int]:
     """The workers below this process that read."""
     listed = subprocess.run(["ps", "-eo", "pid=,ppid=,args="], capture_output=True, text=True, check=True)

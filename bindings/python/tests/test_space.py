@@ -124,7 +124,7 @@ def test_a_set_has_columns_rows_and_chunks() -> None:
     assert whole != strew.points(spacing=2) and "in space" in repr(whole)
     with pytest.raises(TypeError, match="bbox, ball, prism, chunk"):
         stars.within(circle=(0, 0, 1))
-    with pytest.raises(KeyError, match="there are x, y, z, qx"):
+    with pytest.raises(KeyError, match="there are id, x, y, z, qx"):
         chunk["angle"]
 
 

@@ -23,7 +23,7 @@ from pyspark.errors import PySparkException  # noqa: E402
 from pyspark.sql import SparkSession  # noqa: E402
 
 from strew._tasks import MOST_TASKS  # noqa: E402
-from strew.spark import StrewDataSource, StrewReader, points  # noqa: E402
+from strew.spark import StrewDataSource, StrewReader, _warn, points  # noqa: E402
 
 WOODS: dict[str, Any] = {"bbox": "0,0,300,200", "spacing": 1, "seed": 7, "attributes": "angle,variant", "variants": "oak:3,birch:1"}
 
@@ -198,3 +198,13 @@ def test_a_killed_executor_loses_and_doubles_nothing(spark: SparkSession) -> Non
     points = strew.points(bbox=(0, 0, 2000, 1500), spacing=1, seed=5)
     wanted = pa.table(points).cast(found.schema).replace_schema_metadata(None).sort_by("id")
     assert found.replace_schema_metadata(None).equals(wanted)
+
+
+def test_another_python_of_workers_is_warned_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "base_prefix", "/elsewhere")
+    monkeypatch.setenv("PATH", "")
+    monkeypatch.delenv("PYSPARK_PYTHON", raising=False)
+    with pytest.warns(UserWarning, match=f"set PYSPARK_PYTHON={sys.executable}"):
+        _warn()
+    monkeypatch.setenv("PYSPARK_PYTHON", sys.executable)
+    _warn()

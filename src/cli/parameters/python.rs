@@ -41,6 +41,10 @@ pub(super) fn module(table: &[&Parameter]) -> String {
     let kinds: String = (within(table, groups::POINTS).into_iter())
         .map(|of| format!("    \"{}\": \"{}\",\n", of.name, words::kind(of.shape)))
         .collect();
+    let about: String = ([REGIONS, MEMBERS, OUTPUT].iter())
+        .flat_map(|section| section.of(table))
+        .map(about)
+        .collect();
     text + &format!(
         "
 
@@ -53,6 +57,9 @@ OUTPUT = ({output})
 #: The kinds of values by their parameters.
 KINDS = {{
 {kinds}}}
+#: The meaning, the allowed values and the default of each parameter, which docstrings show.
+ABOUT = {{
+{about}}}
 "
     )
 }
@@ -62,15 +69,27 @@ fn class(section: &Section, table: &[&Parameter]) -> String {
     let mut text =
         format!("\n\nclass {name}(TypedDict, total=False):\n    \"\"\"{about}\"\"\"\n\n");
     for parameter in section.of(table) {
-        let lines = words::wrapped(
-            &words::paragraph(parameter, ":func:`strew.raster`"),
-            "    #: ",
-        );
-        let name = parameter.name;
-        let mark = if RESERVED.contains(&name) { "_" } else { "" };
-        text += &format!("{lines}    {name}{mark}: {}\n", type_of(parameter));
+        let name = keyword(parameter);
+        text += &format!("    {name}: {}\n", type_of(parameter));
     }
     text
+}
+
+/// The name of a parameter as a keyword of calls.
+fn keyword(parameter: &Parameter) -> String {
+    let name = parameter.name;
+    let mark = if RESERVED.contains(&name) { "_" } else { "" };
+    format!("{name}{mark}")
+}
+
+/// The entry of a parameter among the texts: its keyword, and its paragraph as a text of several lines.
+fn about(parameter: &Parameter) -> String {
+    let paragraph = words::paragraph(parameter, "`strew.raster`");
+    let lines: String = words::wrapped(&paragraph, "        ")
+        .lines()
+        .map(|line| format!("        {:?}\n", format!("{} ", line.trim())))
+        .collect();
+    format!("    {:?}: (\n{lines}    ),\n", keyword(parameter))
 }
 
 /// The type of a parameter's values.

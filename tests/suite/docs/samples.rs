@@ -13,27 +13,34 @@ const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// The Python of `STREW_TEST_BLENDER`, which has Blender's module.
 #[test]
-fn blender_has_an_instance_for_each_point() {
+fn blender_installs_the_extension_and_has_an_instance_for_each_point() {
     let Some(python) = std::env::var_os("STREW_TEST_BLENDER") else {
         eprintln!("skipped: STREW_TEST_BLENDER names no Python with bpy");
         return;
     };
-    let daemon = Daemon::built_in();
-    let output = Command::new(python)
-        .arg(Path::new(ROOT).join("tests/suite/docs/blender_check.py"))
-        .arg(Path::new(ROOT).join("examples/blender/scatter.py"))
-        .arg(daemon.url(""))
-        .output()
-        .expect("Python runs");
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{errors}");
-    let count = daemon.get("/v1/count?bbox=0,0,30,20&spacing=2&seed=7");
-    let printed = String::from_utf8_lossy(&output.stdout);
-    let found = printed.lines().last().expect("a number");
-    assert_eq!(
-        count.json()["count"],
-        found.parse::<u64>().expect("a number")
-    );
+    let (daemon, home) = (Daemon::built_in(), tempfile::tempdir().expect("a folder"));
+    let run = |arguments: &[&str]| {
+        let output = Command::new(&python)
+            .args(arguments)
+            .current_dir(ROOT)
+            .env("BLENDER_USER_RESOURCES", home.path())
+            .output()
+            .expect("Python runs");
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{errors}");
+        let printed = String::from_utf8_lossy(&output.stdout);
+        printed.lines().last().expect("a line").to_owned()
+    };
+    let count = |bbox| {
+        let count = daemon.get(&format!("/v1/count?bbox={bbox}&spacing=2&seed=7"));
+        count.json()["count"].to_string()
+    };
+    let url = daemon.url("");
+    let found = run(&["tests/suite/docs/blender_check.py", "engines/blender", &url]);
+    assert_eq!(found, count("0,0,30,20"));
+    let found = run(&["examples/blender/scatter.py", "--url", &url]);
+    let expected = format!("{} instances of oak, pine, rock", count("0,0,60,40"));
+    assert_eq!(found, expected);
 }
 
 /// A folder served over HTTP by Python; ends when dropped.

@@ -1,0 +1,83 @@
+"""Points as tables of other libraries, and as a picture of matplotlib: each is needed only where it is called."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from ._points import Points, PointSet
+
+
+def arrow(points: Points, geometry: bool, crs: str | None) -> Any:
+    """A ``pyarrow.Table``."""
+    import pyarrow as pa
+
+    table = pa.table(points)
+    if not geometry:
+        return table
+    at = np.ascontiguousarray(absolute(points))
+    axes = at.shape[1]
+    values = pa.FixedSizeListArray.from_arrays(pa.array(at.ravel()), axes)
+    metadata = {"ARROW:extension:name": "geoarrow.point"}
+    if crs is not None:
+        is_code = ":" in crs and "[" not in crs
+        metadata["ARROW:extension:metadata"] = json.dumps({"crs": crs, "crs_type": "authority_code" if is_code else "wkt2:2019"})
+    coordinate = pa.field("xyz"[:axes], pa.float64(), False)
+    field = pa.field("geometry", pa.list_(coordinate, axes), False, metadata)
+    kept = table.drop_columns(list("xyz"[:axes]))
+    return kept.append_column(field, values.cast(field.type))
+
+
+def absolute(points: Points) -> np.ndarray[Any, Any]:
+    """The coordinates from the world's origin, also of chunks."""
+    at = np.asarray(points)
+    origin = points.columns().origin
+    return at if origin is None else at + np.asarray(origin, np.float64)
+
+
+def pandas(points: Points) -> Any:
+    """A ``pandas.DataFrame``."""
+    import pandas as pd
+
+    columns: dict[str, Any] = {"id": points["id"]}
+    columns.update((axis, points[axis]) for axis in points._dimension.axes)
+    for name in points.names:
+        values, names = points._further(name)
+        columns[name] = values if names is None else pd.Categorical.from_codes(values, names)
+    return pd.DataFrame(columns)
+
+
+def geopandas(points: PointSet, crs: str | None) -> Any:
+    """A ``geopandas.GeoDataFrame``."""
+    import geopandas as gpd
+
+    frame = pandas(points).drop(columns=["x", "y"])
+    at = absolute(points)
+    z = frame.pop("z") if "z" in frame else None
+    return gpd.GeoDataFrame(frame, geometry=gpd.points_from_xy(at[:, 0], at[:, 1], z), crs=crs)
+
+
+def plot(points: PointSet, ax: Any, by: str | None, style: dict[str, Any]) -> Any:
+    """The axes of matplotlib with the points on them."""
+    if ax is None:
+        import matplotlib.pyplot as plt
+
+        ax = plt.gca()
+    # About half of the mean spacing, for a picture of 5 inches at 72 points each.
+    style.setdefault("s", min(20.0, (180.0 / max(len(points), 1) ** 0.5) ** 2))
+    style.setdefault("linewidths", 0)
+    at = absolute(points)
+    values, names = (None, None) if by is None else points._further(by)
+    if names is None:
+        drawn = ax.scatter(at[:, 0], at[:, 1], c=values, **style) if by else ax.scatter(at[:, 0], at[:, 1], **style)
+        if by:
+            ax.figure.colorbar(drawn, ax=ax, label=by)
+    else:
+        for code, name in enumerate(names):
+            ax.scatter(*at[values == code].T, label=name, **style)
+        ax.legend(title=by)
+    ax.set_aspect("equal")
+    return ax
