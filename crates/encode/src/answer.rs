@@ -189,7 +189,7 @@ impl Answer {
     ) -> Result<Self, Error> {
         if output.encoding == Encoding::Parquet {
             let origin = rows.coordinates().origin();
-            let parquet = parquet::Parquet::new(rows, head, output.crs.as_ref())?;
+            let parquet = parquet::Parquet::new(rows, head, output.crs.as_ref(), output.zstd)?;
             return Ok(Self::of_blocks(origin, parquet));
         }
         let batches = Batches::new(rows.schema(), head, None);
