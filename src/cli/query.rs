@@ -21,6 +21,7 @@ use super::{
     flags::{Flags, Takes, WHERE, flag},
     refusal::Source,
     refuse,
+    strata::StrataArgs,
 };
 use crate::cli::load::Load as _;
 
@@ -56,6 +57,8 @@ pub(super) struct QueryArgs<T: Takes> {
     #[command(flatten)]
     field: FieldArgs,
     #[command(flatten)]
+    strata: StrataArgs,
+    #[command(flatten)]
     pub(super) settings: config::Args,
 }
 
@@ -76,6 +79,7 @@ impl<T: Takes> QueryArgs<T> {
         let crs = self.defined()?;
         let (mut draft, source) = self.read(crs.as_ref())?;
         let catalog = self.field.load(&mut draft.values, config.tables()?)?;
+        let (draft, catalog) = self.strata.split(draft, catalog)?;
         let catalog = config.with_worlds(catalog)?;
         let planned = config.planned(&draft, &catalog);
         let (planned, options) = planned.map_err(|error| source.refused(error))?;
@@ -102,6 +106,7 @@ impl<T: Takes> QueryArgs<T> {
         let refused = |faults: Faults| source.refused(faults.into());
         draft.read().map_err(refused)?;
         self.field.must_be_named(&draft.values)?;
+        self.strata.must_be_absent()?;
         Ok(draft)
     }
 

@@ -172,7 +172,6 @@ pub(super) fn write(
     quiet: bool,
     what: &'static str,
 ) -> Result<(), Result<Failure, Error>> {
-    let encoding = looks.encoding;
     let answer = planned
         .answer(looks, config.limits.block_bytes)
         .map_err(Err)?;
@@ -183,7 +182,7 @@ pub(super) fn write(
         )))
     })?;
     if !quiet {
-        announce(planned, encoding, &answer);
+        announce(planned, looks, &answer);
     }
     let failed = |error: anyhow::Error| Ok(Failure::from(error));
     let pool = threads::pool(config.workers.threads).map_err(failed)?;
@@ -198,7 +197,8 @@ pub(super) fn write(
 }
 
 /// Announces the answer on standard error, with the facts for which packed formats have no room.
-fn announce(planned: &Planned, encoding: Encoding, answer: &Answer) {
+fn announce(planned: &Planned, looks: &Output, answer: &Answer) {
+    let (encoding, crs) = (looks.encoding, &looks.crs);
     let size = answer
         .size()
         .map_or(String::new(), |size| format!(", {size} bytes"));
@@ -222,6 +222,11 @@ fn announce(planned: &Planned, encoding: Encoding, answer: &Answer) {
     }
     if let Some(columns) = answer.legend() {
         eprintln!("columns: {columns}");
+    }
+    if let (0, Some(crs)) = (planned.count(), crs) {
+        eprintln!(
+            "warning: there are no points; is the region in {crs}, the plane of its file or raster?"
+        );
     }
     if let Some(warning) = answer.warning() {
         eprintln!("warning: {warning}");

@@ -203,13 +203,7 @@ impl Answer {
     #[cfg(not(feature = "columnar"))]
     fn in_columns(_: Rows, _: &Head, output: &Output, _: usize) -> Result<Self, Error> {
         let encoding = output.encoding;
-        let is_other = |encoding| {
-            !matches!(
-                encoding,
-                Encoding::Arrow | Encoding::Feather | Encoding::Parquet
-            )
-        };
-        let allowed = Encoding::names_where(is_other);
+        let allowed = Encoding::names_where(Encoding::is_written);
         let detail = match encoding.is_streamed() {
             true => "only the daemon and `strew sample` write it",
             false => "only `strew sample` writes it",

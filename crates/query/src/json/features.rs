@@ -154,10 +154,11 @@ fn feature(
     let shape = ShapeDraft::Polygons(polygons, own.or_else(|| crs.cloned()));
     Ok(Some(Feature {
         name,
-        region: RegionDraft {
+        region: Some(RegionDraft {
             path: path.into(),
             shape,
-        },
+        }),
+        field: None,
         count,
     }))
 }
