@@ -57,6 +57,9 @@ class Query(Shapes, Parameters, total=False):
 
     #: Any region as JSON has it, with ``include`` and ``exclude``.
     region: Mapping[str, Any]
+    #: Each feature of a collection by itself, as a layer of its name: ``{"of": gdf.__geo_interface__, "id": "NAME",
+    #: "count": "TREES"}`` with the properties that hold names and numbers of points.
+    features: Mapping[str, Any]
     #: Several sets at once: a list of dicts with a ``name`` each.
     layers: Sequence[Mapping[str, Any]]
 

@@ -165,7 +165,8 @@ impl Crs {
         let id = &definition["id"];
         let text = |member: &Value| match member {
             Value::String(text) => text.clone(),
-            other => other.to_string(),
+            Value::Number(code) => code.to_string(),
+            _ => String::new(),
         };
         let name = format!("{}:{}", text(&id["authority"]), text(&id["code"]));
         let named: Self = name

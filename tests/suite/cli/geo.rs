@@ -448,7 +448,16 @@ fn each_class_of_a_raster_has_its_own_number_of_points() {
         "{even:?}"
     );
     let file = path("x.parquet");
-    sample("4=5", &["-o", &file, "--format=parquet"]);
+    let sample = [
+        "sample",
+        "-q",
+        "--strata",
+        &cover,
+        "--classes=4=5",
+        "-o",
+        &file,
+    ];
+    output(&sample, "");
     assert_eq!(
         geo(Path::new(&file))["columns"]["geometry"]["crs"]["id"]["code"],
         25832
