@@ -49,9 +49,13 @@ impl Draft {
             }
         }
         self.layers = features.map(|features| {
-            let layers = features.into_iter().enumerate();
-            let layer = |(i, feature): (usize, Feature)| {
-                let mut values = Values::new(groups::SET, &format!("features[{i}]."));
+            let layers = features.into_iter();
+            let layer = |feature: Feature| {
+                let path = match &feature.region {
+                    Some(region) => format!("{}.", region.path),
+                    None => format!("class {}.", feature.name),
+                };
+                let mut values = Values::new(groups::SET, &path);
                 values.fill_from(&set, groups::SET);
                 for parameter in stays {
                     values.replace(parameter, None);

@@ -474,7 +474,7 @@ fn each_class_of_a_raster_has_its_own_number_of_points() {
     // There are no points to be had in a class that is not there.
     let message = refused(&["sample", "--strata", &cover, "--classes=9=5"], 2);
     assert!(
-        message.contains("the field is 0 in all of the region"),
+        message.contains("class 9.count 5: no point is left here"),
         "{message}"
     );
 }

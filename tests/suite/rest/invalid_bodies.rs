@@ -19,7 +19,7 @@ fn members() -> Vec<(Value, &'static str, Vec<&'static str>)> {
     let many: Vec<Value> = (0..17)
         .map(|i| json!({ "name": format!("l{i}"), "spacing": 1, "keep": 1.0 / f64::from(i + 1) }))
         .collect();
-    let features = |features: Value| json!({ "spacing": 1, "features": features });
+    let features = |features: Value| json!({ "region": null, "spacing": 1, "features": features });
     let empty = json!({ "type": "FeatureCollection", "features": [] });
     vec![
         (features(json!([])), "features", vec!["an object"]),
