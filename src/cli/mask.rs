@@ -1,6 +1,6 @@
-//! `strew mask`: a tileable threshold mask as a picture.
+//! `strew mask`: a tileable threshold mask as a picture or an array.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use strew_catalog::Ready;
@@ -32,7 +32,7 @@ pub(super) struct Args {
     /// The bits of a threshold: 8 or 16.
     #[arg(long, value_name = "BITS", default_value_t = 8)]
     bits: u8,
-    /// The PNG file to write; - is standard output.
+    /// The file to write, a PNG or by the ending .npy an array of NumPy; - is standard output.
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Draw the spectrum of the mask at the levels 1/8, 1/4 and 1/2, as SVG or PNG by the file's ending.
@@ -46,16 +46,7 @@ pub(super) struct Args {
 
 /// Makes a mask.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    if let Some(path) = &args.output
-        && !path
-            .extension()
-            .is_none_or(|own| own.eq_ignore_ascii_case("png"))
-    {
-        refuse!(
-            "--output {}: a mask is a PNG; allowed: a file whose name ends in .png",
-            path.display()
-        );
-    }
+    let is_array = is_array(args.output.as_deref())?;
     must_not_be_terminal(args.output.as_deref(), "a PNG")?;
     let config = args.settings.merged(config::Uses::LOADED)?;
     let catalog = config.tables()?;
@@ -63,7 +54,11 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let ready = ready.map_err(|error| Source::Flags.refused(error))?;
     let mut output = Output::open(args.output.as_deref())?;
     let mask = Mask::new(&ready.table, args.size, args.seed).map_err(refused)?;
-    let picture = mask.to_png(args.bits).map_err(refused)?;
+    let written = match is_array {
+        true => mask.to_npy(args.bits),
+        false => mask.to_png(args.bits),
+    };
+    let written = written.map_err(refused)?;
     if let Some(path) = &args.spectrum {
         /// The longer side of a PNG.
         const SIZE: u32 = 1600;
@@ -71,8 +66,25 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let drawn = encoded(&drawing, ("--spectrum", Some(path)), SIZE)?;
         output::write(Some(path), &drawn)?;
     }
-    output.write(&picture)?;
+    output.write(&written)?;
     Ok(output.finish()?)
+}
+
+/// Whether the file is an array of NumPy, by its ending, else a PNG.
+fn is_array(output: Option<&Path>) -> Result<bool, Failure> {
+    let Some(path) = output else {
+        return Ok(false);
+    };
+    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+    match ending.as_ref().and_then(|ending| ending.to_str()) {
+        Some("npy") => Ok(true),
+        Some("png") => Ok(false),
+        None if ending.is_none() => Ok(false),
+        _ => refuse!(
+            "--output {}: no format of masks; allowed: a file whose name ends in .png or .npy",
+            path.display()
+        ),
+    }
 }
 
 fn refused(error: MaskError) -> Failure {

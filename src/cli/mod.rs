@@ -33,6 +33,7 @@ mod serve;
 mod signals;
 mod split;
 mod stipple;
+mod strata;
 mod table;
 mod threads;
 mod watcher;

@@ -1,4 +1,4 @@
-//! The query of a command: from flags, from a file of JSON, with a region from a file of GeoJSON.
+//! The query of a command: from flags, from a file of JSON, with a region or features from a file of GeoJSON.
 
 use std::{
     io::Read as _,
@@ -7,11 +7,12 @@ use std::{
 
 use anyhow::{Context as _, anyhow};
 use strew_config::Config;
+use strew_encode::Crs;
 use strew_error::Faults;
 use strew_plan::{Planned, PlannedSet};
 use strew_query::{
-    BALL, Draft, Group, Options, RegionDraft, Set, ShapeDraft, VolumeDraft, groups, of, read_body,
-    read_region,
+    BALL, Draft, Feature, Group, Options, RegionDraft, Set, ShapeDraft, Value, Values, VolumeDraft,
+    groups, of, parameters::CRS, read_body, read_features, read_region,
 };
 
 use super::{
@@ -20,6 +21,7 @@ use super::{
     flags::{Flags, Takes, WHERE, flag},
     refusal::Source,
     refuse,
+    strata::StrataArgs,
 };
 use crate::cli::load::Load as _;
 
@@ -41,10 +43,21 @@ pub(super) struct QueryArgs<T: Takes> {
     /// The region: the polygons of a GeoJSON file; - is standard input.
     #[arg(long, value_name = "FILE", help_heading = WHERE)]
     region: Option<PathBuf>,
+    /// The region: each feature of a GeoJSON collection by itself, as a layer of its name; - is standard input.
+    #[arg(long, value_name = "FILE", help_heading = WHERE)]
+    features: Option<PathBuf>,
+    /// The property with the names of features [default: their places: 0, 1, 2, …]
+    #[arg(long, value_name = "NAME", help_heading = WHERE, requires = "features")]
+    feature_id: Option<String>,
+    /// The property with the number of points of each feature.
+    #[arg(long, value_name = "NAME", help_heading = WHERE, requires = "features")]
+    feature_count: Option<String>,
     #[command(flatten)]
     pub(super) flags: Flags<T>,
     #[command(flatten)]
     field: FieldArgs,
+    #[command(flatten)]
+    strata: StrataArgs,
     #[command(flatten)]
     pub(super) settings: config::Args,
 }
@@ -56,13 +69,17 @@ pub(super) struct PlannedQuery {
     pub(super) options: Options,
     pub(super) planned: Planned,
     pub(super) source: Source,
+    /// The reference system of a file of PROJJSON.
+    pub(super) crs: Option<Crs>,
 }
 
 impl<T: Takes> QueryArgs<T> {
     /// The query, checked and planned.
     pub(super) fn plan(&self, config: &Config) -> Result<PlannedQuery, Failure> {
-        let (mut draft, source) = self.read()?;
+        let crs = self.defined()?;
+        let (mut draft, source) = self.read(crs.as_ref())?;
         let catalog = self.field.load(&mut draft.values, config.tables()?)?;
+        let (draft, catalog) = self.strata.split(draft, catalog)?;
         let catalog = config.with_worlds(catalog)?;
         let planned = config.planned(&draft, &catalog);
         let (planned, options) = planned.map_err(|error| source.refused(error))?;
@@ -74,6 +91,7 @@ impl<T: Takes> QueryArgs<T> {
             options,
             planned,
             source,
+            crs,
         })
     }
 
@@ -84,10 +102,11 @@ impl<T: Takes> QueryArgs<T> {
 
     /// The query for a server, whose tables and names this program does not know.
     pub(super) fn for_server(&self) -> Result<Draft, Failure> {
-        let (draft, source) = self.read()?;
+        let (draft, source) = self.read(self.defined()?.as_ref())?;
         let refused = |faults: Faults| source.refused(faults.into());
         draft.read().map_err(refused)?;
         self.field.must_be_named(&draft.values)?;
+        self.strata.must_be_absent()?;
         Ok(draft)
     }
 
@@ -102,7 +121,33 @@ impl<T: Takes> QueryArgs<T> {
         }
     }
 
-    fn read(&self) -> Result<(Draft, Source), Failure> {
+    /// The system of the file of PROJJSON that --crs names, if it names one.
+    fn defined(&self) -> Result<Option<Crs>, Failure> {
+        let mut given = self
+            .flags
+            .texts()
+            .filter(|(parameter, _)| **parameter == CRS);
+        let text = given.next().map_or("", |(_, text)| text);
+        if !text.contains('/') && !text.ends_with("json") {
+            return Ok(None);
+        }
+        let read = Crs::of_projjson(&read_file("--crs", Path::new(text))?);
+        let crs = read.map_err(|detail| {
+            Failure::Usage(anyhow!(
+                "--crs {text}: {detail}; allowed: a file of PROJJSON, as `projinfo -o PROJJSON` writes it, or {}",
+                CRS.allowed()
+            ))
+        });
+        crs.map(Some)
+    }
+
+    /// The query. A reference system of a file goes by its name.
+    fn read(&self, defined: Option<&Crs>) -> Result<(Draft, Source), Failure> {
+        let name = |values: &mut Values| {
+            if let Some(crs) = defined {
+                values.replace(&CRS, Some(Value::Text(crs.to_string())));
+            }
+        };
         let Some(file) = &self.query else {
             let groups = match T::GROUPS.contains(&Group::Output) {
                 true => groups::POINTS,
@@ -111,14 +156,16 @@ impl<T: Takes> QueryArgs<T> {
             if !self.space && self.flags.has(&BALL) {
                 refuse!("--ball is a region in space; allowed: --space beside it");
             }
-            let values = match self.space {
+            let mut values = match self.space {
                 true => self.flags.values_in_space(groups::SPACE_POINTS),
                 false => self.flags.values_of(groups),
             };
+            name(&mut values);
             let draft = Draft::of(values);
-            let draft = match self.region()? {
-                Some(region) => draft.within(Ok(region)),
-                None => draft,
+            let draft = match (self.region()?, &self.features) {
+                (Some(region), _) => draft.within(Ok(region)),
+                (None, Some(file)) => draft.in_features(Ok(self.features(file)?)),
+                (None, None) => draft,
             };
             return Ok((draft, Source::Flags));
         };
@@ -144,7 +191,8 @@ impl<T: Takes> QueryArgs<T> {
         let refused = |faults: Faults| source.refused(faults.into());
         let mut draft = read_body(&bytes, self.in_file()).map_err(refused)?;
         // Flags of the output override the file.
-        let output = self.flags.values_of(groups::OUTPUT);
+        let mut output = self.flags.values_of(groups::OUTPUT);
+        name(&mut output);
         let read = output.read();
         read.map_err(|faults| Source::Flags.refused(faults.into()))?;
         for (parameter, value) in output.given() {
@@ -157,7 +205,29 @@ impl<T: Takes> QueryArgs<T> {
     fn places(&self) -> impl Iterator<Item = &'static str> {
         let chunk = self.chunk.as_ref().map(|_| "chunk");
         let region = self.region.as_ref().map(|_| "region");
-        chunk.into_iter().chain(region)
+        let features = self.features.as_ref().map(|_| "features");
+        chunk.into_iter().chain(region).chain(features)
+    }
+
+    fn features(&self, file: &Path) -> Result<Vec<Feature>, Failure> {
+        if self.space {
+            refuse!(
+                "--features is flat; in space a polygon between two heights is a prism of --query"
+            );
+        }
+        let amounts = self.flags.given();
+        let mut amounts =
+            amounts.filter(|known| [Group::Amount, Group::Count].contains(&known.group));
+        if let (Some(own), Some(amount)) = (&self.feature_count, amounts.next()) {
+            refuse!(
+                "{} beside --feature-count {own}, which has the numbers of points; allowed: one of both",
+                flag(amount.name)
+            );
+        }
+        let bytes = read_file("--features", file)?;
+        let source = Source::File(format!("--features {}", file.display()));
+        let names = [self.feature_id.as_deref(), self.feature_count.as_deref()];
+        read_features(&bytes, names).map_err(|faults| source.refused(faults.into()))
     }
 
     /// A region that is no parameter.
@@ -260,5 +330,11 @@ pub(super) fn described(planned: &Planned) -> String {
             planned.entry.digest
         )
     };
-    sets.map(one).collect::<Vec<_>>().join("; ")
+    /// The most sets that a line describes.
+    const SOME: usize = 4;
+    let mut words: Vec<String> = sets.take(SOME).map(one).collect();
+    if let more @ 1.. = planned.sets.len().saturating_sub(SOME) {
+        words.push(format!("and {more} more"));
+    }
+    words.join("; ")
 }

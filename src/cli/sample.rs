@@ -35,6 +35,9 @@ pub(super) struct Args {
     /// Print nothing but errors on standard error.
     #[arg(long, short)]
     quiet: bool,
+    /// Parquet: the level of zstd, 1 to 22; 0 does not compress [default: 1]
+    #[arg(long, value_name = "LEVEL", help_heading = "Output", value_parser = clap::value_parser!(u8).range(..=22))]
+    zstd: Option<u8>,
     #[command(flatten)]
     query: QueryArgs<Answered>,
     #[command(flatten)]
@@ -74,7 +77,8 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.query.settings.merged(Uses::POINTS)?;
     let output = Target::open(args.output.as_deref())?;
     let ask = args.query.plan(&config)?;
-    let (planned, options) = (&ask.planned, ask.options);
+    let (planned, mut options) = (&ask.planned, ask.options);
+    options.crs = ask.crs.or(options.crs);
     let (count, limit) = (planned.count(), config.limits.max_points);
     if count > limit.into() {
         return Err(ask.source.refused(Error::TooManyPoints { count, limit }));
@@ -84,8 +88,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         None => encoding_of(args.output.as_deref())?,
     };
     check_terminal(args, encoding)?;
+    check_packing(args, encoding)?;
     let looks = options.output(encoding).map(|looks| Output {
         relative_to: planned.query.region.corner,
+        zstd: args.zstd.unwrap_or(looks.zstd),
         ..looks
     });
     let looks = looks.map_err(|error| ask.source.refused(error))?;
@@ -94,6 +100,27 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         Ok(failure) => failure,
         Err(error) => ask.source.refused(error),
     })
+}
+
+/// Refuses to compress what is compressed already, or would not be.
+fn check_packing(args: &Args, encoding: Encoding) -> Result<(), Failure> {
+    let is_parquet = encoding == Encoding::Parquet;
+    if let Some(level) = args.zstd.filter(|_| !is_parquet) {
+        refuse!(
+            "--zstd {level}: has no effect in the format {}; allowed: the format parquet; other files are compressed \
+             if their names end with .gz or .zst",
+            encoding.name()
+        );
+    }
+    let output = args.output.as_deref();
+    match output.filter(|path| is_parquet && Compression::of(path).is_some()) {
+        None => Ok(()),
+        Some(path) => refuse!(
+            "--output {}: Parquet is compressed inside, and no reader opens a file of it that is compressed as a \
+             whole; allowed: a name that ends in .parquet, with --zstd LEVEL",
+            path.display()
+        ),
+    }
 }
 
 /// Refuses a binary format on a terminal.
@@ -120,6 +147,7 @@ fn from_server(args: &Args) -> Result<(), Failure> {
             encoding.name()
         );
     }
+    check_packing(args, encoding)?;
     check_terminal(args, encoding)?;
     let mut body = draft.to_body();
     body.insert(FORMAT.name.into(), encoding.name().into());
@@ -144,7 +172,6 @@ pub(super) fn write(
     quiet: bool,
     what: &'static str,
 ) -> Result<(), Result<Failure, Error>> {
-    let encoding = looks.encoding;
     let answer = planned
         .answer(looks, config.limits.block_bytes)
         .map_err(Err)?;
@@ -155,7 +182,7 @@ pub(super) fn write(
         )))
     })?;
     if !quiet {
-        announce(planned, encoding, &answer);
+        announce(planned, looks, &answer);
     }
     let failed = |error: anyhow::Error| Ok(Failure::from(error));
     let pool = threads::pool(config.workers.threads).map_err(failed)?;
@@ -170,7 +197,8 @@ pub(super) fn write(
 }
 
 /// Announces the answer on standard error, with the facts for which packed formats have no room.
-fn announce(planned: &Planned, encoding: Encoding, answer: &Answer) {
+fn announce(planned: &Planned, looks: &Output, answer: &Answer) {
+    let (encoding, crs) = (looks.encoding, &looks.crs);
     let size = answer
         .size()
         .map_or(String::new(), |size| format!(", {size} bytes"));
@@ -194,6 +222,11 @@ fn announce(planned: &Planned, encoding: Encoding, answer: &Answer) {
     }
     if let Some(columns) = answer.legend() {
         eprintln!("columns: {columns}");
+    }
+    if let (0, Some(crs)) = (planned.count(), crs) {
+        eprintln!(
+            "warning: there are no points; is the region in {crs}, the plane of its file or raster?"
+        );
     }
     if let Some(warning) = answer.warning() {
         eprintln!("warning: {warning}");

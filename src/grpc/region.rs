@@ -110,7 +110,7 @@ fn circle(circle: Circle) -> ShapeDraft {
 }
 
 fn polygons(polygons: &Polygons) -> ShapeDraft {
-    ShapeDraft::Polygons(rings(polygons))
+    ShapeDraft::Polygons(rings(polygons), None)
 }
 
 /// The rings of polygons.

@@ -71,6 +71,7 @@ class Query(Shapes, Parameters, total=False):
     """
 
     region: Mapping[str, Any]
+    features: Mapping[str, Any]
     layers: Sequence[Mapping[str, Any]]
 
 

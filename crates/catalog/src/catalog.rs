@@ -75,6 +75,8 @@ pub struct Built {
     pub bytes: usize,
     /// A box around them.
     pub frame: Option<[f64; 4]>,
+    /// The code of EPSG of the plane of loaded fields that it names.
+    pub epsg: Option<u16>,
     /// Why there was no memory for its pixels, if there was none.
     pub refused: Option<Error>,
 }
@@ -210,13 +212,17 @@ impl Catalog {
         allowance: Allowance<'_>,
     ) -> (Checked<FieldSpec>, Built) {
         let sources = field::Sources {
-            named: &|name| Some(self.field(name)?.spec.clone()),
+            named: &|name| {
+                self.field(name)
+                    .map(|field| (field.spec.clone(), field.epsg))
+            },
             names: &|| self.fields.names(),
             files: None,
             allowance,
             refused: RefCell::new(None),
             pixels: Cell::new(pixels),
             frame: Cell::new(None),
+            epsg: Cell::new(None),
             bytes: Cell::new(0),
         };
         let spec = field::build(path, document, &sources);
@@ -224,6 +230,7 @@ impl Catalog {
             left: sources.pixels.get(),
             bytes: sources.bytes.get(),
             frame: sources.frame.get(),
+            epsg: sources.epsg.get(),
             refused: sources.refused.take(),
         };
         (spec, built)

@@ -78,15 +78,6 @@ impl Answer {
         output: &Output,
         block_bytes: usize,
     ) -> Result<Self, Error> {
-        if let Some(crs) = output.crs.as_ref()
-            && output.encoding == Encoding::Parquet
-            && crs.projjson().is_none()
-        {
-            let allowed =
-                "EPSG:4326, OGC:CRS84, EPSG:3857 and EPSG:32601 to EPSG:32760, the UTM zones";
-            let detail = "its definition is not known here, and Parquet must hold it";
-            return Err(Fault::new("crs", crs, detail, allowed).into());
-        }
         Ok(Self {
             warning: output.warning(),
             ..Self::of_parts(parts, head, output, block_bytes)?
@@ -189,7 +180,14 @@ impl Answer {
     ) -> Result<Self, Error> {
         if output.encoding == Encoding::Parquet {
             let origin = rows.coordinates().origin();
-            let parquet = parquet::Parquet::new(rows, head, output.crs.as_ref())?;
+            let crs = output.crs.as_ref().map(|crs| {
+                let allowed = "a system of EPSG that is projected or geographic and not deprecated, OGC:CRS84, or \
+                               with `strew sample` a file of PROJJSON";
+                let detail = "its definition is not known here, and Parquet must hold it";
+                crs.projjson()
+                    .ok_or_else(|| Fault::new("crs", crs, detail, allowed))
+            });
+            let parquet = parquet::Parquet::new(rows, head, crs.transpose()?, output.zstd)?;
             return Ok(Self::of_blocks(origin, parquet));
         }
         let batches = Batches::new(rows.schema(), head, None);
@@ -205,13 +203,7 @@ impl Answer {
     #[cfg(not(feature = "columnar"))]
     fn in_columns(_: Rows, _: &Head, output: &Output, _: usize) -> Result<Self, Error> {
         let encoding = output.encoding;
-        let is_other = |encoding| {
-            !matches!(
-                encoding,
-                Encoding::Arrow | Encoding::Feather | Encoding::Parquet
-            )
-        };
-        let allowed = Encoding::names_where(is_other);
+        let allowed = Encoding::names_where(Encoding::is_written);
         let detail = match encoding.is_streamed() {
             true => "only the daemon and `strew sample` write it",
             false => "only `strew sample` writes it",

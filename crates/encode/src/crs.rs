@@ -15,6 +15,8 @@ pub const CRS: &str =
 pub struct Crs {
     authority: Arc<str>,
     code: Arc<str>,
+    /// PROJJSON, if it was given.
+    definition: Option<Arc<Value>>,
 }
 
 impl FromStr for Crs {
@@ -34,6 +36,7 @@ impl FromStr for Crs {
         Ok(Self {
             authority: authority.into(),
             code: code.into(),
+            definition: None,
         })
     }
 }
@@ -65,8 +68,14 @@ impl Serialize for Crs {
 }
 
 impl Crs {
-    /// The name as a URN, which GDAL reads in the `crs` member of GeoJSON of 2008.
-    pub(super) fn urn(&self) -> String {
+    /// The member `crs` of GeoJSON of 2008.
+    #[must_use]
+    pub fn to_geojson(&self) -> Value {
+        json!({ "type": "name", "properties": { "name": self.urn() } })
+    }
+
+    /// The name as a URN, which GDAL reads in that member.
+    fn urn(&self) -> String {
         let version = match &*self.authority {
             "OGC" => "1.3",
             _ => "",
@@ -82,104 +91,106 @@ impl Crs {
         )
     }
 
-    /// The system as PROJJSON, which GeoParquet requires. There is no database of systems here, so only
-    /// longitude and latitude, web Mercator and the UTM zones of WGS 84 are known.
-    pub(super) fn projjson(&self) -> Option<Value> {
-        let axis = |name: &str, abbreviation: &str, direction: &str, unit: &str| json!({ "name": name, "abbreviation": abbreviation, "direction": direction, "unit": unit });
-        let longitude = axis("Geodetic longitude", "Lon", "east", "degree");
-        let latitude = axis("Geodetic latitude", "Lat", "north", "degree");
-        let geographic = |name: &str, axes: [&Value; 2], id: Value| {
-            json!({
-                "type": "GeographicCRS",
-                "name": name,
-                "datum": {
-                    "type": "GeodeticReferenceFrame",
-                    "name": "World Geodetic System 1984",
-                    "ellipsoid": {
-                        "name": "WGS 84",
-                        "semi_major_axis": 6_378_137,
-                        "inverse_flattening": 298.257_223_563,
-                    },
-                },
-                "coordinate_system": { "subtype": "ellipsoidal", "axis": axes },
-                "id": id,
-            })
-        };
-        let epsg = |code: u32| json!({ "authority": "EPSG", "code": code });
-        let wgs84 = geographic("WGS 84", [&latitude, &longitude], epsg(4326));
-        let projected = |name: &str, conversion: Value, letters: [&str; 2], code: u32| {
-            json!({
-                "type": "ProjectedCRS",
-                "name": name,
-                "base_crs": wgs84,
-                "conversion": conversion,
-                "coordinate_system": {
-                    "subtype": "Cartesian",
-                    "axis": [
-                        axis("Easting", letters[0], "east", "metre"),
-                        axis("Northing", letters[1], "north", "metre"),
-                    ],
-                },
-                "id": epsg(code),
-            })
-        };
-        let parameter = |name: &str, value: f64, unit: &str, code: u32| json!({ "name": name, "value": value, "unit": unit, "id": epsg(code) });
-        let origin = |longitude: f64| {
-            [
-                parameter("Latitude of natural origin", 0.0, "degree", 8801),
-                parameter("Longitude of natural origin", longitude, "degree", 8802),
-            ]
-        };
-        let false_origin = |east: f64, north: f64| {
-            [
-                parameter("False easting", east, "metre", 8806),
-                parameter("False northing", north, "metre", 8807),
-            ]
-        };
-        if (&*self.authority, &*self.code) == ("OGC", "CRS84") {
-            let id = json!({ "authority": "OGC", "code": "CRS84" });
-            return Some(geographic("WGS 84 (CRS84)", [&longitude, &latitude], id));
+    /// Whether another name means the same plane. GeoJSON in degrees is longitude first under both of its names.
+    #[must_use]
+    pub fn is_plane_of(&self, other: &Self) -> bool {
+        let is_same = (&self.authority, &self.code) == (&other.authority, &other.code);
+        is_same || self.is_geographic() && other.is_geographic()
+    }
+
+    /// The system of a code of EPSG.
+    #[must_use]
+    pub fn epsg(code: u16) -> Self {
+        Self {
+            authority: "EPSG".into(),
+            code: code.to_string().into(),
+            definition: None,
         }
-        let code: u32 = self
-            .code
-            .parse()
-            .ok()
-            .filter(|_| &*self.authority == "EPSG")?;
-        match code {
-            4326 => Some(wgs84),
-            3857 => {
-                let parameters = [origin(0.0), false_origin(0.0, 0.0)].concat();
-                let conversion = json!({
-                    "name": "Popular Visualisation Pseudo-Mercator",
-                    "method": { "name": "Popular Visualisation Pseudo Mercator", "id": epsg(1024) },
-                    "parameters": parameters,
-                });
-                Some(projected(
-                    "WGS 84 / Pseudo-Mercator",
-                    conversion,
-                    ["X", "Y"],
-                    code,
-                ))
+    }
+
+    /// Reads the member `crs` of GeoJSON of 2008, which GDAL, QGIS and geopandas write. `null` is no system.
+    ///
+    /// # Errors
+    /// Describes the fault.
+    pub fn of_geojson(member: &Value) -> Result<Option<Self>, String> {
+        if member.is_null() {
+            return Ok(None);
+        }
+        let name = member["properties"]["name"].as_str();
+        let name = name.filter(|_| member["type"] == "name");
+        let name = name.ok_or_else(|| format!("has a `crs` without a name; allowed: {MEMBER}"))?;
+        let crs = Self::of_name(name).ok_or_else(|| {
+            let name: String = name.chars().take(80).collect();
+            format!("has the `crs` `{name}`; allowed: {MEMBER}")
+        })?;
+        Ok(Some(crs))
+    }
+
+    /// The system of a name as text, as a URN or as an address of the OGC.
+    fn of_name(name: &str) -> Option<Self> {
+        let lower = name.to_ascii_lowercase();
+        let urn = lower
+            .strip_prefix("urn:ogc:def:crs:")
+            .or_else(|| lower.strip_prefix("urn:x-ogc:def:crs:"));
+        let parts: Vec<&str> = match urn {
+            Some(urn) => urn.split(':').collect(),
+            None => {
+                let (_, path) = lower.split_once("://www.opengis.net/def/crs/").unzip();
+                match path {
+                    Some(path) => path.split('/').collect(),
+                    None => return name.parse().ok(),
+                }
             }
-            32601..=32660 | 32701..=32760 => {
-                let (zone, is_north) = (code % 100, code < 32700);
-                let zone_name = format!("{zone}{}", if is_north { "N" } else { "S" });
-                let scale = parameter("Scale factor at natural origin", 0.9996, "unity", 8805);
-                let north = if is_north { 0.0 } else { 1e7 };
-                let west = origin(f64::from(zone) * 6.0 - 183.0);
-                let parameters = [&west[..], &[scale], &false_origin(5e5, north)].concat();
-                let conversion = json!({
-                    "name": format!("UTM zone {zone_name}"),
-                    "method": { "name": "Transverse Mercator", "id": epsg(9807) },
-                    "parameters": parameters,
-                });
-                let name = format!("WGS 84 / UTM zone {zone_name}");
-                Some(projected(&name, conversion, ["E", "N"], code))
-            }
+        };
+        match parts.as_slice() {
+            [authority, code] | [authority, _, code] => format!("{authority}:{code}").parse().ok(),
             _ => None,
         }
     }
+
+    /// Reads PROJJSON, with its name in the member `id`.
+    ///
+    /// # Errors
+    /// Describes the fault.
+    pub fn of_projjson(bytes: &[u8]) -> Result<Self, String> {
+        let definition: Value =
+            serde_json::from_slice(bytes).map_err(|error| format!("not JSON: {error}"))?;
+        let kind = definition["type"].as_str().unwrap_or_default();
+        if !kind.ends_with("CRS") {
+            return Err("has no `type` of a reference system, such as ProjectedCRS".into());
+        }
+        if !definition["name"].is_string() || !definition["coordinate_system"].is_object() {
+            return Err("has no `name` or no `coordinate_system`".into());
+        }
+        let id = &definition["id"];
+        let text = |member: &Value| match member {
+            Value::String(text) => text.clone(),
+            Value::Number(code) => code.to_string(),
+            _ => String::new(),
+        };
+        let name = format!("{}:{}", text(&id["authority"]), text(&id["code"]));
+        let named: Self = name
+            .parse()
+            .map_err(|_| "has no `id` with an authority and a code".to_owned())?;
+        Ok(Self {
+            definition: Some(definition.into()),
+            ..named
+        })
+    }
+
+    /// The system as PROJJSON, which GeoParquet requires: as it was given, else as EPSG defines it.
+    #[cfg(feature = "columnar")]
+    pub(super) fn projjson(&self) -> Option<Value> {
+        match &self.definition {
+            Some(definition) => Some((**definition).clone()),
+            None => super::definitions::find(&self.to_string()),
+        }
+    }
 }
+
+/// The members `crs` of GeoJSON that are read.
+const MEMBER: &str =
+    r#"{"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::32633"}} or no such member"#;
 
 #[cfg(test)]
 mod tests {
@@ -213,22 +224,61 @@ mod tests {
     }
 
     #[test]
-    fn common_planes_are_known_in_full() {
-        for text in [
-            "EPSG:4326",
-            "OGC:CRS84",
-            "EPSG:3857",
-            "EPSG:32633",
-            "EPSG:32760",
+    fn names_of_geojson_are_read_in_all_their_forms() {
+        let read = |name: &str| {
+            Crs::of_geojson(&json!({ "type": "name", "properties": { "name": name } }))
+        };
+        for (name, code) in [
+            ("urn:ogc:def:crs:EPSG::25832", "EPSG:25832"),
+            ("urn:ogc:def:crs:EPSG:6.18.3:3857", "EPSG:3857"),
+            ("urn:ogc:def:crs:OGC:1.3:CRS84", "OGC:CRS84"),
+            ("urn:x-ogc:def:crs:EPSG:4326", "EPSG:4326"),
+            ("http://www.opengis.net/def/crs/EPSG/0/2154", "EPSG:2154"),
+            ("EPSG:32633", "EPSG:32633"),
         ] {
-            let crs: Crs = text.parse().expect("valid");
-            let known = crs.projjson().expect("known");
-            let code = text.split_once(':').expect("a code").1;
-            let id = known["id"]["code"].to_string();
-            assert_eq!(id.trim_matches('"'), code);
+            let crs = read(name).expect("read").expect("a system");
+            assert_eq!(crs.to_string(), code);
         }
-        for text in ["EPSG:32661", "EPSG:2154", "OGC:CRS83"] {
-            assert_eq!(text.parse::<Crs>().expect("valid").projjson(), None);
+        assert_eq!(Crs::of_geojson(&Value::Null), Ok(None));
+        for wrong in [
+            json!({}),
+            json!(7),
+            json!({ "type": "link", "properties": { "name": "EPSG:1" } }),
+        ] {
+            assert!(Crs::of_geojson(&wrong).is_err_and(|text| text.contains("without a name")));
+        }
+        for wrong in [
+            "WGS 84",
+            "",
+            "urn:ogc:def:crs:EPSG:1:2:3",
+            "http://example.com/EPSG/0/4326",
+        ] {
+            assert!(
+                read(wrong).is_err_and(|text| text.contains("has the `crs`")),
+                "{wrong}"
+            );
+        }
+        let degrees = ["EPSG:4326", "OGC:CRS84"].map(|text| text.parse::<Crs>().expect("valid"));
+        assert!(degrees[0].is_plane_of(&degrees[1]) && !degrees[0].is_plane_of(&Crs::epsg(4258)));
+    }
+
+    #[test]
+    fn projjson_brings_its_name_and_its_definition() {
+        let mut json = json!({
+            "type": "ProjectedCRS", "name": "Mine", "coordinate_system": {}, "id": { "authority": "ME", "code": 7 },
+        });
+        let crs = Crs::of_projjson(json.to_string().as_bytes()).expect("read");
+        assert_eq!(crs.to_string(), "ME:7");
+        assert_eq!(crs.definition.as_deref(), Some(&json));
+        for member in ["id", "name", "coordinate_system", "type"] {
+            let without = json
+                .as_object_mut()
+                .expect("an object")
+                .remove(member)
+                .expect("there");
+            let fault = Crs::of_projjson(json.to_string().as_bytes()).expect_err(member);
+            assert!(fault.contains(member), "{fault}");
+            json[member] = without;
         }
     }
 }

@@ -103,6 +103,12 @@ impl Encoding {
         Self::ALL.contains(&self)
     }
 
+    /// Whether this build writes it: Arrow and Parquet come with the feature `columnar`.
+    #[must_use]
+    pub const fn is_written(self) -> bool {
+        cfg!(feature = "columnar") || !matches!(self, Self::Arrow | Self::Feather | Self::Parquet)
+    }
+
     /// The content type of the format when a client names it. Those of NumPy and PLY are not registered, but in use.
     #[must_use]
     pub const fn content_type(self) -> &'static str {

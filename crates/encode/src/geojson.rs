@@ -5,8 +5,6 @@
 //! itself stands in foreign members of the collection; a sequence has no room for it, since some readers
 //! refuse texts that are not GeoJSON.
 
-use serde_json::json;
-
 use super::{
     head::Head,
     members::{Members, write_json},
@@ -37,9 +35,8 @@ impl TextFormat for Collection {
         out.remove(head);
         out.pop();
         if let Some(crs) = &self.head.crs {
-            let crs = json!({ "type": "name", "properties": { "name": crs.urn() } });
             out.extend_from_slice(b",\"crs\":");
-            write_json(&crs, out);
+            write_json(&crs.to_geojson(), out);
         }
         out.extend_from_slice(b",\"features\":[");
     }

@@ -18,8 +18,12 @@ mod columnar;
 mod coordinates;
 mod crs;
 mod csv;
+#[cfg(feature = "columnar")]
+mod definitions;
 mod encoding;
 mod error;
+#[cfg(feature = "columnar")]
+mod footer;
 mod geojson;
 mod glb;
 mod head;
@@ -68,7 +72,7 @@ pub use head::{Head, Json, Tables};
 pub use height::{Height, Located};
 pub use mark::Mark;
 pub use number::{Digits, write_number};
-pub use output::{DEFAULT_SIZE, MOST_DECIMALS, Output};
+pub use output::{DEFAULT_SIZE, MOST_DECIMALS, Output, ZSTD_LEVEL};
 pub use packed::{Packed, Scalars};
 pub use part::{Attributes, Part};
 pub use place::Place;

@@ -8,6 +8,9 @@ pub const DEFAULT_SIZE: u32 = 512;
 /// More decimals than this add nothing: an `f64` has 17 significant digits.
 pub const MOST_DECIMALS: u8 = 17;
 
+/// The level of zstd that Parquet files are compressed at: higher levels take time and save nothing here.
+pub const ZSTD_LEVEL: u8 = 1;
+
 /// How an answer looks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
@@ -27,6 +30,8 @@ pub struct Output {
     /// The diameter of dots in a picture, in spacings of points at full density; by default half of a mean
     /// spacing.
     pub dot: Option<f64>,
+    /// The level of zstd, for Parquet: 0, not compressed, to 22.
+    pub zstd: u8,
 }
 
 impl Output {
@@ -41,6 +46,7 @@ impl Output {
             has_summary: true,
             crs: None,
             dot: None,
+            zstd: ZSTD_LEVEL,
         }
     }
 

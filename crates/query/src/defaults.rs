@@ -6,6 +6,9 @@ pub const DEFAULT_PROFILE: &str = "blue";
 pub const DEFAULT_ALPHA: &str = "(5-sqrt(3))/2";
 /// The most layers of a query.
 pub const MOST_LAYERS: usize = 16;
+/// The most layers that are alike, as features are: they differ in name, region, amount, seed and field alone, and
+/// keep clear of no other.
+pub const MOST_FEATURES: usize = 1000;
 /// The most regions that lists of regions have in one query.
 pub const MOST_REGIONS: usize = 1000;
 /// The most names in a list, such as attributes.

@@ -10,7 +10,7 @@ use strew_error::{Checked, Error, Fault, Together as _, faults::all, unknown};
 use crate::{
     Options, Query, QueryRegion, Set, Window,
     cursor::Token,
-    defaults::MOST_LAYERS,
+    defaults::{MOST_FEATURES, MOST_LAYERS},
     except,
     field::Loaded,
     layer::LayerDraft,
@@ -166,8 +166,9 @@ impl Draft {
             window(&self.values),
             options(&self.values),
         );
-        let ((), region, sets, window, options) =
+        let ((), region, sets, window, mut options) =
             (read, region, sets, window, options).together()?;
+        options.plane = self.plane(&sets, options.crs.as_ref())?;
         let region = match (region, sets.first().and_then(|set| set.period)) {
             (Some(region), _) => region,
             (None, Some(period)) => period.region()?,
@@ -240,8 +241,15 @@ impl Draft {
     }
 
     fn layers(&self, layers: &[LayerDraft], loaded: &Loaded<'_>) -> Checked<Vec<Set>> {
-        if layers.len() > MOST_LAYERS {
-            let allowed = format!("at most {MOST_LAYERS} layers");
+        let most = match layers.windows(2).all(|pair| pair[0].is_like(&pair[1])) {
+            true => MOST_FEATURES,
+            false => MOST_LAYERS,
+        };
+        if layers.len() > most {
+            let allowed = format!(
+                "at most {MOST_LAYERS} layers, or {MOST_FEATURES} that differ in name, region, amount, seed and \
+                 field alone"
+            );
             return Err(Fault::new("layers", layers.len(), "too many layers", allowed).into());
         }
         let is_of_set = |parameter: &Parameter| {
@@ -378,6 +386,7 @@ pub fn options(values: &Values) -> Checked<Options> {
         size: size.and_then(|size| size.try_into().ok()),
         summary,
         crs,
+        plane: None,
     })
 }
 

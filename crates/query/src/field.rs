@@ -22,6 +22,8 @@ pub struct SetField {
     pub spec: FieldSpec,
     /// Its digest, in hexadecimal.
     pub digest: String,
+    /// The code of EPSG of its plane, if a raster states it.
+    pub epsg: Option<u16>,
 }
 
 /// The loaded fields, and the pixels and memory that the fields of a query may still take.
@@ -56,6 +58,7 @@ impl<'a> Loaded<'a> {
         let (pixels, allowance) = (self.pixels.get(), self.allowance);
         let (spec, sources) = self.catalog.build_field(path, document, pixels, allowance);
         self.pixels.set(sources.left);
+        let epsg = sources.epsg;
         if sources.refused.is_some() {
             self.refused.replace(sources.refused);
         }
@@ -67,6 +70,7 @@ impl<'a> Loaded<'a> {
             },
             has_names: document.has_names(),
             digest: spec.digest().to_string(),
+            epsg,
             spec,
         })
     }

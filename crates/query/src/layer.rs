@@ -9,7 +9,8 @@ use strew_error::{Checked, Fault, Faults, Together as _, faults::all, number};
 use super::{
     RegionDraft, Set, Value, Values,
     field::Loaded,
-    parameters::{COUNT, SEED},
+    parameter::{Group, Parameter},
+    parameters::{COUNT, FIELD, SEED},
 };
 
 /// A layer as it was read.
@@ -97,6 +98,29 @@ impl LayerDraft {
             clear_of,
             ..*set
         })
+    }
+
+    /// Whether another layer differs in name, region, amount, seed and field alone, and neither keeps clear of others.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        let is_own = |parameter: &Parameter| {
+            [Group::Amount, Group::Count].contains(&parameter.group)
+                || [&SEED, &FIELD].contains(&parameter)
+        };
+        let common = |layer: &Self| -> Vec<(&'static Parameter, Value)> {
+            let given = layer
+                .values
+                .given()
+                .filter(|(parameter, _)| !is_own(parameter));
+            given
+                .map(|(parameter, value)| (parameter, value.clone()))
+                .collect()
+        };
+        let is_free = |layer: &Self| matches!(&layer.clear_of, Ok(pairs) if pairs.is_empty());
+        is_free(self) && is_free(other) && common(self) == common(other)
+    }
+
+    pub(super) fn given_region(&self) -> Option<&RegionDraft> {
+        self.region.as_ref().ok()?.as_ref()
     }
 
     pub(super) fn known_name(&self) -> Option<&str> {

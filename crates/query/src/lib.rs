@@ -17,6 +17,7 @@ mod depends;
 mod draft;
 mod echo;
 mod except;
+mod features;
 mod field;
 mod json;
 mod kinds;
@@ -29,6 +30,7 @@ mod parameter;
 pub mod parameters;
 pub mod patterns;
 mod period;
+mod plane;
 mod price;
 mod query;
 #[cfg(test)]
@@ -55,12 +57,14 @@ pub use amount::Amount;
 pub use assets::Assets;
 pub use cursor::Token;
 pub use defaults::{
-    DEFAULT_ALPHA, DEFAULT_PROFILE, MOST_LAYERS, MOST_LEVELS, MOST_NAMES, MOST_PARTS, MOST_REGIONS,
+    DEFAULT_ALPHA, DEFAULT_PROFILE, MOST_FEATURES, MOST_LAYERS, MOST_LEVELS, MOST_NAMES,
+    MOST_PARTS, MOST_REGIONS,
 };
 pub use draft::{Draft, entry, options, parts};
 pub use echo::{Echoed, KindDistance, Resolved, ResolvedSet};
+pub use features::Feature;
 pub use field::SetField;
-pub use json::{RegionSchema, VolumeSchema, read_body, read_members, read_region};
+pub use json::{RegionSchema, VolumeSchema, read_body, read_features, read_members, read_region};
 pub use kinds::{Kinds, other_kinds};
 pub use layer::LayerDraft;
 pub use lookup::of;

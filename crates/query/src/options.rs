@@ -16,8 +16,10 @@ pub struct Options {
     pub size: Option<u32>,
     /// Whether a stream of lines ends with a summary.
     pub summary: Option<bool>,
-    /// The coordinate reference system of the plane.
+    /// The coordinate reference system of the plane, if the query names it.
     pub crs: Option<Crs>,
+    /// That of its regions and rasters.
+    pub plane: Option<Crs>,
 }
 
 impl Options {
@@ -44,7 +46,7 @@ impl Options {
             decimals: self.decimals,
             size: self.size.unwrap_or(DEFAULT_SIZE),
             has_summary: self.summary.unwrap_or(true),
-            crs: self.crs,
+            crs: self.crs.or(self.plane),
             ..Output::new(encoding)
         })
     }

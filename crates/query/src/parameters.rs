@@ -405,8 +405,9 @@ parameters! {
     /// The coordinate reference system of the plane.
     CRS = Parameter {
         name: "crs",
-        about: "The coordinate reference system of the plane, for geojson, geojsonseq and Parquet: by \
-                default readers of GeoJSON take coordinates for degrees. Coordinates do not change.",
+        about: "The coordinate reference system of the plane, for geojson and Parquet: by default that of the \
+                region and of GeoTIFFs; another one is refused, since coordinates do not change. Without one \
+                readers of GeoJSON take coordinates for degrees.",
         group: Group::Reference,
         shape: Shape::Pattern("^[A-Za-z]{1,16}:[A-Za-z0-9]{1,16}$"),
         allowed: Some(CRS_ALLOWED),

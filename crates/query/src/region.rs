@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use serde_json::{Value as Json, json};
 use strew_catalog::Dimension;
 use strew_core::{Area, Circle, ErrorKind, Polygon, Region, Spacing, space::Volume};
-use strew_encode::Place;
+use strew_encode::{Crs, Place};
 use strew_error::{Checked, Error, Fault, Faults, Together as _, faults::all, number};
 
 use super::{
@@ -42,8 +42,8 @@ pub enum ShapeDraft {
     Box([f64; 4]),
     /// A center and a radius.
     Circle([f64; 2], f64),
-    /// Polygons with their holes.
-    Polygons(Vec<Rings>),
+    /// Polygons with their holes, and the plane that they state.
+    Polygons(Vec<Rings>, Option<Crs>),
     /// A square of the world grid of this size; answers are relative to its lower corner.
     Chunk(f64, [i64; 2]),
     /// The points in any region of the first list and in none of the second.
@@ -152,7 +152,7 @@ impl RegionDraft {
             }
             None => values.get::<Vec<f64>>(&POLYGON)?.map(|numbers| {
                 let (pairs, _) = numbers.as_chunks::<2>();
-                ShapeDraft::Polygons(vec![vec![pairs.to_vec()]])
+                ShapeDraft::Polygons(vec![vec![pairs.to_vec()]], None)
             }),
         };
         Ok(shape.map(|shape| Self {
@@ -191,6 +191,19 @@ impl RegionDraft {
             ShapeDraft::Volume(_) => true,
             ShapeDraft::Combined(include, _) => include.iter().flatten().any(Self::is_in_space),
             _ => false,
+        }
+    }
+
+    /// Visits the planes that its polygons state, each with the field that it came from.
+    pub(super) fn each_plane(&self, visit: &mut impl FnMut(&str, &Crs)) {
+        match &self.shape {
+            ShapeDraft::Polygons(_, Some(crs)) => visit(&self.path, crs),
+            ShapeDraft::Combined(include, exclude) => {
+                for region in include.iter().chain(exclude).flatten() {
+                    region.each_plane(visit);
+                }
+            }
+            _ => {}
         }
     }
 
@@ -252,7 +265,7 @@ impl RegionDraft {
     /// The number of vertices of its polygons.
     pub(super) fn vertices(&self) -> usize {
         match &self.shape {
-            ShapeDraft::Polygons(polygons) => polygons.iter().flatten().map(Vec::len).sum(),
+            ShapeDraft::Polygons(polygons, _) => polygons.iter().flatten().map(Vec::len).sum(),
             ShapeDraft::Combined(include, exclude) => {
                 let all = include.iter().chain(exclude);
                 all.flatten().map(Self::vertices).sum()
@@ -276,7 +289,7 @@ impl RegionDraft {
                     None => Err(fault("too large".into()).into()),
                 }
             }
-            ShapeDraft::Polygons(polygons) => Ok(self.polygons(polygons)?),
+            ShapeDraft::Polygons(polygons, _) => Ok(self.polygons(polygons)?),
             ShapeDraft::Chunk(size, at) => Ok(self.chunk(*size, *at)?.into()),
             ShapeDraft::Combined(include, exclude) => {
                 let (include, exclude) = self.lists(include, exclude, Self::area)?;
@@ -358,10 +371,16 @@ impl RegionDraft {
             ShapeDraft::Circle(center, radius) => {
                 json!({ "circle": { "center": center, "radius": radius } })
             }
-            ShapeDraft::Polygons(polygons) => match polygons.as_slice() {
-                [rings] => json!({ "polygon": { "type": "Polygon", "coordinates": rings } }),
-                all => json!({ "polygon": { "type": "MultiPolygon", "coordinates": all } }),
-            },
+            ShapeDraft::Polygons(polygons, crs) => {
+                let mut polygon = match polygons.as_slice() {
+                    [rings] => json!({ "type": "Polygon", "coordinates": rings }),
+                    all => json!({ "type": "MultiPolygon", "coordinates": all }),
+                };
+                if let Some(crs) = crs {
+                    polygon["crs"] = crs.to_geojson();
+                }
+                json!({ "polygon": polygon })
+            }
             ShapeDraft::Chunk(size, [x, y]) => {
                 json!({ "chunk": { "size": size, "x": x, "y": y } })
             }

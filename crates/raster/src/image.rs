@@ -11,6 +11,8 @@ pub struct Image {
     pub samples: Samples,
     /// The place that the file states, if any: min x, min y, max x, max y.
     pub frame: Option<[f64; 4]>,
+    /// The code of EPSG of the plane of that place, if the file states it.
+    pub epsg: Option<u16>,
 }
 
 impl Limits {

@@ -145,6 +145,7 @@ fn numbers(
         size,
         samples,
         frame: None,
+        epsg: None,
     })
 }
 

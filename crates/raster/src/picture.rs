@@ -80,5 +80,6 @@ fn picture(
         size,
         samples: Samples::U16(light),
         frame: None,
+        epsg: None,
     })
 }

@@ -90,6 +90,7 @@ pub(super) fn read(
         size,
         samples,
         frame: None,
+        epsg: None,
     })
 }
 

@@ -57,7 +57,9 @@ pub(super) fn read(
     if channels.count() > 1 && planar.map_err(damaged)?.unwrap_or(1) != 1 {
         return Err(unsupported("channels in planes of their own".into()));
     }
-    let frame = frame(&mut decoder, size)?;
+    let keys = decoder.find_tag_unsigned_vec::<u16>(Tag::GeoKeyDirectoryTag);
+    let keys = keys.map_err(damaged)?.unwrap_or_default();
+    let frame = frame(&mut decoder, size, &keys)?;
     let missing = missing(&mut decoder);
     let mut rows = Pixels {
         size,
@@ -102,6 +104,7 @@ pub(super) fn read(
     Ok(Image {
         size,
         samples,
+        epsg: frame.and_then(|_| epsg(&keys)),
         frame,
     })
 }
@@ -210,6 +213,7 @@ fn floats(decoded: DecodingResult, missing: Option<f64>) -> Result<Vec<f32>, Ras
 fn frame(
     decoder: &mut Decoder<impl BufRead + Seek>,
     [width, height]: [usize; 2],
+    keys: &[u16],
 ) -> Result<Option<[f64; 4]>, RasterError> {
     let mut numbers = |tag| {
         let value = decoder.find_tag(tag).map_err(damaged)?;
@@ -233,12 +237,8 @@ fn frame(
         }
         _ => return Ok(None),
     };
-    let keys = decoder.find_tag_unsigned_vec::<u16>(Tag::GeoKeyDirectoryTag);
-    let keys = keys.map_err(damaged)?.unwrap_or_default();
     // GTRasterTypeGeoKey 2: places are those of the pixels' centers.
-    let is_point = keys
-        .chunks_exact(4)
-        .any(|key| key[0] == 1025 && key[3] == 2);
+    let is_point = key(keys, 1025) == Some(2);
     let shift = if is_point { 0.5 } else { 0.0 };
     let [x, y] = [corner[0] - shift * step[0], corner[1] + shift * step[1]];
     let frame = [
@@ -252,6 +252,20 @@ fn frame(
         return Err(askew("a raster that is mirrored or has no area"));
     }
     Ok(Some(frame))
+}
+
+/// A key of GeoTIFF that is a short number.
+fn key(keys: &[u16], name: u16) -> Option<u16> {
+    // The first four numbers are the directory's own.
+    let mut entries = keys.chunks_exact(4).skip(1);
+    entries.find_map(|entry| (entry[..3] == [name, 0, 1]).then_some(entry[3]))
+}
+
+/// The code of the plane: that of the projected system, else of the geographic one. Larger numbers stand for systems
+/// that have no code.
+fn epsg(keys: &[u16]) -> Option<u16> {
+    let code = key(keys, 3072).or_else(|| key(keys, 2048));
+    code.filter(|code| (1024..32767).contains(code))
 }
 
 /// The number that stands for no data, if there is one.

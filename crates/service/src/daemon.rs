@@ -183,7 +183,7 @@ impl Service {
         match options.encoding {
             Some(encoding) if !encoding.is_streamed() => {
                 let format = &query::parameters::FORMAT;
-                let detail = "written by `strew sample` only";
+                let detail = "only `strew sample` writes it";
                 Err(draft.values.fault(format, detail).into())
             }
             _ => Ok((query.into(), options)),

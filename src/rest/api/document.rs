@@ -265,7 +265,7 @@ mod tests {
             ("CountQuery", groups::COUNTED),
         ] {
             let named = of(groups).map(|parameter| parameter.name);
-            let expected: Vec<&str> = named.chain(["region", "layers"]).collect();
+            let expected: Vec<&str> = named.chain(["region", "layers", "features"]).collect();
             assert_eq!(members(schema), expected);
         }
         let echoed = members("Set");

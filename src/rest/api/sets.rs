@@ -3,7 +3,7 @@
 
 use serde_json::{Map, Value, json};
 use strew_query::{
-    Group, MOST_LAYERS, NAME, Parameter, groups, of,
+    Group, MOST_FEATURES, NAME, Parameter, groups, of,
     parameters::{COUNT, EXCEPT, LOD, ONLY, PERIODIC, SEED, WORLD},
     schema,
 };
@@ -75,10 +75,14 @@ fn query(
     let mut properties = members(groups);
     properties.insert("region".into(), reference(region));
     let layers = json!({
-        "type": "array", "minItems": 1, "maxItems": MOST_LAYERS, "items": reference(layer),
-        "description": "Several sets of points, one after another, instead of one.",
+        "type": "array", "minItems": 1, "maxItems": MOST_FEATURES, "items": reference(layer),
+        "description": "Several sets of points, one after another, instead of one: up to 16, or 1000 that differ in name, region, amount, seed and field alone.",
     });
     properties.insert("layers".into(), layers);
+    let has_features = region == PLANE.0;
+    if has_features {
+        properties.insert("features".into(), features());
+    }
     // The common seed and share, and the one layer that is wanted.
     let is_common = |parameter: &Parameter| [&SEED, &ONLY, &EXCEPT, &LOD].contains(&parameter);
     let of_set = of(set).filter(|parameter| !is_common(parameter));
@@ -91,7 +95,11 @@ fn query(
     let world = takes(&WORLD).then(|| json!({ "required": [WORLD.name] }));
     let rules_of_all = vec![json!({ "oneOf": [
         { "required": ["layers"], "properties": of_set },
-        { "properties": { "layers": nothing() }, "allOf": rules_of_set(set, world) },
+        {
+            "properties": { "layers": nothing(), "features": nothing() },
+            "allOf": rules_of_set(set, world),
+        },
+        { "required": ["features"], "properties": { "layers": nothing(), "region": nothing() } },
     ] })];
     let published = rules::of(groups);
     json!({
@@ -101,6 +109,22 @@ fn query(
         "additionalProperties": false,
         "allOf": rules_of_all,
         "x-rules": published,
+    })
+}
+
+/// The schema of features.
+fn features() -> Value {
+    let property = |about: &str| json!({ "type": "string", "description": about });
+    json!({
+        "type": "object",
+        "description": "Each feature of a collection by itself, as a layer of its name: instead of a region and layers.",
+        "properties": {
+            "of": reference("FeatureCollection"),
+            "id": property("The property with the name of a feature; by default its place: 0, 1, 2, …"),
+            "count": property("The property with the number of points of a feature."),
+        },
+        "required": ["of"],
+        "additionalProperties": false,
     })
 }
 

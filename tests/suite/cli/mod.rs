@@ -1,5 +1,5 @@
 //! The commands: `sample`, `count`, `point`, `nearest` and `split` against the answers of REST, `export` beside the
-//! daemon, `figure` and `arrangement`, `forge` with interruptions, `config` and its layers, `probe` as health checks
+//! daemon, reference systems, features and classes of maps, `figure` and `arrangement`, `forge` with interruptions, `config` and its layers, `probe` as health checks
 //! run it, what wrong flags and full disks lead to.
 
 mod completions;
@@ -8,6 +8,7 @@ mod export;
 mod fields;
 mod forge;
 mod full_disk;
+mod geo;
 mod invalid_flags;
 mod mix;
 mod outputs;

@@ -363,11 +363,20 @@ fn folders_of_outputs_are_made() {
             "{made}"
         );
     }
-    for name in ["m.npy", "m.tif", "m.bmp"] {
+    let made = run(
+        &["mask", "--size=16", "--bits=16", "-o", &path("m.npy")],
+        "",
+    );
+    assert!(made.status.success(), "{}", errors(&made));
+    let array = fs::read(path("m.npy")).expect("written");
+    assert_eq!(array.len(), 128 + 2 * 256);
+    assert!(array.starts_with(b"\x93NUMPY\x01\x00") && array[..128].ends_with(b"\n"));
+    for name in ["m.tif", "m.bmp", "m.npz"] {
         let output = run(&["mask", "--size", "16", "-o", &path(name)], "");
         assert_eq!(output.status.code(), Some(2), "{name}");
         assert!(
-            errors(&output).contains("a mask is a PNG; allowed: "),
+            errors(&output)
+                .contains("no format of masks; allowed: a file whose name ends in .png or .npy"),
             "{name}"
         );
         assert!(!folder.path().join(name).exists());

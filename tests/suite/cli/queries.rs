@@ -87,6 +87,11 @@ fn the_flags_are_the_parameters_of_rest() {
     let query = [
         "query",
         "region",
+        "features",
+        "feature-id",
+        "feature-count",
+        "strata",
+        "classes",
         "chunk",
         "ball",
         "url",
@@ -98,7 +103,7 @@ fn the_flags_are_the_parameters_of_rest() {
         "key",
     ];
     for (command, path, more) in [
-        ("sample", "/v1/points", &["output", "quiet"][..]),
+        ("sample", "/v1/points", &["output", "quiet", "zstd"][..]),
         ("count", "/v1/count", &["json"]),
         ("point", "/v1/points/{id}", &["json"]),
         ("nearest", "/v1/nearest", &["json"]),

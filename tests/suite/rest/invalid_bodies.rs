@@ -17,9 +17,27 @@ fn members() -> Vec<(Value, &'static str, Vec<&'static str>)> {
     let path = "region.include[0].include[0].include[0].include[0].include[0].include[0].\
                 include[0].include[0].include";
     let many: Vec<Value> = (0..17)
-        .map(|i| json!({ "name": format!("l{i}"), "spacing": 1 }))
+        .map(|i| json!({ "name": format!("l{i}"), "spacing": 1, "keep": 1.0 / f64::from(i + 1) }))
         .collect();
+    let features = |features: Value| json!({ "region": null, "spacing": 1, "features": features });
+    let empty = json!({ "type": "FeatureCollection", "features": [] });
     vec![
+        (features(json!([])), "features", vec!["an object"]),
+        (
+            features(json!({})),
+            "features.of",
+            vec!["missing", "FeatureCollection"],
+        ),
+        (
+            features(json!({ "of": empty })),
+            "features.of",
+            vec!["no feature"],
+        ),
+        (
+            features(json!({ "of": empty, "per": 1 })),
+            "features.per",
+            vec!["unknown member"],
+        ),
         (json!({ "region": null }), "region", vec!["missing"]),
         (
             json!({ "regoin": {} }),

@@ -215,3 +215,39 @@ fn answers_without_points_are_complete_in_every_format() {
         assert_eq!(count.json()["count"], 0, "{body}");
     }
 }
+
+/// One request has exact numbers of points in each polygon of a collection, and says which one a point is in.
+#[test]
+fn features_are_layers_with_numbers_of_their_own() {
+    let daemon = Daemon::start(&[]);
+    let feature = |i: u32| {
+        let [x, y] = [f64::from(i % 20) * 4.0, f64::from(i / 20) * 4.0];
+        let ring = json!([
+            [x, y],
+            [x + 3.0, y],
+            [x + 3.0, y + 3.0],
+            [x, y + 2.0],
+            [x, y]
+        ]);
+        json!({ "type": "Feature", "properties": { "id": format!("p{i}"), "n": i % 7 },
+                "geometry": { "type": "Polygon", "coordinates": [ring] } })
+    };
+    let features: Vec<Value> = (0..200).map(feature).collect();
+    let collection = json!({ "type": "FeatureCollection", "features": features });
+    let body =
+        json!({ "features": { "of": collection, "id": "id", "count": "n" }, "format": "csv" });
+    let table = Csv::post(&daemon, &body);
+    let of = |name: &str| {
+        table.columns["layer"]
+            .iter()
+            .filter(|layer| *layer == name)
+            .count()
+    };
+    for i in 0..200 {
+        assert_eq!(of(&format!("p{i}")), i % 7);
+    }
+    let count = json!({ "features": { "of": collection }, "count": 5 });
+    let answer = daemon.post("/v1/count", &count);
+    let counted: Value = serde_json::from_slice(&answer.body).expect("JSON");
+    assert_eq!(counted["count"], 1000, "{counted}");
+}

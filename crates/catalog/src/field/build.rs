@@ -68,10 +68,12 @@ pub fn build(path: &str, document: &Document, sources: &Sources<'_>) -> Checked<
 }
 
 fn named(path: &str, name: &str, sources: &Sources<'_>) -> Checked<FieldSpec> {
-    (sources.named)(name).ok_or_else(|| {
+    let (spec, epsg) = (sources.named)(name).ok_or_else(|| {
         let allowed = (sources.names)();
-        Fault::new(path, name, "no such field is loaded", allowed).into()
-    })
+        Fault::new(path, name, "no such field is loaded", allowed)
+    })?;
+    sources.meet(path, epsg)?;
+    Ok(spec)
 }
 
 fn joined(

@@ -292,7 +292,7 @@ impl Unbuilt {
             Source::Config(_, name) => format!("fields.{name}"),
             Source::File(_) | Source::Embedded => "field".into(),
         };
-        let (spec, bytes, bbox) = of_files(&field, &document, &self.base, fields, room)?;
+        let (spec, bytes, bbox, epsg) = of_files(&field, &document, &self.base, fields, room)?;
         Ok(NamedField {
             name: self.name.clone(),
             source: self.source.clone(),
@@ -300,14 +300,14 @@ impl Unbuilt {
             spec,
             bytes,
             bbox,
+            epsg,
             stamp,
         })
     }
 }
 
-/// The field of a document that may name files and fields, the memory that its pixels take and a box around
-/// them. `room`
-/// bounds it.
+/// The field of a document that may name files and fields, with the memory, the box and the plane of its pixels. `room`
+/// bounds the memory.
 fn of_files(
     path: &str,
     document: &Document,
@@ -319,11 +319,16 @@ fn of_files(
     let sources = Sources {
         allowance: Allowance::UNLIMITED,
         refused: RefCell::new(None),
-        named: &|name| Some(fields.get(name)?.spec.clone()),
+        named: &|name| {
+            fields
+                .get(name)
+                .map(|field| (field.spec.clone(), field.epsg))
+        },
         names: &|| fields.names(),
         files: Some(&read),
         pixels: Cell::new(room),
         frame: Cell::new(None),
+        epsg: Cell::new(None),
         bytes: Cell::new(0),
     };
     let spec = build(path, document, &sources).map_err(|faults| super::listed(&faults))?;
@@ -333,7 +338,7 @@ fn of_files(
             "its pixels take {taken} bytes and {room} are left; allowed: fields.max_bytes for all fields"
         ));
     }
-    Ok((spec, taken, sources.frame.get()))
+    Ok((spec, taken, sources.frame.get(), sources.epsg.get()))
 }
 
 /// The field of a file that a command names: a document or a raster. A document may name others in its folder.
@@ -403,8 +408,8 @@ fn read_file(path: &Path, size: Option<[usize; 2]>, room: usize) -> Result<Image
     }
 }
 
-/// A field, the memory of its pixels, and a box around them.
-type Built = (FieldSpec, usize, Option<[f64; 4]>);
+/// A field, the memory of its pixels, a box around them, and the code of their plane.
+type Built = (FieldSpec, usize, Option<[f64; 4]>, Option<u16>);
 
 /// The names of the fields that a document is made of.
 fn names(document: &Document) -> Box<dyn Iterator<Item = &str> + '_> {

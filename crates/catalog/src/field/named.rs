@@ -20,6 +20,8 @@ pub struct NamedField {
     pub bytes: usize,
     /// A box around its pixels, if it has any: min x, min y, max x, max y.
     pub bbox: Option<[f64; 4]>,
+    /// The code of EPSG of their plane, if a file states it.
+    pub epsg: Option<u16>,
     /// The stamp of its files when it was read.
     pub(super) stamp: Stamp,
 }
@@ -35,6 +37,7 @@ impl NamedField {
             spec,
             bytes: 0,
             bbox: None,
+            epsg: None,
             stamp: Stamp::default(),
         }
     }

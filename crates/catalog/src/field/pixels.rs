@@ -106,6 +106,9 @@ fn flipped<T>(mut pixels: Vec<T>, width: usize) -> Vec<T> {
 fn region(path: &str, document: &Pixels, image: &Image, sources: &Sources<'_>) -> Checked<Region> {
     let [width, height] = image.size.map(|side| side as f64);
     let bbox = document.bbox.or(image.frame);
+    if document.bbox.is_none() {
+        sources.meet(path, image.epsg)?;
+    }
     let [min_x, min_y, max_x, max_y] = bbox.unwrap_or([0.0, 0.0, width, height]);
     let region = Region::new([min_x, min_y], [max_x, max_y]);
     let region = region.ok().filter(|_| min_x < max_x && min_y < max_y);

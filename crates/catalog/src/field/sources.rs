@@ -35,8 +35,8 @@ static NEVER: Stop = Stop::NEVER;
 
 /// Where names and files of documents lead.
 pub struct Sources<'a> {
-    /// The field of a name.
-    pub named: &'a dyn Fn(&str) -> Option<FieldSpec>,
+    /// The field of a name, with the code of EPSG of its plane.
+    pub named: &'a dyn Fn(&str) -> Option<(FieldSpec, Option<u16>)>,
     /// The names that there are, for faults.
     pub names: &'a dyn Fn() -> String,
     /// Reads files; `None` where documents may not name any.
@@ -49,6 +49,8 @@ pub struct Sources<'a> {
     pub pixels: Cell<usize>,
     /// A box around all pixels that were read.
     pub frame: Cell<Option<[f64; 4]>>,
+    /// The code of EPSG of the plane that files of pixels state.
+    pub epsg: Cell<Option<u16>>,
     /// The memory that all pixels take, in bytes.
     pub bytes: Cell<usize>,
 }
@@ -68,6 +70,21 @@ impl Sources<'_> {
             self.refused.replace(Some(error));
             fault.into()
         })
+    }
+
+    /// Takes the plane of a part.
+    pub(super) fn meet(&self, path: &str, epsg: Option<u16>) -> Checked<()> {
+        match (self.epsg.get(), epsg) {
+            (Some(first), Some(other)) if first != other => {
+                let detail = "another plane than that of an earlier part: places are not converted";
+                let (other, first) = (format!("EPSG:{other}"), format!("EPSG:{first}"));
+                Err(Fault::new(path, other, detail, first).into())
+            }
+            (first, other) => {
+                self.epsg.set(first.or(other));
+                Ok(())
+            }
+        }
     }
 
     /// Whether the field is still wanted.

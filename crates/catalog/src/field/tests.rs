@@ -10,13 +10,14 @@ use super::*;
 
 fn sources(pixels: usize) -> Sources<'static> {
     Sources {
-        named: &|name| (name == "half").then(|| FieldSpec::constant(0.5).expect("a share")),
+        named: &|name| (name == "half").then(|| (FieldSpec::constant(0.5).expect("a share"), None)),
         names: &|| "half".into(),
         files: None,
         allowance: Allowance::UNLIMITED,
         refused: RefCell::new(None),
         pixels: Cell::new(pixels),
         frame: Cell::new(None),
+        epsg: Cell::new(None),
         bytes: Cell::new(0),
     }
 }

@@ -204,6 +204,35 @@ impl Mask {
         ranks.map(move |&rank| (u64::from(rank) * levels / pixels) as u16)
     }
 
+    /// The mask as a file of NumPy's: an array of `u1` or `u2`, rows from the top.
+    ///
+    /// # Errors
+    /// [`MaskError`] for a number of bits besides 8 and 16.
+    pub fn to_npy(&self, bits: u8) -> Result<Vec<u8>, MaskError> {
+        let thresholds = self.thresholds(bits);
+        let (kind, bytes): (_, Vec<u8>) = match bits {
+            8 => ("|u1", thresholds.map(|v| v as u8).collect()),
+            16 => ("<u2", thresholds.flat_map(u16::to_le_bytes).collect()),
+            _ => {
+                return Err(MaskError {
+                    field: "bits".into(),
+                    value: bits.to_string(),
+                    allowed: "8 or 16".into(),
+                });
+            }
+        };
+        let side = self.size;
+        let text =
+            format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({side}, {side}), }}");
+        // Magic, version and the length of the text, which fills 128 bytes with them.
+        let mut file = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+        file.extend_from_slice(text.as_bytes());
+        file.resize(127, b' ');
+        file.push(b'\n');
+        file.extend_from_slice(&bytes);
+        Ok(file)
+    }
+
     /// The mask as a gray PNG file of 8 or 16 bits.
     ///
     /// # Errors

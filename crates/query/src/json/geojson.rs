@@ -7,8 +7,9 @@ use serde::{
     Deserialize, Deserializer,
     de::{Error as _, IgnoredAny, SeqAccess, Visitor},
 };
-use serde_json::value::RawValue;
+use serde_json::{Value, value::RawValue};
 use strew_catalog::bounded_list::list;
+use strew_encode::Crs;
 
 use super::{
     super::{MOST_LEVELS, Rings},
@@ -95,11 +96,18 @@ struct Object<'a> {
     geometry: Option<Box<Part>>,
     features: Option<Vec<Part>>,
     geometries: Option<Vec<Part>>,
+    crs: Option<Value>,
 }
 
 impl Object<'_> {
     /// Its polygons, and those of its parts.
-    fn part(self) -> Result<Part, String> {
+    fn part(mut self) -> Result<Part, String> {
+        let crs = self.crs.take().map(|member| Crs::of_geojson(&member));
+        let own = crs.transpose()?.flatten();
+        self.polygons()?.within(own)
+    }
+
+    fn polygons(self) -> Result<Part, String> {
         let missing = |member| format!("has no array `{member}`");
         let coordinates = || self.coordinates.ok_or_else(|| missing("coordinates"));
         let parts = match &*self.r#type {
@@ -107,7 +115,7 @@ impl Object<'_> {
                 let polygons = vec![plain(read(coordinates()?, "coordinates")?)];
                 return Ok(Part {
                     polygons,
-                    levels: 0,
+                    ..Part::default()
                 });
             }
             "MultiPolygon" => {
@@ -115,7 +123,7 @@ impl Object<'_> {
                 let polygons = all.into_iter().map(plain).collect();
                 return Ok(Part {
                     polygons,
-                    levels: 0,
+                    ..Part::default()
                 });
             }
             // RFC 7946 has features without a place.
@@ -133,15 +141,41 @@ impl Object<'_> {
                 "is nested too deeply: {MOST_LEVELS} levels at most"
             ));
         }
-        let polygons = parts.into_iter().flat_map(|part| part.polygons).collect();
-        Ok(Part { polygons, levels })
+        let mut whole = Part {
+            levels,
+            ..Part::default()
+        };
+        for part in parts {
+            whole = whole.within(part.crs)?;
+            whole.polygons.extend(part.polygons);
+        }
+        Ok(whole)
     }
 }
 
 /// The polygons of a GeoJSON object, which has levels of others in it.
+#[derive(Default)]
 struct Part {
     polygons: Vec<Rings>,
     levels: usize,
+    /// The plane that it or one of its parts states.
+    crs: Option<Crs>,
+}
+
+impl Part {
+    /// This part in a plane, if one is stated.
+    fn within(mut self, crs: Option<Crs>) -> Result<Self, String> {
+        match (&self.crs, crs) {
+            (Some(first), Some(other)) if !first.is_plane_of(&other) => Err(format!(
+                "has two planes, {first} and {other}: coordinates are not converted"
+            )),
+            (None, Some(other)) => {
+                self.crs = Some(other);
+                Ok(self)
+            }
+            _ => Ok(self),
+        }
+    }
 }
 
 impl<'de> Deserialize<'de> for Part {
@@ -151,15 +185,15 @@ impl<'de> Deserialize<'de> for Part {
     }
 }
 
-/// The polygons of a GeoJSON object, with their holes; what lies in any of them is meant.
+/// The polygons of a GeoJSON object, with their holes, and the plane that it states; what lies in any of them is meant.
 ///
 /// # Errors
 /// Says what is wrong and at which path.
-pub(super) fn polygons(json: &RawValue) -> Result<Vec<Rings>, String> {
-    let Part { polygons, .. } = read(json, "")?;
+pub(super) fn polygons(json: &RawValue) -> Result<(Vec<Rings>, Option<Crs>), String> {
+    let Part { polygons, crs, .. } = read(json, "")?;
     match polygons.is_empty() {
         true => Err("contains no polygon".into()),
-        false => Ok(polygons),
+        false => Ok((polygons, crs)),
     }
 }
 
@@ -216,12 +250,16 @@ objects! {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::{Value, json};
+    use serde_json::json;
 
     use super::*;
 
-    fn read(value: &Value) -> Result<Vec<Rings>, String> {
+    fn both(value: &Value) -> Result<(Vec<Rings>, Option<Crs>), String> {
         polygons(&RawValue::from_string(value.to_string()).expect("JSON"))
+    }
+
+    fn read(value: &Value) -> Result<Vec<Rings>, String> {
+        both(value).map(|(polygons, _)| polygons)
     }
 
     fn polygon() -> Value {
@@ -241,6 +279,27 @@ mod tests {
         for (value, count) in [(polygon(), 1), (multi, 2), (features, 3), (nested, 3)] {
             assert_eq!(read(&value).map(|found| found.len()), Ok(count), "{value}");
         }
+    }
+
+    #[test]
+    fn the_plane_of_a_collection_or_of_its_parts_is_read() {
+        let within = |value: &Value, name: &str| {
+            let mut value = value.clone();
+            value["crs"] = json!({ "type": "name", "properties": { "name": name } });
+            value
+        };
+        let crs = |value: &Value| both(value).map(|(_, crs)| crs.map(|crs| crs.to_string()));
+        let part = within(&polygon(), "EPSG:25832");
+        let collection = json!({ "type": "GeometryCollection", "geometries": [polygon(), part] });
+        assert_eq!(crs(&polygon()), Ok(None));
+        assert_eq!(crs(&collection), Ok(Some("EPSG:25832".into())));
+        let same = within(&collection, "urn:ogc:def:crs:EPSG::25832");
+        assert_eq!(crs(&same), Ok(Some("EPSG:25832".into())));
+        let other = within(&collection, "urn:ogc:def:crs:EPSG::4326");
+        let detail = "has two planes, EPSG:25832 and EPSG:4326: coordinates are not converted";
+        assert_eq!(crs(&other), Err(detail.into()));
+        let local = within(&polygon(), "my field");
+        assert!(crs(&local).is_err_and(|detail| detail.starts_with("has the `crs` `my field`")));
     }
 
     #[test]

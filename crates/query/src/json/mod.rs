@@ -5,6 +5,7 @@
 //! there are as many faults as are reported.
 
 mod any;
+mod features;
 mod forms;
 mod geojson;
 pub(crate) mod object;
@@ -15,22 +16,23 @@ use serde_json::value::RawValue;
 use strew_catalog::Dimension;
 use strew_error::{Checked, Fault, all, unknown};
 
-use super::{Draft, LayerDraft, MOST_LAYERS, Values, groups, lookup::names, parameter::Group};
+use super::{Draft, LayerDraft, MOST_FEATURES, Values, groups, lookup::names, parameter::Group};
 use object::{Object, of_text, parse, shown};
 
 pub use any::AnyRegionSchema;
+pub use features::read_features;
 use forms::Forms;
 pub use region::{RegionSchema, read_region};
 pub use volume::VolumeSchema;
 
 /// The form of layers, as faults describe it.
-const LAYERS: &str = "an array of 1 to 16 layers, objects with a name and a set of points each";
+const LAYERS: &str = "an array of 1 to 16 layers, or of 1000 that differ in name, region, amount, seed and field alone: objects with a name and a set of points each";
 /// The form of `clear_of`.
 const CLEAR_OF: &str =
     r#"an object of distances by the names of earlier layers, such as {"trees": 2}"#;
 
 /// The members of a query that are no parameters.
-const QUERY: [&str; 2] = ["region", "layers"];
+const QUERY: [&str; 3] = ["region", "features", "layers"];
 /// Those of a layer.
 const LAYER: [&str; 3] = ["name", "region", "clear_of"];
 
@@ -41,7 +43,7 @@ const LAYER: [&str; 3] = ["name", "region", "clear_of"];
 pub fn read_body(bytes: &[u8], groups: &'static [Group]) -> Checked<Draft> {
     let object = object_of(bytes)?;
     let mut draft = Draft::new(Values::new(groups, ""));
-    let mut listed = 0;
+    let (mut listed, mut features) = (0, None);
     for (name, json) in object.members() {
         if draft.values.is_full() {
             break;
@@ -51,6 +53,7 @@ pub fn read_body(bytes: &[u8], groups: &'static [Group]) -> Checked<Draft> {
                 let forms = Forms::of(draft.values.dimension());
                 draft.region = region::read(json, "region", 0, &mut listed, forms).map(Some);
             }
+            "features" if draft.values.dimension() == Dimension::Plane => features = Some(json),
             "layers" => draft.layers = layers(json, &mut listed, draft.values.dimension()),
             // A common slip, which the list of members would not explain.
             "bbox" | "circle" | "polygon" | "ball" | "prism" | "chunk" | "include" | "exclude" => {
@@ -63,7 +66,18 @@ pub fn read_body(bytes: &[u8], groups: &'static [Group]) -> Checked<Draft> {
             name => add_member(&mut draft.values, name, json, &QUERY, groups),
         }
     }
-    Ok(draft)
+    let Some(json) = features else {
+        return Ok(draft);
+    };
+    let is_alone =
+        matches!((&draft.region, &draft.layers), (Ok(None), Ok(layers)) if layers.is_empty());
+    if !is_alone {
+        let detail = "beside region or layers: each feature is a layer with a region";
+        let fault = Fault::new("features", shown(json), detail, "features alone");
+        draft.values.refuse(fault);
+        return Ok(draft);
+    }
+    Ok(draft.in_features(features::read(json)))
 }
 
 /// Reads a body whose members are all parameters.
@@ -114,7 +128,7 @@ fn members(others: &[&str], groups: &'static [Group]) -> String {
 }
 
 fn layers(json: &RawValue, listed: &mut usize, dimension: Dimension) -> Checked<Vec<LayerDraft>> {
-    let items = match object::elements(json, MOST_LAYERS, "layers") {
+    let items = match object::elements(json, MOST_FEATURES, "layers") {
         Ok(items) if items.is_empty() => Err("empty".into()),
         read => read,
     };

@@ -4,10 +4,11 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::value::RawValue;
 use strew_catalog::Dimension;
+use strew_encode::Crs;
 use strew_error::{Checked, Fault, Faults, all, unknown};
 
 use super::{
-    super::{MOST_LEVELS, MOST_REGIONS, RegionDraft, ShapeDraft},
+    super::{MOST_LEVELS, MOST_REGIONS, RegionDraft, Rings, ShapeDraft},
     forms::Forms,
     geojson::{GEOJSON, GeoJson, polygons},
     object::{Object, Only, elements, of_text, parse, read as typed, shown},
@@ -108,8 +109,14 @@ pub fn read_region(bytes: &[u8]) -> Result<RegionDraft, Fault> {
     let polygons = parse(bytes).and_then(polygons);
     Ok(RegionDraft {
         path: "region".into(),
-        shape: ShapeDraft::Polygons(polygons.map_err(of_text("region", bytes, GEOJSON))?),
+        shape: polygons
+            .map(of_polygons)
+            .map_err(of_text("region", bytes, GEOJSON))?,
     })
+}
+
+fn of_polygons((polygons, crs): (Vec<Rings>, Option<Crs>)) -> ShapeDraft {
+    ShapeDraft::Polygons(polygons, crs)
 }
 
 /// A region within as many lists as `depth` says. `listed` counts the regions in lists of the query.
@@ -160,7 +167,7 @@ pub(super) fn read(
             let Only(CircleJson { center, radius }) = typed(json, "").map_err(wrong(CIRCLE))?;
             ShapeDraft::Circle(center, radius)
         }
-        "polygon" => ShapeDraft::Polygons(polygons(json).map_err(wrong(GEOJSON))?),
+        "polygon" => polygons(json).map(of_polygons).map_err(wrong(GEOJSON))?,
         "chunk" => {
             let Only(ChunkJson { size, x, y }) = typed(json, "").map_err(wrong(CHUNK))?;
             ShapeDraft::Chunk(size, [x, y])

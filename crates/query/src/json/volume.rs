@@ -154,7 +154,7 @@ fn prism(field: &str, json: &RawValue) -> Checked<VolumeDraft> {
         match name {
             "polygon" => {
                 let wrong = |detail: String| Fault::new(&path, shown(json), detail, GEOJSON);
-                base = Some(polygons(json).map_err(wrong)?);
+                base = Some(polygons(json).map_err(wrong)?.0);
             }
             "bottom" | "top" => {
                 let height: f64 = typed(json, "").map_err(wrong)?;

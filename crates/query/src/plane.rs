@@ -1,0 +1,71 @@
+//! The plane of a query: the coordinate reference system that its regions, its rasters and its parameters state.
+//!
+//! Coordinates are never converted, so all of them must state the same one.
+
+use strew_encode::Crs;
+use strew_error::{Checked, Fault};
+
+use super::{Draft, LayerDraft, RegionDraft, Set, parameters::CRS};
+
+/// The planes seen so far.
+#[derive(Default)]
+struct Seen {
+    /// The first, with the field that states it.
+    first: Option<(String, Crs)>,
+    fault: Option<Fault>,
+}
+
+impl Seen {
+    fn add(&mut self, field: &str, crs: &Crs) {
+        let Some((place, first)) = &self.first else {
+            self.first = Some((field.into(), crs.clone()));
+            return;
+        };
+        if !first.is_plane_of(crs) && self.fault.is_none() {
+            let detail =
+                format!("another plane than that of {place}, and coordinates are not converted");
+            let allowed = format!("{first}, or everything in {crs}");
+            self.fault = Some(Fault::new(field, crs, detail, allowed));
+        }
+    }
+}
+
+impl Draft {
+    /// The plane that the query is in, if anything states it.
+    ///
+    /// # Errors
+    /// A fault of the first field that states another plane than those before.
+    pub(super) fn plane(&self, sets: &[Set], stated: Option<&Crs>) -> Checked<Option<Crs>> {
+        let mut seen = Seen::default();
+        let regions = self.layers.iter().flatten().map(LayerDraft::given_region);
+        let regions = [self.region.as_ref().ok().and_then(Option::as_ref)]
+            .into_iter()
+            .chain(regions);
+        for region in regions.flatten() {
+            RegionDraft::each_plane(region, &mut |field, crs| seen.add(field, crs));
+        }
+        for set in sets {
+            let layer = match set.name.as_str() {
+                "" => String::new(),
+                name => format!("layer {name}: "),
+            };
+            let fields = set.fields().map(|field| ("field", field));
+            let terrain = set
+                .terrain
+                .iter()
+                .map(|terrain| ("terrain", &terrain.field));
+            for (member, field) in fields.chain(terrain) {
+                if let Some(code) = field.epsg {
+                    seen.add(&format!("{layer}{member}"), &Crs::epsg(code));
+                }
+            }
+        }
+        if let Some(crs) = stated {
+            seen.add(CRS.name, crs);
+        }
+        match seen.fault {
+            Some(fault) => Err(fault.into()),
+            None => Ok(seen.first.map(|(_, crs)| crs)),
+        }
+    }
+}
