@@ -112,6 +112,10 @@ class SpaceQuery(Volumes, total=False):
 ABOUT_MORE = {
     "chunk": "size, column, row of a square of the world grid; coordinates are relative to its corner.",
     "region": "Any region as JSON has it, with ``include`` and ``exclude``.",
+    "features": (
+        'Each feature of a collection by itself, as a layer of its name: {"of": gdf.__geo_interface__, "id": "NAME", '
+        '"count": "TREES"} with the properties that hold names and numbers of points.'
+    ),
     "layers": "Several sets at once: a list of dicts with a ``name`` each.",
 }
 #: The meanings of the keywords in space.
