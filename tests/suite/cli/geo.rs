@@ -1,6 +1,6 @@
-//! Reference systems, features and classes: what maps bring along reaches the files of points, and nothing is guessed.
+//! Reference systems: the planes of maps reach the files of points, and nothing is guessed.
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::{fs, path::Path};
 
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use serde_json::{Value, json};
@@ -9,7 +9,7 @@ use super::{output, refused};
 use crate::support::{clients, command::errors};
 
 /// Two municipalities, one of two parts, and one without a place.
-fn municipalities(crs: Option<&str>) -> Value {
+pub(super) fn municipalities(crs: Option<&str>) -> Value {
     let feature = |key: &str, trees: u32, geometry: Value| json!({ "type": "Feature", "properties": { "key": key, "trees": trees }, "geometry": geometry });
     let west = json!([[
         [500_000, 5_300_000],
@@ -44,7 +44,7 @@ fn municipalities(crs: Option<&str>) -> Value {
 }
 
 /// A GeoTIFF of bytes, 10 m to the pixel, with its upper left corner at a place, in a system of EPSG.
-fn geotiff(
+pub(super) fn geotiff(
     file: &Path,
     [width, height]: [u32; 2],
     epsg: u16,
@@ -97,7 +97,7 @@ fn geotiff(
 }
 
 /// The metadata of a GeoParquet file.
-fn geo(file: &Path) -> Value {
+pub(super) fn geo(file: &Path) -> Value {
     let bytes = bytes::Bytes::from(fs::read(file).expect("written"));
     let reader = SerializedFileReader::new(bytes).expect("Parquet");
     let entries = reader
@@ -110,17 +110,6 @@ fn geo(file: &Path) -> Value {
         .find(|entry| entry.key == "geo")
         .and_then(|entry| entry.value.clone());
     serde_json::from_str(&geo.expect("geo")).expect("JSON")
-}
-
-/// The number of points of each layer.
-fn by_layer(csv: &[u8]) -> BTreeMap<String, usize> {
-    let mut counts = BTreeMap::new();
-    for line in std::str::from_utf8(csv).expect("UTF-8").lines().skip(1) {
-        *counts
-            .entry(line.split(',').next().unwrap_or_default().to_owned())
-            .or_default() += 1;
-    }
-    counts
 }
 
 #[test]
@@ -336,146 +325,6 @@ fn rasters_in_another_plane_than_the_region_are_refused() {
         errors(&far).contains("is the region in EPSG:32633"),
         "{}",
         errors(&far)
-    );
-}
-
-#[test]
-fn each_feature_has_its_own_number_of_points() {
-    let map = municipalities(Some("EPSG:25832")).to_string();
-    let sample = |more: &[&str]| {
-        output(
-            &[&["sample", "-q", "--format=csv", "--features=-"], more].concat(),
-            &map,
-        )
-    };
-    let own = by_layer(&sample(&["--feature-id=key", "--feature-count=trees"]));
-    assert_eq!(
-        own,
-        BTreeMap::from([("09162000".into(), 300), ("09184119".into(), 45)])
-    );
-    let each = by_layer(&sample(&["--count=12"]));
-    assert_eq!(each, BTreeMap::from([("0".into(), 12), ("1".into(), 12)]));
-    // At one spacing the points are those of one region.
-    let rows = |csv: Vec<u8>, from: usize| {
-        let text = String::from_utf8(csv).expect("UTF-8");
-        let rows = text.lines().skip(1);
-        let mut rows: Vec<String> = rows
-            .map(|row| {
-                row.splitn(from + 1, ',')
-                    .last()
-                    .unwrap_or_default()
-                    .to_owned()
-            })
-            .collect();
-        rows.sort();
-        rows
-    };
-    let whole = output(
-        &["sample", "-q", "--format=csv", "--region=-", "--spacing=30"],
-        &map,
-    );
-    assert_eq!(rows(sample(&["--spacing=30"]), 1), rows(whole, 0));
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("map.json").display().to_string();
-    fs::write(&file, &map).expect("writable");
-    for (flags, words) in [
-        (
-            &["--feature-id=name", "--count=1"][..],
-            "features[0].properties.name",
-        ),
-        (&["--feature-count=key"], "is no number of points"),
-        (
-            &["--feature-count=trees", "--count=1"],
-            "--count beside --feature-count trees",
-        ),
-        (&["--count=1", "--bbox=0,0,1,1"], "a query has one region"),
-        (&["--count=1", "--space"], "is flat"),
-    ] {
-        let message = refused(&[&["sample", "--features", &file], flags].concat(), 2);
-        assert!(message.contains(words), "{message}");
-    }
-}
-
-#[test]
-fn each_class_of_a_raster_has_its_own_number_of_points() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = |name: &str| folder.path().join(name).display().to_string();
-    let class = |column: u32, row: u32| match (column, row) {
-        (..40, _) => 3,
-        (_, ..50) => 4,
-        _ => 12,
-    };
-    geotiff(
-        &folder.path().join("cover.tif"),
-        [100, 100],
-        25832,
-        [5e5, 5_301_000.0],
-        class,
-    );
-    let cover = path("cover.tif");
-    let sample = |classes: &str, more: &[&str]| {
-        output(
-            &[
-                &[
-                    "sample",
-                    "-q",
-                    "--format=csv",
-                    "--strata",
-                    &cover,
-                    "--classes",
-                    classes,
-                ],
-                more,
-            ]
-            .concat(),
-            "",
-        )
-    };
-    let csv = sample("3=120,4=30,12=7", &[]);
-    assert_eq!(
-        by_layer(&csv),
-        BTreeMap::from([("3".into(), 120), ("4".into(), 30), ("12".into(), 7)])
-    );
-    for line in std::str::from_utf8(&csv).expect("UTF-8").lines().skip(1) {
-        let fields: Vec<&str> = line.split(',').collect();
-        let [x, y] = [2, 3].map(|i| fields[i].parse::<f64>().expect("a number"));
-        let pixel = [(x - 5e5) / 10.0, (5_301_000.0 - y) / 10.0].map(|v| v as u32);
-        assert_eq!(class(pixel[0], pixel[1]).to_string(), fields[0], "{line}");
-    }
-    let even = by_layer(&sample("3,12", &["--spacing=20"]));
-    assert!(
-        even["3"].abs_diff(1000) < 60 && even["12"].abs_diff(750) < 60,
-        "{even:?}"
-    );
-    let file = path("x.parquet");
-    let sample = [
-        "sample",
-        "-q",
-        "--strata",
-        &cover,
-        "--classes=4=5",
-        "-o",
-        &file,
-    ];
-    output(&sample, "");
-    assert_eq!(
-        geo(Path::new(&file))["columns"]["geometry"]["crs"]["id"]["code"],
-        25832
-    );
-    for (classes, words) in [
-        ("3=x", "has no number of points"),
-        ("3,3", "twice"),
-        ("3=1,4", "some have none"),
-        ("a", "no class"),
-    ] {
-        let message = refused(&["sample", "--strata", &cover, "--classes", classes], 2);
-        assert!(message.contains(words), "{message}");
-    }
-    // There are no points to be had in a class that is not there.
-    let message = refused(&["sample", "--strata", &cover, "--classes=9=5"], 2);
-    assert!(
-        message.contains("class 9.count 5: no point is left here"),
-        "{message}"
     );
 }
 

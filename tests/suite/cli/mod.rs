@@ -5,6 +5,7 @@
 mod completions;
 mod config;
 mod export;
+mod features;
 mod fields;
 mod forge;
 mod full_disk;

@@ -33,10 +33,13 @@ impl Allowance<'_> {
 
 static NEVER: Stop = Stop::NEVER;
 
+/// A loaded field, and the code of EPSG of its plane.
+pub type Known = (FieldSpec, Option<u16>);
+
 /// Where names and files of documents lead.
 pub struct Sources<'a> {
     /// The field of a name, with the code of EPSG of its plane.
-    pub named: &'a dyn Fn(&str) -> Option<(FieldSpec, Option<u16>)>,
+    pub named: &'a dyn Fn(&str) -> Option<Known>,
     /// The names that there are, for faults.
     pub names: &'a dyn Fn() -> String,
     /// Reads files; `None` where documents may not name any.
