@@ -85,11 +85,12 @@ fn keyword(parameter: &Parameter) -> String {
 /// The entry of a parameter among the texts: its keyword, and its paragraph as a text of several lines.
 fn about(parameter: &Parameter) -> String {
     let paragraph = words::paragraph(parameter, "`strew.raster`");
-    let lines: String = words::wrapped(&paragraph, "        ")
-        .lines()
-        .map(|line| format!("        {:?}\n", format!("{} ", line.trim())))
-        .collect();
-    format!("    {:?}: (\n{lines}    ),\n", keyword(parameter))
+    let mut text = format!("    {:?}: (\n", keyword(parameter));
+    for line in words::wrapped(&paragraph, "        ").lines() {
+        let line = format!("{} ", line.trim());
+        text += &format!("        {line:?}\n");
+    }
+    text + "    ),\n"
 }
 
 /// The type of a parameter's values.
