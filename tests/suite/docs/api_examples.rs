@@ -270,6 +270,13 @@ fn the_page_on_operations_begins_with_what_it_prints() {
 }
 
 #[test]
+fn the_page_for_gis_shows_what_its_examples_print_and_draw() {
+    let folder = tempfile::tempdir().expect("a folder");
+    check_in("docs/gis.md", folder.path(), &Daemon::built_in());
+    compare(folder.path(), "trades", &["districts.png"]);
+}
+
+#[test]
 fn the_page_for_rendering_shows_what_its_examples_print_and_draw() {
     let folder = tempfile::tempdir().expect("a folder");
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
