@@ -277,8 +277,9 @@ ABOUT = {
         "that expect rows of one kind read the answer. Default: on. "
     ),
     "crs": (
-        "The coordinate reference system of the plane, for geojson, geojsonseq and Parquet: by default readers of GeoJSON "
-        "take coordinates for degrees. Coordinates do not change. Allowed: an authority and a code joined by a colon, "
-        "such as EPSG:3857, EPSG:32633 or OGC:CRS84. Default: none. "
+        "The coordinate reference system of the plane, for geojson and Parquet: by default that of the region and of "
+        "GeoTIFFs; another one is refused, since coordinates do not change. Without one readers of GeoJSON take "
+        "coordinates for degrees. Allowed: an authority and a code joined by a colon, such as EPSG:3857, EPSG:32633 or "
+        "OGC:CRS84. Default: none. "
     ),
 }
