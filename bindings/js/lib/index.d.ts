@@ -35,6 +35,8 @@ export interface Layer extends Omit<Parameters, "periodic" | "world" | "world_di
 export interface Query extends Shapes, Parameters, Form {
     /** Several sets at once. */
     layers?: readonly Layer[];
+    /** Each feature of a collection as a layer of its own, with the properties that hold its name and its number of points. */
+    features?: { of: object; id?: string; count?: string };
 }
 
 /** The regions of space that are keywords. */
