@@ -20,7 +20,7 @@ def pyarrow():
         bounds.append((columns["y"].statistics.min, columns["y"].statistics.max))
     assert len(bounds) > 3
     here = pyarrow.dataset.field("y") < 50
-    fragments = list(pyarrow.dataset.dataset(path, filters=None).get_fragments(here))
+    fragments = list(pyarrow.dataset.dataset(path).get_fragments(here))
     [fragment] = [fragment.subset(here) for fragment in fragments]
     assert len(fragment.row_groups) == sum(low < 50 for low, _ in bounds) < len(bounds)
 
