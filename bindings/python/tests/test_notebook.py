@@ -32,7 +32,7 @@ def test_the_page_for_python_is_true(tmp_path: Path, monkeypatch: pytest.MonkeyP
     docs = FOLDER.parents[1] / "docs"
     monkeypatch.chdir(tmp_path)
     result = doctest.testfile(str(docs / "python.md"), module_relative=False)
-    assert result.attempted > 10 and not result.failed
+    assert result.attempted >= 10 and not result.failed
     kept = (docs / "pictures/trades/ramp.png").read_bytes()
     assert (tmp_path / "ramp.png").read_bytes() == kept
 
