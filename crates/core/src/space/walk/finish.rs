@@ -1,5 +1,7 @@
 //! The end of a batch: its points go through the warp, and those outside are left out.
 
+use alloc::vec::Vec;
+
 use super::{PATCH_BITS, Walk, relative, world};
 use crate::{
     sample::space::{GROUP, PLANES, compiled, retain_parts, warp_groups, warp_lists},
