@@ -63,6 +63,10 @@ js:
 bundlers *names:
     node bindings/js/test/bundlers.mjs {{names}}
 
+# The types of the pages' modules, by TypeScript.
+types:
+    .ci/page
+
 # The tests of the pages in Firefox (firefox-esr and geckodriver) instead of Chromium.
 firefox:
     STREW_TEST_BROWSER=firefox cargo test --locked --test suite -- page:: --test-threads 1
