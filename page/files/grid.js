@@ -3,7 +3,7 @@
 import { distance, place, toNumber } from "./place.js";
 
 /** More points than this are not drawn at once: beyond, the points of lowest rank stand for all. */
-export const MOST_POINTS = 1_000_000;
+const MOST_POINTS = 1_000_000;
 /** The number of chunks in a view, about. */
 const CHUNKS = 20;
 /** No chunk is smaller than this number of spacings: a thousand points take as long to come as ten. */

@@ -62,7 +62,7 @@ function numberOr(text) {
 }
 
 /** The name of a layer in requests, by its index. */
-export function layerName(i) {
+function layerName(i) {
   return `layer${i + 1}`;
 }
 

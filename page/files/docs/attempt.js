@@ -100,7 +100,7 @@ export function attempt(path, method, operation, api) {
 }
 
 /** A button that copies a text. */
-export function copy(text) {
+function copy(text) {
   const button = make("button", { type: "button", "aria-label": "Copy the command" }, "Copy");
   button.addEventListener("click", async () => {
     try {
