@@ -1,9 +1,10 @@
 // The choices on the page, kept in step with the address and with the server's resolved values.
 
 import { askJson } from "./api.js";
-import { joined, setOf, togetherBody } from "./query.js";
-import { fromHash, toHash } from "./state.js";
+import { joined, setOf, togetherBody, worldIn } from "./query.js";
+import { LAYER, fromHash, toHash } from "./state.js";
 import { settled } from "./dom.js";
+import { layersOfWorld } from "./worlds.js";
 
 /** One choice at a time; `listeners` hear what has changed: `layers`, `picked`, `view`, `tab`, `works`. */
 export class Session {
@@ -84,7 +85,7 @@ export class Session {
 
   /** The fault of layers together: `{ layer, error }`, or nothing. */
   async understandTogether(layers) {
-    if (layers.length === 1 || layers.every((layer) => !layer.clear.trim())) return null;
+    if (layers.length === 1 || worldIn(layers) || layers.every((layer) => !layer.clear.trim())) return null;
     try {
       await askJson("/v1/count", { body: togetherBody(layers) });
       return null;
@@ -94,8 +95,24 @@ export class Session {
     }
   }
 
+  /** Sees that the layers are those of the world that was chosen, or of none. */
+  async settleWorld() {
+    const { world, worldSeed, layers } = this.state;
+    const held = worldIn(layers);
+    if ((held?.name ?? "") === world && (held?.seed ?? "") === (world && worldSeed)) return;
+    const settled = world ? await layersOfWorld(world, worldSeed) : [{ ...LAYER }];
+    if (this.state.world === world && this.state.worldSeed === worldSeed) this.state.layers = settled;
+  }
+
+  /** Leaves the world that is shown, if one is, for a layer of its own. */
+  leaveWorld() {
+    if (!this.state.world) return;
+    Object.assign(this.state, { world: "", worldSeed: "", layers: [{ ...LAYER }] });
+  }
+
   /** The server's understanding of a layer: `{ spacing, density, least_distance, … }`. */
   understand(layer) {
+    if (layer.world) return layer.understood;
     const query = joined(setOf(layer));
     const known = this.understood.get(query);
     if (known) return known;

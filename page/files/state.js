@@ -6,8 +6,14 @@ import { decimalsFor, formatPlace, parsePlace, place } from "./place.js";
 /** The amounts that an unbounded plane can have, by the names that requests use. */
 export const AMOUNTS = ["spacing", "density", "min_distance"];
 
-/** Colors by number, as Okabe and Ito chose them; the first is the ink of the theme. */
-export const COLOR_NAMES = ["ink", "blue", "vermilion", "green", "orange", "sky", "purple", "yellow"];
+/** How kinds can be spread; no word for points of one kind. */
+export const SPREADS = ["", "chance", "even", "joint"];
+
+/** Colors by number: the ink of the theme, seven that Okabe and Ito chose, and three of woods. */
+export const COLOR_NAMES = ["ink", "blue", "vermilion", "green", "orange", "sky", "purple", "yellow", "stone", "leaf", "moss"];
+
+/** The number of colors that kinds go through from the first on; those of woods go to the end. */
+export const KIND_COLORS = 8;
 
 /** A layer before anything is chosen. */
 export const LAYER = Object.freeze({
@@ -21,7 +27,9 @@ export const LAYER = Object.freeze({
   settle: "",
   field: "",
   paint: "",
-  shade: true,
+  lod: "",
+  shade: false,
+  paper: false,
   color: 0,
   dot: 1,
   angle: false,
@@ -29,6 +37,7 @@ export const LAYER = Object.freeze({
   range: "0.5,1.5",
   variant: false,
   variants: "oak:3,birch:1,pine:2",
+  spread: "",
   clear: "",
 });
 
@@ -56,7 +65,9 @@ const KEYS = {
   settle: "settle",
   field: "field",
   paint: "paint",
+  lod: "lod",
   shade: "shade",
+  paper: "paper",
   color: "color",
   dot: "dot",
   angle: "angle",
@@ -64,6 +75,7 @@ const KEYS = {
   range: "range",
   variant: "variant",
   variants: "variants",
+  spread: "spread",
   clear: "clear",
 };
 
@@ -73,12 +85,15 @@ export const MOST_PAINT = 4000;
 /** The most layers that the page offers. */
 export const MOST_LAYERS = 6;
 
-/** The view of a visitor who comes without a link: some 900 points. */
+/** The view of a visitor who comes without a link: some 900 points, more in a large window. */
 export function initial() {
+  const enlarged = Math.max(1, Math.min(globalThis.innerWidth, globalThis.innerHeight) / 900);
   return {
     x: place(0),
     y: place(0),
-    span: 30,
+    span: Math.round(30 * enlarged),
+    world: "",
+    worldSeed: "",
     layers: [{ ...LAYER }],
     tab: "start",
     works: { ...WORKS },
@@ -98,6 +113,8 @@ export function fromHash(hash) {
   if (["start", "choose", "understand", "take", "gallery", "works"].includes(given.get("tab"))) state.tab = given.get("tab");
   if (["2d", "webgl2"].includes(given.get("renderer"))) state.renderer = given.get("renderer");
   state.works = worksFrom(given);
+  if (/^[\w.-]{1,64}$/.test(given.get("world") ?? "")) state.world = given.get("world");
+  if (/^\d{1,20}$/.test(given.get("world.seed") ?? "")) state.worldSeed = given.get("world.seed");
   const layers = Math.min(MOST_LAYERS, Math.max(1, Number(given.get("layers")) || 1));
   state.layers = Array.from({ length: layers }, (_, i) => layerFrom(given, i));
   return state;
@@ -135,6 +152,8 @@ function layerFrom(given, i) {
     } else layer[member] = text;
   }
   if (!AMOUNTS.includes(layer.by)) layer.by = LAYER.by;
+  if (!SPREADS.includes(layer.spread)) layer.spread = LAYER.spread;
+  if (!(Number(layer.lod) > 0 && Number(layer.lod) < 1)) layer.lod = LAYER.lod;
   layer.color = Math.abs(Math.trunc(layer.color)) % COLOR_NAMES.length;
   layer.dot = Math.min(4, Math.max(0.25, layer.dot));
   return layer;
@@ -152,8 +171,12 @@ export function toHash(state) {
     ["at", `${formatPlace(state.x, decimals)},${formatPlace(state.y, decimals)}`],
     ["span", String(Number(state.span.toPrecision(8)))],
   ];
-  if (state.layers.length > 1) said.push(["layers", String(state.layers.length)]);
-  state.layers.forEach((layer, i) => {
+  if (state.world) said.push(["world", state.world]);
+  if (state.world && state.worldSeed) said.push(["world.seed", state.worldSeed]);
+  // The layers of a world are the server's.
+  const layers = state.world ? [] : state.layers;
+  if (layers.length > 1) said.push(["layers", String(layers.length)]);
+  layers.forEach((layer, i) => {
     for (const [member, key] of Object.entries(KEYS)) {
       const standard = member === "color" ? i : LAYER[member];
       const must = member === "profile" || member === "amount" || member === "seed";
