@@ -11,7 +11,7 @@ import { Kinds } from "./kinds.js";
 
 const AMOUNT_WORDS = { spacing: "Spacing", density: "Density", min_distance: "Minimum distance" };
 const WARP_WORDS = { "": "Set by the seed", off: "Off", on: "On", 0.5: "Half as strong", 1.5: "Stronger", 2: "Strongest" };
-const SETTLE_WORDS = { "": "As usual", 0: "Off", 1: "One step", 2: "Two steps", 3: "Three steps", 4: "Four steps" };
+const SETTLE_WORDS = { "": "Default", 0: "Off", 1: "One step", 2: "Two steps", 3: "Three steps", 4: "Four steps" };
 const DIE = "M5 3h14a2 2 0 0 1 2 2v14a2 2 0 0 1-2 2H5a2 2 0 0 1-2-2V5a2 2 0 0 1 2-2zM8.5 8.5h.01M15.5 8.5h.01M12 12h.01M8.5 15.5h.01M15.5 15.5h.01";
 /** The slider of the amount reaches this many doublings to each side. */
 const DOUBLINGS = 3;
@@ -124,7 +124,7 @@ export class Controls {
       this.root.querySelector("#amount").value = layer.amount;
     };
     const slider = make("input", {
-      type: "range", id: "amount-slider", step: "any", "aria-label": "Less or more of it", oninput: slide,
+      type: "range", id: "amount-slider", step: "any", "aria-label": "Amount", oninput: slide,
       onchange: () => {
         this.holds = false;
         this.session.release();
@@ -155,7 +155,7 @@ export class Controls {
       field("Warp", "warp", select("warp", (warp) => this.change({ warp })),
         make("p", { class: "note" }, "The warp bends the pattern a little, so that no direction is special.")),
       field("Settling", "settle", select("settle", (settle) => this.change({ settle })),
-        make("p", { class: "note" }, "Points that a field leaves take small steps, two as usual, until they are even. Where all points stay, one step moves the nearest apart.")));
+        make("p", { class: "note" }, "In a field, points take small steps, two by default, until they lie evenly. Without a field, one step moves the closest pairs apart.")));
   }
 
   /** The amount in other terms, as the server has said it. */
@@ -176,7 +176,7 @@ export class Controls {
       field("Field", "field", select("field", (value) => this.change({ field: value, paint: "" }))),
       this.shade, file,
       make("button", { type: "button", id: "choose-picture", onclick: () => file.click() }, "Stipple a picture …"),
-      make("p", { class: "note" }, "Or drop one on the plane: dots lie where it is dark."));
+      make("p", { class: "note" }, "Or drop one on the plane: dots gather where it is dark."));
   }
 
   shown() {
@@ -254,7 +254,7 @@ export class Controls {
       const button = this.bar.children[i];
       button.setAttribute("aria-pressed", String(i === this.picked));
       button.firstElementChild.className = `swatch-${layer.color}`;
-      button.lastElementChild.textContent = `${i + 1} ${layer.profile}`;
+      button.lastElementChild.textContent = `${i + 1} ${layer.profile}${layer.lod ? `, 1 in ${Math.round(1 / layer.lod)}` : ""}`;
     });
   }
 

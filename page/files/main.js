@@ -257,7 +257,7 @@ function goBack(spacing) {
   const isOnPlane = plane.span && !isTooFar(plane.view, spacing);
   const [to, name] = isOnPlane ? [plane.view, "the place before"] : [{ x: place(0), y: place(0) }, "the origin"];
   session.correct((state) => Object.assign(state, { x: to.x, y: to.y }));
-  notice = `${words} is too far out: at this spacing numbers tell points apart up to ${spoken(farthest(spacing), 3)} from the origin. You see ${name}.`;
+  notice = `${words} is too far out: at this spacing, coordinates tell points apart only up to ${spoken(farthest(spacing), 3)} from the origin. Here is ${name} instead.`;
 }
 
 function jump(event) {
@@ -266,13 +266,13 @@ function jump(event) {
   const [x, y] = field.value.split(/[,;]|\s+/).filter(Boolean).map(parsePlace);
   field.setAttribute("aria-invalid", String(!x || !y));
   if (!x || !y) {
-    banner(`“${field.value}” is no place: two numbers are needed, such as 1e12, -3.5.`, [["Close", () => banner(null)]]);
+    banner(`“${field.value}” is not a place. Type two numbers, such as 1e12, -3.5.`, [["Close", () => banner(null)]]);
     return;
   }
   if (plane.isTooFar({ x, y })) {
     field.setAttribute("aria-invalid", "true");
     const most = spoken(farthest(plane.look.spacing), 3);
-    banner(`“${field.value}” is too far out: at this spacing numbers tell points apart up to ${most} from the origin.`, [["Close", () => banner(null)]]);
+    banner(`“${field.value}” is too far out: at this spacing, coordinates tell points apart only up to ${most} from the origin.`, [["Close", () => banner(null)]]);
     return;
   }
   banner(null);
@@ -297,7 +297,7 @@ function tools() {
   byId("home").addEventListener("click", () => {
     byId("jump-at").value = "";
     byId("jump-at").removeAttribute("aria-invalid");
-    session.choose((state) => Object.assign(state, { x: place(0), y: place(0), span: 30 * (plane.look?.spacing ?? 1) }), "view");
+    session.choose((state) => Object.assign(state, { x: place(0), y: place(0), span: initial().span * (plane.look?.spacing ?? 1) }), "view");
   });
   byId("brand").addEventListener("click", (event) => {
     event.preventDefault();
@@ -318,7 +318,7 @@ async function share() {
   try {
     await navigator.clipboard.writeText(location.href);
   } catch {
-    words = "The link is in the address bar of your browser: this page may not copy it.";
+    words = "The link is in the address bar of your browser: the browser does not let this page copy it.";
   }
   byId("said").textContent = words;
   byId("share").title = words;
@@ -387,7 +387,7 @@ function settle(profiles) {
   const missing = [...new Set(session.state.layers.map((layer) => layer.profile).filter((name) => !names.includes(name)))];
   if (missing.length === 0) return;
   const wasChosen = missing.some((name) => name !== LAYER.profile);
-  if (wasChosen) notice = `This server has no profile “${missing.join("”, “")}”. You see “${standard}” in its place.`;
+  if (wasChosen) notice = `This server has no profile “${missing.join("”, “")}”. Here is “${standard}” instead.`;
   session.correct((state) => {
     for (const layer of state.layers) {
       if (missing.includes(layer.profile)) Object.assign(layer, { profile: standard, alpha: "", map: "" });
@@ -398,7 +398,7 @@ function settle(profiles) {
 /** A server that wants keys is given one. */
 function askForKey() {
   if (byId("key")) return;
-  banner("This server answers only those who have a key. It stays in this tab.");
+  banner("This server needs a key. It is kept in this tab only.");
   byId("banner").lastElementChild.replaceWith(keyForm(() => {
     banner(null);
     if (controls) refresh();

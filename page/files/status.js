@@ -85,8 +85,8 @@ export class Status {
       if (error) return "Not counted";
       if (this.plane.isGray) return `${counted(this.all)} in view, too many to draw: gray shows how dense they are`;
       if (keep < 1) {
-        return `${counted(this.all)} in view, too many to draw: the ${counted(this.count)} of lowest rank `
-          + `stand for them, one in ${Math.round(1 / keep).toLocaleString("en")}`;
+        const rest = Math.round(1 / keep).toLocaleString("en");
+        return `${counted(this.all)} in view, too many to draw; shown: one in ${rest}, those of lowest rank`;
       }
       if (this.count === 0 && this.plane.span < 4 * this.plane.look.spacing) {
         return `No points in view: they are about ${spoken(this.plane.look.spacing, 2)} apart, zoom out`;

@@ -42,7 +42,7 @@ export class Take {
       make("div", { class: "field" }, this.amount, this.size, this.thinLine),
       make("div", { class: "field" }, make("label", { for: "format" }, "Format"), this.formats),
       this.button, this.bar,
-      make("div", { class: "group" }, make("span", { class: "label" }, "Or ask for exactly these points yourself"),
+      make("div", { class: "group" }, make("span", { class: "label" }, "Or request exactly these points yourself"),
         this.ways, make("pre", { tabindex: "0", "aria-label": "The request" }, this.text), this.copyButton, this.what),
     );
   }
