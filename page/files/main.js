@@ -33,6 +33,7 @@ const root = document.documentElement;
 const isFirst = location.hash.length < 2;
 const session = new Session();
 
+/** @type {import("./part.js").Part[]} */
 const parts = [];
 const plane = new Plane(byId("plane"), session.state.renderer, {
   moved: () => {
@@ -42,7 +43,7 @@ const plane = new Plane(byId("plane"), session.state.renderer, {
     loading();
     status.moved();
     if (plane.chunks.refused && isUnderstood) again();
-    for (const part of parts) part.moved?.();
+    for (const part of parts) part.moved();
   },
   progress: (share) => {
     const bar = byId("progress");
@@ -112,7 +113,7 @@ const status = new Status(session, plane);
 const pour = new Pour(plane);
 root.dataset.renderer = plane.painter.name;
 const rested = settled(250, () => {
-  for (const part of parts) part.rested?.();
+  for (const part of parts) part.rested();
   if (session.state.layers.length > 1) controls?.counted(countsInView());
 });
 
@@ -247,7 +248,7 @@ function show(layers, understood, isChosen) {
   const { x, y, span } = session.state;
   plane.lookAt(x, y, span);
   plane.chunks.retry();
-  for (const part of parts) part.shown?.(layers, understood);
+  for (const part of parts) part.shown(layers, understood);
 }
 
 /** From where there are no points to the place that was looked at before, or to the origin. */
@@ -307,7 +308,7 @@ function tools() {
   byId("fold").addEventListener("click", () => fold(byId("fold").getAttribute("aria-expanded") === "true"));
   watchTheme(byId("theme"), () => {
     if (plane.look) plane.show({ ...plane.look, ...palette(plane.look.layers) });
-    for (const part of parts) part.themed?.();
+    for (const part of parts) part.themed();
   });
 }
 
@@ -351,11 +352,11 @@ tools();
 skipLinks();
 takeDrops(byId("stage"), stipple);
 const tabs = new Tabs(session, fold, (tab) => {
-  for (const part of parts) part.opened?.(tab);
+  for (const part of parts) part.opened(tab);
 });
 moveBy(byId("plane"), plane, {
-  tapped: (at) => parts.forEach((part) => part.tapped?.(at)),
-  hovered: (at) => parts.forEach((part) => part.hovered?.(at)),
+  tapped: (at) => parts.forEach((part) => part.tapped(at)),
+  hovered: (at) => parts.forEach((part) => part.hovered(at)),
 });
 session.on((changed) => {
   if (changed.has("layers")) settle(tables);

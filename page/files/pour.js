@@ -3,6 +3,7 @@
 
 import { byId } from "./dom.js";
 import { sizesOf } from "./marks.js";
+import { Part } from "./part.js";
 
 /** Milliseconds for which the points stay where chance put them, and until the last of them is in place. */
 const [HELD, POURED] = [500, 2000];
@@ -27,8 +28,9 @@ function chance(chunk, k, salt) {
 const eased = (t) => t * t * (3 - 2 * t);
 
 /** One pouring of the points of a plane: it begins with `begin` and ends by itself, or by `end`. */
-export class Pour {
+export class Pour extends Part {
   constructor(plane) {
+    super();
     this.plane = plane;
     this.canvas = byId("pour");
     this.caption = byId("caption");

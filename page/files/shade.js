@@ -4,6 +4,7 @@
 import { ask } from "./api.js";
 import { byId } from "./dom.js";
 import { chunksOf, cornerFrom } from "./grid.js";
+import { Part } from "./part.js";
 import { GRAY } from "./sheets.js";
 import { themeColor } from "./theme.js";
 
@@ -14,8 +15,9 @@ const MOST = 200;
 /** How dark the ground becomes where the field is 1. */
 const STRENGTH = 0.28;
 
-export class Shade {
+export class Shade extends Part {
   constructor(plane) {
+    super();
     this.plane = plane;
     this.canvas = byId("shade");
     this.field = "";

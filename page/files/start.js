@@ -7,6 +7,7 @@ import { runsOf } from "./chunks.js";
 import { byId } from "./dom.js";
 import { measure } from "./measure.js";
 import { json } from "./digits.js";
+import { Part } from "./part.js";
 import { bodyOf, columnsOf, joined, setOf } from "./query.js";
 import { drawGrove, grove } from "./horizon.js";
 import { isColored, tonesOf } from "./marks.js";
@@ -79,9 +80,10 @@ async function strewn(seed) {
 
 const KINDS = [["white", whiteNoise], ["jitter", jitteredGrid], ["strew", strewn]];
 
-export class Start {
+export class Start extends Part {
   /** `opened()` is called when the plane alone is to be seen. */
   constructor(session, opened) {
+    super();
     Object.assign(this, { session, shows: opened, seed: 1, isFilled: false });
     this.trio = KINDS.map(([id]) => ({ id, canvas: byId(`kind-${id}`) }));
     this.views = VIEWS.map((view) => this.view(view));
