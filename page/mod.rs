@@ -5,6 +5,7 @@
 
 mod joined;
 
+use bytes::Bytes;
 use include_dir::{Dir, include_dir};
 use strew::rest::{Page, Pages};
 
@@ -79,6 +80,7 @@ pub fn all() -> Pages {
         .iter()
         .filter(|(name, _)| !name.ends_with(".html"))
         .map(|&(name, text)| (name.to_owned(), text.into()))
+        .chain(pictures(&FILES))
         .collect();
     let mut pages = vec![];
     for &(path, id, summary, about, file) in PAGES {
@@ -109,6 +111,16 @@ fn files(folder: &'static Dir<'_>) -> Vec<(&'static str, &'static str)> {
     let named = own.filter_map(|file| Some((file.path().to_str()?, file.contents_utf8()?)));
     let below = folder.dirs().flat_map(files);
     named.chain(below).collect()
+}
+
+/// The pictures in a folder and in those below it, which no page is joined from.
+fn pictures(folder: &'static Dir<'_>) -> Vec<(String, Bytes)> {
+    let own = folder.files().filter(|file| file.contents_utf8().is_none());
+    let named = own.filter_map(|file| {
+        let name = file.path().to_str()?;
+        Some((name.to_owned(), Bytes::from_static(file.contents())))
+    });
+    named.chain(folder.dirs().flat_map(pictures)).collect()
 }
 
 fn text_of(files: &[(&str, &'static str)], name: &str) -> &'static str {

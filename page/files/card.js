@@ -2,6 +2,7 @@
 
 import { askJson } from "./api.js";
 import { byId, make, settled, spoken } from "./dom.js";
+import { Part } from "./part.js";
 import { decimalsFor, distance, formatPlace, parsePlace } from "./place.js";
 import { attributesOf, joined, setOf } from "./query.js";
 import { themeColor } from "./theme.js";
@@ -14,8 +15,9 @@ const NEIGHBORS = 8;
 const RING = 14;
 const EDGE = 10;
 
-export class Card {
+export class Card extends Part {
   constructor(session, plane) {
+    super();
     this.session = session;
     this.plane = plane;
     this.element = byId("card");

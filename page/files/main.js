@@ -27,6 +27,7 @@ import { Works } from "./works/works.js";
 const root = document.documentElement;
 const session = new Session();
 
+/** @type {import("./part.js").Part[]} */
 const parts = [];
 const plane = new Plane(byId("plane"), session.state.renderer, {
   moved: () => {
@@ -35,7 +36,7 @@ const plane = new Plane(byId("plane"), session.state.renderer, {
     session.viewed(plane.view, plane.span);
     root.dataset.state = "loading";
     status.moved();
-    for (const part of parts) part.moved?.();
+    for (const part of parts) part.moved();
   },
   progress: (share) => {
     const bar = byId("progress");
@@ -43,7 +44,6 @@ const plane = new Plane(byId("plane"), session.state.renderer, {
     if (share > 0 && plane.chunks.wanted.length > 0) shownFirst();
     bar.setAttribute("aria-valuenow", String(Math.round(share * 100)));
     bar.firstElementChild.style.transform = `scaleX(${share})`;
-    for (const part of parts) part.painted?.();
   },
   settled: () => {
     if (root.dataset.state === "loading" && isUnderstood) root.dataset.state = "ready";
@@ -72,7 +72,7 @@ function shownFirst() {
 const status = new Status(session, plane);
 root.dataset.renderer = plane.painter.name;
 const rested = settled(250, () => {
-  for (const part of parts) part.rested?.();
+  for (const part of parts) part.rested();
   if (session.state.layers.length > 1) controls?.counted(countsInView());
 });
 
@@ -176,7 +176,7 @@ function show(layers, understood, isChosen) {
   const { x, y, span } = session.state;
   plane.lookAt(x, y, span);
   plane.chunks.retry();
-  for (const part of parts) part.shown?.(layers, understood);
+  for (const part of parts) part.shown(layers, understood);
 }
 
 /** From where there are no points to the place that was looked at before, or to the origin. */
@@ -236,7 +236,7 @@ function tools() {
   byId("fold").addEventListener("click", () => fold(byId("fold").getAttribute("aria-expanded") === "true"));
   watchTheme(byId("theme"), () => {
     if (plane.look) plane.show({ ...plane.look, ...palette() });
-    for (const part of parts) part.themed?.();
+    for (const part of parts) part.themed();
   });
 }
 
@@ -301,7 +301,7 @@ function showTab() {
   }
   byId("gallery-help").hidden = tab !== "gallery";
   byId("works-help").hidden = tab !== "works";
-  for (const part of parts) part.opened?.(tab);
+  for (const part of parts) part.opened(tab);
 }
 
 let controls = null;
@@ -324,8 +324,8 @@ takeDrops(byId("stage"), stipple);
 tabs();
 showTab();
 moveBy(byId("plane"), plane, {
-  tapped: (at) => parts.forEach((part) => part.tapped?.(at)),
-  hovered: (at) => parts.forEach((part) => part.hovered?.(at)),
+  tapped: (at) => parts.forEach((part) => part.tapped(at)),
+  hovered: (at) => parts.forEach((part) => part.hovered(at)),
 });
 session.on((changed) => {
   if (changed.has("layers")) settle(tables);

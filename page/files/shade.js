@@ -3,6 +3,7 @@
 import { ask } from "./api.js";
 import { byId } from "./dom.js";
 import { chunksOf, cornerFrom } from "./grid.js";
+import { Part } from "./part.js";
 import { themeColor } from "./theme.js";
 
 /** The width of a tile in CSS pixels, about. */
@@ -12,8 +13,9 @@ const MOST = 200;
 /** How dark the ground becomes where the field is 1. */
 const STRENGTH = 0.28;
 
-export class Shade {
+export class Shade extends Part {
   constructor(plane) {
+    super();
     this.plane = plane;
     this.canvas = byId("shade");
     this.field = "";

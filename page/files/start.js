@@ -6,6 +6,7 @@ import { runsOf } from "./chunks.js";
 import { byId, make } from "./dom.js";
 import { measure } from "./measure.js";
 import { json } from "./digits.js";
+import { Part } from "./part.js";
 import { bodyOf, columnsOf, joined, setOf } from "./query.js";
 import { fromHash } from "./state.js";
 import { palette } from "./theme.js";
@@ -80,8 +81,9 @@ async function strewn(seed) {
 
 const KINDS = [["white", "White noise", whiteNoise], ["jitter", "Jittered grid", jitteredGrid], ["strew", "Strew", strewn]];
 
-export class Start {
+export class Start extends Part {
   constructor(session) {
+    super();
     this.session = session;
     this.seed = 1;
     this.isFilled = false;

@@ -5,13 +5,15 @@ import { FORMATS, curl, grpcurl, python, requestOf } from "./commands.js";
 import { byId, bytes, copy, counted, make, settled } from "./dom.js";
 import { MOST_HELD, save, sizeOf } from "./download.js";
 import { worldOf } from "./paint/world.js";
+import { Part } from "./part.js";
 import { boxOf } from "./query.js";
 import { countIn } from "./status.js";
 
 const WAYS = [["curl", "curl"], ["grpcurl", "grpcurl"], ["python", "Python"], ["url", "URL"], ["world", "World"]];
 
-export class Take {
+export class Take extends Part {
   constructor(session, plane) {
+    super();
     Object.assign(this, { session, plane, way: "curl", format: "csv", isThinned: true });
     this.again = settled(250, () => this.weigh());
     this.what = make("p", { class: "note" });

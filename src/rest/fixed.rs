@@ -31,6 +31,8 @@ struct Inner {
 impl Fixed {
     /// Compresses a document.
     pub(super) fn new(content_type: &'static str, plain: Bytes) -> Self {
+        let is_coded = Coding::is_for(content_type);
+        let codings = if is_coded { &Coding::ALL[..] } else { &[] };
         let coded = |coding| {
             let coded = Encoder::whole(coding, &plain).ok()?;
             Some((coding, coded))
@@ -39,7 +41,7 @@ impl Fixed {
             inner: Arc::new(Inner {
                 content_type,
                 digest: blake3::hash(&plain).to_hex().to_string(),
-                coded: Coding::ALL.into_iter().filter_map(coded).collect(),
+                coded: codings.iter().copied().filter_map(coded).collect(),
                 plain,
             }),
         }

@@ -48,18 +48,22 @@ pub struct Page {
 
 /// The markup before the address of the picture that previews of links to a page show.
 const PREVIEW: &str = "<meta property=\"og:image\" content=\"";
+/// What all lines about that picture have.
+const ABOUT_PREVIEW: [&str; 2] = ["property=\"og:image", "name=\"twitter:card\""];
 
 const HTML: &str = "text/html; charset=utf-8";
 const SCRIPT: &str = "text/javascript";
 const STYLE: &str = "text/css";
-const PICTURE: &str = "image/svg+xml";
+const DRAWING: &str = "image/svg+xml";
+const PICTURE: &str = "image/jpeg";
 
 /// The content type of a part.
 fn content_type(name: &str) -> &'static str {
     match name.rsplit_once('.') {
         Some((_, "js")) => SCRIPT,
         Some((_, "css")) => STYLE,
-        Some((_, "svg")) => PICTURE,
+        Some((_, "svg")) => DRAWING,
+        Some((_, "jpg")) => PICTURE,
         _ => HTML,
     }
 }
@@ -91,9 +95,9 @@ pub(super) fn endpoints(pages: &Pages, public_url: &str) -> Vec<Endpoint> {
 pub(super) fn icon(pages: &Pages) -> Option<Endpoint> {
     let mut parts = pages.parts.iter();
     let (_, content) = parts.find(|(name, _)| name == "icon.svg")?;
-    let icon = Fixed::new(PICTURE, content.clone());
+    let icon = Fixed::new(DRAWING, content.clone());
     let described = ("getIcon", "/favicon.ico", "The icon", "");
-    let operation = operation(described, &[PICTURE], &[], vec![]);
+    let operation = operation(described, &[DRAWING], &[], vec![]);
     Some(Endpoint::only("/favicon.ico", icon, operation, fixed).open())
 }
 
@@ -106,9 +110,21 @@ fn page(page: &Page, public_url: &str) -> Endpoint {
         "</span>"
     );
     let html = page.html.replace("<span id=\"version\"></span>", version);
-    let html = html.replace(PREVIEW, &format!("{PREVIEW}{public_url}"));
+    let html = previewed(&html, public_url);
     let document = Fixed::new(HTML, html.into());
     Endpoint::only(page.path, document, operation, fixed).open()
+}
+
+/// A page whose preview has an absolute address. Readers drop relative ones, and a name that the client sends is none
+/// to vouch for: without a public address the page names no picture.
+fn previewed(html: &str, public_url: &str) -> String {
+    if !public_url.is_empty() {
+        return html.replace(PREVIEW, &format!("{PREVIEW}{public_url}"));
+    }
+    let lines = html.split_inclusive('\n');
+    lines
+        .filter(|line| !ABOUT_PREVIEW.iter().any(|words| line.contains(words)))
+        .collect()
 }
 
 /// Parts at a path, with the name of the operation and an example.
@@ -124,7 +140,7 @@ fn parts_at(
             "A part of a page",
             "A script, a style or a picture that the pages load.",
         ),
-        &[SCRIPT, STYLE, PICTURE],
+        &[SCRIPT, STYLE, DRAWING, PICTURE],
         parameters,
         vec![Kind::NoSuchPath],
     );
@@ -155,7 +171,11 @@ fn operation(
     path_parameters: &'static [&'static Parameter],
     problems: Vec<Kind>,
 ) -> Operation {
-    let text = |name: &&'static str| (*name, schemas::text as schemas::Content);
+    let text = |name: &&'static str| {
+        let is_text = *name != PICTURE;
+        let content = if is_text { schemas::text } else { schemas::any };
+        (*name, content as schemas::Content)
+    };
     let answer = api::Answer {
         status: 200,
         about: summary,

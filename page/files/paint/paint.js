@@ -1,6 +1,7 @@
 // Fields by hand: a bar of tools on the plane, what was painted with them, and the field that it is.
 
 import { byId, icon, make } from "../dom.js";
+import { Part } from "../part.js";
 import { describe, documentOf, isSent, send } from "../sent.js";
 import { MOST_PAINT } from "../state.js";
 import { Brush } from "./brush.js";
@@ -22,9 +23,10 @@ function strokes({ strokes: { length } }) {
   return `${length} ${length === 1 ? "stroke" : "strokes"}`;
 }
 
-export class Paint {
+export class Paint extends Part {
   /** `picked()` is the index of the layer that is painted on; `say(words)` shows what went wrong. */
   constructor(session, plane, { picked, say }) {
+    super();
     Object.assign(this, { session, plane, picked, fail: say, tool: null, width: 0.12, strength: 1, turn: 0 });
     /** What is painted on a layer, and that layer. */
     this.work = blank();
