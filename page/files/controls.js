@@ -21,6 +21,29 @@ const FIELDS = ["profile", "alpha", "map", "amount", "seed", "warp", "settle", "
 const thrown = () => String(1 + Math.floor(Math.random() * 999_999));
 
 export class Controls {
+  /** @type {HTMLElement} */
+  bar;
+  /** @type {HTMLElement} */
+  shade;
+  /** @type {HTMLElement} */
+  range;
+  /** @type {HTMLElement} */
+  clear;
+  /** @type {HTMLElement} */
+  remove;
+  /** @type {HTMLElement} */
+  own;
+  /** @type {HTMLElement} */
+  worldField;
+  /** @type {HTMLElement} */
+  worldOwn;
+  /** @type {HTMLElement} */
+  worldLayers;
+  /** @type {HTMLElement} */
+  variant;
+  /** @type {Kinds} */
+  kinds;
+
   /** The server's lists: its tables (`profiles`), its fields, the names of its worlds; `stipple` takes a picture's file. */
   constructor(session, { profiles, fields, worlds }, stipple) {
     this.session = session;
@@ -105,7 +128,8 @@ export class Controls {
     this.own.hidden = Boolean(world);
     this.worldOwn.hidden = !world;
     byId("paint-open").disabled = Boolean(world);
-    if (document.activeElement !== byId("world-seed")) byId("world-seed").value = worldSeed;
+    const seed = /** @type {HTMLInputElement} */ (byId("world-seed"));
+    if (document.activeElement !== seed) seed.value = worldSeed ?? "";
     this.worldLayers.replaceChildren(...(layers[0].world ? layers : [])
       .map(({ name, color }) => make("span", {}, make("i", { class: `swatch-${color}` }), name)));
   }
@@ -121,7 +145,7 @@ export class Controls {
       const { layer } = this;
       this.holds = true;
       this.hold({ amount: String(Number((2 ** Number(event.target.value)).toPrecision(3))) });
-      this.root.querySelector("#amount").value = layer.amount;
+      /** @type {HTMLInputElement} */ (byId("amount")).value = layer.amount;
     };
     const slider = make("input", {
       type: "range", id: "amount-slider", step: "any", "aria-label": "Amount", oninput: slide,
@@ -242,19 +266,20 @@ export class Controls {
   updateBar() {
     const { layers } = this.session.state;
     if (this.bar.childElementCount !== layers.length + (layers.length < MOST_LAYERS ? 1 : 0)) {
-      const focused = this.bar.contains(document.activeElement) ? document.activeElement.id : null;
+      const focused = this.bar.contains(document.activeElement) ? document.activeElement?.id : null;
       const buttons = layers.map((_, i) => make("button", {
         type: "button", id: `layer-${i}`, onclick: () => this.pick(i),
       }, make("i"), make("span")));
       const add = make("button", { type: "button", id: "add-layer", onclick: () => this.addLayer() }, "+ Add a layer");
       this.bar.replaceChildren(...buttons, ...(layers.length < MOST_LAYERS ? [add] : []));
-      if (focused) (byId(focused) ?? this.bar.lastElementChild).focus();
+      if (focused) (byId(focused) ?? add).focus();
     }
     layers.forEach((layer, i) => {
       const button = this.bar.children[i];
       button.setAttribute("aria-pressed", String(i === this.picked));
-      button.firstElementChild.className = `swatch-${layer.color}`;
-      button.lastElementChild.textContent = `${i + 1} ${layer.profile}${layer.lod ? `, 1 in ${Math.round(1 / layer.lod)}` : ""}`;
+      const [swatch, name] = button.children;
+      swatch.className = `swatch-${layer.color}`;
+      name.textContent = `${i + 1} ${layer.profile}${layer.lod ? `, 1 in ${Math.round(1 / Number(layer.lod))}` : ""}`;
     });
   }
 
@@ -265,6 +290,7 @@ export class Controls {
     this.updateWorld();
     if (layer.world) return;
     this.updateBar();
+    /** @type {(id: string) => any} */
     const set = (id) => root.querySelector(`#${id}`);
     const { alphas, alpha, maps, map } = choicesOf(this.profiles, layer);
     setOptions(set("profile"), including(profileNames(this.profiles), layer.profile), layer.profile);
@@ -330,10 +356,10 @@ export class Controls {
     const { understood, faults } = this.notes[this.picked] ?? {};
     const all = { ...faults, ...faultsBefore(this.layer, this.picked) };
     for (const id of FIELDS) fault(this.root, id, all[id]);
-    if (all.alpha || all.map || all.warp || all.settle) byId("expert").open = true;
+    if (all.alpha || all.map || all.warp || all.settle) /** @type {HTMLDetailsElement} */ (byId("expert")).open = true;
     byId("about-amount").textContent = understood && !faults ? said(understood) : "";
     byId("about-profile").textContent = PROFILE_WORDS[this.layer.profile] ?? "";
-    this.root.querySelector("#amount").setAttribute("aria-label", AMOUNT_WORDS[this.layer.by]);
+    byId("amount").setAttribute("aria-label", AMOUNT_WORDS[this.layer.by]);
   }
 }
 

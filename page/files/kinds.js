@@ -25,7 +25,7 @@ const SHARES = "birch:1,oak:3";
 export class Kinds {
   /** `profiles` are the server's tables; `change(members)` changes the layer; `names` is the field for names. */
   constructor(profiles, change, names) {
-    Object.assign(this, { profiles, change });
+    this.profiles = profiles;
     this.about = make("p", { class: "note", id: "about-spread" });
     this.legend = make("p", { class: "note legend", id: "legend" });
     this.ratio = field("Shares", "ratio", select("ratio", (ratio) => change({ variants: named(ratio) })));

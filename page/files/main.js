@@ -1,6 +1,6 @@
 // The page: puts its parts together.
 
-import { Gone, askJson, onPresence } from "./api.js";
+import { Gone, Problem, askJson, onPresence } from "./api.js";
 import { Card } from "./card.js";
 import { Controls } from "./controls.js";
 import { byId, icon, make, settled, skipLinks, spoken } from "./dom.js";
@@ -50,7 +50,7 @@ const plane = new Plane(byId("plane"), session.state.renderer, {
     bar.hidden = share >= 1;
     if (share > 0 && plane.chunks.wanted.length > 0) shownFirst();
     bar.setAttribute("aria-valuenow", String(Math.round(share * 100)));
-    bar.firstElementChild.style.transform = `scaleX(${share})`;
+    /** @type {HTMLElement} */ (bar.firstElementChild).style.transform = `scaleX(${share})`;
     shade.painted();
   },
   settled: () => {
@@ -61,7 +61,8 @@ const plane = new Plane(byId("plane"), session.state.renderer, {
     // Faults of the query are shown at its fields.
     if (!isUnderstood) return;
     root.dataset.state = "failed";
-    const isTooMuch = error.status === 413;
+    const isTooMuch = error instanceof Problem && error.status === 413;
+    /** @type {import("./trouble.js").Buttons} */
     const buttons = [["Try again", retry]];
     if (isTooMuch) buttons.unshift(["Zoom in", () => plane.zoom(2)]);
     if (isTooMuch) trouble.refuse("There are more points in this view than the server sends at once. Zoom in, or choose fewer points.", { buttons });
@@ -93,12 +94,15 @@ function loading() {
 let isAsking = false;
 const trouble = new Trouble(plane, () => isAsking, retry);
 
+/** When something is done again. */
+let timer = 0;
+
 /** Does something again later, because the server is busy; `error` says how much later. */
 function later(error, what) {
   const wait = Math.max(1, error.retryAfter) * 1000;
   trouble.busy(performance.now() + wait);
-  clearTimeout(later.timer);
-  later.timer = setTimeout(what, wait);
+  clearTimeout(timer);
+  timer = setTimeout(what, wait);
 }
 
 /** Points are there: the plane, hidden until then, is seen. */
@@ -145,7 +149,7 @@ let latest = 0;
 /** Whether the server has resolved the layers; before, they are shown as the page understands them. */
 let isUnderstood = false;
 /** The message to show with the plane, if it does not show what was requested: the reason. */
-let notice = null;
+let notice = /** @type {string | null} */ (null);
 
 /** The server's resolved values of each layer, or its faults. */
 async function notesOf(layers) {
@@ -170,7 +174,7 @@ async function notesOf(layers) {
 async function refresh(isChosen = false) {
   latest += 1;
   const mine = latest;
-  clearTimeout(later.timer);
+  clearTimeout(timer);
   isAsking = true;
   trouble.watch();
   const lacking = await session.settleWorld().then(() => null, (error) => error);
@@ -206,10 +210,10 @@ function sayFaults(notes, isChosen) {
   const named = notes.length > 1 ? `Layer ${wrong + 1}: ${words}` : words;
   if (isChosen && isSeen && !other) return;
   if (isChosen) return banner(named, other ? [["Try again", () => refresh()]] : [["Show it", () => pointOut(wrong)]]);
-  trouble.refuse("This link leads to points that cannot be drawn.", {
-    said: named,
-    buttons: [...(other ? [] : [["Show the field", () => pointOut(wrong)]]), ["Begin afresh", afresh]],
-  });
+  /** @type {import("./trouble.js").Buttons} */
+  const buttons = [["Begin afresh", afresh]];
+  if (!other) buttons.unshift(["Show the field", () => pointOut(wrong)]);
+  trouble.refuse("This link leads to points that cannot be drawn.", { said: named, buttons });
 }
 
 /** Why a world cannot be shown, in the page's words. */
@@ -226,7 +230,7 @@ function afresh() {
 /** Shows the fields of a layer that something is wrong with. */
 function pointOut(layer) {
   banner(null);
-  controls.pick(layer);
+  controls?.pick(layer);
   if (session.state.tab !== "choose") session.choose((state) => (state.tab = "choose"), "tab");
   byId("choose").querySelector('[aria-invalid="true"]')?.focus();
 }
@@ -272,7 +276,7 @@ function jump(event) {
   }
   if (plane.isTooFar({ x, y })) {
     field.setAttribute("aria-invalid", "true");
-    const most = spoken(farthest(plane.look.spacing), 3);
+    const most = spoken(farthest(plane.look?.spacing ?? 1), 3);
     banner(`“${field.value}” is too far out: at this spacing, coordinates tell points apart only up to ${most} from the origin.`, [["Close", () => banner(null)]]);
     return;
   }
@@ -331,6 +335,7 @@ function fold(isFolded) {
   byId("fold").setAttribute("aria-expanded", String(!isFolded));
 }
 
+/** @type {Controls | null} */
 let controls = null;
 /** The tables of the server. */
 let tables = [];
@@ -400,7 +405,7 @@ function settle(profiles) {
 function askForKey() {
   if (byId("key")) return;
   banner("This server needs a key. It is kept in this tab only.");
-  byId("banner").lastElementChild.replaceWith(keyForm(() => {
+  byId("banner").lastElementChild?.replaceWith(keyForm(() => {
     banner(null);
     if (controls) refresh();
     else begin();

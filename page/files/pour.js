@@ -1,7 +1,7 @@
 // The first seconds of a first visit: the points of the plane begin where chance would put them, and pour into place.
 // Where less motion is wanted only the words are shown, over the plane as it is.
 
-import { byId } from "./dom.js";
+import { byId, contextOf } from "./dom.js";
 import { sizesOf } from "./marks.js";
 import { Part } from "./part.js";
 
@@ -13,6 +13,9 @@ const READ = 9000;
 const FAR = 2.6;
 /** The share of the time that a point is on its way; the rest is how much later the last one begins. */
 const SHARE = 0.6;
+
+/** What a visitor does to end it. */
+const KINDS = ["pointerdown", "wheel", "keydown"];
 
 const CHANCE = "Random points clump and leave holes.";
 const EVEN = "These do not, on a plane without an edge. Drag it.";
@@ -35,6 +38,15 @@ export class Pour extends Part {
     this.canvas = byId("pour");
     this.caption = byId("caption");
     this.isRunning = false;
+    /** The view that it began with. */
+    this.seen = null;
+    this.began = 0;
+    this.timer = 0;
+    /** @param {Event} event */
+    this.stop = (event) => {
+      const isOnTheWay = event instanceof KeyboardEvent && ["Tab", "Shift"].includes(event.key);
+      return isOnTheWay ? this.rush() : this.end();
+    };
   }
 
   /** Begins, if this is a first visit; `isStill` shows the last frame at once. */
@@ -43,9 +55,7 @@ export class Pour extends Part {
     root.dataset.pour = isStill ? "still" : "running";
     this.seen = { ...this.plane.view };
     this.say(isStill ? EVEN : CHANCE);
-    const stop = (event) => event.type === "keydown" && ["Tab", "Shift"].includes(event.key) ? this.rush() : this.end();
-    this.stop = stop;
-    for (const kind of ["pointerdown", "wheel", "keydown"]) addEventListener(kind, stop, { capture: true, passive: true });
+    for (const kind of KINDS) addEventListener(kind, this.stop, { capture: true, passive: true });
     this.timer = setTimeout(() => this.end(), READ);
     if (isStill) return;
     this.isRunning = true;
@@ -71,7 +81,7 @@ export class Pour extends Part {
   draw(time) {
     const { plane: { view, look }, canvas } = this;
     if (canvas.width !== view.pixels[0] || canvas.height !== view.pixels[1]) [canvas.width, canvas.height] = view.pixels;
-    const context = canvas.getContext("2d", { alpha: false });
+    const context = contextOf(canvas);
     const css = (rgb) => `rgb(${rgb.map((v) => Math.round(v * 255)).join(" ")})`;
     context.fillStyle = css(look.ground);
     context.fillRect(0, 0, canvas.width, canvas.height);
@@ -106,7 +116,7 @@ export class Pour extends Part {
   end() {
     this.rush();
     clearTimeout(this.timer);
-    for (const kind of ["pointerdown", "wheel", "keydown"]) removeEventListener(kind, this.stop, { capture: true });
+    for (const kind of KINDS) removeEventListener(kind, this.stop, { capture: true });
     this.caption.hidden = true;
     this.seen = null;
   }

@@ -2,7 +2,7 @@
 // is drawn as gray, it is in the color of the layer.
 
 import { ask } from "./api.js";
-import { byId } from "./dom.js";
+import { byId, contextOf } from "./dom.js";
 import { chunksOf, cornerFrom } from "./grid.js";
 import { Part } from "./part.js";
 import { GRAY } from "./sheets.js";
@@ -21,6 +21,8 @@ export class Shade extends Part {
     this.plane = plane;
     this.canvas = byId("shade");
     this.field = "";
+    /** The color that it is drawn in where points are too many, or nothing. */
+    this.tint = "";
     this.layers = [];
     this.tiles = new Map();
   }
@@ -37,7 +39,7 @@ export class Shade extends Part {
     const isGray = this.plane.isGray;
     const layer = this.layers.find(({ field, shade }) => field && (shade || isGray));
     const field = layer?.field ?? "";
-    const tint = isGray && layer ? this.plane.look.colors[layer.color].map((v) => Math.round(v * 255)).join(" ") : "";
+    const tint = isGray && layer ? (this.plane.look?.colors[layer.color] ?? [0, 0, 0]).map((v) => Math.round(v * 255)).join(" ") : "";
     if (field !== this.field) this.tiles.clear();
     if (tint !== this.tint) for (const tile of this.tiles.values()) tile.tinted = null;
     Object.assign(this, { field, tint });
@@ -73,7 +75,7 @@ export class Shade extends Part {
     const { view } = this.plane;
     const [width, height] = view.pixels;
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
-    const context = this.canvas.getContext("2d");
+    const context = contextOf(this.canvas);
     context.clearRect(0, 0, width, height);
     const size = 2 ** Math.round(Math.log2(SIDE * view.unit));
     const pixel = view.unit / view.ratio;
@@ -120,10 +122,10 @@ export class Shade extends Part {
 function tinted(picture, tint) {
   const canvas = document.createElement("canvas");
   Object.assign(canvas, { width: picture.width, height: picture.height });
-  const context = canvas.getContext("2d");
+  const context = contextOf(canvas);
   context.drawImage(picture, 0, 0);
   const pixels = context.getImageData(0, 0, canvas.width, canvas.height);
-  const [red, green, blue] = (tint || themeColor("accent")).match(/[\d.]+/g).map(Number);
+  const [red, green, blue] = ((tint || themeColor("accent")).match(/[\d.]+/g) ?? []).map(Number);
   const strength = tint ? GRAY : STRENGTH;
   const { data } = pixels;
   for (let i = 0; i < data.length; i += 4) {

@@ -9,10 +9,9 @@ import { measure } from "./measure.js";
 import { json } from "./digits.js";
 import { Part } from "./part.js";
 import { bodyOf, columnsOf, joined, setOf } from "./query.js";
-import { drawGrove, grove } from "./horizon.js";
 import { isColored, tonesOf } from "./marks.js";
 import { fromHash, initial } from "./state.js";
-import { isDark, palette } from "./theme.js";
+import { palette } from "./theme.js";
 
 /** The points of each kind, and how many of them lie along a side. */
 const ACROSS = 14;
@@ -23,10 +22,10 @@ const TILE = "periodic=5041&profile=blue&map=s&spacing=1&seed=7";
 
 /**
  * Views to begin with: an address, and how the picture differs from points in a box. One with a `page` is a link to it;
- * `coarse` is the spacing of the picture, `isForest` draws trees instead, `isOpen` opens the plane with nothing before it.
+ * `coarse` is the spacing of the picture, `photo` is shown instead, `isOpen` opens the plane with nothing before it.
  */
 const VIEWS = [
-  { id: "walk", page: "/walk", isForest: true },
+  { id: "walk", page: "/walk", photo: "/page/forest.jpg" },
   { id: "portrait", hash: "#at=50,56&span=118&profile=blue&amount=0.42&seed=1&field=portrait&paper=1&dot=2", coarse: "0.6" },
   { id: "plane", hash: "#at=0,0&span=13&profile=blue&amount=1&seed=1", isOpen: true },
   {
@@ -78,13 +77,18 @@ async function strewn(seed) {
   return Float64Array.from(points.slice(0, COUNT).flatMap(([x, y]) => [x / ACROSS, y / height]));
 }
 
+/** @type {[string, (seed: number) => any][]} */
 const KINDS = [["white", whiteNoise], ["jitter", jitteredGrid], ["strew", strewn]];
 
 export class Start extends Part {
   /** `opened()` is called when the plane alone is to be seen. */
   constructor(session, opened) {
     super();
-    Object.assign(this, { session, shows: opened, seed: 1, isFilled: false });
+    this.session = session;
+    this.shows = opened;
+    this.seed = 1;
+    this.isFilled = false;
+    /** @type {any[]} */
     this.trio = KINDS.map(([id]) => ({ id, canvas: byId(`kind-${id}`) }));
     this.views = VIEWS.map((view) => this.view(view));
     byId("kinds-again").addEventListener("click", () => {
@@ -105,7 +109,7 @@ export class Start extends Part {
         else byId(this.session.state.tab).focus({ preventScroll: true });
       });
     }
-    return { ...view, canvas: element.querySelector("canvas") };
+    return { ...view, canvas: element.querySelector("canvas"), img: element.querySelector("img") };
   }
 
   get isOpen() {
@@ -150,10 +154,9 @@ export class Start extends Part {
 
   /** Draws what a view opens, from the server's points. */
   async picture(view) {
-    if (view.isForest) {
-      const trees = await grove();
-      view.draw = () => drawGrove(prepared(view.canvas, 1 / ASPECT), trees, isDark());
-      return view.draw();
+    if (view.photo) {
+      view.img.src = view.photo;
+      return view.img.decode();
     }
     const { layers, x, y, span } = fromHash(view.hash);
     // A small picture needs fewer points.

@@ -9,7 +9,8 @@ const TABS = ["start", "choose", "understand", "take", "gallery", "works"];
 export class Tabs {
   /** `fold(isFolded)` folds the panel; `opened(tab)` hears which tab is open. */
   constructor(session, fold, opened) {
-    Object.assign(this, { session, opened });
+    this.session = session;
+    this.opened = opened;
     const buttons = TABS.map((name) => byId(`tab-${name}`));
     buttons.forEach((button, i) => {
       button.addEventListener("click", () => {
@@ -45,7 +46,7 @@ export class Tabs {
     if (root.dataset.tab !== tab) byId("panel-body").scrollTop = 0;
     root.dataset.tab = tab;
     // Nothing that is covered can have the focus.
-    for (const part of byId("stage").children) {
+    for (const part of /** @type {HTMLCollectionOf<HTMLElement>} */ (byId("stage").children)) {
       if (part.role !== "alert" && part.role !== "status") part.inert = COVERS.includes(tab) && part.id !== tab;
     }
     byId("gallery-help").hidden = tab !== "gallery";

@@ -41,8 +41,13 @@ function remember(theme) {
   } catch { /* Then it is forgotten. */ }
 }
 
+/** Red, green and blue of a color as browsers write it, from 0 to 1. */
+function channels(color) {
+  return (color.match(/[\d.]+/g) ?? []).slice(0, 3).map((v) => Number(v) / 255);
+}
+
 /** Whether the theme of now is dark. */
-export function isDark() {
+function isDark() {
   const { theme } = document.documentElement.dataset;
   return theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
 }
@@ -53,7 +58,7 @@ function resolved(className, isPaper) {
   probe.className = className;
   if (isPaper) probe.style.colorScheme = "light";
   document.body.append(probe);
-  const numbers = getComputedStyle(probe).backgroundColor.match(/[\d.]+/g).slice(0, 3).map((v) => Number(v) / 255);
+  const numbers = channels(getComputedStyle(probe).backgroundColor);
   probe.remove();
   return numbers;
 }

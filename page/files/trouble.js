@@ -10,10 +10,23 @@ const LOOK = 250;
 
 const SIGN = "M12 8v5M12 16.5h.01M12 3 2.5 20h19z";
 
+/** @typedef {[string, () => void][]} Buttons Words and what a click does. */
+
+/** @typedef {{ words?: string, said?: string, buttons?: Buttons }} Message */
+
 export class Trouble {
   /** `isAsking()` says whether the page waits for an answer beside points; `retry()` asks for everything again. */
   constructor(plane, isAsking, retry) {
-    Object.assign(this, { plane, isAsking, retry, refusal: null, busyUntil: 0, isBusy: false, timer: 0, news: "", newsAt: 0, shown: "" });
+    this.plane = plane;
+    this.isAsking = isAsking;
+    this.retry = retry;
+    this.refusal = null;
+    this.busyUntil = 0;
+    this.isBusy = false;
+    this.timer = 0;
+    this.news = "";
+    this.newsAt = 0;
+    this.shown = "";
     this.element = byId("trouble");
   }
 
@@ -33,7 +46,7 @@ export class Trouble {
   }
 
   /** The server refuses what is shown: `words`, what it said itself, and buttons, pairs of words and what they do. */
-  refuse(words, { said = "", buttons = [] } = {}) {
+  refuse(words, /** @type {Message} */ { said = "", buttons = [] } = {}) {
     this.refusal = { words, said, buttons };
     this.look();
   }
@@ -59,7 +72,8 @@ export class Trouble {
     else if (this.isBusy) {
       this.show("busy", { words: "The server is busy.", buttons: [["Try now", this.retry]] });
       const seconds = Math.ceil((until - now) / 1000);
-      this.element.querySelector(".until").textContent = seconds > 0 ? `Trying again in ${seconds} s.` : "Trying again now.";
+      const line = this.element.querySelector(".until");
+      if (line) line.textContent = seconds > 0 ? `Trying again in ${seconds} s.` : "Trying again now.";
     } else if (isWaiting && now - this.newsAt > PATIENCE) {
       this.show("slow", { words: "The server is slow to answer. The points appear as soon as they come." });
     } else this.show("");
@@ -70,7 +84,7 @@ export class Trouble {
   }
 
   /** Fills the box, or takes it away; what is there already stays as it is, so that it is read out once. */
-  show(kind, { words = "", said = "", buttons = [] } = {}) {
+  show(kind, /** @type {Message} */ { words = "", said = "", buttons = [] } = {}) {
     const name = kind && `${kind} ${words} ${said}`;
     if (name === this.shown) return;
     this.shown = name;

@@ -5,6 +5,7 @@ import { joined, worldPairs } from "./query.js";
 import { LAYER } from "./state.js";
 
 /** Colors by words in the names of layers; others take the next color. */
+/** @type {[RegExp, number][]} */
 const COLORS = [[/tree|oak|wood|forest/, 9], [/bush|grass|fern|plant|shrub/, 10], [/rock|stone|boulder|pebble/, 8]];
 
 /** The color of a layer of a world, by its name. */
@@ -27,7 +28,7 @@ export async function layersOfWorld(name, seed) {
     ask(`/v1/points?${joined([...pairs, ["format", "f32"]])}`),
   ]);
   // The columns are those of all layers together.
-  const columns = JSON.parse(sample.headers.get("strew-columns")).map((column) => column.name).slice(2);
+  const columns = JSON.parse(sample.headers.get("strew-columns") ?? "[]").map((column) => column.name).slice(2);
   return (query.layers ?? [query]).map((one, i, all) => {
     const has = (attribute) => (one.attributes ?? []).includes(attribute);
     return {

@@ -22,7 +22,11 @@ fn three_kinds_of_points_are_shown_with_views_to_begin_with() {
     let counts = browser.value("strew.start.trio.map((one) => one.points.length / 2)");
     assert_eq!(counts, json!([196, 196, 196]));
     let drawn = browser.value("strew.start.views.filter((view) => view.draw).length");
-    assert_eq!(drawn, 7);
+    assert_eq!(drawn, 6);
+    assert_eq!(
+        browser.value("document.querySelector('#view-walk img').naturalWidth"),
+        480
+    );
     let before = browser.value("strew.start.trio[2].points[0]");
     browser.click("#kinds-again");
     browser.until(&format!("strew.start.trio[2].points[0] !== {before}"));
