@@ -1,9 +1,10 @@
 // The choices on the page, kept in step with the address and with the server's resolved values.
 
 import { askJson } from "./api.js";
-import { joined, setOf, togetherBody } from "./query.js";
-import { fromHash, toHash } from "./state.js";
+import { joined, setOf, togetherBody, worldIn } from "./query.js";
+import { LAYER, fromHash, toHash } from "./state.js";
 import { settled } from "./dom.js";
+import { layersOfWorld } from "./worlds.js";
 
 /** @typedef {import("./place.js").Place} Place */
 /** @typedef {import("./state.js").Layer} Layer */
@@ -119,7 +120,7 @@ export class Session {
    * @param {Layer[]} layers
    */
   async understandTogether(layers) {
-    if (layers.length === 1 || layers.every((layer) => !layer.clear.trim())) return null;
+    if (layers.length === 1 || worldIn(layers) || layers.every((layer) => !layer.clear.trim())) return null;
     try {
       await askJson("/v1/count", { body: togetherBody(layers) });
       return null;
@@ -129,12 +130,28 @@ export class Session {
     }
   }
 
+  /** Sees that the layers are those of the world that was chosen, or of none. */
+  async settleWorld() {
+    const { world, worldSeed, layers } = this.state;
+    const held = worldIn(layers);
+    if ((held?.name ?? "") === world && (held?.seed ?? "") === (world && worldSeed)) return;
+    const settled = world ? await layersOfWorld(world, worldSeed) : [{ ...LAYER }];
+    if (this.state.world === world && this.state.worldSeed === worldSeed) this.state.layers = settled;
+  }
+
+  /** Leaves the world that is shown, if one is, for a layer of its own. */
+  leaveWorld() {
+    if (!this.state.world) return;
+    Object.assign(this.state, { world: "", worldSeed: "", layers: [{ ...LAYER }] });
+  }
+
   /**
    * The server's understanding of a layer.
    * @param {Layer} layer
    * @returns {Understood | Promise<Understood>}
    */
   understand(layer) {
+    if (layer.world) return layer.understood;
     const query = joined(setOf(layer));
     const known = this.understood.get(query);
     if (known) return known;

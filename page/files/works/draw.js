@@ -85,11 +85,11 @@ export class Square {
 /** The colors at the corners of the set region: (0, 0), (t, 0), (0, t), (t, t). */
 const CORNERS = [[42, 98, 190], [219, 68, 92], [28, 158, 108], [232, 172, 40]];
 
-/** The color of a place in the set region, from 0 to 1 along both axes. */
-export function shade([u, v]) {
+/** The color of a place in the set region, from 0 to 1 along both axes; `lift` is how far it goes toward white. */
+export function shade([u, v], lift = 0) {
   const weights = [(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v];
   const mixed = [0, 1, 2].map((channel) => CORNERS.reduce((sum, color, i) => sum + color[channel] * weights[i], 0));
-  return `rgb(${mixed.map(Math.round).join(" ")})`;
+  return `rgb(${mixed.map((v) => Math.round(v + lift * (255 - v))).join(" ")})`;
 }
 
 /** Colors of the theme that drawings use. */

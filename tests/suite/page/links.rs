@@ -25,7 +25,7 @@ fn places_without_points_are_said_and_left() {
     assert_eq!(browser.value("strew.plane.view.x.i"), 100);
     browser.choose("#jump-at", "nowhere");
     browser.click("#jump button");
-    assert!(browser.text("#banner").contains("is no place"));
+    assert!(browser.text("#banner").contains("is not a place"));
     // As far out as doubles reach there are points.
     browser.choose("#jump-at", "1e15, -1e15");
     browser.click("#jump button");
