@@ -50,8 +50,10 @@ export class Vectors {
     if (!point || String(point) === String(this.point)) return;
     this.point = point;
     const twin = this.twins.get(String(point));
-    for (const middle of [[0, 0], twin]) await this.request(middle);
-    if (point !== this.point) return;
+    for (const middle of [[0, 0], twin]) {
+      await this.request(middle);
+      if (point !== this.point) return;
+    }
     this.pair = [point, twin];
     this.tell();
     this.stage.draw();
