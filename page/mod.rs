@@ -36,6 +36,14 @@ const PAGES: &[Entry] = &[
         "docs/index.html",
     ),
     (
+        "/how",
+        "getHow",
+        "An essay on how it works",
+        "For people: from chance to any point of an endless plane, in nine figures that move and can be touched. Loads \
+         nothing from elsewhere.",
+        "how/index.html",
+    ),
+    (
         "/compare",
         "getComparePage",
         "The page that compares ways to scatter points",

@@ -85,7 +85,7 @@ export const LAYER = Object.freeze({
 export const WORKS = Object.freeze({
   mode: "index",
   alpha: "(5-sqrt(3))/2",
-  point: "4:5",
+  point: "2:-1",
   offsets: "2,1 3,3",
   distance: "2.24",
   radius: "7",

@@ -18,6 +18,15 @@ const WORDS = {
   displacement: "Displacement",
 };
 
+/** What each of them is about. */
+const ABOUT = {
+  index: "Each grid point has a place on a torus, its index. The points of the pattern are those whose index lies in a square, the set region.",
+  arrangement: "An arrangement of points occurs if its image in index space fits the set region. What room is left, the margin, tells where and how often.",
+  clusters: "Points near each other form a few shapes, and each shape has its own places in the set region.",
+  map: "The index of a point decides all of its neighbors. Cut the set region into blocks: points of one block look alike as far as R.",
+  displacement: "A table moves all points of a block by the same vector. That is all it takes to turn the pattern into blue noise.",
+};
+
 export class Works extends Part {
   /** @type {HTMLInputElement} */
   slider;
@@ -33,6 +42,10 @@ export class Works extends Part {
   settings;
   /** @type {HTMLElement} */
   facts;
+  /** @type {HTMLElement} */
+  about;
+  /** @type {HTMLElement} */
+  caption;
   /** @type {Pattern | null} */
   last = null;
 
@@ -91,22 +104,24 @@ export class Works extends Part {
     }));
     this.torus = new Square(canvas("works-torus", "The index torus, with the index of every grid point of the window."));
     this.region = new Square(canvas("works-region", "The set region, enlarged."));
+    this.about = make("p", { id: "works-about" });
+    this.caption = make("span", { class: "soft", id: "works-caption" });
     this.settings = make("div", { class: "settings" });
     this.facts = make("div", { class: "facts", id: "works-facts", role: "status", "aria-live": "polite" });
-    const figure = (square, name, words) => {
-      const caption = make("span", { class: "soft" }, words);
-      return make("figure", {}, square.canvas, make("figcaption", {}, make("b", {}, name), caption));
-    };
+    const soft = (words) => make("span", { class: "soft" }, words);
+    const figure = (square, name, caption) => make("figure", {}, square.canvas, make("figcaption", {}, make("b", {}, name), caption));
     byId("works").replaceChildren(make("div", {},
-      make("h2", {}, "How it works"),
+      make("h2", {}, "The laboratory"),
+      make("p", {}, "Move α, choose points in the pattern, or use the arrow keys there. ", make("a", { href: "/how" }, "How it works, step by step"), " explains what is seen."),
       make("div", { class: "alpha" }, make("label", { class: "label", for: "works-alpha" }, "α, between 1 and 2"), this.slider, this.field,
         make("div", { class: "choices", role: "group", "aria-label": "Known α" }, known)),
       make("div", { class: "choices", role: "group", "aria-label": "What to look at" }, this.modes),
+      this.about,
       make("div", { class: "drawings" },
-        figure(this.plane, "The pattern", "grid points that belong to it"),
+        figure(this.plane, "The pattern", this.caption),
         make("div", { class: "side" },
-          figure(this.torus, "The index torus", "dX = {(αx + y)/2} right, dY = {(αy + x)/2} up"),
-          figure(this.region, "The set region", "[0, t)², t = (α − 1)/2")),
+          figure(this.torus, "The index torus", soft("(αx + y)/2 right, (αy + x)/2 up, without their whole parts")),
+          figure(this.region, "The set region", soft("from 0 to t = (α − 1)/2 both ways"))),
         make("div", { class: "said" }, this.settings, this.facts)),
     ));
   }
@@ -213,14 +228,16 @@ export class Works extends Part {
     this.field.setAttribute("aria-invalid", String(!pattern));
     for (const button of this.known) button.setAttribute("aria-pressed", String(button.dataset.alpha === chosen.alpha));
     for (const button of this.modes) button.setAttribute("aria-pressed", String(button.id === `works-${chosen.mode}`));
+    const mode = MODES[chosen.mode];
+    mode.follow?.(this, chosen);
+    this.about.textContent = ABOUT[chosen.mode];
+    this.caption.textContent = mode.caption?.(chosen) ?? "the grid points that belong to it";
     if (!pattern) {
       this.tell([`“${chosen.alpha}” is no α: it must be a decimal or a fraction between 1 and 2, or one of the buttons.`]);
       return;
     }
     this.slider.value = String(pattern.alpha);
     this.slider.setAttribute("aria-valuetext", spoken(pattern.alpha, 6));
-    const mode = MODES[chosen.mode];
-    mode.follow?.(this, chosen);
     const said = mode.draw(this, pattern, chosen, colors());
     this.tell(said);
     document.documentElement.dataset.works = `${chosen.mode} ${chosen.alpha}`;

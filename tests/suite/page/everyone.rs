@@ -61,6 +61,7 @@ fn the_first_key_leads_past_what_repeats() {
     };
     for (path, target) in [
         ("/", "panel-body"),
+        ("/how", "essay"),
         ("/compare", "methods"),
         ("/tile", "choices"),
         ("/space#at=4,4,4", "choices"),

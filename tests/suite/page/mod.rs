@@ -2,8 +2,8 @@
 //! window (first), its first screen (start) and the path of a first visit (visit), what can be set (controls, kinds, fields,
 //! paint), what is wrong and how it is said (faults, links, busy), the card of a point (card), the laboratory (works), the
 //! requests and files it offers (export), that everybody can use it (everyone, axe), and that nothing moves away while it
-//! loads (shift); and the pages `/compare`, `/docs`, `/space`, `/tile` and `/walk`. The browser is Chromium, or that of
-//! `STREW_TEST_BROWSER`; the tests are skipped where it or its driver is not installed.
+//! loads (shift); and the pages `/compare`, `/docs`, `/how`, `/space`, `/tile` and `/walk`. The browser is Chromium,
+//! or that of `STREW_TEST_BROWSER`; the tests are skipped where it or its driver is not installed.
 
 mod axe;
 mod busy;
@@ -16,6 +16,7 @@ mod export;
 mod faults;
 mod fields;
 mod first;
+mod how;
 mod kinds;
 mod links;
 mod paint;

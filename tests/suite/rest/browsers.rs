@@ -44,7 +44,7 @@ fn every_answer_has_security_headers() {
 fn pages_name_a_picture_for_those_who_pass_on_a_link() {
     let public = "https://points.example";
     let known = Daemon::start(&["http.public_url=https://points.example"]);
-    for path in ["/", "/compare", "/tile", "/walk", "/space"] {
+    for path in ["/", "/how", "/compare", "/tile", "/walk", "/space"] {
         let page = known.get(path);
         let text = page.text();
         assert!(text.contains("summary_large_image"), "{path}");
