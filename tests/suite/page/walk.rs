@@ -231,12 +231,13 @@ const PICTURES: &str = "await (async () => { const { scene, walker } = strew; co
     while (!strew.world.isReady || scene.canvas.width !== 2400) await new Promise(requestAnimationFrame); \
     await new Promise(requestAnimationFrame); \
     paint.call(scene, strew.look); \
-    return [[1200, 630, 0.85], [480, 252, 0.6]].map(([width, height, quality]) => { \
+    return Promise.all([[1200, 630, 0.85], [480, 252, 0.6]].map(async ([width, height, quality]) => { \
       const small = Object.assign(document.createElement('canvas'), { width, height }); \
       const context = small.getContext('2d'); \
       context.imageSmoothingQuality = 'high'; \
       context.drawImage(scene.canvas, 0, 0, width, height); \
-      return small.toDataURL('image/jpeg', quality).split(',')[1]; }); })()";
+      const picture = await new Promise((done) => small.toBlob(done, 'image/jpeg', quality)); \
+      return [...new Uint8Array(await picture.arrayBuffer())]; })); })()";
 
 /// Writes the pictures of the walk that previews of links and cards show: `just forest`.
 #[test]
@@ -250,25 +251,8 @@ fn pictures() {
     browser.until("globalThis.strew?.look");
     let pictures = browser.value(PICTURES);
     for (i, name) in ["walk/preview.jpg", "forest.jpg"].into_iter().enumerate() {
-        let text = pictures[i].as_str().expect("a picture");
+        let bytes: Vec<u8> = serde_json::from_value(pictures[i].clone()).expect("a picture");
         let path = format!("{}/page/files/{name}", env!("CARGO_MANIFEST_DIR"));
-        std::fs::write(path, decoded(text)).expect("a file");
+        std::fs::write(path, bytes).expect("a file");
     }
-}
-
-/// The bytes of a text in base64.
-fn decoded(text: &str) -> Vec<u8> {
-    const DIGITS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let digits = text.bytes().filter_map(|c| {
-        let digit = DIGITS.iter().position(|d| *d == c)?;
-        u32::try_from(digit).ok()
-    });
-    let digits: Vec<u32> = digits.collect();
-    let bytes = digits.chunks(4).flat_map(|four| {
-        let word = four.iter().fold(0, |word, digit| word << 6 | digit);
-        let word = word << (6 * (4 - four.len()));
-        let [_, bytes @ ..] = word.to_be_bytes();
-        bytes.into_iter().take(four.len() - 1)
-    });
-    bytes.collect()
 }
