@@ -1,6 +1,6 @@
 // Trying an operation: a form with its parameters, the curl line of what the form says, and what the server answers.
 
-import { hasKey, headersFor } from "../api.js";
+import { brokeOff, hasKey, headersFor } from "../api.js";
 import { bytes, contextOf, make } from "../dom.js";
 import { keyForm } from "../form.js";
 import { resolved } from "./schema.js";
@@ -132,8 +132,9 @@ async function sent({ address, headers, text }, method, type, update) {
       make("details", {}, make("summary", {}, `${rows.length / 2} headers`), make("dl", { class: "headers" }, rows)),
       await seen(blob, kind, isWhole),
     ].filter((one) => one !== false);
-  } catch (error) {
-    return [make("p", { class: "status bad" }, `The server does not answer: ${error.message}`)];
+  } catch {
+    brokeOff();
+    return [make("p", { class: "status bad" }, "No answer came. Send it again when the server is back.")];
   }
 }
 

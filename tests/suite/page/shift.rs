@@ -8,9 +8,15 @@ use crate::support::browser::looking;
 const SIZES: [(u32, u32); 2] = [(390, 844), (1280, 800)];
 const MOST: f64 = 0.05;
 
-/// What a page shows last: its points, and below them its pictures or its measures.
-const READY: &str = "(({ state, start, measured }) => location.pathname === '/' ? state === 'ready' && start === 'ready' \
-                     : state === 'ready' || measured)(document.documentElement.dataset)";
+/// Other contents of pages, by the hashes of their addresses.
+const MORE: [&str; 2] = [
+    "/compare#show=strew,poisson,tile,jitter,halton,white",
+    "/docs#getNearest",
+];
+
+/// What a page shows last: its points, and below them its pictures or its times.
+const READY: &str = "(({ state, start, timed }) => location.pathname === '/' ? state === 'ready' && start === 'ready' \
+                     : state === 'ready' || timed)(document.documentElement.dataset)";
 
 /// What has shifted, with the elements, since the page was opened.
 const SHIFTS: &str = "new Promise((resolve) => { \
@@ -32,10 +38,13 @@ fn no_page_shifts_while_it_loads() {
         return eprintln!("skipped: only Chromium counts layout shifts");
     }
     let api = daemon.get("/openapi.json").json();
-    let is_page = |what: &Value| what["get"]["responses"]["200"]["content"]["text/html; charset=utf-8"].is_object();
+    let is_page = |what: &Value| {
+        what["get"]["responses"]["200"]["content"]["text/html; charset=utf-8"].is_object()
+    };
     let paths = api["paths"].as_object().expect("paths");
-    let pages: Vec<&String> = paths.iter().filter(|(_, what)| is_page(what)).map(|(path, _)| path).collect();
-    assert!(pages.len() > 5, "{pages:?}");
+    let pages = paths.iter().filter(|(_, what)| is_page(what));
+    let pages: Vec<&str> = pages.map(|(path, _)| path.as_str()).chain(MORE).collect();
+    assert!(pages.len() > 8, "{pages:?}");
     let mut failed = vec![];
     for (width, height) in SIZES {
         for path in &pages {
@@ -48,7 +57,9 @@ fn no_page_shifts_while_it_loads() {
             let sum: f64 = shifts.iter().filter_map(|one| one[0].as_f64()).sum();
             println!("{path} at {width} × {height}: {sum:.3}");
             if sum > MOST {
-                failed.push(format!("{path} at {width} × {height}: {sum:.3}, {shifts:?}"));
+                failed.push(format!(
+                    "{path} at {width} × {height}: {sum:.3}, {shifts:?}"
+                ));
             }
         }
     }
