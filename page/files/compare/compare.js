@@ -138,15 +138,20 @@ function choose(change) {
   show();
 }
 
-function show() {
-  root.dataset.measured = "";
-  for (const panel of panels) {
-    const isShown = state.shown.includes(panel.method.id);
-    panel.element.hidden = !isShown;
-    byId(`show-${panel.method.id}`).setAttribute("aria-pressed", String(isShown));
-    if (isShown) panel.use(state);
+/** Has only the chosen methods take room. */
+function arrange() {
+  for (const { element, method: { id } } of panels) {
+    const isShown = state.shown.includes(id);
+    element.hidden = !isShown;
+    byId(`show-${id}`).setAttribute("aria-pressed", String(isShown));
   }
   byId("methods").dataset.count = String(state.shown.length);
+}
+
+function show() {
+  root.dataset.measured = "";
+  arrange();
+  for (const panel of shown()) panel.use(state);
   const isAll = state.shown.length === METHODS.length;
   byId("all").setAttribute("aria-pressed", String(isAll));
   byId("show").hidden = state.shown.join() === PAIR.join();
@@ -254,6 +259,7 @@ async function begin() {
 // For tests.
 globalThis.strew = { joint, panels };
 build();
+arrange();
 byId("said").textContent = TRY;
 listen();
 skipLinks();
