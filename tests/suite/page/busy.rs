@@ -45,7 +45,7 @@ fn a_busy_server_is_asked_again_at_once_by_a_button() {
         return;
     };
     let front = Front::of(daemon.address(), Points::Refuse(503, 3000));
-    browser.go(&front.url("/"));
+    browser.go(&front.url("/#at=0,0&span=300"));
     browser.until(&format!("({WORDS} || '').includes('Trying again in')"));
     // Meanwhile no other requests for points are sent.
     let waiting = browser

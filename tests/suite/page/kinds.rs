@@ -31,7 +31,9 @@ fn kinds_are_chosen_and_drawn_in_their_colors() {
     ] {
         browser.look(&daemon, "#at=0,0&span=12&renderer=2d");
         browser.choose("#spread", spread);
-        browser.until(&format!("location.hash.includes('spread={spread}')"));
+        browser.until(&format!(
+            "location.hash.includes('spread={spread}') && strew.plane.look.layers[0].spread === '{spread}'"
+        ));
         let count = browser.ready();
         assert_eq!(browser.value(COLORS), serde_json::json!([0, 1]), "{spread}");
         assert_eq!(browser.text("#legend"), "birchoak");
@@ -54,7 +56,7 @@ fn kinds_are_chosen_and_drawn_in_their_colors() {
         browser.value("[...document.querySelectorAll('#ratio option')].map((e) => e.value)");
     assert_eq!(shares, serde_json::json!(["1:1", "1:1:2", "1:3", "1:3:10"]));
     browser.choose("#ratio", "1:3:10");
-    browser.until("location.hash.includes('pine:10')");
+    browser.until("strew.plane.look.layers[0].variants.includes('pine:10')");
     assert!(browser.ready() > 100);
     assert_eq!(browser.value(COLORS), serde_json::json!([0, 1, 2]));
     assert_eq!(browser.errors(), Vec::<String>::new());
