@@ -43,7 +43,7 @@ const plane = new Plane(byId("plane"), session.state.renderer, {
     bar.hidden = share >= 1;
     if (share > 0 && plane.chunks.wanted.length > 0) shownFirst();
     bar.setAttribute("aria-valuenow", String(Math.round(share * 100)));
-    bar.firstElementChild.style.transform = `scaleX(${share})`;
+    /** @type {HTMLElement} */ (bar.firstElementChild).style.transform = `scaleX(${share})`;
   },
   settled: () => {
     if (root.dataset.state === "loading" && isUnderstood) root.dataset.state = "ready";
@@ -104,7 +104,7 @@ let latest = 0;
 /** Whether the server has resolved the layers; before, they are shown as the page understands them. */
 let isUnderstood = false;
 /** The message to show with the plane, if it does not show what was requested: the reason. */
-let notice = null;
+let notice = /** @type {string | null} */ (null);
 
 /** The server's resolved values of each layer, or its faults. */
 async function notesOf(layers) {
@@ -154,7 +154,7 @@ async function refresh(isChosen = false) {
 /** Shows the fields of a layer that something is wrong with. */
 function pointOut(layer) {
   banner(null);
-  controls.pick(layer);
+  controls?.pick(layer);
   if (session.state.tab !== "choose") session.choose((state) => (state.tab = "choose"), "tab");
   byId("choose").querySelector('[aria-invalid="true"]')?.focus();
 }
@@ -200,7 +200,7 @@ function jump(event) {
   }
   if (plane.isTooFar({ x, y })) {
     field.setAttribute("aria-invalid", "true");
-    const most = spoken(farthest(plane.look.spacing), 3);
+    const most = spoken(farthest(plane.look?.spacing ?? 1), 3);
     banner(`“${field.value}” is too far out: at this spacing numbers tell points apart up to ${most} from the origin.`, [["Close", () => banner(null)]]);
     return;
   }
@@ -296,7 +296,7 @@ function showTab() {
   if (root.dataset.tab !== tab) byId("panel-body").scrollTop = 0;
   root.dataset.tab = tab;
   // Nothing that is covered can have the focus.
-  for (const part of byId("stage").children) {
+  for (const part of /** @type {HTMLCollectionOf<HTMLElement>} */ (byId("stage").children)) {
     if (part.role !== "alert" && part.role !== "status") part.inert = COVERS.includes(tab) && part.id !== tab;
   }
   byId("gallery-help").hidden = tab !== "gallery";
@@ -304,6 +304,7 @@ function showTab() {
   for (const part of parts) part.opened(tab);
 }
 
+/** @type {Controls | null} */
 let controls = null;
 /** The tables of the server. */
 let tables = [];
@@ -368,7 +369,7 @@ function settle(profiles) {
 function askForKey() {
   if (byId("key")) return;
   banner("This server answers only those who have a key. It stays in this tab.");
-  byId("banner").lastElementChild.replaceWith(keyForm(() => {
+  byId("banner").lastElementChild?.replaceWith(keyForm(() => {
     banner(null);
     if (controls) refresh();
     else begin();

@@ -1,7 +1,7 @@
 // The field of the first layer that has one, shaded under the points: where it is dense, the ground is darker.
 
 import { ask } from "./api.js";
-import { byId } from "./dom.js";
+import { byId, contextOf } from "./dom.js";
 import { chunksOf, cornerFrom } from "./grid.js";
 import { Part } from "./part.js";
 import { themeColor } from "./theme.js";
@@ -54,7 +54,7 @@ export class Shade extends Part {
     const { view } = this.plane;
     const [width, height] = view.pixels;
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
-    const context = this.canvas.getContext("2d");
+    const context = contextOf(this.canvas);
     context.clearRect(0, 0, width, height);
     const size = 2 ** Math.round(Math.log2(SIDE * view.unit));
     const pixel = view.unit / view.ratio;
@@ -101,10 +101,10 @@ export class Shade extends Part {
 function tinted(picture) {
   const canvas = document.createElement("canvas");
   Object.assign(canvas, { width: picture.width, height: picture.height });
-  const context = canvas.getContext("2d");
+  const context = contextOf(canvas);
   context.drawImage(picture, 0, 0);
   const pixels = context.getImageData(0, 0, canvas.width, canvas.height);
-  const [red, green, blue] = themeColor("accent").match(/[\d.]+/g).map(Number);
+  const [red, green, blue] = (themeColor("accent").match(/[\d.]+/g) ?? []).map(Number);
   const { data } = pixels;
   for (let i = 0; i < data.length; i += 4) {
     const share = data[i];

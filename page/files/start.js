@@ -79,6 +79,7 @@ async function strewn(seed) {
   return Float64Array.from(points.slice(0, COUNT).flatMap(([x, y]) => [x / ACROSS, y / height]));
 }
 
+/** @type {[string, string, (seed: number) => any][]} */
 const KINDS = [["white", "White noise", whiteNoise], ["jitter", "Jittered grid", jitteredGrid], ["strew", "Strew", strewn]];
 
 export class Start extends Part {
@@ -87,6 +88,7 @@ export class Start extends Part {
     this.session = session;
     this.seed = 1;
     this.isFilled = false;
+    /** @type {any[]} */
     this.trio = KINDS.map(([id, name]) => ({ id, name, canvas: make("canvas", { id: `kind-${id}`, role: "img", "aria-label": `${COUNT} points of ${name}` }) }));
     this.views = VIEWS.map((view) => this.view(view));
     byId("kinds").replaceChildren(...this.trio.map(({ name, canvas }) => make("figure", {}, canvas, make("figcaption", {}, name))));

@@ -65,6 +65,8 @@ export class Understand extends Part {
     this.session = session;
     this.plane = plane;
     this.layer = 0;
+    /** @type {any} */
+    this.drawn = null;
     this.again = settled(200, () => this.measure());
     this.note = make("p", { class: "note", role: "status", id: "measured-note" });
     this.picker = make("div", { class: "choices", role: "group", "aria-label": "Layer" });

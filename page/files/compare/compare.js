@@ -10,6 +10,7 @@ import { parsePlace, place } from "../place.js";
 import { FARTHEST, Joint, fromHash, toHash } from "./joint.js";
 import { METHODS } from "./methods.js";
 import { Panel } from "./panel.js";
+import { Asked } from "./sources.js";
 
 const root = document.documentElement;
 const narrow = matchMedia("(max-width: 46rem)");
@@ -28,7 +29,7 @@ function say(words) {
 /** Says what went wrong, and takes a key where that is what the server needs. */
 function refused(error) {
   refusal(byId("banner"), error, () => {
-    for (const { source } of panels) source.chunks?.retry();
+    for (const { source } of panels) if (source instanceof Asked) source.chunks.retry();
     begin();
   });
 }
@@ -153,14 +154,15 @@ function listen() {
     draw();
   });
   byId("jump").addEventListener("submit", jump);
-  byId("seed").addEventListener("change", (event) => {
-    const seed = Number(event.target.value);
+  const [field, profile] = [byId("seed"), byId("profile")];
+  field.addEventListener("change", () => {
+    const seed = Number(field.value);
     const isSeed = Number.isInteger(seed) && seed >= 0 && seed < 1e9;
-    event.target.setAttribute("aria-invalid", String(!isSeed));
+    field.setAttribute("aria-invalid", String(!isSeed));
     say(isSeed ? null : "A seed here is an integer from 0 to 999999999.");
     if (isSeed) reseed(seed);
   });
-  byId("profile").addEventListener("change", (event) => choose({ profile: event.target.value }));
+  profile.addEventListener("change", () => choose({ profile: profile.value }));
 }
 
 function reseed(seed) {

@@ -18,6 +18,7 @@ function time(nanoseconds) {
 export class Panel {
   constructor(method, { changed, failed }) {
     this.method = method;
+    this.isTimed = false;
     const { id, name, far, words, source } = method;
     this.source = id === "strew" ? new Asked(changed, failed) : new Made(id, changed, failed);
     const canvas = (label, attributes = {}) => make("canvas", { role: "img", "aria-label": `${label} of ${name}`, ...attributes });

@@ -26,7 +26,13 @@ function windowAround({ x, y }, width, height) {
 /** Points that the worker makes. */
 export class Made {
   constructor(method, changed, failed) {
-    Object.assign(this, { method, changed, failed, window: null, points: new Float64Array(0), version: 0 });
+    this.method = method;
+    this.changed = changed;
+    this.failed = failed;
+    /** @type {any} */
+    this.window = null;
+    this.points = new Float64Array(0);
+    this.version = 0;
   }
 
   use({ seed }) {

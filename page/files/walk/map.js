@@ -1,6 +1,7 @@
 // The walk where there is no WebGL2: a plain map of what stands around, seen from above, with north up.
 
 import { INSTANCE_FLOATS } from "./ground.js";
+import { contextOf } from "../dom.js";
 
 /** The colors of kinds; grass would hide the rest. */
 const COLORS = ["#2f6b45", "#6f9a3c", "#8d8a84", "#5d7f35", "#a3ab57", "#d9b93c"];
@@ -9,7 +10,7 @@ const REACH = 60;
 
 /** A map on a canvas, with the members of a scene. */
 export function mapOn(canvas) {
-  const context = canvas.getContext("2d");
+  const context = contextOf(canvas);
   return {
     isSlow: true,
     isMap: true,

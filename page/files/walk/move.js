@@ -25,8 +25,16 @@ const KEYS = {
 
 export class Walker {
   constructor(canvas, { x, y, yaw, pitch, isFlying }, tapped) {
-    Object.assign(this, { x, y, yaw, pitch, isFlying, tapped, canvas });
+    this.canvas = canvas;
+    this.tapped = tapped;
+    this.x = x;
+    this.y = y;
+    this.yaw = yaw;
+    this.pitch = pitch;
+    this.isFlying = isFlying;
+    this.isFast = false;
     this.held = new Set();
+    /** @type {number | null} */
     this.height = null;
     // Readers who prefer reduced motion see nothing move by itself; the button still flies.
     this.mayFly = !matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -37,13 +45,14 @@ export class Walker {
   listen() {
     const { canvas } = this;
     addEventListener("keydown", (event) => {
+      const target = /** @type {Element} */ (event.target);
       this.isFast = event.shiftKey;
-      if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest?.("input, select")) return;
+      if (event.ctrlKey || event.metaKey || event.altKey || target.closest?.("input, select")) return;
       // A button that was clicked keeps the focus, and its own keys.
-      if ([" ", "Enter"].includes(event.key) && event.target.closest?.("button, a")) return;
+      if ([" ", "Enter"].includes(event.key) && target.closest?.("button, a")) return;
       const move = KEYS[event.key.toLowerCase()];
       if (move) this.hold(move);
-      else if (event.key === "Enter" && event.target === canvas) this.tapped(null);
+      else if (event.key === "Enter" && target === canvas) this.tapped(null);
       else return;
       event.preventDefault();
     });

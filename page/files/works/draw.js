@@ -1,11 +1,17 @@
 // The three drawings of the tab How it works: the plane, the index torus, the set region.
 
+import { contextOf } from "../dom.js";
 import { themeColor } from "../theme.js";
 
 /** A square drawing with coordinates of its own, y upward. */
 export class Square {
+  /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
     this.canvas = canvas;
+    this.context = contextOf(canvas);
+    this.side = 1;
+    this.from = 0;
+    this.scale = 1;
   }
 
   /** Begins anew: the range of both coordinates, the same for x and y. */
@@ -14,10 +20,11 @@ export class Square {
     const ratio = Math.min(2, globalThis.devicePixelRatio || 1);
     const pixels = Math.round(side * ratio);
     if (this.canvas.width !== pixels) Object.assign(this.canvas, { width: pixels, height: pixels });
-    this.context = this.canvas.getContext("2d");
     this.context.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.context.clearRect(0, 0, side, side);
-    Object.assign(this, { side, from, scale: side / (to - from) });
+    this.side = side;
+    this.from = from;
+    this.scale = side / (to - from);
     return this;
   }
 

@@ -28,6 +28,23 @@ const ABOUT = {
 };
 
 export class Works extends Part {
+  /** @type {HTMLInputElement} */
+  slider;
+  /** @type {HTMLInputElement} */
+  field;
+  /** @type {HTMLButtonElement[]} */
+  known;
+  /** @type {HTMLButtonElement[]} */
+  modes;
+  /** @type {Square} */
+  plane;
+  /** @type {HTMLElement} */
+  settings;
+  /** @type {HTMLElement} */
+  facts;
+  /** @type {Pattern | null} */
+  last = null;
+
   constructor(session) {
     super();
     this.session = session;
@@ -134,9 +151,10 @@ export class Works extends Part {
   point() {
     if (this.pointed) return this.pointed;
     const [x, y] = this.chosen.point.split(":").map(Number);
-    return this.last.has(x, y) ? [x, y] : this.nearest([x, y]);
+    return this.last?.has(x, y) ? [x, y] : this.nearest([x, y]);
   }
 
+  /** @param {number[]} place */
   nearest([x, y], among = this.points) {
     const far = ([a, b]) => (a - x) ** 2 + (b - y) ** 2;
     return among.reduce((best, point) => (far(point) < far(best) ? point : best), among[0] ?? [0, 0]);
