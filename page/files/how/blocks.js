@@ -12,8 +12,23 @@ const LAST = 20;
 const GROWS = 9;
 
 export class Blocks {
+  /** @type {import("./stage.js").Stage} */
+  stage;
+  /** @type {import("./pen.js").Panel[]} */
+  panels;
+  /** @type {{ set: (value: number) => void } | undefined} */
+  slider;
+  /** @type {number[]} */
+  point;
+  /** @type {bigint[]} */
+  starts;
+  /** @type {number} */
+  radius;
+  /** @type {number} */
+  seconds;
+
   constructor() {
-    this.pattern = Pattern.of(ALPHA);
+    this.pattern = /** @type {Pattern} */ (Pattern.of(ALPHA));
     this.points = this.pattern.points(REACH);
     this.point = sociable(this.pattern, this.points, this.pattern.starts(7));
     this.restart();
@@ -52,7 +67,10 @@ export class Blocks {
     this.tell();
   }
 
-  /** The point whose index is nearest to a place in the gate. */
+  /**
+   * The point whose index is nearest to a place in the gate.
+   * @param {number[]} place
+   */
   near([u, v]) {
     const far = (point) => indexOf(this.pattern, point).reduce((sum, w, i) => sum + (w - [u, v][i]) ** 2, 0);
     return this.points.reduce((best, point) => (far(point) < far(best) ? point : best));
@@ -82,7 +100,7 @@ export class Blocks {
     context.globalAlpha = 0.12;
     gate.fill(context, [0, 0], [t, t], colors.gate);
     context.globalAlpha = 1;
-    const bounds = this.pattern.index(...this.point).map((index) => intervalOf(starts, index));
+    const bounds = this.pattern.index(this.point[0], this.point[1]).map((index) => intervalOf(starts, index));
     const low = bounds.map((i) => turns(starts[i]));
     const high = bounds.map((i) => turns(starts[i + 1] ?? pattern.side));
     const size = high.map((v, axis) => v - low[axis]);

@@ -13,9 +13,24 @@ const WANDERS = 12;
 /** Points that fall in a second. */
 const RATE = 22;
 
-const inside = (points, [x, y]) => points.filter(([u, v]) => Math.hypot(u - x, v - y) < RING).length;
+const inside = (/** @type {number[][]} */ points, /** @type {number[]} */ [x, y]) => points.filter(([u, v]) => Math.hypot(u - x, v - y) < RING).length;
 
 export class Chance {
+  /** @type {import("./stage.js").Stage} */
+  stage;
+  /** @type {import("./pen.js").Panel[]} */
+  panels;
+  /** @type {number[][]} */
+  chance;
+  /** @type {number} */
+  fallen;
+  /** @type {number} */
+  seconds;
+  /** @type {number[] | null} */
+  ring;
+  /** @type {number[][] | null} */
+  seen;
+
   constructor() {
     this.seed = 6;
     this.strew = [];
@@ -67,11 +82,15 @@ export class Chance {
     this.place([x + right * 0.5, y + up * 0.5]);
   }
 
-  /** Puts the ring somewhere, all of it in the square, and counts. */
+  /**
+   * Puts the ring somewhere, all of it in the square, and counts.
+   * @param {number[]} at
+   */
   place(at) {
-    this.ring = at.map((v) => Math.min(SIDE - RING, Math.max(RING, v)));
+    const ring = at.map((v) => Math.min(SIDE - RING, Math.max(RING, v)));
+    this.ring = ring;
     if (this.strew.length === 0) return;
-    const found = [inside(this.chance, this.ring), inside(this.strew, this.ring)];
+    const found = [inside(this.chance, ring), inside(this.strew, ring)];
     this.seen ??= found.map((count) => [count, count]);
     this.seen = this.seen.map(([least, most], i) => [Math.min(least, found[i]), Math.max(most, found[i])]);
     const [chance, strew] = this.seen.map(([least, most]) => (least === most ? least : `${least} to ${most}`));

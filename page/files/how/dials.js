@@ -15,8 +15,21 @@ export const degrees = (turn, digits = 1) => `${(turn * 360).toFixed(digits)}°`
 const eased = (share) => share * share * (3 - 2 * share);
 
 export class Row {
+  /** @type {import("./stage.js").Stage} */
+  stage;
+  /** @type {import("./pen.js").Panel} */
+  chart;
+  /** @type {((at: number) => void) | undefined} */
+  told;
+  /** @type {number} */
+  at;
+  /** @type {number} */
+  seconds;
+  /** @type {number} */
+  visited;
+
   constructor() {
-    this.pattern = Pattern.of(ALPHA);
+    this.pattern = /** @type {Pattern} */ (Pattern.of(ALPHA));
     this.first = 0;
     this.restart();
   }

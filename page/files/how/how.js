@@ -20,7 +20,7 @@ const figures = {
   blocks: new Blocks(), vectors: new Vectors(), seeds: new Seeds(), served: new Served(),
 };
 const stages = Object.entries(figures).map(([id, figure]) => new Stage(id, figure));
-const stageOf = (id) => stages.find((stage) => stage.id === id);
+const stageOf = (/** @type {string} */ id) => /** @type {Stage} */ (stages.find((stage) => stage.id === id));
 
 const { race, row, same, blocks, vectors, seeds, served } = figures;
 
@@ -33,8 +33,8 @@ stageOf("same").choices("same-kind", (kind) => {
   replay(stageOf("same"));
 });
 stageOf("row").slider("row-angle", (value) => degrees(value / 360), (value) => row.choose(value / 180));
-byId("row-place").addEventListener("change", ({ target }) => {
-  const place = Math.min(Number.MAX_SAFE_INTEGER / 4, Math.max(0, Math.floor(Number(target.value))));
+byId("row-place").addEventListener("change", () => {
+  const place = Math.min(Number.MAX_SAFE_INTEGER / 4, Math.max(0, Math.floor(Number(byId("row-place").value))));
   if (!Number.isFinite(place)) return;
   stageOf("row").take();
   row.go(place);
@@ -63,7 +63,7 @@ byId("seeds-next").addEventListener("click", () => {
   seeds.choose({ seed: seeds.chosen.seed + 1 });
 });
 byId("served-far").addEventListener("click", () => served.jump());
-byId("served-copy").addEventListener("click", ({ currentTarget }) => copy(byId("served-command"), currentTarget));
+byId("served-copy").addEventListener("click", () => copy(byId("served-command"), byId("served-copy")));
 
 /** Plays a figure from its beginning, or shows its end where no motion is wanted. */
 function replay(stage) {

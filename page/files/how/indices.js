@@ -13,7 +13,11 @@ const LAST = 20;
 /** Places that are walked in a second, at first and at last. */
 const RATES = [3, 120];
 
-/** The index of a place, in turns. */
+/**
+ * The index of a place, in turns.
+ * @param {Pattern} pattern
+ * @param {number[]} place
+ */
 export function indexOf(pattern, [x, y]) {
   return pattern.index(x, y).map(turns);
 }
@@ -24,8 +28,19 @@ export function colorOf(pattern, index) {
 }
 
 export class Indices {
+  /** @type {import("./stage.js").Stage} */
+  stage;
+  /** @type {import("./pen.js").Panel} */
+  grid;
+  /** @type {import("./pen.js").Panel} */
+  square;
+  /** @type {number} */
+  walked;
+  /** @type {number} */
+  seconds;
+
   constructor() {
-    this.pattern = Pattern.of(ALPHA);
+    this.pattern = /** @type {Pattern} */ (Pattern.of(ALPHA));
     this.places = Array.from({ length: (LAST + 1) ** 2 }, (_, i) => [i % (LAST + 1), Math.floor(i / (LAST + 1))]);
     this.indices = this.places.map((place) => indexOf(this.pattern, place));
     this.restart();
@@ -52,6 +67,7 @@ export class Indices {
     this.tell();
   }
 
+  /** @param {number[]} place */
   go([x, y]) {
     const [column, row] = [x, y].map((v) => Math.min(LAST, Math.max(0, Math.round(v))));
     this.walked = row * (LAST + 1) + column;
@@ -62,7 +78,7 @@ export class Indices {
     if (this.grid.holds(at)) return this.go(this.grid.from(at));
     if (!this.square.holds(at)) return;
     const [u, v] = this.square.from(at);
-    const far = ([a, b]) => (a - u) ** 2 + (b - v) ** 2;
+    const far = (/** @type {number[]} */ [a, b]) => (a - u) ** 2 + (b - v) ** 2;
     const best = this.indices.reduce((one, index, i) => (far(index) < far(this.indices[one]) ? i : one), 0);
     this.go(this.places[best]);
   }

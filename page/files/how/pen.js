@@ -4,6 +4,7 @@ import { themeColor } from "../theme.js";
 
 const NAMES = ["ink", "soft", "line", "edge", "ground", "raised", "sunken", "clash", "angle", "gate", "index", "block", "vector"];
 
+/** @type {Record<string, string> | null} */
 let known = null;
 
 /** The colors of the theme and of the quantities, by name; kept until `forget`. */
@@ -19,7 +20,7 @@ export function forget() {
 
 /** Whether the ground is dark. */
 export function isDark() {
-  const [red] = palette().ground.match(/[\d.]+/g).map(Number);
+  const [red] = (palette().ground.match(/[\d.]+/g) ?? []).map(Number);
   return red < 128;
 }
 
@@ -28,7 +29,13 @@ export function dotOf(scale) {
   return Math.max(1.7, scale * 0.4);
 }
 
-/** A circle, filled or, with a thickness, in outline. */
+/**
+ * A circle, filled or, with a thickness, in outline.
+ * @param {CanvasRenderingContext2D} context
+ * @param {number[]} middle
+ * @param {number} radius
+ * @param {string} color
+ */
 export function disk(context, [x, y], radius, color, thickness = 0) {
   context.beginPath();
   context.arc(x, y, radius, 0, 2 * Math.PI);
@@ -53,6 +60,12 @@ export function disks(context, places, radius, color) {
   context.fill();
 }
 
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {number[]} from
+ * @param {number[]} to
+ * @param {string} color
+ */
 export function line(context, [x, y], [u, v], color, thickness = 1) {
   context.strokeStyle = color;
   context.lineWidth = thickness;
@@ -62,7 +75,13 @@ export function line(context, [x, y], [u, v], color, thickness = 1) {
   context.stroke();
 }
 
-/** A line with a head at its end; what is too short has none. */
+/**
+ * A line with a head at its end; what is too short has none.
+ * @param {CanvasRenderingContext2D} context
+ * @param {number[]} from
+ * @param {number[]} to
+ * @param {string} color
+ */
 export function arrow(context, from, to, color, thickness = 1.5) {
   line(context, from, to, color, thickness);
   const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
@@ -71,13 +90,21 @@ export function arrow(context, from, to, color, thickness = 1.5) {
   const head = Math.min(length * 0.6, 3 + 2 * thickness);
   context.fillStyle = color;
   context.beginPath();
-  context.moveTo(...to);
+  context.moveTo(to[0], to[1]);
   context.lineTo(to[0] - head * (u + 0.5 * v), to[1] - head * (v - 0.5 * u));
   context.lineTo(to[0] - head * (u - 0.5 * v), to[1] - head * (v + 0.5 * u));
   context.fill();
 }
 
-/** Words on a canvas; `align` is that of canvases, the place is their middle in height. */
+/**
+ * Words on a canvas; `align` is that of canvases, the place is their middle in height.
+ * @param {CanvasRenderingContext2D} context
+ * @param {string} text
+ * @param {number[]} place
+ * @param {string} color
+ * @param {number} size
+ * @param {CanvasTextAlign} align
+ */
 export function words(context, text, [x, y], color, size = 12, align = "center") {
   context.font = `${size}px ${getComputedStyle(document.body).fontFamily}`;
   context.textAlign = align;
@@ -86,7 +113,15 @@ export function words(context, text, [x, y], color, size = 12, align = "center")
   context.fillText(text, x, y);
 }
 
-/** A dial: a gate of a number of turns from the right side on, and a hand at a turn; turns go against the clock. */
+/**
+ * A dial: a gate of a number of turns from the right side on, and a hand at a turn; turns go against the clock.
+ * @param {CanvasRenderingContext2D} context
+ * @param {number[]} middle
+ * @param {number} radius
+ * @param {number} gate
+ * @param {number} turn
+ * @param {Record<string, string>} colors
+ */
 export function dial(context, [x, y], radius, gate, turn, colors) {
   context.fillStyle = colors.gate;
   context.globalAlpha = 0.3;
@@ -108,21 +143,43 @@ export function dial(context, [x, y], radius, gate, turn, colors) {
 
 /** A part of a canvas, a box in pixels with a range of coordinates of its own, y upward. */
 export class Panel {
+  /**
+   * @param {number} left
+   * @param {number} top
+   * @param {number} width
+   * @param {number} height
+   * @param {number[]} low
+   * @param {number[]} high
+   */
   constructor(left, top, width, height, [x0, y0], [x1, y1]) {
-    Object.assign(this, { left, top, width, height, x0, y0, x1, y1 });
+    this.left = left;
+    this.top = top;
+    this.width = width;
+    this.height = height;
+    this.x0 = x0;
+    this.y0 = y0;
+    this.x1 = x1;
+    this.y1 = y1;
     this.scale = width / (x1 - x0);
   }
 
-  /** The pixels of a place. */
+  /**
+   * The pixels of a place.
+   * @param {number[]} place
+   */
   to([x, y]) {
     return [this.left + (x - this.x0) * this.scale, this.top + this.height - ((y - this.y0) * this.height) / (this.y1 - this.y0)];
   }
 
-  /** The place of a pixel. */
+  /**
+   * The place of a pixel.
+   * @param {number[]} pixel
+   */
   from([x, y]) {
     return [this.x0 + (x - this.left) / this.scale, this.y0 + ((this.top + this.height - y) * (this.y1 - this.y0)) / this.height];
   }
 
+  /** @param {number[]} pixel */
   holds([x, y]) {
     return x >= this.left && x <= this.left + this.width && y >= this.top && y <= this.top + this.height;
   }
@@ -137,6 +194,12 @@ export class Panel {
     context.restore();
   }
 
+  /**
+   * @param {CanvasRenderingContext2D} context
+   * @param {number[]} corner
+   * @param {number[]} size
+   * @param {string} color
+   */
   fill(context, [x, y], [width, height], color) {
     const [left, bottom] = this.to([x, y]);
     const [right, top] = this.to([x + width, y + height]);
@@ -144,6 +207,12 @@ export class Panel {
     context.fillRect(left, top, right - left, bottom - top);
   }
 
+  /**
+   * @param {CanvasRenderingContext2D} context
+   * @param {number[]} corner
+   * @param {number[]} size
+   * @param {string} color
+   */
   outline(context, [x, y], [width, height], color, thickness = 1) {
     const [left, bottom] = this.to([x, y]);
     const [right, top] = this.to([x + width, y + height]);
@@ -157,9 +226,15 @@ export class Panel {
   }
 }
 
-/** Two square panels side by side with a gap in between, each with the range of its coordinates. */
+/**
+ * Two square panels side by side with a gap in between, each with the range of its coordinates.
+ * @param {number} width
+ * @param {number} height
+ * @param {number[][]} first
+ * @param {number[][]} second
+ */
 export function pair(width, height, first, second) {
   const side = Math.min(height - 2, width * 0.485);
   const top = (height - side) / 2;
-  return [new Panel(1, top, side, side, ...first), new Panel(width - side - 1, top, side, side, ...second)];
+  return [new Panel(1, top, side, side, first[0], first[1]), new Panel(width - side - 1, top, side, side, second[0], second[1])];
 }

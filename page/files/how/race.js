@@ -13,9 +13,24 @@ const SLOW = 26;
 const FAST = 1800;
 const SPEEDS_UP = 5;
 
-const near = ([x, y], [u, v]) => Math.hypot(x - u, y - v) < LEAST;
+const near = (/** @type {number[]} */ [x, y], /** @type {number[]} */ [u, v]) => Math.hypot(x - u, y - v) < LEAST;
 
 export class Race {
+  /** @type {import("./stage.js").Stage} */
+  stage;
+  /** @type {() => number} */
+  next;
+  /** @type {number[][][]} */
+  pieces;
+  /** @type {number[]} */
+  misses;
+  /** @type {number[][]} */
+  missed;
+  /** @type {number} */
+  seconds;
+  /** @type {number} */
+  due;
+
   constructor() {
     this.seed = 11;
     this.isTogether = true;

@@ -15,24 +15,39 @@ const RADIUS = 6;
 const MOST = 40;
 const EACH = 0.42;
 
-/** The block of a point on a map, as text. */
+/**
+ * The block of a point on a map, as text.
+ * @param {Pattern} pattern
+ * @param {bigint[]} starts
+ * @param {number[]} point
+ */
 export function blockOf(pattern, starts, [x, y]) {
   return pattern.index(x, y).map((index) => intervalOf(starts, index)).join();
 }
 
-/** The nearest of some points to a place. */
+/**
+ * The nearest of some points to a place.
+ * @param {number[][]} points
+ * @param {number[]} place
+ */
 export function nearest(points, [x, y]) {
-  const far = ([u, v]) => (u - x) ** 2 + (v - y) ** 2;
+  const far = (/** @type {number[]} */ [u, v]) => (u - x) ** 2 + (v - y) ** 2;
   return points.reduce((best, point) => (far(point) < far(best) ? point : best));
 }
 
-/** The next of some points in a direction. */
+/**
+ * The next of some points in a direction.
+ * @param {number[][]} points
+ * @param {number[]} place
+ * @param {number[]} direction
+ * @returns {number[] | null}
+ */
 export function nextOf(points, [x, y], [right, up]) {
-  const along = ([u, v]) => (u - x) * right + (v - y) * up;
-  const aside = ([u, v]) => Math.abs((u - x) * up) + Math.abs((v - y) * right);
+  const along = (/** @type {number[]} */ [u, v]) => (u - x) * right + (v - y) * up;
+  const aside = (/** @type {number[]} */ [u, v]) => Math.abs((u - x) * up) + Math.abs((v - y) * right);
   const ahead = points.filter((point) => along(point) > 0 && aside(point) <= along(point));
   const cost = (point) => along(point) + 2 * aside(point);
-  return ahead.reduce((best, point) => (best && cost(best) <= cost(point) ? best : point), null);
+  return ahead.sort((a, b) => cost(a) - cost(b))[0] ?? null;
 }
 
 /** The point near the middle that has most points of its block in the window. */
@@ -48,8 +63,23 @@ export function sociable(pattern, points, starts) {
 }
 
 export class Same {
+  /** @type {import("./stage.js").Stage} */
+  stage;
+  /** @type {import("./pen.js").Panel[]} */
+  panels;
+  /** @type {number[]} */
+  point;
+  /** @type {number[][]} */
+  alike;
+  /** @type {number} */
+  laid;
+  /** @type {number} */
+  seconds;
+  /** @type {{ key: string, counts: Map<string, number> } | undefined} */
+  counted;
+
   constructor() {
-    this.pattern = Pattern.of(ALPHA);
+    this.pattern = /** @type {Pattern} */ (Pattern.of(ALPHA));
     this.points = this.pattern.points(REACH);
     this.starts = this.pattern.starts(RADIUS);
     this.isSame = true;
@@ -64,7 +94,7 @@ export class Same {
     const all = this.pattern.points(FAR);
     const isAlike = this.isSame ? (other) => blockOf(this.pattern, this.starts, other) === block : (_, i) => i % 61 === 7;
     const others = all.filter((other, i) => String(other) !== String(point) && isAlike(other, i));
-    const far = ([x, y]) => (x - point[0]) ** 2 + (y - point[1]) ** 2;
+    const far = (/** @type {number[]} */ [x, y]) => (x - point[0]) ** 2 + (y - point[1]) ** 2;
     this.alike = [point, ...others.sort((a, b) => far(a) - far(b)).slice(0, MOST - 1)];
   }
 

@@ -13,7 +13,12 @@ const SQUARE = 16;
 const WAY = 1.4;
 const STAY = 1.3;
 
-/** What is shown by itself, one after another. */
+/** @typedef {{ density: number, seed: number, warp: number }} Chosen */
+
+/**
+ * What is shown by itself, one after another.
+ * @type {Chosen[]}
+ */
 const TOUR = [
   { density: 3, seed: 0, warp: 0 },
   { density: 9, seed: 0, warp: 0 },
@@ -25,6 +30,19 @@ const TOUR = [
 const eased = (share) => share * share * (3 - 2 * share);
 
 export class Seeds {
+  /** @type {import("./stage.js").Stage} */
+  stage;
+  /** @type {((chosen: Chosen) => void) | undefined} */
+  follow;
+  /** @type {Chosen} */
+  chosen;
+  /** @type {number} */
+  stop;
+  /** @type {number} */
+  seconds;
+  /** @type {number} */
+  share;
+
   constructor() {
     this.known = new Map();
     this.from = new Map();
@@ -91,7 +109,7 @@ export class Seeds {
     this.share = 1;
     if (!matchMedia("(prefers-reduced-motion: reduce)").matches) return;
     this.isStill = true;
-    this.chosen = { ...TOUR.at(-1) };
+    this.chosen = { ...TOUR[TOUR.length - 1] };
   }
 
   choose(change) {

@@ -39,8 +39,19 @@ const grouped = (v) => v.toLocaleString("en").replace("-", "−");
 const rounded = (v) => v.toFixed(2).replace("-", "−");
 
 export class Served {
+  /** @type {import("./stage.js").Stage} */
+  stage;
+  /** @type {import("./pen.js").Panel} */
+  panel;
+  /** @type {number[] | undefined} */
+  point;
+  /** @type {string | undefined} */
+  id;
+  /** @type {number[][] | null} */
+  path;
+
   constructor() {
-    this.pattern = Pattern.of(ALPHA);
+    this.pattern = /** @type {Pattern} */ (Pattern.of(ALPHA));
     this.starts = this.pattern.starts(RADIUS);
     this.corner = [0, 0];
     this.points = [];

@@ -2,7 +2,7 @@
 // takes pointers and keys.
 
 import { Gone, ask, onPresence } from "../api.js";
-import { byId } from "../dom.js";
+import { byId, contextOf } from "../dom.js";
 import { forget } from "./pen.js";
 
 /** The least time between two frames, in seconds: figures are calm, and processors may be slow. */
@@ -20,11 +20,20 @@ const lessMotion = matchMedia("(prefers-reduced-motion: reduce)");
  * `moved([right, up])` of arrow keys.
  */
 export class Stage {
+  /**
+   * @param {string} id
+   * @param {any} figure
+   */
   constructor(id, figure) {
-    Object.assign(this, { id, figure, isSeen: false, isPaused: false, isOver: !figure.step, last: 0 });
+    this.id = id;
+    this.figure = figure;
+    this.isSeen = false;
+    this.isPaused = false;
+    this.isOver = !figure.step;
+    this.last = 0;
     figure.stage = this;
     this.element = byId(id);
-    this.canvas = this.element.querySelector("canvas");
+    this.canvas = /** @type {HTMLCanvasElement} */ (this.element.querySelector("canvas"));
     this.said = this.element.querySelector(".said");
     this.button = this.element.querySelector(".play");
     this.button?.addEventListener("click", () => this.press());
@@ -126,8 +135,8 @@ export class Stage {
 
   /** Binds a slider of the figure; `words(value)` is its value in words. */
   slider(id, words, changed) {
-    const input = byId(id);
-    const shown = this.element.querySelector(`output[for="${id}"]`);
+    const input = /** @type {HTMLInputElement} */ (byId(id));
+    const shown = /** @type {HTMLElement} */ (this.element.querySelector(`output[for="${id}"]`));
     const follow = () => {
       shown.textContent = words(Number(input.value));
       input.setAttribute("aria-valuetext", shown.textContent);
@@ -172,7 +181,7 @@ export class Stage {
     const ratio = Math.min(2, devicePixelRatio || 1);
     const pixels = [Math.round(width * ratio), Math.round(height * ratio)];
     if (canvas.width !== pixels[0] || canvas.height !== pixels[1]) [canvas.width, canvas.height] = pixels;
-    const context = canvas.getContext("2d");
+    const context = contextOf(canvas);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, width, height);
     this.figure.draw(context, width, height);
@@ -212,11 +221,11 @@ export class Stage {
 
 /** Waits until the server is back. */
 function presence() {
-  return new Promise((back) => {
+  return /** @type {Promise<void>} */ (new Promise((back) => {
     const end = onPresence((isGone) => {
       if (isGone) return;
       end();
       back();
     });
-  });
+  }));
 }

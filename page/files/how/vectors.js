@@ -22,8 +22,25 @@ const signed = (v) => v.toFixed(2).replace("-", "−");
 const whole = (v) => String(v).replace("-", "−");
 
 export class Vectors {
+  /** @type {import("./stage.js").Stage} */
+  stage;
+  /** @type {{ set: (value: number) => void } | undefined} */
+  slider;
+  /** @type {import("./pen.js").Panel[]} */
+  panels;
+  /** @type {Map<string, number[]>} */
+  twins;
+  /** @type {number[][]} */
+  points;
+  /** @type {number[]} */
+  point;
+  /** @type {number} */
+  seconds;
+  /** @type {number} */
+  share;
+
   constructor() {
-    this.pattern = Pattern.of(ALPHA);
+    this.pattern = /** @type {Pattern} */ (Pattern.of(ALPHA));
     /** The vectors by the address of the point. */
     this.vectors = new Map();
     this.pair = [[0, 0], [0, 0]];
