@@ -66,7 +66,7 @@ export class Vectors {
   async look(point) {
     if (!point || String(point) === String(this.point)) return;
     this.point = point;
-    const twin = this.twins.get(String(point));
+    const twin = this.twins.get(String(point)) ?? point;
     for (const middle of [[0, 0], twin]) {
       await this.request(middle);
       if (point !== this.point) return;
@@ -133,16 +133,15 @@ export class Vectors {
   draw(context, width, height) {
     const colors = palette();
     const [here, there] = this.pair;
-    const offset = [there[0] - here[0], there[1] - here[1]];
-    const ranges = [[0, 0], offset].map(([x, y]) => [[x - REACH, y - REACH], [x + REACH, y + REACH]]);
-    this.panels = pair(width, height, ...ranges);
+    const range = (x, y) => [[x - REACH, y - REACH], [x + REACH, y + REACH]];
+    this.panels = pair(width, height, range(0, 0), range(there[0] - here[0], there[1] - here[1]));
     this.panels.forEach((panel, i) => this.window(context, panel, this.pair[i], colors));
     this.stage.canvas.setAttribute("aria-label",
       `Two windows of the pattern far from each other, with the same points around a ringed one, ${Math.round(100 * this.share)} % on their way along their vectors. Arrow keys choose a point.`);
   }
 
   window(context, panel, chosen, colors) {
-    const { pattern, share } = this;
+    const { pattern } = this;
     panel.clipped(context, () => {
       for (let v = 0; v <= 2 * REACH; v += 1) {
         line(context, panel.to([panel.x0 + v, panel.y0]), panel.to([panel.x0 + v, panel.y1]), colors.line, 0.5);

@@ -39,6 +39,10 @@ export class Works extends Part {
   /** @type {Square} */
   plane;
   /** @type {HTMLElement} */
+  about;
+  /** @type {HTMLElement} */
+  caption;
+  /** @type {HTMLElement} */
   settings;
   /** @type {HTMLElement} */
   facts;
