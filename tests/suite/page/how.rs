@@ -152,7 +152,11 @@ fn what_the_figures_claim_is_so() {
     assert_ne!(browser.value(different), 1);
     // The numbers of the text.
     browser.choose("#blocks-radius", "20");
-    assert!(browser.text("#blocks-said").contains("27 × 27 = 729 blocks"));
+    assert!(
+        browser
+            .text("#blocks-said")
+            .contains("27 × 27 = 729 blocks")
+    );
     let map = daemon.get("/v1/pattern/map?radius=100").json();
     assert_eq!(map["intervals"], 129);
     let table = &daemon.get("/v1/profiles/blue").json()["table"];

@@ -177,7 +177,8 @@ fn a_phone_shows_what_a_mode_is_about_and_all_drawings() {
     assert!(top("#works-about") + 60.0 < top("#panel"));
     // The torus follows the pattern that it belongs to.
     assert!(top("#works-torus") < top("#works-facts"));
-    let below = browser.value("document.querySelector('#works-plane').getBoundingClientRect().bottom");
+    let below =
+        browser.value("document.querySelector('#works-plane').getBoundingClientRect().bottom");
     assert!(top("#works-torus") - below.as_f64().expect("pixels") < 80.0);
     browser.click("#works-map");
     drawn_as(&browser, "map (5-sqrt(3))/2");
