@@ -45,6 +45,7 @@ export class Chance {
     const next = streamOf(5);
     const mixed = answer.points.map(({ x, y }) => ({ at: [x, y], key: next() })).sort((a, b) => a.key - b.key);
     this.strew = mixed.map(({ at }) => at);
+    if (this.ring) this.place(this.ring);
     this.stage.draw();
   }
 
@@ -88,11 +89,11 @@ export class Chance {
   place(at) {
     const ring = at.map((v) => Math.min(SIDE - RING, Math.max(RING, v)));
     this.ring = ring;
+    if (this.strew.length === 0) return;
     const found = [inside(this.chance, ring), inside(this.strew, ring)];
     this.seen ??= found.map((count) => [count, count]);
     this.seen = this.seen.map(([least, most], i) => [Math.min(least, found[i]), Math.max(most, found[i])]);
     const [chance, strew] = this.seen.map(([least, most]) => (least === most ? least : `${least} to ${most}`));
-    if (this.strew.length === 0) return;
     this.stage.say(`The ring has room for four points. It now holds ${found[0]} on the left and ${found[1]} on the right; so far it has held ${chance} on the left, ${strew} on the right.`);
   }
 

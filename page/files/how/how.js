@@ -43,8 +43,11 @@ byId("row-place").addEventListener("change", () => {
 row.told = (place) => {
   if (document.activeElement !== byId("row-place")) byId("row-place").value = String(place);
 };
-blocks.slider = stageOf("blocks").slider("blocks-radius", (value) => `${value} steps`, (value) => blocks.look(value));
+blocks.slider = stageOf("blocks").slider("blocks-radius", (value) => `${value} step${value === 1 ? "" : "s"}`, (value) => blocks.look(value));
 vectors.slider = stageOf("vectors").slider("vectors-share", (value) => `${value} %`, (value) => vectors.set(value / 100));
+// Where no motion is wanted the figures are over already.
+blocks.slider.set(blocks.radius);
+vectors.slider.set(Math.round(100 * vectors.share));
 
 const sliders = {
   density: stageOf("seeds").slider("seeds-density", String, (density) => seeds.choose({ density })),

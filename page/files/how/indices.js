@@ -112,7 +112,7 @@ export class Indices {
       const color = isPoint ? colorOf(this.pattern, index) : colors.edge;
       if (i >= done || !isPoint) disk(context, grid.to(place), Math.max(0.7, grid.scale * 0.07), colors.edge);
       else disk(context, grid.to(place), grid.scale * 0.36, color);
-      if (i < done) disk(context, square.to(index), isPoint ? Math.max(2.2, side / 110) : Math.max(1.1, side / 220), color);
+      if (i < done) disk(context, square.to(index), isPoint ? Math.max(2.2, side / 110) : Math.max(1.3, side / 180), color);
     });
     square.outline(context, [0, 0], [t, t], colors.gate, 2);
     square.frame(context, colors.edge);

@@ -64,9 +64,9 @@ export class Vectors {
 
   /** Shows a point and its twin. */
   async look(point) {
-    const twin = this.twins.get(String(point));
-    if (!point || !twin || String(point) === String(this.point)) return;
+    if (!point || String(point) === String(this.point)) return;
     this.point = point;
+    const twin = this.twins.get(String(point)) ?? point;
     for (const middle of [[0, 0], twin]) {
       await this.request(middle);
       if (point !== this.point) return;
@@ -136,9 +136,8 @@ export class Vectors {
   draw(context, width, height) {
     const colors = palette();
     const [here, there] = this.pair;
-    const offset = [there[0] - here[0], there[1] - here[1]];
-    const [first, second] = [[0, 0], offset].map(([x, y]) => [[x - REACH, y - REACH], [x + REACH, y + REACH]]);
-    this.panels = pair(width, height, first, second);
+    const range = (x, y) => [[x - REACH, y - REACH], [x + REACH, y + REACH]];
+    this.panels = pair(width, height, range(0, 0), range(there[0] - here[0], there[1] - here[1]));
     this.panels.forEach((panel, i) => this.window(context, panel, this.pair[i], colors));
     this.stage.canvas.setAttribute("aria-label",
       `Two windows of the pattern far from each other, with the same points around a ringed one, ${Math.round(100 * this.share)} % on their way along their vectors. Arrow keys choose a point.`);
