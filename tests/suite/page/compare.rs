@@ -209,12 +209,12 @@ fn one_view_moves_all_and_stands_in_the_address() {
     let plane = |id: &str| {
         let place = browser.value(&format!(
             "(() => {{ const box = document.querySelector('#plane-{id}').getBoundingClientRect(); \
-             return [box.left + box.width / 2, box.top + box.height / 2, box.width].map(Math.round); }})()"
+             return [box.left + box.width / 2, box.top + box.height / 2, Math.min(box.width, box.height)].map(Math.round); }})()"
         ));
         serde_json::from_value::<[i32; 3]>(place).expect("a place")
     };
-    let [x, y, width] = plane("jitter");
-    browser.drag([x, y], [-width / 4, 0]);
+    let [x, y, side] = plane("jitter");
+    browser.drag([x, y], [-side / 4, 0]);
     browser.until(
         "strew.joint.view.x.i === 7 && document.documentElement.dataset.measured.startsWith('7.')",
     );
@@ -267,7 +267,7 @@ fn far_away_on_a_phone_bounded_methods_say_that_they_end() {
     browser.choose("#jump-at", "1e15, 0");
     browser.value("document.querySelector('#jump').requestSubmit()");
     browser.until("!document.querySelector('#banner').hidden");
-    assert!(browser.text("#banner").contains("no place here"));
+    assert!(browser.text("#banner").contains("not a place here"));
     // A meaningless hash leaves the defaults.
     open(
         &browser,
