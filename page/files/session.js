@@ -13,7 +13,7 @@ import { layersOfWorld } from "./worlds.js";
 
 /**
  * The server's values of a layer, everything filled in.
- * @typedef {{ spacing: number, density: number, least_distance: number, [name: string]: any }} Understood
+ * @typedef {Api.Query & { spacing: number, density: number, least_distance: number }} Understood
  */
 
 /** One choice at a time; listeners hear what has changed. */
@@ -156,7 +156,7 @@ export class Session {
     const known = this.understood.get(query);
     if (known) return known;
     // A box of no size has no points to count.
-    const asked = askJson(`/v1/count?bbox=0,0,1e-300,1e-300&${query}`).then((answer) => answer.query);
+    const asked = askJson(`/v1/count?bbox=0,0,1e-300,1e-300&${query}`).then(({ query: all }) => /** @type {Understood} */ (all));
     if (this.understood.size > 200) this.understood.clear();
     this.understood.set(query, asked);
     asked.catch(() => this.understood.delete(query));

@@ -25,7 +25,10 @@ export class Status {
   constructor(session, plane) {
     this.session = session;
     this.plane = plane;
+    /** @type {number | null} */
     this.count = null;
+    /** How many points there would be without thinning. */
+    this.all = 0;
     this.abort = null;
     this.ask = settled(200, () => this.tally());
   }
@@ -92,7 +95,7 @@ export class Status {
       if (this.count === 0 && this.plane.span < 4 * this.plane.look.spacing) {
         return `No points in view: they are about ${spoken(this.plane.look.spacing, 2)} apart, zoom out`;
       }
-      return `${counted(this.count)} in view`;
+      return `${counted(this.count ?? 0)} in view`;
     };
     byId("tally").textContent = words();
     document.documentElement.dataset.count = error ? "" : String(this.count);

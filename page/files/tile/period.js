@@ -38,9 +38,10 @@ export class Period {
     const set = joined(pairsOf(state));
     const [{ count, query }, answer] = await Promise.all([askJson(`/v1/count?${set}`), ask(`/v1/points?${set}&format=f32`)]);
     const points = new Float32Array(await answer.arrayBuffer());
-    const { side } = query.period;
+    const { side = 1 } = query.period ?? {};
+    const { least_distance: least = 0 } = query;
     const measured = await measure(Float64Array.from(points), side);
-    const apart = query.least_distance >= 0.005 ? `, no two closer than ${query.least_distance.toFixed(2)}, even across the seam` : "";
+    const apart = least >= 0.005 ? `, no two closer than ${least.toFixed(2)}, even across the seam` : "";
     return { points, side, measured, words: `${counted(count)} on a square of ${side} × ${side} mean spacings${apart}.` };
   }
 

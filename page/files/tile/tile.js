@@ -264,7 +264,7 @@ async function begin(how) {
 async function sizes() {
   const { periods } = await askJson(`/v1/periods?${joined([["profile", state.profile], ["map", mapOf(state.profile)], ["most", "12"]])}`);
   const counts = periods.map(({ points }) => points).filter((points, i) => i === 0 || points <= MOST_POINTS);
-  state.points = counts.find((points) => points >= state.points) ?? counts.at(-1);
+  state.points = counts.find((points) => points >= state.points) ?? counts[counts.length - 1];
   setOptions(byId("points"), counts.map((points) => [String(points), points.toLocaleString("en")]), String(state.points));
 }
 
