@@ -2,7 +2,7 @@
 // textures, so that a frame of a drag is a copy and not another drawing of all points.
 
 import { ARROW, SHAPES, isMarked, slotsOf } from "./marks.js";
-import { programOf } from "./program.js";
+import { glOn, isSoftware, programOf } from "./program.js";
 
 /** The attributes by their slots. */
 const SLOTS = ["place", "angle", "scale", "variant"];
@@ -75,18 +75,13 @@ void main() {
   result = vec4(ink * cover, cover);
 }`;
 
-const OPTIONS = { alpha: false, antialias: false, depth: false, stencil: false, powerPreference: "high-performance" };
-/** The names of renderers without graphics hardware. */
-const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
-
 /** Whether WebGL2 is there and is done by hardware; looked at on a canvas that is thrown away. */
 function isFast() {
   const gl = document.createElement("canvas").getContext("webgl2", { failIfMajorPerformanceCaveat: true });
   if (!gl) return false;
-  const names = gl.getExtension("WEBGL_debug_renderer_info");
-  const name = gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  const isHardware = !isSoftware(gl);
   gl.getExtension("WEBGL_lose_context")?.loseContext();
-  return !SOFTWARE.test(String(name));
+  return isHardware;
 }
 
 /**
@@ -95,8 +90,8 @@ function isFast() {
  */
 export function glPainter(canvas, wanted) {
   if (!wanted && !isFast()) return null;
-  const gl = canvas.getContext("webgl2", OPTIONS);
-  return gl && !gl.isContextLost() ? new GlPainter(gl, canvas) : null;
+  const gl = glOn(canvas, { antialias: false, depth: false });
+  return gl && new GlPainter(gl, canvas);
 }
 
 class GlPainter {
