@@ -48,7 +48,7 @@ const plane = new Plane(byId("plane"), session.state.renderer, {
   progress: (share) => {
     const bar = byId("progress");
     bar.hidden = share >= 1;
-    if (share > 0 && plane.chunks.wanted.length > 0) shownFirst();
+    if (share > 0 && plane.chunks.wanted.length > 0) arrived();
     bar.setAttribute("aria-valuenow", String(Math.round(share * 100)));
     /** @type {HTMLElement} */ (bar.firstElementChild).style.transform = `scaleX(${share})`;
     shade.painted();
@@ -110,7 +110,12 @@ function shownFirst() {
   if ("shown" in root.dataset) return;
   root.dataset.shown = "";
   performance.mark("points");
-  if (isFirst) pour.begin(matchMedia("(prefers-reduced-motion: reduce)").matches);
+}
+
+/** Points have come: on a first visit they pour into place. */
+function arrived() {
+  shownFirst();
+  if (isFirst && !("pour" in root.dataset)) pour.begin(matchMedia("(prefers-reduced-motion: reduce)").matches);
 }
 
 const status = new Status(session, plane);

@@ -150,7 +150,7 @@ export class Take extends Part {
     this.button.disabled = true;
     try {
       await save(request, file, (come) => (this.bar.value = come));
-      this.size.textContent = `${file} is with your browser's downloads`;
+      this.size.textContent = `${file} is in your downloads`;
     } catch (error) {
       this.size.textContent = error.message;
       this.size.classList.add("bad");

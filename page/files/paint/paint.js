@@ -280,7 +280,7 @@ export class Paint extends Part {
       if (text) this.texts.set(field, text);
       const amount = layer.by === "min_distance" ? { by: "spacing", amount: await this.spacing(layer) } : {};
       this.session.choose(() => Object.assign(layer, { field, paint: text, ...amount }), "layers");
-      const where = text.length > MOST_PAINT ? ", too much for the address: save it as a file" : "";
+      const where = text.length > MOST_PAINT ? ", too many for the address: save them as a file" : "";
       this.say(`${words ? `${words}: ` : ""}${strokes(work)}${where}`);
     } catch (error) {
       if (mine !== this.turn) return;
@@ -304,7 +304,7 @@ export class Paint extends Part {
     link.click();
     link.remove();
     setTimeout(() => URL.revokeObjectURL(url), 60_000);
-    this.say("world.json is with your browser's downloads. A folder of worlds takes it, too.");
+    this.say("world.json is in your downloads. The daemon's folder of worlds takes it, too.");
   }
 
   /** Opens a world from a file. */
