@@ -126,7 +126,6 @@ export class Blocks {
       disk(context, plane.to(this.point), plane.scale * 1.1, colors.ink, 1.5);
     });
     plane.frame(context, colors.line);
-    this.stage.canvas.setAttribute("aria-label",
-      `Left the gate, cut into ${starts.length} by ${starts.length} blocks, one of them chosen; right the pattern, the points of that block ringed. Arrow keys choose a point.`);
+    this.stage.name(`Left the gate, cut into ${starts.length} by ${starts.length} blocks, one of them chosen; right the pattern, the points of that block ringed. Arrow keys choose a point.`);
   }
 }

@@ -110,7 +110,7 @@ export class Chance {
       if (this.ring && this.fallen === COUNT) disk(context, panel.to(this.ring), RING * panel.scale, colors.index, 2.5);
     }
     const label = `${fallen} points by chance on the left, ${Math.min(fallen, this.strew.length)} even points on the right, counted in ${CELLS ** 2} cells each. Arrow keys move the ring.`;
-    this.stage.canvas.setAttribute("aria-label", label);
+    this.stage.name(label);
   }
 
   /** Cells, grayer the more points they hold, with their counts. */

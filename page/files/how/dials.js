@@ -90,7 +90,9 @@ export class Row {
     const whole = Math.floor((at * pattern.alpha) / 2);
     const full = whole === 0 ? "" : `, which is ${whole.toLocaleString("en")} full turn${whole === 1 ? "" : "s"} and ${degrees(this.turn(at))}`;
     const sum = ((at * pattern.alpha) / 2) * 360;
-    const product = `${at.toLocaleString("en")} × ${degrees(pattern.alpha / 2)} = ${sum.toLocaleString("en", { maximumFractionDigits: 1 })}°`;
+    // As many digits of α as a product of that size needs.
+    const factor = degrees(pattern.alpha / 2, String(at).length);
+    const product = `${at.toLocaleString("en")} × ${factor} = ${sum.toLocaleString("en", { maximumFractionDigits: 1 })}°`;
     this.stage?.say(`Place ${at.toLocaleString("en")}: ${product}${full}. The gate ends at ${degrees(pattern.t)}, so here is ${isPoint ? "a point" : "no point"}.`);
   }
 
@@ -124,7 +126,6 @@ export class Row {
     line(context, [x, 8], [x, bottom], colors.index, 1);
     disk(context, [x, bottom], Math.min(9, chart.scale * 0.48), colors.index, 2);
     words(context, this.at.toLocaleString("en"), [Math.min(width - 20, Math.max(left + 8, x)), height - 7], colors.soft, 11);
-    this.stage.canvas.setAttribute("aria-label",
-      `A dial with a hand, and the hand's position at ${SHOWN} places of a row; where it lies in the gate, the place has a point. Arrow keys choose a place.`);
+    this.stage.name(`A dial with a hand, and the hand's position at ${SHOWN} places of a row; where it lies in the gate, the place has a point. Arrow keys choose a place.`);
   }
 }

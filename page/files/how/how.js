@@ -14,6 +14,9 @@ import { Served } from "./served.js";
 import { Stage } from "./stage.js";
 import { Vectors } from "./vectors.js";
 
+/** The last place of the row that can be chosen. */
+const MOST_PLACE = 1e9;
+
 const root = document.documentElement;
 const figures = {
   chance: new Chance(), race: new Race(), row: new Row(), indices: new Indices(), same: new Same(),
@@ -34,7 +37,7 @@ stageOf("same").choices("same-kind", (kind) => {
 });
 stageOf("row").slider("row-angle", (value) => degrees(value / 360), (value) => row.choose(value / 180));
 byId("row-place").addEventListener("change", () => {
-  const place = Math.min(Number.MAX_SAFE_INTEGER / 4, Math.max(0, Math.floor(Number(byId("row-place").value))));
+  const place = Math.min(MOST_PLACE, Math.max(0, Math.floor(Number(byId("row-place").value))));
   if (!Number.isFinite(place)) return;
   stageOf("row").take();
   row.go(place);

@@ -3,7 +3,7 @@
 import { shade } from "../works/draw.js";
 import { Pattern, turns } from "../works/pattern.js";
 import { ALPHA, degrees } from "./dials.js";
-import { Panel, dial, disk, isDark, line, palette } from "./pen.js";
+import { Panel, dial, disk, disks, isDark, line, palette } from "./pen.js";
 
 /** How far toward white colors go on a dark ground. */
 const LIFT = 0.35;
@@ -106,14 +106,15 @@ export class Indices {
     context.globalAlpha = 0.25;
     square.fill(context, [0, 0], [t, t], colors.gate);
     context.globalAlpha = 1;
-    this.places.forEach((place, i) => {
-      const index = this.indices[i];
-      const isPoint = index.every((v) => v < t);
-      const color = isPoint ? colorOf(this.pattern, index) : colors.edge;
-      if (i >= done || !isPoint) disk(context, grid.to(place), Math.max(0.7, grid.scale * 0.07), colors.edge);
-      else disk(context, grid.to(place), grid.scale * 0.36, color);
-      if (i < done) disk(context, square.to(index), isPoint ? Math.max(2.2, side / 110) : Math.max(1.3, side / 180), color);
-    });
+    const all = this.places.map((place, i) => ({ place, index: this.indices[i], isDone: i < done }));
+    const points = all.filter(({ index, isDone }) => isDone && index.every((v) => v < t));
+    disks(context, all.map(({ place }) => grid.to(place)), Math.max(0.7, grid.scale * 0.07), colors.edge);
+    disks(context, all.filter(({ isDone }) => isDone).map(({ index }) => square.to(index)), Math.max(1.3, side / 180), colors.edge);
+    for (const { place, index } of points) {
+      const color = colorOf(this.pattern, index);
+      disk(context, grid.to(place), grid.scale * 0.36, color);
+      disk(context, square.to(index), Math.max(2.2, side / 110), color);
+    }
     square.outline(context, [0, 0], [t, t], colors.gate, 2);
     square.frame(context, colors.edge);
     grid.frame(context, colors.line);
@@ -129,7 +130,6 @@ export class Indices {
     line(context, [square.left, seen[1]], seen, colors.index);
     context.globalAlpha = 1;
     disk(context, seen, 5, colors.index, 2);
-    this.stage.canvas.setAttribute("aria-label",
-      `Left a grid of ${LAST + 1} by ${LAST + 1} places; in the middle the two hands of one place; right the square of indices, with the gate in its lower left corner. Arrow keys choose a place.`);
+    this.stage.name(`Left a grid of ${LAST + 1} by ${LAST + 1} places; in the middle the two hands of one place; right the square of indices, with the gate in its lower left corner. Arrow keys choose a place.`);
   }
 }

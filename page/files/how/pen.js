@@ -2,14 +2,17 @@
 
 import { themeColor } from "../theme.js";
 
-const NAMES = ["ink", "soft", "line", "edge", "ground", "raised", "sunken", "clash", "angle", "gate", "index", "block", "vector"];
+const NAMES = ["ink", "soft", "line", "edge", "ground", "clash", "gate", "index", "block", "vector"];
 
 /** @type {Record<string, string> | null} */
 let known = null;
 
-/** The colors of the theme and of the quantities, by name; kept until `forget`. */
+/** The colors of the theme and of the quantities, by name, and the `family` of the type; kept until `forget`. */
 export function palette() {
-  known ??= Object.fromEntries(NAMES.map((name) => [name, themeColor(name)]));
+  known ??= {
+    ...Object.fromEntries(NAMES.map((name) => [name, themeColor(name)])),
+    family: getComputedStyle(document.body).fontFamily,
+  };
   return known;
 }
 
@@ -18,10 +21,9 @@ export function forget() {
   known = null;
 }
 
-/** Whether the ground is dark. */
+/** Whether the ground is dark: its red is below 100 of 255. */
 export function isDark() {
-  const [red] = (palette().ground.match(/[\d.]+/g) ?? []).map(Number);
-  return red < 128;
+  return /^rgba?\(\d?\d\D/.test(palette().ground);
 }
 
 /** The radius of a dot of the grid where a step is so many pixels long. */
@@ -76,6 +78,23 @@ export function line(context, [x, y], [u, v], color, thickness = 1) {
 }
 
 /**
+ * Many lines of one color, each `[from, to]`.
+ * @param {CanvasRenderingContext2D} context
+ * @param {number[][][]} pairs
+ * @param {string} color
+ */
+export function lines(context, pairs, color, thickness = 1) {
+  context.strokeStyle = color;
+  context.lineWidth = thickness;
+  context.beginPath();
+  for (const [[x, y], [u, v]] of pairs) {
+    context.moveTo(x, y);
+    context.lineTo(u, v);
+  }
+  context.stroke();
+}
+
+/**
  * A line with a head at its end; what is too short has none.
  * @param {CanvasRenderingContext2D} context
  * @param {number[]} from
@@ -106,7 +125,7 @@ export function arrow(context, from, to, color, thickness = 1.5) {
  * @param {CanvasTextAlign} align
  */
 export function words(context, text, [x, y], color, size = 12, align = "center") {
-  context.font = `${size}px ${getComputedStyle(document.body).fontFamily}`;
+  context.font = `${size}px ${palette().family}`;
   context.textAlign = align;
   context.textBaseline = "middle";
   context.fillStyle = color;

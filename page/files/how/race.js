@@ -137,7 +137,6 @@ export class Race {
     panel.frame(context, colors.line);
     if (!this.isTogether && !this.isFull(0)) words(context, "waits …", panel.to([1.5, HEIGHT / 2]), colors.soft, 15);
     const [left, right] = this.pieces.map((piece) => piece.length);
-    this.stage.canvas.setAttribute("aria-label",
-      `Two pieces side by side, ${left} points on the left, ${right} on the right, ${this.clashes.length} pairs too close across the border.`);
+    this.stage.name(`Two pieces side by side, ${left} points on the left, ${right} on the right, ${this.clashes.length} pairs too close across the border.`);
   }
 }

@@ -182,7 +182,6 @@ export class Same {
     disk(context, right.to([0, 0]), right.scale * 0.75, colors.block, 2);
     right.outline(context, [-RADIUS - 0.5, -RADIUS - 0.5], [2 * RADIUS + 1, 2 * RADIUS + 1], colors.block, 1.5);
     right.frame(context, colors.line);
-    this.stage.canvas.setAttribute("aria-label",
-      `Left the pattern, points in the colors of their indices; right the surroundings of ${this.laid} points laid over each other. Arrow keys choose a point.`);
+    this.stage.name(`Left the pattern, points in the colors of their indices; right the surroundings of ${this.laid} points laid over each other. Arrow keys choose a point.`);
   }
 }

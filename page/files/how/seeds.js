@@ -145,6 +145,6 @@ export class Seeds {
       context.globalAlpha = 1;
     });
     panel.frame(context, colors.line);
-    this.stage.canvas.setAttribute("aria-label", `${this.to.size} points in two shades, by squares of their addresses: the squares are straight without warp and bent with it.`);
+    this.stage.name(`${this.to.size} points in two shades, by squares of their addresses: the squares are straight without warp and bent with it.`);
   }
 }

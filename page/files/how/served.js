@@ -137,6 +137,6 @@ export class Served {
       arrow(context, plain, end, colors.soft, 1.5);
     });
     panel.frame(context, colors.line);
-    this.stage.canvas.setAttribute("aria-label", `${this.points.length} points of the server; the chosen one with the way from its place on the grid. Arrow keys choose a point.`);
+    this.stage.name(`${this.points.length} points of the server; the chosen one with the way from its place on the grid. Arrow keys choose a point.`);
   }
 }

@@ -169,6 +169,14 @@ export class Stage {
     }
   }
 
+  /**
+   * What the canvas shows, for those who do not see it.
+   * @param {string} text
+   */
+  name(text) {
+    if (this.canvas.getAttribute("aria-label") !== text) this.canvas.setAttribute("aria-label", text);
+  }
+
   say(text) {
     if (this.said && this.said.textContent !== text) this.said.textContent = text;
   }

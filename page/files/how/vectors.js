@@ -3,7 +3,7 @@
 import { Pattern } from "../works/pattern.js";
 import { ALPHA } from "./dials.js";
 import { colorOf, indexOf } from "./indices.js";
-import { arrow, disk, dotOf, line, pair, palette } from "./pen.js";
+import { arrow, disk, dotOf, lines, pair, palette } from "./pen.js";
 import { blockOf, nearest, nextOf } from "./same.js";
 
 /** Half the sides of the windows and of what is requested, in grid units; and of where twins are looked for. */
@@ -139,30 +139,39 @@ export class Vectors {
     const range = (x, y) => [[x - REACH, y - REACH], [x + REACH, y + REACH]];
     this.panels = pair(width, height, range(0, 0), range(there[0] - here[0], there[1] - here[1]));
     this.panels.forEach((panel, i) => this.window(context, panel, this.pair[i], colors));
-    this.stage.canvas.setAttribute("aria-label",
-      `Two windows of the pattern far from each other, with the same points around a ringed one, ${Math.round(100 * this.share)} % on their way along their vectors. Arrow keys choose a point.`);
+    this.stage.name(`Two windows of the pattern far from each other, with the same points around a ringed one on their way along their vectors. Arrow keys choose a point.`);
   }
 
   window(context, panel, chosen, colors) {
     const { pattern } = this;
     panel.clipped(context, () => {
-      for (let v = 0; v <= 2 * REACH; v += 1) {
-        line(context, panel.to([panel.x0 + v, panel.y0]), panel.to([panel.x0 + v, panel.y1]), colors.line, 0.5);
-        line(context, panel.to([panel.x0, panel.y0 + v]), panel.to([panel.x1, panel.y0 + v]), colors.line, 0.5);
-      }
-      for (let y = panel.y0 - 6; y <= panel.y1 + 6; y += 1) {
-        for (let x = panel.x0 - 6; x <= panel.x1 + 6; x += 1) if (pattern.has(x, y)) this.one(context, panel, [x, y], chosen, colors);
-      }
+      const along = Array.from({ length: 2 * REACH + 1 }, (_, i) => i);
+      lines(context, along.map((v) => [panel.to([panel.x0 + v, panel.y0]), panel.to([panel.x0 + v, panel.y1])]), colors.line, 0.5);
+      lines(context, along.map((v) => [panel.to([panel.x0, panel.y0 + v]), panel.to([panel.x1, panel.y0 + v])]), colors.line, 0.5);
+      const ways = pointsAround(pattern, panel).map((point) => this.way(panel, point));
+      lines(context, ways.map(({ from, end }) => [from, end]), colors.vector, 1);
+      for (const { now, color } of ways) disk(context, now, dotOf(panel.scale), color);
+      if (this.vectors.size === 0) return;
+      const { from, end, now } = this.way(panel, chosen);
+      arrow(context, from, end, colors.vector, 3);
+      disk(context, now, panel.scale * 0.75, colors.block, 2.5);
     });
     panel.frame(context, colors.line);
   }
 
-  one(context, panel, point, chosen, colors) {
-    const isChosen = String(point) === String(chosen);
+  /** The way of a point in pixels: where it begins, ends, and is now; and its color. */
+  way(panel, point) {
     const vector = this.vectors.get(point.join(":")) ?? [0, 0];
-    const [now, end] = [this.share, 1].map((share) => panel.to(point.map((v, axis) => v + share * vector[axis])));
-    arrow(context, panel.to(point), end, colors.vector, isChosen ? 3 : 1);
-    disk(context, now, dotOf(panel.scale), colorOf(this.pattern, indexOf(this.pattern, point)));
-    if (isChosen && this.vectors.size > 0) disk(context, now, panel.scale * 0.75, colors.block, 2.5);
+    const [from, now, end] = [0, this.share, 1].map((share) => panel.to(point.map((v, axis) => v + share * vector[axis])));
+    return { from, now, end, color: colorOf(this.pattern, indexOf(this.pattern, point)) };
   }
+}
+
+/** The points of a panel's window, and those that may come into it. */
+function pointsAround(pattern, { x0, y0, x1, y1 }) {
+  const found = [];
+  for (let y = y0 - 6; y <= y1 + 6; y += 1) {
+    for (let x = x0 - 6; x <= x1 + 6; x += 1) if (pattern.has(x, y)) found.push([x, y]);
+  }
+  return found;
 }
