@@ -137,20 +137,24 @@ function choose(change) {
 
 function show() {
   root.dataset.measured = "";
-  for (const panel of panels) {
-    const isShown = state.shown.includes(panel.method.id);
-    panel.element.hidden = !isShown;
-    byId(`show-${panel.method.id}`).setAttribute("aria-pressed", String(isShown));
-    if (isShown) panel.use(state);
-  }
-  byId("methods").dataset.count = String(state.shown.length);
-  const isAll = state.shown.length === METHODS.length;
-  byId("all").setAttribute("aria-pressed", String(isAll));
-  byId("show").hidden = state.shown.join() === PAIR.join();
+  arrange();
+  for (const panel of shown()) panel.use(state);
   if (byId("seed").value !== String(state.seed)) byId("seed").value = String(state.seed);
   byId("profile").value = state.profile;
   resize();
   again();
+}
+
+/** Shows the panels of the chosen methods. */
+function arrange() {
+  for (const { element, method } of panels) {
+    const isShown = state.shown.includes(method.id);
+    element.hidden = !isShown;
+    byId(`show-${method.id}`).setAttribute("aria-pressed", String(isShown));
+  }
+  byId("methods").dataset.count = String(state.shown.length);
+  byId("all").setAttribute("aria-pressed", String(state.shown.length === METHODS.length));
+  byId("show").hidden = state.shown.join() === PAIR.join();
 }
 
 function resize() {
@@ -215,6 +219,7 @@ function reseed(seed) {
 function build() {
   byId("show").append(...METHODS.map(({ id, name }) => make("button", { type: "button", id: `show-${id}`, onclick: () => pick(id) }, name)));
   byId("methods").append(...panels.map(({ element }) => element));
+  arrange();
   for (const { plane } of panels) {
     moveBy(plane, joint, { tapped: () => {}, hovered: () => {} });
     new ResizeObserver(resize).observe(plane);
