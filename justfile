@@ -63,6 +63,10 @@ js:
 bundlers *names:
     node bindings/js/test/bundlers.mjs {{names}}
 
+# The types of the pages' modules, by TypeScript.
+types:
+    .ci/page
+
 # The tests of the pages in Firefox (firefox-esr and geckodriver) instead of Chromium.
 firefox:
     STREW_TEST_BROWSER=firefox cargo test --locked --test suite -- page:: --test-threads 1
@@ -94,9 +98,13 @@ no-std:
 targets:
     .ci/targets
 
-# Everything that a release has, made and checked in empty environments; publishes nothing. See docs/releasing.md.
+# Everything that a release has, made and used in empty environments; publishes nothing. See docs/releasing.md.
 release folder="dist":
     deploy/release {{folder}}
+
+# A rehearsal of `just release`: all parts of it that are not made of these sources yet, or some: `just release-check npm c`.
+release-check *parts:
+    deploy/release target/release-check {{parts}}
 
 # The walks of 1,000 players through a world, with a cache and without: `just caches target/release/strew [--cache varnish]`.
 caches program *args:

@@ -9,6 +9,8 @@ use std::{
 mod circles;
 #[path = "tidy/imports.rs"]
 mod imports;
+#[path = "tidy/releasing.rs"]
+mod releasing;
 
 /// Every source file of the workspace, as (path from the root, text).
 fn sources() -> Vec<(String, String)> {
@@ -244,6 +246,12 @@ fn no_files_import_each_other_in_a_circle() {
         .map(|(name, _)| format!("crates/{name}/src"));
     let folders: Vec<String> = crates.chain(["src".to_owned()]).collect();
     circles::check(&folders, &sources());
+}
+
+#[test]
+fn every_part_of_a_release_and_every_published_crate_is_listed() {
+    let folders: Vec<String> = crates().into_iter().map(|(name, _)| name).collect();
+    releasing::check(&folders);
 }
 
 #[test]

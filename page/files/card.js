@@ -1,7 +1,8 @@
 // A point that is pointed at: its card, and its place and neighbors above the plane.
 
 import { askJson } from "./api.js";
-import { byId, make, settled, spoken } from "./dom.js";
+import { byId, contextOf, make, settled, spoken } from "./dom.js";
+import { Part } from "./part.js";
 import { decimalsFor, distance, formatPlace, parsePlace } from "./place.js";
 import { attributesOf, joined, setOf } from "./query.js";
 import { themeColor } from "./theme.js";
@@ -14,13 +15,22 @@ const NEIGHBORS = 8;
 const RING = 14;
 const EDGE = 10;
 
-export class Card {
+/** @typedef {import("./place.js").Place} Place */
+
+export class Card extends Part {
   constructor(session, plane) {
+    super();
     this.session = session;
     this.plane = plane;
     this.element = byId("card");
     this.over = byId("over");
+    /** @type {{ x: Place, y: Place, layer: number } | null} */
     this.point = null;
+    /** @type {{ self: any, near: any[], layer: import("./state.js").Layer, index: number } | null} */
+    this.found = null;
+    /** @type {AbortController | null} */
+    this.abort = null;
+    this.hasInk = false;
     this.isPinned = false;
     this.later = settled(120, (point) => this.tell(point));
     addEventListener("keydown", (event) => {
@@ -108,6 +118,7 @@ export class Card {
   }
 
   show() {
+    if (!this.found) return;
     const { self, near, layer, index } = this.found;
     const rows = [["x", String(self.x)], ["y", String(self.y)]];
     for (const name of attributesOf(layer)) {
@@ -139,7 +150,7 @@ export class Card {
 
   /** The box around the point and its neighbors, in CSS pixels: `[left, top, right, bottom]`. */
   surroundings() {
-    const all = [this.onCanvas(this.point.x, this.point.y)];
+    const all = this.point ? [this.onCanvas(this.point.x, this.point.y)] : [];
     for (const { x, y } of this.found?.near ?? []) all.push(this.onCanvas(parsePlace(String(x)), parsePlace(String(y))));
     const [xs, ys] = [all.map(([x]) => x), all.map(([, y]) => y)];
     return [Math.min(...xs) - RING, Math.min(...ys) - RING, Math.max(...xs) + RING, Math.max(...ys) + RING];
@@ -158,7 +169,7 @@ export class Card {
     const places = [[right, y], [left - w, y], [x, bottom], [x, top - h], [EDGE, EDGE], [lastX, EDGE], [EDGE, lastY], [lastX, lastY]]
       .map(([px, py]) => [Math.min(lastX, Math.max(EDGE, px)), Math.min(lastY, Math.max(EDGE, py))]);
     const at = this.onCanvas(point.x, point.y);
-    const cost = ([px, py]) => {
+    const cost = (/** @type {number[]} */ [px, py]) => {
       const across = Math.max(0, Math.min(px + w, right) - Math.max(px, left));
       const down = Math.max(0, Math.min(py + h, bottom) - Math.max(py, top));
       const isOver = at[0] > px - RING && at[0] < px + w + RING && at[1] > py - RING && at[1] < py + h + RING;
@@ -177,7 +188,7 @@ export class Card {
     this.hasInk = Boolean(this.point);
     [over.width, over.height] = view.pixels;
     if (!this.point) return;
-    const context = over.getContext("2d");
+    const context = contextOf(over);
     context.scale(view.ratio, view.ratio);
     const [x, y] = this.onCanvas(this.point.x, this.point.y);
     context.strokeStyle = themeColor("accent");

@@ -56,7 +56,12 @@ function quoted(text) {
   return `'${text.replace(/'/g, "'\\''")}'`;
 }
 
-/** The line for curl. */
+/**
+ * The line for curl.
+ * @param {string} origin
+ * @param {{ path: string, body?: string }} request
+ * @param {string} file
+ */
 export function curl(origin, { path, body }, file) {
   const data = body ? ` \\\n  -d ${quoted(body)}` : "";
   return `curl -f ${quoted(origin + path)} -o ${file}${data}`;
@@ -73,7 +78,10 @@ export function grpcurl(host, layers, box, keep) {
   return `grpcurl${plain} -d ${quoted(json(message, 2))} \\\n  ${host} strew.v1.PointService/StreamPoints`;
 }
 
-/** A layer as the message has it: its set in a member, numbers for the warp, objects for ranges and variants. */
+/**
+ * A layer as the message has it: its set in a member, numbers for the warp, objects for ranges and variants.
+ * @param {Record<string, any>} layer
+ */
 function typed({ name, region, clear_of, ...set }) {
   const message = { ...set };
   if (set.warp === "off" || set.warp === "on") message.warp = set.warp === "on" ? 1 : 0;
@@ -87,7 +95,13 @@ function typed({ name, region, clear_of, ...set }) {
   return { ...Object.fromEntries(around), set: message };
 }
 
-/** A program in Python that needs nothing installed, but numpy for its own format. */
+/**
+ * A program in Python that needs nothing installed, but numpy for its own format.
+ * @param {string} origin
+ * @param {{ path: string, body?: string }} request
+ * @param {string} format
+ * @param {string} file
+ */
 export function python(origin, { path, body }, format, file) {
   const url = JSON.stringify(origin + path);
   const lines = ["from urllib.request import Request, urlopen", ""];

@@ -20,6 +20,21 @@ const DOUBLINGS = 3;
 const FIELDS = ["profile", "alpha", "map", "amount", "seed", "warp", "settle", "field", "range", "variants", "clear"];
 
 export class Controls {
+  /** @type {HTMLElement} */
+  bar;
+  /** @type {HTMLElement} */
+  shade;
+  /** @type {HTMLElement} */
+  range;
+  /** @type {HTMLElement} */
+  variants;
+  /** @type {HTMLElement} */
+  clear;
+  /** @type {HTMLElement} */
+  remove;
+  /** @type {HTMLElement} */
+  legend;
+
   /** `profiles` is the server's list of tables, `fields` that of fields; `stipple` takes a picture's file. */
   constructor(session, profiles, fields, stipple) {
     this.session = session;
@@ -82,7 +97,7 @@ export class Controls {
       const { layer } = this;
       this.holds = true;
       this.hold({ amount: String(Number((2 ** Number(event.target.value)).toPrecision(3))) });
-      this.root.querySelector("#amount").value = layer.amount;
+      /** @type {HTMLInputElement} */ (byId("amount")).value = layer.amount;
     };
     const slider = make("input", {
       type: "range", id: "amount-slider", step: "any", "aria-label": "Less or more of it", oninput: slide,
@@ -205,19 +220,20 @@ export class Controls {
   updateBar() {
     const { layers } = this.session.state;
     if (this.bar.childElementCount !== layers.length + (layers.length < MOST_LAYERS ? 1 : 0)) {
-      const focused = this.bar.contains(document.activeElement) ? document.activeElement.id : null;
+      const focused = this.bar.contains(document.activeElement) ? document.activeElement?.id : null;
       const buttons = layers.map((_, i) => make("button", {
         type: "button", id: `layer-${i}`, onclick: () => this.pick(i),
       }, make("i"), make("span")));
       const add = make("button", { type: "button", id: "add-layer", onclick: () => this.addLayer() }, "+ Add a layer");
       this.bar.replaceChildren(...buttons, ...(layers.length < MOST_LAYERS ? [add] : []));
-      if (focused) (byId(focused) ?? this.bar.lastElementChild).focus();
+      if (focused) (byId(focused) ?? add).focus();
     }
     layers.forEach((layer, i) => {
       const button = this.bar.children[i];
       button.setAttribute("aria-pressed", String(i === this.picked));
-      button.firstElementChild.className = `swatch-${layer.color}`;
-      button.lastElementChild.textContent = `${i + 1} ${layer.profile}`;
+      const [swatch, name] = button.children;
+      swatch.className = `swatch-${layer.color}`;
+      name.textContent = `${i + 1} ${layer.profile}`;
     });
   }
 
@@ -226,6 +242,7 @@ export class Controls {
     this.picked = Math.min(this.picked, this.session.state.layers.length - 1);
     const { layer, picked, root } = this;
     this.updateBar();
+    /** @type {(id: string) => any} */
     const set = (id) => root.querySelector(`#${id}`);
     const { alphas, alpha, maps, map } = choicesOf(this.profiles, layer);
     setOptions(set("profile"), including(profileNames(this.profiles), layer.profile), layer.profile);
@@ -291,10 +308,10 @@ export class Controls {
     const { understood, faults } = this.notes[this.picked] ?? {};
     const all = { ...faults, ...faultsBefore(this.layer, this.picked) };
     for (const id of FIELDS) fault(this.root, id, all[id]);
-    if (all.alpha || all.map || all.warp || all.settle) byId("expert").open = true;
+    if (all.alpha || all.map || all.warp || all.settle) /** @type {HTMLDetailsElement} */ (byId("expert")).open = true;
     byId("about-amount").textContent = understood && !faults ? said(understood) : "";
     byId("about-profile").textContent = PROFILE_WORDS[this.layer.profile] ?? "";
-    this.root.querySelector("#amount").setAttribute("aria-label", AMOUNT_WORDS[this.layer.by]);
+    byId("amount").setAttribute("aria-label", AMOUNT_WORDS[this.layer.by]);
   }
 }
 

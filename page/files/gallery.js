@@ -5,6 +5,7 @@ import { ask } from "./api.js";
 import { lineChart, pointPicture, spectrumPicture, topOf } from "./charts.js";
 import { byId, make, spoken } from "./dom.js";
 import { measure } from "./measure.js";
+import { Part } from "./part.js";
 import { PROFILE_WORDS, profileNames } from "./profiles.js";
 import { LAYER, encoded } from "./state.js";
 import { figureOf, recordedOf } from "./understand.js";
@@ -13,8 +14,9 @@ import { figureOf, recordedOf } from "./understand.js";
 const MEASURED = 64;
 const DRAWN = 20;
 
-export class Gallery {
+export class Gallery extends Part {
   constructor(session, profiles) {
+    super();
     this.session = session;
     this.names = profileNames(profiles);
     // The one to begin with first, the bare pattern last.

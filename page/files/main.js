@@ -27,6 +27,7 @@ import { Works } from "./works/works.js";
 const root = document.documentElement;
 const session = new Session();
 
+/** @type {import("./part.js").Part[]} */
 const parts = [];
 const plane = new Plane(byId("plane"), session.state.renderer, {
   moved: () => {
@@ -35,15 +36,14 @@ const plane = new Plane(byId("plane"), session.state.renderer, {
     session.viewed(plane.view, plane.span);
     root.dataset.state = "loading";
     status.moved();
-    for (const part of parts) part.moved?.();
+    for (const part of parts) part.moved();
   },
   progress: (share) => {
     const bar = byId("progress");
     bar.hidden = share >= 1;
     if (share > 0 && plane.chunks.wanted.length > 0) shownFirst();
     bar.setAttribute("aria-valuenow", String(Math.round(share * 100)));
-    bar.firstElementChild.style.transform = `scaleX(${share})`;
-    for (const part of parts) part.painted?.();
+    /** @type {HTMLElement} */ (bar.firstElementChild).style.transform = `scaleX(${share})`;
   },
   settled: () => {
     if (root.dataset.state === "loading" && isUnderstood) root.dataset.state = "ready";
@@ -72,7 +72,7 @@ function shownFirst() {
 const status = new Status(session, plane);
 root.dataset.renderer = plane.painter.name;
 const rested = settled(250, () => {
-  for (const part of parts) part.rested?.();
+  for (const part of parts) part.rested();
   if (session.state.layers.length > 1) controls?.counted(countsInView());
 });
 
@@ -104,7 +104,7 @@ let latest = 0;
 /** Whether the server has resolved the layers; before, they are shown as the page understands them. */
 let isUnderstood = false;
 /** The message to show with the plane, if it does not show what was requested: the reason. */
-let notice = null;
+let notice = /** @type {string | null} */ (null);
 
 /** The server's resolved values of each layer, or its faults. */
 async function notesOf(layers) {
@@ -154,7 +154,7 @@ async function refresh(isChosen = false) {
 /** Shows the fields of a layer that something is wrong with. */
 function pointOut(layer) {
   banner(null);
-  controls.pick(layer);
+  controls?.pick(layer);
   if (session.state.tab !== "choose") session.choose((state) => (state.tab = "choose"), "tab");
   byId("choose").querySelector('[aria-invalid="true"]')?.focus();
 }
@@ -176,7 +176,7 @@ function show(layers, understood, isChosen) {
   const { x, y, span } = session.state;
   plane.lookAt(x, y, span);
   plane.chunks.retry();
-  for (const part of parts) part.shown?.(layers, understood);
+  for (const part of parts) part.shown(layers, understood);
 }
 
 /** From where there are no points to the place that was looked at before, or to the origin. */
@@ -200,7 +200,7 @@ function jump(event) {
   }
   if (plane.isTooFar({ x, y })) {
     field.setAttribute("aria-invalid", "true");
-    const most = spoken(farthest(plane.look.spacing), 3);
+    const most = spoken(farthest(plane.look?.spacing ?? 1), 3);
     banner(`“${field.value}” is too far out: at this spacing numbers tell points apart up to ${most} from the origin.`, [["Close", () => banner(null)]]);
     return;
   }
@@ -236,7 +236,7 @@ function tools() {
   byId("fold").addEventListener("click", () => fold(byId("fold").getAttribute("aria-expanded") === "true"));
   watchTheme(byId("theme"), () => {
     if (plane.look) plane.show({ ...plane.look, ...palette() });
-    for (const part of parts) part.themed?.();
+    for (const part of parts) part.themed();
   });
 }
 
@@ -296,14 +296,15 @@ function showTab() {
   if (root.dataset.tab !== tab) byId("panel-body").scrollTop = 0;
   root.dataset.tab = tab;
   // Nothing that is covered can have the focus.
-  for (const part of byId("stage").children) {
+  for (const part of /** @type {HTMLCollectionOf<HTMLElement>} */ (byId("stage").children)) {
     if (part.role !== "alert" && part.role !== "status") part.inert = COVERS.includes(tab) && part.id !== tab;
   }
   byId("gallery-help").hidden = tab !== "gallery";
   byId("works-help").hidden = tab !== "works";
-  for (const part of parts) part.opened?.(tab);
+  for (const part of parts) part.opened(tab);
 }
 
+/** @type {Controls | null} */
 let controls = null;
 /** The tables of the server. */
 let tables = [];
@@ -324,8 +325,8 @@ takeDrops(byId("stage"), stipple);
 tabs();
 showTab();
 moveBy(byId("plane"), plane, {
-  tapped: (at) => parts.forEach((part) => part.tapped?.(at)),
-  hovered: (at) => parts.forEach((part) => part.hovered?.(at)),
+  tapped: (at) => parts.forEach((part) => part.tapped(at)),
+  hovered: (at) => parts.forEach((part) => part.hovered(at)),
 });
 session.on((changed) => {
   if (changed.has("layers")) settle(tables);
@@ -368,7 +369,7 @@ function settle(profiles) {
 function askForKey() {
   if (byId("key")) return;
   banner("This server answers only those who have a key. It stays in this tab.");
-  byId("banner").lastElementChild.replaceWith(keyForm(() => {
+  byId("banner").lastElementChild?.replaceWith(keyForm(() => {
     banner(null);
     if (controls) refresh();
     else begin();

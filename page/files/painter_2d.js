@@ -1,6 +1,7 @@
 // Points by a plain canvas, where there is no WebGL2 or nothing but a processor to do it: the same
 // sheets, the same marks. Sheets of mere dots are set pixel by pixel.
 
+import { contextOf } from "./dom.js";
 import { masksOf, packed, setDots } from "./dots.js";
 import { ARROW, SHAPES, isMarked, slotsOf } from "./marks.js";
 
@@ -45,7 +46,7 @@ function open(c, corners) {
 
 /** A painter. */
 export function plainPainter(canvas) {
-  const context = canvas.getContext("2d", { alpha: false });
+  const context = contextOf(canvas, { alpha: false });
   return context ? new PlainPainter(context, canvas) : null;
 }
 
@@ -68,7 +69,7 @@ class PlainPainter {
   sheet(width, height) {
     const canvas = document.createElement("canvas");
     Object.assign(canvas, { width, height });
-    const context = canvas.getContext("2d", { alpha: false });
+    const context = contextOf(canvas, { alpha: false });
     const image = context.createImageData(width, height);
     return { width, height, canvas, context, image, pixels: new Uint32Array(image.data.buffer) };
   }

@@ -1,5 +1,6 @@
 // A picture that becomes dots: it is sent once, and then named by its digest, chunk by chunk.
 
+import { contextOf } from "./dom.js";
 import { toNumber } from "./place.js";
 import { send } from "./sent.js";
 
@@ -37,7 +38,7 @@ async function encoded(file) {
   const [width, height] = [picture.width, picture.height].map((side) => Math.max(1, Math.floor(side * scale)));
   const canvas = document.createElement("canvas");
   Object.assign(canvas, { width, height });
-  const context = canvas.getContext("2d");
+  const context = contextOf(canvas);
   context.fillStyle = "#fff";
   context.fillRect(0, 0, width, height);
   context.drawImage(picture, 0, 0, width, height);

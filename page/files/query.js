@@ -74,6 +74,7 @@ export function togetherBody(layers) {
 /** Several layers over a region, as the body of `POST /v1/points:query`. */
 export function bodyOf(layers, region, keep = 1, looks = {}, isWhole = false) {
   const list = layers.map((layer, i) => {
+    /** @type {Record<string, any>} */
     const members = { name: layerName(i), ...memberOf(layer, keep, isWhole) };
     const clear = Number(layer.clear);
     if (i > 0 && clear > 0) {
@@ -84,7 +85,13 @@ export function bodyOf(layers, region, keep = 1, looks = {}, isWhole = false) {
   return { region, layers: list, ...looks };
 }
 
-/** The request for a chunk as packed `f32`: `{ path, body }`, the body only for several layers. */
+/**
+ * The request for a chunk as packed `f32`: `{ path, body }`, the body only for several layers.
+ * @param {import("./state.js").Layer[]} layers
+ * @param {import("./chunks.js").Address} address
+ * @param {number} keep
+ * @returns {{ path: string, body?: string }}
+ */
 export function chunkRequest(layers, { size, cx, cy }, keep) {
   if (layers.length === 1) {
     const query = joined([...setOf(layers[0], keep), ["format", "f32"]]);

@@ -5,12 +5,26 @@ import { joined, setOf, togetherBody } from "./query.js";
 import { fromHash, toHash } from "./state.js";
 import { settled } from "./dom.js";
 
-/** One choice at a time; `listeners` hear what has changed: `layers`, `picked`, `view`, `tab`, `works`. */
+/** @typedef {import("./place.js").Place} Place */
+/** @typedef {import("./state.js").Layer} Layer */
+/** @typedef {import("./state.js").State} State */
+/** @typedef {"layers" | "picked" | "view" | "tab" | "works"} Changed */
+
+/**
+ * The server's values of a layer, everything filled in.
+ * @typedef {{ spacing: number, density: number, least_distance: number, [name: string]: any }} Understood
+ */
+
+/** One choice at a time; listeners hear what has changed. */
 export class Session {
   constructor() {
     this.state = fromHash(location.hash);
+    /** @type {Set<(changed: Set<Changed>) => void>} */
     this.listeners = new Set();
-    /** The server's resolved values of each layer, by its parameters. */
+    /**
+     * The server's values of each layer, by its parameters.
+     * @type {Map<string, Promise<Understood>>}
+     */
     this.understood = new Map();
     this.write = settled(250, () => this.put("replaceState"));
     this.isHeld = false;
@@ -24,14 +38,17 @@ export class Session {
     });
   }
 
+  /** @param {(changed: Set<Changed>) => void} listener */
   on(listener) {
     this.listeners.add(listener);
   }
 
+  /** @param {Changed[]} changed */
   tell(...changed) {
     for (const listener of this.listeners) listener(new Set(changed));
   }
 
+  /** @param {"pushState" | "replaceState"} how */
   put(how) {
     const hash = toHash(this.state);
     if (hash !== location.hash) history[how](null, "", hash);
@@ -43,7 +60,11 @@ export class Session {
     this.put("replaceState");
   }
 
-  /** A choice that Back undoes. */
+  /**
+   * A choice that Back undoes.
+   * @param {(state: State) => void} change
+   * @param {Changed[]} changed
+   */
   choose(change, ...changed) {
     this.write.cancel();
     this.isHeld = false;
@@ -54,7 +75,11 @@ export class Session {
     this.tell(...changed);
   }
 
-  /** A choice that changes while a slider is held: one step for Back, which `choose` or `release` ends. */
+  /**
+   * A choice that changes while a slider is held: one step for Back, which `choose` or `release` ends.
+   * @param {(state: State) => void} change
+   * @param {Changed[]} changed
+   */
   hold(change, ...changed) {
     if (!this.isHeld) this.choose(change, ...changed);
     else {
@@ -69,20 +94,30 @@ export class Session {
     this.isHeld = false;
   }
 
-  /** A correction of what cannot be shown: no step of its own. */
+  /**
+   * A correction of what cannot be shown: no step of its own.
+   * @param {(state: State) => void} change
+   */
   correct(change) {
     this.write.cancel();
     change(this.state);
     this.put("replaceState");
   }
 
-  /** A move of the view: it is in the address, but no step of its own. */
+  /**
+   * A move of the view: it is in the address, but no step of its own.
+   * @param {{ x: Place, y: Place }} view
+   * @param {number} span
+   */
   viewed(view, span) {
     Object.assign(this.state, { x: view.x, y: view.y, span });
     this.write();
   }
 
-  /** The fault of layers together: `{ layer, error }`, or nothing. */
+  /**
+   * The fault of layers together: `{ layer, error }`, or nothing.
+   * @param {Layer[]} layers
+   */
   async understandTogether(layers) {
     if (layers.length === 1 || layers.every((layer) => !layer.clear.trim())) return null;
     try {
@@ -94,7 +129,11 @@ export class Session {
     }
   }
 
-  /** The server's understanding of a layer: `{ spacing, density, least_distance, … }`. */
+  /**
+   * The server's understanding of a layer.
+   * @param {Layer} layer
+   * @returns {Understood | Promise<Understood>}
+   */
   understand(layer) {
     const query = joined(setOf(layer));
     const known = this.understood.get(query);

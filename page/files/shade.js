@@ -1,8 +1,9 @@
 // The field of the first layer that has one, shaded under the points: where it is dense, the ground is darker.
 
 import { ask } from "./api.js";
-import { byId } from "./dom.js";
+import { byId, contextOf } from "./dom.js";
 import { chunksOf, cornerFrom } from "./grid.js";
+import { Part } from "./part.js";
 import { themeColor } from "./theme.js";
 
 /** The width of a tile in CSS pixels, about. */
@@ -12,8 +13,9 @@ const MOST = 200;
 /** How dark the ground becomes where the field is 1. */
 const STRENGTH = 0.28;
 
-export class Shade {
+export class Shade extends Part {
   constructor(plane) {
+    super();
     this.plane = plane;
     this.canvas = byId("shade");
     this.field = "";
@@ -52,7 +54,7 @@ export class Shade {
     const { view } = this.plane;
     const [width, height] = view.pixels;
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
-    const context = this.canvas.getContext("2d");
+    const context = contextOf(this.canvas);
     context.clearRect(0, 0, width, height);
     const size = 2 ** Math.round(Math.log2(SIDE * view.unit));
     const pixel = view.unit / view.ratio;
@@ -99,10 +101,10 @@ export class Shade {
 function tinted(picture) {
   const canvas = document.createElement("canvas");
   Object.assign(canvas, { width: picture.width, height: picture.height });
-  const context = canvas.getContext("2d");
+  const context = contextOf(canvas);
   context.drawImage(picture, 0, 0);
   const pixels = context.getImageData(0, 0, canvas.width, canvas.height);
-  const [red, green, blue] = themeColor("accent").match(/[\d.]+/g).map(Number);
+  const [red, green, blue] = (themeColor("accent").match(/[\d.]+/g) ?? []).map(Number);
   const { data } = pixels;
   for (let i = 0; i < data.length; i += 4) {
     const share = data[i];

@@ -17,9 +17,13 @@ export class Sheets {
   constructor(painter, chunks) {
     this.painter = painter;
     this.chunks = chunks;
+    /** @type {any} */
     this.front = null;
+    /** @type {any} */
     this.back = null;
+    /** @type {any} */
     this.spare = null;
+    this.blank = false;
   }
 
   /** Forgets what is painted: the next frame begins anew, with the old underneath if it still fits. */

@@ -6,6 +6,7 @@ import { runsOf } from "./chunks.js";
 import { byId, make } from "./dom.js";
 import { measure } from "./measure.js";
 import { json } from "./digits.js";
+import { Part } from "./part.js";
 import { bodyOf, columnsOf, joined, setOf } from "./query.js";
 import { fromHash } from "./state.js";
 import { palette } from "./theme.js";
@@ -78,13 +79,16 @@ async function strewn(seed) {
   return Float64Array.from(points.slice(0, COUNT).flatMap(([x, y]) => [x / ACROSS, y / height]));
 }
 
+/** @type {[string, string, (seed: number) => any][]} */
 const KINDS = [["white", "White noise", whiteNoise], ["jitter", "Jittered grid", jitteredGrid], ["strew", "Strew", strewn]];
 
-export class Start {
+export class Start extends Part {
   constructor(session) {
+    super();
     this.session = session;
     this.seed = 1;
     this.isFilled = false;
+    /** @type {any[]} */
     this.trio = KINDS.map(([id, name]) => ({ id, name, canvas: make("canvas", { id: `kind-${id}`, role: "img", "aria-label": `${COUNT} points of ${name}` }) }));
     this.views = VIEWS.map((view) => this.view(view));
     byId("kinds").replaceChildren(...this.trio.map(({ name, canvas }) => make("figure", {}, canvas, make("figcaption", {}, name))));

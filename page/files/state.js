@@ -9,7 +9,34 @@ export const AMOUNTS = ["spacing", "density", "min_distance"];
 /** Colors by number, as Okabe and Ito chose them; the first is the ink of the theme. */
 export const COLOR_NAMES = ["ink", "blue", "vermilion", "green", "orange", "sky", "purple", "yellow"];
 
-/** A layer before anything is chosen. */
+/**
+ * What is chosen for a layer: texts as in requests, and how its points look.
+ * @typedef {object} Layer
+ * @property {string} profile
+ * @property {string} alpha
+ * @property {string} map
+ * @property {string} by One of `AMOUNTS`.
+ * @property {string} amount
+ * @property {string} seed
+ * @property {string} warp
+ * @property {string} settle
+ * @property {string} field
+ * @property {string} paint What is painted, as text.
+ * @property {boolean} shade Whether the field is shown.
+ * @property {number} color An index of `COLOR_NAMES`.
+ * @property {number} dot The size of dots: 1 is the usual one.
+ * @property {boolean} angle Whether angles are shown.
+ * @property {boolean} scale
+ * @property {string} range
+ * @property {boolean} variant
+ * @property {string} variants
+ * @property {string} clear The distance to the layers before.
+ */
+
+/**
+ * A layer before anything is chosen.
+ * @type {Readonly<Layer>}
+ */
 export const LAYER = Object.freeze({
   profile: "blue",
   alpha: "",
@@ -32,7 +59,12 @@ export const LAYER = Object.freeze({
   clear: "",
 });
 
-/** The first state of the tab How it works. */
+/** @typedef {Record<"mode" | "alpha" | "point" | "offsets" | "distance" | "radius" | "moved" | "profile", string>} Works */
+
+/**
+ * The first state of the tab How it works.
+ * @type {Readonly<Works>}
+ */
 export const WORKS = Object.freeze({
   mode: "index",
   alpha: "(5-sqrt(3))/2",
@@ -73,7 +105,24 @@ export const MOST_PAINT = 4000;
 /** The most layers that the page offers. */
 export const MOST_LAYERS = 6;
 
-/** The view of a visitor who comes without a link: some 900 points. */
+/** @typedef {import("./place.js").Place} Place */
+
+/**
+ * What the address holds.
+ * @typedef {object} State
+ * @property {Place} x The middle of the view.
+ * @property {Place} y
+ * @property {number} span The length of the shorter side of the view.
+ * @property {Layer[]} layers
+ * @property {string} tab
+ * @property {Works} works
+ * @property {string} renderer `2d`, `webgl2` or nothing.
+ */
+
+/**
+ * The view of a visitor who comes without a link: some 900 points.
+ * @returns {State}
+ */
 export function initial() {
   return {
     x: place(0),
@@ -86,7 +135,10 @@ export function initial() {
   };
 }
 
-/** Reads the hash of an address; what it does not say stays at its default. */
+/**
+ * Reads the hash of an address; what it does not say stays at its default.
+ * @param {string} hash
+ */
 export function fromHash(hash) {
   const given = new URLSearchParams(hash.replace(/^#/, ""));
   const state = initial();
@@ -95,8 +147,9 @@ export function fromHash(hash) {
   const span = Number(given.get("span"));
   if (Number.isFinite(span) && span > 0) state.span = span;
   if (given.size > 0) state.tab = "choose";
-  if (["start", "choose", "understand", "take", "gallery", "works"].includes(given.get("tab"))) state.tab = given.get("tab");
-  if (["2d", "webgl2"].includes(given.get("renderer"))) state.renderer = given.get("renderer");
+  const [tab, renderer] = ["tab", "renderer"].map((name) => given.get(name) ?? "");
+  if (["start", "choose", "understand", "take", "gallery", "works"].includes(tab)) state.tab = tab;
+  if (["2d", "webgl2"].includes(renderer)) state.renderer = renderer;
   state.works = worksFrom(given);
   const layers = Math.min(MOST_LAYERS, Math.max(1, Number(given.get("layers")) || 1));
   state.layers = Array.from({ length: layers }, (_, i) => layerFrom(given, i));
@@ -145,7 +198,10 @@ function named(key, i) {
   return i === 0 ? key : `${i + 1}.${key}`;
 }
 
-/** Writes the hash of an address. */
+/**
+ * Writes the hash of an address.
+ * @param {State} state
+ */
 export function toHash(state) {
   const decimals = decimalsFor(state.span) + 5;
   const said = [

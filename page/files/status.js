@@ -40,9 +40,10 @@ export class Status {
   scale({ unit }) {
     const most = 100 * unit;
     const ten = 10 ** Math.floor(Math.log10(most));
-    const length = [5, 2, 1].find((n) => n * ten <= most) * ten;
-    byId("ruler").firstElementChild.style.width = `${length / unit}px`;
-    byId("ruler").lastElementChild.textContent = spoken(length, 1);
+    const length = ([5, 2].find((n) => n * ten <= most) ?? 1) * ten;
+    const [line, words] = /** @type {HTMLCollectionOf<HTMLElement>} */ (byId("ruler").children);
+    line.style.width = `${length / unit}px`;
+    words.textContent = spoken(length, 1);
   }
 
   /** Something that was chosen cannot be shown. */

@@ -42,12 +42,17 @@ function remember(theme) {
   } catch { /* Then it is forgotten. */ }
 }
 
+/** Red, green and blue of a color as browsers write it, from 0 to 1. */
+function channels(color) {
+  return (color.match(/[\d.]+/g) ?? []).slice(0, 3).map((v) => Number(v) / 255);
+}
+
 /** The resolved color of an element's property, as red, green and blue from 0 to 1. */
 function resolved(className, property) {
   const probe = document.createElement("i");
   probe.className = className;
   document.body.append(probe);
-  const numbers = getComputedStyle(probe)[property].match(/[\d.]+/g).slice(0, 3).map((v) => Number(v) / 255);
+  const numbers = channels(getComputedStyle(probe)[property]);
   probe.remove();
   return numbers;
 }
@@ -56,7 +61,7 @@ function resolved(className, property) {
 export function palette() {
   const body = getComputedStyle(document.body).backgroundColor;
   return {
-    ground: body.match(/[\d.]+/g).slice(0, 3).map((v) => Number(v) / 255),
+    ground: channels(body),
     colors: COLOR_NAMES.map((_, i) => resolved(`swatch-${i}`, "backgroundColor")),
   };
 }

@@ -12,6 +12,7 @@ use strew_query::Parameter;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
+    coding::Coding,
     context::Context,
     fixed::Fixed,
 };
@@ -27,8 +28,21 @@ const POLICY: &str = "default-src 'none'; style-src 'self'; script-src 'self'; w
 pub struct Pages {
     /// The pages.
     pub pages: Vec<Page>,
-    /// Scripts, styles and pictures, each with its name below `/page/`, such as `docs/docs.css`.
-    pub parts: Vec<(String, Bytes)>,
+    /// Their parts.
+    pub parts: Vec<Part>,
+}
+
+/// A script, a style or a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// Its name below `/page/`, such as `docs/docs.css`.
+    pub name: &'static str,
+    /// Its content.
+    pub plain: &'static [u8],
+    /// Its content, compressed by `zstd`; empty for a picture of pixels, as is `gzip`.
+    pub zstd: &'static [u8],
+    /// Its content, compressed by `gzip`.
+    pub gzip: &'static [u8],
 }
 
 /// A page.
@@ -43,7 +57,7 @@ pub struct Page {
     /// The description of that operation.
     pub about: &'static str,
     /// Its text.
-    pub html: String,
+    pub html: &'static str,
 }
 
 /// The markup before the address of the picture that previews of links to a page show.
@@ -56,6 +70,19 @@ const SCRIPT: &str = "text/javascript";
 const STYLE: &str = "text/css";
 const DRAWING: &str = "image/svg+xml";
 const PICTURE: &str = "image/jpeg";
+
+impl Part {
+    /// The part, ready to send.
+    fn document(&self) -> Fixed {
+        let coded = [(Coding::Zstd, self.zstd), (Coding::Gzip, self.gzip)];
+        let coded = coded.into_iter().filter(|(_, content)| !content.is_empty());
+        Fixed::coded(
+            content_type(self.name),
+            Bytes::from_static(self.plain),
+            coded.map(|(coding, content)| (coding, Bytes::from_static(content))),
+        )
+    }
+}
 
 /// The content type of a part.
 fn content_type(name: &str) -> &'static str {
@@ -70,10 +97,7 @@ fn content_type(name: &str) -> &'static str {
 
 /// The endpoints of pages and their parts. `public_url` is where they are seen from outside, or empty.
 pub(super) fn endpoints(pages: &Pages, public_url: &str) -> Vec<Endpoint> {
-    let parts = pages.parts.iter().map(|(name, content)| {
-        let document = Fixed::new(content_type(name), content.clone());
-        (name.clone(), document)
-    });
+    let parts = pages.parts.iter().map(|part| (part.name, part.document()));
     let parts: Parts = Arc::new(parts.collect());
     let mut all: Vec<_> = pages
         .pages
@@ -94,8 +118,7 @@ pub(super) fn endpoints(pages: &Pages, public_url: &str) -> Vec<Endpoint> {
 /// The icon at the address where browsers look for that of an answer that is no page.
 pub(super) fn icon(pages: &Pages) -> Option<Endpoint> {
     let mut parts = pages.parts.iter();
-    let (_, content) = parts.find(|(name, _)| name == "icon.svg")?;
-    let icon = Fixed::new(DRAWING, content.clone());
+    let icon = parts.find(|part| part.name == "icon.svg")?.document();
     let described = ("getIcon", "/favicon.ico", "The icon", "");
     let operation = operation(described, &[DRAWING], &[], vec![]);
     Some(Endpoint::only("/favicon.ico", icon, operation, fixed).open())
@@ -194,11 +217,11 @@ fn operation(
 }
 
 /// The parts by their names, ready to send.
-type Parts = Arc<Vec<(String, Fixed)>>;
+type Parts = Arc<Vec<(&'static str, Fixed)>>;
 
 async fn one(parts: Parts, context: Context) -> Result<Response, Refused> {
     let name = context.uri.path().trim_start_matches("/page/");
-    let found = parts.iter().find(|(part, _)| part == name);
+    let found = parts.iter().find(|(part, _)| *part == name);
     let (_, document) = found.ok_or_else(|| Error::NoSuchPath {
         path: context.uri.path().into(),
         available: "the pages and the parts that they name".into(),

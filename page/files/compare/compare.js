@@ -10,7 +10,7 @@ import { parsePlace, place } from "../place.js";
 import { FARTHEST, Joint, PAIR, fromHash, toHash } from "./joint.js";
 import { METHODS } from "./methods.js";
 import { Panel } from "./panel.js";
-import { windowAround } from "./sources.js";
+import { Asked, windowAround } from "./sources.js";
 
 /** Where the button leads: a billion units to the right and up. */
 const FAR = 1e9;
@@ -38,13 +38,16 @@ const AWAY = "The server does not answer. This page tries again by itself; what 
 function refused(error) {
   if (error instanceof Gone) return;
   refusal(byId("banner"), error, () => {
-    for (const { source } of panels) source.chunks?.retry();
+    for (const { source } of panels) if (source instanceof Asked) source.chunks.retry();
     begin();
   });
 }
 
 let isWaiting = false;
-/** The window that is shown alone, with the scale it is shown at and the view it was taken from; `null` if none is. */
+/**
+ * The window that is shown alone, with the scale it is shown at and the view it was taken from; `null` if none is.
+ * @type {{ window: ReturnType<typeof windowAround>, unit: number, key: string } | null}
+ */
 let alone = null;
 const keyOf = ({ x, y, unit, width, height }) => [x.i, x.f, y.i, y.f, unit, width, height].join();
 
@@ -201,14 +204,15 @@ function listen() {
     const isAll = state.shown.length === METHODS.length;
     choose({ shown: isAll ? [...PAIR] : METHODS.map(({ id }) => id) });
   });
-  byId("seed").addEventListener("change", (event) => {
-    const seed = Number(event.target.value);
+  const [field, profile] = [byId("seed"), byId("profile")];
+  field.addEventListener("change", () => {
+    const seed = Number(field.value);
     const isSeed = Number.isInteger(seed) && seed >= 0 && seed < 1e9;
-    event.target.setAttribute("aria-invalid", String(!isSeed));
+    field.setAttribute("aria-invalid", String(!isSeed));
     say(isSeed ? null : "The seed must be a whole number from 0 to 999,999,999.");
     if (isSeed) reseed(seed);
   });
-  byId("profile").addEventListener("change", (event) => choose({ profile: event.target.value }));
+  profile.addEventListener("change", () => choose({ profile: profile.value }));
 }
 
 function reseed(seed) {

@@ -31,7 +31,8 @@ export function fromHash(hash, isNarrow) {
   if (span > 0) state.span = bounded(span);
   const seed = given.get("seed") ?? "";
   if (/^\d{1,9}$/.test(seed)) state.seed = Number(seed);
-  if (/^[\w.-]{1,64}$/.test(given.get("profile") ?? "")) state.profile = given.get("profile");
+  const profile = given.get("profile") ?? "";
+  if (/^[\w.-]{1,64}$/.test(profile)) state.profile = profile;
   const shown = (given.get("show") ?? "").split(",").filter(methodOf);
   if (shown.length > 0) state.shown = METHODS.map(({ id }) => id).filter((id) => shown.includes(id));
   return state;

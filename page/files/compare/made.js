@@ -10,7 +10,12 @@ import { tileOf } from "./tile.js";
 const LEAST_RUN = 12;
 const RUNS = 3;
 
-/** Of points in a box, those in a window; `isWhole` says whether the box holds all of the window. */
+/**
+ * Of points in a box, those in a window; `isWhole` says whether the box holds all of the window.
+ * @param {Float64Array} points
+ * @param {number[]} box
+ * @param {any} window
+ */
 function cut(points, [left, low, right, top], { x, y, width, height }) {
   const [fromX, fromY] = [x.i + x.f, y.i + y.f];
   const found = [];
@@ -24,7 +29,7 @@ function cut(points, [left, low, right, top], { x, y, width, height }) {
 
 /** Points that were built over the box of a method, before any window of them. */
 function built(id, build) {
-  const { box } = methodOf(id);
+  const { box = [0, 0, 0, 0] } = methodOf(id) ?? {};
   const [width, height] = [box[2] - box[0], box[3] - box[1]];
   const run = () => {
     const began = performance.now();

@@ -7,7 +7,7 @@ import { decimalsFor, distance, formatPlace, moved, place } from "../place.js";
 import { joined, setOf } from "../query.js";
 import { LAYER } from "../state.js";
 import { callsOf } from "../worker.js";
-import { MEASURED, TILE, methodOf } from "./methods.js";
+import { MEASURED, TILE, boxOf } from "./methods.js";
 
 /** The part of the world that is held around a view, in views. */
 const AHEAD = 2;
@@ -21,7 +21,13 @@ export function windowAround({ x, y }, width, height) {
 /** Points that the worker makes. */
 export class Made {
   constructor(method, changed, failed) {
-    Object.assign(this, { method, changed, failed, window: null, points: new Float64Array(0), version: 0 });
+    this.method = method;
+    this.changed = changed;
+    this.failed = failed;
+    /** @type {any} */
+    this.window = null;
+    this.points = new Float64Array(0);
+    this.version = 0;
   }
 
   use({ seed }) {
@@ -48,15 +54,20 @@ export class Made {
     this.isBusy = true;
     const { view, seed } = this;
     const window = windowAround(view, AHEAD * view.width * view.unit, AHEAD * view.height * view.unit);
-    let [points, total] = [];
+    let made;
     try {
-      ({ points, total } = await make({ method: this.method, seed, window }));
+      made = await make({ method: this.method, seed, window });
     } catch (error) {
       return this.failed(error);
     } finally {
       this.isBusy = false;
     }
-    if (seed === this.seed) Object.assign(this, { points, window, total, version: this.version + 1 });
+    if (seed === this.seed) {
+      this.window = window;
+      this.points = made.points;
+      this.total = made.total ?? 0;
+      this.version += 1;
+    }
     this.changed();
   }
 
@@ -76,7 +87,7 @@ export class Made {
 
   /** What has to be made for a window: all of its region for a method that has one, one tile of a repeated one. */
   async alone(window) {
-    const { box } = methodOf(this.method);
+    const box = boxOf(this.method);
     const corner = (at) => place(Math.floor(at.i / TILE) * TILE);
     let all = window;
     if (box) all = { x: place(box[0]), y: place(box[1]), width: box[2] - box[0], height: box[3] - box[1] };
@@ -100,10 +111,13 @@ export class Asked {
     }, failed);
     this.version = 0;
     this.wanted = [];
+    this.seed = "";
+    this.total = 0;
   }
 
   use({ seed, profile }) {
     this.layer = { ...LAYER, seed: String(seed), profile };
+    this.seed = `${seed} ${profile}`;
     this.chunks.show([this.layer]);
     this.size = 0;
   }

@@ -9,6 +9,7 @@ import { resolved } from "./schema.js";
 /** Whether a path is listed: the parts of pages are not. */
 const isListed = (path) => path.split("/")[1] !== "page";
 
+/** @type {any} */
 let api = null;
 let all = [];
 
@@ -57,11 +58,11 @@ function search() {
   for (const one of all) {
     const texts = wordsOf(one);
     const isHit = words.every((word) => texts.some((text) => text.includes(word)));
-    const row = document.querySelector(`[data-id="${one.id}"]`);
+    const row = /** @type {HTMLElement} */ (document.querySelector(`[data-id="${one.id}"]`));
     row.hidden = !isHit;
     hits += isHit ? 1 : 0;
     const names = words.length === 0 ? [] : one.operation.parameters.filter((_, i) => words.some((word) => texts[i + 1].includes(word)));
-    const hit = row.querySelector(".hit");
+    const hit = /** @type {HTMLElement} */ (row.querySelector(".hit"));
     hit.hidden = !isHit || names.length === 0;
     hit.textContent = names.slice(0, 4).map(({ name }) => name).join(", ") + (names.length > 4 ? " …" : "");
   }
@@ -121,7 +122,7 @@ function route(hasMoved) {
   const one = chosen();
   byId("main").replaceChildren(...(one ? operationView(one, api) : overview()));
   document.title = one ? `${one.operation.summary} · API · Strew` : "API · Strew";
-  for (const link of document.querySelectorAll("#operations a")) {
+  for (const link of /** @type {NodeListOf<HTMLAnchorElement>} */ (document.querySelectorAll("#operations a"))) {
     if (one && link.hash === `#${one.id}`) {
       link.setAttribute("aria-current", "page");
       link.scrollIntoView({ block: "nearest" });
@@ -131,7 +132,7 @@ function route(hasMoved) {
   byId("side").classList.remove("open");
   byId("list").setAttribute("aria-expanded", "false");
   scrollTo(0, 0);
-  byId("main").querySelector("h2").focus({ preventScroll: true });
+  byId("main").querySelector("h2")?.focus({ preventScroll: true });
 }
 
 async function begin() {
@@ -168,7 +169,7 @@ byId("list").addEventListener("click", () => {
   byId("list").setAttribute("aria-expanded", String(isOpen));
 });
 addEventListener("keydown", (event) => {
-  if (event.key !== "/" || event.target.closest("input, textarea, select")) return;
+  if (event.key !== "/" || /** @type {Element} */ (event.target).closest("input, textarea, select")) return;
   event.preventDefault();
   byId("side").classList.add("open");
   byId("search").focus();

@@ -11,7 +11,7 @@ function prose(text, hasRules) {
   return [
     make("p", { class: "about" }, about),
     items.length > 0 && !hasRules && make("ul", { class: "about" }, items.map((item) => make("li", {}, item))),
-  ].filter(Boolean);
+  ].filter((one) => one !== false);
 }
 
 function rules(operation) {
@@ -64,7 +64,7 @@ function answers(responses, api) {
   return Object.entries(responses).map(([status, given]) => {
     const { of } = resolved(given, api);
     const headers = Object.entries(of.headers ?? {});
-    const title = make("span", {}, make("b", { class: status < 400 ? "good" : "bad" }, status), " ", of.description);
+    const title = make("span", {}, make("b", { class: Number(status) < 400 ? "good" : "bad" }, status), " ", of.description);
     return folded(title, () => [
       headers.length > 0 && folded(`${headers.length} headers`, () => make("ul", { class: "members" }, headers.map(([name, header]) => (
         make("li", {}, make("code", { class: "name" }, name), make("p", {}, resolved(header, api).of.description ?? ""))

@@ -1,6 +1,7 @@
 // Fields by hand: a bar of tools on the plane, what was painted with them, and the field that it is.
 
 import { byId, icon, make } from "../dom.js";
+import { Part } from "../part.js";
 import { describe, documentOf, isSent, send } from "../sent.js";
 import { MOST_PAINT } from "../state.js";
 import { Brush } from "./brush.js";
@@ -22,12 +23,48 @@ function strokes({ strokes: { length } }) {
   return `${length} ${length === 1 ? "stroke" : "strokes"}`;
 }
 
-export class Paint {
+export class Paint extends Part {
+  /** @type {HTMLButtonElement} */
+  toggle;
+  /** @type {HTMLButtonElement[]} */
+  tools;
+  /** @type {HTMLElement} */
+  strong;
+  /** @type {HTMLSelectElement} */
+  elsewhere;
+  /** @type {HTMLButtonElement} */
+  undoButton;
+  /** @type {HTMLButtonElement} */
+  clearButton;
+  /** @type {HTMLInputElement} */
+  file;
+  /** @type {HTMLElement} */
+  said;
+  /** @type {HTMLElement} */
+  bar;
+  /** @type {HTMLCanvasElement} */
+  canvas;
+
   /** `picked()` is the index of the layer that is painted on; `say(words)` shows what went wrong. */
   constructor(session, plane, { picked, say }) {
-    Object.assign(this, { session, plane, picked, fail: say, tool: null, width: 0.12, strength: 1, turn: 0 });
-    /** What is painted on a layer, and that layer. */
+    super();
+    this.session = session;
+    this.plane = plane;
+    this.picked = picked;
+    this.fail = say;
+    /** @type {string | null} */
+    this.tool = null;
+    this.width = 0.12;
+    this.strength = 1;
+    this.turn = 0;
+    /** @type {any} */
+    this.cleared = null;
+    /**
+     * What is painted on a layer, and that layer.
+     * @type {any}
+     */
     this.work = blank();
+    /** @type {any} */
     this.owner = null;
     /** Texts of what was painted by the fields that they are, for those that the address does not hold. */
     this.texts = new Map();
@@ -61,7 +98,7 @@ export class Paint {
     this.undoButton = button("undo", "Undo", () => this.undo());
     this.clearButton = button("clear", "Clear", () => this.clear());
     this.file = make("input", { type: "file", id: "paint-file", accept: ".json,application/json", hidden: true, "aria-label": "A world file", onchange: () => {
-      const [file] = this.file.files;
+      const file = this.file.files?.[0];
       if (file) this.open(file);
       this.file.value = "";
     } });
@@ -81,7 +118,7 @@ export class Paint {
     byId("stage").append(this.canvas, this.bar);
     addEventListener("keydown", (event) => {
       if (!this.tool) return;
-      if (event.key === "z" && (event.ctrlKey || event.metaKey) && !event.target.matches("input:not([type=range]), textarea")) {
+      if (event.key === "z" && (event.ctrlKey || event.metaKey) && !/** @type {Element} */ (event.target).matches("input:not([type=range]), textarea")) {
         event.preventDefault();
         this.undo();
       } else if (event.key === "Escape" && event.target !== this.canvas) this.use(null);
@@ -114,9 +151,9 @@ export class Paint {
     this.clearButton.disabled = this.work.strokes.length === 0;
     this.undoButton.disabled = this.clearButton.disabled && !this.hasCleared;
     // A button that can do no more leaves the focus to what it worked on.
-    if (tool && activeElement?.disabled && this.bar.contains(activeElement)) this.canvas.focus({ preventScroll: true });
+    if (tool && activeElement?.hasAttribute("disabled") && this.bar.contains(activeElement)) this.canvas.focus({ preventScroll: true });
     this.elsewhere.value = String(this.work.ground);
-    this.elsewhere.parentElement.hidden = Boolean(this.work.base);
+    /** @type {HTMLElement} */ (this.elsewhere.parentElement).hidden = Boolean(this.work.base);
   }
 
   /** The size of a brush in world units: a part of what is in view. */

@@ -18,7 +18,10 @@ export class Period {
   constructor(canvas) {
     this.sheet = new Sheet(canvas);
     this.version = 0;
-    this.clear();
+    this.points = new Float32Array(0);
+    this.side = 1;
+    /** @type {any} */
+    this.measured = null;
   }
 
   /** Whether there is something to show. */
@@ -42,7 +45,10 @@ export class Period {
   }
 
   take({ points, side, measured }) {
-    Object.assign(this, { points, side, measured, version: this.version + 1 });
+    this.points = points;
+    this.side = side;
+    this.measured = measured;
+    this.version += 1;
   }
 
   renew() {

@@ -4,7 +4,7 @@ import { Gone, askJson, onPresence } from "../api.js";
 import { tools } from "../bar.js";
 import { curl } from "../commands.js";
 import { Joint } from "../compare/joint.js";
-import { byId, copy, make, settled, skipLinks } from "../dom.js";
+import { byId, contextOf, copy, make, settled, skipLinks } from "../dom.js";
 import { save } from "../download.js";
 import { faultsOf } from "../faults.js";
 import { check, fault, field, refusal, select, setOptions } from "../form.js";
@@ -47,8 +47,9 @@ function draw() {
 }
 
 /** Lines where copies meet. */
-function seams({ x, y, unit, ratio, pixels: [width, height] }, side) {
-  const context = canvas.getContext("2d");
+function seams({ x, y, unit, ratio, pixels }, side) {
+  const [width, height] = pixels;
+  const context = contextOf(canvas);
   const scale = ratio / unit;
   const lines = (at, size, line) => {
     const from = size / 2 + at * scale;
@@ -108,7 +109,7 @@ function picture() {
   const { isThere } = shown();
   // It keeps its room while it waits.
   byId("shown").classList.toggle("waits", !isThere);
-  byId("download").disabled = byId("copy").disabled = !isThere;
+  for (const id of ["download", "copy"]) byId(id).toggleAttribute("disabled", !isThere);
   if (!isThere) return;
   byId("caption").textContent = shown().picture(byId("picture"));
   byId("picture").setAttribute("aria-label", state.what === "mask" ? "A dithered ramp" : "The spectrum");
@@ -208,14 +209,14 @@ function update() {
   if (byId("seed").value.trim() !== state.seed) byId("seed").value = state.seed;
   byId("share").value = String(state.share);
   sayShare();
-  byId("seams").checked = state.seams;
+  /** @type {HTMLInputElement} */ (byId("seams")).checked = state.seams;
   line();
 }
 
 function sayShare() {
   const share = `${Math.round(100 * state.share)} %`;
   byId("share").setAttribute("aria-valuetext", share);
-  document.querySelector("label[for=share]").textContent = `Share of points: ${share}`;
+  /** @type {HTMLElement} */ (document.querySelector("label[for=share]")).textContent = `Share of points: ${share}`;
 }
 
 function pathOf() {
@@ -230,7 +231,7 @@ const nameOf = () => (state.what === "mask" ? "mask.png" : `points.${file.format
 
 /** The line to paste, and what to do with the file. */
 function line() {
-  byId("side").disabled = !isPicture();
+  byId("side").toggleAttribute("disabled", !isPicture());
   byId("copy").textContent = "Copy";
   byId("command").textContent = curl(location.origin, { path: pathOf() }, nameOf());
   byId("help").textContent = state.what === "mask"

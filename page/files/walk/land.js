@@ -47,11 +47,11 @@ export const TRAIL = 0.0095;
 
 /** The land as seen from a corner: all functions take distances from there. */
 export function landFrom(corner) {
-  const hills = HILLS.map(([length, height], i) => [wave(corner, length, 11 + i), height]);
+  const hills = HILLS.map(([length, height], i) => ({ noise: wave(corner, length, 11 + i), height }));
   const [woods, edges, way] = [wave(corner, 128, 31), wave(corner, 32, 32), wave(corner, 256, 41)];
   const trail = (x, y) => way(x, y) - 0.5;
   return {
-    height: (x, y) => hills.reduce((sum, [noise, height]) => sum + height * noise(x, y), 0),
+    height: (x, y) => hills.reduce((sum, { noise, height }) => sum + height * noise(x, y), 0),
     /** The share of points that are trees: those of the lowest rank. */
     trees: (x, y) => {
       const share = between(0.36, 0.58, 0.72 * woods(x, y) + 0.28 * edges(x, y));
@@ -97,7 +97,7 @@ function closeness(land, x, y) {
  * the land is seen from, and the direction with the widest view. `few` is the share of trees that is clear enough.
  */
 export function clearingNear(land, fromX, fromY, few = 0.012) {
-  let best = { close: Infinity };
+  let best = { dx: fromX, dy: fromY, close: Infinity };
   const visit = (x, y) => {
     const close = closeness(land, x, y);
     if (close < best.close) best = { dx: x, dy: y, close };

@@ -1,5 +1,6 @@
 // The land from above, with north up: a small map in a corner of the walk, and the walk itself where there is no WebGL2.
 
+import { contextOf } from "../dom.js";
 import { distance, place } from "../place.js";
 import { INSTANCE_FLOATS } from "./ground.js";
 import { TRAIL, landFrom } from "./land.js";
@@ -21,7 +22,14 @@ const FOLLOWS = 16;
 
 class Plan {
   constructor(canvas, reach) {
-    Object.assign(this, { canvas, reach, context: canvas.getContext("2d"), ground: document.createElement("canvas") });
+    this.canvas = canvas;
+    this.reach = reach;
+    this.context = contextOf(canvas);
+    this.ground = document.createElement("canvas");
+    /** What of the ground is painted: where its corner is, and its side. */
+    this.key = "";
+    this.corner = [place(0), place(0)];
+    this.side = 1;
   }
 
   /** Paints the ground around a place, unless it is there from before. */
@@ -30,9 +38,9 @@ class Plan {
     const key = `${left} ${low} ${mode}`;
     if (key === this.key) return;
     const side = 2 * this.sideways() + 2 * FOLLOWS;
-    Object.assign(this, { key, side, corner: [left, low].map((v) => place(v, 0)) });
+    Object.assign(this, { key, side, corner: [place(left), place(low)] });
     Object.assign(this.ground, { width: CELLS, height: CELLS });
-    const context = this.ground.getContext("2d");
+    const context = contextOf(this.ground);
     const pixels = context.createImageData(CELLS, CELLS);
     const land = landFrom([left, low]);
     const [open, woods, trail] = GROUNDS[mode];

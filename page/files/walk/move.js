@@ -35,11 +35,18 @@ const KEYS = {
 
 export class Walker {
   constructor(canvas, start, tapped) {
-    Object.assign(this, { tapped, canvas });
+    this.canvas = canvas;
+    this.tapped = tapped;
+    this.isFast = false;
     this.held = new Set();
     /** Where the sticks are pushed: to the right and forth, from −1 to 1. */
     this.walks = [0, 0];
     this.looks = [0, 0];
+    /**
+     * Where a landing ends, with the direction of the view from there.
+     * @type {ReturnType<Walker["clearing"]> | null}
+     */
+    this.target = null;
     // Readers who prefer reduced motion see nothing move by itself; the button still flies.
     this.mayFly = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.begin(start);
@@ -60,13 +67,14 @@ export class Walker {
   listen() {
     const { canvas } = this;
     addEventListener("keydown", (event) => {
+      const target = /** @type {Element} */ (event.target);
       this.isFast = event.shiftKey;
-      if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest?.("input, select")) return;
+      if (event.ctrlKey || event.metaKey || event.altKey || target.closest?.("input, select")) return;
       // A button that was clicked keeps the focus, and its own keys.
-      if ([" ", "Enter"].includes(event.key) && event.target.closest?.("button, a")) return;
+      if ([" ", "Enter"].includes(event.key) && target.closest?.("button, a")) return;
       const move = KEYS[event.key.toLowerCase()];
       if (move) this.hold(move);
-      else if (event.key === "Enter" && event.target === canvas) this.tapped(null);
+      else if (event.key === "Enter" && target === canvas) this.tapped(null);
       else return;
       event.preventDefault();
     });
@@ -156,7 +164,7 @@ export class Walker {
   /** Moves by some seconds; `heightAt` says where the ground is. */
   step(seconds, heightAt) {
     if (this.isFlying) this.fly(seconds);
-    else if (this.target) this.glide(seconds);
+    else if (this.target) this.glide(seconds, this.target);
     const way = (one, other) => (this.held.has(one) ? 1 : 0) - (this.held.has(other) ? 1 : 0);
     const by = seconds * (this.isAloft ? ALOFT : 1);
     const pace = (this.isFast ? RUN : PACE) * by;
@@ -178,8 +186,7 @@ export class Walker {
   }
 
   /** Moves towards the clearing to land in, and turns to its view; above it the descent begins. */
-  glide(seconds) {
-    const { x, y, yaw } = this.target;
+  glide(seconds, { x, y, yaw }) {
     const [dx, dy] = [distance(x, this.x), distance(y, this.y)];
     const away = Math.hypot(dx, dy);
     const share = Math.min(1, (Math.max(GLIDE, away) * seconds * 0.8) / Math.max(away, 1e-9));

@@ -25,6 +25,7 @@ const LIGHTS = {
   },
 };
 
+/** @type {WebGLContextAttributes} */
 const OPTIONS = { alpha: false, antialias: true, depth: true, stencil: false, powerPreference: "high-performance" };
 /** The names of renderers without graphics hardware. */
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
@@ -36,8 +37,15 @@ export function sceneOn(canvas) {
 }
 
 class Scene {
+  isMap = false;
+
+  /**
+   * @param {WebGL2RenderingContext} gl
+   * @param {HTMLCanvasElement} canvas
+   */
   constructor(gl, canvas) {
-    Object.assign(this, { gl, canvas });
+    this.gl = gl;
+    this.canvas = canvas;
     const names = gl.getExtension("WEBGL_debug_renderer_info");
     this.isSlow = SOFTWARE.test(String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER)));
     this.programs = Object.fromEntries(
@@ -150,7 +158,7 @@ class Scene {
       const { buffer: indices, count } = this.net(ground.cells);
       gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, indices);
       this.slots(buffer, GROUND_FLOATS, 0, [[0, 3], [1, 3], [2, 2]], 0);
-      gl.uniform3f(uniforms.corner, ...leaf.from, -look.height);
+      gl.uniform3f(uniforms.corner, leaf.from[0], leaf.from[1], -look.height);
       gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_SHORT, 0);
     }
   }
@@ -171,8 +179,8 @@ class Scene {
 
   place(uniforms, look, { leaf, clip, near }) {
     const { gl } = this;
-    gl.uniform3f(uniforms.corner, ...leaf.from, -look.height);
-    gl.uniform3f(uniforms.clip, ...(clip ?? [0, 0, 0]));
+    gl.uniform3f(uniforms.corner, leaf.from[0], leaf.from[1], -look.height);
+    gl.uniform3fv(uniforms.clip, clip ?? [0, 0, 0]);
     gl.uniform2f(uniforms.near, near, leaf.keep);
   }
 
@@ -213,7 +221,7 @@ class Scene {
       const { near, far, plain } = this.shapes;
       const shapes = thing.leaf.away < full ? near : thing.leaf.away < some ? far : plain;
       this.slots(thing.buffer, INSTANCE_FLOATS, 4 * INSTANCE_FLOATS * run.first, [[3, 4], [4, 4]], 1);
-      gl.drawArraysInstanced(gl.TRIANGLES, ...shapes[run.kind], count);
+      gl.drawArraysInstanced(gl.TRIANGLES, shapes[run.kind][0], shapes[run.kind][1], count);
       drawn += count;
     });
     return drawn;

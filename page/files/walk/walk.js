@@ -92,6 +92,7 @@ const walker = new Walker(canvas, given, (at) => pick(at));
 let level = given.quality ?? (scene.isSlow ? 0 : 2);
 let best = QUALITIES.length - 1;
 let frames = [];
+/** @type {any} */
 let look = null;
 let before = performance.now();
 
@@ -126,7 +127,7 @@ function frame(now) {
   world.move(walker, [Math.sin(walker.yaw), Math.cos(walker.yaw)], quality);
   walker.step(seconds, (at) => world.heightAt(at));
   const camera = cameraOf(walker, canvas.clientWidth / Math.max(1, canvas.clientHeight), 1.5 * sets[0].reach);
-  const lift = walker.height - world.heightAt(walker);
+  const lift = (walker.height ?? 0) - world.heightAt(walker);
   look = { ...world.look(walker, now - last), camera, at: { x: walker.x, y: walker.y }, height: walker.height, lift, reach: sets[0].reach, isFine: quality.isFine, detail: quality.detail,
     time: hasWind ? now / 1000 : 0 };
   const { x, y, yaw, pitch, height } = walker;
@@ -230,6 +231,7 @@ function close() {
   canvas.focus();
 }
 
+/** @type {any} */
 let home = null;
 
 /** Goes to where doubles have seven digits fewer left, and back to the same trees: on foot from clearing to clearing. */

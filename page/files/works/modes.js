@@ -265,13 +265,13 @@ const displacement = {
     ]);
   },
   answered(works, { points }, path) {
-    works.moved = { path, places: new Map(points.map(({ id, x, y }) => [id, [x, y]])), words: null };
+    works.displaced = { path, places: new Map(points.map(({ id, x, y }) => [id, [x, y]])), words: null };
   },
-  failed: (works, words) => (works.moved = { path: null, places: new Map(), words }),
+  failed: (works, words) => (works.displaced = { path: null, places: new Map(), words }),
   draw(works, pattern, chosen, palette) {
     begin(works, pattern, palette);
-    const isRight = works.moved?.path === this.path(works, pattern, chosen);
-    const places = isRight ? works.moved.places : new Map();
+    const isRight = works.displaced?.path === this.path(works, pattern, chosen);
+    const places = isRight ? works.displaced.places : new Map();
     const share = Number(chosen.moved);
     const colorOf = (point) => shade(placeOf(pattern, point).map((v) => v / pattern.t));
     for (const point of works.points) {
@@ -288,7 +288,7 @@ const displacement = {
     }
     end(works, pattern, palette);
     const text = `A table has one vector for each block of a map. Points of one block have the same neighbors, so they all move alike, and the pattern becomes ${chosen.profile} noise.`;
-    if (works.moved?.words) return [text, `No table moves the points of this α: ${works.moved.words}`];
+    if (works.displaced?.words) return [text, `No table moves the points of this α: ${works.displaced.words}`];
     return [text, isRight ? `${places.size} places are the server's, of seed 0 without warp.` : "Asking for the places of the points…"];
   },
 };

@@ -3,6 +3,7 @@
 
 import { Gone, askJson } from "../api.js";
 import { byId, make, settled, spoken } from "../dom.js";
+import { Part } from "../part.js";
 import { Square, colors } from "./draw.js";
 import { KNOWN, Pattern } from "./pattern.js";
 import { MODES } from "./modes.js";
@@ -17,12 +18,30 @@ const WORDS = {
   displacement: "Displacement",
 };
 
-export class Works {
+export class Works extends Part {
+  /** @type {HTMLInputElement} */
+  slider;
+  /** @type {HTMLInputElement} */
+  field;
+  /** @type {HTMLButtonElement[]} */
+  known;
+  /** @type {HTMLButtonElement[]} */
+  modes;
+  /** @type {Square} */
+  plane;
+  /** @type {HTMLElement} */
+  settings;
+  /** @type {HTMLElement} */
+  facts;
+  /** @type {Pattern | null} */
+  last = null;
+
   constructor(session) {
+    super();
     this.session = session;
     /** The value of a slider while it is held, before it is a choice. */
     this.live = {};
-    this.hovered = null;
+    this.pointed = null;
     this.build();
     session.on((changed) => {
       if (!changed.has("works")) return;
@@ -119,11 +138,12 @@ export class Works {
 
   /** The point that is looked at: the hovered one, or the chosen one if it is a point of this pattern. */
   point() {
-    if (this.hovered) return this.hovered;
+    if (this.pointed) return this.pointed;
     const [x, y] = this.chosen.point.split(":").map(Number);
-    return this.last.has(x, y) ? [x, y] : this.nearest([x, y]);
+    return this.last?.has(x, y) ? [x, y] : this.nearest([x, y]);
   }
 
+  /** @param {number[]} place */
   nearest([x, y], among = this.points) {
     const far = ([a, b]) => (a - x) ** 2 + (b - y) ** 2;
     return among.reduce((best, point) => (far(point) < far(best) ? point : best), among[0] ?? [0, 0]);
@@ -134,13 +154,13 @@ export class Works {
     const point = this.nearest(at);
     const isNear = Math.hypot(point[0] - at[0], point[1] - at[1]) < 1.5;
     const next = isNear ? point : null;
-    if (String(next) === String(this.hovered)) return;
-    this.hovered = next;
+    if (String(next) === String(this.pointed)) return;
+    this.pointed = next;
     this.draw();
   }
 
   leave() {
-    this.hovered = null;
+    this.pointed = null;
     this.draw();
   }
 
@@ -166,7 +186,7 @@ export class Works {
     const cost = (p) => along(p) + 2 * aside(p);
     const next = ahead.sort((p, q) => cost(p) - cost(q))[0];
     if (!next) return;
-    this.hovered = null;
+    this.pointed = null;
     this.live.point = next.join(":");
     // A move is in the address, but no step of its own.
     this.session.state.works = { ...this.session.state.works, point: next.join(":") };
