@@ -16,7 +16,7 @@ const WING = 26;
 const AHEAD = [0, 25, 50];
 /** A landing: the share of trees that is clear enough, units a second at least, and where the descent begins. */
 const CLEAR = 0.04;
-const GLIDE = 14;
+const GLIDE = 22;
 const OVER = 5;
 /** Radians a second that keys turn, and for a pixel of a drag. */
 const TURN = 1.3;
