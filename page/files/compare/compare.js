@@ -46,7 +46,7 @@ function refused(error) {
 let isWaiting = false;
 /**
  * The window that is shown alone, with the scale it is shown at and the view it was taken from; `null` if none is.
- * @type {{ window: object, unit: number, key: string } | null}
+ * @type {{ window: ReturnType<typeof windowAround>, unit: number, key: string } | null}
  */
 let alone = null;
 const keyOf = ({ x, y, unit, width, height }) => [x.i, x.f, y.i, y.f, unit, width, height].join();
@@ -138,27 +138,26 @@ function choose(change) {
   show();
 }
 
-/** Has only the chosen methods take room. */
-function arrange() {
-  for (const { element, method: { id } } of panels) {
-    const isShown = state.shown.includes(id);
-    element.hidden = !isShown;
-    byId(`show-${id}`).setAttribute("aria-pressed", String(isShown));
-  }
-  byId("methods").dataset.count = String(state.shown.length);
-}
-
 function show() {
   root.dataset.measured = "";
   arrange();
   for (const panel of shown()) panel.use(state);
-  const isAll = state.shown.length === METHODS.length;
-  byId("all").setAttribute("aria-pressed", String(isAll));
-  byId("show").hidden = state.shown.join() === PAIR.join();
   if (byId("seed").value !== String(state.seed)) byId("seed").value = String(state.seed);
   byId("profile").value = state.profile;
   resize();
   again();
+}
+
+/** Shows the panels of the chosen methods. */
+function arrange() {
+  for (const { element, method } of panels) {
+    const isShown = state.shown.includes(method.id);
+    element.hidden = !isShown;
+    byId(`show-${method.id}`).setAttribute("aria-pressed", String(isShown));
+  }
+  byId("methods").dataset.count = String(state.shown.length);
+  byId("all").setAttribute("aria-pressed", String(state.shown.length === METHODS.length));
+  byId("show").hidden = state.shown.join() === PAIR.join();
 }
 
 function resize() {
@@ -224,6 +223,7 @@ function reseed(seed) {
 function build() {
   byId("show").append(...METHODS.map(({ id, name }) => make("button", { type: "button", id: `show-${id}`, onclick: () => pick(id) }, name)));
   byId("methods").append(...panels.map(({ element }) => element));
+  arrange();
   for (const { plane } of panels) {
     moveBy(plane, joint, { tapped: () => {}, hovered: () => {} });
     new ResizeObserver(resize).observe(plane);

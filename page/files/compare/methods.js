@@ -62,3 +62,9 @@ export const METHODS = [
 export function methodOf(id) {
   return METHODS.find((method) => method.id === id);
 }
+
+/** The region of a method that has one: `[left, low, right, top]`. */
+export function boxOf(id) {
+  const method = methodOf(id);
+  return method && "box" in method ? method.box : undefined;
+}

@@ -11,6 +11,12 @@ import { large, priceOf } from "./price.js";
 import { Sheet } from "./sheet.js";
 import { Asked, Made, windowAround } from "./sources.js";
 
+/**
+ * A source of no points.
+ * @type {{ version: string, runs: (view: any) => object[] }}
+ */
+const NOTHING = { version: "none", runs: () => [] };
+
 /** Nanoseconds as people say them. */
 function time(nanoseconds) {
   if (!Number.isFinite(nanoseconds)) return "–";
@@ -22,8 +28,13 @@ export class Panel {
     this.method = method;
     this.changed = changed;
     this.failed = failed;
-    this.isOutside = false;
     this.isTimed = false;
+    this.isOutside = false;
+    /** @type {number | undefined} */
+    this.nanoseconds = undefined;
+    /** The window whose points are drawn alone, and these. */
+    this.aloneKey = "";
+    this.aloneSource = NOTHING;
     const { id, name, words, source } = method;
     this.source = id === "strew" ? new Asked(changed, failed) : new Made(id, changed, failed);
     const canvas = (label, attributes = {}) => make("canvas", { role: "img", "aria-label": `${label} of ${name}`, ...attributes });
@@ -78,11 +89,10 @@ export class Panel {
     const key = [window.x.i, window.x.f, window.y.i, window.y.f, window.width, window.height, this.source.seed].join();
     if (this.aloneKey !== key) {
       this.aloneKey = key;
-      this.aloneSource = { version: "none", runs: () => [] };
+      this.aloneSource = NOTHING;
       this.source.alone(window).then((run) => {
         if (this.aloneKey !== key) return;
-        const runs = ({ x, y }) => [{ ...run, left: distance(run.x, x), low: distance(run.y, y) }];
-        this.aloneSource = { version: key, runs };
+        this.aloneSource = { version: key, runs: ({ x, y }) => [{ ...run, left: distance(run.x, x), low: distance(run.y, y) }] };
         this.changed();
       }, (error) => this.failed(error));
     }
@@ -106,7 +116,7 @@ export class Panel {
     }
     // Nothing is said of points that are still on their way.
     const { made, words, why } = seen === 0 && !this.isOutside ? { words: "", why: "" } : priceOf(this.method.id, window, {
-      seen, total: this.source.total ?? 0, isOutside: this.isOutside, nanoseconds: this.nanoseconds,
+      seen, total: this.source.total, isOutside: this.isOutside, nanoseconds: this.nanoseconds,
     });
     for (const [key, text] of Object.entries({ made: made === undefined ? "…" : large(made), words, why })) {
       if (this.price[key].textContent !== text) this.price[key].textContent = text;

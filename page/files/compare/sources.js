@@ -7,7 +7,7 @@ import { decimalsFor, distance, formatPlace, moved, place } from "../place.js";
 import { joined, setOf } from "../query.js";
 import { LAYER } from "../state.js";
 import { callsOf } from "../worker.js";
-import { MEASURED, TILE, methodOf } from "./methods.js";
+import { MEASURED, TILE, boxOf } from "./methods.js";
 
 /** The part of the world that is held around a view, in views. */
 const AHEAD = 2;
@@ -66,9 +66,9 @@ export class Made {
       this.isBusy = false;
     }
     if (seed === this.seed) {
-      this.points = made.points;
-      this.total = made.total;
       this.window = window;
+      this.points = made.points;
+      this.total = made.total ?? 0;
       this.version += 1;
     }
     this.changed();
@@ -90,7 +90,7 @@ export class Made {
 
   /** What has to be made for a window: all of its region for a method that has one, one tile of a repeated one. */
   async alone(window) {
-    const box = methodOf(this.method)?.box;
+    const box = boxOf(this.method);
     const corner = (at) => place(Math.floor(at.i / TILE) * TILE);
     let all = window;
     if (box) all = { x: place(box[0]), y: place(box[1]), width: box[2] - box[0], height: box[3] - box[1] };
@@ -112,15 +112,15 @@ export class Asked {
       this.version += 1;
       changed();
     }, failed);
-    this.total = 0;
-    this.seed = NaN;
     this.version = 0;
     this.wanted = [];
+    this.seed = "";
+    this.total = 0;
   }
 
   use({ seed, profile }) {
-    this.seed = seed;
     this.layer = { ...LAYER, seed: String(seed), profile };
+    this.seed = `${seed} ${profile}`;
     this.chunks.show([this.layer]);
     this.size = 0;
   }

@@ -26,10 +26,10 @@ class Plan {
     this.reach = reach;
     this.context = contextOf(canvas);
     this.ground = document.createElement("canvas");
+    /** What of the ground is painted: where its corner is, and its side. */
     this.key = "";
+    this.corner = [place(0), place(0)];
     this.side = 1;
-    /** @type {import("../place.js").Place[]} */
-    this.corner = [];
   }
 
   /** Paints the ground around a place, unless it is there from before. */
@@ -38,9 +38,7 @@ class Plan {
     const key = `${left} ${low} ${mode}`;
     if (key === this.key) return;
     const side = 2 * this.sideways() + 2 * FOLLOWS;
-    this.key = key;
-    this.side = side;
-    this.corner = [left, low].map((v) => place(v, 0));
+    Object.assign(this, { key, side, corner: [place(left), place(low)] });
     Object.assign(this.ground, { width: CELLS, height: CELLS });
     const context = contextOf(this.ground);
     const pixels = context.createImageData(CELLS, CELLS);

@@ -16,7 +16,7 @@ const WING = 26;
 const AHEAD = [0, 25, 50];
 /** A landing: the share of trees that is clear enough, units a second at least, and where the descent begins. */
 const CLEAR = 0.04;
-const GLIDE = 14;
+const GLIDE = 22;
 const OVER = 5;
 /** Radians a second that keys turn, and for a pixel of a drag. */
 const TURN = 1.3;
@@ -40,14 +40,15 @@ export class Walker {
     this.canvas = canvas;
     this.tapped = tapped;
     this.isFast = false;
-    /** @type {number | null} */
-    this.height = null;
-    /** @type {{ x: Place, y: Place, yaw: number } | null} */
-    this.target = null;
     this.held = new Set();
     /** Where the sticks are pushed: to the right and forth, from −1 to 1. */
     this.walks = [0, 0];
     this.looks = [0, 0];
+    /**
+     * Where a landing ends, with the direction of the view from there.
+     * @type {ReturnType<Walker["clearing"]> | null}
+     */
+    this.target = null;
     // Readers who prefer reduced motion see nothing move by itself; the button still flies.
     this.mayFly = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.begin(start);
@@ -165,7 +166,7 @@ export class Walker {
   /** Moves by some seconds; `heightAt` says where the ground is. */
   step(seconds, heightAt) {
     if (this.isFlying) this.fly(seconds);
-    else if (this.target) this.glide(seconds);
+    else if (this.target) this.glide(seconds, this.target);
     const way = (one, other) => (this.held.has(one) ? 1 : 0) - (this.held.has(other) ? 1 : 0);
     const by = seconds * (this.isAloft ? ALOFT : 1);
     const pace = (this.isFast ? RUN : PACE) * by;
@@ -187,9 +188,7 @@ export class Walker {
   }
 
   /** Moves towards the clearing to land in, and turns to its view; above it the descent begins. */
-  glide(seconds) {
-    if (!this.target) return;
-    const { x, y, yaw } = this.target;
+  glide(seconds, { x, y, yaw }) {
     const [dx, dy] = [distance(x, this.x), distance(y, this.y)];
     const away = Math.hypot(dx, dy);
     const share = Math.min(1, (Math.max(GLIDE, away) * seconds * 0.8) / Math.max(away, 1e-9));
