@@ -84,7 +84,7 @@ export function attempt(path, method, operation, api) {
     make("div", { class: "fields" }, shown),
     others.length > 0 && make("details", {}, make("summary", {}, `${others.length} more parameters`), make("div", { class: "fields" }, others)),
     body && make("div", { class: "field wide" }, make("label", { for: "try-body" }, `Body, ${content[0]}`), body),
-    make("div", { class: "line" }, make("pre", { tabindex: "0", "aria-label": "The line for curl" }, line), copy(() => line.textContent)),
+    make("div", { class: "line" }, make("pre", { role: "group", tabindex: "0", "aria-label": "The line for curl" }, line), copy(() => line.textContent)),
     send);
   form.addEventListener("input", update, true);
   form.addEventListener("submit", async (event) => {
@@ -162,7 +162,7 @@ async function seen(blob, kind, isWhole) {
   if (!/json|text|csv|xml|toml/.test(kind)) return make("p", { class: "note" }, `Binary, ${kind || "without a type"}.`);
   let text = await blob.slice(0, SHOWN).text();
   if (kind.includes("json") && isWhole && blob.size <= SHOWN) text = pretty(text);
-  return make("pre", { id: "body", tabindex: "0", "aria-label": "The body" }, text, blob.size > SHOWN && "\n…");
+  return make("pre", { id: "body", role: "group", tabindex: "0", "aria-label": "The body" }, text, blob.size > SHOWN && "\n…");
 }
 
 /** The picture of an answer, drawn from its bytes: another request would lack the body and the key. */
@@ -174,7 +174,7 @@ async function picture(blob) {
     contextOf(canvas).drawImage(bitmap, 0, 0);
     return canvas;
   } catch {
-    return make("pre", { id: "body", tabindex: "0", "aria-label": "The body" }, await blob.slice(0, SHOWN).text());
+    return make("pre", { id: "body", role: "group", tabindex: "0", "aria-label": "The body" }, await blob.slice(0, SHOWN).text());
   }
 }
 

@@ -91,8 +91,8 @@ function overview() {
   return [
     make("h2", { tabindex: "-1" }, "The API"),
     make("p", { class: "about" }, api.info.description),
-    make("p", {}, "Choose an operation, or search for one by its words or those of its parameters. Each can be tried here and has an address of its own."),
-    make("p", {}, "The same by gRPC on this port, with reflection: ", make("code", {}, "strew.v1.PointService"), ". This page shows ",
+    make("p", {}, "Choose an operation, or search: the search covers parameters, too. Each operation can be tried here and has its own link."),
+    make("p", {}, "The same calls are served over gRPC on this port, with reflection: ", make("code", {}, "strew.v1.PointService"), ". This page shows ",
       make("a", { href: "/openapi.json" }, "/openapi.json"), ", from which clients can be generated."),
     make("ul", { class: "tags" }, (api.tags ?? []).map(({ name, description }) => {
       const members = all.filter(({ tag }) => tag === name);

@@ -56,7 +56,7 @@ function contentOf(type, content, api) {
   const example = content.example ?? Object.values(content.examples ?? {})[0]?.value;
   return folded(make("span", {}, make("code", {}, type), " ", make("span", { class: "type" }, typeOf(content.schema, api))), () => [
     ...membersOf(content.schema, api),
-    example !== undefined && make("pre", { tabindex: "0", "aria-label": "An example" }, typeof example === "string" ? example : JSON.stringify(example, null, 2)),
+    example !== undefined && make("pre", { role: "group", tabindex: "0", "aria-label": "An example" }, typeof example === "string" ? example : JSON.stringify(example, null, 2)),
   ].filter(Boolean));
 }
 
@@ -87,7 +87,7 @@ export function operationView({ path, method, operation, tag }, api) {
         ...parameters(operation.parameters, api).filter(Boolean),
         ...rules(operation),
         ...body(operation.requestBody, api),
-        make("h3", {}, "Answers"), ...answers(operation.responses, api)),
+        make("h3", {}, "Responses"), ...answers(operation.responses, api)),
       make("div", { class: "trying" }, make("h3", {}, "Try it here"), ...attempt(path, method, operation, api))),
   ];
 }

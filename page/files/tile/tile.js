@@ -184,7 +184,7 @@ function build() {
     make("div", { class: "pair", id: "how" }, format, side),
     make("button", { type: "button", id: "download", class: "main", onclick: () => save({ path: pathOf() }, nameOf(), () => {})
       .catch((error) => refusal(byId("banner"), error, () => begin())) }, "Save"),
-    make("pre", { tabindex: "0", "aria-label": "The request" }, make("code", { id: "command" })),
+    make("pre", { role: "group", tabindex: "0", "aria-label": "The request" }, make("code", { id: "command" })),
     make("button", { type: "button", id: "copy", onclick: (event) => copy(byId("command"), event.currentTarget) }, "Copy"),
     make("p", { class: "note", id: "help" }),
   );
