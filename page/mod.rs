@@ -5,9 +5,12 @@
 
 use strew::rest::{Page, Pages, Part};
 
+/// A file: its name, and its bytes as they are, by zstd and by gzip.
+type File = (&'static str, &'static [u8], &'static [u8], &'static [u8]);
+
 /// The files, joined and compressed by the compiler. The parts of the first page are at the top, those of each other one
 /// in a folder of its own.
-static FILES: &[(&str, &[u8], &[u8], &[u8])] = strew_pages::parts!("page/files");
+static FILES: &[File] = strew_pages::parts!("page/files");
 
 /// Where a page is, the name of its operation, a summary and a description of it, and its file.
 type Entry = (
