@@ -154,9 +154,10 @@ export async function ask(path, { body, signal, method, isAgain } = {}) {
 
 /**
  * A JSON document.
- * @param {string} path
+ * @template {string} Path
+ * @param {Path} path
  * @param {Options} [options]
- * @returns {Promise<any>}
+ * @returns {Promise<Path extends `${infer Bare}?${string}` ? Answer<Bare> : Answer<Path>>}
  */
 export async function askJson(path, options) {
   const answer = await ask(path, options);

@@ -3,8 +3,8 @@
 import { askJson } from "./api.js";
 import { byId, contextOf, make, settled, spoken } from "./dom.js";
 import { Part } from "./part.js";
-import { decimalsFor, distance, formatPlace, parsePlace } from "./place.js";
-import { attributesOf, joined, setOf } from "./query.js";
+import { decimalsFor, distance, formatPlace, moved, parsePlace, toNumber } from "./place.js";
+import { attributesOf, joined, setOf, worldPairs } from "./query.js";
 import { themeColor } from "./theme.js";
 
 /** How near a pointer has to be to a point, in CSS pixels; a finger or a key may miss by more. */
@@ -104,6 +104,7 @@ export class Card extends Part {
     const decimals = decimalsFor(this.plane.look.spacings[point.layer]) + 9;
     const at = [point.x, point.y].map((v) => formatPlace(v, decimals)).join(",");
     try {
+      if (layer.world) return await this.showOfWorld(point, layer, signal);
       const { neighbors } = await askJson(`/v1/nearest?at=${at}&k=${NEIGHBORS + 1}&${set}`, { signal });
       const known = await askJson(`/v1/points/${neighbors[0].id}?${set}`, { signal });
       this.found = { self: known.point, near: neighbors.slice(1), layer, index: point.layer };
@@ -117,17 +118,37 @@ export class Card extends Part {
     this.draw();
   }
 
+  /** Shows a point of a world: it is looked for in a box around it, with those that are near. */
+  async showOfWorld(point, layer, signal) {
+    const spacing = this.plane.look.spacings[point.layer];
+    const reach = 3 * spacing;
+    const decimals = decimalsFor(spacing) + 9;
+    const box = [[point.x, -reach], [point.y, -reach], [point.x, reach], [point.y, reach]].map(([at, by]) => formatPlace(moved(at, by), decimals));
+    const only = this.plane.look.layers.length > 1 ? [["only", layer.name]] : [];
+    const query = joined([["bbox", box.join(",")], ...worldPairs(layer.world, this.plane.keep), ...only, ["limit", "500"], ["format", "json"]]);
+    const { points } = await askJson(`/v1/points?${query}`, { signal });
+    const away = (one, from) => Math.hypot(one.x - from.x, one.y - from.y);
+    const here = { x: toNumber(point.x), y: toNumber(point.y) };
+    const self = points.reduce((best, one) => (away(one, here) < away(best, here) ? one : best));
+    const near = points.filter((one) => one !== self).map((one) => ({ ...one, distance: away(one, self) }));
+    near.sort((a, b) => a.distance - b.distance);
+    this.found = { self, near: near.slice(0, NEIGHBORS), layer, index: point.layer };
+    this.show();
+    this.draw();
+  }
+
   show() {
     if (!this.found) return;
     const { self, near, layer, index } = this.found;
     const rows = [["x", String(self.x)], ["y", String(self.y)]];
     for (const name of attributesOf(layer)) {
       const value = self[name];
+      if (value === undefined || value === null) continue;
       const text = typeof value === "number" ? String(Number(value.toPrecision(6))) : value;
       rows.push([name, name === "angle" ? `${text} (${Math.round((value * 180) / Math.PI)}°)` : text]);
     }
     if (self.block) rows.push(["block", self.block.join(", ")]);
-    if (this.plane.look.layers.length > 1) rows.push(["layer", `${index + 1} ${layer.profile}`]);
+    if (this.plane.look.layers.length > 1) rows.push(["layer", `${index + 1} ${layer.name ?? layer.profile}`]);
     const close = make("button", { type: "button", "aria-label": "Close", onclick: () => this.close() }, "✕");
     this.element.replaceChildren(
       make("header", {}, make("h2", {}, self.id), this.isPinned && close),

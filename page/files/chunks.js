@@ -80,6 +80,8 @@ export class Chunks {
     this.clock = 0;
     /** @type {Error | null} */
     this.refused = null;
+    /** The time until which a busy server is left alone, as `performance.now` counts. */
+    this.restsUntil = 0;
     /** @type {any[]} */
     this.layers = [];
     /** @type {string[]} */
@@ -117,9 +119,11 @@ export class Chunks {
     this.want([], 1);
   }
 
-  /** Tries again what was refused. */
+  /** Tries again what was refused, or put off. */
   retry() {
     this.refused = null;
+    this.restsUntil = 0;
+    for (const chunk of this.wanted) if (chunk.state === "later") chunk.state = "waiting";
     this.pump();
   }
 
@@ -183,7 +187,7 @@ export class Chunks {
   }
 
   pump() {
-    while (this.running < this.parallel && !this.refused && !isAway()) {
+    while (this.running < this.parallel && !this.refused && !isAway() && performance.now() >= this.restsUntil) {
       const next = this.wanted.find((chunk) => chunk.state === "waiting");
       if (!next) return;
       this.load(next);
@@ -249,14 +253,16 @@ export class Chunks {
       if (!this.wanted.includes(chunk)) this.all.delete(chunk.key);
     } else if (error instanceof Gone) {
       // It is requested again when the server is back.
-    } else if (error instanceof Problem && error.isPassing && chunk.tries < 8) {
+    } else if (error instanceof Problem && error.isPassing) {
+      // All others wait as well: a server that is busy is busy for them, too.
       chunk.state = "later";
       chunk.tries += 1;
-      const wait = Math.max(error.retryAfter * 1000, 200 * 2 ** chunk.tries);
+      const wait = Math.max(error.retryAfter * 1000, Math.min(10_000, 200 * 2 ** chunk.tries));
+      this.restsUntil = Math.max(this.restsUntil, performance.now() + wait);
       setTimeout(() => {
         if (chunk.state === "later") chunk.state = "waiting";
         this.pump();
-      }, Math.min(wait, 10_000));
+      }, wait + 20);
     } else if (!this.refused && chunk.layers === this.layers) {
       this.refused = error;
       this.failed(error);

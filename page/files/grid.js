@@ -3,7 +3,9 @@
 import { distance, place, toNumber } from "./place.js";
 
 /** More points than this are not drawn at once: beyond, the points of lowest rank stand for all. */
-export const MOST_POINTS = 1_000_000;
+const MOST_POINTS = 1_000_000;
+/** The least share of points that is even: fewer of them lie in rows. Beyond, density is drawn as gray. */
+const LEAST_SHARE = 1 / 64;
 /** The number of chunks in a view, about. */
 const CHUNKS = 20;
 /** No chunk is smaller than this number of spacings: a thousand points take as long to come as ten. */
@@ -32,10 +34,19 @@ export function chunkSize(view, spacing) {
  * @param {number[]} spacings
  */
 export function shareFor(view, spacings) {
-  const area = view.width * view.height * view.unit ** 2;
-  const points = spacings.reduce((sum, spacing) => sum + area / spacing ** 2, 0);
+  const points = pointsIn(view, spacings);
   if (!(points > MOST_POINTS)) return 1;
-  return Math.max(1e-6, 2 ** -Math.ceil(Math.log2(points / MOST_POINTS)));
+  return Math.max(LEAST_SHARE, 2 ** -Math.ceil(Math.log2(points / MOST_POINTS)));
+}
+
+/** Whether a view has more points than the least share of them can stand for. */
+export function isBeyondPoints(view, spacings) {
+  return pointsIn(view, spacings) * LEAST_SHARE > MOST_POINTS;
+}
+
+function pointsIn(view, spacings) {
+  const area = view.width * view.height * view.unit ** 2;
+  return spacings.reduce((sum, spacing) => sum + area / spacing ** 2, 0);
 }
 
 /**

@@ -99,11 +99,14 @@ class PlainPainter {
     return this.masks.get(key);
   }
 
-  paint(sheet, chunk, { layer, first, count, corner, zoom, size, color }) {
+  paint(sheet, chunk, { layer, first, count, corner, zoom, size, color, tones }) {
     const [left, top] = [sheet.width / 2 + corner[0], sheet.height / 2 - corner[1]];
     if (sheet.isDots) {
       sheet.isTouched = true;
-      setDots(sheet, chunk, { first, count, left, top, zoom, masks: this.masksFor(size), color: packed(color) });
+      const slot = slotsOf(layer, chunk.columns).variant;
+      setDots(sheet, chunk, {
+        first, count, left, top, zoom, masks: this.masksFor(size), color: packed(color), tones: tones?.map(packed), slot,
+      });
       return;
     }
     const { context } = sheet;
@@ -112,6 +115,7 @@ class PlainPainter {
     context.fillStyle = css(color);
     for (let k = first; k < first + count; k += 1) {
       const [x, y] = [left + data[k * stride] * zoom, top - data[k * stride + 1] * zoom];
+      if (tones) context.fillStyle = css(tones[data[k * stride + slots.variant]] ?? color);
       this.mark(context, layer, [x, y], size, slots, data.subarray(k * stride, (k + 1) * stride));
     }
     context.setTransform(1, 0, 0, 1, 0, 0);

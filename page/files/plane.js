@@ -7,7 +7,7 @@ import { plainPainter } from "./painter_2d.js";
 import { moved, place, toNumber } from "./place.js";
 import { Sheets } from "./sheets.js";
 
-/** A view shows at least half a spacing, and at most this number of spacings: a hundred million points, thinned. */
+/** A view shows at least half a spacing, and at most this number of spacings: hundreds of millions of points, drawn as gray. */
 const LEAST_SPAN = 0.5;
 const MOST_SPAN = 2e4;
 /** A zoom counts as over after this time, in milliseconds. */
@@ -190,9 +190,14 @@ export class Plane {
     return this.look !== null && isTooFar(at, this.look.spacing);
   }
 
-  /** The share of the points that is shown. */
+  /** The share of the points that is shown; all of them where none is drawn. */
   get keep() {
-    return this.sheets.front?.keep ?? 1;
+    return this.isGray ? 1 : this.sheets.front?.keep ?? 1;
+  }
+
+  /** Whether density is drawn as gray, in place of points. */
+  get isGray() {
+    return this.sheets.front?.isGray ?? false;
   }
 
   /** How large a chunk is here. */
@@ -216,6 +221,23 @@ export class Plane {
           const y = low + chunk.data[k * chunk.stride + 1];
           if (x >= -halfX && x < halfX && y >= -halfY && y < halfY) visit(layer, x, y, chunk, k);
         }
+      }
+    }
+  }
+
+  /**
+   * Calls `visit(x, y, chunk, k)` for the points in view and up to `margin` around it, x and y from its middle.
+   * @param {number} margin In units of the world.
+   * @param {(x: number, y: number, chunk: any, k: number) => void} visit
+   */
+  near(margin, visit) {
+    const { view, sheets } = this;
+    const [halfX, halfY] = [(view.width * view.unit) / 2 + margin, (view.height * view.unit) / 2 + margin];
+    for (const { chunk } of sheets.front?.parts ?? []) {
+      const [left, low] = [cornerFrom(chunk.cx, chunk.size, view.x), cornerFrom(chunk.cy, chunk.size, view.y)];
+      for (let k = 0; k < chunk.count; k += 1) {
+        const [x, y] = [left + chunk.data[k * chunk.stride], low + chunk.data[k * chunk.stride + 1]];
+        if (Math.abs(x) < halfX && Math.abs(y) < halfY) visit(x, y, chunk, k);
       }
     }
   }

@@ -1,9 +1,10 @@
 // The choices on the page, kept in step with the address and with the server's resolved values.
 
 import { askJson } from "./api.js";
-import { joined, setOf, togetherBody } from "./query.js";
-import { fromHash, toHash } from "./state.js";
+import { joined, setOf, togetherBody, worldIn } from "./query.js";
+import { LAYER, fromHash, toHash } from "./state.js";
 import { settled } from "./dom.js";
+import { layersOfWorld } from "./worlds.js";
 
 /** @typedef {import("./place.js").Place} Place */
 /** @typedef {import("./state.js").Layer} Layer */
@@ -12,7 +13,7 @@ import { settled } from "./dom.js";
 
 /**
  * The server's values of a layer, everything filled in.
- * @typedef {{ spacing: number, density: number, least_distance: number, [name: string]: any }} Understood
+ * @typedef {Api.Query & { spacing: number, density: number, least_distance: number }} Understood
  */
 
 /** One choice at a time; listeners hear what has changed. */
@@ -119,7 +120,7 @@ export class Session {
    * @param {Layer[]} layers
    */
   async understandTogether(layers) {
-    if (layers.length === 1 || layers.every((layer) => !layer.clear.trim())) return null;
+    if (layers.length === 1 || worldIn(layers) || layers.every((layer) => !layer.clear.trim())) return null;
     try {
       await askJson("/v1/count", { body: togetherBody(layers) });
       return null;
@@ -129,17 +130,33 @@ export class Session {
     }
   }
 
+  /** Sees that the layers are those of the world that was chosen, or of none. */
+  async settleWorld() {
+    const { world, worldSeed, layers } = this.state;
+    const held = worldIn(layers);
+    if ((held?.name ?? "") === world && (held?.seed ?? "") === (world && worldSeed)) return;
+    const settled = world ? await layersOfWorld(world, worldSeed) : [{ ...LAYER }];
+    if (this.state.world === world && this.state.worldSeed === worldSeed) this.state.layers = settled;
+  }
+
+  /** Leaves the world that is shown, if one is, for a layer of its own. */
+  leaveWorld() {
+    if (!this.state.world) return;
+    Object.assign(this.state, { world: "", worldSeed: "", layers: [{ ...LAYER }] });
+  }
+
   /**
    * The server's understanding of a layer.
    * @param {Layer} layer
    * @returns {Understood | Promise<Understood>}
    */
   understand(layer) {
+    if (layer.world) return layer.understood;
     const query = joined(setOf(layer));
     const known = this.understood.get(query);
     if (known) return known;
     // A box of no size has no points to count.
-    const asked = askJson(`/v1/count?bbox=0,0,1e-300,1e-300&${query}`).then((answer) => answer.query);
+    const asked = askJson(`/v1/count?bbox=0,0,1e-300,1e-300&${query}`).then(({ query: all }) => /** @type {Understood} */ (all));
     if (this.understood.size > 200) this.understood.clear();
     this.understood.set(query, asked);
     asked.catch(() => this.understood.delete(query));

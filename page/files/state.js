@@ -6,8 +6,14 @@ import { decimalsFor, formatPlace, parsePlace, place } from "./place.js";
 /** The amounts that an unbounded plane can have, by the names that requests use. */
 export const AMOUNTS = ["spacing", "density", "min_distance"];
 
-/** Colors by number, as Okabe and Ito chose them; the first is the ink of the theme. */
-export const COLOR_NAMES = ["ink", "blue", "vermilion", "green", "orange", "sky", "purple", "yellow"];
+/** How kinds can be spread; no word for points of one kind. */
+const SPREADS = ["", "chance", "even", "joint"];
+
+/** Colors by number: the ink of the theme, seven that Okabe and Ito chose, and three of woods. */
+export const COLOR_NAMES = ["ink", "blue", "vermilion", "green", "orange", "sky", "purple", "yellow", "stone", "leaf", "moss"];
+
+/** The number of colors that kinds go through from the first on; those of woods go to the end. */
+export const KIND_COLORS = 8;
 
 /**
  * What is chosen for a layer: texts as in requests, and how its points look.
@@ -22,7 +28,9 @@ export const COLOR_NAMES = ["ink", "blue", "vermilion", "green", "orange", "sky"
  * @property {string} settle
  * @property {string} field
  * @property {string} paint What is painted, as text.
+ * @property {string} lod The share of the points that is shown, those of lowest rank; nothing for all.
  * @property {boolean} shade Whether the field is shown.
+ * @property {boolean} paper Whether it is a picture, dark on light in both themes.
  * @property {number} color An index of `COLOR_NAMES`.
  * @property {number} dot The size of dots: 1 is the usual one.
  * @property {boolean} angle Whether angles are shown.
@@ -30,7 +38,13 @@ export const COLOR_NAMES = ["ink", "blue", "vermilion", "green", "orange", "sky"
  * @property {string} range
  * @property {boolean} variant
  * @property {string} variants
+ * @property {string} spread One of `SPREADS`: how kinds are spread.
  * @property {string} clear The distance to the layers before.
+ * @property {{ name: string, seed: string }} [world] The world that it is of; then it also has:
+ * @property {string} [name] Its name there.
+ * @property {string[]} [columns] The columns of points of that world.
+ * @property {number[]} [clears] The distances to the layers before, one by one.
+ * @property {any} [understood] What the server says of it.
  */
 
 /**
@@ -48,7 +62,9 @@ export const LAYER = Object.freeze({
   settle: "",
   field: "",
   paint: "",
-  shade: true,
+  lod: "",
+  shade: false,
+  paper: false,
   color: 0,
   dot: 1,
   angle: false,
@@ -56,6 +72,7 @@ export const LAYER = Object.freeze({
   range: "0.5,1.5",
   variant: false,
   variants: "oak:3,birch:1,pine:2",
+  spread: "",
   clear: "",
 });
 
@@ -88,7 +105,9 @@ const KEYS = {
   settle: "settle",
   field: "field",
   paint: "paint",
+  lod: "lod",
   shade: "shade",
+  paper: "paper",
   color: "color",
   dot: "dot",
   angle: "angle",
@@ -96,6 +115,7 @@ const KEYS = {
   range: "range",
   variant: "variant",
   variants: "variants",
+  spread: "spread",
   clear: "clear",
 };
 
@@ -113,6 +133,8 @@ export const MOST_LAYERS = 6;
  * @property {Place} x The middle of the view.
  * @property {Place} y
  * @property {number} span The length of the shorter side of the view.
+ * @property {string} [world] The name of the server's world that is shown, or nothing.
+ * @property {string} [worldSeed] Another seed than the world's own, or nothing.
  * @property {Layer[]} layers
  * @property {string} tab
  * @property {Works} works
@@ -120,14 +142,17 @@ export const MOST_LAYERS = 6;
  */
 
 /**
- * The view of a visitor who comes without a link: some 900 points.
+ * The view of a visitor who comes without a link: some 900 points, more in a large window.
  * @returns {State}
  */
 export function initial() {
+  const enlarged = Math.max(1, Math.min(globalThis.innerWidth, globalThis.innerHeight) / 900);
   return {
     x: place(0),
     y: place(0),
-    span: 30,
+    span: Math.round(30 * enlarged),
+    world: "",
+    worldSeed: "",
     layers: [{ ...LAYER }],
     tab: "start",
     works: { ...WORKS },
@@ -151,6 +176,9 @@ export function fromHash(hash) {
   if (["start", "choose", "understand", "take", "gallery", "works"].includes(tab)) state.tab = tab;
   if (["2d", "webgl2"].includes(renderer)) state.renderer = renderer;
   state.works = worksFrom(given);
+  const [world, seed] = ["world", "world.seed"].map((name) => given.get(name) ?? "");
+  if (/^[\w.-]{1,64}$/.test(world)) state.world = world;
+  if (/^\d{1,20}$/.test(seed)) state.worldSeed = seed;
   const layers = Math.min(MOST_LAYERS, Math.max(1, Number(given.get("layers")) || 1));
   state.layers = Array.from({ length: layers }, (_, i) => layerFrom(given, i));
   return state;
@@ -188,6 +216,8 @@ function layerFrom(given, i) {
     } else layer[member] = text;
   }
   if (!AMOUNTS.includes(layer.by)) layer.by = LAYER.by;
+  if (!SPREADS.includes(layer.spread)) layer.spread = LAYER.spread;
+  if (!(Number(layer.lod) > 0 && Number(layer.lod) < 1)) layer.lod = LAYER.lod;
   layer.color = Math.abs(Math.trunc(layer.color)) % COLOR_NAMES.length;
   layer.dot = Math.min(4, Math.max(0.25, layer.dot));
   return layer;
@@ -208,8 +238,12 @@ export function toHash(state) {
     ["at", `${formatPlace(state.x, decimals)},${formatPlace(state.y, decimals)}`],
     ["span", String(Number(state.span.toPrecision(8)))],
   ];
-  if (state.layers.length > 1) said.push(["layers", String(state.layers.length)]);
-  state.layers.forEach((layer, i) => {
+  if (state.world) said.push(["world", state.world]);
+  if (state.world && state.worldSeed) said.push(["world.seed", state.worldSeed]);
+  // The layers of a world are the server's.
+  const layers = state.world ? [] : state.layers;
+  if (layers.length > 1) said.push(["layers", String(layers.length)]);
+  layers.forEach((layer, i) => {
     for (const [member, key] of Object.entries(KEYS)) {
       const standard = member === "color" ? i : LAYER[member];
       const must = member === "profile" || member === "amount" || member === "seed";

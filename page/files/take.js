@@ -51,7 +51,7 @@ export class Take extends Part {
       make("div", { class: "field" }, this.amount, this.size, this.thinLine),
       make("div", { class: "field" }, make("label", { for: "format" }, "Format"), this.formats),
       this.button, this.bar,
-      make("div", { class: "group" }, make("span", { class: "label" }, "Or ask for exactly these points yourself"),
+      make("div", { class: "group" }, make("span", { class: "label" }, "Or request exactly these points yourself"),
         this.ways, make("pre", { tabindex: "0", "aria-label": "The request" }, this.text), this.copyButton, this.what),
     );
   }
@@ -100,7 +100,7 @@ export class Take extends Part {
       grpcurl: () => grpcurl(location.host, layers, boxOf(this.plane.view), this.keep),
       python: () => python(location.origin, request, this.format, this.file),
       url: () => (request.body ? `POST ${location.origin}${request.path}\n\n${request.body}` : location.origin + request.path),
-      world: () => worldOf(layers),
+      world: () => (layers[0].world ? `${location.origin}/v1/worlds/${layers[0].world.name}` : worldOf(layers)),
     };
     this.text.textContent = texts[this.way]();
     for (const id of Object.keys(WAYS)) byId(`way-${id}`).setAttribute("aria-pressed", String(id === this.way));
@@ -109,7 +109,7 @@ export class Take extends Part {
       grpcurl: "For a shell; gRPC streams messages, whatever the format above.",
       python: this.format === "npy" ? "For Python 3 with numpy." : "For Python 3, with nothing installed.",
       url: request.body ? "Several layers, and fields that were sent, need a body, which an address cannot hold." : "For a browser, or anything else that reads addresses.",
-      world: "A file for the daemon's folder of worlds (worlds.folder), such as forest.json; then chunks are at /v1/worlds/forest/chunks/…",
+      world: layers[0].world ? "The description of this world." : "A file for the daemon's folder of worlds (worlds.folder), such as forest.json; then chunks are at /v1/worlds/forest/chunks/…",
     }[this.way];
     if (hasKey()) this.what.textContent += " Add your key, as the header “Authorization: Bearer …”.";
     this.copyButton.textContent = "Copy";
@@ -150,7 +150,7 @@ export class Take extends Part {
     this.button.disabled = true;
     try {
       await save(request, file, (come) => (this.bar.value = come));
-      this.size.textContent = `${file} is with your browser's downloads`;
+      this.size.textContent = `${file} is in your downloads`;
     } catch (error) {
       this.size.textContent = error.message;
       this.size.classList.add("bad");

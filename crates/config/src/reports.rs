@@ -185,7 +185,7 @@ impl Telemetry {
     }
 
     /// Whether spans are sent by TLS.
-    pub(crate) fn is_https(&self) -> bool {
+    pub fn is_https(&self) -> bool {
         self.otlp_endpoint.starts_with("https:")
     }
 }

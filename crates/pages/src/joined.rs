@@ -94,10 +94,10 @@ impl Modules<'_> {
         self.open.pop();
         let known = format!("$module{}", self.done.len());
         self.done.push(name.to_owned());
-        let exports = exports.join(", ");
+        let exports = exports.join(",");
         let _ = writeln!(
             self.text,
-            "// {name}\nconst {known} = (() => {{\n{body}\nreturn {{ {exports} }};\n}})();"
+            "// {name}\nconst {known}=(()=>{{\n{body}\nreturn{{{exports}}};\n}})();"
         );
         Ok(known)
     }
@@ -218,11 +218,11 @@ mod tests {
         );
         assert_eq!(joined.html.lines().count(), 3);
         let script = joined.script;
-        let expected = "// c.js\nconst $module0 = (() => {\nfunction one() {}\nreturn { one };\n})();\n\
-            // b.js\nconst $module1 = (() => {\nconst { one } = $module0;\nconst two = 2;\nasync function other() {}\n\
-            return { two, other };\n})();\n\
-            // in/main.js\nconst $module2 = (() => {\nconst { two: deux, one } = $module1;\nconst c = $module0;\n\
-            one(deux);\nreturn {  };\n})();\n";
+        let expected = "// c.js\nconst $module0=(()=>{\nfunction one(){}\nreturn{one};\n})();\n\
+            // b.js\nconst $module1=(()=>{\nconst{one}=$module0;\nconst two=2;\nasync function other(){}\n\
+            return{two,other};\n})();\n\
+            // in/main.js\nconst $module2=(()=>{\nconst{two:deux,one}=$module1;\nconst c=$module0;\n\
+            one(deux);\nreturn{};\n})();\n";
         assert_eq!(script, expected);
     }
 

@@ -3,6 +3,7 @@
 //! It is a macro and not a build script, because an edit of a page then compiles the program's main file and links it,
 //! and nothing else.
 
+mod fragments;
 mod joined;
 mod packed;
 mod stripped;
@@ -20,9 +21,9 @@ use packed::packed;
 /// `parts!("page/files")`: the files of a folder of the package and of those below it, as an array of
 /// `(name, plain, zstd, gzip)`: a `&str` and three `&[u8]`, of which the last two are empty for pictures.
 ///
-/// Each `index.html` names the two files into which its modules and styles are joined, which are in the array, too, as
-/// `joined/NAME.js` and `.css`; `NAME` is its folder, or `page` for the first one. A page that cannot be joined is an
-/// error of the compiler.
+/// Each `index.html` has its fragments in it, which are other files of HTML and not in the array, and names the two files
+/// into which its modules and styles are joined, which are in the array, too, as `joined/NAME.js` and `.css`; `NAME` is its
+/// folder, or `page` for the first one. A page that cannot be joined is an error of the compiler.
 #[proc_macro]
 pub fn parts(folder: TokenStream) -> TokenStream {
     let folder = folder.to_string();
@@ -52,6 +53,10 @@ fn embedded(folder: &str) -> Result<String, String> {
     let mut items = String::new();
     for file in &files {
         let content = &file.content;
+        let is_fragment = file.name.ends_with(".html") && !file.name.ends_with("index.html");
+        if is_fragment {
+            continue;
+        }
         let Some(name) = file.name.strip_suffix("index.html") else {
             items += &item(&file.name, content)?;
             continue;
@@ -60,8 +65,14 @@ fn embedded(folder: &str) -> Result<String, String> {
             "" => "page",
             folder => folder,
         };
+        let path = if name == "page" {
+            "/".into()
+        } else {
+            format!("/{name}")
+        };
         let html = std::str::from_utf8(content).map_err(|error| error.to_string())?;
-        let page = joined(name, html, &texts)?;
+        let html = fragments::whole(&path, html, &texts)?;
+        let page = joined(name, &html, &texts)?;
         items += &item(&file.name, page.html.as_bytes())?;
         items += &item(&format!("joined/{name}.js"), page.script.as_bytes())?;
         items += &item(&format!("joined/{name}.css"), page.style.as_bytes())?;

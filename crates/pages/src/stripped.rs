@@ -1,4 +1,5 @@
-//! Scripts and styles without comments, indentation and empty lines, which are a quarter of them.
+//! Scripts and styles without comments, indentation and empty lines, which are a quarter of them; scripts also without
+//! spaces beside brackets and the like.
 //!
 //! Line ends stay, because JavaScript ends statements at some; so do all names, and every character of strings,
 //! templates and regular expressions. Nothing else is changed: this is no minifier, and what a browser reports of a
@@ -12,7 +13,10 @@ use std::mem::take;
 /// The line of a string, template, comment or regular expression without an end, and of a slash that is not clearly one or
 /// the other: a division has a space after it, and a regular expression has none and stands where a value is due.
 pub fn script(text: &str) -> Result<String, String> {
-    let mut left = Left::default();
+    let mut left = Left {
+        is_tight: true,
+        ..Left::default()
+    };
     let mut rest = text;
     // The braces that are open in each template whose expression the text is in.
     let mut templates: Vec<usize> = vec![];
@@ -111,7 +115,14 @@ pub fn style(text: &str) -> Result<String, String> {
 struct Left {
     text: String,
     space: Option<char>,
+    /// Whether no space stands beside the characters of `TIGHT`.
+    is_tight: bool,
 }
+
+/// Characters that are whole tokens, or form none with those beside them here.
+const TIGHT: [char; 14] = [
+    '{', '}', '(', ')', '[', ']', ';', ',', '=', '?', ':', '&', '|', '>',
+];
 
 impl Left {
     /// White space, or a comment, with a line end or without one.
@@ -121,11 +132,10 @@ impl Left {
     }
 
     fn push(&mut self, text: &str) {
-        if let Some(space) = take(&mut self.space)
-            && !self.text.is_empty()
-        {
-            self.text.push(space);
-        }
+        let space = take(&mut self.space).filter(|_| !self.text.is_empty());
+        let needs_none = self.is_tight && (self.text.ends_with(TIGHT) || text.starts_with(TIGHT));
+        self.text
+            .extend(space.filter(|&space| space == '\n' || !needs_none));
         self.text += text;
     }
 
@@ -208,16 +218,21 @@ mod tests {
         for (text, left) in [
             (
                 "// A.\n\n  let a = 1; // one\n\n\n  b();\n",
-                "let a = 1;\nb();",
+                "let a=1;\nb();",
             ),
             (
                 "/** A\n *  B. */\nexport const a = 1;\n",
-                "export const a = 1;",
+                "export const a=1;",
             ),
             ("a /* x */ + b", "a + b"),
             ("return /* x\n */ 1", "return\n1"),
             ("a\t+  b", "a + b"),
             ("`${a // x\n}`", "`${a\n}`"),
+            (
+                "const { a } = b ? [c, d] : e && (f);",
+                "const{a}=b?[c,d]:e&&(f);",
+            ),
+            ("a + +b - -c < d / (e)", "a + +b - -c < d /(e)"),
         ] {
             assert_eq!(script(text).as_deref(), Ok(left), "{text}");
         }
@@ -231,25 +246,27 @@ mod tests {
     #[test]
     fn strings_templates_and_regular_expressions_stay() {
         for text in [
-            "a = \"//  no\" + '/*  no' + \"\\\"  //\" + '\\\\'",
-            "`  //  ${a + `  ${b({ c: \"}\" })}  /*`}  \\`  \\${  //`",
+            "a=\"//  no\" + '/*  no' + \"\\\"  //\" + '\\\\'",
+            "`  //  ${a + `  ${b({c:\"}\"})}  /*`}  \\`  \\${  //`",
             "`a\n   b  // c\n`",
             "`$${a}$`",
-            "a.replace(/\\/\\/  [/\"'`]/g, \"\")",
+            "a.replace(/\\/\\/  [/\"'`]/g,\"\")",
             "return /\"  /.test(a)",
-            "const a = /^\\d{1,3}  '$/;",
-            "[/`  /, /'  /]",
-            "(a) / b  ".trim_end(),
-            "a[1] / 2 / c",
+            "const a=/^\\d{1,3}  '$/;",
+            "[/`  /,/'  /]",
             "`${a}` / 2",
-            "x => /\"  /",
-            "{ a: 1 }",
-            "const f = () => ({ a: `${b}` });",
+            "x=>/\"  /",
+            "const f=()=>({a:`${b}`});",
         ] {
             assert_eq!(script(text).as_deref(), Ok(text));
         }
-        let text = "`${{ a: 1 }.a}  // b`;  // c";
-        assert_eq!(script(text).as_deref(), Ok("`${{ a: 1 }.a}  // b`;"));
+        for (text, left) in [
+            ("(a) / b", "(a)/ b"),
+            ("a[1] / 2 / c", "a[1]/ 2 / c"),
+            ("`${{ a: 1 }.a}  // b`;  // c", "`${{a:1}.a}  // b`;"),
+        ] {
+            assert_eq!(script(text).as_deref(), Ok(left));
+        }
     }
 
     #[test]

@@ -10,13 +10,12 @@ const SPAN = 32;
 const NARROW_SPAN = 20;
 /** Farther out, doubles do not tell places within a spacing apart. */
 export const FARTHEST = 1e12;
-/** The number of methods that phones begin with. */
-const FEW = 2;
+/** The methods that are shown at first. */
+export const PAIR = ["strew", "poisson"];
 
 /** The first state, before anything is chosen: `isNarrow` on phones. */
 function initial(isNarrow) {
-  const all = METHODS.map(({ id }) => id);
-  return { x: place(0), y: place(0), span: isNarrow ? NARROW_SPAN : SPAN, seed: 1, profile: "blue", shown: isNarrow ? all.slice(0, FEW) : all };
+  return { x: place(0), y: place(0), span: isNarrow ? NARROW_SPAN : SPAN, seed: 1, profile: "blue", shown: [...PAIR] };
 }
 
 const bounded = (span) => Math.min(MOST_SPAN, Math.max(LEAST_SPAN, span));

@@ -1,4 +1,4 @@
-// The work of the worker: the points of a window by each method, and the time of a point.
+// The work of the worker: the points of a window by each method, and the time per point.
 
 import { bridson } from "./bridson.js";
 import { jittered, repeated, white } from "./cells.js";
@@ -38,7 +38,7 @@ function built(id, build) {
   };
   const { points, took } = run();
   return {
-    window: (window) => cut(points, box, window),
+    window: (window) => ({ ...cut(points, box, window), total: points.length / 2 }),
     time: () => {
       // Once more, when the engine has compiled what runs often and the page is at rest.
       const best = Math.min(took, run().took);
@@ -47,7 +47,7 @@ function built(id, build) {
   };
 }
 
-/** The nanoseconds a point of a method that makes any window alone: the best of some runs. */
+/** The nanoseconds per point of a method that makes any window alone: the best of some runs. */
 function timed(make) {
   const window = { x: { i: 0, f: 0 }, y: { i: 0, f: 0 }, width: MEASURED, height: MEASURED };
   let best = Infinity;

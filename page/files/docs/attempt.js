@@ -1,6 +1,6 @@
 // Trying an operation: a form with its parameters, the curl line of what the form says, and what the server answers.
 
-import { hasKey, headersFor } from "../api.js";
+import { brokeOff, hasKey, headersFor } from "../api.js";
 import { bytes, contextOf, make } from "../dom.js";
 import { keyForm } from "../form.js";
 import { resolved } from "./schema.js";
@@ -84,7 +84,7 @@ export function attempt(path, method, operation, api) {
     make("div", { class: "fields" }, shown),
     others.length > 0 && make("details", {}, make("summary", {}, `${others.length} more parameters`), make("div", { class: "fields" }, others)),
     body && make("div", { class: "field wide" }, make("label", { for: "try-body" }, `Body, ${content[0]}`), body),
-    make("div", { class: "line" }, make("pre", { tabindex: "0", "aria-label": "The line for curl" }, line), copy(() => line.textContent)),
+    make("div", { class: "line" }, make("pre", { role: "group", tabindex: "0", "aria-label": "The line for curl" }, line), copy(() => line.textContent)),
     send);
   form.addEventListener("input", update, true);
   form.addEventListener("submit", async (event) => {
@@ -100,7 +100,7 @@ export function attempt(path, method, operation, api) {
 }
 
 /** A button that copies a text. */
-export function copy(text) {
+function copy(text) {
   const button = make("button", { type: "button", "aria-label": "Copy the command" }, "Copy");
   button.addEventListener("click", async () => {
     try {
@@ -132,8 +132,9 @@ async function sent({ address, headers, text }, method, type, update) {
       make("details", {}, make("summary", {}, `${rows.length / 2} headers`), make("dl", { class: "headers" }, rows)),
       await seen(blob, kind, isWhole),
     ].filter((one) => one !== false);
-  } catch (error) {
-    return [make("p", { class: "status bad" }, `The server does not answer: ${error.message}`)];
+  } catch {
+    brokeOff();
+    return [make("p", { class: "status bad" }, "No answer came. Send it again when the server is back.")];
   }
 }
 
@@ -161,7 +162,7 @@ async function seen(blob, kind, isWhole) {
   if (!/json|text|csv|xml|toml/.test(kind)) return make("p", { class: "note" }, `Binary, ${kind || "without a type"}.`);
   let text = await blob.slice(0, SHOWN).text();
   if (kind.includes("json") && isWhole && blob.size <= SHOWN) text = pretty(text);
-  return make("pre", { id: "body", tabindex: "0", "aria-label": "The body" }, text, blob.size > SHOWN && "\n…");
+  return make("pre", { id: "body", role: "group", tabindex: "0", "aria-label": "The body" }, text, blob.size > SHOWN && "\n…");
 }
 
 /** The picture of an answer, drawn from its bytes: another request would lack the body and the key. */
@@ -173,7 +174,7 @@ async function picture(blob) {
     contextOf(canvas).drawImage(bitmap, 0, 0);
     return canvas;
   } catch {
-    return make("pre", { id: "body", tabindex: "0", "aria-label": "The body" }, await blob.slice(0, SHOWN).text());
+    return make("pre", { id: "body", role: "group", tabindex: "0", "aria-label": "The body" }, await blob.slice(0, SHOWN).text());
   }
 }
 

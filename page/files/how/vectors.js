@@ -76,7 +76,10 @@ export class Vectors {
     this.stage.draw();
   }
 
-  /** Vectors are what separates a point of seed 0, without warp, from its place on the grid. */
+  /**
+   * Vectors are what separates a point of seed 0, without warp, from its place on the grid.
+   * @param {number[]} middle
+   */
   async request([x, y]) {
     const box = [x - AROUND, y - AROUND, x + AROUND, y + AROUND].join();
     if (this.asked?.has(box)) return;

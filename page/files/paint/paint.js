@@ -84,9 +84,10 @@ export class Paint extends Part {
       type: "range", id: `paint-${id}`, min: "0", max: "1", step: "0.01", value: String(value),
       oninput: (event) => changed(Number(event.target.value)),
     }));
-    this.toggle = button("open", [icon(BRUSH), make("span", {}, "Paint")], () => this.use(this.tool ? null : "paint"), {
-      "aria-expanded": "false", "aria-label": "Paint density and roads", title: "Paint density and roads",
-    });
+    // It is in the page from the start, so that nothing beside it moves.
+    this.toggle = byId("paint-open");
+    this.toggle.prepend(icon(BRUSH));
+    this.toggle.addEventListener("click", () => this.use(this.tool ? null : "paint"));
     this.tools = TOOLS.map(([tool, words, title]) => button(`tool-${tool}`, words, () => this.use(tool), { title, "aria-pressed": "false" }));
     this.size = slide("size", "Size", Math.sqrt(this.width), (value) => {
       this.width = Math.max(0.004, value ** 2);
@@ -114,7 +115,6 @@ export class Paint extends Part {
       id: "brush", tabindex: "0", role: "application", hidden: true,
       "aria-label": "Paint on the plane. Arrow keys move the brush, Space puts the pen down and lifts it, plus and minus zoom, Escape leaves.",
     });
-    byId("tools").prepend(this.toggle);
     byId("stage").append(this.canvas, this.bar);
     addEventListener("keydown", (event) => {
       if (!this.tool) return;
@@ -253,7 +253,7 @@ export class Paint extends Part {
     this.follow();
     if (this.hasCleared) {
       const { ground, strokes } = this.cleared.work;
-      this.change({ ground, strokes }, "Back again");
+      this.change({ ground, strokes }, "Restored");
     } else if (this.work.strokes.length > 0) this.change({ strokes: this.work.strokes.slice(0, -1) }, "Undone");
   }
 
@@ -280,7 +280,7 @@ export class Paint extends Part {
       if (text) this.texts.set(field, text);
       const amount = layer.by === "min_distance" ? { by: "spacing", amount: await this.spacing(layer) } : {};
       this.session.choose(() => Object.assign(layer, { field, paint: text, ...amount }), "layers");
-      const where = text.length > MOST_PAINT ? ", too much for the address: save it as a file" : "";
+      const where = text.length > MOST_PAINT ? ", too many for the address: save them as a file" : "";
       this.say(`${words ? `${words}: ` : ""}${strokes(work)}${where}`);
     } catch (error) {
       if (mine !== this.turn) return;
@@ -304,14 +304,14 @@ export class Paint extends Part {
     link.click();
     link.remove();
     setTimeout(() => URL.revokeObjectURL(url), 60_000);
-    this.say("world.json is with your browser's downloads. A folder of worlds takes it, too.");
+    this.say("world.json is in your downloads. The daemon's folder of worlds takes it, too.");
   }
 
   /** Opens a world from a file. */
   async open(file) {
     try {
       const layers = await layersOf(await file.text(), file.name);
-      this.session.choose((state) => (state.layers = layers), "layers");
+      this.session.choose((state) => Object.assign(state, { world: "", worldSeed: "", layers }), "layers");
       this.say(`“${file.name}” is open`);
     } catch (error) {
       this.say("");

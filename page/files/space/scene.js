@@ -1,6 +1,6 @@
 // The volume by WebGL2: each chunk is a buffer of points, drawn as lit dots that shrink and pale with distance.
 
-import { programOf } from "../program.js";
+import { bufferOf, glOn, programOf } from "../program.js";
 
 /** Half of a dot's width in mean spacings. */
 export const RADIUS = 0.13;
@@ -62,16 +62,13 @@ export const EDGES = [0, 1, 2].flatMap((axis) => [[0, 0], [0, 1], [1, 0], [1, 1]
   [0, 1].map((end) => [...rest.slice(0, axis), end, ...rest.slice(axis)])
 )));
 
-/** @type {WebGLContextAttributes} */
-const OPTIONS = { alpha: false, antialias: true, depth: true, stencil: false, powerPreference: "high-performance" };
-
 /**
  * A scene on a canvas, or `null` where there is no WebGL2.
  * @param {HTMLCanvasElement} canvas
  */
 export function sceneOn(canvas) {
-  const gl = canvas.getContext("webgl2", OPTIONS);
-  return gl && !gl.isContextLost() ? new Scene(gl, canvas) : null;
+  const gl = glOn(canvas, { antialias: true, depth: true });
+  return gl && new Scene(gl, canvas);
 }
 
 /**
@@ -91,24 +88,16 @@ class Scene {
     this.canvas = canvas;
     this.dots = programOf(gl, DOTS, ["place"]);
     this.lines = programOf(gl, LINES, ["place"]);
-    this.cube = this.buffer(new Float32Array(EDGES.flat()));
+    this.cube = bufferOf(gl, new Float32Array(EDGES.flat()));
     gl.enable(gl.DEPTH_TEST);
     gl.enable(gl.SAMPLE_ALPHA_TO_COVERAGE);
     gl.enableVertexAttribArray(0);
   }
 
-  buffer(contents) {
-    const { gl } = this;
-    const buffer = gl.createBuffer();
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, contents, gl.STATIC_DRAW);
-    return buffer;
-  }
-
   /** The buffer of a chunk, which goes when the chunk is dropped. */
   bufferOf(chunk) {
     if (!chunk.buffer) {
-      chunk.buffer = this.buffer(chunk.data);
+      chunk.buffer = bufferOf(this.gl, chunk.data);
       chunk.dropped = () => {
         this.gl.deleteBuffer(chunk.buffer);
         chunk.buffer = null;

@@ -33,7 +33,7 @@ export class Slabs {
       const canvas = make("canvas", { id: `slab-${id}`, role: "img" });
       const [least, mean] = [make("dd"), make("dd")];
       list.append(make("figure", {}, canvas, make("figcaption", {}, make("h3", {}, name),
-        make("dl", {}, make("div", {}, make("dt", {}, "Least distance"), least), make("div", {}, make("dt", {}, "Mean distance"), mean)),
+        make("dl", {}, make("div", {}, make("dt", {}, "Minimum distance"), least), make("div", {}, make("dt", {}, "Mean distance"), mean)),
         make("p", { class: "note" }, words))));
       return { id, name, canvas, least, mean, points: null };
     });

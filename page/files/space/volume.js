@@ -49,7 +49,7 @@ export function cornerOf({ size, cx, cy, cz }, at) {
 }
 
 /** The chunks within a distance of a place, nearest first. */
-export function chunksAround(at, size, reach) {
+function chunksAround(at, size, reach) {
   const { cx, cy, cz } = chunkAt(at, size);
   const n = Math.ceil(reach / size);
   const found = [];

@@ -43,7 +43,7 @@ export class Mask {
     Object.assign(canvas, { width: size, height: size });
     const context = contextOf(canvas, { willReadFrequently: true });
     context.drawImage(bitmap, 0, 0);
-    const words = `${size} × ${size} pixels with ${Math.min(size ** 2, 2 ** Number(state.bits)).toLocaleString("en")} thresholds. A pixel of a picture becomes white `
+    const words = `${size} × ${size} pixels with ${Math.min(size ** 2, 2 ** Number(state.bits)).toLocaleString("en")} thresholds. A pixel of a picture turns white `
       + "where its gray is above the threshold.";
     return { side: size, tile: canvas, thresholds: context.getImageData(0, 0, size, size).data, words };
   }
@@ -86,6 +86,6 @@ export class Mask {
       }
     }
     context.putImageData(pixels, 0, 0);
-    return "A ramp from black to white that it dithers: black and white pixels only.";
+    return "A ramp from black to white, dithered: every pixel is black or white.";
   }
 }

@@ -107,7 +107,8 @@ async function show(how = "replaceState") {
 
 function picture() {
   const { isThere } = shown();
-  byId("shown").hidden = !isThere;
+  // It keeps its room while it waits.
+  byId("shown").classList.toggle("waits", !isThere);
   for (const id of ["download", "copy"]) byId(id).toggleAttribute("disabled", !isThere);
   if (!isThere) return;
   byId("caption").textContent = shown().picture(byId("picture"));
@@ -131,6 +132,8 @@ function mapOf(profile) {
 }
 
 function build() {
+  // Its room is known before it is drawn.
+  Object.assign(byId("picture"), { width: 320, height: state.what === "mask" ? 110 : 320 });
   const buttons = [["points", "Points"], ["mask", "Mask"]].map(([what, words]) => make("button", {
     type: "button", id: `what-${what}`, onclick: () => choose({ what }),
   }, words));
@@ -156,9 +159,9 @@ function build() {
     })),
     make("div", { class: "pair", id: "of-points" },
       field("Points", "points", select("points", (points) => choose({ points: Number(points) }))),
-      field("Share of them", "share", share)),
+      field("Share of points", "share", share)),
     make("div", { class: "pair", id: "of-mask" },
-      field("Pixels a side", "size", select("size", (size) => choose({ size: Number(size) }))),
+      field("Pixels per side", "size", select("size", (size) => choose({ size: Number(size) }))),
       field("Bits", "bits", select("bits", (bits) => choose({ bits })))),
     field("Seed", "seed", seed),
     check("seams", "Show the seams", (seams) => {
@@ -174,26 +177,33 @@ function build() {
   const side = select("side", (value) => {
     file.side = value;
     line();
-  }, { "aria-label": "Pixels a side of the picture" });
+  }, { "aria-label": "Pixels per side of the picture" });
   setOptions(format, FILES, file.format);
   setOptions(side, SIDES.map((v) => [v, `${v} pixels`]), file.side);
   byId("save").append(
     make("div", { class: "pair", id: "how" }, format, side),
     make("button", { type: "button", id: "download", class: "main", onclick: () => save({ path: pathOf() }, nameOf(), () => {})
       .catch((error) => refusal(byId("banner"), error, () => begin())) }, "Save"),
-    make("pre", { tabindex: "0", "aria-label": "The request" }, make("code", { id: "command" })),
+    make("pre", { role: "group", tabindex: "0", "aria-label": "The request" }, make("code", { id: "command" })),
     make("button", { type: "button", id: "copy", onclick: (event) => copy(byId("command"), event.currentTarget) }, "Copy"),
     make("p", { class: "note", id: "help" }),
   );
+  which();
+  picture();
+}
+
+/** Shows the fields of points, or those of a mask. */
+function which() {
+  const isMask = state.what === "mask";
+  byId("of-points").hidden = isMask;
+  byId("of-mask").hidden = !isMask;
+  byId("how").hidden = isMask;
 }
 
 /** Sets every field to what is chosen. */
 function update() {
-  const isMask = state.what === "mask";
+  which();
   for (const what of Object.keys(kinds)) byId(`what-${what}`).setAttribute("aria-pressed", String(what === state.what));
-  byId("of-points").hidden = isMask;
-  byId("of-mask").hidden = !isMask;
-  byId("how").hidden = isMask;
   setOptions(byId("size"), SIZES.map(String), String(state.size));
   setOptions(byId("bits"), [["8", "8"], ["16", "16"]], state.bits);
   if (byId("seed").value.trim() !== state.seed) byId("seed").value = state.seed;
@@ -206,7 +216,7 @@ function update() {
 function sayShare() {
   const share = `${Math.round(100 * state.share)} %`;
   byId("share").setAttribute("aria-valuetext", share);
-  /** @type {HTMLElement} */ (document.querySelector("label[for=share]")).textContent = `Share of them: ${share}`;
+  /** @type {HTMLElement} */ (document.querySelector("label[for=share]")).textContent = `Share of points: ${share}`;
 }
 
 function pathOf() {
@@ -225,8 +235,8 @@ function line() {
   byId("copy").textContent = "Copy";
   byId("command").textContent = curl(location.origin, { path: pathOf() }, nameOf());
   byId("help").textContent = state.what === "mask"
-    ? "Repeat it over a picture, a pixel of the mask for a pixel of the picture."
-    : "Pictures repeat as they are. Coordinates lie in [0, L)², L being the side in mean spacings.";
+    ? "Repeat it over a picture, one pixel of the mask to one pixel of the picture."
+    : "Pictures repeat as they are. Coordinates run from 0 to below L in x and y; L is the side in mean spacings.";
 }
 
 async function begin(how) {
@@ -235,7 +245,7 @@ async function begin(how) {
     const names = profileNames(tables);
     if (!names.includes(state.profile)) {
       byId("banner").hidden = false;
-      byId("banner").textContent = `No profile “${state.profile}” is loaded here.`;
+      byId("banner").textContent = `This server has no profile “${state.profile}”.`;
       [state.profile] = names.includes("blue") ? ["blue"] : names;
     }
     setOptions(byId("profile"), names, state.profile);
@@ -254,7 +264,7 @@ async function begin(how) {
 async function sizes() {
   const { periods } = await askJson(`/v1/periods?${joined([["profile", state.profile], ["map", mapOf(state.profile)], ["most", "12"]])}`);
   const counts = periods.map(({ points }) => points).filter((points, i) => i === 0 || points <= MOST_POINTS);
-  state.points = counts.find((points) => points >= state.points) ?? counts.at(-1);
+  state.points = counts.find((points) => points >= state.points) ?? counts[counts.length - 1];
   setOptions(byId("points"), counts.map((points) => [String(points), points.toLocaleString("en")]), String(state.points));
 }
 

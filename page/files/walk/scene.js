@@ -1,7 +1,7 @@
 // The picture by WebGL2: sky, ground, shadows, and everything that stands, a draw for each kind and leaf. Instances go
 // to the graphics processor once; which of them are drawn is a beginning of each run, as these are sorted by rank.
 
-import { programOf } from "../program.js";
+import { bufferOf, glOn, isSoftware, programOf } from "../program.js";
 import { sees } from "./camera.js";
 import { GROUND_FLOATS, INSTANCE_FLOATS, below, netOf } from "./ground.js";
 import { GROUND, SHADOWS, SKY, THINGS } from "./shaders.js";
@@ -25,15 +25,10 @@ const LIGHTS = {
   },
 };
 
-/** @type {WebGLContextAttributes} */
-const OPTIONS = { alpha: false, antialias: true, depth: true, stencil: false, powerPreference: "high-performance" };
-/** The names of renderers without graphics hardware. */
-const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
-
 /** A scene on a canvas, or `null` where there is no WebGL2. */
 export function sceneOn(canvas) {
-  const gl = canvas.getContext("webgl2", OPTIONS);
-  return gl && !gl.isContextLost() ? new Scene(gl, canvas) : null;
+  const gl = glOn(canvas, { antialias: true, depth: true });
+  return gl && new Scene(gl, canvas);
 }
 
 class Scene {
@@ -46,8 +41,7 @@ class Scene {
   constructor(gl, canvas) {
     this.gl = gl;
     this.canvas = canvas;
-    const names = gl.getExtension("WEBGL_debug_renderer_info");
-    this.isSlow = SOFTWARE.test(String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER)));
+    this.isSlow = isSoftware(gl);
     this.programs = Object.fromEntries(
       Object.entries({ SKY, GROUND, THINGS, SHADOWS }).map(([name, source]) => [name, programOf(gl, source)]),
     );
@@ -62,11 +56,7 @@ class Scene {
 
   /** A buffer with these contents. */
   buffer(contents) {
-    const { gl } = this;
-    const buffer = gl.createBuffer();
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, contents, gl.STATIC_DRAW);
-    return buffer;
+    return bufferOf(this.gl, contents);
   }
 
   free(buffer) {

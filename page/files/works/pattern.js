@@ -21,7 +21,7 @@ function root(n) {
 }
 
 /** α · 2⁶³, rounded to the nearest integer: a decimal, a fraction, or one of the known irrationals. */
-export function halfTurns(text) {
+function halfTurns(text) {
   const clean = text.replace(/\s/g, "");
   // √n · 2⁶⁴, rounded down: one bit more than is kept.
   const fine = (n) => root(n << 128n);

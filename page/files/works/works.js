@@ -39,13 +39,13 @@ export class Works extends Part {
   /** @type {Square} */
   plane;
   /** @type {HTMLElement} */
-  about;
-  /** @type {HTMLElement} */
-  caption;
-  /** @type {HTMLElement} */
   settings;
   /** @type {HTMLElement} */
   facts;
+  /** @type {HTMLElement} */
+  about;
+  /** @type {HTMLElement} */
+  caption;
   /** @type {Pattern | null} */
   last = null;
 

@@ -65,6 +65,16 @@ fn axe_finds_nothing_in_the_tabs() {
     }
     browser.click("#paint-open");
     assert_clean_in_both(&browser, "painting");
+    browser.click("#paint-done");
+    browser.click("#tab-choose");
+    browser.choose("#spread", "joint");
+    browser.until("strew.plane.look.layers[0].spread === 'joint'");
+    assert_clean_in_both(&browser, "kinds");
+    browser.go("about:blank");
+    browser.go(&daemon.url("/#at=0,0&span=30&alpha=3"));
+    browser.until("!document.querySelector('#trouble').hidden");
+    add(&browser, &axe);
+    assert_clean_in_both(&browser, "a link that is refused");
 }
 
 #[test]
