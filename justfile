@@ -122,6 +122,11 @@ ray *args:
 deploy-check:
     .ci/deploy
 
+# Images, the compose file and a stack of replicas in an engine of its own (Debian's docker.io, as root on Linux), killed,
+# replaced, attacked and cut off: `just containers [FOLDER of deploy/static] [TEST]`. About half an hour.
+containers *args:
+    .ci/containers {{args}}
+
 # Licenses, bans and sources of all dependencies; the advisories need a network.
 deny:
     cargo deny --locked --offline check licenses bans sources

@@ -18,7 +18,7 @@ export function dotSize(gap, factor) {
 }
 
 /** The diameter of a mark that has a direction or a shape: larger, so that it can be recognized. */
-export function markSize(gap, factor) {
+function markSize(gap, factor) {
   return Math.min(36, Math.max(2.5, gap * 0.62)) * factor;
 }
 

@@ -7,7 +7,7 @@ import { decimalsFor, formatPlace, parsePlace, place } from "./place.js";
 export const AMOUNTS = ["spacing", "density", "min_distance"];
 
 /** How kinds can be spread; no word for points of one kind. */
-export const SPREADS = ["", "chance", "even", "joint"];
+const SPREADS = ["", "chance", "even", "joint"];
 
 /** Colors by number: the ink of the theme, seven that Okabe and Ito chose, and three of woods. */
 export const COLOR_NAMES = ["ink", "blue", "vermilion", "green", "orange", "sky", "purple", "yellow", "stone", "leaf", "moss"];

@@ -30,7 +30,7 @@ function mix(state) {
 const START = [mix(SEED), mix(mix(SEED) ^ SEED)];
 
 /** The hands and the block of a place of the seed's pattern, `{ hands, block }`. */
-export function computed(pattern, starts, address) {
+function computed(pattern, starts, address) {
   const index = pattern.index(...address).map((v, axis) => (v + START[axis]) & MASK);
   return { hands: index.map(turns), block: index.map((v) => intervalOf(starts, v)) };
 }

@@ -27,6 +27,7 @@
 mod cell;
 mod clusters;
 mod neighborhood;
+mod numbers;
 mod shape;
 mod site;
 mod size;
@@ -35,6 +36,7 @@ mod twin;
 
 pub use clusters::Clusters;
 pub use neighborhood::Map;
+pub(crate) use numbers::Numbers;
 pub use shape::Shape;
 pub use site::Site;
 pub use size::{MAX_RADIUS, Size};

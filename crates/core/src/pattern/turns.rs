@@ -7,7 +7,7 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::{Axis, Pattern, floor_sum::floor_sum};
+use super::{Alpha, floor_sum::floor_sum};
 
 /// The sums Σ ⌊(α·v + b)/2 + origin⌋ modulo 2⁶⁴ over a range moved by k, for each k of a range of
 /// shifts, by b and the parity of v.
@@ -18,14 +18,9 @@ pub(crate) struct Turns {
 }
 
 impl Turns {
-    /// Sums over `range`, moved by each of `shifts`.
-    pub(crate) fn new(
-        pattern: &Pattern,
-        axis: Axis,
-        range: &Range<i64>,
-        shifts: Range<i64>,
-    ) -> Self {
-        let (half, zero) = (pattern.alpha().half(), pattern.axis_index(axis, 0, 0));
+    /// Sums over `range`, moved by each of `shifts`, for the origin `zero` in units of 2⁻⁶⁴.
+    pub(crate) fn new(alpha: Alpha, zero: u64, range: &Range<i64>, shifts: Range<i64>) -> Self {
+        let half = alpha.half();
         // ⌊(α·v + b)/2 + origin⌋ as a whole number.
         let at = |v: i64, b: u8| {
             let value = i128::from(half) * i128::from(v) + i128::from(zero);

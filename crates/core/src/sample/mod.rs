@@ -42,8 +42,11 @@ pub(crate) use seed::split_mix;
 /// The parts of the plane that points in space share.
 pub(crate) mod space {
     pub(crate) use super::{
-        kernel::{compiled, warp_lists},
-        warp::{NearShears, PatchShears, Shears, Stretch},
+        kernel::{
+            Extents, GROUP, PICKS, PLANES, SpaceShears, add_picked, compiled, lift_picked,
+            pick_triples, retain_parts, warp_all, warp_groups, warp_lists, write_triples,
+        },
+        warp::{PatchShears, Shears, Stretch},
     };
 }
 

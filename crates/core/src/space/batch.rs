@@ -51,11 +51,19 @@ impl Batch {
             }
             to += end - gap.end;
         }
-        self.places.iter_mut().for_each(|list| list.truncate(to));
-        self.ids.truncate(to);
+        self.truncate(to);
+    }
+
+    /// Removes all points from a position on.
+    pub(super) fn truncate(&mut self, length: usize) {
+        self.places
+            .iter_mut()
+            .for_each(|list| list.truncate(length));
+        self.ids.truncate(length);
     }
 
     /// Keeps the points between bounds.
+    #[inline(always)]
     pub(super) fn retain_between(&mut self, ends: &[Range<i32>; 3]) {
         /// The number of points that are looked at together.
         const PART: usize = 16;
@@ -94,16 +102,20 @@ impl Batch {
             }
             from = part.end;
         }
-        self.places.iter_mut().for_each(|list| list.truncate(kept));
-        self.ids.truncate(kept);
+        self.truncate(kept);
     }
 
     /// Keeps the points for whose place the test holds.
-    pub(super) fn retain(&mut self, mut test: impl FnMut([i32; 3]) -> bool) {
+    pub(super) fn retain(&mut self, test: impl FnMut([i32; 3]) -> bool) {
+        self.retain_from(0, test);
+    }
+
+    /// Keeps the points from a position on for whose place the test holds, and those before it.
+    pub(super) fn retain_from(&mut self, start: usize, mut test: impl FnMut([i32; 3]) -> bool) {
         let [x, y, z] = &mut self.places;
         let has_ids = !self.ids.is_empty();
-        let mut kept = 0;
-        for i in 0..x.len() {
+        let mut kept = start;
+        for i in start..x.len() {
             let place = [x[i], y[i], z[i]];
             [x[kept], y[kept], z[kept]] = place;
             if has_ids {
@@ -111,7 +123,6 @@ impl Batch {
             }
             kept += usize::from(test(place));
         }
-        self.places.iter_mut().for_each(|list| list.truncate(kept));
-        self.ids.truncate(kept);
+        self.truncate(kept);
     }
 }

@@ -6,10 +6,11 @@ use core::{marker::PhantomData, ops::Range};
 use super::{
     batch::Batch,
     cursor::Cursor,
-    format::Format,
+    format::{Format, write},
     point::{Point, PointId},
     scope::Scope,
     sieve::Sifted,
+    walk::Rows,
 };
 use crate::{Points, sample::Backend};
 
@@ -33,7 +34,7 @@ use crate::{Points, sample::Backend};
 #[derive(Clone, Debug)]
 pub struct Blocks<F: Format> {
     scope: Arc<Scope>,
-    source: Source,
+    source: Source<F>,
     /// The number of points to come.
     left: u128,
     /// The number of points of the request before these, and of all.
@@ -44,7 +45,8 @@ pub struct Blocks<F: Format> {
 
 /// Where points come from.
 #[derive(Clone, Debug)]
-enum Source {
+enum Source<F: Format> {
+    Rows(Box<Rows<F>>),
     Walk(Box<Walking>),
     Kept(Arc<Batch>, Range<usize>),
 }
@@ -61,14 +63,19 @@ struct Walking {
 impl<F: Format> Blocks<F> {
     /// The next `left` points of a scope from a place on.
     pub(super) fn walk(scope: Arc<Scope>, start: Option<[i64; 3]>, left: u128) -> Self {
-        let walk = Sifted::new(scope.clone(), &scope.all, start, F::HAS_IDS);
-        Self {
-            scope,
-            source: Source::Walk(Box::new(Walking {
+        let source = if scope.lattice.shears.is_none() && scope.clear.is_empty() {
+            Source::Rows(Box::new(Rows::new(scope.clone(), start)))
+        } else {
+            let walk = Sifted::new(scope.clone(), &scope.all, start, F::HAS_IDS);
+            Source::Walk(Box::new(Walking {
                 walk,
                 batch: Batch::default(),
                 written: 0,
-            })),
+            }))
+        };
+        Self {
+            scope,
+            source,
             left,
             offset: 0,
             total: left,
@@ -108,8 +115,10 @@ impl<F: Format> Blocks<F> {
     /// ```
     #[must_use]
     pub fn with_backend(mut self, backend: Backend) -> Self {
-        if let Source::Walk(walking) = &mut self.source {
-            walking.walk.set_backend(backend);
+        match &mut self.source {
+            Source::Rows(rows) => rows.backend = backend,
+            Source::Walk(walking) => walking.walk.set_backend(backend),
+            Source::Kept(..) => {}
         }
         self
     }
@@ -136,8 +145,20 @@ impl<F: Format> Blocks<F> {
                 Source::Kept(batch, points) => {
                     let from = points.start;
                     points.start += room.len();
-                    F::write(&self.scope, batch, from, Backend::best(), room);
+                    write::<F>(&self.scope, batch, from, Backend::best(), room);
                     filled = most;
+                }
+                Source::Rows(rows) => {
+                    let number = rows.fill(room);
+                    filled += number;
+                    if number == 0 {
+                        self.left = 0;
+                        return filled;
+                    }
+                    // The cursor is the address of the next point.
+                    if F::HAS_IDS && filled as u128 != self.left {
+                        rows.prepare();
+                    }
                 }
                 Source::Walk(walking) => {
                     let Walking {
@@ -156,7 +177,7 @@ impl<F: Format> Blocks<F> {
                     let number = room.len().min(batch.len() - *written);
                     let from = *written;
                     *written += number;
-                    F::write(
+                    write::<F>(
                         &self.scope,
                         batch,
                         from,
@@ -201,6 +222,7 @@ impl Blocks<Points> {
         let at = match &self.source {
             Source::Kept(batch, points) => batch.address(points.start),
             Source::Walk(walking) => walking.batch.address(walking.written),
+            Source::Rows(rows) => rows.peek().map(|point| point.id.lattice()),
         };
         Some(Cursor {
             offset: self.offset,

@@ -3,19 +3,19 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::lattice::Lattice;
+use super::lattice::{Lattice, fixed};
 
 /// The bits of the width and depth of a column of planes: 1024 lattice units.
 pub(super) const COLUMN_BITS: u32 = 10;
 
-/// A coordinate along x that holds points.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Line {
-    /// The lattice coordinate.
-    pub(super) at: i64,
-    /// The interval of dX.
-    pub(super) block: u32,
-    pub(super) index: u64,
+/// Coordinates along x that hold points, ascending.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Across {
+    /// The lattice coordinates relative to the origin, in fixed-point units.
+    pub(super) at: Vec<i32>,
+    /// The intervals of dX.
+    pub(super) blocks: Vec<u16>,
+    pub(super) indices: Vec<u64>,
 }
 
 /// A coordinate along y that holds points.
@@ -35,23 +35,26 @@ pub(super) struct Row {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lines {
     /// Along x, by the parity of the coordinate, and of the sum of the others.
-    pub(super) x: [[Vec<Line>; 2]; 2],
+    pub(super) x: [[Across; 2]; 2],
     /// Along y, ascending.
     pub(super) y: Vec<Row>,
 }
 
 impl Lines {
-    /// Lists the lines of a part of the lattice.
-    pub(super) fn list(&mut self, lattice: &Lattice, [x, y]: [Range<i64>; 2]) {
+    /// Lists the lines of a part of the lattice, along x from an origin on.
+    pub(super) fn list(&mut self, lattice: &Lattice, origin: i64, [x, y]: [Range<i64>; 2]) {
         let (pattern, map) = (&lattice.pattern, lattice.table.map());
-        self.x.iter_mut().flatten().for_each(Vec::clear);
+        for across in self.x.iter_mut().flatten() {
+            across.at.clear();
+            across.blocks.clear();
+            across.indices.clear();
+        }
         for at in x {
             if let Some(visit) = pattern.visit(0, at) {
-                self.x[usize::from(visit.own)][usize::from(visit.others)].push(Line {
-                    at,
-                    block: map.locate(visit.index) as u32,
-                    index: visit.index,
-                });
+                let across = &mut self.x[usize::from(visit.own)][usize::from(visit.others)];
+                across.at.push(fixed(at - origin) as i32);
+                across.blocks.push(map.locate(visit.index) as u16);
+                across.indices.push(visit.index);
             }
         }
         self.y.clear();

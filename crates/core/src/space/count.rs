@@ -10,6 +10,7 @@ use super::{
     scope::{Scope, State, common},
     sieve::Sifted,
     volume::Volume,
+    walk::few,
 };
 use crate::table::FRACTION_BITS;
 
@@ -130,6 +131,9 @@ pub(super) fn locate(scope: &Arc<Scope>, k: u128) -> Option<[i64; 3]> {
 
 /// All points of a scope of few, relative to one origin.
 pub(super) fn keep(scope: &Arc<Scope>) -> Batch {
+    if let Some(few) = few(scope) {
+        return few;
+    }
     let mut walk = Sifted::new(scope.clone(), &scope.all, None, true);
     let mut kept = Batch::default();
     let mut batch = Batch::default();

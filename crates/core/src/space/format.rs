@@ -10,7 +10,11 @@ use super::{
 };
 use crate::{
     F32, F64, Points,
-    sample::{Backend, space::compiled},
+    sample::{
+        Backend,
+        space::{compiled, pick_triples, write_triples},
+    },
+    table::FRACTION_BITS,
 };
 
 /// A format of points in space: [`F32`], [`F64`] or [`Points`]. The trait is sealed.
@@ -38,17 +42,122 @@ pub trait Format: Emit {}
 /// The definition of a format.
 pub trait Emit: Copy + Send + Debug + 'static {
     /// The item that is written for a point.
-    type Item: Copy + Default + Send + 'static;
+    type Item: Copy + Default + Send + Debug + 'static;
+    /// The part of an item that an offset along one axis decides.
+    type Part: Copy + Default + Send + Debug + 'static;
+    /// How offsets along an axis become parts.
+    type Axis: Copy + Send + Debug + 'static;
     /// Whether addresses are needed.
     const HAS_IDS: bool;
 
-    /// Writes the points of a batch from a place on, as many as `out` has.
-    fn write(scope: &Scope, batch: &Batch, from: usize, backend: Backend, out: &mut [Self::Item]);
+    /// How offsets from a lattice coordinate become parts.
+    fn axis(scope: &Scope, axis: usize, origin: i64) -> Self::Axis;
+
+    /// The part of an offset.
+    fn part(how: Self::Axis, offset: i32) -> Self::Part;
+
+    /// The item of three parts and an address, if that is needed.
+    fn item(parts: [Self::Part; 3], address: [i64; 3]) -> Self::Item;
+
+    /// Writes the items of a row, as many as `out` has.
+    fn pick(_: Backend, picks: Picks<'_, Self::Part>, out: &mut [Self::Item]) {
+        for (i, out) in out.iter_mut().enumerate() {
+            *out = picks.item::<Self>(i);
+        }
+    }
+
+    /// Writes the items of some parts; there are as many of each.
+    fn join(_: Backend, [x, y, z]: [&[Self::Part]; 3], out: &mut [Self::Item]) {
+        for (((out, &x), &y), &z) in out.iter_mut().zip(x).zip(y).zip(z) {
+            *out = Self::item([x, y, z], [0; 3]);
+        }
+    }
 }
 
-/// How an offset from a batch's origin becomes a coordinate: ((base + offset) + lead) · step, at most `last`.
-#[derive(Clone, Copy)]
-struct Single {
+/// The points of a part of a row, whose numbers are picked by interval.
+#[derive(Clone, Copy, Debug)]
+pub struct Picks<'a, T> {
+    /// Along x, for each point.
+    pub(super) places: &'a [T],
+    /// The intervals of dX.
+    pub(super) blocks: &'a [u16],
+    /// The lattice columns, relative to the first coordinate of the address, in fixed-point units.
+    pub(super) columns: &'a [i32],
+    /// Along y and z, for each interval.
+    pub(super) across: [&'a [T]; 2],
+    pub(super) address: [i64; 3],
+}
+
+impl<T: Copy> Picks<'_, T> {
+    #[inline(always)]
+    fn item<F: Emit<Part = T>>(&self, i: usize) -> F::Item {
+        let block = usize::from(self.blocks[i]);
+        let [y, z] = self.across.map(|parts| parts[block]);
+        let [x, along_y, along_z] = self.address;
+        let column = if F::HAS_IDS {
+            self.columns[i] >> FRACTION_BITS
+        } else {
+            0
+        };
+        F::item(
+            [self.places[i], y, z],
+            [x + i64::from(column), along_y, along_z],
+        )
+    }
+
+    /// Writes the items of the points for which the test holds. Returns their number; there is room for all.
+    pub(super) fn write_some<F: Emit<Part = T>>(
+        &self,
+        out: &mut [F::Item],
+        test: impl Fn(usize) -> bool,
+    ) -> usize {
+        let mut written = 0;
+        for i in 0..self.places.len() {
+            out[written] = self.item::<F>(i);
+            written += usize::from(test(i));
+        }
+        written
+    }
+}
+
+/// Writes the points of a batch from a place on, as many as `out` has.
+pub(super) fn write<F: Emit>(
+    scope: &Scope,
+    batch: &Batch,
+    from: usize,
+    backend: Backend,
+    out: &mut [F::Item],
+) {
+    /// The number of points that are converted together.
+    const PART: usize = 64;
+    let how = [0, 1, 2].map(|axis| F::axis(scope, axis, batch.origin[axis]));
+    let mut made = [[F::Part::default(); PART]; 3];
+    for (number, out) in out.chunks_mut(PART).enumerate() {
+        let from = from + number * PART;
+        let length = out.len();
+        compiled(backend, || {
+            for axis in 0..3 {
+                let places = &batch.places[axis][from..][..length];
+                for (made, &offset) in made[axis].iter_mut().zip(places) {
+                    *made = F::part(how[axis], offset);
+                }
+            }
+        });
+        if !F::HAS_IDS {
+            let [x, y, z] = &made;
+            F::join(backend, [&x[..length], &y[..length], &z[..length]], out);
+            continue;
+        }
+        for (i, (out, id)) in out.iter_mut().zip(&batch.ids[from..]).enumerate() {
+            let address = [0, 1, 2].map(|axis| batch.origin[axis] + i64::from(id[axis]));
+            *out = F::item([made[0][i], made[1][i], made[2][i]], address);
+        }
+    }
+}
+
+/// How an offset from an origin becomes a coordinate: ((base + offset) + lead) · step, at most `last`.
+#[derive(Clone, Copy, Debug)]
+pub struct Single {
     base: f64,
     lead: f64,
     step: f64,
@@ -56,10 +165,10 @@ struct Single {
 }
 
 impl Single {
-    fn new(scope: &Scope, batch: &Batch, axis: usize) -> Self {
+    fn new(scope: &Scope, axis: usize, origin: i64) -> Self {
         let corner = &scope.corner;
         Self {
-            base: (fixed(batch.origin[axis]) - corner.first[axis]) as f64,
+            base: (fixed(origin) - corner.first[axis]) as f64,
             lead: corner.lead[axis],
             step: scope.lattice.step,
             last: below(corner.extent[axis]),
@@ -88,42 +197,52 @@ impl Format for F32 {}
 
 impl Emit for F32 {
     type Item = [f32; 3];
+    type Part = f32;
+    type Axis = Single;
     const HAS_IDS: bool = false;
 
-    fn write(scope: &Scope, batch: &Batch, from: usize, backend: Backend, out: &mut [[f32; 3]]) {
-        let axes = [0, 1, 2].map(|axis| Single::new(scope, batch, axis));
-        let places = [0, 1, 2].map(|axis| &batch.places[axis][from..][..out.len()]);
-        compiled(backend, || {
-            in_parts(out, places, |axis, offset| axes[axis].of(offset))
-        });
+    fn axis(scope: &Scope, axis: usize, origin: i64) -> Single {
+        Single::new(scope, axis, origin)
+    }
+
+    #[inline(always)]
+    fn part(how: Single, offset: i32) -> f32 {
+        how.of(offset)
+    }
+
+    #[inline(always)]
+    fn item(parts: [f32; 3], _: [i64; 3]) -> [f32; 3] {
+        parts
+    }
+
+    fn pick(backend: Backend, picks: Picks<'_, f32>, out: &mut [[f32; 3]]) {
+        pick_triples(backend, picks.places, picks.blocks, picks.across, out);
+    }
+
+    fn join(backend: Backend, parts: [&[f32]; 3], out: &mut [[f32; 3]]) {
+        write_triples(backend, parts, out);
     }
 }
 
-/// Writes the points of some lists, part by part: the places of a part axis by axis, then side by side.
-#[inline(always)]
-fn in_parts<T: Copy + Default>(
-    out: &mut [[T; 3]],
-    places: [&[i32]; 3],
-    place: impl Fn(usize, i32) -> T,
-) {
-    /// The number of points of a part.
-    const PART: usize = 64;
-    let whole = out.len() - out.len() % PART;
-    let (parts, rest) = out.split_at_mut(whole);
-    let mut made = [[T::default(); PART]; 3];
-    for (number, part) in parts.chunks_exact_mut(PART).enumerate() {
-        for axis in 0..3 {
-            let from = &places[axis][number * PART..][..PART];
-            for (made, &offset) in made[axis].iter_mut().zip(from) {
-                *made = place(axis, offset);
-            }
-        }
-        for (i, out) in part.iter_mut().enumerate() {
-            *out = [made[0][i], made[1][i], made[2][i]];
+/// How an offset from an origin becomes a world coordinate: (base + offset) · step. Origins are whole lattice units, so
+/// the sum is rounded once.
+#[derive(Clone, Copy, Debug)]
+pub struct Double {
+    base: f64,
+    step: f64,
+}
+
+impl Double {
+    fn new(scope: &Scope, origin: i64) -> Self {
+        Self {
+            base: fixed(origin) as f64,
+            step: scope.lattice.step,
         }
     }
-    for (i, out) in (whole..).zip(rest) {
-        *out = [0, 1, 2].map(|axis| place(axis, places[axis][i]));
+
+    #[inline(always)]
+    fn of(self, offset: i32) -> f64 {
+        (self.base + f64::from(offset)) * self.step
     }
 }
 
@@ -131,18 +250,22 @@ impl Format for F64 {}
 
 impl Emit for F64 {
     type Item = [f64; 3];
+    type Part = f64;
+    type Axis = Double;
     const HAS_IDS: bool = false;
 
-    fn write(scope: &Scope, batch: &Batch, from: usize, backend: Backend, out: &mut [[f64; 3]]) {
-        let step = scope.lattice.step;
-        // Origins are whole lattice units, so their sums with offsets are rounded once.
-        let origin = batch.origin.map(|origin| fixed(origin) as f64);
-        let places = [0, 1, 2].map(|axis| &batch.places[axis][from..][..out.len()]);
-        compiled(backend, || {
-            in_parts(out, places, |axis, offset| {
-                (origin[axis] + f64::from(offset)) * step
-            });
-        });
+    fn axis(scope: &Scope, _: usize, origin: i64) -> Double {
+        Double::new(scope, origin)
+    }
+
+    #[inline(always)]
+    fn part(how: Double, offset: i32) -> f64 {
+        how.of(offset)
+    }
+
+    #[inline(always)]
+    fn item(parts: [f64; 3], _: [i64; 3]) -> [f64; 3] {
+        parts
     }
 }
 
@@ -150,14 +273,22 @@ impl Format for Points {}
 
 impl Emit for Points {
     type Item = Point;
+    type Part = f64;
+    type Axis = Double;
     const HAS_IDS: bool = true;
 
-    fn write(scope: &Scope, batch: &Batch, from: usize, _: Backend, out: &mut [Point]) {
-        for (i, out) in (from..).zip(out) {
-            let id = [0, 1, 2].map(|axis| batch.origin[axis] + i64::from(batch.ids[i][axis]));
-            let place =
-                [0, 1, 2].map(|axis| fixed(batch.origin[axis]) + i64::from(batch.places[axis][i]));
-            *out = scope.lattice.point_at(PointId::of(id), place);
-        }
+    fn axis(scope: &Scope, _: usize, origin: i64) -> Double {
+        Double::new(scope, origin)
+    }
+
+    #[inline(always)]
+    fn part(how: Double, offset: i32) -> f64 {
+        how.of(offset)
+    }
+
+    #[inline(always)]
+    fn item([x, y, z]: [f64; 3], address: [i64; 3]) -> Point {
+        let id = PointId::of(address);
+        Point { id, x, y, z }
     }
 }

@@ -10,7 +10,7 @@ use super::{
     warp::Shears3,
 };
 use crate::{
-    sample::{Keep, Seed, Spacing, Warp},
+    sample::{Keep, Seed, Spacing, Warp, space::PICKS},
     table::FRACTION_BITS,
 };
 
@@ -115,13 +115,32 @@ impl Lattice {
         (k * n + j) * n + i
     }
 
+    /// The intervals along the axes of a block.
+    pub(super) fn intervals(&self, number: usize) -> [usize; 3] {
+        let n = self.table.map().intervals();
+        [number % n, number / n % n, number / (n * n)]
+    }
+
+    /// The components of the vectors of the blocks of an interval of dZ and one of dY, by that of dX. Some more numbers,
+    /// which mean nothing, make their number a multiple of [`PICKS`].
+    pub(super) fn vectors(&self, plane: usize, row: usize) -> [&[i32]; 3] {
+        let first = self.number([0, row, plane]);
+        let n = self.table.map().intervals();
+        let vectors = self.turned.vectors.each_ref();
+        vectors.map(|components| &components[first..][..n.next_multiple_of(PICKS)])
+    }
+
+    /// Whether the cut keeps all points of a block.
+    pub(super) fn is_whole(&self, block: usize) -> bool {
+        let is_before = |cut: Cut| (self.turned.order.position(block) as u32) < cut.whole;
+        self.cut.is_none_or(is_before)
+    }
+
     /// Whether the cut keeps a point of a block.
     #[inline]
     pub(super) fn keeps(&self, block: usize, index_x: u64) -> bool {
-        self.cut.is_none_or(|cut| {
-            let position = self.turned.order.position(block) as u32;
-            position < cut.whole || (block as u32 == cut.partial && index_x < cut.strip_end)
-        })
+        let is_in_strip = |cut: Cut| block as u32 == cut.partial && index_x < cut.strip_end;
+        self.is_whole(block) || self.cut.is_some_and(is_in_strip)
     }
 
     /// The rank of a point of the pattern; the greatest for other addresses.
@@ -152,7 +171,7 @@ impl Lattice {
         let at = id.lattice();
         let is_kept = self.cut.is_none() || self.keeps(number, self.pattern.index(at)[0]);
         is_kept.then(|| {
-            let vector = self.turned.vectors[number];
+            let vector = self.turned.vector(number);
             let displaced = [0, 1, 2].map(|axis| fixed(at[axis]) + i64::from(vector[axis]));
             match &self.shears {
                 Some(shears) => shears.apply(displaced),

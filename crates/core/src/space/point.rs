@@ -66,11 +66,13 @@ impl Point {
 
 impl PointId {
     /// The id of a lattice address.
+    #[inline]
     pub(super) const fn of([x, y, z]: [i64; 3]) -> Self {
         Self { x, y, z }
     }
 
     /// The lattice address.
+    #[inline]
     pub(super) const fn lattice(self) -> [i64; 3] {
         [self.x, self.y, self.z]
     }

@@ -9,6 +9,7 @@ use crate::{
     map::Map,
     once::Once,
     pattern::Alpha,
+    sample::space::PICKS,
     table::{CubeParts, Digest, FRACTION_BITS, Order, Provenance, Ranks},
 };
 
@@ -45,8 +46,10 @@ struct Content {
 /// A table turned by a symmetry.
 #[derive(Debug)]
 pub(super) struct Turned {
-    /// The vectors, in fixed-point units.
-    pub(super) vectors: Vec<[i32; 3]>,
+    /// The components of the vectors along each axis, in fixed-point units, and [`PICKS`] zeros.
+    pub(super) vectors: [Vec<i32>; 3],
+    /// Those along x of blocks in the order (k·n + i)·n + j, once they are needed.
+    columns: Once<Arc<[i32]>>,
     /// The order in which blocks leave.
     pub(super) order: Order,
     /// The least and the greatest component of the vectors along each axis.
@@ -309,19 +312,41 @@ impl Turned {
             let vector = symmetry.turn(table.vectors()[source(block)]);
             vector.map(|v| i32::from(v) << FINER)
         };
-        let vectors: Vec<[i32; 3]> = (0..n.pow(3)).map(vector).collect();
-        let mut reach = [[i32::MAX, i32::MIN]; 3];
-        for vector in &vectors {
-            for (ends, &v) in reach.iter_mut().zip(vector) {
-                *ends = [ends[0].min(v), ends[1].max(v)];
+        let mut vectors = [const { Vec::new() }; 3];
+        vectors
+            .iter_mut()
+            .for_each(|list| list.reserve_exact(n.pow(3)));
+        for block in 0..n.pow(3) {
+            for (list, v) in vectors.iter_mut().zip(vector(block)) {
+                list.push(v);
             }
         }
+        let reach = vectors.each_ref().map(|list| {
+            let ends = |[least, most]: [i32; 2], &v: &i32| [least.min(v), most.max(v)];
+            list.iter().fold([i32::MAX, i32::MIN], ends)
+        });
+        vectors
+            .iter_mut()
+            .for_each(|list| list.resize(n.pow(3) + PICKS, 0));
         let order = table.0.order.turned(source);
         Self {
             vectors,
+            columns: Once::new(),
             order,
             reach,
         }
+    }
+
+    /// The vector of a block.
+    pub(super) fn vector(&self, block: usize) -> [i32; 3] {
+        [0, 1, 2].map(|axis| self.vectors[axis][block])
+    }
+
+    /// The components along x, those of blocks that differ along y one after another.
+    pub(super) fn columns(&self, n: usize) -> Arc<[i32]> {
+        let place = |at: usize| (at / (n * n) * n + at % n) * n + at / n % n;
+        let make = || (0..n.pow(3)).map(|at| self.vectors[0][place(at)]).collect();
+        self.columns.get_or(make)
     }
 }
 

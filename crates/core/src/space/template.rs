@@ -1,16 +1,23 @@
 //! Templates: what the rows of one plane, one parity and one interval of dY have in common.
 //!
-//! All points of such rows have the same places along x and z, and the same displacements along y. A plane has two
+//! All points of such rows have the same places along x, and the same intervals of dX. Their places along y and z depend
+//! on these intervals alone: a row has n of each, so they are found once, and points pick theirs. A plane has two
 //! templates for each interval of dY, few enough to stay in the nearest cache.
 
 use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::{
-    columns::{Line, Lines},
+    columns::Lines,
     lattice::{Lattice, fixed},
 };
-use crate::table::FRACTION_BITS;
+use crate::{
+    sample::{
+        Backend,
+        space::{PICKS, add_picked},
+    },
+    table::FRACTION_BITS,
+};
 
 /// A plane of the lattice that holds points.
 #[derive(Clone, Copy, Debug, Default)]
@@ -25,68 +32,123 @@ pub(super) struct Plane {
     pub(super) block: usize,
 }
 
-/// The templates of a plane. Offsets are fixed-point, relative to an origin along x and z, and to the row along y.
+/// The templates of a plane, with places of a kind: fixed-point offsets from an origin, or what a format makes of them.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Templates {
+pub(super) struct Templates<T> {
     /// Where the template of a parity and interval lies, if it has been made.
     made: [Vec<Option<(u32, u32)>>; 2],
-    pub(super) places: [Vec<i32>; 3],
-    /// The lattice columns, relative to the origin.
+    /// The places along x.
+    pub(super) places: Vec<T>,
+    /// The intervals of dX.
+    pub(super) blocks: Vec<u16>,
+    /// The lattice columns, relative to the origin, in fixed-point units.
     pub(super) columns: Vec<i32>,
+    /// For each interval of dY, where the places along z of those of dX lie, if they have been made.
+    high: Vec<Option<u32>>,
+    heights: Vec<T>,
+    /// Room for offsets.
+    offsets: Vec<i32>,
 }
 
-impl Templates {
+/// How the offsets along an axis become places, which are added to a list.
+pub(super) trait Convert<T>: Fn(usize, &[i32], &mut Vec<T>) {}
+
+impl<T, F: Fn(usize, &[i32], &mut Vec<T>)> Convert<T> for F {}
+
+/// The origin of offsets, and the bounds between which points along x and z lie, if they are tested.
+pub(super) type Frame<'a> = ([i64; 3], Option<&'a [Range<i64>; 3]>);
+
+impl<T> Templates<T> {
     /// Forgets the templates of another plane.
     pub(super) fn clear(&mut self, intervals: usize) {
         for made in &mut self.made {
             made.clear();
             made.resize(intervals, None);
         }
-        self.places.iter_mut().for_each(Vec::clear);
+        self.high.clear();
+        self.high.resize(intervals, None);
+        self.places.clear();
+        self.blocks.clear();
         self.columns.clear();
+        self.heights.clear();
     }
 
     /// The template of the rows of a parity and an interval of dY: with bounds, of the points between those along x and z.
     pub(super) fn get(
         &mut self,
-        lattice: &Lattice,
-        lines: &Lines,
+        (lattice, lines): (&Lattice, &Lines),
         plane: Plane,
-        (origin, bounds): ([i64; 3], Option<&[Range<i64>; 3]>),
+        frame: Frame<'_>,
         (own, block): (u8, usize),
+        (backend, convert): (Backend, &impl Convert<T>),
     ) -> Range<usize> {
-        let made = self.made[usize::from(own)][block];
-        let (start, end) = made.unwrap_or_else(|| {
-            let made = self.make(lattice, lines, plane, (origin, bounds), (own, block));
-            self.made[usize::from(own)][block] = Some(made);
-            made
-        });
-        start as usize..end as usize
+        if let Some((start, end)) = self.made[usize::from(own)][block] {
+            return start as usize..end as usize;
+        }
+        let made = self.make(
+            (lattice, lines),
+            plane,
+            frame,
+            (own, block),
+            (backend, convert),
+        );
+        self.made[usize::from(own)][block] = Some((made.start as u32, made.end as u32));
+        if self.high[block].is_none() {
+            self.high[block] = Some(self.heights.len() as u32);
+            let [_, _, zs] = lattice.vectors(plane.block, block);
+            let z = ((plane.at - frame.0[2]) << FRACTION_BITS) as i32;
+            self.offsets.clear();
+            self.offsets.extend(zs.iter().map(|dz| z + dz));
+            convert(2, &self.offsets, &mut self.heights);
+        }
+        made
+    }
+
+    /// The places along z of the points of a template, by the interval of dX, and some more. It has been made.
+    pub(super) fn heights(&self, block: usize) -> &[T] {
+        let start = self.high[block].unwrap_or(0) as usize;
+        &self.heights[start..][..self.high.len().next_multiple_of(PICKS)]
+    }
+
+    /// Takes the points of a part of a template whose columns are before one of the lattice.
+    pub(super) fn before(&self, points: &mut Range<usize>, end: i32) -> Range<usize> {
+        let end = end.saturating_mul(1 << FRACTION_BITS);
+        let part = &self.columns[points.clone()];
+        let length = if part.last().is_some_and(|&last| last < end) {
+            part.len()
+        } else {
+            part.partition_point(|&column| column < end)
+        };
+        let part = points.start..points.start + length;
+        points.start = part.end;
+        part
     }
 
     fn make(
         &mut self,
-        lattice: &Lattice,
-        lines: &Lines,
+        (lattice, lines): (&Lattice, &Lines),
         plane: Plane,
-        (origin, bounds): ([i64; 3], Option<&[Range<i64>; 3]>),
+        (origin, bounds): Frame<'_>,
         (own, block): (u8, usize),
-    ) -> (u32, u32) {
-        let n = lattice.table.map().intervals();
-        let first = (plane.block * n + block) * n;
-        let vectors = &lattice.turned.vectors[first..][..n];
+        (backend, convert): (Backend, &impl Convert<T>),
+    ) -> Range<usize> {
+        let [dx, _, dz] = lattice.vectors(plane.block, block);
         // The sum of x and y has the parity that the plane demands.
         let parity = usize::from(plane.others ^ own);
         let lines = &lines.x[parity][usize::from(own ^ plane.own)];
         let start = self.columns.len();
         // Points of the lines between lie inside whatever their vectors are.
-        let mut whole = 0..lines.len();
+        let mut whole = 0..lines.at.len();
+        let from = fixed(origin[0]);
         if let Some([x, _, z]) = bounds {
             let [reach_x, _, reach_z] = lattice.turned.reach.map(|ends| ends.map(i64::from));
             let at = fixed(plane.at);
             let is_inside = z.start <= at + reach_z[0] && at + reach_z[1] < z.end;
-            let first = lines.partition_point(|line| fixed(line.at) + reach_x[0] < x.start);
-            let last = lines.partition_point(|line| fixed(line.at) + reach_x[1] < x.end);
+            let before = |reach: i64, end: i64| {
+                let is_before = |&line: &i32| from + i64::from(line) + reach < end;
+                lines.at.partition_point(is_before)
+            };
+            let (first, last) = (before(reach_x[0], x.start), before(reach_x[1], x.end));
             whole = if is_inside {
                 first..last.max(first)
             } else {
@@ -96,44 +158,32 @@ impl Templates {
         if lattice.cut.is_some() {
             whole = 0..0;
         }
-        let test = |line: &Line| {
-            let vector = vectors[line.block as usize];
+        let row = lattice.number([0, block, plane.block]);
+        let test = |&line: &usize| {
+            let block = usize::from(lines.blocks[line]);
             let is_inside = bounds.is_none_or(|[x, _, z]| {
-                x.contains(&(fixed(line.at) + i64::from(vector[0])))
-                    && z.contains(&(fixed(plane.at) + i64::from(vector[2])))
+                x.contains(&(from + i64::from(lines.at[line] + dx[block])))
+                    && z.contains(&(fixed(plane.at) + i64::from(dz[block])))
             });
-            is_inside
-                && (lattice.cut.is_none() || lattice.keeps(first + line.block as usize, line.index))
+            is_inside && (lattice.cut.is_none() || lattice.keeps(row + block, lines.indices[line]))
         };
-        let z = ((plane.at - origin[2]) << FRACTION_BITS) as i32;
-        let (before, rest) = lines.split_at(whole.start);
-        let (inside, after) = rest.split_at(whole.len());
-        for line in before.iter().filter(|line| test(line)) {
-            self.push(line, vectors[line.block as usize], origin[0], z);
-        }
-        let column = |line: &Line| (line.at - origin[0]) as i32;
-        let vector = |line: &Line| &vectors[line.block as usize];
-        self.columns.extend(inside.iter().map(column));
-        let [xs, ys, zs] = &mut self.places;
-        xs.extend(
-            inside
-                .iter()
-                .map(|line| (column(line) << FRACTION_BITS) + vector(line)[0]),
-        );
-        ys.extend(inside.iter().map(|line| vector(line)[1]));
-        zs.extend(inside.iter().map(|line| z + vector(line)[2]));
-        for line in after.iter().filter(|line| test(line)) {
-            self.push(line, vectors[line.block as usize], origin[0], z);
-        }
-        (start as u32, self.columns.len() as u32)
-    }
-
-    /// Adds the point of a line.
-    fn push(&mut self, line: &Line, vector: [i32; 3], origin: i64, z: i32) {
-        let column = (line.at - origin) as i32;
-        self.columns.push(column);
-        self.places[0].push((column << FRACTION_BITS) + vector[0]);
-        self.places[1].push(vector[1]);
-        self.places[2].push(z + vector[2]);
+        let (columns, blocks) = (&mut self.columns, &mut self.blocks);
+        let mut push = |line: usize| {
+            columns.push(lines.at[line]);
+            blocks.push(lines.blocks[line]);
+        };
+        (0..whole.start).filter(test).for_each(&mut push);
+        columns.extend_from_slice(&lines.at[whole.clone()]);
+        blocks.extend_from_slice(&lines.blocks[whole.clone()]);
+        let mut push = |line: usize| {
+            columns.push(lines.at[line]);
+            blocks.push(lines.blocks[line]);
+        };
+        (whole.end..lines.at.len()).filter(test).for_each(&mut push);
+        let (columns, blocks) = (&self.columns[start..], &self.blocks[start..]);
+        self.offsets.resize(columns.len(), 0);
+        add_picked(backend, columns, blocks, dx, &mut self.offsets);
+        convert(0, &self.offsets, &mut self.places);
+        start..self.columns.len()
     }
 }

@@ -6,12 +6,9 @@
 //! most the product of the three planes' factors.
 
 use crate::sample::{
-    Seed, Warp,
-    space::{NearShears, PatchShears, Shears, Stretch},
+    Backend, Seed, Warp,
+    space::{PLANES, PatchShears, Shears, SpaceShears, Stretch, compiled},
 };
-
-/// The axes of each plane, in the order of application.
-pub(super) const PLANES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 
 /// The warp of one seed.
 #[derive(Clone, Copy, Debug)]
@@ -25,15 +22,11 @@ impl Shears3 {
     }
 
     /// The place to which the warp moves a fixed-point position.
-    pub(super) fn apply(&self, mut position: [i64; 3]) -> [i64; 3] {
-        for (shears, [a, b]) in self.0.iter().zip(PLANES) {
-            let place = [position[a], position[b]].map(i128::from);
-            let (mut near, origin) = NearShears::new(shears, place);
-            let relative = [0, 1].map(|i| (place[i] - origin[i]) as i64);
-            let moved = near.apply(relative);
-            [position[a], position[b]] = [0, 1].map(|i| origin[i] as i64 + moved[i]);
-        }
-        position
+    pub(super) fn apply(&self, position: [i64; 3]) -> [i64; 3] {
+        let planes = &self.0;
+        compiled(Backend::best(), || {
+            Shears::apply_in_space(planes, PLANES, position)
+        })
     }
 
     /// The ranges of places that the warp takes positions to from some ranges. Both ends belong to a range.
@@ -63,10 +56,15 @@ impl Shears3 {
         ranges
     }
 
-    /// The shears of the points of a patch, whose displaced positions lie in some ranges relative to its origin. The
-    /// origin is a multiple of the distance of the knots along all axes.
-    pub(super) fn patch(&self, origin: [i64; 3], mut ranges: [[i32; 2]; 3]) -> [PatchShears; 3] {
-        [0, 1, 2].map(|number| {
+    /// The shears of the points of a patch, whose displaced positions lie in some ranges relative to its origin, and from
+    /// their lattice coordinates as far as the reach tells. The origin is a multiple of the distance of the knots along all axes.
+    pub(super) fn patch(
+        &self,
+        origin: [i64; 3],
+        mut ranges: [[i32; 2]; 3],
+        reach: [[i32; 2]; 3],
+    ) -> SpaceShears {
+        let planes = [0, 1, 2].map(|number| {
             let [a, b] = PLANES[number];
             let origin = [origin[a], origin[b]];
             let patch = PatchShears::new(&self.0[number], origin, [ranges[a], ranges[b]]);
@@ -79,7 +77,8 @@ impl Shears3 {
                 ranges[axis][1] += along[1] + both[1];
             }
             patch
-        })
+        });
+        SpaceShears::new(planes, reach)
     }
 }
 
@@ -133,6 +132,19 @@ mod tests {
                     prop_assert!(back[axis][0] <= at[axis] && at[axis] <= back[axis][1]);
                 }
             }
+        }
+
+        #[test]
+        fn points_move_as_in_one_plane_after_another(
+            seed: u64, at in prop::array::uniform3(-1i64 << 60..1 << 60),
+        ) {
+            let shears = Shears3::new(Warp::ON, Seed(seed)).expect("on");
+            let mut position = at;
+            for (shears, [a, b]) in shears.0.iter().zip(PLANES) {
+                let moved = shears.apply([position[a], position[b]].map(i128::from));
+                [position[a], position[b]] = moved.map(|v| v as i64);
+            }
+            prop_assert_eq!(shears.apply(at), position);
         }
 
         #[test]

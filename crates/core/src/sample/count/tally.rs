@@ -13,46 +13,14 @@
 //!
 //! which takes n² steps for a box of any size.
 //!
-//! # One interval
-//!
-//! A coordinate v has the index I(v) = (α·v + b)/2 + origin on the circle of length 1, where b is the parity of the
-//! other coordinate of its class. Unrolled on a line, ⌊I − e⌋ is the number of times that I has passed the
-//! threshold e, so for two thresholds of one turn
-//!
-//! ```text
-//!     [ e ≤ I mod 1 < f ]  =  ⌊I − e⌋ − ⌊I − f⌋
-//!
-//!       0    e      f      1    e      f      2
-//!     ──┼────┼──────┼──────┼────┼──────┼──────┼──        ⌊I − e⌋ rises at each e, ⌊I − f⌋ at each f;
-//!            └──in──┘           └──in──┘                 they differ by 1 between the two.
-//! ```
-//!
-//! and the number of coordinates of a range in an interval is the difference of two sums S(e) = Σ ⌊I(v) − e⌋. Such
-//! a sum over a range of any length takes O(log) steps (`floor_sum`).
-//!
-//! # All intervals
-//!
-//! There are n intervals, four classes and about a hundred steps in a sum, which is too slow for the small boxes of
-//! which a search asks dozens. But a threshold of a map is the shift of a neighbor at an offset of k lines:
-//! e = −(α·k + c)/2, up to w whole turns, so
-//!
-//! ```text
-//!     I(v) − e  =  (α·(v + k) + b + c)/2 + origin − w
-//! ```
-//!
-//! is the index of the line v + k. S(e) is the sum for the threshold 0 over the range moved by k, less w for each
-//! coordinate. Moving a range by one line takes one term away at its start and adds one at its end. So [`Turns`] makes
-//! four sums in closed form (b + c is even or odd, v is even or odd) and moves them along: all of a map with
-//! half-width R costs four O(log) sums and 2R + 2 corrections. Each interval is then one subtraction.
-//!
-//! Sums are taken modulo 2⁶⁴ and may wrap; differences of them are counts, below 2⁵³, and exact. Ranges shorter than
-//! some lines for each interval are listed one by one, which is faster there and is the definition in tests.
+//! The map counts the coordinates of all its intervals at once (`map::numbers`). Ranges shorter than some lines for each
+//! interval are listed one by one, which is faster there and is the definition in tests.
 
 use alloc::vec::Vec;
 use core::ops::Range;
 
 use crate::{
-    pattern::{Axis, Class, Turns},
+    pattern::{Axis, Class},
     sample::lattice::{Lattice, Line, lines_of_class},
 };
 
@@ -166,34 +134,14 @@ fn by_listing(lattice: &Lattice, axis: Axis, range: &Range<i64>) -> Tally {
 }
 
 fn by_turns(lattice: &Lattice, axis: Axis, range: &Range<i64>) -> Tally {
-    let (map, pattern) = (lattice.map(), &lattice.pattern);
-    let alpha = pattern.alpha();
-    let reach = i64::from(map.radius()) + 1;
-    let turns = Turns::new(pattern, axis, range, -reach..reach);
-    let ends = map.labels().iter().map(|label| (label, label.turns(alpha)));
-    let ends: Vec<_> = ends.collect();
+    let zero = lattice.pattern.axis_index(axis, 0, 0);
+    let mut numbers = lattice.map().numbers(zero, range);
     Class::ALL.map(|class| {
         let (own, other) = match axis {
             Axis::X => (class.x, class.y),
             Axis::Y => (class.y, class.x),
         };
-        let first = range.start + ((range.start ^ i64::from(own)) & 1);
-        let candidates = ((range.end - first).max(0) as u64).div_ceil(2);
-        // Σ ⌊index − threshold⌋ over the coordinates of the class. Subtracting a threshold adds k
-        // coordinates and b halves to the index.
-        let below = |i: usize| {
-            let (label, turned) = ends[i];
-            let halves = other + label.b;
-            let whole = i64::from(halves / 2) - turned;
-            let sum = turns.sum(label.k, halves, own);
-            sum.wrapping_add(candidates.wrapping_mul(whole as u64))
-        };
-        let mut start = below(0);
-        let count = |i: usize| {
-            let end = below(i + 1);
-            core::mem::replace(&mut start, end).wrapping_sub(end)
-        };
-        (0..map.intervals()).map(count).collect()
+        core::mem::take(&mut numbers[usize::from(own)][usize::from(other)])
     })
 }
 

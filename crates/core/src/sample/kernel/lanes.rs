@@ -128,6 +128,45 @@ pub trait Lanes: Sized {
         }
     }
 
+    /// Whether there are [`two_tables`](Self::two_tables) and the functions after it.
+    const HAS_TRIPLES: bool = false;
+
+    /// The 32 numbers there.
+    unsafe fn two_tables(from: *const f32) -> [Self::Singles; 2] {
+        let _ = from;
+        unreachable!("HAS_TRIPLES is false");
+    }
+    /// The lanes of places.
+    unsafe fn load_places(from: *const u16) -> Self::Ints {
+        let _ = from;
+        unreachable!("HAS_TRIPLES is false");
+    }
+    /// The numbers at some places, modulo 32, of two tables.
+    unsafe fn pick_of_two(tables: [Self::Singles; 2], places: Self::Ints) -> Self::Singles {
+        let _ = (tables, places);
+        unreachable!("HAS_TRIPLES is false");
+    }
+    /// The lanes of numbers that were integers in memory.
+    unsafe fn bits_of(v: Self::Singles) -> Self::Ints {
+        let _ = v;
+        unreachable!("HAS_TRIPLES is false");
+    }
+    /// A bit for each lane from `least` to before `end`.
+    unsafe fn between(v: Self::Ints, least: i32, end: i32) -> u32 {
+        let _ = (v, least, end);
+        unreachable!("HAS_TRIPLES is false");
+    }
+    /// The lanes whose bits are set, moved to the front.
+    unsafe fn compress(v: Self::Ints, mask: u32) -> Self::Ints {
+        let _ = (v, mask);
+        unreachable!("HAS_TRIPLES is false");
+    }
+    /// Stores the three numbers of each lane side by side.
+    unsafe fn store_single_triples(to: *mut [f32; 3], parts: [Self::Singles; 3]) {
+        let _ = (to, parts);
+        unreachable!("HAS_TRIPLES is false");
+    }
+
     /// Whether [`store_points`](Self::store_points) is faster than plain code.
     const HAS_POINTS: bool = false;
 

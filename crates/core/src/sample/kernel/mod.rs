@@ -6,7 +6,7 @@
 //! while lattice coordinates stay below 2⁵³, so it rounds once, as the conversion of the whole integer
 //! would.
 //!
-//! `rows` writes plain rows, `warped` warped ones, whose coefficients `quadratics` looks up. Their vector loops are
+//! `rows` writes plain rows, `triples` points in space, `groups` warps them, `retain` leaves out those outside, `warped` warped rows, whose coefficients `quadratics` looks up. Their vector loops are
 //! written once over the trait of `lanes`, and each instruction set is a thin file of `arch`. `backend` finds out which
 //! sets the machine has, and runs a loop by one of them. `tests` compares every backend with plain code.
 
@@ -31,13 +31,16 @@ mod arch;
 mod backend;
 mod doubles;
 mod format;
+mod groups;
 mod lanes;
 mod offsets;
 mod quadratics;
+mod retain;
 mod rows;
 mod singles;
 #[cfg(test)]
 mod tests;
+mod triples;
 mod warped;
 
 pub use backend::Backend;
@@ -46,9 +49,12 @@ pub(super) use backend::{compiled_loop, write_numbers};
 pub use doubles::{F64, Points};
 pub use format::Format;
 pub(super) use format::{Geometry, Row};
+pub(crate) use groups::{Extents, GROUP, PLANES, SpaceShears, warp_groups};
 pub(super) use lanes::PlainLoop;
 pub use offsets::Offsets;
+pub(crate) use retain::retain_parts;
 pub(super) use rows::fill_row;
 pub use singles::F32;
-pub(crate) use warped::warp_lists;
-pub(super) use warped::{Extent, WarpedColumns, add_first_shear, fill_warped_row, warp_all};
+pub(crate) use triples::{PICKS, add_picked, lift_picked, pick_triples, write_triples};
+pub(super) use warped::{Extent, WarpedColumns, add_first_shear, fill_warped_row};
+pub(crate) use warped::{warp_all, warp_lists};

@@ -271,6 +271,42 @@ impl Shears {
     }
 }
 
+impl Shears {
+    /// The place to which the warps of three planes of space, one after another, move a fixed-point position.
+    ///
+    /// Movements are short, so most quadratics are those of the cells where the position is at first: they are made
+    /// together.
+    #[inline(always)]
+    pub(crate) fn apply_in_space(
+        planes: &[Self; 3],
+        axes: [[usize; 2]; 3],
+        mut position: [i64; 3],
+    ) -> [i64; 3] {
+        let cell = |s: i64| s >> CELL_BITS;
+        let mut cells = [0; 12];
+        for (cells, [a, b]) in cells.chunks_exact_mut(4).zip(axes) {
+            cells.copy_from_slice(&across([position[a], position[b]]).map(cell));
+        }
+        let walks: [Walk; 12] = core::array::from_fn(|i| planes[i / 4].walks[i % 4]);
+        let controls = Walk::three(walks, cells.map(|cell| cell - 1));
+        for (plane, [a, b]) in axes.into_iter().enumerate() {
+            let moved = (0..4).fold([position[a], position[b]], |at, i| {
+                shear(i, at, |s| {
+                    let number = 4 * plane + i;
+                    let quadratic = if cell(s) == cells[number] {
+                        quadratic(controls[number])
+                    } else {
+                        planes[plane].quadratic(i, cell(s))
+                    };
+                    evaluate(&quadratic, (s & CELL_MASK as i64) as i32).into()
+                })
+            });
+            [position[a], position[b]] = moved;
+        }
+        position
+    }
+}
+
 /// Tells the walks of space from those of the plane: "SPACE  3".
 const SPACE_KEY: u64 = 0x5350_4143_4520_2033;
 

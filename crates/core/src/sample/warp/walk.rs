@@ -131,6 +131,46 @@ impl Walk {
         }
     }
 
+    /// The control values of three successive knots of each of some walks, from those of `first` on: as
+    /// [`controls`](Self::controls), of all walks at once, by operations that vectors have.
+    #[inline(always)]
+    pub(super) fn three<const N: usize>(walks: [Self; N], first: [i64; N]) -> [[i32; 3]; N] {
+        let places: [_; N] = core::array::from_fn(|i| walks[i].place(first[i]));
+        let steps = walks.map(|walk| i64::from(walk.step));
+        // The group of the first knot, and the next one.
+        let mut groups = [[[0; N]; GROUP]; 2];
+        for (next, group) in (0..).zip(&mut groups) {
+            let (mut bytes, mut phases) = ([0; N], [0; N]);
+            for i in 0..N {
+                let number = places[i].0.wrapping_add(next) as u64;
+                bytes[i] = split_mix(walks[i].key ^ number.wrapping_mul(0xd6e8_feb8_6659_fd93));
+                phases[i] = bytes[i] >> 56 & 15;
+            }
+            let mut orders = [0x0706_0504_0302_0100u64; N];
+            let mut controls = [0i64; N];
+            for last in (1..GROUP as u64).rev() {
+                group[last as usize] = controls;
+                for i in 0..N {
+                    let other = ((bytes[i] & 255) * (last + 1)) >> 8;
+                    bytes[i] >>= 8;
+                    let order = orders[i];
+                    let different = (order >> (8 * last) ^ order >> (8 * other)) & 255;
+                    orders[i] = order ^ different << (8 * last) ^ different << (8 * other);
+                    let angle = 16 * (orders[i] >> (8 * last) & 7) + phases[i];
+                    let sine = i64::from(SINE[angle as usize & 127]);
+                    controls[i] -= sine * steps[i] / (1 << 30);
+                }
+            }
+            group[0] = controls;
+        }
+        core::array::from_fn(|i| {
+            [0, 1, 2].map(|more| {
+                let place = places[i].1 + more;
+                groups[place / GROUP][place % GROUP][i] as i32
+            })
+        })
+    }
+
     /// The control values of successive knots, from `first` on.
     pub(super) fn controls(&self, first: i64, out: &mut [i32]) {
         let (mut number, mut place) = self.place(first);
@@ -207,6 +247,16 @@ mod tests {
             for (knot, control) in (0..).map(|i| first.wrapping_add(i)).zip(controls) {
                 let (number, place) = walk.place(knot);
                 prop_assert_eq!(walk.group(number)[place], control);
+            }
+        }
+
+        #[test]
+        fn controls_of_many_walks_are_those_of_each(keys: [u64; 5], first: [i64; 5], step in 0i32..1 << 25) {
+            let walks = keys.map(|key| Walk::new(key, step));
+            for (i, found) in Walk::three(walks, first).into_iter().enumerate() {
+                let mut controls = [0; 3];
+                walks[i].controls(first[i], &mut controls);
+                prop_assert_eq!(found, controls);
             }
         }
     }

@@ -2,24 +2,44 @@
 
 use super::{PATCH_BITS, Walk, relative, world};
 use crate::{
-    sample::space::warp_lists,
-    space::{batch::Batch, cells::IN, scope::common, warp::PLANES},
+    sample::space::{Extents, GROUP, PLANES, compiled, retain_parts, warp_groups, warp_lists},
+    space::{batch::Batch, cells::IN, scope::common},
     table::FRACTION_BITS,
 };
 
-/// The points that are warped together.
-const VECTOR: usize = 32;
-/// Rows of less points share vectors.
-const SHORT: usize = 24;
+/// Rows of less points share groups.
+const SHORT: usize = 16;
+
+/// Extends the extents of groups by points of a row from a position on, whose columns are in fixed-point units.
+pub(super) fn cover(extents: &mut Vec<Extents>, start: usize, columns: &[i32], [y, z]: [i32; 2]) {
+    let mut rest = columns;
+    let mut position = start;
+    while !rest.is_empty() {
+        let group = position / GROUP;
+        let (here, after) = rest.split_at(((group + 1) * GROUP - position).min(rest.len()));
+        let [first, last] = [here[0], here[here.len() - 1]].map(|x| x >> FRACTION_BITS);
+        let row = [[first, last], [y, y], [z, z]];
+        match extents.get_mut(group) {
+            Some(all) => {
+                for (ends, [least, most]) in all.iter_mut().zip(row) {
+                    *ends = [ends[0].min(least), ends[1].max(most)];
+                }
+            }
+            None => extents.push(row),
+        }
+        position += here.len();
+        rest = after;
+    }
+}
 
 impl Walk {
-    /// Fills the last vector of a row that will be warped, so that the points of a vector are near each other.
+    /// Fills the last group of a row that will be warped, so that the points of a group are near each other.
     pub(super) fn pad(&mut self) {
-        if self.scope.lattice.shears.is_none() {
+        if self.course.scope.lattice.shears.is_none() {
             return;
         }
         let length = self.pending.len();
-        let padded = length.next_multiple_of(VECTOR);
+        let padded = length.next_multiple_of(GROUP);
         // Short rows are near each other.
         if padded == length || length - self.row_start < SHORT {
             return;
@@ -42,53 +62,84 @@ impl Walk {
         let origin = out.origin;
         self.pending.restart(origin);
         self.row_start = 0;
-        if self.scope.lattice.shears.is_none() || out.is_empty() {
+        if self.course.scope.lattice.shears.is_none() || out.is_empty() {
             return;
         }
+        let length = out.len();
         self.warp(out);
-        if self.key.state == IN {
-            return;
+        let scope = &self.course.scope;
+        let is_tested = self.key.state != IN;
+        let ends = match is_tested {
+            true => relative(&scope.bounds, origin),
+            false => [(); 3].map(|()| i32::MIN..i32::MAX),
+        };
+        let starts = [0].into_iter().chain(self.gaps.iter().map(|gap| gap.end));
+        let last = self.gaps.iter().map(|gap| gap.start).chain([length]);
+        let parts = starts.zip(last).map(|(start, end)| start..end);
+        let lists = out.places.each_mut().map(Vec::as_mut_slice);
+        let kept = match out.ids.is_empty() {
+            true => retain_parts(self.backend, lists, parts, &ends),
+            false => None,
+        };
+        match kept {
+            Some(kept) => out.truncate(kept),
+            None => {
+                out.truncate(length);
+                out.close(&self.gaps);
+                if is_tested {
+                    compiled(self.backend, || out.retain_between(&ends));
+                }
+            }
         }
-        let scope = &self.scope;
-        let ends = relative(&scope.bounds, origin);
-        let is_between = |place: [i32; 3]| (0..3).all(|axis| ends[axis].contains(&place[axis]));
-        match self.slab.cells.volume(scope, self.key.state) {
-            None => out.retain_between(&ends),
-            Some(volume) => out
-                .retain(|place| is_between(place) && volume.contains(world(scope, origin, place))),
+        self.gaps.clear();
+        if is_tested && let Some(volume) = self.course.slab.cells.volume(scope, self.key.state) {
+            out.retain(|place| volume.contains(world(scope, origin, place)));
         }
     }
 
-    /// Warps the points of a batch of the current patch.
+    /// Warps the points of a batch of the current patch, and leaves them padded to whole groups.
     fn warp(&mut self, out: &mut Batch) {
-        let Some(shears) = &self.scope.lattice.shears else {
+        let course = &self.course;
+        let lattice = &course.scope.lattice;
+        let Some(shears) = &lattice.shears else {
             return;
         };
         let origin = out.origin;
-        let column = &self.column;
-        let patch = self.slab.shears[self.key.patch].get_or_insert_with(|| {
+        let (number, patches) = &mut self.shears;
+        if *number != course.slab.number {
+            *number = course.slab.number;
+            patches.clear();
+            patches.resize(course.patches(), None);
+        }
+        let patch = patches[self.key.patch].get_or_insert_with(|| {
             let height = origin[1]..origin[1] + (1 << PATCH_BITS);
-            let planes = common(&self.slab.planes, &self.ranges[2]);
             let sides = [
-                column.ranges[0].clone(),
-                common(&height, &column.ranges[1]),
-                planes,
+                course.column.ranges[0].clone(),
+                common(&height, &course.column.ranges[1]),
+                common(&course.slab.planes, &course.ranges[2]),
             ];
             let ranges = [0, 1, 2].map(|axis| {
-                let [least, most] = self.scope.lattice.turned.reach[axis];
+                let [least, most] = lattice.turned.reach[axis];
                 let side = &sides[axis];
                 let place = |v: i64| ((v - origin[axis]) << FRACTION_BITS) as i32;
                 [place(side.start) + least, place(side.end - 1) + most]
             });
-            shears.patch(origin, ranges)
+            shears.patch(origin, ranges, lattice.turned.reach)
         });
         let length = out.len();
-        let padded = length.next_multiple_of(32);
-        for list in out.places.iter_mut().chain(&mut self.room) {
+        let padded = length.next_multiple_of(GROUP);
+        for list in &mut out.places {
             let last = list.last().copied().unwrap_or(0);
             list.resize(padded, last);
         }
-        for (shears, [a, b]) in patch.iter().zip(PLANES) {
+        let places = out.places.each_mut().map(Vec::as_mut_slice);
+        let is_warped = warp_groups(self.backend, patch, &self.extents, places);
+        self.extents.clear();
+        for (shears, [a, b]) in patch.planes.iter().zip(PLANES) {
+            if is_warped {
+                break;
+            }
+            self.room.iter_mut().for_each(|list| list.resize(padded, 0));
             warp_lists(
                 self.backend,
                 shears,
@@ -98,10 +149,5 @@ impl Walk {
             core::mem::swap(&mut out.places[a], &mut self.room[0]);
             core::mem::swap(&mut out.places[b], &mut self.room[1]);
         }
-        for list in &mut out.places {
-            list.truncate(length);
-        }
-        out.close(&self.gaps);
-        self.gaps.clear();
     }
 }

@@ -1,84 +1,63 @@
-//! The walk over the points of a scope, in order, batch by batch.
+//! The walk over the points of a scope, in order.
 //!
-//! Columns of 1024 × 1024 places come one after another; in a column planes, in a plane rows, in a row points by x.
-//! Planes are walked in slabs of 32, whose [`Cells`] tell where points need a test. Positions are 32-bit offsets from
-//! the origin of a patch, a slab of 256 rows.
+//! `course` goes through the rows. Where there is no warp and no other set to keep clear of, `rows` writes them as items.
+//! Everything else takes batches, in which points can still move and be left out; `finish` warps and tests these. `few`
+//! makes the points of a small scope at once.
 
+mod course;
+mod few;
 mod finish;
+mod rows;
 
 use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
+use self::{course::Course, finish::cover};
+pub(super) use self::{
+    course::{PATCH_BITS, SLAB_BITS},
+    few::few,
+    rows::Rows,
+};
 use super::{
     batch::Batch,
-    cells::{CELL_BITS, Cells, IN, OUT, TEST},
-    columns::{COLUMN_BITS, Lines, Row, columns, coordinates},
+    cells::{IN, OUT, Run, TEST},
+    columns::Row,
     lattice::fixed,
-    scope::{Scope, common},
+    scope::Scope,
     template::{Plane, Templates},
 };
 use crate::{
-    sample::{Backend, space::PatchShears},
+    sample::{
+        Backend,
+        space::{Extents, SpaceShears, lift_picked},
+    },
     table::FRACTION_BITS,
 };
 
-/// The bits of the height of a patch.
-pub(super) const PATCH_BITS: u32 = 8;
-/// The bits of the height of a slab.
-pub(super) const SLAB_BITS: u32 = CELL_BITS;
 /// A batch ends with the row that makes it as long.
 const LONG: usize = 512;
-/// Up to this side, in lattice units, all points are tested.
-const SMALL: i64 = 96;
 
 /// A walk over the points of a scope.
 #[derive(Clone, Debug)]
 pub(super) struct Walk {
-    scope: Arc<Scope>,
-    /// The places that are walked.
-    ranges: [Range<i64>; 3],
-    /// The first place, unless that is the first of all.
-    start: Option<[i64; 3]>,
+    course: Course,
     wants_ids: bool,
     pub(super) backend: Backend,
-    /// The next column.
-    next: [i64; 2],
-    column: Column,
-    slab: Slab,
-    plane: Option<Plane>,
-    templates: Templates,
+    templates: Templates<i32>,
     /// The points of the rows so far, before the warp if there is one.
     pending: Batch,
     /// The values that these have in common.
     key: Key,
+    /// The shears of each patch of a slab, once they are needed, and the number of that slab.
+    shears: (u64, Vec<Option<SpaceShears>>),
+    /// The extents of the groups of points that will be warped.
+    extents: Vec<Extents>,
     /// Room for warped places.
     room: [Vec<i32>; 2],
     /// The parts of the batch that are no points.
     gaps: Vec<Range<usize>>,
     /// Where the rows begin that no gap follows.
     row_start: usize,
-}
-
-/// A column of planes.
-#[derive(Clone, Debug, Default)]
-struct Column {
-    ranges: [Range<i64>; 2],
-    /// The origin of the first patch along x and y.
-    origin: [i64; 2],
-    lines: Lines,
-    /// The next plane.
-    z: i64,
-    /// The next row of the plane.
-    row: usize,
-}
-
-/// A slab of planes.
-#[derive(Clone, Debug, Default)]
-struct Slab {
-    planes: Range<i64>,
-    cells: Cells,
-    /// The shears of each patch, once they are needed.
-    shears: Vec<Option<[PatchShears; 3]>>,
 }
 
 /// The values that the points of a batch have in common.
@@ -97,47 +76,34 @@ impl Walk {
         start: Option<[i64; 3]>,
         wants_ids: bool,
     ) -> Self {
-        let mut ranges = scope.clip(ranges);
-        if ranges.iter().any(Range::is_empty) {
-            ranges = [0..0, 0..0, 0..0];
-        }
-        let first = match start {
-            Some([x, y, _]) => [x >> COLUMN_BITS, y >> COLUMN_BITS],
-            None => [0, 1].map(|axis| columns(&ranges[axis]).start),
-        };
-        let mut walk = Self {
-            next: first,
-            ranges,
-            start,
+        Self {
+            course: Course::new(scope, ranges, start),
             wants_ids,
             backend: Backend::best(),
-            column: Column::default(),
-            slab: Slab::default(),
-            plane: None,
             templates: Templates::default(),
             pending: Batch::default(),
             key: Key::default(),
+            shears: (0, Vec::new()),
+            extents: Vec::new(),
             room: [Vec::new(), Vec::new()],
             gaps: Vec::new(),
             row_start: 0,
-            scope,
-        };
-        // No planes are left of a column that there is not.
-        walk.column.z = i64::MAX;
-        walk
+        }
     }
 
     /// Fills a batch with the next points, at least one. Returns false if there are none.
     pub(super) fn next(&mut self, out: &mut Batch) -> bool {
         loop {
-            let is_complete = match self.plane {
+            let is_complete = match self.course.plane {
                 Some(plane) => self.fill(plane),
                 None => {
-                    let z = self.column.z;
-                    let stays = self.slab.planes.contains(&z) && z < self.ranges[2].end;
-                    let is_complete = !stays && !self.pending.is_empty();
-                    if !is_complete && !self.next_plane() {
-                        return false;
+                    let is_complete = !self.course.stays_in_slab() && !self.pending.is_empty();
+                    if !is_complete {
+                        if !self.course.next_plane() {
+                            return false;
+                        }
+                        let map = self.course.scope.lattice.table.map();
+                        self.templates.clear(map.intervals());
                     }
                     is_complete
                 }
@@ -151,108 +117,12 @@ impl Walk {
         }
     }
 
-    /// Goes to the next plane, or to the next column. Returns false at the end.
-    fn next_plane(&mut self) -> bool {
-        if self.scope.stop.is_raised() {
-            return false;
-        }
-        if self.column.z >= self.ranges[2].end {
-            return self.next_column();
-        }
-        let at = self.column.z;
-        self.column.z += 1;
-        let lattice = &self.scope.lattice;
-        let Some(visit) = lattice.pattern.visit(2, at) else {
-            return true;
-        };
-        let map = lattice.table.map();
-        self.plane = Some(Plane {
-            at,
-            own: visit.own,
-            others: visit.others,
-            block: map.locate(visit.index),
-        });
-        self.templates.clear(map.intervals());
-        self.column.row = 0;
-        if let Some([_, y, z]) = self.start
-            && z == at
-        {
-            self.column.row = self.column.lines.y.partition_point(|row| row.at < y);
-        }
-        if !self.slab.planes.contains(&at) {
-            self.next_slab(at);
-        }
-        true
-    }
-
-    /// Goes to the next column. Returns false at the end.
-    fn next_column(&mut self) -> bool {
-        let [x, y] = [0, 1].map(|axis| columns(&self.ranges[axis]));
-        if self.next[1] >= y.end {
-            self.next = [self.next[0] + 1, y.start];
-        }
-        let [column, row] = self.next;
-        if column >= x.end || y.is_empty() {
-            return false;
-        }
-        self.next[1] += 1;
-        let ranges = [
-            common(&coordinates(column), &self.ranges[0]),
-            common(&coordinates(row), &self.ranges[1]),
-        ];
-        self.column.origin = ranges
-            .clone()
-            .map(|range| range.start & !((1 << CELL_BITS) - 1));
-        self.column.lines.list(&self.scope.lattice, ranges.clone());
-        self.column.ranges = ranges;
-        self.column.z = self.ranges[2].start;
-        self.slab.planes = 0..0;
-        match self.start {
-            Some([x, y, z]) if [x >> COLUMN_BITS, y >> COLUMN_BITS] == [column, row] => {
-                self.column.z = self.column.z.max(z);
-            }
-            _ => self.start = None,
-        }
-        true
-    }
-
-    /// Goes to the slab of a plane.
-    fn next_slab(&mut self, at: i64) {
-        let first = at & !((1 << CELL_BITS) - 1);
-        let [x, y] = &self.column.ranges;
-        let planes = common(&(first..first + (1 << CELL_BITS)), &self.ranges[2]);
-        let ranges = [x.clone(), y.clone(), planes.clone()];
-        let [origin_x, origin_y] = self.column.origin;
-        let is_small = self
-            .scope
-            .all
-            .iter()
-            .all(|range| range.end - range.start <= SMALL);
-        if is_small || self.scope.is_box() {
-            let rows = (y.end - 1 - origin_y) >> CELL_BITS;
-            self.slab.cells.test_all(rows as usize + 1);
-        } else {
-            let origin = [origin_x, origin_y, first];
-            self.slab.cells.look(&self.scope, &ranges, origin);
-        }
-        let patches = (y.end - 1 - origin_y) >> PATCH_BITS;
-        self.slab.shears.clear();
-        self.slab.shears.resize(patches as usize + 1, None);
-        self.slab.planes = first..first + (1 << CELL_BITS);
-    }
-
     /// Adds rows of the plane to the pending batch. Returns true once that is complete, and leaves the plane at its end.
     fn fill(&mut self, plane: Plane) -> bool {
-        while let Some(&row) = self.column.lines.y.get(self.column.row) {
-            // The sum of x and y must have the parity that the plane demands, and that of x and z the row's.
-            if row.others ^ row.own != plane.others ^ plane.own {
-                self.column.row += 1;
-                continue;
-            }
-            let offset = row.at - self.column.origin[1];
-            let key = self.key_of(offset);
+        while let Some((number, row)) = self.course.row(plane) {
+            let key = self.key_of(row);
             if key.state == OUT {
-                self.column.row += 1;
+                self.course.pass(number);
                 continue;
             }
             if key != self.key && !self.pending.is_empty() {
@@ -260,25 +130,24 @@ impl Walk {
             }
             if self.pending.is_empty() {
                 self.key = key;
-                self.pending.restart(self.origin(key.patch));
+                self.pending.restart(self.course.origin(key.patch));
             }
             self.add(plane, row);
             self.pad();
-            self.column.row += 1;
+            self.course.pass(number);
             if self.pending.len() >= LONG {
                 return true;
             }
         }
-        self.plane = None;
+        self.course.plane = None;
         false
     }
 
     /// The patch of a row and the state of its points: of those of a warped row together.
-    fn key_of(&self, offset: i64) -> Key {
-        let runs = self.slab.cells.row((offset >> CELL_BITS) as usize);
-        let is_warped = self.scope.lattice.shears.is_some();
+    fn key_of(&self, row: Row) -> Key {
+        let is_warped = self.course.scope.lattice.shears.is_some();
         let mut state = OUT;
-        for run in runs.iter().filter(|run| run.state != OUT) {
+        for run in self.course.runs(row).iter().filter(|run| run.state != OUT) {
             state = match state {
                 _ if !is_warped => IN,
                 OUT | IN => run.state,
@@ -287,130 +156,76 @@ impl Walk {
             };
         }
         Key {
-            patch: (offset >> PATCH_BITS) as usize,
+            patch: self.course.patch(row),
             state,
         }
     }
 
-    /// The origin of a patch of the slab.
-    fn origin(&self, patch: usize) -> [i64; 3] {
-        let [x, y] = self.column.origin;
-        let z = self.slab.planes.start;
-        [x, y + ((patch as i64) << PATCH_BITS), z]
-    }
-
     /// Adds the points of a row to the pending batch.
     fn add(&mut self, plane: Plane, row: Row) {
-        let scope = &*self.scope;
-        let origin = self.pending.origin;
+        let course = &self.course;
+        let scope = &*course.scope;
+        let pending = &mut self.pending;
+        let origin = pending.origin;
+        let templates = &mut self.templates;
         let key = (row.own, row.block as usize);
-        let lines = &self.column.lines;
-        let is_box = scope.is_box();
-        let place = (origin, is_box.then_some(&scope.bounds));
-        let mut points = self.templates.get(&scope.lattice, lines, plane, place, key);
-        let columns = &self.templates.columns;
-        if let Some(start) = self.start
-            && [start[1], start[2]] == [row.at, plane.at]
-        {
-            let first = (start[0] - origin[0]) as i32;
-            points.start += columns[points.clone()].partition_point(|&column| column < first);
+        let bounds = scope.is_box().then_some(&scope.bounds);
+        let lattice = &scope.lattice;
+        let convert = |_, offsets: &[i32], places: &mut Vec<i32>| places.extend_from_slice(offsets);
+        let how = (self.backend, &convert);
+        let mut points = templates.get(
+            (lattice, &course.column.lines),
+            plane,
+            (origin, bounds),
+            key,
+            how,
+        );
+        if let Some(first) = course.first(plane, row, origin[0]) {
+            points.start += templates.columns[points.clone()].partition_point(|&at| at < first);
         }
-        if is_box {
-            self.add_of_box(row, plane, points);
-            return;
-        }
-        let below = |points: &Range<usize>, end: i32| {
-            let part = &columns[points.clone()];
-            if part.last().is_some_and(|&last| last < end) {
-                part.len()
-            } else {
-                part.partition_point(|&column| column < end)
-            }
-        };
-        let offset = row.at - self.column.origin[1];
         let [y, z] = [row.at - origin[1], plane.at - origin[2]].map(|v| v as i32);
-        for run in self.slab.cells.row((offset >> CELL_BITS) as usize) {
-            let length = below(&points, run.end);
-            let part = points.start..points.start + length;
-            points.start = part.end;
+        let lift = y << FRACTION_BITS;
+        let [_, ys, _] = scope.lattice.vectors(plane.block, row.block as usize);
+        let heights = templates.heights(row.block as usize);
+        let mut runs = course.runs(row);
+        let whole = [Run {
+            end: i32::MAX,
+            state: TEST,
+        }];
+        // The points of a warped row are tested together.
+        if scope.lattice.shears.is_some() && runs.iter().all(|run| run.state != OUT) {
+            runs = &whole;
+        }
+        for run in runs {
+            let part = templates.before(&mut points, run.end);
             if run.state == OUT || part.is_empty() {
                 continue;
             }
-            let pending = &mut self.pending;
-            let lift = y << FRACTION_BITS;
-            if run.state == IN {
-                let [xs, ys, zs] = &mut pending.places;
-                xs.extend_from_slice(&self.templates.places[0][part.clone()]);
-                ys.extend(
-                    self.templates.places[1][part.clone()]
-                        .iter()
-                        .map(|dy| dy + lift),
-                );
-                zs.extend_from_slice(&self.templates.places[2][part.clone()]);
-                if self.wants_ids {
-                    pending.ids.extend(columns[part].iter().map(|&x| [x, y, z]));
-                }
-                continue;
+            let blocks = &templates.blocks[part.clone()];
+            let needs_test = run.state != IN && scope.lattice.shears.is_none();
+            let start = pending.len();
+            let [to_x, to_y, to_z] = &mut pending.places;
+            to_x.extend_from_slice(&templates.places[part.clone()]);
+            for (to, lift, picks) in [(to_y, lift, ys), (to_z, 0, heights)] {
+                to.resize(start + blocks.len(), 0);
+                lift_picked(self.backend, lift, blocks, picks, &mut to[start..]);
             }
-            let is_warped = scope.lattice.shears.is_some();
-            let volume = match is_warped {
-                true => None,
-                false => self.slab.cells.volume(scope, run.state),
-            };
-            let ends = relative(&scope.before, origin);
-            for i in part {
-                let place = [0, 1, 2].map(|axis| self.templates.places[axis][i]);
-                let place = [place[0], place[1] + lift, place[2]];
-                let is_inside = (0..3).all(|axis| ends[axis].contains(&place[axis]));
-                if !is_inside {
-                    continue;
-                }
-                if let Some(volume) = volume {
-                    let at = world(scope, origin, place);
-                    if !volume.contains(at) {
-                        continue;
-                    }
-                }
-                for (list, place) in pending.places.iter_mut().zip(place) {
-                    list.push(place);
-                }
-                if self.wants_ids {
-                    pending.ids.push([columns[i], y, z]);
-                }
+            let columns = &templates.columns[part.clone()];
+            if scope.lattice.shears.is_some() {
+                cover(&mut self.extents, start, columns, [y, z]);
             }
-        }
-    }
-
-    /// Adds points of a row of a box without warp, which lie between its bounds along x and z.
-    fn add_of_box(&mut self, row: Row, plane: Plane, points: Range<usize>) {
-        let scope = &*self.scope;
-        let pending = &mut self.pending;
-        let origin = pending.origin;
-        let [y, z] = [row.at - origin[1], plane.at - origin[2]].map(|v| v as i32);
-        let lift = y << FRACTION_BITS;
-        let [all_x, all_y, all_z] = &self.templates.places;
-        let columns = &self.templates.columns;
-        let [least, most] = scope.lattice.turned.reach[1].map(i64::from);
-        let (at, bounds) = (fixed(row.at), &scope.bounds[1]);
-        let [xs, ys, zs] = &mut pending.places;
-        if bounds.start <= at + least && at + most < bounds.end {
-            xs.extend_from_slice(&all_x[points.clone()]);
-            ys.extend(all_y[points.clone()].iter().map(|dy| dy + lift));
-            zs.extend_from_slice(&all_z[points.clone()]);
             if self.wants_ids {
-                let ids = columns[points].iter().map(|&x| [x, y, z]);
-                pending.ids.extend(ids);
+                pending
+                    .ids
+                    .extend(columns.iter().map(|&x| [x >> FRACTION_BITS, y, z]));
             }
-            return;
-        }
-        for i in points {
-            if bounds.contains(&(at + i64::from(all_y[i]))) {
-                xs.push(all_x[i]);
-                ys.push(all_y[i] + lift);
-                zs.push(all_z[i]);
-                if self.wants_ids {
-                    pending.ids.push([columns[i], y, z]);
-                }
+            if needs_test {
+                let volume = course.slab.cells.volume(scope, run.state);
+                let ends = relative(&scope.bounds, origin);
+                pending.retain_from(start, |place| {
+                    (0..3).all(|axis| ends[axis].contains(&place[axis]))
+                        && volume.is_none_or(|volume| volume.contains(world(scope, origin, place)))
+                });
             }
         }
     }

@@ -216,6 +216,70 @@ impl Lanes for Avx512 {
         }
     }
 
+    const HAS_TRIPLES: bool = true;
+
+    #[inline(always)]
+    unsafe fn two_tables(from: *const f32) -> [__m512; 2] {
+        unsafe { [_mm512_loadu_ps(from), _mm512_loadu_ps(from.add(16))] }
+    }
+
+    #[inline(always)]
+    unsafe fn load_places(from: *const u16) -> __m512i {
+        unsafe { _mm512_cvtepu16_epi32(_mm256_loadu_si256(from.cast())) }
+    }
+
+    #[inline(always)]
+    unsafe fn pick_of_two([low, high]: [__m512; 2], places: __m512i) -> __m512 {
+        unsafe { _mm512_permutex2var_ps(low, places, high) }
+    }
+
+    #[inline(always)]
+    unsafe fn bits_of(v: __m512) -> __m512i {
+        unsafe { _mm512_castps_si512(v) }
+    }
+
+    #[inline(always)]
+    unsafe fn between(v: __m512i, least: i32, end: i32) -> u32 {
+        unsafe {
+            let above = _mm512_cmpge_epi32_mask(v, _mm512_set1_epi32(least));
+            _mm512_mask_cmplt_epi32_mask(above, v, _mm512_set1_epi32(end)).into()
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn compress(v: __m512i, mask: u32) -> __m512i {
+        unsafe { _mm512_maskz_compress_epi32(mask as __mmask16, v) }
+    }
+
+    #[inline(always)]
+    unsafe fn store_single_triples(to: *mut [f32; 3], [x, y, z]: [__m512; 3]) {
+        /// For the number at each place of 48, the lane that it is from: of y from 16 on; any for z.
+        const PAIRS: [i32; 48] = {
+            let mut pairs = [0; 48];
+            let mut i = 0;
+            while i < 48 {
+                pairs[i] = i as i32 / 3 + if i % 3 == 1 { 16 } else { 0 };
+                i += 1;
+            }
+            pairs
+        };
+        /// The places of z of three vectors.
+        const THIRD: [__mmask16; 3] = [
+            0b0100_1001_0010_0100,
+            0b0010_0100_1001_0010,
+            0b1001_0010_0100_1001,
+        ];
+        unsafe {
+            let to: *mut f32 = to.cast();
+            for (k, third) in THIRD.into_iter().enumerate() {
+                let pairs = _mm512_loadu_epi32(PAIRS.as_ptr().add(16 * k));
+                let both = _mm512_permutex2var_ps(x, pairs, y);
+                let all = _mm512_mask_permutexvar_ps(both, third, pairs, z);
+                _mm512_storeu_ps(to.add(16 * k), all);
+            }
+        }
+    }
+
     const HAS_POINTS: bool = true;
 
     #[inline(always)]
