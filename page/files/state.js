@@ -79,7 +79,7 @@ export const LAYER = Object.freeze({
 /** @typedef {Record<"mode" | "alpha" | "point" | "offsets" | "distance" | "radius" | "moved" | "profile", string>} Works */
 
 /**
- * The first state of the tab How it works.
+ * The first state of the laboratory.
  * @type {Readonly<Works>}
  */
 export const WORKS = Object.freeze({
@@ -184,7 +184,7 @@ export function fromHash(hash) {
   return state;
 }
 
-/** The parameters of the tab How it works in the address. */
+/** The parameters of the laboratory in the address. */
 const WORKS_VALUES = {
   mode: /^(index|arrangement|clusters|map|displacement)$/,
   alpha: /^.{1,40}$/,

@@ -1,4 +1,4 @@
-// The three drawings of the tab How it works: the plane, the index torus, the set region.
+// The three drawings of the laboratory: the plane, the index torus, the set region.
 
 import { contextOf } from "../dom.js";
 import { themeColor } from "../theme.js";

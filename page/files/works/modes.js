@@ -1,4 +1,4 @@
-// The modes of the tab How it works, each a view of a pattern: index, arrangement, clusters, map, displacement.
+// The modes of the laboratory, each a view of a pattern: index, arrangement, clusters, map, displacement.
 
 import { make, spoken } from "../dom.js";
 import { shade } from "./draw.js";

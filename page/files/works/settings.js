@@ -1,4 +1,4 @@
-// Shared by the modes of the tab How it works: the window, sliders, addresses of requests.
+// Shared by the modes of the laboratory: the window, sliders, addresses of requests.
 
 import { make } from "../dom.js";
 import { encoded } from "../state.js";

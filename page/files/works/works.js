@@ -1,4 +1,4 @@
-// The tab How it works: the pattern of an α, its index torus and its set region side by side, and what
+// The laboratory: the pattern of an α, its index torus and its set region side by side, and what
 // follows from them. α and everything drawn is computed here; counts and displaced points are the server's.
 
 import { Gone, askJson } from "../api.js";

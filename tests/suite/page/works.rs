@@ -1,4 +1,4 @@
-//! The tab How it works: its pattern is the server's, and everything it shows can be chosen by mouse, keys and
+//! The laboratory: its pattern is the server's, and everything it shows can be chosen by mouse, keys and
 //! address.
 
 use serde_json::Value;
