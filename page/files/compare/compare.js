@@ -92,6 +92,8 @@ let turn = 0;
 
 /** Measures all that is shown, one after another, then how long points take. */
 async function measureAll() {
+  // A view may settle before it is known which profiles there are.
+  if (!shown().every(({ isReady }) => isReady)) return;
   turn += 1;
   const mine = turn;
   const isLatest = () => mine === turn;
