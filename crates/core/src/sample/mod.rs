@@ -43,8 +43,9 @@ pub(crate) use seed::split_mix;
 pub(crate) mod space {
     pub(crate) use super::{
         kernel::{
-            Extents, GROUP, PICKS, PLANES, SpaceShears, add_picked, compiled, lift_picked,
-            pick_triples, retain_parts, warp_all, warp_groups, warp_lists, write_triples,
+            Extents, GROUP, PICKS, PLANES, PlainLoop, SpaceShears, add_picked, compiled,
+            compiled_loop, lift_picked, pick_triples, retain_parts, warp_all, warp_groups,
+            warp_lists, write_triples,
         },
         warp::{PatchShears, Shears, Stretch},
     };

@@ -12,7 +12,7 @@ use crate::{
     F32, F64, Points,
     sample::{
         Backend,
-        space::{compiled, pick_triples, write_triples},
+        space::{PlainLoop, compiled_loop, pick_triples, write_triples},
     },
     table::FRACTION_BITS,
 };
@@ -120,6 +120,22 @@ impl<T: Copy> Picks<'_, T> {
     }
 }
 
+/// The parts of some offsets along an axis.
+struct Conversion<'a, F: Emit> {
+    how: F::Axis,
+    offsets: &'a [i32],
+    made: &'a mut [F::Part],
+}
+
+impl<F: Emit> PlainLoop for Conversion<'_, F> {
+    #[inline(always)]
+    fn run(&mut self) {
+        for (made, &offset) in self.made.iter_mut().zip(self.offsets) {
+            *made = F::part(self.how, offset);
+        }
+    }
+}
+
 /// Writes the points of a batch from a place on, as many as `out` has.
 pub(super) fn write<F: Emit>(
     scope: &Scope,
@@ -135,14 +151,14 @@ pub(super) fn write<F: Emit>(
     for (number, out) in out.chunks_mut(PART).enumerate() {
         let from = from + number * PART;
         let length = out.len();
-        compiled(backend, || {
-            for axis in 0..3 {
-                let places = &batch.places[axis][from..][..length];
-                for (made, &offset) in made[axis].iter_mut().zip(places) {
-                    *made = F::part(how[axis], offset);
-                }
-            }
-        });
+        for (axis, made) in made.iter_mut().enumerate() {
+            let mut convert = Conversion::<F> {
+                how: how[axis],
+                offsets: &batch.places[axis][from..][..length],
+                made: &mut made[..length],
+            };
+            compiled_loop(backend, &mut convert);
+        }
         if !F::HAS_IDS {
             let [x, y, z] = &made;
             F::join(backend, [&x[..length], &y[..length], &z[..length]], out);

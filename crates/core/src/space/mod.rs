@@ -15,7 +15,7 @@
 //!
 //! `pattern` and `symmetry` have the pattern, `table` the vectors, `warp` the shears, `lattice` which addresses have
 //! points and where; `volume` the parts of space, `scope` what of a lattice is requested, `mask` what narrows a set.
-//! `walk` makes points batch by batch from `columns` of planes, `cells` and `template`s; `sieve` leaves out those that are
+//! `walk` makes points row by row or batch by batch from `columns` of planes, `cells` and `template`s; `sieve` leaves out those that are
 //! too near other sets; `closed` and `count` count them. `plan` is a request made ready, whose points `blocks` writes in a
 //! `format`, and `attributes` are their further values; `lookups`, `nearest` and `distance` are about single points and
 //! neighbors. `set` is all of this, `shipped` the table that the crate has.

@@ -7,7 +7,7 @@
 
 use crate::sample::{
     Backend, Seed, Warp,
-    space::{PLANES, PatchShears, Shears, SpaceShears, Stretch, compiled},
+    space::{PLANES, PatchShears, PlainLoop, Shears, SpaceShears, Stretch, compiled_loop},
 };
 
 /// The warp of one seed.
@@ -24,9 +24,9 @@ impl Shears3 {
     /// The place to which the warp moves a fixed-point position.
     pub(super) fn apply(&self, position: [i64; 3]) -> [i64; 3] {
         let planes = &self.0;
-        compiled(Backend::best(), || {
-            Shears::apply_in_space(planes, PLANES, position)
-        })
+        let mut moving = Moving { planes, position };
+        compiled_loop(Backend::best(), &mut moving);
+        moving.position
     }
 
     /// The ranges of places that the warp takes positions to from some ranges. Both ends belong to a range.
@@ -79,6 +79,19 @@ impl Shears3 {
             patch
         });
         SpaceShears::new(planes, reach)
+    }
+}
+
+/// A position that the warp moves.
+struct Moving<'a> {
+    planes: &'a [Shears; 3],
+    position: [i64; 3],
+}
+
+impl PlainLoop for Moving<'_> {
+    #[inline(always)]
+    fn run(&mut self) {
+        self.position = Shears::apply_in_space(self.planes, PLANES, self.position);
     }
 }
 

@@ -44,13 +44,13 @@ mod triples;
 mod warped;
 
 pub use backend::Backend;
-pub(crate) use backend::compiled;
-pub(super) use backend::{compiled_loop, write_numbers};
+pub(super) use backend::write_numbers;
+pub(crate) use backend::{compiled, compiled_loop};
 pub use doubles::{F64, Points};
 pub use format::Format;
 pub(super) use format::{Geometry, Row};
 pub(crate) use groups::{Extents, GROUP, PLANES, SpaceShears, warp_groups};
-pub(super) use lanes::PlainLoop;
+pub(crate) use lanes::PlainLoop;
 pub use offsets::Offsets;
 pub(crate) use retain::retain_parts;
 pub(super) use rows::fill_row;

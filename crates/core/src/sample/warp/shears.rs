@@ -290,18 +290,18 @@ impl Shears {
         let walks: [Walk; 12] = core::array::from_fn(|i| planes[i / 4].walks[i % 4]);
         let controls = Walk::three(walks, cells.map(|cell| cell - 1));
         for (plane, [a, b]) in axes.into_iter().enumerate() {
-            let moved = (0..4).fold([position[a], position[b]], |at, i| {
-                shear(i, at, |s| {
-                    let number = 4 * plane + i;
-                    let quadratic = if cell(s) == cells[number] {
-                        quadratic(controls[number])
-                    } else {
-                        planes[plane].quadratic(i, cell(s))
-                    };
-                    evaluate(&quadratic, (s & CELL_MASK as i64) as i32).into()
-                })
-            });
-            [position[a], position[b]] = moved;
+            let [mut x, mut y] = [position[a], position[b]];
+            for i in 0..4 {
+                let (s, number) = (across([x, y])[i], 4 * plane + i);
+                let quadratic = if cell(s) == cells[number] {
+                    quadratic(controls[number])
+                } else {
+                    planes[plane].quadratic(i, cell(s))
+                };
+                let moved = i64::from(evaluate(&quadratic, (s & CELL_MASK as i64) as i32));
+                [x, y] = shear(i, [x, y], |_| moved);
+            }
+            [position[a], position[b]] = [x, y];
         }
         position
     }

@@ -1,10 +1,11 @@
 //! The walk over the points of a scope, in order.
 //!
 //! `course` goes through the rows. Where there is no warp and no other set to keep clear of, `rows` writes them as items.
-//! Everything else takes batches, in which points can still move and be left out; `finish` warps and tests these. `few`
-//! makes the points of a small scope at once.
+//! Everything else takes batches, in which points can still move and be left out; `finish` warps and tests these, in groups
+//! whose `extents` are known. `few` makes the points of a small scope at once.
 
 mod course;
+mod extents;
 mod few;
 mod finish;
 mod rows;
@@ -12,7 +13,7 @@ mod rows;
 use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
-use self::{course::Course, finish::cover};
+use self::{course::Course, extents::cover};
 pub(super) use self::{
     course::{PATCH_BITS, SLAB_BITS},
     few::few,
