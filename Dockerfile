@@ -46,7 +46,8 @@ ENV STREW_SERVER_LISTEN=0.0.0.0:8080
 USER 65532:65532
 EXPOSE 8080
 STOPSIGNAL SIGTERM
-HEALTHCHECK --interval=10s --timeout=3s --start-period=5s --retries=3 \
+# The first check comes after one interval: a daemon is known to be healthy about a second after its start.
+HEALTHCHECK --interval=1s --timeout=3s --start-period=5s --retries=10 \
     CMD ["/usr/local/bin/strew", "probe", "--ready"]
 ENTRYPOINT ["/usr/local/bin/strew"]
 CMD ["serve"]

@@ -63,9 +63,17 @@ js:
 bundlers *names:
     node bindings/js/test/bundlers.mjs {{names}}
 
+# The types of the pages' modules, by TypeScript.
+types:
+    .ci/page
+
 # The tests of the pages in Firefox (firefox-esr and geckodriver) instead of Chromium.
 firefox:
     STREW_TEST_BROWSER=firefox cargo test --locked --test suite -- page:: --test-threads 1
+
+# The pictures of the walk at dusk that previews of links and the cards of the first page show, drawn in Chromium.
+forest:
+    STREW_TEST_PICTURES=1 cargo test --locked --test suite -- page::walk::pictures
 
 # The extension for Blender and its sample; Blender's module of 370 MB comes from PyPI for one version of Python.
 blender:
@@ -90,9 +98,13 @@ no-std:
 targets:
     .ci/targets
 
-# Everything that a release has, made and checked in empty environments; publishes nothing. See docs/releasing.md.
+# Everything that a release has, made and used in empty environments; publishes nothing. See docs/releasing.md.
 release folder="dist":
     deploy/release {{folder}}
+
+# A rehearsal of `just release`: all parts of it that are not made of these sources yet, or some: `just release-check npm c`.
+release-check *parts:
+    deploy/release target/release-check {{parts}}
 
 # The walks of 1,000 players through a world, with a cache and without: `just caches target/release/strew [--cache varnish]`.
 caches program *args:
@@ -109,6 +121,11 @@ ray *args:
 # The files of `deploy/` by helm, kubeconform, promtool, HAProxy, nginx and Varnish.
 deploy-check:
     .ci/deploy
+
+# Images, the compose file and a stack of replicas in an engine of its own (Debian's docker.io, as root on Linux), killed,
+# replaced, attacked and cut off: `just containers [FOLDER of deploy/static] [TEST]`. About half an hour.
+containers *args:
+    .ci/containers {{args}}
 
 # Licenses, bans and sources of all dependencies; the advisories need a network.
 deny:

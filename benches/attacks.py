@@ -2,8 +2,10 @@
 """Attacks a daemon of its own from 127.0.0.2 and measures its memory and a victim at 127.0.0.1.
 
     benches/attacks.py target/release/strew [--keys] [ATTACK ...]
+    benches/attacks.py --container 256m strew:ci [--keys] [ATTACK ...]
 
-Needs Linux and nothing besides Python. With --keys the daemon requires a key, which attackers of
+Needs Linux and nothing besides Python. With --container the program is an image, which an engine (docker) runs in the
+network of this machine with this much memory; a daemon that the kernel kills is an error. With --keys the daemon requires a key, which attackers of
 closed paths and the victim have. Attackers, victim and daemon share the processors; attackers that
 keep sending are processes of their own.
 """
@@ -14,10 +16,13 @@ import gzip
 import http.client
 import json
 import multiprocessing
+import os
+import pathlib
 import re
 import socket
 import struct
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -35,31 +40,67 @@ STREAMS = 99
 
 
 class Daemon:
-    def __init__(self, program, keys):
-        self.key = None
+    def __init__(self, program, keys, container=None):
+        self.key = self.container = None
         with socket.create_server(("127.0.0.1", 0)) as free:
             self.port = free.getsockname()[1]
-        command = [program, "serve", "--listen", f"127.0.0.1:{self.port}", "--set", "log.filter=error"]
-        self.tables = tempfile.TemporaryDirectory()
-        command += ["--set", f"tables.folder={self.tables.name}", "--set", "forge.allow=anyone"]
+        settings = [f"server.listen=127.0.0.1:{self.port}", "log.filter=error", "forge.allow=anyone"]
+        self.folder = tempfile.TemporaryDirectory()
+        folder = "/attacks" if container else self.folder.name
+        os.chmod(self.folder.name, 0o777)
+        settings.append(f"tables.folder={folder}")
         if keys:
-            made = subprocess.run([program, "key", "new", "client"], capture_output=True, text=True)
+            run = ["docker", "run", "--rm", program] if container else [program]
+            made = subprocess.run([*run, "key", "new", "client"], capture_output=True, text=True)
             self.key = re.search("strew_[0-9a-f]+", made.stderr).group(0)
-            self.file = tempfile.NamedTemporaryFile("w", suffix=".toml")
-            self.file.write(made.stdout)
-            self.file.flush()
-            command += ["--set", f"access.keys_file={self.file.name}"]
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-        self.process.stdout.readline()
+            pathlib.Path(self.folder.name, "keys.toml").write_text(made.stdout)
+            settings.append(f"access.keys_file={folder}/keys.toml")
+        command = ["serve", *(word for setting in settings for word in ("--set", setting))]
+        if container:
+            self.contain([program, *command], container)
+        else:
+            self.process = subprocess.Popen([program, *command], stdout=subprocess.PIPE, text=True)
+            self.process.stdout.readline()
+            self.pid = self.process.pid
         self.victim(SMALL, 1)
         self.idle = self.memory()
+
+    def contain(self, command, memory):
+        """Runs the image as deploy/ does, with this much memory and none beside it."""
+        flags = ["--read-only", "--cap-drop", "ALL", "--security-opt", "no-new-privileges", "--network", "host"]
+        flags += ["-m", memory, "--memory-swap", memory, "-v", f"{self.folder.name}:/attacks"]
+        run = subprocess.run(["docker", "run", "-d", *flags, *command], capture_output=True, text=True, check=True)
+        self.container = run.stdout.strip()
+        while "listening on" not in subprocess.run(["docker", "logs", self.container], capture_output=True, text=True).stdout:
+            self.must_run()
+            time.sleep(0.1)
+        self.pid = int(self.inspect("{{.State.Pid}}"))
+
+    def inspect(self, template):
+        shown = subprocess.run(["docker", "inspect", "-f", template, self.container], capture_output=True, text=True)
+        return shown.stdout.strip()
+
+    def must_run(self):
+        state = self.inspect("{{.State.Status}}, out of memory: {{.State.OOMKilled}}, restarts: {{.RestartCount}}")
+        if state != "running, out of memory: false, restarts: 0":
+            log = subprocess.run(["docker", "logs", "--tail", "20", self.container], capture_output=True, text=True)
+            sys.exit(f"the container is {state}\n{log.stdout}{log.stderr}")
+
+    def end(self):
+        """Ends the daemon, which must have survived."""
+        if self.container:
+            self.must_run()
+            subprocess.run(["docker", "rm", "-f", "-v", self.container], capture_output=True)
+        else:
+            self.process.kill()
+            self.process.wait()
 
     def headers(self):
         return {"x-api-key": self.key} if self.key else {}
 
     def memory(self, figure="VmRSS"):
         """Memory in MiB."""
-        status = open(f"/proc/{self.process.pid}/status").read()
+        status = open(f"/proc/{self.pid}/status").read()
         return int(re.search(figure + r":\s+(\d+)", status).group(1)) // 1024
 
     def connect(self, address="127.0.0.2"):
@@ -555,18 +596,18 @@ ATTACKS = [
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("program")
+    parser.add_argument("--container", metavar="MEMORY")
     parser.add_argument("--keys", action="store_true")
     parser.add_argument("attack", nargs="*", metavar="ATTACK", help=", ".join(a.__name__ for a in ATTACKS))
     arguments = parser.parse_intermixed_args()
     for attack in ATTACKS:
         if not arguments.attack or attack.__name__ in arguments.attack:
             print(f"## {attack.__name__}", flush=True)
-            daemon = Daemon(arguments.program, arguments.keys)
+            daemon = Daemon(arguments.program, arguments.keys, arguments.container)
             try:
                 attack(daemon)
             finally:
-                daemon.process.kill()
-                daemon.process.wait()
+                daemon.end()
 
 
 if __name__ == "__main__":

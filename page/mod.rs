@@ -1,17 +1,16 @@
 //! The pages and their parts: every file of `files/`, embedded in the program. The [README](README.md) explains them.
 //!
-//! The modules and the styles of a page are joined at the start, because each request takes a round trip; the parts are
-//! served as well, for workers and other pages.
+//! The modules and the styles of a page are joined, because each request takes a round trip; the parts are served as
+//! well, for workers and other pages.
 
-mod joined;
+use strew::rest::{Page, Pages, Part};
 
-use include_dir::{Dir, include_dir};
-use strew::rest::{Page, Pages};
+/// A file: its name, and its bytes as they are, by zstd and by gzip.
+type File = (&'static str, &'static [u8], &'static [u8], &'static [u8]);
 
-use joined::joined;
-
-/// The files. The parts of the first page are at the top, those of each other one in a folder of its own.
-static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/page/files");
+/// The files, joined and compressed by the compiler. The parts of the first page are at the top, those of each other one
+/// in a folder of its own.
+static FILES: &[File] = strew_pages::parts!("page/files");
 
 /// Where a page is, the name of its operation, a summary and a description of it, and its file.
 type Entry = (
@@ -38,6 +37,14 @@ const PAGES: &[Entry] = &[
         "For people: every operation with its parameters and answers, and a form to try it. Loads nothing from \
          elsewhere.",
         "docs/index.html",
+    ),
+    (
+        "/how",
+        "getHow",
+        "An essay on how it works",
+        "For people: from chance to any point of an endless plane, in nine figures that move and can be touched. Loads \
+         nothing from elsewhere.",
+        "how/index.html",
     ),
     (
         "/compare",
@@ -72,55 +79,30 @@ const PAGES: &[Entry] = &[
     ),
 ];
 
-/// All pages, joined, with their parts.
+/// All pages, with their parts.
 pub fn all() -> Pages {
-    let files = files(&FILES);
-    let mut parts: Vec<_> = files
-        .iter()
-        .filter(|(name, _)| !name.ends_with(".html"))
-        .map(|&(name, text)| (name.to_owned(), text.into()))
-        .collect();
-    let mut pages = vec![];
-    for &(path, id, summary, about, file) in PAGES {
-        let text = text_of(&files, file);
-        let mut html = text.to_owned();
-        // A test joins every page; one that could not be joined would work as it is.
-        if let Ok(joined) = joined(name_of(path), text, &files) {
-            html = joined.html;
-            for (ending, text) in [("js", joined.script), ("css", joined.style)] {
-                let name = format!("joined/{}.{ending}", name_of(path));
-                parts.push((name, text.into()));
-            }
-        }
-        pages.push(Page {
-            path,
-            id,
-            summary,
-            about,
-            html,
-        });
-    }
-    Pages { pages, parts }
-}
-
-/// The names and texts of the files in a folder and in those below it.
-fn files(folder: &'static Dir<'_>) -> Vec<(&'static str, &'static str)> {
-    let own = folder.files();
-    let named = own.filter_map(|file| Some((file.path().to_str()?, file.contents_utf8()?)));
-    let below = folder.dirs().flat_map(files);
-    named.chain(below).collect()
-}
-
-fn text_of(files: &[(&str, &'static str)], name: &str) -> &'static str {
-    let found = files.iter().find(|(file, _)| *file == name);
-    found.map_or("", |(_, text)| text)
-}
-
-/// The name of the joined parts of a page.
-fn name_of(path: &str) -> &str {
-    match path.trim_matches('/') {
-        "" => "page",
-        name => name,
+    let text = |file| {
+        let (_, text, ..) = FILES.iter().find(|(name, ..)| *name == file)?;
+        str::from_utf8(text).ok()
+    };
+    let page = |&(path, id, summary, about, file): &Entry| Page {
+        path,
+        id,
+        summary,
+        about,
+        // A test finds every file.
+        html: text(file).unwrap_or_default(),
+    };
+    let parts = FILES.iter().filter(|(name, ..)| !name.ends_with(".html"));
+    let part = |&(name, plain, zstd, gzip): &_| Part {
+        name,
+        plain,
+        zstd,
+        gzip,
+    };
+    Pages {
+        pages: PAGES.iter().map(page).collect(),
+        parts: parts.map(part).collect(),
     }
 }
 
@@ -128,21 +110,33 @@ fn name_of(path: &str) -> &str {
 mod tests {
     use super::*;
 
+    /// The most bytes of the script of the first page, compressed for the browsers that accept least.
+    const MOST: usize = 70_000;
+
     #[test]
     fn every_page_is_joined() {
-        for &(path, .., file) in PAGES {
-            let files = files(&FILES);
-            let joined = joined(name_of(path), text_of(&files, file), &files).expect("known forms");
-            assert_eq!(joined.html.matches("/page/joined/").count(), 2, "{path}");
-            for form in ["\nimport {", "\nexport ", "import(\"."] {
-                assert!(!joined.script.contains(form), "{path} has {form}");
-            }
+        for page in all().pages {
+            assert_eq!(
+                page.html.matches("/page/joined/").count(),
+                2,
+                "{}",
+                page.path
+            );
         }
+        let (_, plain, zstd, gzip) = FILES
+            .iter()
+            .find(|(name, ..)| *name == "joined/page.js")
+            .expect("the script of the first page");
+        assert!(zstd.len() < gzip.len() && gzip.len() < plain.len() / 2);
+        assert!(gzip.len() <= MOST, "{} bytes", gzip.len());
     }
 
     #[test]
     fn nothing_is_inline_and_nothing_comes_from_elsewhere() {
-        for (name, text) in files(&FILES) {
+        for (name, text, ..) in FILES {
+            let Ok(text) = str::from_utf8(text) else {
+                continue;
+            };
             // Links that people follow load nothing.
             let text = text.replace("<a href=\"https://", "<a href=\"");
             for word in ["style=\"", "innerHTML", "eval(", "onclick=\"", "https://"] {
@@ -159,7 +153,7 @@ mod tests {
         let of_entries = PAGES.iter().map(|(.., file)| *file);
         let mut of_entries: Vec<_> = of_entries.collect();
         of_entries.sort_unstable();
-        let names = files(&FILES).into_iter().map(|(name, _)| name);
+        let names = FILES.iter().map(|(name, ..)| *name);
         let mut of_files: Vec<_> = names.filter(|name| name.ends_with(".html")).collect();
         of_files.sort_unstable();
         assert_eq!(of_entries, of_files);

@@ -9,6 +9,10 @@ use std::{
 mod circles;
 #[path = "tidy/imports.rs"]
 mod imports;
+#[path = "tidy/page.rs"]
+mod page;
+#[path = "tidy/releasing.rs"]
+mod releasing;
 
 /// Every source file of the workspace, as (path from the root, text).
 fn sources() -> Vec<(String, String)> {
@@ -247,40 +251,7 @@ fn no_files_import_each_other_in_a_circle() {
 }
 
 #[test]
-fn every_import_of_the_pages_leads_to_a_file() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("page/files");
-    for name in &files_below(&folder) {
-        let text = fs::read_to_string(folder.join(name)).expect("UTF-8");
-        let lines = text.lines().count();
-        let is_own = !name.starts_with("vendor/");
-        assert!(lines <= 500 || !is_own, "{name} has more than 500 lines");
-        let beside = Path::new(name).parent().expect("a file");
-        for (word, from) in [
-            ("from \"./", beside.to_owned()),
-            ("from \"../", beside.join("..")),
-            ("\"/page/", PathBuf::new()),
-        ] {
-            for piece in text.split(word).skip(1) {
-                let part = piece.split('"').next().unwrap_or_default();
-                let leads_to = folder.join(&from).join(part);
-                assert!(leads_to.is_file(), "{name} names {part}");
-            }
-        }
-    }
-}
-
-/// The files below a folder, as paths relative to it.
-fn files_below(folder: &Path) -> Vec<String> {
-    let mut found = vec![];
-    for entry in fs::read_dir(folder).expect("readable") {
-        let path = entry.expect("readable").path();
-        let name = path.file_name().expect("a name").to_string_lossy();
-        if path.is_dir() {
-            let below = files_below(&path);
-            found.extend(below.iter().map(|inner| format!("{name}/{inner}")));
-        } else {
-            found.push(name.into_owned());
-        }
-    }
-    found
+fn every_part_of_a_release_and_every_published_crate_is_listed() {
+    let folders: Vec<String> = crates().into_iter().map(|(name, _)| name).collect();
+    releasing::check(&folders);
 }

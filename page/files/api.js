@@ -1,12 +1,22 @@
 // Asking the server: errors in its own words, and patience while it is away.
 
+/**
+ * What the server has against a value.
+ * @typedef {{ field: string, value?: string, detail: string, allowed?: string }} Fault
+ */
+
 /** A refusal of the server, in its words. */
 export class Problem extends Error {
+  /**
+   * @param {number} status
+   * @param {string} words
+   * @param {number} retryAfter In seconds.
+   * @param {Fault[]} faults
+   */
   constructor(status, words, retryAfter = 0, faults = []) {
     super(words);
     this.status = status;
     this.retryAfter = retryAfter;
-    /** The faults by field: `[{ field, value, detail, allowed }]`. */
     this.faults = faults;
   }
 
@@ -26,7 +36,10 @@ export class Gone extends Error {}
 
 const KEY = "strew-key";
 
-/** Keeps a key for as long as this tab is open. */
+/**
+ * Keeps a key for as long as this tab is open.
+ * @param {string} key
+ */
 export function useKey(key) {
   sessionStorage.setItem(KEY, key);
 }
@@ -36,17 +49,26 @@ export function hasKey() {
   return Boolean(sessionStorage.getItem(KEY));
 }
 
-/** The headers of a request: its key, and the type of a body of JSON. */
+/**
+ * The headers of a request: its key, and the type of a body of JSON.
+ * @param {BodyInit} [body]
+ */
 export function headersFor(body) {
+  /** @type {Record<string, string>} */
   const headers = body === undefined ? {} : { "content-type": "application/json" };
   if (hasKey()) headers.authorization = `Bearer ${sessionStorage.getItem(KEY)}`;
   return headers;
 }
 
+/** @typedef {(isGone: boolean) => void} Presence */
+/** @type {Set<Presence>} */
 const listeners = new Set();
 let isGone = false;
 
-/** Calls `listener(isGone)` whenever the server goes or comes back. Returns what ends that. */
+/**
+ * Calls a function whenever the server goes or comes back. Returns what ends that.
+ * @param {Presence} listener
+ */
 export function onPresence(listener) {
   listeners.add(listener);
   return () => listeners.delete(listener);
@@ -57,6 +79,7 @@ export function isAway() {
   return isGone;
 }
 
+/** @param {boolean} gone */
 function presence(gone) {
   if (gone === isGone) return;
   isGone = gone;
@@ -64,7 +87,10 @@ function presence(gone) {
   if (gone) look(500);
 }
 
-/** Looks whether the server is back, ever more rarely: after ½, 1, 2, 4 and then every 8 seconds. */
+/**
+ * Looks whether the server is back, ever more rarely: after ½, 1, 2, 4 and then every 8 seconds.
+ * @param {number} wait In milliseconds.
+ */
 function look(wait) {
   setTimeout(async () => {
     try {
@@ -81,18 +107,28 @@ export function brokeOff() {
   return new Gone("the connection broke off");
 }
 
+/** @typedef {(problem: Problem, path: string, body?: BodyInit) => Promise<boolean>} Mend */
+/** @type {Mend} */
 let remedy = async () => false;
 
-/** Has `mend(problem, path, body)` called where the server refuses a request; if it says true, the request is repeated. */
+/**
+ * Has a function called where the server refuses a request; if it says true, the request is repeated.
+ * @param {Mend} mend
+ */
 export function onRefused(mend) {
   remedy = mend;
 }
+
+/** @typedef {{ body?: BodyInit, signal?: AbortSignal, method?: string, isAgain?: boolean }} Options */
 
 /**
  * The answer to a request; a body makes it a `POST`.
  *
  * Throws `Problem` for what the server refuses, `Gone` if it is not there, and an `AbortError` where
  * `signal` says so.
+ * @param {string} path
+ * @param {Options} options
+ * @returns {Promise<Response>}
  */
 export async function ask(path, { body, signal, method, isAgain } = {}) {
   let answer;
@@ -116,7 +152,13 @@ export async function ask(path, { body, signal, method, isAgain } = {}) {
   throw refused;
 }
 
-/** A JSON document. */
+/**
+ * A JSON document.
+ * @template {string} Path
+ * @param {Path} path
+ * @param {Options} [options]
+ * @returns {Promise<Path extends `${infer Bare}?${string}` ? Answer<Bare> : Answer<Path>>}
+ */
 export async function askJson(path, options) {
   const answer = await ask(path, options);
   try {

@@ -3,7 +3,7 @@
 import { byId, icon } from "./dom.js";
 import { watchTheme } from "./theme.js";
 
-const ICONS = {
+export const ICONS = {
   closer: "M12 5v14M5 12h14",
   farther: "M5 12h14",
   home: "M3 11.5 12 4l9 7.5M6 10v10h12V10",

@@ -1,9 +1,10 @@
 // A point that is pointed at: its card, and its place and neighbors above the plane.
 
 import { askJson } from "./api.js";
-import { byId, make, settled, spoken } from "./dom.js";
-import { decimalsFor, distance, formatPlace, parsePlace } from "./place.js";
-import { attributesOf, joined, setOf } from "./query.js";
+import { byId, contextOf, make, settled, spoken } from "./dom.js";
+import { Part } from "./part.js";
+import { decimalsFor, distance, formatPlace, moved, parsePlace, toNumber } from "./place.js";
+import { attributesOf, joined, setOf, worldPairs } from "./query.js";
 import { themeColor } from "./theme.js";
 
 /** How near a pointer has to be to a point, in CSS pixels; a finger or a key may miss by more. */
@@ -14,13 +15,22 @@ const NEIGHBORS = 8;
 const RING = 14;
 const EDGE = 10;
 
-export class Card {
+/** @typedef {import("./place.js").Place} Place */
+
+export class Card extends Part {
   constructor(session, plane) {
+    super();
     this.session = session;
     this.plane = plane;
     this.element = byId("card");
     this.over = byId("over");
+    /** @type {{ x: Place, y: Place, layer: number } | null} */
     this.point = null;
+    /** @type {{ self: any, near: any[], layer: import("./state.js").Layer, index: number } | null} */
+    this.found = null;
+    /** @type {AbortController | null} */
+    this.abort = null;
+    this.hasInk = false;
     this.isPinned = false;
     this.later = settled(120, (point) => this.tell(point));
     addEventListener("keydown", (event) => {
@@ -94,6 +104,7 @@ export class Card {
     const decimals = decimalsFor(this.plane.look.spacings[point.layer]) + 9;
     const at = [point.x, point.y].map((v) => formatPlace(v, decimals)).join(",");
     try {
+      if (layer.world) return await this.showOfWorld(point, layer, signal);
       const { neighbors } = await askJson(`/v1/nearest?at=${at}&k=${NEIGHBORS + 1}&${set}`, { signal });
       const known = await askJson(`/v1/points/${neighbors[0].id}?${set}`, { signal });
       this.found = { self: known.point, near: neighbors.slice(1), layer, index: point.layer };
@@ -107,16 +118,37 @@ export class Card {
     this.draw();
   }
 
+  /** Shows a point of a world: it is looked for in a box around it, with those that are near. */
+  async showOfWorld(point, layer, signal) {
+    const spacing = this.plane.look.spacings[point.layer];
+    const reach = 3 * spacing;
+    const decimals = decimalsFor(spacing) + 9;
+    const box = [[point.x, -reach], [point.y, -reach], [point.x, reach], [point.y, reach]].map(([at, by]) => formatPlace(moved(at, by), decimals));
+    const only = this.plane.look.layers.length > 1 ? [["only", layer.name]] : [];
+    const query = joined([["bbox", box.join(",")], ...worldPairs(layer.world, this.plane.keep), ...only, ["limit", "500"], ["format", "json"]]);
+    const { points } = await askJson(`/v1/points?${query}`, { signal });
+    const away = (one, from) => Math.hypot(one.x - from.x, one.y - from.y);
+    const here = { x: toNumber(point.x), y: toNumber(point.y) };
+    const self = points.reduce((best, one) => (away(one, here) < away(best, here) ? one : best));
+    const near = points.filter((one) => one !== self).map((one) => ({ ...one, distance: away(one, self) }));
+    near.sort((a, b) => a.distance - b.distance);
+    this.found = { self, near: near.slice(0, NEIGHBORS), layer, index: point.layer };
+    this.show();
+    this.draw();
+  }
+
   show() {
+    if (!this.found) return;
     const { self, near, layer, index } = this.found;
     const rows = [["x", String(self.x)], ["y", String(self.y)]];
     for (const name of attributesOf(layer)) {
       const value = self[name];
+      if (value === undefined || value === null) continue;
       const text = typeof value === "number" ? String(Number(value.toPrecision(6))) : value;
       rows.push([name, name === "angle" ? `${text} (${Math.round((value * 180) / Math.PI)}°)` : text]);
     }
     if (self.block) rows.push(["block", self.block.join(", ")]);
-    if (this.plane.look.layers.length > 1) rows.push(["layer", `${index + 1} ${layer.profile}`]);
+    if (this.plane.look.layers.length > 1) rows.push(["layer", `${index + 1} ${layer.name ?? layer.profile}`]);
     const close = make("button", { type: "button", "aria-label": "Close", onclick: () => this.close() }, "✕");
     this.element.replaceChildren(
       make("header", {}, make("h2", {}, self.id), this.isPinned && close),
@@ -139,7 +171,7 @@ export class Card {
 
   /** The box around the point and its neighbors, in CSS pixels: `[left, top, right, bottom]`. */
   surroundings() {
-    const all = [this.onCanvas(this.point.x, this.point.y)];
+    const all = this.point ? [this.onCanvas(this.point.x, this.point.y)] : [];
     for (const { x, y } of this.found?.near ?? []) all.push(this.onCanvas(parsePlace(String(x)), parsePlace(String(y))));
     const [xs, ys] = [all.map(([x]) => x), all.map(([, y]) => y)];
     return [Math.min(...xs) - RING, Math.min(...ys) - RING, Math.max(...xs) + RING, Math.max(...ys) + RING];
@@ -158,7 +190,7 @@ export class Card {
     const places = [[right, y], [left - w, y], [x, bottom], [x, top - h], [EDGE, EDGE], [lastX, EDGE], [EDGE, lastY], [lastX, lastY]]
       .map(([px, py]) => [Math.min(lastX, Math.max(EDGE, px)), Math.min(lastY, Math.max(EDGE, py))]);
     const at = this.onCanvas(point.x, point.y);
-    const cost = ([px, py]) => {
+    const cost = (/** @type {number[]} */ [px, py]) => {
       const across = Math.max(0, Math.min(px + w, right) - Math.max(px, left));
       const down = Math.max(0, Math.min(py + h, bottom) - Math.max(py, top));
       const isOver = at[0] > px - RING && at[0] < px + w + RING && at[1] > py - RING && at[1] < py + h + RING;
@@ -177,7 +209,7 @@ export class Card {
     this.hasInk = Boolean(this.point);
     [over.width, over.height] = view.pixels;
     if (!this.point) return;
-    const context = over.getContext("2d");
+    const context = contextOf(over);
     context.scale(view.ratio, view.ratio);
     const [x, y] = this.onCanvas(this.point.x, this.point.y);
     context.strokeStyle = themeColor("accent");

@@ -1,5 +1,6 @@
 // Curves and pictures of spectra, drawn by hand on canvases in the colors of the theme.
 
+import { contextOf } from "./dom.js";
 import { themeColor } from "./theme.js";
 
 /** Makes a canvas as fine as the screen; returns its context in CSS pixels with its size. */
@@ -8,7 +9,7 @@ export function prepared(canvas, aspect) {
   const height = Math.round(width * aspect);
   const ratio = Math.min(2, globalThis.devicePixelRatio || 1);
   Object.assign(canvas, { width: Math.round(width * ratio), height: Math.round(height * ratio) });
-  const context = canvas.getContext("2d");
+  const context = contextOf(canvas);
   context.scale(ratio, ratio);
   return { context, width, height };
 }
@@ -67,9 +68,9 @@ export function topOf(...curves) {
 /** Draws power around ν = 0: the ground of the theme is 0, its ink twice white noise or more. */
 export function spectrumPicture(canvas, image, cells) {
   Object.assign(canvas, { width: cells, height: cells });
-  const context = canvas.getContext("2d");
+  const context = contextOf(canvas);
   const pixels = context.createImageData(cells, cells);
-  const [from, to] = ["sunken", "ink"].map((name) => themeColor(name).match(/[\d.]+/g).map(Number));
+  const [from, to] = ["sunken", "ink"].map((name) => (themeColor(name).match(/[\d.]+/g) ?? []).map(Number));
   image.forEach((power, i) => {
     const share = Math.min(1, Math.sqrt(power / 3));
     for (let c = 0; c < 3; c += 1) pixels.data[4 * i + c] = from[c] + (to[c] - from[c]) * share;

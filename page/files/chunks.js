@@ -9,34 +9,91 @@ const PARALLEL = 5;
 /** Room for chunks in bytes, on machines with memory to spare and on others. */
 const ROOM = (navigator.deviceMemory ?? 8) >= 4 ? 256e6 : 96e6;
 
-/** How chunks of the plane are requested, the columns that follow x and y, and an address as text. */
+/**
+ * Where a chunk is: its side and the indices of its square, or cube.
+ * @typedef {object} Address
+ * @property {number} size
+ * @property {number} cx
+ * @property {number} cy
+ * @property {number} [cz]
+ * @property {number} [away] Its distance, for the order of requests.
+ * @property {number} [keep] The share of its points, where it has its own.
+ */
+
+/**
+ * A chunk and the points of it that have arrived.
+ * @typedef {object} Loaded
+ * @property {string} key
+ * @property {number} keep The share of its points.
+ * @property {"waiting" | "loading" | "later" | "done"} state
+ * @property {Float32Array<ArrayBuffer>} data `stride` numbers a point: x and y from the corner, then `columns`.
+ * @property {number} stride
+ * @property {string[]} columns
+ * @property {number} count Points that have arrived.
+ * @property {number} total Points that it has.
+ * @property {any[]} layers
+ * @property {number} tries
+ * @property {number} [used]
+ * @property {AbortController} [abort]
+ * @property {(() => void) | null} [dropped] Called when its points are let go.
+ * @property {any} [buffer] Where a painter keeps it.
+ * @property {number} [uploaded]
+ */
+/** @typedef {Address & Loaded} Chunk */
+
+/**
+ * What chunks are of.
+ * @typedef {object} Kind
+ * @property {(layers: any[], address: any, keep: number) => { path: string, body?: string }} requestOf
+ * @property {(layers: any[]) => string[]} columnsOf The columns that follow x and y.
+ * @property {(address: any) => string} nameOf An address as text.
+ */
+
+/** @type {Kind} */
 const PLANE = {
   requestOf: chunkRequest,
   columnsOf,
   nameOf: ({ size, cx, cy }) => `${size}/${cx}/${cy}`,
 };
 
-/**
- * The chunks of the layers that are shown. `changed()` is called whenever points arrive, `failed`
- * with what the server refuses. `kind` is what they are chunks of.
- */
+/** The chunks of the layers that are shown. */
 export class Chunks {
+  /**
+   * @param {() => void} changed Called whenever points arrive.
+   * @param {(error: Error) => void} failed Called with what the server refuses.
+   * @param {{ parallel?: number, room?: number, kind?: Kind }} options
+   */
   constructor(changed, failed, { parallel = PARALLEL, room = ROOM, kind = PLANE } = {}) {
-    Object.assign(this, { changed, failed, parallel, room, kind });
+    this.changed = changed;
+    this.failed = failed;
+    this.parallel = parallel;
+    this.room = room;
+    this.kind = kind;
     /** Bytes that have come so far. */
     this.received = 0;
+    /** @type {Map<string, Chunk>} */
     this.all = new Map();
+    /** @type {Chunk[]} */
     this.wanted = [];
     this.running = 0;
     this.bytes = 0;
     this.clock = 0;
+    /** @type {Error | null} */
     this.refused = null;
+    /** The time until which a busy server is left alone, as `performance.now` counts. */
+    this.restsUntil = 0;
+    /** @type {any[]} */
     this.layers = [];
+    /** @type {string[]} */
+    this.columns = [];
     this.identity = "";
     this.unsubscribe = onPresence((gone) => gone || this.pump());
   }
 
-  /** Says what the points are; requests for other points are aborted. */
+  /**
+   * Says what the points are; requests for other points are aborted.
+   * @param {any[]} layers
+   */
   show(layers) {
     const identity = this.identityOf(layers);
     if (identity === this.identity) return;
@@ -47,7 +104,10 @@ export class Chunks {
     this.want([], 1);
   }
 
-  /** Text that differs whenever the points or their columns do. */
+  /**
+   * Text that differs whenever the points or their columns do.
+   * @param {any[]} layers
+   */
   identityOf(layers) {
     const { path, body } = this.kind.requestOf(layers, { size: 1, cx: 0, cy: 0, cz: 0 }, 1);
     return body ?? path;
@@ -59,17 +119,28 @@ export class Chunks {
     this.want([], 1);
   }
 
-  /** Tries again what was refused. */
+  /** Tries again what was refused, or put off. */
   retry() {
     this.refused = null;
+    this.restsUntil = 0;
+    for (const chunk of this.wanted) if (chunk.state === "later") chunk.state = "waiting";
     this.pump();
   }
 
+  /**
+   * @param {Address} address
+   * @param {number} keep
+   */
   key(address, keep) {
     return `${this.identity} ${keep} ${this.kind.nameOf(address)}`;
   }
 
-  /** Says which chunks are looked at; returns these, whatever they hold by now. An address may have its own `keep`. */
+  /**
+   * Says which chunks are looked at; returns these, whatever they hold by now. An address may have its own `keep`.
+   * @param {Address[]} addresses
+   * @param {number} keep
+   * @returns {Chunk[]}
+   */
   want(addresses, keep) {
     this.clock += 1;
     this.wanted = addresses.map((address) => {
@@ -88,7 +159,7 @@ export class Chunks {
     });
     for (const chunk of this.all.values()) {
       if (chunk.used === this.clock) continue;
-      if (chunk.state === "loading") chunk.abort.abort();
+      if (chunk.state === "loading") chunk.abort?.abort();
       if (chunk.state !== "done") this.all.delete(chunk.key);
     }
     this.tidy();
@@ -99,15 +170,15 @@ export class Chunks {
   /** The share of what is looked at that is there, 0 to 1. */
   get progress() {
     if (this.wanted.length === 0) return 1;
-    const part = (chunk) => (chunk.state === "done" ? 1 : chunk.total > 0 ? chunk.count / chunk.total : 0);
+    const part = (/** @type {Chunk} */ chunk) => (chunk.state === "done" ? 1 : chunk.total > 0 ? chunk.count / chunk.total : 0);
     return this.wanted.reduce((sum, chunk) => sum + part(chunk), 0) / this.wanted.length;
   }
 
   /** Drops what was not looked at for longest, until the rest has room. */
   tidy() {
     if (this.bytes <= this.room) return;
-    const old = [...this.all.values()].filter((chunk) => chunk.state === "done" && chunk.used < this.clock);
-    for (const chunk of old.sort((a, b) => a.used - b.used)) {
+    const old = [...this.all.values()].filter((chunk) => chunk.state === "done" && (chunk.used ?? 0) < this.clock);
+    for (const chunk of old.sort((a, b) => (a.used ?? 0) - (b.used ?? 0))) {
       if (this.bytes <= this.room) break;
       this.bytes -= chunk.data.byteLength;
       this.all.delete(chunk.key);
@@ -116,13 +187,14 @@ export class Chunks {
   }
 
   pump() {
-    while (this.running < this.parallel && !this.refused && !isAway()) {
+    while (this.running < this.parallel && !this.refused && !isAway() && performance.now() >= this.restsUntil) {
       const next = this.wanted.find((chunk) => chunk.state === "waiting");
       if (!next) return;
       this.load(next);
     }
   }
 
+  /** @param {Chunk} chunk */
   async load(chunk) {
     this.running += 1;
     chunk.state = "loading";
@@ -141,14 +213,18 @@ export class Chunks {
     this.pump();
   }
 
-  /** Takes points in as they arrive. */
+  /**
+   * Takes points in as they arrive.
+   * @param {Chunk} chunk
+   * @param {Response} answer
+   */
   async receive(chunk, answer) {
     chunk.total = Number(answer.headers.get("strew-count"));
     chunk.count = 0;
     const record = 4 * chunk.stride;
     chunk.data = new Float32Array(chunk.total * chunk.stride);
     const bytes = new Uint8Array(chunk.data.buffer);
-    const reader = answer.body.getReader();
+    const reader = /** @type {ReadableStream<Uint8Array>} */ (answer.body).getReader();
     let filled = 0;
     for (;;) {
       const piece = await reader.read().catch((error) => {
@@ -164,7 +240,11 @@ export class Chunks {
     if (filled !== bytes.length) throw brokeOff();
   }
 
-  /** A chunk that did not come is requested again, unless it was aborted or refused for good. */
+  /**
+   * A chunk that did not come is requested again, unless it was aborted or refused for good.
+   * @param {Chunk} chunk
+   * @param {Error} error
+   */
   lost(chunk, error) {
     chunk.state = "waiting";
     chunk.count = 0;
@@ -173,14 +253,16 @@ export class Chunks {
       if (!this.wanted.includes(chunk)) this.all.delete(chunk.key);
     } else if (error instanceof Gone) {
       // It is requested again when the server is back.
-    } else if (error instanceof Problem && error.isPassing && chunk.tries < 8) {
+    } else if (error instanceof Problem && error.isPassing) {
+      // All others wait as well: a server that is busy is busy for them, too.
       chunk.state = "later";
       chunk.tries += 1;
-      const wait = Math.max(error.retryAfter * 1000, 200 * 2 ** chunk.tries);
+      const wait = Math.max(error.retryAfter * 1000, Math.min(10_000, 200 * 2 ** chunk.tries));
+      this.restsUntil = Math.max(this.restsUntil, performance.now() + wait);
       setTimeout(() => {
         if (chunk.state === "later") chunk.state = "waiting";
         this.pump();
-      }, Math.min(wait, 10_000));
+      }, wait + 20);
     } else if (!this.refused && chunk.layers === this.layers) {
       this.refused = error;
       this.failed(error);
@@ -188,12 +270,15 @@ export class Chunks {
   }
 }
 
-/** The runs of a chunk's points by layer, as far as they have arrived: `[{ layer, first, count }]`. */
+/**
+ * The runs of a chunk's points by layer, as far as they have arrived: `[{ layer, first, count }]`.
+ * @param {Chunk} chunk
+ */
 export function runsOf(chunk) {
   if (chunk.columns[0] !== "layer") return [{ layer: 0, first: 0, count: chunk.count }];
   // Points come one layer after another, so where each begins can be bisected for.
   const { data, stride, count } = chunk;
-  const firstOf = (layer) => {
+  const firstOf = (/** @type {number} */ layer) => {
     let [low, high] = [0, count];
     while (low < high) {
       const middle = (low + high) >> 1;

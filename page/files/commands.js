@@ -3,7 +3,7 @@
 import { messageOf } from "./paint/message.js";
 import { Digits, json } from "./digits.js";
 import { documentOf } from "./sent.js";
-import { bodyOf, joined, memberOf, setOf } from "./query.js";
+import { bodyOf, joined, memberOf, setOf, worldIn, worldPairs } from "./query.js";
 
 /** The formats of answers: name, ending of a file, what it is for. A test holds them against the server. */
 export const FORMATS = [
@@ -32,6 +32,11 @@ function looksOf(format) {
 /** The request for the points in a box of four decimals: `{ path }`, with a `body` for layers. */
 export function requestOf(layers, box, keep, format) {
   const looks = looksOf(format);
+  const world = worldIn(layers);
+  if (world) {
+    const pairs = [["bbox", box.join(",")], ...worldPairs(world, keep), ["format", format], ...Object.entries(looks)];
+    return { path: `/v1/points?${joined(pairs)}` };
+  }
   const isWhole = isShort(layers);
   if (layers.length === 1 && !isWhole) {
     const pairs = [["bbox", box.join(",")], ...setOf(layers[0], keep), ["format", format]];
@@ -56,7 +61,12 @@ function quoted(text) {
   return `'${text.replace(/'/g, "'\\''")}'`;
 }
 
-/** The line for curl. */
+/**
+ * The line for curl.
+ * @param {string} origin
+ * @param {{ path: string, body?: string }} request
+ * @param {string} file
+ */
 export function curl(origin, { path, body }, file) {
   const data = body ? ` \\\n  -d ${quoted(body)}` : "";
   return `curl -f ${quoted(origin + path)} -o ${file}${data}`;
@@ -66,14 +76,27 @@ export function curl(origin, { path, body }, file) {
 export function grpcurl(host, layers, box, keep) {
   const [minX, minY, maxX, maxY] = box.map((side) => new Digits(side));
   const region = { bbox: { min_x: minX, min_y: minY, max_x: maxX, max_y: maxY } };
-  const isWhole = isShort(layers);
-  const list = bodyOf(layers, region, keep, {}, isWhole).layers.map(typed);
-  const message = layers.length === 1 ? { region, ...typed(memberOf(layers[0], keep, isWhole)) } : { region, layers: list };
+  const message = { region, ...messageFor(layers, keep) };
   const plain = location.protocol === "https:" ? "" : " -plaintext";
   return `grpcurl${plain} -d ${quoted(json(message, 2))} \\\n  ${host} strew.v1.PointService/StreamPoints`;
 }
 
-/** A layer as the message has it: its set in a member, numbers for the warp, objects for ranges and variants. */
+/** The members of a message for layers, or for the world that they are of. */
+function messageFor(layers, keep) {
+  const world = worldIn(layers);
+  if (world) {
+    const set = { ...(world.seed ? { seed: new Digits(world.seed) } : {}), ...(keep < 1 ? { lod: keep } : {}) };
+    return Object.keys(set).length > 0 ? { world: world.name, set } : { world: world.name };
+  }
+  const isWhole = isShort(layers);
+  if (layers.length === 1) return typed(memberOf(layers[0], keep, isWhole));
+  return { layers: bodyOf(layers, undefined, keep, {}, isWhole).layers.map(typed) };
+}
+
+/**
+ * A layer as the message has it: its set in a member, numbers for the warp, objects for ranges and variants.
+ * @param {Record<string, any>} layer
+ */
 function typed({ name, region, clear_of, ...set }) {
   const message = { ...set };
   if (set.warp === "off" || set.warp === "on") message.warp = set.warp === "on" ? 1 : 0;
@@ -87,7 +110,13 @@ function typed({ name, region, clear_of, ...set }) {
   return { ...Object.fromEntries(around), set: message };
 }
 
-/** A program in Python that needs nothing installed, but numpy for its own format. */
+/**
+ * A program in Python that needs nothing installed, but numpy for its own format.
+ * @param {string} origin
+ * @param {{ path: string, body?: string }} request
+ * @param {string} format
+ * @param {string} file
+ */
 export function python(origin, { path, body }, format, file) {
   const url = JSON.stringify(origin + path);
   const lines = ["from urllib.request import Request, urlopen", ""];

@@ -7,24 +7,49 @@ import { check, fault, field, select, setOptions } from "./form.js";
 import { isSent } from "./sent.js";
 import { MAP_WORDS, PROFILE_WORDS, choicesOf, including, nice, profileNames } from "./profiles.js";
 import { COLOR_NAMES, LAYER, MOST_LAYERS } from "./state.js";
-import { SHAPES, SHAPE_SIGNS } from "./marks.js";
-import { allVariants, variantNames } from "./query.js";
+import { Kinds } from "./kinds.js";
 
-const AMOUNT_WORDS = { spacing: "Mean spacing", density: "Density", min_distance: "Least distance" };
+const AMOUNT_WORDS = { spacing: "Spacing", density: "Density", min_distance: "Minimum distance" };
 const WARP_WORDS = { "": "Set by the seed", off: "Off", on: "On", 0.5: "Half as strong", 1.5: "Stronger", 2: "Strongest" };
-const SETTLE_WORDS = { "": "As usual", 0: "Off", 1: "One step", 2: "Two steps", 3: "Three steps", 4: "Four steps" };
+const SETTLE_WORDS = { "": "Default", 0: "Off", 1: "One step", 2: "Two steps", 3: "Three steps", 4: "Four steps" };
 const DIE = "M5 3h14a2 2 0 0 1 2 2v14a2 2 0 0 1-2 2H5a2 2 0 0 1-2-2V5a2 2 0 0 1 2-2zM8.5 8.5h.01M15.5 8.5h.01M12 12h.01M8.5 15.5h.01M15.5 15.5h.01";
 /** The slider of the amount reaches this many doublings to each side. */
 const DOUBLINGS = 3;
 /** The fields that can be wrong. */
-const FIELDS = ["profile", "alpha", "map", "amount", "seed", "warp", "settle", "field", "range", "variants", "clear"];
+const FIELDS = ["profile", "alpha", "map", "amount", "seed", "warp", "settle", "field", "range", "variants", "spread", "clear"];
+/** A number for a seed, as the die throws it. */
+const thrown = () => String(1 + Math.floor(Math.random() * 999_999));
 
 export class Controls {
-  /** `profiles` is the server's list of tables, `fields` that of fields; `stipple` takes a picture's file. */
-  constructor(session, profiles, fields, stipple) {
+  /** @type {HTMLElement} */
+  bar;
+  /** @type {HTMLElement} */
+  shade;
+  /** @type {HTMLElement} */
+  range;
+  /** @type {HTMLElement} */
+  clear;
+  /** @type {HTMLElement} */
+  remove;
+  /** @type {HTMLElement} */
+  own;
+  /** @type {HTMLElement} */
+  worldField;
+  /** @type {HTMLElement} */
+  worldOwn;
+  /** @type {HTMLElement} */
+  worldLayers;
+  /** @type {HTMLElement} */
+  variant;
+  /** @type {Kinds} */
+  kinds;
+
+  /** The server's lists: its tables (`profiles`), its fields, the names of its worlds; `stipple` takes a picture's file. */
+  constructor(session, { profiles, fields, worlds }, stipple) {
     this.session = session;
     this.profiles = profiles;
     this.fields = fields.map(({ name }) => name);
+    this.worlds = worlds;
     this.stipple = stipple;
     this.picked = 0;
     this.notes = [];
@@ -68,7 +93,45 @@ export class Controls {
 
   build() {
     this.bar = make("div", { class: "layers", role: "group", "aria-label": "Layers" });
-    this.root.replaceChildren(this.bar, ...this.kind(), ...this.amount(), this.where(), this.expert(), this.shown(), this.looks());
+    this.kinds = new Kinds(this.profiles, (members) => this.change(members), this.text("variants"));
+    this.own = make("div", { class: "fields" },
+      this.bar, ...this.kind(), ...this.amount(), this.where(), this.kinds.element, this.expert(), this.shown(), this.looks());
+    this.root.replaceChildren(this.world(), this.own, this.ofWorld());
+  }
+
+  /** The choice of a world of the server. */
+  world() {
+    const choose = (world) => this.session.choose((state) => Object.assign(state, { world, worldSeed: "" }), "layers");
+    this.worldField = field("World", "world", select("world", choose));
+    return this.worldField;
+  }
+
+  /** A world: its seed and what its layers are, which the server says. */
+  ofWorld() {
+    const choose = (worldSeed) => this.session.choose((state) => (state.worldSeed = worldSeed), "layers");
+    const seed = make("input", {
+      type: "text", id: "world-seed", inputmode: "numeric", placeholder: "the world's own", autocomplete: "off",
+      onchange: (event) => /^\d{0,20}$/.test(event.target.value.trim()) && choose(event.target.value.trim()),
+    });
+    const again = make("button", { type: "button", title: "Another seed", onclick: () => choose(thrown()) }, icon(DIE, "Another seed"));
+    this.worldLayers = make("p", { class: "note legend", id: "world-layers" });
+    this.worldOwn = make("div", { class: "fields", id: "of-world" },
+      make("p", { class: "note" }, "A world is described once, on the server, and requested by its name: layers with their distances, fields and seeds."),
+      this.worldLayers, field("Seed", "world-seed", make("div", { class: "joined" }, seed, again)));
+    return this.worldOwn;
+  }
+
+  updateWorld() {
+    const { world, worldSeed, layers } = this.session.state;
+    setOptions(byId("world"), [["", "Layers of your own"], ...(world ? including(this.worlds, world) : this.worlds)], world);
+    this.worldField.hidden = this.worlds.length === 0 && !world;
+    this.own.hidden = Boolean(world);
+    this.worldOwn.hidden = !world;
+    byId("paint-open").disabled = Boolean(world);
+    const seed = /** @type {HTMLInputElement} */ (byId("world-seed"));
+    if (document.activeElement !== seed) seed.value = worldSeed ?? "";
+    this.worldLayers.replaceChildren(...(layers[0].world ? layers : [])
+      .map(({ name, color }) => make("span", {}, make("i", { class: `swatch-${color}` }), name)));
   }
 
   kind() {
@@ -82,10 +145,10 @@ export class Controls {
       const { layer } = this;
       this.holds = true;
       this.hold({ amount: String(Number((2 ** Number(event.target.value)).toPrecision(3))) });
-      this.root.querySelector("#amount").value = layer.amount;
+      /** @type {HTMLInputElement} */ (byId("amount")).value = layer.amount;
     };
     const slider = make("input", {
-      type: "range", id: "amount-slider", step: "any", "aria-label": "Less or more of it", oninput: slide,
+      type: "range", id: "amount-slider", step: "any", "aria-label": "Amount", oninput: slide,
       onchange: () => {
         this.holds = false;
         this.session.release();
@@ -94,7 +157,7 @@ export class Controls {
     });
     const again = make("button", {
       type: "button", id: "another-seed", title: "Another seed",
-      onclick: () => this.change({ seed: String(1 + Math.floor(Math.random() * 999_999)) }),
+      onclick: () => this.change({ seed: thrown() }),
     }, icon(DIE, "Another seed"));
     return [
       field("How many", "amount",
@@ -116,7 +179,7 @@ export class Controls {
       field("Warp", "warp", select("warp", (warp) => this.change({ warp })),
         make("p", { class: "note" }, "The warp bends the pattern a little, so that no direction is special.")),
       field("Settling", "settle", select("settle", (settle) => this.change({ settle })),
-        make("p", { class: "note" }, "Points that a field leaves take small steps, two as usual, until they are even. Where all points stay, one step moves the nearest apart.")));
+        make("p", { class: "note" }, "In a field, points take small steps, two by default, until they lie evenly. Without a field, one step moves the closest pairs apart.")));
   }
 
   /** The amount in other terms, as the server has said it. */
@@ -137,20 +200,18 @@ export class Controls {
       field("Field", "field", select("field", (value) => this.change({ field: value, paint: "" }))),
       this.shade, file,
       make("button", { type: "button", id: "choose-picture", onclick: () => file.click() }, "Stipple a picture …"),
-      make("p", { class: "note" }, "Or drop one on the plane: dots lie where it is dark."));
+      make("p", { class: "note" }, "Or drop one on the plane: dots gather where it is dark."));
   }
 
   shown() {
     const box = (member, words) => check(member, words, (is) => this.change({ [member]: is }));
-    this.range = field("Least and greatest scale", "range", this.text("range"));
-    this.legend = make("p", { class: "note", id: "legend" });
-    this.variants = field("Names of variants with their weights", "variants", this.text("variants"), this.legend);
-    this.clear = field("Keeps clear of the layers before by", "clear", this.text("clear", { inputmode: "decimal", placeholder: "0" }),
+    this.range = field("Smallest and largest scale", "range", this.text("range"));
+    this.clear = field("Distance to the layers above", "clear", this.text("clear", { inputmode: "decimal", placeholder: "0" }),
       make("p", { class: "note", id: "about-clear", role: "status" }));
     return make("div", { class: "group", role: "group", "aria-label": "Values of each point" },
       make("span", { class: "label" }, "Values of each point"),
       box("angle", "Angle, as arrows"), box("scale", "Scale, as sizes"), this.range,
-      box("variant", "Variant, as shapes"), this.variants, this.clear);
+      this.variant = box("variant", "Variant, as shapes"), this.clear);
   }
 
   looks() {
@@ -197,7 +258,7 @@ export class Controls {
     this.session.choose((state) => {
       const color = [...COLOR_NAMES.keys()].find((c) => !state.layers.some((layer) => layer.color === c)) ?? 0;
       const seed = String(state.layers.length + 1);
-      state.layers.push({ ...LAYER, ...state.layers.at(-1), seed, color, angle: false, scale: false, variant: false });
+      state.layers.push({ ...LAYER, ...state.layers.at(-1), seed, color, angle: false, scale: false, variant: false, spread: "", lod: "" });
     }, "layers");
   }
 
@@ -205,19 +266,20 @@ export class Controls {
   updateBar() {
     const { layers } = this.session.state;
     if (this.bar.childElementCount !== layers.length + (layers.length < MOST_LAYERS ? 1 : 0)) {
-      const focused = this.bar.contains(document.activeElement) ? document.activeElement.id : null;
+      const focused = this.bar.contains(document.activeElement) ? document.activeElement?.id : null;
       const buttons = layers.map((_, i) => make("button", {
         type: "button", id: `layer-${i}`, onclick: () => this.pick(i),
       }, make("i"), make("span")));
       const add = make("button", { type: "button", id: "add-layer", onclick: () => this.addLayer() }, "+ Add a layer");
       this.bar.replaceChildren(...buttons, ...(layers.length < MOST_LAYERS ? [add] : []));
-      if (focused) (byId(focused) ?? this.bar.lastElementChild).focus();
+      if (focused) (byId(focused) ?? add).focus();
     }
     layers.forEach((layer, i) => {
       const button = this.bar.children[i];
       button.setAttribute("aria-pressed", String(i === this.picked));
-      button.firstElementChild.className = `swatch-${layer.color}`;
-      button.lastElementChild.textContent = `${i + 1} ${layer.profile}`;
+      const [swatch, name] = button.children;
+      swatch.className = `swatch-${layer.color}`;
+      name.textContent = `${i + 1} ${layer.profile}${layer.lod ? `, 1 in ${Math.round(1 / Number(layer.lod))}` : ""}`;
     });
   }
 
@@ -225,7 +287,10 @@ export class Controls {
   update() {
     this.picked = Math.min(this.picked, this.session.state.layers.length - 1);
     const { layer, picked, root } = this;
+    this.updateWorld();
+    if (layer.world) return;
     this.updateBar();
+    /** @type {(id: string) => any} */
     const set = (id) => root.querySelector(`#${id}`);
     const { alphas, alpha, maps, map } = choicesOf(this.profiles, layer);
     setOptions(set("profile"), including(profileNames(this.profiles), layer.profile), layer.profile);
@@ -248,11 +313,10 @@ export class Controls {
     if (set("dot").value !== String(layer.dot)) set("dot").value = String(layer.dot);
     this.shade.hidden = !layer.field;
     this.range.hidden = !layer.scale;
-    this.variants.hidden = !layer.variant;
+    this.variant.hidden = Boolean(layer.spread);
     this.clear.hidden = picked === 0;
     this.remove.hidden = this.session.state.layers.length < 2;
-    const signs = allVariants(this.session.state.layers);
-    this.legend.textContent = variantNames(layer).map((name) => `${SHAPE_SIGNS[signs.indexOf(name) % SHAPES.length] ?? "●"} ${name}`).join("  ");
+    this.kinds.update(layer, this.session.state.layers, this.root);
     this.tell();
   }
 
@@ -278,7 +342,7 @@ export class Controls {
   /** Takes what the server made of each layer: `{ understood }` or `{ faults }`. */
   note(notes) {
     this.notes = notes;
-    this.tell();
+    this.update();
   }
 
   /** Takes how many points of each layer are in view. */
@@ -288,18 +352,19 @@ export class Controls {
   }
 
   tell() {
+    if (this.layer.world) return;
     const { understood, faults } = this.notes[this.picked] ?? {};
     const all = { ...faults, ...faultsBefore(this.layer, this.picked) };
     for (const id of FIELDS) fault(this.root, id, all[id]);
-    if (all.alpha || all.map || all.warp || all.settle) byId("expert").open = true;
+    if (all.alpha || all.map || all.warp || all.settle) /** @type {HTMLDetailsElement} */ (byId("expert")).open = true;
     byId("about-amount").textContent = understood && !faults ? said(understood) : "";
     byId("about-profile").textContent = PROFILE_WORDS[this.layer.profile] ?? "";
-    this.root.querySelector("#amount").setAttribute("aria-label", AMOUNT_WORDS[this.layer.by]);
+    byId("amount").setAttribute("aria-label", AMOUNT_WORDS[this.layer.by]);
   }
 }
 
 function said({ spacing, density, least_distance: least }) {
-  const apart = least > 0 ? `any two at least ${spoken(least, 3)} apart` : "no least distance";
+  const apart = least > 0 ? `any two at least ${spoken(least, 3)} apart` : "no minimum distance";
   return `Spacing ${spoken(spacing, 3)}, density ${spoken(density, 3)}, ${apart}.`;
 }
 

@@ -1,13 +1,23 @@
 // Elements by hand: everything is put in as text, never as markup.
 
-/** The element of an id. */
+/**
+ * The element of an id; of its own kind where the markup of a page has it.
+ * @template {string} Id
+ * @param {Id} id
+ * @returns {Id extends keyof Ids ? Ids[Id] : HTMLElement}
+ */
 export function byId(id) {
-  return document.getElementById(id);
+  return /** @type {any} */ (document.getElementById(id));
 }
 
 /**
  * An element with attributes, listeners (`onclick` and so on, as functions) and children; a child
  * that is text stays text, and what is `null` or `false` is left out.
+ * @template {keyof HTMLElementTagNameMap} Tag
+ * @param {Tag} name
+ * @param {Record<string, any>} attributes
+ * @param {...any} children
+ * @returns {HTMLElementTagNameMap[Tag]}
  */
 export function make(name, attributes = {}, ...children) {
   const element = document.createElement(name);
@@ -20,7 +30,11 @@ export function make(name, attributes = {}, ...children) {
   return element;
 }
 
-/** A drawing within SVG, made of paths: for icons. */
+/**
+ * A drawing within SVG, made of paths: for icons.
+ * @param {string} path
+ * @param {string} [label]
+ */
 export function icon(path, label) {
   const space = "http://www.w3.org/2000/svg";
   const svg = document.createElementNS(space, "svg");
@@ -36,7 +50,7 @@ export function icon(path, label) {
 
 /** Has links that skip parts of the page focus their targets: the address says what is shown, and stays. */
 export function skipLinks() {
-  for (const link of document.querySelectorAll(".skip")) {
+  for (const link of /** @type {NodeListOf<HTMLAnchorElement>} */ (document.querySelectorAll(".skip"))) {
     link.addEventListener("click", (event) => {
       event.preventDefault();
       byId(link.hash.slice(1)).focus();
@@ -44,22 +58,31 @@ export function skipLinks() {
   }
 }
 
-/** Copies the text of an element; the button says how that went. */
+/**
+ * Copies the text of an element; the button says how that went.
+ * @param {HTMLElement} element
+ * @param {HTMLElement} button
+ */
 export async function copy(element, button) {
   try {
     await navigator.clipboard.writeText(element.textContent);
     button.textContent = "Copied";
   } catch {
     // Without the permission the text is at least marked.
-    getSelection().selectAllChildren(element);
+    getSelection()?.selectAllChildren(element);
     button.textContent = "Marked: copy it with Ctrl+C";
   }
 }
 
-/** Calls a function once things have been quiet for some milliseconds. */
+/**
+ * A function that calls another one once it was not called for some milliseconds; `cancel` forgets the call.
+ * @template {any[]} Given
+ * @param {number} wait
+ * @param {(...given: Given) => void} call
+ */
 export function settled(wait, call) {
   let timer = 0;
-  const later = (...given) => {
+  const later = (/** @type {Given} */ ...given) => {
     clearTimeout(timer);
     timer = setTimeout(() => call(...given), wait);
   };
@@ -67,7 +90,10 @@ export function settled(wait, call) {
   return later;
 }
 
-/** A number with at most `digits` significant digits, groups of three set apart. */
+/**
+ * A number with at most `digits` significant digits, groups of three set apart.
+ * @param {number} value
+ */
 export function spoken(value, digits = 4) {
   if (!Number.isFinite(value)) return "–";
   const size = Math.abs(value);
@@ -75,15 +101,30 @@ export function spoken(value, digits = 4) {
   return value.toLocaleString("en", { maximumSignificantDigits: Math.max(digits, size >= 1 ? Math.ceil(Math.log10(size + 1)) : 0) });
 }
 
-/** A count in full. */
+/**
+ * A count in full.
+ * @param {number | bigint} count
+ */
 export function counted(count, one = "point", more = `${one}s`) {
   return `${count.toLocaleString("en")} ${count === 1 ? one : more}`;
 }
 
-/** A size in bytes, as people say it. */
+/**
+ * A size in bytes, as people say it.
+ * @param {number} size
+ */
 export function bytes(size) {
-  for (const [unit, name] of [[1e9, "GB"], [1e6, "MB"], [1e3, "kB"]]) {
+  for (const [unit, name] of /** @type {const} */ ([[1e9, "GB"], [1e6, "MB"], [1e3, "kB"]])) {
     if (size >= unit) return `${(size / unit).toPrecision(3)} ${name}`;
   }
   return `${size} bytes`;
+}
+
+/**
+ * The context that draws on a canvas: every browser that runs modules has one.
+ * @param {HTMLCanvasElement} canvas
+ * @param {CanvasRenderingContext2DSettings} [options]
+ */
+export function contextOf(canvas, options) {
+  return /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", options));
 }

@@ -42,11 +42,12 @@ function covered(left, top, radius) {
 
 /**
  * Sets dots into `pixels` of a picture `width` × `height`: the points of `data` from `first` on, each
- * `stride` numbers, at left + x·zoom, top − y·zoom.
+ * `stride` numbers, at left + x·zoom, top − y·zoom. With `tones` the color is the one of the number in a record's `slot`.
  */
-export function setDots({ pixels, width, height }, { data, stride }, { first, count, left, top, zoom, masks, color }) {
-  const [red, green, blue] = [color & 255, (color >> 8) & 255, (color >> 16) & 255];
+export function setDots({ pixels, width, height }, { data, stride }, { first, count, left, top, zoom, masks, color: plain, tones, slot }) {
   for (let k = first; k < first + count; k += 1) {
+    const color = tones ? tones[data[k * stride + slot]] ?? plain : plain;
+    const [red, green, blue] = [color & 255, (color >> 8) & 255, (color >> 16) & 255];
     const x = left + data[k * stride] * zoom;
     const y = top - data[k * stride + 1] * zoom;
     const [column, row] = [Math.floor(x), Math.floor(y)];

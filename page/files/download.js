@@ -10,6 +10,10 @@ export const MOST_HELD = 1e9;
 /**
  * The size in bytes of an answer of `count` points, and whether it is exact. `request` gives the
  * request, `limited` the same with a limit.
+ * @param {{ path: string, body?: string }} request
+ * @param {string} format
+ * @param {number} count
+ * @param {AbortSignal} [signal]
  */
 export async function sizeOf({ path, body }, format, count, signal) {
   if (!body) {
@@ -18,7 +22,7 @@ export async function sizeOf({ path, body }, format, count, signal) {
     // A refusal has words only where there is a body.
     if (head instanceof Error) {
       const answer = await ask(path, { signal });
-      await answer.body.cancel();
+      await answer.body?.cancel();
     } else if (head.headers.has("content-length") && !head.headers.has("content-encoding")) {
       return { bytes: Number(head.headers.get("content-length")), isExact: true };
     }
@@ -34,14 +38,20 @@ export async function sizeOf({ path, body }, format, count, signal) {
   return { bytes: Math.round((byteLength * count) / part), isExact };
 }
 
-/** Saves an answer under a name; `progress(bytes)` hears how much has come, where that is known. */
+/**
+ * Saves an answer under a name; `progress(bytes)` hears how much has come, where that is known.
+ * @param {{ path: string, body?: string }} request
+ * @param {string} name
+ * @param {(bytes: number) => void} progress
+ * @param {AbortSignal} [signal]
+ */
 export async function save({ path, body }, name, progress, signal) {
   // A link cannot carry a key.
   if (!body && !hasKey()) return click(path, name);
   const answer = await ask(path, { body, signal });
   const pieces = [];
   let bytes = 0;
-  const reader = answer.body.getReader();
+  const reader = /** @type {ReadableStream<Uint8Array>} */ (answer.body).getReader();
   for (;;) {
     const piece = await reader.read().catch((error) => {
       throw error.name === "AbortError" ? error : brokeOff();

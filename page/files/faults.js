@@ -14,6 +14,7 @@ const PLACES = {
   field: "field",
   scale_range: "range",
   variants: "variants",
+  spread: "spread",
   clear_of: "clear",
 };
 
@@ -21,13 +22,13 @@ const PLACES = {
 const TAKES = {
   spacing: "The mean spacing must be a number above 0, such as 1.5.",
   density: "The density must be a number above 0, such as 0.25.",
-  min_distance: "The least distance must be a number above 0, such as 1.5.",
+  min_distance: "The minimum distance must be a number above 0, such as 1.5.",
   seed: "The seed must be a whole number from 0 to 18446744073709551615.",
   warp: "The warp must be off, on or a number from 0 to 2.",
   settle: "The number of steps must be from 0 to 4.",
   scale_range: "Two numbers are needed, the smaller first, such as 0.5,1.5.",
   variants: "Names with weights are needed, such as oak:3,birch:1. A name has letters, digits, _, - or .",
-  clear_of: "The distance must be empty, 0, or a number up to 16 mean spacings of the layers before.",
+  clear_of: "The distance must be empty, 0, or a number up to 16 mean spacings of the layers above.",
 };
 
 /** The faults by field of the page: `{ id: words }`; `""` has those of no field. */
@@ -46,7 +47,7 @@ function wordsFor(name, { value, detail, allowed }) {
     return "Points of this profile may lie as near as they like. Choose a spacing or a density.";
   }
   if (name === "min_distance" && detail.includes("field")) {
-    return "In a field no least distance is kept. Choose a spacing or a density.";
+    return "A density field allows no minimum distance. Choose a spacing or a density.";
   }
   if (name === "profile") return `This server has no profile “${value}”.`;
   if (name === "field") {
@@ -55,6 +56,8 @@ function wordsFor(name, { value, detail, allowed }) {
       ? "The server does not hold this picture any more. Send it again, or choose another field."
       : `This server has no field “${value}”: no such field is loaded.`;
   }
+  if (name === "alpha") return `This server has no table for the pattern “${value}”: choose one from the list.`;
+  if (name === "map") return `This server has no map “${value}” of this profile: choose one from the list.`;
   if (TAKES[name]) return `“${value}” does not work. ${TAKES[name]}`;
   return `“${value}” does not work: ${detail}. Allowed: ${allowed}.`;
 }

@@ -5,6 +5,7 @@ import { ask } from "./api.js";
 import { lineChart, pointPicture, spectrumPicture, topOf } from "./charts.js";
 import { byId, make, spoken } from "./dom.js";
 import { measure } from "./measure.js";
+import { Part } from "./part.js";
 import { PROFILE_WORDS, profileNames } from "./profiles.js";
 import { LAYER, encoded } from "./state.js";
 import { figureOf, recordedOf } from "./understand.js";
@@ -13,8 +14,9 @@ import { figureOf, recordedOf } from "./understand.js";
 const MEASURED = 64;
 const DRAWN = 20;
 
-export class Gallery {
+export class Gallery extends Part {
   constructor(session, profiles) {
+    super();
     this.session = session;
     this.names = profileNames(profiles);
     // The one to begin with first, the bare pattern last.
@@ -34,9 +36,12 @@ export class Gallery {
   async show() {
     if (this.cards) return;
     this.cards = this.names.map((name) => this.card(name));
+    // Where the panel is only a strip, what the pictures mean is said here.
+    const words = [...byId("gallery-help").children].map((one) => one.cloneNode(true));
     byId("gallery").replaceChildren(
       make("header", {}, make("h2", {}, "All profiles side by side"),
         make("span", { class: "soft" }, "points · spectrum to ν 2.5 · radial power to ν 3")),
+      make("details", { class: "meaning" }, make("summary", {}, "What the pictures mean"), words),
       make("div", { class: "cards" }, this.cards.map((card) => card.element)),
     );
     const isWhole = await Promise.all(this.cards.map((card) => this.fill(card)));
@@ -50,7 +55,8 @@ export class Gallery {
     const about = make("p", {}, PROFILE_WORDS[name] ?? "");
     const figures = make("small", { class: "soft number" });
     const open = () => this.session.choose((state) => {
-      state.layers = [{ ...LAYER, ...state.layers[0], profile: name, alpha: "", map: "" }];
+      const before = state.world ? {} : state.layers[0];
+      Object.assign(state, { world: "", worldSeed: "", layers: [{ ...LAYER, ...before, profile: name, alpha: "", map: "" }] });
       if (state.layers[0].by === "min_distance") Object.assign(state.layers[0], { by: "spacing", amount: "1" });
       state.tab = "choose";
     }, "layers", "tab");

@@ -3,7 +3,9 @@
 import { distance, place, toNumber } from "./place.js";
 
 /** More points than this are not drawn at once: beyond, the points of lowest rank stand for all. */
-export const MOST_POINTS = 1_000_000;
+const MOST_POINTS = 1_000_000;
+/** The least share of points that is even: fewer of them lie in rows. Beyond, density is drawn as gray. */
+const LEAST_SHARE = 1 / 64;
 /** The number of chunks in a view, about. */
 const CHUNKS = 20;
 /** No chunk is smaller than this number of spacings: a thousand points take as long to come as ten. */
@@ -13,35 +15,68 @@ const MOST_CHUNKS = 64;
 /** The distance from the origin, in spacings, up to which doubles tell points apart; the server refuses what is farther. */
 const REACH = 1.4e15;
 
-/** The side of chunks for a view, a power of two, so that corners are exact. */
+/** @typedef {import("./place.js").Place} Place */
+/** @typedef {Pick<import("./plane.js").View, "x" | "y" | "unit" | "width" | "height">} View */
+
+/**
+ * The side of chunks for a view, a power of two, so that corners are exact.
+ * @param {View} view
+ * @param {number} spacing
+ */
 export function chunkSize(view, spacing) {
   const side = Math.sqrt((view.width * view.height) / CHUNKS) * view.unit;
   return 2 ** Math.round(Math.log2(Math.max(side, LEAST_SPACINGS * spacing)));
 }
 
-/** The share of points to ask for: a power of two, so that what is there serves for long. */
+/**
+ * The share of points to ask for: a power of two, so that what is there serves for long.
+ * @param {View} view
+ * @param {number[]} spacings
+ */
 export function shareFor(view, spacings) {
-  const area = view.width * view.height * view.unit ** 2;
-  const points = spacings.reduce((sum, spacing) => sum + area / spacing ** 2, 0);
+  const points = pointsIn(view, spacings);
   if (!(points > MOST_POINTS)) return 1;
-  return Math.max(1e-6, 2 ** -Math.ceil(Math.log2(points / MOST_POINTS)));
+  return Math.max(LEAST_SHARE, 2 ** -Math.ceil(Math.log2(points / MOST_POINTS)));
 }
 
-/** The index of the chunk that a coordinate is in. */
+/** Whether a view has more points than the least share of them can stand for. */
+export function isBeyondPoints(view, spacings) {
+  return pointsIn(view, spacings) * LEAST_SHARE > MOST_POINTS;
+}
+
+function pointsIn(view, spacings) {
+  const area = view.width * view.height * view.unit ** 2;
+  return spacings.reduce((sum, spacing) => sum + area / spacing ** 2, 0);
+}
+
+/**
+ * The index of the chunk that a coordinate is in.
+ * @param {Place} at
+ * @param {number} size
+ */
 export function indexOf(at, size) {
   return size >= 1 ? Math.floor(at.i / size) : at.i / size + Math.floor(at.f / size);
 }
 
-/** How far the corner of a chunk is from a coordinate: exact, as both are near each other. */
+/**
+ * How far the corner of a chunk is from a coordinate: exact, as both are near each other.
+ * @param {number} index
+ * @param {number} size
+ * @param {Place} at
+ */
 export function cornerFrom(index, size, at) {
   // The side is a power of two, so the product is exact.
   return distance(place(index * size), at);
 }
 
-/** The chunks of a view, nearest to its middle first. */
+/**
+ * The chunks of a view, nearest to its middle first.
+ * @param {View} view
+ * @param {number} size
+ */
 export function chunksOf(view, size) {
   const half = { x: (view.width * view.unit) / 2, y: (view.height * view.unit) / 2 };
-  const axis = (at, reach) => {
+  const axis = (/** @type {Place} */ at, /** @type {number} */ reach) => {
     const first = indexOf(at, size);
     const from = first + Math.floor((-reach - cornerFrom(first, size, at)) / size);
     const to = first + Math.floor((reach - cornerFrom(first, size, at)) / size);
@@ -63,12 +98,19 @@ export function chunksOf(view, size) {
   return chunks.sort((a, b) => a.away - b.away);
 }
 
-/** Whether a place is so far out that no doubles tell its points apart. */
+/**
+ * Whether a place is so far out that no doubles tell its points apart.
+ * @param {{ x: Place, y: Place }} at
+ * @param {number} spacing
+ */
 export function isTooFar({ x, y }, spacing) {
   return Math.max(Math.abs(toNumber(x)), Math.abs(toNumber(y))) > farthest(spacing);
 }
 
-/** The largest coordinate that a view can have in its middle. */
+/**
+ * The largest coordinate that a view can have in its middle.
+ * @param {number} spacing
+ */
 export function farthest(spacing) {
   return REACH * spacing;
 }

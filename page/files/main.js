@@ -1,6 +1,6 @@
 // The page: puts its parts together.
 
-import { Gone, askJson, onPresence } from "./api.js";
+import { Gone, Problem, askJson, onPresence } from "./api.js";
 import { Card } from "./card.js";
 import { Controls } from "./controls.js";
 import { byId, icon, make, settled, skipLinks, spoken } from "./dom.js";
@@ -12,38 +12,46 @@ import { farthest, isTooFar } from "./grid.js";
 import { parsePlace, place, toNumber } from "./place.js";
 import { sendPicture, takeDrops } from "./picture.js";
 import { Plane } from "./plane.js";
-import { profileNames } from "./profiles.js";
+import { Pour } from "./pour.js";
+import { PROFILE_WORDS, profileNames } from "./profiles.js";
 import { Session } from "./session.js";
 import { Shade } from "./shade.js";
 import { Status } from "./status.js";
 import { LAYER, initial } from "./state.js";
 import { Start } from "./start.js";
+import { Tabs } from "./tabs.js";
 import { Take } from "./take.js";
+import { Trouble } from "./trouble.js";
 import { Paint } from "./paint/paint.js";
 import { palette, watchTheme } from "./theme.js";
 import { Understand } from "./understand.js";
+import { worldNames } from "./worlds.js";
 import { Works } from "./works/works.js";
 
 const root = document.documentElement;
+/** Whether the visitor comes without a link to a view. */
+const isFirst = location.hash.length < 2;
 const session = new Session();
 
+/** @type {import("./part.js").Part[]} */
 const parts = [];
 const plane = new Plane(byId("plane"), session.state.renderer, {
   moved: () => {
     // Before the server has said what a spacing is, nothing is looked at.
     if (!plane.span) return;
     session.viewed(plane.view, plane.span);
-    root.dataset.state = "loading";
+    loading();
     status.moved();
-    for (const part of parts) part.moved?.();
+    if (plane.chunks.refused && isUnderstood) again();
+    for (const part of parts) part.moved();
   },
   progress: (share) => {
     const bar = byId("progress");
     bar.hidden = share >= 1;
-    if (share > 0 && plane.chunks.wanted.length > 0) shownFirst();
+    if (share > 0 && plane.chunks.wanted.length > 0) arrived();
     bar.setAttribute("aria-valuenow", String(Math.round(share * 100)));
-    bar.firstElementChild.style.transform = `scaleX(${share})`;
-    for (const part of parts) part.painted?.();
+    /** @type {HTMLElement} */ (bar.firstElementChild).style.transform = `scaleX(${share})`;
+    shade.painted();
   },
   settled: () => {
     if (root.dataset.state === "loading" && isUnderstood) root.dataset.state = "ready";
@@ -53,14 +61,49 @@ const plane = new Plane(byId("plane"), session.state.renderer, {
     // Faults of the query are shown at its fields.
     if (!isUnderstood) return;
     root.dataset.state = "failed";
-    banner(error.message, [["Try again", () => {
-      banner(null);
-      root.dataset.state = "loading";
-      plane.chunks.retry();
-      plane.draw();
-    }]]);
+    const isTooMuch = error instanceof Problem && error.status === 413;
+    /** @type {import("./trouble.js").Buttons} */
+    const buttons = [["Try again", retry]];
+    if (isTooMuch) buttons.unshift(["Zoom in", () => plane.zoom(2)]);
+    if (isTooMuch) trouble.refuse("There are more points in this view than the server sends at once. Zoom in, or choose fewer points.", { buttons });
+    else trouble.refuse("The server does not send these points.", { said: error.message, buttons });
   },
 });
+
+/** Requests everything again that was refused or put off. */
+function retry() {
+  trouble.clear();
+  plane.chunks.retry();
+  if (!isUnderstood) (controls ? refresh : begin)();
+  else loading();
+  plane.draw();
+}
+
+/** A view beside one that was refused may be answered. */
+const again = settled(300, () => {
+  if (plane.chunks.refused && isUnderstood) retry();
+});
+
+/** Points are awaited. */
+function loading() {
+  root.dataset.state = "loading";
+  trouble.watch();
+}
+
+/** Whether an answer is awaited that the points depend on. */
+let isAsking = false;
+const trouble = new Trouble(plane, () => isAsking, retry);
+
+/** When something is done again. */
+let timer = 0;
+
+/** Does something again later, because the server is busy; `error` says how much later. */
+function later(error, what) {
+  const wait = Math.max(1, error.retryAfter) * 1000;
+  trouble.busy(performance.now() + wait);
+  clearTimeout(timer);
+  timer = setTimeout(what, wait);
+}
 
 /** Points are there: the plane, hidden until then, is seen. */
 function shownFirst() {
@@ -69,10 +112,17 @@ function shownFirst() {
   performance.mark("points");
 }
 
+/** Points have come: on a first visit they pour into place. */
+function arrived() {
+  shownFirst();
+  if (isFirst && !("pour" in root.dataset)) pour.begin(matchMedia("(prefers-reduced-motion: reduce)").matches);
+}
+
 const status = new Status(session, plane);
+const pour = new Pour(plane);
 root.dataset.renderer = plane.painter.name;
 const rested = settled(250, () => {
-  for (const part of parts) part.rested?.();
+  for (const part of parts) part.rested();
   if (session.state.layers.length > 1) controls?.counted(countsInView());
 });
 
@@ -104,7 +154,7 @@ let latest = 0;
 /** Whether the server has resolved the layers; before, they are shown as the page understands them. */
 let isUnderstood = false;
 /** The message to show with the plane, if it does not show what was requested: the reason. */
-let notice = null;
+let notice = /** @type {string | null} */ (null);
 
 /** The server's resolved values of each layer, or its faults. */
 async function notesOf(layers) {
@@ -129,9 +179,17 @@ async function notesOf(layers) {
 async function refresh(isChosen = false) {
   latest += 1;
   const mine = latest;
+  clearTimeout(timer);
+  isAsking = true;
+  trouble.watch();
+  const lacking = await session.settleWorld().then(() => null, (error) => error);
   const layers = session.state.layers.map((layer) => ({ ...layer }));
-  const notes = await notesOf(layers);
+  const notes = lacking ? [{ faults: { "": worldFault(lacking) }, error: lacking }] : await notesOf(layers);
   if (mine !== latest) return;
+  const passing = notes.map((note) => note.error).find((error) => error?.isPassing);
+  if (passing) return later(passing, () => refresh(isChosen));
+  isAsking = false;
+  trouble.clear();
   controls?.note(notes);
   const errors = notes.map((note) => note.error).filter(Boolean);
   if (errors.some((error) => error instanceof Gone)) return;
@@ -141,20 +199,43 @@ async function refresh(isChosen = false) {
     isUnderstood = false;
     root.dataset.state = "failed";
     status.refused();
-    const other = notes.map((note) => note.faults?.[""]).find(Boolean);
-    const unseen = notes.findIndex((note, i) => note.faults && (i !== controls?.picked || session.state.tab !== "choose"));
-    if (other) banner(other, [["Try again", () => refresh()]]);
-    else if (unseen >= 0) banner(`Layer ${unseen + 1}: ${Object.values(notes[unseen].faults)[0]}`, [["Show it", () => pointOut(unseen)]]);
+    sayFaults(notes, isChosen);
     return;
   }
   isUnderstood = true;
   show(layers, notes.map((note) => note.understood), isChosen);
 }
 
+/** Says what is wrong with layers: at the fields if they were just changed, over the plane if a link leads here. */
+function sayFaults(notes, isChosen) {
+  const other = notes.map((note) => note.faults?.[""]).find(Boolean);
+  const wrong = notes.findIndex((note) => note.faults);
+  const isSeen = wrong === controls?.picked && session.state.tab === "choose";
+  const words = other ?? Object.values(notes[wrong].faults)[0];
+  const named = notes.length > 1 ? `Layer ${wrong + 1}: ${words}` : words;
+  if (isChosen && isSeen && !other) return;
+  if (isChosen) return banner(named, other ? [["Try again", () => refresh()]] : [["Show it", () => pointOut(wrong)]]);
+  /** @type {import("./trouble.js").Buttons} */
+  const buttons = [["Begin afresh", afresh]];
+  if (!other) buttons.unshift(["Show the field", () => pointOut(wrong)]);
+  trouble.refuse("This link leads to points that cannot be drawn.", { said: named, buttons });
+}
+
+/** Why a world cannot be shown, in the page's words. */
+function worldFault(error) {
+  return error.faults?.some(({ field }) => field === "world") ? `This server has no world “${session.state.world}”.` : error.message;
+}
+
+/** Begins with what a visitor sees who comes without a link. */
+function afresh() {
+  trouble.clear();
+  session.choose((state) => Object.assign(state, initial()), "layers", "view", "tab");
+}
+
 /** Shows the fields of a layer that something is wrong with. */
 function pointOut(layer) {
   banner(null);
-  controls.pick(layer);
+  controls?.pick(layer);
   if (session.state.tab !== "choose") session.choose((state) => (state.tab = "choose"), "tab");
   byId("choose").querySelector('[aria-invalid="true"]')?.focus();
 }
@@ -167,16 +248,16 @@ function show(layers, understood, isChosen) {
   if (isTooFar(session.state, nearest)) goBack(nearest);
   banner(notice, notice ? [["Close", () => banner(null)]] : []);
   notice = null;
-  root.dataset.state = "loading";
+  loading();
   shownFirst();
-  plane.show({ layers, spacings, ...palette() });
+  plane.show({ layers, spacings, ...palette(layers) });
   const across = session.state.span / nearest;
   // A choice that leaves no point in view, or too many to tell apart, takes the view along.
   if (isChosen && (across < 4 || across > 2000)) session.state.span *= nearest / before;
   const { x, y, span } = session.state;
   plane.lookAt(x, y, span);
   plane.chunks.retry();
-  for (const part of parts) part.shown?.(layers, understood);
+  for (const part of parts) part.shown(layers, understood);
 }
 
 /** From where there are no points to the place that was looked at before, or to the origin. */
@@ -186,7 +267,7 @@ function goBack(spacing) {
   const isOnPlane = plane.span && !isTooFar(plane.view, spacing);
   const [to, name] = isOnPlane ? [plane.view, "the place before"] : [{ x: place(0), y: place(0) }, "the origin"];
   session.correct((state) => Object.assign(state, { x: to.x, y: to.y }));
-  notice = `${words} is too far out: at this spacing numbers tell points apart up to ${spoken(farthest(spacing), 3)} from the origin. You see ${name}.`;
+  notice = `${words} is too far out: at this spacing, coordinates tell points apart only up to ${spoken(farthest(spacing), 3)} from the origin. Here is ${name} instead.`;
 }
 
 function jump(event) {
@@ -195,13 +276,13 @@ function jump(event) {
   const [x, y] = field.value.split(/[,;]|\s+/).filter(Boolean).map(parsePlace);
   field.setAttribute("aria-invalid", String(!x || !y));
   if (!x || !y) {
-    banner(`“${field.value}” is no place: two numbers are needed, such as 1e12, -3.5.`, [["Close", () => banner(null)]]);
+    banner(`“${field.value}” is not a place. Type two numbers, such as 1e12, -3.5.`, [["Close", () => banner(null)]]);
     return;
   }
   if (plane.isTooFar({ x, y })) {
     field.setAttribute("aria-invalid", "true");
-    const most = spoken(farthest(plane.look.spacing), 3);
-    banner(`“${field.value}” is too far out: at this spacing numbers tell points apart up to ${most} from the origin.`, [["Close", () => banner(null)]]);
+    const most = spoken(farthest(plane.look?.spacing ?? 1), 3);
+    banner(`“${field.value}” is too far out: at this spacing, coordinates tell points apart only up to ${most} from the origin.`, [["Close", () => banner(null)]]);
     return;
   }
   banner(null);
@@ -226,17 +307,17 @@ function tools() {
   byId("home").addEventListener("click", () => {
     byId("jump-at").value = "";
     byId("jump-at").removeAttribute("aria-invalid");
-    session.choose((state) => Object.assign(state, { x: place(0), y: place(0), span: 30 * (plane.look?.spacing ?? 1) }), "view");
+    session.choose((state) => Object.assign(state, { x: place(0), y: place(0), span: initial().span * (plane.look?.spacing ?? 1) }), "view");
   });
   byId("brand").addEventListener("click", (event) => {
     event.preventDefault();
-    session.choose((state) => Object.assign(state, initial()), "layers", "view", "tab");
+    afresh();
   });
   byId("share").addEventListener("click", share);
   byId("fold").addEventListener("click", () => fold(byId("fold").getAttribute("aria-expanded") === "true"));
   watchTheme(byId("theme"), () => {
-    if (plane.look) plane.show({ ...plane.look, ...palette() });
-    for (const part of parts) part.themed?.();
+    if (plane.look) plane.show({ ...plane.look, ...palette(plane.look.layers) });
+    for (const part of parts) part.themed();
   });
 }
 
@@ -247,7 +328,7 @@ async function share() {
   try {
     await navigator.clipboard.writeText(location.href);
   } catch {
-    words = "The link is in the address bar of your browser: this page may not copy it.";
+    words = "The link is in the address bar of your browser: the browser does not let this page copy it.";
   }
   byId("said").textContent = words;
   byId("share").title = words;
@@ -259,51 +340,7 @@ function fold(isFolded) {
   byId("fold").setAttribute("aria-expanded", String(!isFolded));
 }
 
-/** Tabs whose contents lie over the plane. */
-const COVERS = ["gallery", "works"];
-const TABS = ["start", "choose", "understand", "take", "gallery", "works"];
-
-function tabs() {
-  const buttons = TABS.map((name) => byId(`tab-${name}`));
-  buttons.forEach((button, i) => {
-    button.addEventListener("click", () => {
-      fold(false);
-      if (session.state.tab !== TABS[i]) session.choose((state) => (state.tab = TABS[i]), "tab");
-    });
-    button.addEventListener("keydown", (event) => {
-      // What lies over the plane comes before the tabs in the page, but after them for keys.
-      if (event.key === "Tab" && !event.shiftKey && COVERS.includes(TABS[i])) {
-        event.preventDefault();
-        return byId(TABS[i]).focus({ preventScroll: true });
-      }
-      const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-      if (!step) return;
-      const next = buttons[(i + step + buttons.length) % buttons.length];
-      next.focus();
-      next.click();
-    });
-  });
-}
-
-function showTab() {
-  const { tab } = session.state;
-  for (const name of TABS) {
-    const isOpen = name === tab;
-    byId(`tab-${name}`).setAttribute("aria-selected", String(isOpen));
-    byId(`tab-${name}`).tabIndex = isOpen ? 0 : -1;
-    byId(name).hidden = !isOpen;
-  }
-  if (root.dataset.tab !== tab) byId("panel-body").scrollTop = 0;
-  root.dataset.tab = tab;
-  // Nothing that is covered can have the focus.
-  for (const part of byId("stage").children) {
-    if (part.role !== "alert" && part.role !== "status") part.inert = COVERS.includes(tab) && part.id !== tab;
-  }
-  byId("gallery-help").hidden = tab !== "gallery";
-  byId("works-help").hidden = tab !== "works";
-  for (const part of parts) part.opened?.(tab);
-}
-
+/** @type {Controls | null} */
 let controls = null;
 /** The tables of the server. */
 let tables = [];
@@ -316,22 +353,26 @@ const paint = new Paint(session, plane, {
   picked: () => controls?.picked ?? 0,
   say: (words) => banner(words, [["Close", () => banner(null)]]),
 });
-const start = new Start(session);
-parts.push(start, card, understand, take, shade, works, paint);
+const start = new Start(session, () => {
+  fold(matchMedia("(max-width: 46rem)").matches);
+  byId("plane").focus();
+});
+parts.push(pour, start, card, understand, take, shade, works, paint);
 tools();
 skipLinks();
 takeDrops(byId("stage"), stipple);
-tabs();
-showTab();
+const tabs = new Tabs(session, fold, (tab) => {
+  for (const part of parts) part.opened(tab);
+});
 moveBy(byId("plane"), plane, {
-  tapped: (at) => parts.forEach((part) => part.tapped?.(at)),
-  hovered: (at) => parts.forEach((part) => part.hovered?.(at)),
+  tapped: (at) => parts.forEach((part) => part.tapped(at)),
+  hovered: (at) => parts.forEach((part) => part.hovered(at)),
 });
 session.on((changed) => {
   if (changed.has("layers")) settle(tables);
   if (changed.has("layers")) refresh(!changed.has("view"));
   else if (changed.has("view")) plane.lookAt(session.state.x, session.state.y, session.state.span);
-  if (changed.has("tab")) showTab();
+  if (changed.has("tab")) tabs.show();
 });
 
 /** Stipples a picture with the layer that is picked. */
@@ -342,6 +383,7 @@ async function stipple(file) {
     banner(`Sending “${file.name}” …`);
     const members = await sendPicture(file, plane.view);
     banner(null);
+    session.leaveWorld();
     controls.change(members);
   } catch (error) {
     banner(error.message, [["Close", () => banner(null)]]);
@@ -356,7 +398,7 @@ function settle(profiles) {
   const missing = [...new Set(session.state.layers.map((layer) => layer.profile).filter((name) => !names.includes(name)))];
   if (missing.length === 0) return;
   const wasChosen = missing.some((name) => name !== LAYER.profile);
-  if (wasChosen) notice = `This server has no profile “${missing.join("”, “")}”. You see “${standard}” in its place.`;
+  if (wasChosen) notice = `This server has no profile “${missing.join("”, “")}”. Here is “${standard}” instead.`;
   session.correct((state) => {
     for (const layer of state.layers) {
       if (missing.includes(layer.profile)) Object.assign(layer, { profile: standard, alpha: "", map: "" });
@@ -367,8 +409,8 @@ function settle(profiles) {
 /** A server that wants keys is given one. */
 function askForKey() {
   if (byId("key")) return;
-  banner("This server answers only those who have a key. It stays in this tab.");
-  byId("banner").lastElementChild.replaceWith(keyForm(() => {
+  banner("This server needs a key. It is kept in this tab only.");
+  byId("banner").lastElementChild?.replaceWith(keyForm(() => {
     banner(null);
     if (controls) refresh();
     else begin();
@@ -378,10 +420,13 @@ function askForKey() {
 
 /** Shows the layers before the server has said anything, where their spacings need no server. */
 function beginEarly() {
-  const { layers, x, y, span } = session.state;
+  const { layers, x, y, span, world } = session.state;
+  if (world) return;
   const spacings = layers.map(spacingOf);
+  // What a server may not have is looked up first.
+  if (!layers.every(({ profile, alpha, map }) => profile in PROFILE_WORDS && !alpha && !map)) return;
   if (!spacings.every((spacing) => spacing > 1e-100 && spacing < 1e100) || isTooFar(session.state, Math.min(...spacings))) return;
-  plane.show({ layers: layers.map((layer) => ({ ...layer })), spacings, ...palette() });
+  plane.show({ layers: layers.map((layer) => ({ ...layer })), spacings, ...palette(layers) });
   plane.lookAt(x, y, span);
   notesOf(layers).catch(() => {});
 }
@@ -394,11 +439,13 @@ function spacingOf({ by, amount }) {
 /** Begins: first with points, then with what the server has to choose from. */
 async function begin() {
   try {
+    isAsking = true;
+    trouble.watch();
     if (!plane.span) beginEarly();
-    const [{ profiles }, { fields }] = await Promise.all([askJson("/v1/profiles"), askJson("/v1/fields")]);
+    const [{ profiles }, { fields }, worlds] = await Promise.all([askJson("/v1/profiles"), askJson("/v1/fields"), worldNames()]);
     settle(profiles);
     tables = profiles;
-    controls = new Controls(session, profiles, fields, stipple);
+    controls = new Controls(session, { profiles, fields, worlds }, stipple);
     const gallery = new Gallery(session, profiles);
     Object.assign(globalThis.strew, { gallery, controls });
     parts.push(gallery);
@@ -406,11 +453,12 @@ async function begin() {
     await refresh();
   } catch (error) {
     if (error.isLocked) return askForKey();
+    if (error.isPassing) return later(error, begin);
     if (!(error instanceof Gone)) return banner(error.message, [["Try again", begin]]);
     onPresence((gone) => gone || controls || begin());
   }
 }
 
 // For the curious, and for tests.
-globalThis.strew = { plane, start, card, shade, stipple, session, status, understand, take, works, paint };
+globalThis.strew = { plane, pour, start, card, shade, stipple, session, status, understand, take, works, paint };
 begin();

@@ -15,5 +15,5 @@ addEventListener("message", ({ data: { id, points, side } }) => {
   const { least, mean, rdf } = neighborsOf(scaled, across);
   const { image, cells, radial } = spectrumOf(scaled, across);
   const figures = { count, spacing, least, mean, deltaMin: least / HEXAGONAL, deltaAvg: mean / HEXAGONAL };
-  postMessage({ id, figures, rdf, radial, image, cells }, [image.buffer]);
+  postMessage({ id, figures, rdf, radial, image, cells }, { transfer: [image.buffer] });
 });

@@ -9,6 +9,7 @@ export function neighborsOf(points, side) {
   const count = points.length / 2;
   const reach = Math.min(REACH, side / 4);
   const across = Math.max(1, Math.floor(side));
+  /** @type {number[][]} */
   const cells = Array.from({ length: across * across }, () => []);
   const cell = (v) => Math.min(across - 1, Math.max(0, Math.floor((v / side) * across)));
   for (let p = 0; p < count; p += 1) cells[cell(points[2 * p + 1]) * across + cell(points[2 * p])].push(p);

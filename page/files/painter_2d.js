@@ -1,6 +1,7 @@
 // Points by a plain canvas, where there is no WebGL2 or nothing but a processor to do it: the same
 // sheets, the same marks. Sheets of mere dots are set pixel by pixel.
 
+import { contextOf } from "./dom.js";
 import { masksOf, packed, setDots } from "./dots.js";
 import { ARROW, SHAPES, isMarked, slotsOf } from "./marks.js";
 
@@ -45,7 +46,7 @@ function open(c, corners) {
 
 /** A painter. */
 export function plainPainter(canvas) {
-  const context = canvas.getContext("2d", { alpha: false });
+  const context = contextOf(canvas, { alpha: false });
   return context ? new PlainPainter(context, canvas) : null;
 }
 
@@ -68,7 +69,7 @@ class PlainPainter {
   sheet(width, height) {
     const canvas = document.createElement("canvas");
     Object.assign(canvas, { width, height });
-    const context = canvas.getContext("2d", { alpha: false });
+    const context = contextOf(canvas, { alpha: false });
     const image = context.createImageData(width, height);
     return { width, height, canvas, context, image, pixels: new Uint32Array(image.data.buffer) };
   }
@@ -98,11 +99,14 @@ class PlainPainter {
     return this.masks.get(key);
   }
 
-  paint(sheet, chunk, { layer, first, count, corner, zoom, size, color }) {
+  paint(sheet, chunk, { layer, first, count, corner, zoom, size, color, tones }) {
     const [left, top] = [sheet.width / 2 + corner[0], sheet.height / 2 - corner[1]];
     if (sheet.isDots) {
       sheet.isTouched = true;
-      setDots(sheet, chunk, { first, count, left, top, zoom, masks: this.masksFor(size), color: packed(color) });
+      const slot = slotsOf(layer, chunk.columns).variant;
+      setDots(sheet, chunk, {
+        first, count, left, top, zoom, masks: this.masksFor(size), color: packed(color), tones: tones?.map(packed), slot,
+      });
       return;
     }
     const { context } = sheet;
@@ -111,6 +115,7 @@ class PlainPainter {
     context.fillStyle = css(color);
     for (let k = first; k < first + count; k += 1) {
       const [x, y] = [left + data[k * stride] * zoom, top - data[k * stride + 1] * zoom];
+      if (tones) context.fillStyle = css(tones[data[k * stride + slots.variant]] ?? color);
       this.mark(context, layer, [x, y], size, slots, data.subarray(k * stride, (k + 1) * stride));
     }
     context.setTransform(1, 0, 0, 1, 0, 0);

@@ -2,10 +2,13 @@
 // textures, so that a frame of a drag is a copy and not another drawing of all points.
 
 import { ARROW, SHAPES, isMarked, slotsOf } from "./marks.js";
-import { programOf } from "./program.js";
+import { glOn, isSoftware, programOf } from "./program.js";
 
 /** The attributes by their slots. */
 const SLOTS = ["place", "angle", "scale", "variant"];
+
+/** The most kinds that have colors of their own. */
+const TONES = 32;
 
 const VERTEX = `#version 300 es
 in vec2 place;
@@ -13,7 +16,10 @@ in float angle, scale, variant;
 uniform vec2 corner, half_size;
 uniform float zoom, size;
 uniform float shapes;
+uniform vec3 color, tones[${TONES}];
+uniform int kinds;
 flat out float shape, radius;
+flat out vec3 ink;
 flat out vec2 turn;
 void main() {
   gl_Position = vec4((corner + place * zoom) / half_size, 0.0, 1.0);
@@ -21,24 +27,25 @@ void main() {
   gl_PointSize = 2.0 * radius + 1.0;
   shape = shapes < 0.0 ? -shapes : mod(variant, shapes);
   turn = vec2(cos(angle), sin(angle));
+  ink = kinds > 0 ? tones[int(variant) % kinds] : color;
 }`;
 
 const DOT = `#version 300 es
 precision mediump float;
 flat in float radius;
-uniform vec3 color;
+flat in vec3 ink;
 out vec4 result;
 void main() {
   float away = length(gl_PointCoord - 0.5) * (2.0 * radius + 1.0);
   float cover = clamp(radius + 0.5 - away, 0.0, 1.0);
-  result = vec4(color * cover, cover);
+  result = vec4(ink * cover, cover);
 }`;
 
 const MARK = `#version 300 es
 precision highp float;
 flat in float shape, radius;
 flat in vec2 turn;
-uniform vec3 color;
+flat in vec3 ink;
 out vec4 result;
 float box(vec2 p, vec2 reach) {
   vec2 d = abs(p) - reach;
@@ -65,21 +72,16 @@ void main() {
   }
   if (is_open) d = max(d, -d - 0.25);
   float cover = clamp(0.5 - d * radius, 0.0, 1.0);
-  result = vec4(color * cover, cover);
+  result = vec4(ink * cover, cover);
 }`;
-
-const OPTIONS = { alpha: false, antialias: false, depth: false, stencil: false, powerPreference: "high-performance" };
-/** The names of renderers without graphics hardware. */
-const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
 /** Whether WebGL2 is there and is done by hardware; looked at on a canvas that is thrown away. */
 function isFast() {
   const gl = document.createElement("canvas").getContext("webgl2", { failIfMajorPerformanceCaveat: true });
   if (!gl) return false;
-  const names = gl.getExtension("WEBGL_debug_renderer_info");
-  const name = gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  const isHardware = !isSoftware(gl);
   gl.getExtension("WEBGL_lose_context")?.loseContext();
-  return !SOFTWARE.test(String(name));
+  return isHardware;
 }
 
 /**
@@ -88,8 +90,8 @@ function isFast() {
  */
 export function glPainter(canvas, wanted) {
   if (!wanted && !isFast()) return null;
-  const gl = canvas.getContext("webgl2", OPTIONS);
-  return gl && !gl.isContextLost() ? new GlPainter(gl, canvas) : null;
+  const gl = glOn(canvas, { antialias: false, depth: false });
+  return gl && new GlPainter(gl, canvas);
 }
 
 class GlPainter {
@@ -160,7 +162,7 @@ class GlPainter {
    * Paints some of a chunk's points. `corner` is where its corner is from the middle of the sheet, in
    * device pixels with y upward; `zoom` is pixels per unit of the world.
    */
-  paint(sheet, chunk, { layer, first, count, corner, zoom, size, color }) {
+  paint(sheet, chunk, { layer, first, count, corner, zoom, size, color, tones }) {
     const { gl } = this;
     const isMark = isMarked(layer);
     const { program, uniforms } = isMark ? this.marks : this.dots;
@@ -187,6 +189,9 @@ class GlPainter {
     gl.uniform1f(uniforms.size, size);
     gl.uniform1f(uniforms.shapes, layer.variant ? SHAPES.length : -ARROW);
     gl.uniform3f(uniforms.color, ...color);
+    const kinds = tones?.slice(0, TONES) ?? [];
+    gl.uniform1i(uniforms.kinds, kinds.length);
+    if (kinds.length > 0) gl.uniform3fv(uniforms["tones[0]"], kinds.flat());
     gl.drawArrays(gl.POINTS, first, count);
   }
 

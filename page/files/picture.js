@@ -1,5 +1,6 @@
 // A picture that becomes dots: it is sent once, and then named by its digest, chunk by chunk.
 
+import { contextOf } from "./dom.js";
 import { toNumber } from "./place.js";
 import { send } from "./sent.js";
 
@@ -22,7 +23,7 @@ export async function sendPicture(file, view) {
   const document = { raster: { png, bbox, low: 1, high: 0 } };
   const field = await send(document);
   const spacing = Math.sqrt((4 * halfX * halfY) / DOTS);
-  return { field, paint: "", by: "spacing", amount: String(Number(spacing.toPrecision(4))), dot: 1.2 };
+  return { field, paint: "", by: "spacing", amount: String(Number(spacing.toPrecision(4))), dot: 1.2, paper: true, shade: false };
 }
 
 /** The picture as a PNG in base64, smaller if it is too large. */
@@ -31,13 +32,13 @@ async function encoded(file) {
   try {
     picture = await createImageBitmap(file);
   } catch {
-    throw new Error(`“${file.name}” is no picture that this browser reads.`);
+    throw new Error(`This browser cannot read “${file.name}”.`);
   }
   const scale = Math.min(1, Math.sqrt(MOST_PIXELS / (picture.width * picture.height)));
   const [width, height] = [picture.width, picture.height].map((side) => Math.max(1, Math.floor(side * scale)));
   const canvas = document.createElement("canvas");
   Object.assign(canvas, { width, height });
-  const context = canvas.getContext("2d");
+  const context = contextOf(canvas);
   context.fillStyle = "#fff";
   context.fillRect(0, 0, width, height);
   context.drawImage(picture, 0, 0, width, height);

@@ -1,7 +1,17 @@
 // Coordinates that stay exact far out: an integer and a fraction in [0, 1), added up. At 1e12 a
 // single double tells places apart by 1e-4 only; the fraction here keeps all of its digits.
 
-/** A coordinate: `i` is an integer, `f` is in [0, 1). */
+/**
+ * A coordinate: `i` is an integer, `f` is in [0, 1).
+ * @typedef {{ i: number, f: number }} Place
+ */
+
+/**
+ * A coordinate from two numbers.
+ * @param {number} i
+ * @param {number} f
+ * @returns {Place}
+ */
 export function place(i, f = 0) {
   const whole = Math.floor(i);
   const sum = f + (i - whole);
@@ -9,26 +19,40 @@ export function place(i, f = 0) {
   return { i: whole + carry, f: sum - carry };
 }
 
-/** A coordinate moved by a distance. */
+/**
+ * A coordinate moved by a distance.
+ * @param {Place} at
+ * @param {number} by
+ */
 export function moved(at, by) {
   const sum = at.f + by;
   const carry = Math.floor(sum);
   return { i: at.i + carry, f: sum - carry };
 }
 
-/** How far `a` is from `b`: exact if they are near each other. */
+/**
+ * How far `a` is from `b`: exact if they are near each other.
+ * @param {Place} a
+ * @param {Place} b
+ */
 export function distance(a, b) {
   return (a.i - b.i) + (a.f - b.f);
 }
 
-/** The nearest double. */
+/**
+ * The nearest double.
+ * @param {Place} at
+ */
 export function toNumber(at) {
   return at.i + at.f;
 }
 
 const DECIMAL = /^([+-]?)(\d*)(?:\.(\d*))?(?:e([+-]?\d{1,3}))?$/i;
 
-/** Reads a decimal number, such as `-12.5` or `1e12`; `null` if it is none. */
+/**
+ * Reads a decimal number, such as `-12.5` or `1e12`; `null` if it is none.
+ * @param {string} text
+ */
 export function parsePlace(text) {
   const parts = DECIMAL.exec(text.trim().replace(/[\s_']/g, "").replace("−", "-"));
   if (!parts || !(parts[2] || parts[3])) return null;
@@ -43,7 +67,10 @@ export function parsePlace(text) {
   return sign === "-" ? place(-i, -f) : place(i, f);
 }
 
-/** Writes a coordinate with at most `decimals` decimals, without a loss before the point. */
+/**
+ * Writes a coordinate with at most `decimals` decimals, without a loss before the point.
+ * @param {Place} at
+ */
 export function formatPlace(at, decimals = 12) {
   if (Math.abs(at.i) > Number.MAX_SAFE_INTEGER) return String(toNumber(at));
   const isNegative = at.i < 0;
@@ -63,7 +90,10 @@ export function formatPlace(at, decimals = 12) {
   return `${isNegative && !isZero ? "-" : ""}${BigInt(whole)}${tail}`;
 }
 
-/** Decimals that tell steps of a size apart. */
+/**
+ * Decimals that tell steps of a size apart.
+ * @param {number} step
+ */
 export function decimalsFor(step) {
   return Math.max(0, Math.min(100, Math.ceil(-Math.log10(step))));
 }

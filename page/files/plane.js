@@ -7,25 +7,64 @@ import { plainPainter } from "./painter_2d.js";
 import { moved, place, toNumber } from "./place.js";
 import { Sheets } from "./sheets.js";
 
-/** A view shows at least half a spacing, and at most this number of spacings: a hundred million points, thinned. */
+/** A view shows at least half a spacing, and at most this number of spacings: hundreds of millions of points, drawn as gray. */
 const LEAST_SPAN = 0.5;
 const MOST_SPAN = 2e4;
 /** A zoom counts as over after this time, in milliseconds. */
 const REST = 140;
 
+/** @typedef {import("./place.js").Place} Place */
+/** @typedef {import("./chunks.js").Chunk} Chunk */
+
 /**
- * A canvas that shows the points of some layers. `events` are called as things happen:
- * `moved()` when the view has changed, `progress(share)`, `settled()` when all in view is painted,
- * `failed(error)`.
+ * What a canvas shows of the plane.
+ * @typedef {object} View
+ * @property {Place} x The middle.
+ * @property {Place} y
+ * @property {number} unit World units for each CSS pixel.
+ * @property {number} width In CSS pixels.
+ * @property {number} height
+ * @property {number} ratio Device pixels for each of them.
+ * @property {number[]} pixels Width and height in device pixels.
  */
+
+/**
+ * What is shown, and in which colors: red, green and blue from 0 to 1.
+ * @typedef {object} Look
+ * @property {import("./state.js").Layer[]} layers
+ * @property {number[]} spacings The mean spacing of each layer.
+ * @property {number[][]} colors
+ * @property {number[]} ground
+ */
+
+/**
+ * What a plane reports.
+ * @typedef {object} Events
+ * @property {() => void} moved The view has changed.
+ * @property {(share: number) => void} progress A share of what is in view has arrived.
+ * @property {() => void} settled All in view is painted.
+ * @property {(error: Error) => void} failed
+ */
+
+/** A canvas that shows the points of some layers. */
 export class Plane {
+  /**
+   * @param {HTMLCanvasElement} canvas
+   * @param {string} renderer `2d`, `webgl2`, or nothing for the faster one.
+   * @param {Events} events
+   */
   constructor(canvas, renderer, events) {
     this.events = events;
+    /** @type {any} */
     this.painter = (renderer === "2d" ? null : glPainter(canvas, renderer === "webgl2")) ?? plainPainter(canvas);
     this.canvas = canvas;
     this.chunks = new Chunks(() => this.draw(), events.failed);
     this.sheets = new Sheets(this.painter, this.chunks);
+    /** @type {View} */
     this.view = { x: place(0), y: place(0), unit: 1, width: 1, height: 1, ratio: 1, pixels: [1, 1] };
+    /** How much of the world the shorter side shows; 0 until a place is looked at. */
+    this.span = 0;
+    /** @type {Look & { spacing: number } | null} */
     this.look = null;
     this.isWaiting = false;
     this.zoomedAt = -Infinity;
@@ -47,7 +86,10 @@ export class Plane {
     this.events.moved();
   }
 
-  /** Says what is shown: the layers with their spacings, colors and the color of the ground. */
+  /**
+   * Says what is shown: the layers with their spacings, colors and the color of the ground.
+   * @param {Look} look
+   */
   show(look) {
     const isNew = this.look === null;
     const before = this.chunks.identity;
@@ -57,7 +99,11 @@ export class Plane {
     this.draw();
   }
 
-  /** Looks at a place; `span` is how much of the world the shorter side shows. */
+  /**
+   * Looks at a place; `span` is how much of the world the shorter side shows.
+   * @param {Place} x
+   * @param {Place} y
+   */
   lookAt(x, y, span = this.span) {
     this.span = this.bounded(span);
     Object.assign(this.view, { x, y, unit: this.span / Math.min(this.view.width, this.view.height) });
@@ -65,13 +111,18 @@ export class Plane {
     this.events.moved();
   }
 
+  /** @param {number} span */
   bounded(span) {
     const spacing = this.look?.spacing;
     if (!spacing) return span;
     return Math.min(MOST_SPAN * spacing, Math.max(LEAST_SPAN * spacing, span));
   }
 
-  /** Moves the view by CSS pixels, as a hand moves the plane. */
+  /**
+   * Moves the view by CSS pixels, as a hand moves the plane.
+   * @param {number} dx
+   * @param {number} dy
+   */
   drag(dx, dy) {
     const { view } = this;
     view.x = this.within(moved(view.x, -dx * view.unit));
@@ -80,14 +131,20 @@ export class Plane {
     this.events.moved();
   }
 
-  /** A coordinate, or the last one that has points. */
+  /**
+   * A coordinate, or the last one that has points.
+   * @param {Place} at
+   */
   within(at) {
     if (!this.look) return at;
     const most = farthest(this.look.spacing);
     return Math.abs(toNumber(at)) > most ? place(Math.sign(toNumber(at)) * most) : at;
   }
 
-  /** Enlarges by a factor about a place on the canvas, in CSS pixels. */
+  /**
+   * Enlarges by a factor about a place on the canvas, in CSS pixels.
+   * @param {number} factor
+   */
   zoom(factor, at = [this.view.width / 2, this.view.height / 2]) {
     const { view } = this;
     const span = this.bounded(this.span / factor);
@@ -125,22 +182,33 @@ export class Plane {
     if (this.sheets.front.isFull && !isZooming && this.sheets.front.unit === this.view.unit) this.events.settled();
   }
 
-  /** Whether a place is too far out for numbers to tell points apart. */
+  /**
+   * Whether a place is too far out for numbers to tell points apart.
+   * @param {{ x: Place, y: Place }} at
+   */
   isTooFar(at) {
     return this.look !== null && isTooFar(at, this.look.spacing);
   }
 
-  /** The share of the points that is shown. */
+  /** The share of the points that is shown; all of them where none is drawn. */
   get keep() {
-    return this.sheets.front?.keep ?? 1;
+    return this.isGray ? 1 : this.sheets.front?.keep ?? 1;
+  }
+
+  /** Whether density is drawn as gray, in place of points. */
+  get isGray() {
+    return this.sheets.front?.isGray ?? false;
   }
 
   /** How large a chunk is here. */
   get chunkSize() {
-    return chunkSize(this.view, this.look.spacing);
+    return chunkSize(this.view, this.look?.spacing ?? 1);
   }
 
-  /** Calls `visit(layer, x, y, chunk, k)` for the points in view, x and y from its middle. */
+  /**
+   * Calls `visit(layer, x, y, chunk, k)` for the points in view, x and y from its middle.
+   * @param {(layer: number, x: number, y: number, chunk: Chunk, k: number) => void} visit
+   */
   each(visit) {
     const { view, sheets } = this;
     const [halfX, halfY] = [(view.width * view.unit) / 2, (view.height * view.unit) / 2];
@@ -157,11 +225,33 @@ export class Plane {
     }
   }
 
-  /** The point nearest to a place on the canvas, if it is within a distance in CSS pixels. */
+  /**
+   * Calls `visit(x, y, chunk, k)` for the points in view and up to `margin` around it, x and y from its middle.
+   * @param {number} margin In units of the world.
+   * @param {(x: number, y: number, chunk: any, k: number) => void} visit
+   */
+  near(margin, visit) {
+    const { view, sheets } = this;
+    const [halfX, halfY] = [(view.width * view.unit) / 2 + margin, (view.height * view.unit) / 2 + margin];
+    for (const { chunk } of sheets.front?.parts ?? []) {
+      const [left, low] = [cornerFrom(chunk.cx, chunk.size, view.x), cornerFrom(chunk.cy, chunk.size, view.y)];
+      for (let k = 0; k < chunk.count; k += 1) {
+        const [x, y] = [left + chunk.data[k * chunk.stride], low + chunk.data[k * chunk.stride + 1]];
+        if (Math.abs(x) < halfX && Math.abs(y) < halfY) visit(x, y, chunk, k);
+      }
+    }
+  }
+
+  /**
+   * The point nearest to a place on the canvas, if it is within a distance in CSS pixels.
+   * @param {[number, number]} at
+   * @param {number} within
+   */
   pointAt([px, py], within) {
     const { view, sheets } = this;
     const [x, y] = [(px - view.width / 2) * view.unit, (view.height / 2 - py) * view.unit];
     const reach = within * view.unit;
+    /** @type {{ chunk: Chunk, k: number } | null} */
     let best = null;
     let nearest = reach ** 2;
     for (const { chunk } of sheets.front?.parts ?? []) {
@@ -178,11 +268,15 @@ export class Plane {
     return best && this.pointOf(best.chunk, best.k);
   }
 
-  /** A point of a chunk: its layer and where it is. */
+  /**
+   * A point of a chunk: its layer and where it is.
+   * @param {Chunk} chunk
+   * @param {number} k
+   */
   pointOf(chunk, k) {
     const { data, stride } = chunk;
     const layer = chunk.columns[0] === "layer" ? data[k * stride + 2] : 0;
-    const at = (index, offset) => moved(place(index * chunk.size, 0), offset);
+    const at = (/** @type {number} */ index, /** @type {number} */ offset) => moved(place(index * chunk.size, 0), offset);
     return { layer, x: at(chunk.cx, data[k * stride]), y: at(chunk.cy, data[k * stride + 1]) };
   }
 }

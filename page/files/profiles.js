@@ -2,11 +2,11 @@
 
 /** The uses of the built-in profiles. */
 export const PROFILE_WORDS = {
-  blue: "Even and without direction: the one to begin with.",
+  blue: "Even and without direction: the one to start with.",
   sharp: "Even with sharper order, close to the best of its kind.",
   spaced: "Points keep as far apart as they can.",
   lloyd: "Centers of their own cells, almost a honeycomb.",
-  step: "No low frequencies at all, the rest as random.",
+  step: "No low frequencies at all, the rest random.",
   green: "Clusters of one size, evenly strewn.",
   pink: "Clouds of all sizes, as in nature.",
   "single-peak": "One frequency stands out.",

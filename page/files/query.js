@@ -7,12 +7,12 @@ import { documentOf } from "./sent.js";
 
 /** The attributes that a layer shows, in the order in which they are requested. */
 export function attributesOf(layer) {
-  return ["angle", "scale", "variant", "rank"].filter((name) => layer[name]);
+  return ["angle", "scale", "variant", "rank"].filter((name) => layer[name] || (name === "variant" && layer.spread));
 }
 
-/** The names of a layer's variants. */
+/** The names of a layer's variants, in the order in which the server numbers them. */
 export function variantNames(layer) {
-  return layer.variants.split(",").map((one) => one.split(":")[0].trim()).filter(Boolean);
+  return layer.variants.split(",").map((one) => one.split(":")[0].trim()).filter(Boolean).sort();
 }
 
 /** The parameters that say what the points of a layer are, as pairs. */
@@ -24,12 +24,24 @@ export function setOf(layer, keep = 1) {
   if (layer.warp !== "") pairs.push(["warp", layer.warp]);
   if (layer.settle !== "") pairs.push(["settle", layer.settle]);
   if (layer.field) pairs.push(["field", layer.field]);
-  if (keep < 1) pairs.push(["lod", String(keep)]);
+  const share = Math.min(keep, Number(layer.lod) || 1);
+  if (share < 1) pairs.push(["lod", String(share)]);
   const attributes = attributesOf(layer);
   if (attributes.length > 0) pairs.push(["attributes", attributes.join(",")]);
   if (layer.scale) pairs.push(["scale_range", layer.range.replace(/\s/g, "")]);
-  if (layer.variant) pairs.push(["variants", layer.variants.replace(/\s/g, "")]);
+  if (layer.variant || layer.spread) pairs.push(["variants", layer.variants.replace(/\s/g, "")]);
+  if (layer.spread && layer.spread !== "chance") pairs.push(["spread", layer.spread]);
   return pairs;
+}
+
+/** The world that layers are of, `{ name, seed }`, or nothing. */
+export function worldIn(layers) {
+  return layers[0].world ?? null;
+}
+
+/** The parameters that name a world, and the share of its points, as pairs. */
+export function worldPairs({ name, seed }, keep = 1) {
+  return [["world", name], ...(seed ? [["seed", seed]] : []), ...(keep < 1 ? [["lod", String(keep)]] : [])];
 }
 
 /** Pairs as a query string. */
@@ -62,7 +74,7 @@ function numberOr(text) {
 }
 
 /** The name of a layer in requests, by its index. */
-export function layerName(i) {
+function layerName(i) {
   return `layer${i + 1}`;
 }
 
@@ -74,6 +86,7 @@ export function togetherBody(layers) {
 /** Several layers over a region, as the body of `POST /v1/points:query`. */
 export function bodyOf(layers, region, keep = 1, looks = {}, isWhole = false) {
   const list = layers.map((layer, i) => {
+    /** @type {Record<string, any>} */
     const members = { name: layerName(i), ...memberOf(layer, keep, isWhole) };
     const clear = Number(layer.clear);
     if (i > 0 && clear > 0) {
@@ -84,8 +97,19 @@ export function bodyOf(layers, region, keep = 1, looks = {}, isWhole = false) {
   return { region, layers: list, ...looks };
 }
 
-/** The request for a chunk as packed `f32`: `{ path, body }`, the body only for several layers. */
+/**
+ * The request for a chunk as packed `f32`: `{ path, body }`, the body only for several layers.
+ * @param {import("./state.js").Layer[]} layers
+ * @param {import("./chunks.js").Address} address
+ * @param {number} keep
+ * @returns {{ path: string, body?: string }}
+ */
 export function chunkRequest(layers, { size, cx, cy }, keep) {
+  const world = worldIn(layers);
+  if (world) {
+    const pairs = worldPairs(world, keep).slice(1);
+    return { path: `/v1/worlds/${encodeURIComponent(world.name)}/chunks/${size}/${cx}/${cy}?${joined([...pairs, ["format", "f32"]])}` };
+  }
   if (layers.length === 1) {
     const query = joined([...setOf(layers[0], keep), ["format", "f32"]]);
     return { path: `/v1/chunks/${size}/${cx}/${cy}?${query}` };
@@ -96,6 +120,7 @@ export function chunkRequest(layers, { size, cx, cy }, keep) {
 
 /** The columns of packed answers besides x and y, as the server joins those of several layers. */
 export function columnsOf(layers) {
+  if (worldIn(layers)) return layers[0].columns;
   const columns = layers.length > 1 ? ["layer"] : [];
   for (const name of layers.flatMap(attributesOf)) {
     if (!columns.includes(name)) columns.push(name);
@@ -105,7 +130,7 @@ export function columnsOf(layers) {
 
 /** All names of variants, as the server joins those of several layers. */
 export function allVariants(layers) {
-  return [...new Set(layers.filter((layer) => layer.variant).flatMap(variantNames))];
+  return [...new Set(layers.filter((layer) => layer.variant || layer.spread).flatMap(variantNames))];
 }
 
 /** The box of a view as four decimal numbers, cut to what can be seen: a sixteenth of a pixel. */

@@ -33,7 +33,10 @@ function isMissing(error) {
   return error instanceof Problem && (error.status === 404 || /no such field/.test(error.message));
 }
 
-/** Posts a field. A refusal is final here: the remedy below posts fields itself, and would wait for itself. */
+/**
+ * Posts a field. A refusal is final here: the remedy below posts fields itself, and would wait for itself.
+ * @returns {Promise<any>}
+ */
 async function post(body, whole) {
   try {
     return await askJson("/v1/fields", { body, isAgain: true });

@@ -1,16 +1,31 @@
 // The choices on the page, kept in step with the address and with the server's resolved values.
 
 import { askJson } from "./api.js";
-import { joined, setOf, togetherBody } from "./query.js";
-import { fromHash, toHash } from "./state.js";
+import { joined, setOf, togetherBody, worldIn } from "./query.js";
+import { LAYER, fromHash, toHash } from "./state.js";
 import { settled } from "./dom.js";
+import { layersOfWorld } from "./worlds.js";
 
-/** One choice at a time; `listeners` hear what has changed: `layers`, `picked`, `view`, `tab`, `works`. */
+/** @typedef {import("./place.js").Place} Place */
+/** @typedef {import("./state.js").Layer} Layer */
+/** @typedef {import("./state.js").State} State */
+/** @typedef {"layers" | "picked" | "view" | "tab" | "works"} Changed */
+
+/**
+ * The server's values of a layer, everything filled in.
+ * @typedef {Api.Query & { spacing: number, density: number, least_distance: number }} Understood
+ */
+
+/** One choice at a time; listeners hear what has changed. */
 export class Session {
   constructor() {
     this.state = fromHash(location.hash);
+    /** @type {Set<(changed: Set<Changed>) => void>} */
     this.listeners = new Set();
-    /** The server's resolved values of each layer, by its parameters. */
+    /**
+     * The server's values of each layer, by its parameters.
+     * @type {Map<string, Promise<Understood>>}
+     */
     this.understood = new Map();
     this.write = settled(250, () => this.put("replaceState"));
     this.isHeld = false;
@@ -24,14 +39,17 @@ export class Session {
     });
   }
 
+  /** @param {(changed: Set<Changed>) => void} listener */
   on(listener) {
     this.listeners.add(listener);
   }
 
+  /** @param {Changed[]} changed */
   tell(...changed) {
     for (const listener of this.listeners) listener(new Set(changed));
   }
 
+  /** @param {"pushState" | "replaceState"} how */
   put(how) {
     const hash = toHash(this.state);
     if (hash !== location.hash) history[how](null, "", hash);
@@ -43,7 +61,11 @@ export class Session {
     this.put("replaceState");
   }
 
-  /** A choice that Back undoes. */
+  /**
+   * A choice that Back undoes.
+   * @param {(state: State) => void} change
+   * @param {Changed[]} changed
+   */
   choose(change, ...changed) {
     this.write.cancel();
     this.isHeld = false;
@@ -54,7 +76,11 @@ export class Session {
     this.tell(...changed);
   }
 
-  /** A choice that changes while a slider is held: one step for Back, which `choose` or `release` ends. */
+  /**
+   * A choice that changes while a slider is held: one step for Back, which `choose` or `release` ends.
+   * @param {(state: State) => void} change
+   * @param {Changed[]} changed
+   */
   hold(change, ...changed) {
     if (!this.isHeld) this.choose(change, ...changed);
     else {
@@ -69,22 +95,32 @@ export class Session {
     this.isHeld = false;
   }
 
-  /** A correction of what cannot be shown: no step of its own. */
+  /**
+   * A correction of what cannot be shown: no step of its own.
+   * @param {(state: State) => void} change
+   */
   correct(change) {
     this.write.cancel();
     change(this.state);
     this.put("replaceState");
   }
 
-  /** A move of the view: it is in the address, but no step of its own. */
+  /**
+   * A move of the view: it is in the address, but no step of its own.
+   * @param {{ x: Place, y: Place }} view
+   * @param {number} span
+   */
   viewed(view, span) {
     Object.assign(this.state, { x: view.x, y: view.y, span });
     this.write();
   }
 
-  /** The fault of layers together: `{ layer, error }`, or nothing. */
+  /**
+   * The fault of layers together: `{ layer, error }`, or nothing.
+   * @param {Layer[]} layers
+   */
   async understandTogether(layers) {
-    if (layers.length === 1 || layers.every((layer) => !layer.clear.trim())) return null;
+    if (layers.length === 1 || worldIn(layers) || layers.every((layer) => !layer.clear.trim())) return null;
     try {
       await askJson("/v1/count", { body: togetherBody(layers) });
       return null;
@@ -94,13 +130,33 @@ export class Session {
     }
   }
 
-  /** The server's understanding of a layer: `{ spacing, density, least_distance, … }`. */
+  /** Sees that the layers are those of the world that was chosen, or of none. */
+  async settleWorld() {
+    const { world, worldSeed, layers } = this.state;
+    const held = worldIn(layers);
+    if ((held?.name ?? "") === world && (held?.seed ?? "") === (world && worldSeed)) return;
+    const settled = world ? await layersOfWorld(world, worldSeed) : [{ ...LAYER }];
+    if (this.state.world === world && this.state.worldSeed === worldSeed) this.state.layers = settled;
+  }
+
+  /** Leaves the world that is shown, if one is, for a layer of its own. */
+  leaveWorld() {
+    if (!this.state.world) return;
+    Object.assign(this.state, { world: "", worldSeed: "", layers: [{ ...LAYER }] });
+  }
+
+  /**
+   * The server's understanding of a layer.
+   * @param {Layer} layer
+   * @returns {Understood | Promise<Understood>}
+   */
   understand(layer) {
+    if (layer.world) return layer.understood;
     const query = joined(setOf(layer));
     const known = this.understood.get(query);
     if (known) return known;
     // A box of no size has no points to count.
-    const asked = askJson(`/v1/count?bbox=0,0,1e-300,1e-300&${query}`).then((answer) => answer.query);
+    const asked = askJson(`/v1/count?bbox=0,0,1e-300,1e-300&${query}`).then(({ query: all }) => /** @type {Understood} */ (all));
     if (this.understood.size > 200) this.understood.clear();
     this.understood.set(query, asked);
     asked.catch(() => this.understood.delete(query));

@@ -1,9 +1,9 @@
 // Sheets, painted once and shown in many frames: a sheet is larger than the canvas, so that a drag
 // only moves it. The one before stays underneath until the next one is full.
 
-import { chunkSize, chunksOf, cornerFrom, shareFor } from "./grid.js";
+import { chunkSize, chunksOf, cornerFrom, isBeyondPoints, shareFor } from "./grid.js";
 import { runsOf } from "./chunks.js";
-import { dotSize, isMarked, markSize } from "./marks.js";
+import { isColored, sizesOf, tonesOf } from "./marks.js";
 import { distance } from "./place.js";
 
 /** How much larger than the canvas a sheet is, on each side, as a share of the canvas. */
@@ -12,14 +12,20 @@ const MARGIN = 0.2;
 const PATIENCE = 6;
 /** How far a zoom may stretch a sheet while it goes on. */
 const STRETCH = 1.6;
+/** How much of the ground the densest layer covers where density is drawn as gray. */
+export const GRAY = 0.55;
 
 export class Sheets {
   constructor(painter, chunks) {
     this.painter = painter;
     this.chunks = chunks;
+    /** @type {any} */
     this.front = null;
+    /** @type {any} */
     this.back = null;
+    /** @type {any} */
     this.spare = null;
+    this.blank = false;
   }
 
   /** Forgets what is painted: the next frame begins anew, with the old underneath if it still fits. */
@@ -80,14 +86,15 @@ export class Sheets {
       return Math.min(painter.most, wanted + (wanted % 2));
     });
     const surface = this.surface(width, height);
-    painter.clear(surface, look.ground, look.layers);
+    const isGray = isBeyondPoints(view, look.spacings);
+    painter.clear(surface, isGray ? grayOf(look) : look.ground, look.layers);
     const { x, y, unit, ratio } = view;
     const wide = { x, y, unit, width: width / ratio, height: height / ratio };
     const size = chunkSize(view, look.spacing);
     const keep = shareFor(view, look.spacings);
-    const wanted = this.chunks.want(chunksOf(wide, size), keep);
+    const wanted = this.chunks.want(isGray ? [] : chunksOf(wide, size), keep);
     this.front = {
-      surface, x, y, unit, ratio, size, keep, canvas: [...view.pixels],
+      surface, x, y, unit, ratio, size, keep, isGray, canvas: [...view.pixels],
       parts: wanted.map((chunk) => ({ chunk, done: 0, isWhole: false })),
       isFull: false, isStale: false,
     };
@@ -120,15 +127,15 @@ export class Sheets {
     const { chunk } = part;
     const pixel = front.unit / front.ratio;
     const corner = [cornerFrom(chunk.cx, chunk.size, front.x) / pixel, cornerFrom(chunk.cy, chunk.size, front.y) / pixel];
+    front.sizes ??= sizesOf(look.layers, look.spacings.map((spacing) => spacing / Math.sqrt(front.keep)), front.unit);
     for (const run of runsOf(chunk)) {
       const first = Math.max(run.first, part.done);
       const count = Math.min(run.first + run.count, until) - first;
       if (count <= 0) continue;
       const layer = look.layers[run.layer];
-      const gap = look.spacings[run.layer] / Math.sqrt(front.keep) / front.unit;
-      const size = (isMarked(layer) ? markSize : dotSize)(gap, layer.dot) * front.ratio;
+      const tones = isColored(layer) ? tonesOf(look.layers, run.layer, look.colors) : null;
       painter.paint(front.surface, chunk, {
-        layer, first, count, corner, zoom: 1 / pixel, size, color: look.colors[layer.color],
+        layer, first, count, corner, zoom: 1 / pixel, size: front.sizes[run.layer] * front.ratio, color: look.colors[layer.color], tones,
       });
     }
   }
@@ -162,4 +169,13 @@ export class Sheets {
     this.spare = this[name].surface;
     this[name] = null;
   }
+}
+
+/** The ground under layers that are too dense for points: those everywhere mix their colors into it. */
+function grayOf({ ground, colors, layers, spacings }) {
+  const nearest = Math.min(...spacings);
+  return layers.reduce((mix, layer, i) => {
+    const share = layer.field ? 0 : (GRAY * nearest) / spacings[i];
+    return mix.map((v, c) => v + (colors[layer.color][c] - v) * share);
+  }, ground);
 }

@@ -6,7 +6,7 @@ import { transform } from "./fft.js";
 /** Rings are measured up to this frequency. */
 export const MOST_NU = 3;
 /** The picture and the curve end at this frequency. */
-export const DRAWN_NU = 2.5;
+const DRAWN_NU = 2.5;
 /** The most cells along a side of the picture. */
 const CELLS = 201;
 /** The mean of the taper's square: C(16, 8)/2¹⁶. */

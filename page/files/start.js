@@ -1,13 +1,16 @@
-// The tab Start: what this is, three kinds of points side by side, and views to begin with.
+// The tab Start: three cards to begin with, three kinds of points side by side, and more views. Their places are in the
+// page from the start; the pictures are drawn from the server's points when the plane is at rest.
 
 import { ask } from "./api.js";
 import { prepared, spectrumPicture } from "./charts.js";
 import { runsOf } from "./chunks.js";
-import { byId, make } from "./dom.js";
+import { byId } from "./dom.js";
 import { measure } from "./measure.js";
 import { json } from "./digits.js";
+import { Part } from "./part.js";
 import { bodyOf, columnsOf, joined, setOf } from "./query.js";
-import { fromHash } from "./state.js";
+import { isColored, tonesOf } from "./marks.js";
+import { fromHash, initial } from "./state.js";
 import { palette } from "./theme.js";
 
 /** The points of each kind, and how many of them lie along a side. */
@@ -17,30 +20,26 @@ const COUNT = ACROSS ** 2;
 /** A set that repeats. */
 const TILE = "periodic=5041&profile=blue&map=s&spacing=1&seed=7";
 
-/** Views to begin with: a name, words, the address, and how the picture differs from
- * points in a box. One with a `page` opens that instead of the plane. */
+/**
+ * Views to begin with: an address, and how the picture differs from points in a box. One with a `page` is a link to it;
+ * `coarse` is the spacing of the picture, `photo` is shown instead, `isOpen` opens the plane with nothing before it.
+ */
 const VIEWS = [
+  { id: "walk", page: "/walk", photo: "/page/forest.jpg" },
+  { id: "portrait", hash: "#at=50,56&span=118&profile=blue&amount=0.42&seed=1&field=portrait&paper=1&dot=2", coarse: "0.6" },
+  { id: "plane", hash: "#at=0,0&span=13&profile=blue&amount=1&seed=1", isOpen: true },
   {
-    id: "forest", name: "A forest with rocks and a road", words: "Two kinds that keep clear of each other, in a field.",
-    hash: "#at=-60,-5&span=100&layers=2&profile=blue&amount=3&seed=7&field=forest&color=3&dot=1.3&scale=1&range=0.6,1.3"
-      + "&2.profile=spaced&2.amount=7&2.seed=4&2.field=forest&2.shade=0&2.color=4&2.dot=1.2&2.variant=1&2.variants=rock:2,boulder:1&2.clear=2.2",
+    id: "forest",
+    hash: "#at=-60,-5&span=100&layers=2&profile=blue&amount=3&seed=7&field=forest&color=9&dot=1.9&scale=1&range=0.6,1.2"
+      + "&spread=chance&variants=oak:3,pine:2"
+      + "&2.profile=spaced&2.amount=7&2.seed=4&2.field=forest&2.color=8&2.dot=1.5&2.scale=1&2.range=0.7,1.3&2.clear=2.4",
   },
+  { id: "sampling", hash: "#at=0,0&span=64&profile=blue&amount=1&seed=3&tab=understand", hasSpectrum: true },
+  { id: "tile", hash: "#at=0,0&span=24&profile=blue&amount=1&map=s&seed=7&color=1", page: "/tile" },
   {
-    id: "portrait", name: "A stippled portrait", words: "Dots as dense as a picture is dark. Drop your own on the plane.",
-    hash: "#at=50,56&span=118&profile=blue&amount=0.42&seed=1&field=portrait&shade=0&dot=2",
-  },
-  {
-    id: "sampling", name: "A sampling pattern", words: "With its spectrum: nothing at low frequencies, no direction.",
-    hash: "#at=0,0&span=64&profile=blue&amount=1&seed=3&tab=understand", hasSpectrum: true,
-  },
-  {
-    id: "tile", name: "A tileable texture", words: "5,041 points that repeat without a seam; and masks for dithering.",
-    hash: "#at=0,0&span=24&profile=blue&amount=1&map=s&seed=7&color=1",
-    page: "/tile",
-  },
-  {
-    id: "detail", name: "Level of detail", words: "Zoom out: the points of lowest rank stand for all of them.",
-    hash: "#at=0,0&span=1600&profile=blue&amount=1&seed=1", bands: [1, 0.25, 0.0625],
+    id: "detail",
+    hash: "#at=0,0&span=56&layers=3&profile=blue&amount=1&seed=1&dot=0.5&2.amount=1&2.seed=1&2.color=1&2.dot=2&2.lod=0.0625"
+      + "&3.amount=1&3.seed=1&3.color=2&3.dot=4&3.lod=0.00390625",
   },
 ];
 
@@ -78,38 +77,39 @@ async function strewn(seed) {
   return Float64Array.from(points.slice(0, COUNT).flatMap(([x, y]) => [x / ACROSS, y / height]));
 }
 
-const KINDS = [["white", "White noise", whiteNoise], ["jitter", "Jittered grid", jitteredGrid], ["strew", "Strew", strewn]];
+/** @type {[string, (seed: number) => any][]} */
+const KINDS = [["white", whiteNoise], ["jitter", jitteredGrid], ["strew", strewn]];
 
-export class Start {
-  constructor(session) {
+export class Start extends Part {
+  /** `opened()` is called when the plane alone is to be seen. */
+  constructor(session, opened) {
+    super();
     this.session = session;
+    this.shows = opened;
     this.seed = 1;
     this.isFilled = false;
-    this.trio = KINDS.map(([id, name]) => ({ id, name, canvas: make("canvas", { id: `kind-${id}`, role: "img", "aria-label": `${COUNT} points of ${name}` }) }));
+    /** @type {any[]} */
+    this.trio = KINDS.map(([id]) => ({ id, canvas: byId(`kind-${id}`) }));
     this.views = VIEWS.map((view) => this.view(view));
-    byId("kinds").replaceChildren(...this.trio.map(({ name, canvas }) => make("figure", {}, canvas, make("figcaption", {}, name))));
     byId("kinds-again").addEventListener("click", () => {
       this.seed += 1;
       this.compare();
     });
-    byId("views").replaceChildren(...this.views.map((view) => view.element));
   }
 
-  view({ id, name, words, ...how }) {
-    const canvas = make("canvas", { "aria-hidden": "true" });
-    const open = () => {
-      this.session.choose((state) => {
-        const { renderer, works } = state;
-        Object.assign(state, fromHash(how.hash), { renderer, works });
-      }, "layers", "view", "tab");
-      byId(this.session.state.tab).focus({ preventScroll: true });
-    };
-    const inside = [canvas, make("b", {}, name), make("small", {}, words)];
-    const attributes = { class: "view", id: `view-${id}` };
-    const element = how.page
-      ? make("a", { ...attributes, href: how.page }, inside)
-      : make("button", { ...attributes, type: "button", onclick: open }, inside);
-    return { ...how, canvas, element };
+  view(view) {
+    const element = byId(`view-${view.id}`);
+    if (!view.page) {
+      element.addEventListener("click", () => {
+        this.session.choose((state) => {
+          const { renderer, works } = state;
+          Object.assign(state, view.isOpen ? { ...initial(), tab: "choose" } : fromHash(view.hash), { renderer, works });
+        }, "layers", "view", "tab");
+        if (view.isOpen) this.shows();
+        else byId(this.session.state.tab).focus({ preventScroll: true });
+      });
+    }
+    return { ...view, canvas: element.querySelector("canvas"), img: element.querySelector("img") };
   }
 
   get isOpen() {
@@ -134,15 +134,17 @@ export class Start {
   }
 
   async fill() {
+    const [cards, more] = [this.views.slice(0, 3), this.views.slice(3)];
+    for (const view of cards) await this.picture(view).catch(() => {});
     await this.compare();
-    for (const view of this.views) await this.picture(view).catch(() => {});
+    for (const view of more) await this.picture(view).catch(() => {});
     document.documentElement.dataset.start = "ready";
   }
 
   async compare() {
     const { seed } = this;
     await Promise.all(this.trio.map(async (one, i) => {
-      const points = await Promise.resolve(KINDS[i][2](seed)).catch(() => null);
+      const points = await Promise.resolve(KINDS[i][1](seed)).catch(() => null);
       if (!points || seed !== this.seed) return;
       one.points = points;
       one.draw = () => dots(one.canvas, points);
@@ -152,8 +154,14 @@ export class Start {
 
   /** Draws what a view opens, from the server's points. */
   async picture(view) {
+    if (view.photo) {
+      view.img.src = view.photo;
+      return view.img.decode();
+    }
     const { layers, x, y, span } = fromHash(view.hash);
-    const across = view.bands ? 60 : view.hasSpectrum ? 24 : span * SHOWN;
+    // A small picture needs fewer points.
+    if (view.coarse) layers[0].amount = view.coarse;
+    const across = view.hasSpectrum ? 24 : span * SHOWN;
     const half = [across / 2, across / 2 / ASPECT];
     const box = [x.i - half[0], y.i - half[1], x.i + half[0], y.i + half[1]];
     if (view.page) {
@@ -162,9 +170,8 @@ export class Start {
       view.draw = () => draw(view, chunk, across);
       return view.draw();
     }
-    const look = view.bands ? layers.map((layer) => ({ ...layer, rank: true })) : layers;
-    const answer = await pointsOf(look, box);
-    const columns = columnsOf(look);
+    const answer = await pointsOf(layers, box);
+    const columns = columnsOf(layers);
     const stride = 2 + columns.length;
     const data = new Float32Array(await answer.arrayBuffer());
     const chunk = { data, stride, columns, layers, count: data.length / stride };
@@ -208,28 +215,26 @@ function pointsOf(layers, box) {
 /** Draws a view's points: each layer in its color, dots as large as they are far apart. */
 function draw(view, chunk, across) {
   const { context, width, height } = prepared(view.canvas, 1 / ASPECT);
-  const { ground, colors } = palette();
+  const { ground, colors } = palette(chunk.layers);
   const css = (rgb) => `rgb(${rgb.map((v) => Math.round(v * 255)).join(" ")})`;
   context.fillStyle = css(ground);
   context.fillRect(0, 0, width, height);
   const pixel = width / across;
   const { data, stride, columns } = chunk;
-  const scale = 2 + columns.indexOf("scale");
+  const [scale, kind] = ["scale", "variant"].map((name) => 2 + columns.indexOf(name));
   for (const { layer: index, first, count } of runsOf(chunk)) {
     const layer = chunk.layers[index];
-    context.fillStyle = css(colors[layer.color]);
+    const tones = isColored(layer) ? tonesOf(chunk.layers, index, colors) : null;
     const gap = Number(layer.amount) * pixel;
-    context.beginPath();
     for (let k = first; k < first + count; k += 1) {
       const [x, y] = [data[k * stride] * pixel, height - data[k * stride + 1] * pixel];
-      const band = view.bands && Math.min(view.bands.length - 1, Math.floor((x / width) * view.bands.length));
-      if (view.bands && data[k * stride + 2] >= view.bands[band]) continue;
-      const grow = view.bands ? view.bands[band] ** -0.5 : layer.scale ? data[k * stride + scale] : 1;
-      const radius = Math.max(0.5, Math.min(4, gap * 0.2 * grow * layer.dot));
-      context.moveTo(x + radius, y);
+      const grow = layer.scale ? data[k * stride + scale] : 1;
+      const radius = Math.max(0.5, Math.min(4, gap * 0.15 * grow * layer.dot));
+      context.fillStyle = css(tones ? tones[data[k * stride + kind] % tones.length] : colors[layer.color]);
+      context.beginPath();
       context.arc(x, y, radius, 0, 2 * Math.PI);
+      context.fill();
     }
-    context.fill();
   }
   if (view.page) {
     context.strokeStyle = css(colors[2]);

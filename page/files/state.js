@@ -6,10 +6,51 @@ import { decimalsFor, formatPlace, parsePlace, place } from "./place.js";
 /** The amounts that an unbounded plane can have, by the names that requests use. */
 export const AMOUNTS = ["spacing", "density", "min_distance"];
 
-/** Colors by number, as Okabe and Ito chose them; the first is the ink of the theme. */
-export const COLOR_NAMES = ["ink", "blue", "vermilion", "green", "orange", "sky", "purple", "yellow"];
+/** How kinds can be spread; no word for points of one kind. */
+const SPREADS = ["", "chance", "even", "joint"];
 
-/** A layer before anything is chosen. */
+/** Colors by number: the ink of the theme, seven that Okabe and Ito chose, and three of woods. */
+export const COLOR_NAMES = ["ink", "blue", "vermilion", "green", "orange", "sky", "purple", "yellow", "stone", "leaf", "moss"];
+
+/** The number of colors that kinds go through from the first on; those of woods go to the end. */
+export const KIND_COLORS = 8;
+
+/**
+ * What is chosen for a layer: texts as in requests, and how its points look.
+ * @typedef {object} Layer
+ * @property {string} profile
+ * @property {string} alpha
+ * @property {string} map
+ * @property {string} by One of `AMOUNTS`.
+ * @property {string} amount
+ * @property {string} seed
+ * @property {string} warp
+ * @property {string} settle
+ * @property {string} field
+ * @property {string} paint What is painted, as text.
+ * @property {string} lod The share of the points that is shown, those of lowest rank; nothing for all.
+ * @property {boolean} shade Whether the field is shown.
+ * @property {boolean} paper Whether it is a picture, dark on light in both themes.
+ * @property {number} color An index of `COLOR_NAMES`.
+ * @property {number} dot The size of dots: 1 is the usual one.
+ * @property {boolean} angle Whether angles are shown.
+ * @property {boolean} scale
+ * @property {string} range
+ * @property {boolean} variant
+ * @property {string} variants
+ * @property {string} spread One of `SPREADS`: how kinds are spread.
+ * @property {string} clear The distance to the layers before.
+ * @property {{ name: string, seed: string }} [world] The world that it is of; then it also has:
+ * @property {string} [name] Its name there.
+ * @property {string[]} [columns] The columns of points of that world.
+ * @property {number[]} [clears] The distances to the layers before, one by one.
+ * @property {any} [understood] What the server says of it.
+ */
+
+/**
+ * A layer before anything is chosen.
+ * @type {Readonly<Layer>}
+ */
 export const LAYER = Object.freeze({
   profile: "blue",
   alpha: "",
@@ -21,7 +62,9 @@ export const LAYER = Object.freeze({
   settle: "",
   field: "",
   paint: "",
-  shade: true,
+  lod: "",
+  shade: false,
+  paper: false,
   color: 0,
   dot: 1,
   angle: false,
@@ -29,14 +72,20 @@ export const LAYER = Object.freeze({
   range: "0.5,1.5",
   variant: false,
   variants: "oak:3,birch:1,pine:2",
+  spread: "",
   clear: "",
 });
 
-/** The first state of the tab How it works. */
+/** @typedef {Record<"mode" | "alpha" | "point" | "offsets" | "distance" | "radius" | "moved" | "profile", string>} Works */
+
+/**
+ * The first state of the laboratory.
+ * @type {Readonly<Works>}
+ */
 export const WORKS = Object.freeze({
   mode: "index",
   alpha: "(5-sqrt(3))/2",
-  point: "4:5",
+  point: "2:-1",
   offsets: "2,1 3,3",
   distance: "2.24",
   radius: "7",
@@ -56,7 +105,9 @@ const KEYS = {
   settle: "settle",
   field: "field",
   paint: "paint",
+  lod: "lod",
   shade: "shade",
+  paper: "paper",
   color: "color",
   dot: "dot",
   angle: "angle",
@@ -64,6 +115,7 @@ const KEYS = {
   range: "range",
   variant: "variant",
   variants: "variants",
+  spread: "spread",
   clear: "clear",
 };
 
@@ -73,12 +125,34 @@ export const MOST_PAINT = 4000;
 /** The most layers that the page offers. */
 export const MOST_LAYERS = 6;
 
-/** The view of a visitor who comes without a link: some 900 points. */
+/** @typedef {import("./place.js").Place} Place */
+
+/**
+ * What the address holds.
+ * @typedef {object} State
+ * @property {Place} x The middle of the view.
+ * @property {Place} y
+ * @property {number} span The length of the shorter side of the view.
+ * @property {string} [world] The name of the server's world that is shown, or nothing.
+ * @property {string} [worldSeed] Another seed than the world's own, or nothing.
+ * @property {Layer[]} layers
+ * @property {string} tab
+ * @property {Works} works
+ * @property {string} renderer `2d`, `webgl2` or nothing.
+ */
+
+/**
+ * The view of a visitor who comes without a link: some 900 points, more in a large window.
+ * @returns {State}
+ */
 export function initial() {
+  const enlarged = Math.max(1, Math.min(globalThis.innerWidth, globalThis.innerHeight) / 900);
   return {
     x: place(0),
     y: place(0),
-    span: 30,
+    span: Math.round(30 * enlarged),
+    world: "",
+    worldSeed: "",
     layers: [{ ...LAYER }],
     tab: "start",
     works: { ...WORKS },
@@ -86,7 +160,10 @@ export function initial() {
   };
 }
 
-/** Reads the hash of an address; what it does not say stays at its default. */
+/**
+ * Reads the hash of an address; what it does not say stays at its default.
+ * @param {string} hash
+ */
 export function fromHash(hash) {
   const given = new URLSearchParams(hash.replace(/^#/, ""));
   const state = initial();
@@ -95,15 +172,19 @@ export function fromHash(hash) {
   const span = Number(given.get("span"));
   if (Number.isFinite(span) && span > 0) state.span = span;
   if (given.size > 0) state.tab = "choose";
-  if (["start", "choose", "understand", "take", "gallery", "works"].includes(given.get("tab"))) state.tab = given.get("tab");
-  if (["2d", "webgl2"].includes(given.get("renderer"))) state.renderer = given.get("renderer");
+  const [tab, renderer] = ["tab", "renderer"].map((name) => given.get(name) ?? "");
+  if (["start", "choose", "understand", "take", "gallery", "works"].includes(tab)) state.tab = tab;
+  if (["2d", "webgl2"].includes(renderer)) state.renderer = renderer;
   state.works = worksFrom(given);
+  const [world, seed] = ["world", "world.seed"].map((name) => given.get(name) ?? "");
+  if (/^[\w.-]{1,64}$/.test(world)) state.world = world;
+  if (/^\d{1,20}$/.test(seed)) state.worldSeed = seed;
   const layers = Math.min(MOST_LAYERS, Math.max(1, Number(given.get("layers")) || 1));
   state.layers = Array.from({ length: layers }, (_, i) => layerFrom(given, i));
   return state;
 }
 
-/** The parameters of the tab How it works in the address. */
+/** The parameters of the laboratory in the address. */
 const WORKS_VALUES = {
   mode: /^(index|arrangement|clusters|map|displacement)$/,
   alpha: /^.{1,40}$/,
@@ -135,6 +216,8 @@ function layerFrom(given, i) {
     } else layer[member] = text;
   }
   if (!AMOUNTS.includes(layer.by)) layer.by = LAYER.by;
+  if (!SPREADS.includes(layer.spread)) layer.spread = LAYER.spread;
+  if (!(Number(layer.lod) > 0 && Number(layer.lod) < 1)) layer.lod = LAYER.lod;
   layer.color = Math.abs(Math.trunc(layer.color)) % COLOR_NAMES.length;
   layer.dot = Math.min(4, Math.max(0.25, layer.dot));
   return layer;
@@ -145,15 +228,22 @@ function named(key, i) {
   return i === 0 ? key : `${i + 1}.${key}`;
 }
 
-/** Writes the hash of an address. */
+/**
+ * Writes the hash of an address.
+ * @param {State} state
+ */
 export function toHash(state) {
   const decimals = decimalsFor(state.span) + 5;
   const said = [
     ["at", `${formatPlace(state.x, decimals)},${formatPlace(state.y, decimals)}`],
     ["span", String(Number(state.span.toPrecision(8)))],
   ];
-  if (state.layers.length > 1) said.push(["layers", String(state.layers.length)]);
-  state.layers.forEach((layer, i) => {
+  if (state.world) said.push(["world", state.world]);
+  if (state.world && state.worldSeed) said.push(["world.seed", state.worldSeed]);
+  // The layers of a world are the server's.
+  const layers = state.world ? [] : state.layers;
+  if (layers.length > 1) said.push(["layers", String(layers.length)]);
+  layers.forEach((layer, i) => {
     for (const [member, key] of Object.entries(KEYS)) {
       const standard = member === "color" ? i : LAYER[member];
       const must = member === "profile" || member === "amount" || member === "seed";

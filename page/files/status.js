@@ -4,10 +4,15 @@ import { askJson } from "./api.js";
 import { byId, counted, settled, spoken } from "./dom.js";
 import { decimalsFor, formatPlace } from "./place.js";
 import { Digits, json } from "./digits.js";
-import { bodyOf, boxOf, joined, setOf } from "./query.js";
+import { bodyOf, boxOf, joined, setOf, worldIn, worldPairs } from "./query.js";
 
 /** The exact number of points in a box of four decimals; `keep` thins it. */
 export async function countIn(layers, box, keep, signal) {
+  const world = worldIn(layers);
+  if (world) {
+    const query = joined([["bbox", box.join(",")], ...worldPairs(world, keep)]);
+    return (await askJson(`/v1/count?${query}`, { signal })).count;
+  }
   if (layers.length === 1) {
     const query = joined([["bbox", box.join(",")], ...setOf(layers[0], keep)]);
     return (await askJson(`/v1/count?${query}`, { signal })).count;
@@ -20,7 +25,10 @@ export class Status {
   constructor(session, plane) {
     this.session = session;
     this.plane = plane;
+    /** @type {number | null} */
     this.count = null;
+    /** How many points there would be without thinning. */
+    this.all = 0;
     this.abort = null;
     this.ask = settled(200, () => this.tally());
   }
@@ -40,20 +48,22 @@ export class Status {
   scale({ unit }) {
     const most = 100 * unit;
     const ten = 10 ** Math.floor(Math.log10(most));
-    const length = [5, 2, 1].find((n) => n * ten <= most) * ten;
-    byId("ruler").firstElementChild.style.width = `${length / unit}px`;
-    byId("ruler").lastElementChild.textContent = spoken(length, 1);
+    const length = ([5, 2].find((n) => n * ten <= most) ?? 1) * ten;
+    const [line, words] = /** @type {HTMLCollectionOf<HTMLElement>} */ (byId("ruler").children);
+    line.style.width = `${length / unit}px`;
+    words.textContent = spoken(length, 1);
   }
 
   /** Something that was chosen cannot be shown. */
   refused() {
-    byId("tally").textContent = "A field under Choose needs another value";
+    byId("tally").textContent = "Check the field marked red";
   }
 
   async tally() {
     const { plane, session } = this;
     if (!plane.look) return;
     this.abort?.abort();
+    clearTimeout(this.later);
     this.abort = new AbortController();
     const { keep } = plane;
     try {
@@ -65,21 +75,27 @@ export class Status {
       this.count = shown;
       this.say(keep);
     } catch (error) {
-      if (error.name !== "AbortError") this.say(keep, error);
+      if (error.name === "AbortError") return;
+      this.say(keep, error);
+      if (error.isPassing) this.later = setTimeout(() => this.tally(), Math.max(1, error.retryAfter) * 1000);
     }
   }
 
   say(keep, error) {
     const words = () => {
-      if (error) return `Not counted: ${error.message}`;
+      if (error?.faults?.length > 0) return "Check the field marked red";
+      if (error?.isPassing) return "Counted when the server has time";
+      if (error?.status === 413) return "Too many points in view to count";
+      if (error) return "Not counted";
+      if (this.plane.isGray) return `${counted(this.all)} in view, too many to draw: gray shows how dense they are`;
       if (keep < 1) {
-        return `${counted(this.all)} in view, too many to draw: the ${counted(this.count)} of lowest rank `
-          + `stand for them, one in ${Math.round(1 / keep).toLocaleString("en")}`;
+        const rest = Math.round(1 / keep).toLocaleString("en");
+        return `${counted(this.all)} in view, too many to draw; shown: one in ${rest}, those of lowest rank`;
       }
       if (this.count === 0 && this.plane.span < 4 * this.plane.look.spacing) {
         return `No points in view: they are about ${spoken(this.plane.look.spacing, 2)} apart, zoom out`;
       }
-      return `${counted(this.count)} in view`;
+      return `${counted(this.count ?? 0)} in view`;
     };
     byId("tally").textContent = words();
     document.documentElement.dataset.count = error ? "" : String(this.count);

@@ -5,14 +5,23 @@ import { FORMATS, curl, grpcurl, python, requestOf } from "./commands.js";
 import { byId, bytes, copy, counted, make, settled } from "./dom.js";
 import { MOST_HELD, save, sizeOf } from "./download.js";
 import { worldOf } from "./paint/world.js";
+import { Part } from "./part.js";
 import { boxOf } from "./query.js";
 import { countIn } from "./status.js";
 
-const WAYS = [["curl", "curl"], ["grpcurl", "grpcurl"], ["python", "Python"], ["url", "URL"], ["world", "World"]];
+const WAYS = { curl: "curl", grpcurl: "grpcurl", python: "Python", url: "URL", world: "World" };
 
-export class Take {
+export class Take extends Part {
   constructor(session, plane) {
-    Object.assign(this, { session, plane, way: "curl", format: "csv", isThinned: true });
+    super();
+    this.session = session;
+    this.plane = plane;
+    /** @type {keyof typeof WAYS} */
+    this.way = "curl";
+    this.format = "csv";
+    this.isThinned = true;
+    /** @type {{ bytes: number, isExact: boolean } | null} */
+    this.weight = null;
     this.again = settled(250, () => this.weigh());
     this.what = make("p", { class: "note" });
     this.thin = make("input", { type: "checkbox", id: "take-thinned", checked: true, onchange: (event) => {
@@ -26,9 +35,9 @@ export class Take {
       this.render();
       this.again();
     } }, FORMATS.map(([name, , use]) => make("option", { value: name }, `${name} — ${use}`)));
-    this.ways = make("div", { class: "choices", role: "group", "aria-label": "How to ask" }, WAYS.map(([id, words]) => make("button", {
+    this.ways = make("div", { class: "choices", role: "group", "aria-label": "How to ask" }, Object.entries(WAYS).map(([id, words]) => make("button", {
       type: "button", id: `way-${id}`, onclick: () => {
-        this.way = id;
+        this.way = /** @type {keyof typeof WAYS} */ (id);
         this.render();
       },
     }, words)));
@@ -42,7 +51,7 @@ export class Take {
       make("div", { class: "field" }, this.amount, this.size, this.thinLine),
       make("div", { class: "field" }, make("label", { for: "format" }, "Format"), this.formats),
       this.button, this.bar,
-      make("div", { class: "group" }, make("span", { class: "label" }, "Or ask for exactly these points yourself"),
+      make("div", { class: "group" }, make("span", { class: "label" }, "Or request exactly these points yourself"),
         this.ways, make("pre", { tabindex: "0", "aria-label": "The request" }, this.text), this.copyButton, this.what),
     );
   }
@@ -60,7 +69,7 @@ export class Take {
   }
 
   get file() {
-    return `points.${FORMATS.find(([name]) => name === this.format)[1]}`;
+    return `points.${FORMATS.find(([name]) => name === this.format)?.[1]}`;
   }
 
   opened() {
@@ -91,16 +100,16 @@ export class Take {
       grpcurl: () => grpcurl(location.host, layers, boxOf(this.plane.view), this.keep),
       python: () => python(location.origin, request, this.format, this.file),
       url: () => (request.body ? `POST ${location.origin}${request.path}\n\n${request.body}` : location.origin + request.path),
-      world: () => worldOf(layers),
+      world: () => (layers[0].world ? `${location.origin}/v1/worlds/${layers[0].world.name}` : worldOf(layers)),
     };
     this.text.textContent = texts[this.way]();
-    for (const [id] of WAYS) byId(`way-${id}`).setAttribute("aria-pressed", String(id === this.way));
+    for (const id of Object.keys(WAYS)) byId(`way-${id}`).setAttribute("aria-pressed", String(id === this.way));
     this.what.textContent = {
       curl: "For a shell.",
       grpcurl: "For a shell; gRPC streams messages, whatever the format above.",
       python: this.format === "npy" ? "For Python 3 with numpy." : "For Python 3, with nothing installed.",
       url: request.body ? "Several layers, and fields that were sent, need a body, which an address cannot hold." : "For a browser, or anything else that reads addresses.",
-      world: "A file for the daemon's folder of worlds (worlds.folder), such as forest.json; then chunks are at /v1/worlds/forest/chunks/…",
+      world: layers[0].world ? "The description of this world." : "A file for the daemon's folder of worlds (worlds.folder), such as forest.json; then chunks are at /v1/worlds/forest/chunks/…",
     }[this.way];
     if (hasKey()) this.what.textContent += " Add your key, as the header “Authorization: Bearer …”.";
     this.copyButton.textContent = "Copy";
@@ -124,7 +133,7 @@ export class Take {
       this.size.textContent = `${words} as ${format}`;
       const isHeld = request.body && size > MOST_HELD;
       if (isHeld) this.size.textContent += ": too much for this page to hold, use the command below";
-      this.button.disabled = isHeld;
+      this.button.disabled = Boolean(isHeld);
       document.documentElement.dataset.weighed = String(this.count);
     } catch (error) {
       if (error.name === "AbortError") return;
@@ -137,11 +146,11 @@ export class Take {
   async download() {
     const { request, file, weight } = this;
     this.bar.hidden = !request.body;
-    if (Number.isFinite(weight?.bytes)) this.bar.max = weight.bytes;
+    if (weight && Number.isFinite(weight.bytes)) this.bar.max = weight.bytes;
     this.button.disabled = true;
     try {
       await save(request, file, (come) => (this.bar.value = come));
-      this.size.textContent = `${file} is with your browser's downloads`;
+      this.size.textContent = `${file} is in your downloads`;
     } catch (error) {
       this.size.textContent = error.message;
       this.size.classList.add("bad");

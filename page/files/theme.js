@@ -13,7 +13,6 @@ export function watchTheme(button, changed) {
     else delete root.dataset.theme;
   };
   set(remembered());
-  const isDark = () => (root.dataset.theme ? root.dataset.theme === "dark" : dark.matches);
   const tell = () => {
     button.setAttribute("aria-pressed", String(isDark()));
     changed();
@@ -42,22 +41,37 @@ function remember(theme) {
   } catch { /* Then it is forgotten. */ }
 }
 
-/** The resolved color of an element's property, as red, green and blue from 0 to 1. */
-function resolved(className, property) {
+/** Red, green and blue of a color as browsers write it, from 0 to 1. */
+function channels(color) {
+  return (color.match(/[\d.]+/g) ?? []).slice(0, 3).map((v) => Number(v) / 255);
+}
+
+/** Whether the theme of now is dark. */
+function isDark() {
+  const { theme } = document.documentElement.dataset;
+  return theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+}
+
+/** The resolved color of an element's background, as red, green and blue from 0 to 1. */
+function resolved(className, isPaper) {
   const probe = document.createElement("i");
   probe.className = className;
+  if (isPaper) probe.style.colorScheme = "light";
   document.body.append(probe);
-  const numbers = getComputedStyle(probe)[property].match(/[\d.]+/g).slice(0, 3).map((v) => Number(v) / 255);
+  const numbers = channels(getComputedStyle(probe).backgroundColor);
   probe.remove();
   return numbers;
 }
 
-/** The ground and the colors of layers in the theme of now. */
-export function palette() {
-  const body = getComputedStyle(document.body).backgroundColor;
+/**
+ * The ground and the colors of layers in the theme of now. Layers that are a picture are dark on light in any theme:
+ * a face in negative is no face.
+ */
+export function palette(layers = []) {
+  const isPaper = layers.some((layer) => layer.paper);
   return {
-    ground: body.match(/[\d.]+/g).slice(0, 3).map((v) => Number(v) / 255),
-    colors: COLOR_NAMES.map((_, i) => resolved(`swatch-${i}`, "backgroundColor")),
+    ground: resolved("probe-ground", isPaper),
+    colors: COLOR_NAMES.map((_, i) => resolved(`swatch-${i}`, isPaper)),
   };
 }
 

@@ -4,6 +4,7 @@ import { ask, askJson } from "./api.js";
 import { lineChart, spectrumPicture, topOf } from "./charts.js";
 import { byId, make, settled, spoken } from "./dom.js";
 import { measure } from "./measure.js";
+import { Part } from "./part.js";
 import { joined } from "./query.js";
 
 /** The most points that are measured, from the middle of the view, and no fewer than this. */
@@ -58,11 +59,14 @@ export function figureOf(recorded, name) {
   return from?.values[name];
 }
 
-export class Understand {
+export class Understand extends Part {
   constructor(session, plane) {
+    super();
     this.session = session;
     this.plane = plane;
     this.layer = 0;
+    /** @type {any} */
+    this.drawn = null;
     this.again = settled(200, () => this.measure());
     this.note = make("p", { class: "note", role: "status", id: "measured-note" });
     this.picker = make("div", { class: "choices", role: "group", "aria-label": "Layer" });

@@ -1,29 +1,36 @@
 // A worker as a function: each message is answered by one with the same `id`.
 
-/** Calls of the worker at a path: `(message, transferred) => promise`. It starts with the first call. */
+/**
+ * Calls of the worker at a path. It starts with the first call.
+ * @param {string} path
+ * @returns {(message: object, transferred?: Transferable[]) => Promise<any>}
+ */
 export function callsOf(path) {
+  /** @type {Worker | null} */
   let worker = null;
   let next = 0;
   const waiting = new Map();
   const start = () => {
-    worker = new Worker(path, { type: "module" });
-    worker.addEventListener("message", ({ data }) => {
+    const started = new Worker(path, { type: "module" });
+    started.addEventListener("message", ({ data }) => {
       waiting.get(data.id)?.resolve(data);
       waiting.delete(data.id);
     });
-    worker.addEventListener("error", (event) => {
+    started.addEventListener("error", (event) => {
       for (const { reject } of waiting.values()) reject(new Error(event.message || "the worker does not start"));
       waiting.clear();
       worker = null;
     });
+    return started;
   };
   return (message, transferred = []) => {
-    if (!worker) start();
+    worker ??= start();
+    const at = worker;
     next += 1;
     const id = next;
     return new Promise((resolve, reject) => {
       waiting.set(id, { resolve, reject });
-      worker.postMessage({ ...message, id }, transferred);
+      at.postMessage({ ...message, id }, transferred);
     });
   };
 }

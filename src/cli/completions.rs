@@ -53,6 +53,7 @@ fn write_pages(folder: &Path, command: &clap::Command) -> Result<(), Failure> {
     write(Some(&path), &page(command.clone().name(name.to_owned()))?)?;
     command
         .get_subcommands()
+        .filter(|inner| !inner.is_hide_set())
         .try_for_each(|inner| write_pages(folder, inner))
 }
 

@@ -126,6 +126,9 @@ enum Command {
     /// Write manual pages.
     #[command(after_long_help = examples::MAN)]
     Man(completions::ManArgs),
+    /// Print the version, as `--version` does.
+    #[command(hide = true)]
+    Version,
 }
 
 /// The exit code after an interrupt, as shells have it.
@@ -160,6 +163,7 @@ pub fn main(pages: fn() -> Pages) -> ExitCode {
         Command::Parameters(args) => parameters::run(&args),
         Command::Completions(args) => completions::completions(&args),
         Command::Man(args) => completions::man(&args, Cli::command()),
+        Command::Version => output::print(&Cli::command().render_version()),
     };
     let (error, code) = match done {
         Ok(()) => return ExitCode::SUCCESS,

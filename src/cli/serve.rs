@@ -6,17 +6,24 @@ use std::{
 };
 
 use anyhow::{Context as _, anyhow};
+use strew_config::LogOutput;
 
 use super::{Failure, config};
 use crate::{
-    ops::{App, ServeError, exposure, files, shutdown, telemetry},
+    ops::{App, ServeError, exposure, files, memory, shutdown, telemetry},
     rest::Pages,
 };
 
 /// Serves until a signal comes.
 pub(super) fn run(args: &config::Served, pages: fn() -> Pages) -> Result<(), Failure> {
-    let config = args.merged()?;
-    telemetry::start(&config.log.filter, config.log.format).context("log.filter")?;
+    let mut config = args.merged()?;
+    telemetry::start(&config.log).context("log.filter")?;
+    memory::fit(&mut config);
+    // A container's share of the processors counts, not all that the machine has.
+    let threads = match config.workers.threads {
+        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        threads => threads,
+    };
     let listen = config.server.listen;
     let admin = config
         .admin
@@ -37,6 +44,7 @@ pub(super) fn run(args: &config::Served, pages: fn() -> Pages) -> Result<(), Fai
         );
     }
     let scheme = if config.tls.is_on() { "https" } else { "http" };
+    let announced = (config.log.output == LogOutput::Stderr).then_some(scheme);
     let app = App::new(config).map_err(|error| match error {
         ServeError::Catalog(_)
         | ServeError::Fields(_)
@@ -59,7 +67,7 @@ pub(super) fn run(args: &config::Served, pages: fn() -> Pages) -> Result<(), Fai
         .enable_all()
         .build()
         .context("cannot start the runtime")?;
-    let served = runtime.block_on(serve(app, listener, scheme));
+    let served = runtime.block_on(serve(app, listener, announced, threads));
     // A thread that waits for a hanging file system must not keep the process.
     runtime.shutdown_timeout(LAST_WORK);
     Ok(served?)
@@ -78,13 +86,22 @@ fn bind(listen: SocketAddr) -> anyhow::Result<TcpListener> {
     })
 }
 
-async fn serve(app: App, listener: TcpListener, scheme: &str) -> anyhow::Result<()> {
+async fn serve(
+    app: App,
+    listener: TcpListener,
+    announced: Option<&str>,
+    threads: usize,
+) -> anyhow::Result<()> {
     let address = listener.local_addr().context("no address")?;
     // Listen for signals before announcing the address.
     let stop = shutdown::Signals::new().context("cannot listen for signals")?;
     let hangups = shutdown::Hangups::new().context("cannot listen for signals")?;
-    announce(scheme, address, app.admin_address()).context("cannot write to standard output")?;
-    tracing::info!(%address, tables = app.service().catalog().entries().count(), "serving");
+    if let Some(scheme) = announced {
+        announce(scheme, address, app.admin_address())
+            .context("cannot write to standard output")?;
+    }
+    let tables = app.service().catalog().entries().count();
+    tracing::info!(%address, tables, threads, "serving");
     let app = app.with_hangups(hangups);
     let broken = app.run(listener, stop.first_then_exit()).await?;
     if broken > 0 {

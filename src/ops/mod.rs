@@ -14,6 +14,7 @@ mod guarded;
 pub mod health;
 mod heard;
 mod identity;
+pub mod memory;
 mod metrics;
 mod panics;
 mod peer;

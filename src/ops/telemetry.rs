@@ -1,11 +1,11 @@
-//! The log: on standard error, so that standard output stays for answers.
+//! The log: on standard error by default, so that standard output stays for answers.
 //!
 //! As text for people or as JSON, an object a line, for programs that gather logs. Lines that a request causes have its
 //! id, however little is logged: it is looked up when there is a line to write.
 
 use std::{fmt, io::IsTerminal as _};
 
-use strew_config::LogFormat;
+use strew_config::{Log, LogFormat, LogOutput};
 use strew_service::Record;
 use tracing::{Event, Subscriber};
 use tracing_subscriber::{
@@ -13,6 +13,7 @@ use tracing_subscriber::{
     fmt::{
         FmtContext, FormatEvent, FormatFields,
         format::{self, Writer},
+        writer::BoxMakeWriter,
     },
     layer::{Layer as _, SubscriberExt as _},
     registry::LookupSpan,
@@ -22,19 +23,26 @@ use tracing_subscriber::{
 /// The target of access lines, which say more about their request than its id.
 pub(super) const ACCESS: &str = "strew::access";
 
-/// Starts logging. The filter is a level or levels by module; a second call changes nothing.
+/// Starts logging; a second call changes nothing.
 ///
 /// # Errors
 /// If the filter does not read.
-pub fn start(
-    filter: &str,
-    format: LogFormat,
-) -> Result<(), tracing_subscriber::filter::ParseError> {
-    let filter: Targets = filter.parse()?;
-    let is_json = format == LogFormat::Json;
-    let is_colored = !is_json && std::io::stderr().is_terminal();
+pub fn start(log: &Log) -> Result<(), tracing_subscriber::filter::ParseError> {
+    let filter: Targets = log.filter.parse()?;
+    let is_json = log.format == LogFormat::Json;
+    let (is_terminal, writer) = match log.output {
+        LogOutput::Stderr => (
+            std::io::stderr().is_terminal(),
+            BoxMakeWriter::new(std::io::stderr),
+        ),
+        LogOutput::Stdout => (
+            std::io::stdout().is_terminal(),
+            BoxMakeWriter::new(std::io::stdout),
+        ),
+    };
+    let is_colored = !is_json && is_terminal;
     let lines = tracing_subscriber::fmt::layer()
-        .with_writer(std::io::stderr)
+        .with_writer(writer)
         .with_ansi(is_colored)
         // A line that cannot be written is lost: an error about it on the same stream would fail, too, and panic.
         .log_internal_errors(false);

@@ -1,6 +1,6 @@
 //! Documents that never change while the daemon runs: the pages and the description of the API.
 //!
-//! They are compressed once, at the start, so that answering one holds nothing but its place.
+//! They are compressed once, at the start or earlier, so that answering one holds nothing but its place.
 
 use std::sync::Arc;
 
@@ -35,11 +35,21 @@ impl Fixed {
             let coded = Encoder::whole(coding, &plain).ok()?;
             Some((coding, coded))
         };
+        let coded: Vec<_> = Coding::ALL.into_iter().filter_map(coded).collect();
+        Self::coded(content_type, plain, coded)
+    }
+
+    /// A document that is compressed already, in some codings.
+    pub(super) fn coded(
+        content_type: &'static str,
+        plain: Bytes,
+        coded: impl IntoIterator<Item = (Coding, Bytes)>,
+    ) -> Self {
         Self {
             inner: Arc::new(Inner {
                 content_type,
                 digest: blake3::hash(&plain).to_hex().to_string(),
-                coded: Coding::ALL.into_iter().filter_map(coded).collect(),
+                coded: coded.into_iter().collect(),
                 plain,
             }),
         }

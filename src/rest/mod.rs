@@ -47,7 +47,7 @@ pub use body::Whole;
 pub use context::{Context, Sent};
 pub use document::{JSON, file, json, momentary};
 pub use finish::{Finish, Wishes};
-pub use page::{Page, Pages};
+pub use page::{Page, Pages, Part};
 use problem::Problem;
 pub use problem::Refused;
 pub use routes::{Found, Routes};

@@ -12,6 +12,7 @@ use strew_query::Parameter;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
+    coding::Coding,
     context::Context,
     fixed::Fixed,
 };
@@ -27,8 +28,21 @@ const POLICY: &str = "default-src 'none'; style-src 'self'; script-src 'self'; w
 pub struct Pages {
     /// The pages.
     pub pages: Vec<Page>,
-    /// Scripts, styles and pictures, each with its name below `/page/`, such as `docs/docs.css`.
-    pub parts: Vec<(String, Bytes)>,
+    /// Their parts.
+    pub parts: Vec<Part>,
+}
+
+/// A script, a style or a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// Its name below `/page/`, such as `docs/docs.css`.
+    pub name: &'static str,
+    /// Its content.
+    pub plain: &'static [u8],
+    /// Its content, compressed by `zstd`; empty for a picture of pixels, as is `gzip`.
+    pub zstd: &'static [u8],
+    /// Its content, compressed by `gzip`.
+    pub gzip: &'static [u8],
 }
 
 /// A page.
@@ -43,33 +57,47 @@ pub struct Page {
     /// The description of that operation.
     pub about: &'static str,
     /// Its text.
-    pub html: String,
+    pub html: &'static str,
 }
 
 /// The markup before the address of the picture that previews of links to a page show.
 const PREVIEW: &str = "<meta property=\"og:image\" content=\"";
+/// What all lines about that picture have.
+const ABOUT_PREVIEW: [&str; 2] = ["property=\"og:image", "name=\"twitter:card\""];
 
 const HTML: &str = "text/html; charset=utf-8";
 const SCRIPT: &str = "text/javascript";
 const STYLE: &str = "text/css";
-const PICTURE: &str = "image/svg+xml";
+const DRAWING: &str = "image/svg+xml";
+const PICTURE: &str = "image/jpeg";
+
+impl Part {
+    /// The part, ready to send.
+    fn document(&self) -> Fixed {
+        let coded = [(Coding::Zstd, self.zstd), (Coding::Gzip, self.gzip)];
+        let coded = coded.into_iter().filter(|(_, content)| !content.is_empty());
+        Fixed::coded(
+            content_type(self.name),
+            Bytes::from_static(self.plain),
+            coded.map(|(coding, content)| (coding, Bytes::from_static(content))),
+        )
+    }
+}
 
 /// The content type of a part.
 fn content_type(name: &str) -> &'static str {
     match name.rsplit_once('.') {
         Some((_, "js")) => SCRIPT,
         Some((_, "css")) => STYLE,
-        Some((_, "svg")) => PICTURE,
+        Some((_, "svg")) => DRAWING,
+        Some((_, "jpg")) => PICTURE,
         _ => HTML,
     }
 }
 
 /// The endpoints of pages and their parts. `public_url` is where they are seen from outside, or empty.
 pub(super) fn endpoints(pages: &Pages, public_url: &str) -> Vec<Endpoint> {
-    let parts = pages.parts.iter().map(|(name, content)| {
-        let document = Fixed::new(content_type(name), content.clone());
-        (name.clone(), document)
-    });
+    let parts = pages.parts.iter().map(|part| (part.name, part.document()));
     let parts: Parts = Arc::new(parts.collect());
     let mut all: Vec<_> = pages
         .pages
@@ -90,10 +118,9 @@ pub(super) fn endpoints(pages: &Pages, public_url: &str) -> Vec<Endpoint> {
 /// The icon at the address where browsers look for that of an answer that is no page.
 pub(super) fn icon(pages: &Pages) -> Option<Endpoint> {
     let mut parts = pages.parts.iter();
-    let (_, content) = parts.find(|(name, _)| name == "icon.svg")?;
-    let icon = Fixed::new(PICTURE, content.clone());
+    let icon = parts.find(|part| part.name == "icon.svg")?.document();
     let described = ("getIcon", "/favicon.ico", "The icon", "");
-    let operation = operation(described, &[PICTURE], &[], vec![]);
+    let operation = operation(described, &[DRAWING], &[], vec![]);
     Some(Endpoint::only("/favicon.ico", icon, operation, fixed).open())
 }
 
@@ -106,9 +133,21 @@ fn page(page: &Page, public_url: &str) -> Endpoint {
         "</span>"
     );
     let html = page.html.replace("<span id=\"version\"></span>", version);
-    let html = html.replace(PREVIEW, &format!("{PREVIEW}{public_url}"));
+    let html = previewed(&html, public_url);
     let document = Fixed::new(HTML, html.into());
     Endpoint::only(page.path, document, operation, fixed).open()
+}
+
+/// A page whose preview has an absolute address. Readers drop relative ones, and a name that the client sends is none
+/// to vouch for: without a public address the page names no picture.
+fn previewed(html: &str, public_url: &str) -> String {
+    if !public_url.is_empty() {
+        return html.replace(PREVIEW, &format!("{PREVIEW}{public_url}"));
+    }
+    let lines = html.split_inclusive('\n');
+    lines
+        .filter(|line| !ABOUT_PREVIEW.iter().any(|words| line.contains(words)))
+        .collect()
 }
 
 /// Parts at a path, with the name of the operation and an example.
@@ -124,7 +163,7 @@ fn parts_at(
             "A part of a page",
             "A script, a style or a picture that the pages load.",
         ),
-        &[SCRIPT, STYLE, PICTURE],
+        &[SCRIPT, STYLE, DRAWING, PICTURE],
         parameters,
         vec![Kind::NoSuchPath],
     );
@@ -155,7 +194,11 @@ fn operation(
     path_parameters: &'static [&'static Parameter],
     problems: Vec<Kind>,
 ) -> Operation {
-    let text = |name: &&'static str| (*name, schemas::text as schemas::Content);
+    let text = |name: &&'static str| {
+        let is_text = *name != PICTURE;
+        let content = if is_text { schemas::text } else { schemas::any };
+        (*name, content as schemas::Content)
+    };
     let answer = api::Answer {
         status: 200,
         about: summary,
@@ -174,11 +217,11 @@ fn operation(
 }
 
 /// The parts by their names, ready to send.
-type Parts = Arc<Vec<(String, Fixed)>>;
+type Parts = Arc<Vec<(&'static str, Fixed)>>;
 
 async fn one(parts: Parts, context: Context) -> Result<Response, Refused> {
     let name = context.uri.path().trim_start_matches("/page/");
-    let found = parts.iter().find(|(part, _)| part == name);
+    let found = parts.iter().find(|(part, _)| *part == name);
     let (_, document) = found.ok_or_else(|| Error::NoSuchPath {
         path: context.uri.path().into(),
         available: "the pages and the parts that they name".into(),

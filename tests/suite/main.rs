@@ -5,6 +5,7 @@
 //! with a message.
 
 mod cli;
+mod containers;
 mod docs;
 mod grpc;
 mod ops;

@@ -17,6 +17,7 @@ mod limits;
 mod lines;
 mod listen;
 mod loaded;
+mod memory;
 pub mod name;
 mod networks;
 mod range;
@@ -32,8 +33,9 @@ pub use access::{Access, AddressLimits, Rate};
 pub use forge::{Allow, Forge, MOST_RADIUS};
 pub use limits::{Limits, Reload, Workers};
 pub use loaded::{Except, Fields, Tables, Worlds};
+pub use memory::Lowered;
 pub use networks::{NETWORKS, Networks};
-pub use reports::{Http, Log, LogFormat, Metrics, Telemetry};
+pub use reports::{Http, Log, LogFormat, LogOutput, Metrics, Telemetry};
 pub use server::{Admin, Server, Shutdown, Tls};
 
 pub use error::ConfigError;

@@ -8,6 +8,8 @@ use super::range::{DAY, out_of_range};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Limits {
+    /// The memory that the other limits are fitted to, in bytes; 0 for that of the container or the machine.
+    pub memory_bytes: u64,
     /// The most points of one answer. Keeps a slip of a zero from filling a disk; the refusal says
     /// the exact count.
     pub max_points: u64,
@@ -38,6 +40,7 @@ impl Default for Limits {
     /// The limits of the built-in settings.
     fn default() -> Self {
         Self {
+            memory_bytes: 0,
             max_points: 2_000_000_000,
             max_rows: 5_000_000,
             max_vertices: 100_000,
@@ -59,6 +62,7 @@ impl Limits {
 
     pub(super) fn faults(&self) -> Vec<String> {
         out_of_range!(self, "limits",
+            memory_bytes: 0.0..=1e15,
             max_points: 1.0..=1e15,
             max_rows: 1.0..=1e12,
             max_vertices: 3.0..=1e8,

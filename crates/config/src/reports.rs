@@ -99,6 +99,8 @@ pub struct Log {
     pub filter: String,
     /// The format of a line.
     pub format: LogFormat,
+    /// The stream that lines are written to.
+    pub output: LogOutput,
 }
 
 impl Log {
@@ -123,6 +125,16 @@ pub enum LogFormat {
     Text,
     /// An object a line.
     Json,
+}
+
+/// The stream that the log is written to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LogOutput {
+    /// Standard error; standard output has the address that the daemon listens on.
+    Stderr,
+    /// Standard output, with nothing but the log.
+    Stdout,
 }
 
 /// The settings of metrics.
@@ -185,7 +197,7 @@ impl Telemetry {
     }
 
     /// Whether spans are sent by TLS.
-    pub(crate) fn is_https(&self) -> bool {
+    pub fn is_https(&self) -> bool {
         self.otlp_endpoint.starts_with("https:")
     }
 }

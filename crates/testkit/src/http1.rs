@@ -180,7 +180,8 @@ fn line(stream: &mut BufReader<TcpStream>) -> io::Result<String> {
 }
 
 impl Response {
-    fn read_head(stream: TcpStream, method: &str) -> io::Result<Self> {
+    /// Reads the head of the response to a request that was sent by hand.
+    pub fn read_head(stream: TcpStream, method: &str) -> io::Result<Self> {
         let mut stream = BufReader::with_capacity(BUFFER, stream);
         let status = line(&mut stream)?;
         let status = status.split(' ').nth(1).and_then(|code| code.parse().ok());

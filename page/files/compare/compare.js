@@ -1,15 +1,21 @@
 // The page Compare: one view for all methods, and what each measures there.
 
-import { askJson, onPresence } from "../api.js";
+import { Gone, askJson, isAway, onPresence } from "../api.js";
 import { tools } from "../bar.js";
 import { topOf } from "../charts.js";
 import { byId, make, settled, skipLinks } from "../dom.js";
 import { refusal } from "../form.js";
 import { moveBy } from "../gestures.js";
 import { parsePlace, place } from "../place.js";
-import { FARTHEST, Joint, fromHash, toHash } from "./joint.js";
+import { FARTHEST, Joint, PAIR, fromHash, toHash } from "./joint.js";
 import { METHODS } from "./methods.js";
 import { Panel } from "./panel.js";
+import { Asked, windowAround } from "./sources.js";
+
+/** Where the button leads: a billion units to the right and up. */
+const FAR = 1e9;
+/** Units along the shorter side where a window is shown alone: the regions of the methods that have one fit. */
+const ALONE = 290;
 
 const root = document.documentElement;
 const narrow = matchMedia("(max-width: 46rem)");
@@ -19,21 +25,45 @@ const joint = new Joint(state, () => draw());
 const panels = METHODS.map((method) => new Panel(method, { changed: () => draw(), failed: (error) => refused(error) }));
 const shown = () => panels.filter(({ method }) => state.shown.includes(method.id));
 
-/** Says something above the panels; `null` takes it away. */
+/** Says something above the panels; `null` takes it away. That the server is away stays until it is back. */
 function say(words) {
-  byId("banner").hidden = words === null;
-  byId("banner").textContent = words ?? "";
+  const all = [isAway() && AWAY, words].filter(Boolean).join(" ");
+  byId("banner").hidden = all === "";
+  byId("banner").textContent = all;
 }
 
-/** Says what went wrong, and takes a key where that is what the server needs. */
+const AWAY = "The server does not answer. This page tries again by itself; what is drawn stays, and the other methods are made here.";
+
+/** Says what went wrong, and takes a key where that is what the server needs; that it is away is said by itself. */
 function refused(error) {
+  if (error instanceof Gone) return;
   refusal(byId("banner"), error, () => {
-    for (const { source } of panels) source.chunks?.retry();
+    for (const { source } of panels) if (source instanceof Asked) source.chunks.retry();
     begin();
   });
 }
 
 let isWaiting = false;
+/**
+ * The window that is shown alone, with the scale it is shown at and the view it was taken from; `null` if none is.
+ * @type {{ window: ReturnType<typeof windowAround>, unit: number, key: string } | null}
+ */
+let alone = null;
+const keyOf = ({ x, y, unit, width, height }) => [x.i, x.f, y.i, y.f, unit, width, height].join();
+
+/** Shows what has to be made for the window alone, and nothing else; or all points again. */
+function showAlone(isAlone) {
+  const { view } = joint;
+  const unit = Math.max(ALONE, 1.5 * state.span) / Math.min(view.width, view.height);
+  alone = isAlone ? { window: windowAround(view, view.width * view.unit, view.height * view.unit), unit, key: keyOf(view) } : null;
+  byId("alone").setAttribute("aria-pressed", String(isAlone));
+  byId("said").textContent = isAlone
+    ? "The frame is the window, from farther away. Drawn is what has to be made to show it, and nothing else."
+    : TRY;
+  draw();
+}
+
+const TRY = "What does a method have to make before it can show this window?";
 
 function draw() {
   write();
@@ -41,8 +71,12 @@ function draw() {
   isWaiting = true;
   requestAnimationFrame(() => {
     isWaiting = false;
-    for (const panel of shown()) panel.draw(joint.view);
+    // Who moves the view wants to see all points.
+    if (alone && alone.key !== keyOf(joint.view)) showAlone(false);
+    for (const panel of shown()) panel.draw(joint.view, alone);
     const { x, y } = joint.view;
+    const isFar = Math.abs(x.i) > FAR / 2;
+    byId("far").textContent = isFar ? "Back to the origin" : "A billion units away";
     const now = `${x.i + x.f},${y.i + y.f}`;
     if (now !== root.dataset.at) again();
     root.dataset.at = now;
@@ -58,6 +92,8 @@ let turn = 0;
 
 /** Measures all that is shown, one after another, then how long points take. */
 async function measureAll() {
+  // A view may settle before it is known which profiles there are.
+  if (!shown().every(({ isReady }) => isReady)) return;
   turn += 1;
   const mine = turn;
   const isLatest = () => mine === turn;
@@ -106,17 +142,24 @@ function choose(change) {
 
 function show() {
   root.dataset.measured = "";
-  for (const panel of panels) {
-    const isShown = state.shown.includes(panel.method.id);
-    panel.element.hidden = !isShown;
-    byId(`show-${panel.method.id}`).setAttribute("aria-pressed", String(isShown));
-    if (isShown) panel.use(state);
-  }
-  byId("methods").dataset.count = String(state.shown.length);
+  arrange();
+  for (const panel of shown()) panel.use(state);
   if (byId("seed").value !== String(state.seed)) byId("seed").value = String(state.seed);
   byId("profile").value = state.profile;
   resize();
   again();
+}
+
+/** Shows the panels of the chosen methods. */
+function arrange() {
+  for (const { element, method } of panels) {
+    const isShown = state.shown.includes(method.id);
+    element.hidden = !isShown;
+    byId(`show-${method.id}`).setAttribute("aria-pressed", String(isShown));
+  }
+  byId("methods").dataset.count = String(state.shown.length);
+  byId("all").setAttribute("aria-pressed", String(state.shown.length === METHODS.length));
+  byId("show").hidden = state.shown.join() === PAIR.join();
 }
 
 function resize() {
@@ -137,7 +180,7 @@ function jump(event) {
   const [x, y] = field.value.split(/[,;]|\s+/).filter(Boolean).map(parsePlace);
   const isPlace = x && y && Math.abs(x.i) <= FARTHEST && Math.abs(y.i) <= FARTHEST;
   field.setAttribute("aria-invalid", String(!isPlace));
-  say(isPlace ? null : `“${field.value}” is no place here: two numbers from −1e12 to 1e12 are needed, such as 1e6, -3.5.`);
+  say(isPlace ? null : `“${field.value}” is not a place here. Enter two numbers from −1e12 to 1e12, such as 1e6, -3.5.`);
   if (isPlace) joint.lookAt(x, y);
 }
 
@@ -153,14 +196,25 @@ function listen() {
     draw();
   });
   byId("jump").addEventListener("submit", jump);
-  byId("seed").addEventListener("change", (event) => {
-    const seed = Number(event.target.value);
+  byId("alone").addEventListener("click", () => showAlone(!alone));
+  byId("far").addEventListener("click", () => {
+    const isFar = Math.abs(joint.view.x.i) > FAR / 2;
+    if (isFar) home();
+    else joint.lookAt(place(FAR), place(FAR));
+  });
+  byId("all").addEventListener("click", () => {
+    const isAll = state.shown.length === METHODS.length;
+    choose({ shown: isAll ? [...PAIR] : METHODS.map(({ id }) => id) });
+  });
+  const [field, profile] = [byId("seed"), byId("profile")];
+  field.addEventListener("change", () => {
+    const seed = Number(field.value);
     const isSeed = Number.isInteger(seed) && seed >= 0 && seed < 1e9;
-    event.target.setAttribute("aria-invalid", String(!isSeed));
-    say(isSeed ? null : "A seed here is an integer from 0 to 999999999.");
+    field.setAttribute("aria-invalid", String(!isSeed));
+    say(isSeed ? null : "The seed must be a whole number from 0 to 999,999,999.");
     if (isSeed) reseed(seed);
   });
-  byId("profile").addEventListener("change", (event) => choose({ profile: event.target.value }));
+  profile.addEventListener("change", () => choose({ profile: profile.value }));
 }
 
 function reseed(seed) {
@@ -171,6 +225,7 @@ function reseed(seed) {
 function build() {
   byId("show").append(...METHODS.map(({ id, name }) => make("button", { type: "button", id: `show-${id}`, onclick: () => pick(id) }, name)));
   byId("methods").append(...panels.map(({ element }) => element));
+  arrange();
   for (const { plane } of panels) {
     moveBy(plane, joint, { tapped: () => {}, hovered: () => {} });
     new ResizeObserver(resize).observe(plane);
@@ -178,7 +233,7 @@ function build() {
 }
 
 onPresence((gone) => {
-  say(gone ? "The server does not answer. Strew's points wait for it; the others are made here." : null);
+  say(null);
   if (!gone) begin();
 });
 
@@ -193,7 +248,7 @@ async function begin() {
     const { profiles } = await askJson("/v1/profiles");
     const names = [...new Set(profiles.map(({ profile }) => profile))];
     if (!names.includes(state.profile)) {
-      if (location.hash.includes("profile=")) say(`No profile “${state.profile}” is loaded here.`);
+      if (location.hash.includes("profile=")) say(`This server has no profile “${state.profile}”.`);
       [state.profile] = names.includes("blue") ? ["blue"] : names;
     }
     byId("profile").replaceChildren(...names.map((name) => make("option", { value: name }, name)));
@@ -206,6 +261,8 @@ async function begin() {
 // For tests.
 globalThis.strew = { joint, panels };
 build();
+arrange();
+byId("said").textContent = TRY;
 listen();
 skipLinks();
 begin();

@@ -10,13 +10,12 @@ const SPAN = 32;
 const NARROW_SPAN = 20;
 /** Farther out, doubles do not tell places within a spacing apart. */
 export const FARTHEST = 1e12;
-/** The number of methods that phones begin with. */
-const FEW = 2;
+/** The methods that are shown at first. */
+export const PAIR = ["strew", "poisson"];
 
 /** The first state, before anything is chosen: `isNarrow` on phones. */
 function initial(isNarrow) {
-  const all = METHODS.map(({ id }) => id);
-  return { x: place(0), y: place(0), span: isNarrow ? NARROW_SPAN : SPAN, seed: 1, profile: "blue", shown: isNarrow ? all.slice(0, FEW) : all };
+  return { x: place(0), y: place(0), span: isNarrow ? NARROW_SPAN : SPAN, seed: 1, profile: "blue", shown: [...PAIR] };
 }
 
 const bounded = (span) => Math.min(MOST_SPAN, Math.max(LEAST_SPAN, span));
@@ -32,7 +31,8 @@ export function fromHash(hash, isNarrow) {
   if (span > 0) state.span = bounded(span);
   const seed = given.get("seed") ?? "";
   if (/^\d{1,9}$/.test(seed)) state.seed = Number(seed);
-  if (/^[\w.-]{1,64}$/.test(given.get("profile") ?? "")) state.profile = given.get("profile");
+  const profile = given.get("profile") ?? "";
+  if (/^[\w.-]{1,64}$/.test(profile)) state.profile = profile;
   const shown = (given.get("show") ?? "").split(",").filter(methodOf);
   if (shown.length > 0) state.shown = METHODS.map(({ id }) => id).filter((id) => shown.includes(id));
   return state;

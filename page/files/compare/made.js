@@ -1,4 +1,4 @@
-// The work of the worker: the points of a window by each method, and the time of a point.
+// The work of the worker: the points of a window by each method, and the time per point.
 
 import { bridson } from "./bridson.js";
 import { jittered, repeated, white } from "./cells.js";
@@ -10,7 +10,12 @@ import { tileOf } from "./tile.js";
 const LEAST_RUN = 12;
 const RUNS = 3;
 
-/** Of points in a box, those in a window; `isWhole` says whether the box holds all of the window. */
+/**
+ * Of points in a box, those in a window; `isWhole` says whether the box holds all of the window.
+ * @param {Float64Array} points
+ * @param {number[]} box
+ * @param {any} window
+ */
 function cut(points, [left, low, right, top], { x, y, width, height }) {
   const [fromX, fromY] = [x.i + x.f, y.i + y.f];
   const found = [];
@@ -24,7 +29,7 @@ function cut(points, [left, low, right, top], { x, y, width, height }) {
 
 /** Points that were built over the box of a method, before any window of them. */
 function built(id, build) {
-  const { box } = methodOf(id);
+  const { box = [0, 0, 0, 0] } = methodOf(id) ?? {};
   const [width, height] = [box[2] - box[0], box[3] - box[1]];
   const run = () => {
     const began = performance.now();
@@ -33,7 +38,7 @@ function built(id, build) {
   };
   const { points, took } = run();
   return {
-    window: (window) => cut(points, box, window),
+    window: (window) => ({ ...cut(points, box, window), total: points.length / 2 }),
     time: () => {
       // Once more, when the engine has compiled what runs often and the page is at rest.
       const best = Math.min(took, run().took);
@@ -42,7 +47,7 @@ function built(id, build) {
   };
 }
 
-/** The nanoseconds a point of a method that makes any window alone: the best of some runs. */
+/** The nanoseconds per point of a method that makes any window alone: the best of some runs. */
 function timed(make) {
   const window = { x: { i: 0, f: 0 }, y: { i: 0, f: 0 }, width: MEASURED, height: MEASURED };
   let best = Infinity;

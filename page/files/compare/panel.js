@@ -1,13 +1,21 @@
-// One method: its points, and below them what they measure.
+// One method: its points, what had to be made for them, and what they measure.
 
 import { lineChart, spectrumPicture } from "../charts.js";
-import { make, spoken } from "../dom.js";
+import { contextOf, make, spoken } from "../dom.js";
 import { MOST_NU } from "../spectrum.js";
 import { measure } from "../measure.js";
 import { distance } from "../place.js";
+import { themeColor } from "../theme.js";
 import { MEASURED } from "./methods.js";
+import { large, priceOf } from "./price.js";
 import { Sheet } from "./sheet.js";
-import { Asked, Made } from "./sources.js";
+import { Asked, Made, windowAround } from "./sources.js";
+
+/**
+ * A source of no points.
+ * @type {{ version: string, runs: (view: any) => object[] }}
+ */
+const NOTHING = { version: "none", runs: () => [] };
 
 /** Nanoseconds as people say them. */
 function time(nanoseconds) {
@@ -18,27 +26,37 @@ function time(nanoseconds) {
 export class Panel {
   constructor(method, { changed, failed }) {
     this.method = method;
-    const { id, name, far, words, source } = method;
+    this.changed = changed;
+    this.failed = failed;
+    this.isTimed = false;
+    this.isOutside = false;
+    /** @type {number | undefined} */
+    this.nanoseconds = undefined;
+    /** The window whose points are drawn alone, and these. */
+    this.aloneKey = "";
+    this.aloneSource = NOTHING;
+    const { id, name, words, source } = method;
     this.source = id === "strew" ? new Asked(changed, failed) : new Made(id, changed, failed);
     const canvas = (label, attributes = {}) => make("canvas", { role: "img", "aria-label": `${label} of ${name}`, ...attributes });
     this.plane = canvas("Points", {
       id: `plane-${id}`, class: "plane", tabindex: "0", role: "application", "aria-describedby": "plane-help",
     });
     this.sheet = new Sheet(this.plane, method.box);
-    this.outside = make("p", { class: "outside", hidden: true }, "No points here: outside of its region.");
+    this.outside = make("p", { class: "outside", hidden: true }, "No points here: the window is outside of its region.");
     this.spectrum = canvas("Spectrum", { class: "spectrum" });
     this.radial = canvas("Radial power", { class: "radial" });
     this.none = make("p", { class: "note", hidden: true }, `Not measured here: the square of ${MEASURED} × ${MEASURED} reaches past its region.`);
     this.figures = Object.fromEntries(["least", "mean", "count", "time"].map((key) => [key, make("dd", { id: `${key}-${id}` }, "…")]));
     this.timing = make("dd", { class: "timing", id: `timing-${id}` });
+    this.price = { made: make("b", { id: `made-${id}` }, "…"), words: make("span", { id: `price-${id}` }), why: make("p", { class: "why", id: `why-${id}` }) };
     const row = (words, key, ...more) => make("div", {}, make("dt", {}, words), this.figures[key], more);
     this.element = make("article", { id: `method-${id}`, "aria-labelledby": `name-${id}` },
       make("h2", { id: `name-${id}` }, name),
       make("div", { class: "frame" }, this.plane, this.outside),
-      make("div", { class: "frame" }, this.spectrum, this.none), this.radial,
-      make("dl", {}, row("Least distance", "least"), row("Mean distance", "mean"), row("Points", "count"),
-        row("Time a point", "time", this.timing)),
-      make("p", { class: "far" }, far),
+      make("div", { class: "price" }, make("p", {}, this.price.made, " ", this.price.words), this.price.why),
+      make("div", { class: "spectra" }, make("div", { class: "frame" }, this.spectrum, this.none), this.radial),
+      make("dl", {}, row("Minimum distance", "least"), row("Mean distance", "mean"), row("Points", "count"),
+        row("Time per point", "time", this.timing)),
       make("p", { class: "words" }, words, " ", make("cite", {}, source)));
   }
 
@@ -50,15 +68,59 @@ export class Panel {
     this.isMeasured = false;
   }
 
-  draw(view) {
+  /** Draws the points around a view; with a window, only what has to be made for it. */
+  draw(view, alone) {
     if (!this.isReady) return;
+    if (alone) return this.drawAlone(view, alone);
     this.source.cover(view);
     this.sheet.draw(view, this.source);
     const { box } = this.method;
-    if (!box) return;
-    const half = [view.width * view.unit / 2, view.height * view.unit / 2];
-    const from = box.map((v, i) => distance({ i: v, f: 0 }, [view.x, view.y][i % 2]));
-    this.outside.hidden = from[0] < half[0] && from[1] < half[1] && from[2] > -half[0] && from[3] > -half[1];
+    if (box) {
+      const half = [view.width * view.unit / 2, view.height * view.unit / 2];
+      const from = box.map((v, i) => distance({ i: v, f: 0 }, [view.x, view.y][i % 2]));
+      this.isOutside = !(from[0] < half[0] && from[1] < half[1] && from[2] > -half[0] && from[3] > -half[1]);
+      this.outside.hidden = !this.isOutside;
+    }
+    this.say(view);
+  }
+
+  /** Draws what has to be made for a window. */
+  drawAlone(view, { window, unit }) {
+    const key = [window.x.i, window.x.f, window.y.i, window.y.f, window.width, window.height, this.source.seed].join();
+    if (this.aloneKey !== key) {
+      this.aloneKey = key;
+      this.aloneSource = NOTHING;
+      this.source.alone(window).then((run) => {
+        if (this.aloneKey !== key) return;
+        this.aloneSource = { version: key, runs: ({ x, y }) => [{ ...run, left: distance(run.x, x), low: distance(run.y, y) }] };
+        this.changed();
+      }, (error) => this.failed(error));
+    }
+    this.sheet.draw({ ...view, unit }, this.aloneSource);
+    // The window that is wanted.
+    const [width, height] = [window.width, window.height].map((side) => (side / unit) * view.ratio);
+    const context = contextOf(this.plane);
+    context.strokeStyle = themeColor("accent");
+    context.lineWidth = 2 * view.ratio;
+    context.strokeRect((this.plane.width - width) / 2, (this.plane.height - height) / 2, width, height);
+  }
+
+  /** Says what has to be made for a view. */
+  say(view) {
+    const window = windowAround(view, view.width * view.unit, view.height * view.unit);
+    let seen = 0;
+    for (const { points, count, stride, left, low } of this.source.runs(view)) {
+      for (let p = 0; p < count * stride; p += stride) {
+        seen += Number(2 * Math.abs(points[p] + left) < window.width && 2 * Math.abs(points[p + 1] + low) < window.height);
+      }
+    }
+    // Nothing is said of points that are still on their way.
+    const { made, words, why } = seen === 0 && !this.isOutside ? { words: "", why: "" } : priceOf(this.method.id, window, {
+      seen, total: this.source.total, isOutside: this.isOutside, nanoseconds: this.nanoseconds,
+    });
+    for (const [key, text] of Object.entries({ made: made === undefined ? "…" : large(made), words, why })) {
+      if (this.price[key].textContent !== text) this.price[key].textContent = text;
+    }
   }
 
   /** Measures the square around a place; `isLatest()` says whether that is still wanted. */
@@ -93,12 +155,13 @@ export class Panel {
 
   /** Times the method, once for each choice. */
   async time() {
-    const { nanoseconds, built, answer } = await this.source.time();
+    const { nanoseconds, built } = await this.source.time();
+    this.nanoseconds = nanoseconds;
     this.figures.time.textContent = time(nanoseconds);
-    if (answer) {
-      this.timing.textContent = `over the wire: ${answer.count.toLocaleString("en")} points in ${spoken(answer.milliseconds, 2)} ms, latency and reading included`;
-    } else if (this.method.box) this.timing.textContent = `in this browser: all of its region, built in ${spoken(built, 2)} ms`;
-    else if (built) this.timing.textContent = `in this browser, after ${spoken(built, 2)} ms for the tile`;
-    else this.timing.textContent = "in this browser, for any window alone";
+    if (nanoseconds === undefined) this.timing.textContent = "not made in this browser: see below";
+    else if (this.method.box) this.timing.textContent = `all of its region, built in ${spoken(built, 2)} ms`;
+    else if (built) this.timing.textContent = `after ${spoken(built, 2)} ms for the tile`;
+    else this.timing.textContent = "for any window alone";
+    this.changed();
   }
 }

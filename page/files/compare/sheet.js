@@ -1,5 +1,6 @@
 // The picture of one panel: points are painted once on a sheet larger than the canvas, which a drag only moves.
 
+import { contextOf } from "../dom.js";
 import { dotSize } from "../marks.js";
 import { distance } from "../place.js";
 import { themeColor } from "../theme.js";
@@ -11,7 +12,7 @@ const MARGIN = 0.3;
 function dotOf(size, color) {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = Math.ceil(size) + 2;
-  const context = canvas.getContext("2d");
+  const context = contextOf(canvas);
   context.fillStyle = color;
   context.beginPath();
   context.arc(canvas.width / 2, canvas.width / 2, size / 2, 0, 2 * Math.PI);
@@ -25,6 +26,8 @@ export class Sheet {
     this.canvas = canvas;
     this.box = box;
     this.sheet = document.createElement("canvas");
+    this.ground = "";
+    /** @type {any} */
     this.held = null;
   }
 
@@ -39,7 +42,7 @@ export class Sheet {
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
     if (!held || held.version !== source.version || !this.fits(view)) this.paint(view, source);
     const pixel = view.unit / view.ratio;
-    const context = canvas.getContext("2d");
+    const context = contextOf(canvas);
     const [x, y] = [distance(this.held.x, view.x) / pixel, -distance(this.held.y, view.y) / pixel];
     context.fillStyle = this.ground;
     context.fillRect(0, 0, width, height);
@@ -60,7 +63,7 @@ export class Sheet {
     const [width, height] = pixels.map((side) => Math.ceil(side * (1 + 2 * MARGIN)));
     const pixel = unit / ratio;
     Object.assign(this.sheet, { width, height });
-    const context = this.sheet.getContext("2d");
+    const context = contextOf(this.sheet);
     this.ground = themeColor("sunken");
     const dot = dotOf(dotSize(1 / unit, 1.25) * ratio, themeColor("ink"));
     const half = dot.width / 2;

@@ -7,26 +7,30 @@ import { decimalsFor, distance, formatPlace, moved, place } from "../place.js";
 import { joined, setOf } from "../query.js";
 import { LAYER } from "../state.js";
 import { callsOf } from "../worker.js";
-import { MEASURED } from "./methods.js";
+import { MEASURED, TILE, boxOf } from "./methods.js";
 
 /** The part of the world that is held around a view, in views. */
 const AHEAD = 2;
-/** The side of a large square that is timed: 250,000 points, 2 MB. */
-const LARGE = 500;
-/** It is requested if the measured square takes fewer milliseconds than this. */
-const QUICK = 150;
-
 const make = callsOf("/page/compare/worker.js");
 
-/** A window of a size around a place. */
-function windowAround({ x, y }, width, height) {
+/** A window of a size around a place: its lower corner and its size. */
+export function windowAround({ x, y }, width, height) {
   return { x: moved(x, -width / 2), y: moved(y, -height / 2), width, height };
 }
 
 /** Points that the worker makes. */
 export class Made {
   constructor(method, changed, failed) {
-    Object.assign(this, { method, changed, failed, window: null, points: new Float64Array(0), version: 0 });
+    this.method = method;
+    this.changed = changed;
+    this.failed = failed;
+    /** @type {any} */
+    this.window = null;
+    this.points = new Float64Array(0);
+    /** Points in the region of a method that has one. */
+    this.total = 0;
+    this.version = 0;
+    this.seed = NaN;
   }
 
   use({ seed }) {
@@ -53,15 +57,20 @@ export class Made {
     this.isBusy = true;
     const { view, seed } = this;
     const window = windowAround(view, AHEAD * view.width * view.unit, AHEAD * view.height * view.unit);
-    let points;
+    let made;
     try {
-      ({ points } = await make({ method: this.method, seed, window }));
+      made = await make({ method: this.method, seed, window });
     } catch (error) {
       return this.failed(error);
     } finally {
       this.isBusy = false;
     }
-    if (seed === this.seed) Object.assign(this, { points, window, version: this.version + 1 });
+    if (seed === this.seed) {
+      this.window = window;
+      this.points = made.points;
+      this.total = made.total ?? 0;
+      this.version += 1;
+    }
     this.changed();
   }
 
@@ -79,7 +88,18 @@ export class Made {
     return isWhole ? points : null;
   }
 
-  /** The time of a point. */
+  /** What has to be made for a window: all of its region for a method that has one, one tile of a repeated one. */
+  async alone(window) {
+    const box = boxOf(this.method);
+    const corner = (at) => place(Math.floor(at.i / TILE) * TILE);
+    let all = window;
+    if (box) all = { x: place(box[0]), y: place(box[1]), width: box[2] - box[0], height: box[3] - box[1] };
+    else if (this.method === "tile") all = { x: corner(window.x), y: corner(window.y), width: TILE, height: TILE };
+    const { points } = await make({ method: this.method, seed: this.seed, window: all });
+    return { points, count: points.length / 2, stride: 2, x: all.x, y: all.y };
+  }
+
+  /** The time per point. */
   time() {
     return make({ method: this.method, seed: this.seed });
   }
@@ -94,10 +114,13 @@ export class Asked {
     }, failed);
     this.version = 0;
     this.wanted = [];
+    this.seed = "";
+    this.total = 0;
   }
 
   use({ seed, profile }) {
     this.layer = { ...LAYER, seed: String(seed), profile };
+    this.seed = `${seed} ${profile}`;
     this.chunks.show([this.layer]);
     this.size = 0;
   }
@@ -113,26 +136,24 @@ export class Asked {
     }));
   }
 
-  async answer(at, side) {
-    const low = [at.x, at.y].map((v) => moved(v, -side / 2));
-    const box = [...low, ...low.map((v) => moved(v, side))].map((v) => formatPlace(v, decimalsFor(1e-9)));
-    const began = performance.now();
+  async answer({ x, y, width, height }) {
+    const box = [x, y, moved(x, width), moved(y, height)].map((v) => formatPlace(v, decimalsFor(1e-9)));
     const answer = await ask(`/v1/points?bbox=${box.join(",")}&${joined([...setOf(this.layer), ["format", "f32"]])}`);
-    const points = new Float32Array(await answer.arrayBuffer());
-    return { points, took: performance.now() - began };
+    return new Float32Array(await answer.arrayBuffer());
   }
 
   async square(at) {
-    const { points } = await this.answer(at, MEASURED);
-    return Float64Array.from(points);
+    return Float64Array.from(await this.answer(windowAround(at, MEASURED, MEASURED)));
   }
 
-  /** The time of a point over the wire: in a large answer where the connection is quick, else in a small one. */
-  async time() {
-    const origin = { x: place(0), y: place(0) };
-    let { points, took } = await this.answer(origin, MEASURED);
-    if (took < QUICK) ({ points, took } = await this.answer(origin, LARGE));
-    const count = points.length / 2;
-    return { nanoseconds: (took * 1e6) / count, answer: { milliseconds: took, count } };
+  /** The points of a window, which are all that the server makes for it. */
+  async alone(window) {
+    const points = await this.answer(window);
+    return { points, count: points.length / 2, stride: 2, x: window.x, y: window.y };
+  }
+
+  /** No time: the points are made elsewhere, by another program. */
+  time() {
+    return {};
   }
 }

@@ -13,6 +13,7 @@ const KEPT = 0.9;
 /** The push of each point by all others, as x, y in turns, on a torus of `side` unit cells. */
 function pushes(points, side, push) {
   push.fill(0);
+  /** @type {number[][]} */
   const cells = Array.from({ length: side * side }, () => []);
   for (let p = 0; p < points.length; p += 2) cells[Math.floor(points[p + 1]) * side + Math.floor(points[p])].push(p);
   const nearest = (d) => (d > side / 2 ? d - side : d < -side / 2 ? d + side : d);

@@ -5,6 +5,6 @@ import { made } from "./made.js";
 addEventListener("message", ({ data: { id, method, seed, window } }) => {
   const source = made(method, seed);
   if (!window) return postMessage({ id, ...source.time() });
-  const { points, isWhole } = source.window(window);
-  postMessage({ id, points, isWhole }, [points.buffer]);
+  const { points, isWhole, total } = source.window(window);
+  postMessage({ id, points, isWhole, total }, { transfer: [points.buffer] });
 });

@@ -1,7 +1,7 @@
 // Trying an operation: a form with its parameters, the curl line of what the form says, and what the server answers.
 
-import { hasKey, headersFor } from "../api.js";
-import { bytes, make } from "../dom.js";
+import { brokeOff, hasKey, headersFor } from "../api.js";
+import { bytes, contextOf, make } from "../dom.js";
 import { keyForm } from "../form.js";
 import { resolved } from "./schema.js";
 
@@ -77,13 +77,14 @@ export function attempt(path, method, operation, api) {
   const answer = make("div", { id: "answer", "aria-live": "polite" });
   const send = make("button", { type: "submit", class: "main" }, "Send");
   const update = () => (line.textContent = curl());
+  /** @type {HTMLElement[][]} */
   const [shown, others] = [[], []];
   for (const one of fields) (one.field.value !== "" || one.parameter.required ? shown : others).push(one.row);
   const form = make("form", { class: "try" },
     make("div", { class: "fields" }, shown),
     others.length > 0 && make("details", {}, make("summary", {}, `${others.length} more parameters`), make("div", { class: "fields" }, others)),
     body && make("div", { class: "field wide" }, make("label", { for: "try-body" }, `Body, ${content[0]}`), body),
-    make("div", { class: "line" }, make("pre", { tabindex: "0", "aria-label": "The line for curl" }, line), copy(() => line.textContent)),
+    make("div", { class: "line" }, make("pre", { role: "group", tabindex: "0", "aria-label": "The line for curl" }, line), copy(() => line.textContent)),
     send);
   form.addEventListener("input", update, true);
   form.addEventListener("submit", async (event) => {
@@ -99,14 +100,14 @@ export function attempt(path, method, operation, api) {
 }
 
 /** A button that copies a text. */
-export function copy(text) {
+function copy(text) {
   const button = make("button", { type: "button", "aria-label": "Copy the command" }, "Copy");
   button.addEventListener("click", async () => {
     try {
       await navigator.clipboard.writeText(text());
       button.textContent = "Copied";
     } catch {
-      getSelection().selectAllChildren(button.previousSibling);
+      if (button.previousSibling) getSelection()?.selectAllChildren(button.previousSibling);
       button.textContent = "Selected";
     }
   });
@@ -130,9 +131,10 @@ async function sent({ address, headers, text }, method, type, update) {
       answer.status === 401 && keyForm(update),
       make("details", {}, make("summary", {}, `${rows.length / 2} headers`), make("dl", { class: "headers" }, rows)),
       await seen(blob, kind, isWhole),
-    ].filter(Boolean);
-  } catch (error) {
-    return [make("p", { class: "status bad" }, `The server does not answer: ${error.message}`)];
+    ].filter((one) => one !== false);
+  } catch {
+    brokeOff();
+    return [make("p", { class: "status bad" }, "No answer came. Send it again when the server is back.")];
   }
 }
 
@@ -160,7 +162,7 @@ async function seen(blob, kind, isWhole) {
   if (!/json|text|csv|xml|toml/.test(kind)) return make("p", { class: "note" }, `Binary, ${kind || "without a type"}.`);
   let text = await blob.slice(0, SHOWN).text();
   if (kind.includes("json") && isWhole && blob.size <= SHOWN) text = pretty(text);
-  return make("pre", { id: "body", tabindex: "0", "aria-label": "The body" }, text, blob.size > SHOWN && "\n…");
+  return make("pre", { id: "body", role: "group", tabindex: "0", "aria-label": "The body" }, text, blob.size > SHOWN && "\n…");
 }
 
 /** The picture of an answer, drawn from its bytes: another request would lack the body and the key. */
@@ -169,10 +171,10 @@ async function picture(blob) {
     const bitmap = await createImageBitmap(blob);
     const canvas = make("canvas", { role: "img", "aria-label": "The picture of the answer" });
     Object.assign(canvas, { width: bitmap.width, height: bitmap.height });
-    canvas.getContext("2d").drawImage(bitmap, 0, 0);
+    contextOf(canvas).drawImage(bitmap, 0, 0);
     return canvas;
   } catch {
-    return make("pre", { id: "body", tabindex: "0", "aria-label": "The body" }, await blob.slice(0, SHOWN).text());
+    return make("pre", { id: "body", role: "group", tabindex: "0", "aria-label": "The body" }, await blob.slice(0, SHOWN).text());
   }
 }
 

@@ -1,5 +1,6 @@
 // The API as a page: shows /openapi.json, an operation at a time. Everything is put in as text, never as markup.
 
+import { Gone, askJson, onPresence } from "../api.js";
 import { byId, counted, icon, make, skipLinks } from "../dom.js";
 import { watchTheme } from "../theme.js";
 import { operationView } from "./operation.js";
@@ -8,6 +9,7 @@ import { resolved } from "./schema.js";
 /** Whether a path is listed: the parts of pages are not. */
 const isListed = (path) => path.split("/")[1] !== "page";
 
+/** @type {any} */
 let api = null;
 let all = [];
 
@@ -56,24 +58,41 @@ function search() {
   for (const one of all) {
     const texts = wordsOf(one);
     const isHit = words.every((word) => texts.some((text) => text.includes(word)));
-    const row = document.querySelector(`[data-id="${one.id}"]`);
+    const row = /** @type {HTMLElement} */ (document.querySelector(`[data-id="${one.id}"]`));
     row.hidden = !isHit;
     hits += isHit ? 1 : 0;
     const names = words.length === 0 ? [] : one.operation.parameters.filter((_, i) => words.some((word) => texts[i + 1].includes(word)));
-    const hit = row.querySelector(".hit");
+    const hit = /** @type {HTMLElement} */ (row.querySelector(".hit"));
     hit.hidden = !isHit || names.length === 0;
     hit.textContent = names.slice(0, 4).map(({ name }) => name).join(", ") + (names.length > 4 ? " …" : "");
   }
   for (const section of document.querySelectorAll("[data-tag]")) section.hidden = !section.querySelector("li:not([hidden])");
-  byId("hits").textContent = words.length > 0 ? counted(hits, "operation") : "";
+  const isNone = words.length > 0 && hits === 0;
+  byId("hits").textContent = isNone ? "No operation found" : words.length > 0 ? counted(hits, "operation") : "";
+  // The overview invites to choose an operation: not where there is none to choose.
+  if (!chosen()) byId("main").replaceChildren(...(isNone ? nothing() : overview()));
+}
+
+/** What the page says where a search finds nothing. */
+function nothing() {
+  const clear = () => {
+    byId("search").value = "";
+    search();
+    byId("search").focus();
+  };
+  return [
+    make("h2", { tabindex: "-1" }, "No operation found"),
+    make("p", {}, `“${byId("search").value.trim()}” is in no operation's name, path or description, and in none of its parameters.`),
+    make("p", {}, make("button", { type: "button", id: "clear", onclick: clear }, "Show all operations")),
+  ];
 }
 
 function overview() {
   return [
     make("h2", { tabindex: "-1" }, "The API"),
     make("p", { class: "about" }, api.info.description),
-    make("p", {}, "Choose an operation, or search for one by its words or those of its parameters. Each can be tried here and has an address of its own."),
-    make("p", {}, "The same by gRPC on this port, with reflection: ", make("code", {}, "strew.v1.PointService"), ". This page shows ",
+    make("p", {}, "Choose an operation, or search: the search covers parameters, too. Each operation can be tried here and has its own link."),
+    make("p", {}, "The same calls are served over gRPC on this port, with reflection: ", make("code", {}, "strew.v1.PointService"), ". This page shows ",
       make("a", { href: "/openapi.json" }, "/openapi.json"), ", from which clients can be generated."),
     make("ul", { class: "tags" }, (api.tags ?? []).map(({ name, description }) => {
       const members = all.filter(({ tag }) => tag === name);
@@ -92,14 +111,19 @@ function named(hash) {
   }
 }
 
+/** The operation that the address names. */
+function chosen() {
+  const id = named(location.hash.slice(1));
+  return all.find((operation) => operation.id === id);
+}
+
 /** Shows what the address names. */
 function route(hasMoved) {
-  const id = named(location.hash.slice(1));
-  const one = all.find((operation) => operation.id === id);
+  const one = chosen();
   byId("main").replaceChildren(...(one ? operationView(one, api) : overview()));
   document.title = one ? `${one.operation.summary} · API · Strew` : "API · Strew";
-  for (const link of document.querySelectorAll("#operations a")) {
-    if (link.hash === `#${id}`) {
+  for (const link of /** @type {NodeListOf<HTMLAnchorElement>} */ (document.querySelectorAll("#operations a"))) {
+    if (one && link.hash === `#${one.id}`) {
       link.setAttribute("aria-current", "page");
       link.scrollIntoView({ block: "nearest" });
     } else link.removeAttribute("aria-current");
@@ -108,16 +132,16 @@ function route(hasMoved) {
   byId("side").classList.remove("open");
   byId("list").setAttribute("aria-expanded", "false");
   scrollTo(0, 0);
-  byId("main").querySelector("h2").focus({ preventScroll: true });
+  byId("main").querySelector("h2")?.focus({ preventScroll: true });
 }
 
 async function begin() {
   try {
-    const answer = await fetch("/openapi.json");
-    if (!answer.ok) throw new Error(`the server answered ${answer.status}`);
-    api = await answer.json();
+    api = await askJson("/openapi.json");
   } catch (error) {
-    byId("main").replaceChildren(make("h2", {}, "The API"), make("p", { class: "bad" }, `/openapi.json cannot be shown: ${error.message}`));
+    // The page begins again when the server is back.
+    const words = error instanceof Gone ? "It is shown here as soon as the server answers." : `The server refused /openapi.json: ${error.message}`;
+    byId("main").replaceChildren(make("h2", {}, "The API"), make("p", { class: "bad" }, words));
     return;
   }
   all = operationsOf(api);
@@ -132,6 +156,12 @@ async function begin() {
   document.documentElement.dataset.state = "ready";
 }
 
+onPresence((gone) => {
+  byId("banner").hidden = !gone;
+  byId("banner").textContent = gone ? "The server does not answer. This page tries again by itself; what is shown stays." : "";
+  if (!gone && !api) begin();
+});
+
 byId("theme").append(icon("M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z"));
 watchTheme(byId("theme"), () => {});
 byId("list").addEventListener("click", () => {
@@ -139,7 +169,7 @@ byId("list").addEventListener("click", () => {
   byId("list").setAttribute("aria-expanded", String(isOpen));
 });
 addEventListener("keydown", (event) => {
-  if (event.key !== "/" || event.target.closest("input, textarea, select")) return;
+  if (event.key !== "/" || /** @type {Element} */ (event.target).closest("input, textarea, select")) return;
   event.preventDefault();
   byId("side").classList.add("open");
   byId("search").focus();

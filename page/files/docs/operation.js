@@ -2,15 +2,21 @@
 
 import { make } from "../dom.js";
 import { attempt } from "./attempt.js";
+import { rulesTable } from "./rules.js";
 import { folded, isSaid, limitsOf, membersOf, resolved, typeOf } from "./schema.js";
 
-/** A description: a paragraph, and below it the items of a list, if it has any. */
-function prose(text) {
+/** A description; its list of rules is in the table below. */
+function prose(text, hasRules) {
   const [about, ...items] = text.split(/\n+- /);
   return [
     make("p", { class: "about" }, about),
-    items.length > 0 && make("ul", { class: "about" }, items.map((item) => make("li", {}, item))),
-  ].filter(Boolean);
+    items.length > 0 && !hasRules && make("ul", { class: "about" }, items.map((item) => make("li", {}, item))),
+  ].filter((one) => one !== false);
+}
+
+function rules(operation) {
+  const table = rulesTable(operation["x-rules"]);
+  return table ? [folded("Which parameters go together", () => table, operation["x-rules"].length <= 3)] : [];
 }
 
 function parameterRow(one, api) {
@@ -50,7 +56,7 @@ function contentOf(type, content, api) {
   const example = content.example ?? Object.values(content.examples ?? {})[0]?.value;
   return folded(make("span", {}, make("code", {}, type), " ", make("span", { class: "type" }, typeOf(content.schema, api))), () => [
     ...membersOf(content.schema, api),
-    example !== undefined && make("pre", { tabindex: "0", "aria-label": "An example" }, typeof example === "string" ? example : JSON.stringify(example, null, 2)),
+    example !== undefined && make("pre", { role: "group", tabindex: "0", "aria-label": "An example" }, typeof example === "string" ? example : JSON.stringify(example, null, 2)),
   ].filter(Boolean));
 }
 
@@ -58,7 +64,7 @@ function answers(responses, api) {
   return Object.entries(responses).map(([status, given]) => {
     const { of } = resolved(given, api);
     const headers = Object.entries(of.headers ?? {});
-    const title = make("span", {}, make("b", { class: status < 400 ? "good" : "bad" }, status), " ", of.description);
+    const title = make("span", {}, make("b", { class: Number(status) < 400 ? "good" : "bad" }, status), " ", of.description);
     return folded(title, () => [
       headers.length > 0 && folded(`${headers.length} headers`, () => make("ul", { class: "members" }, headers.map(([name, header]) => (
         make("li", {}, make("code", { class: "name" }, name), make("p", {}, resolved(header, api).of.description ?? ""))
@@ -75,12 +81,13 @@ export function operationView({ path, method, operation, tag }, api) {
     make("p", { class: "crumb" }, tag),
     make("h2", { tabindex: "-1" }, operation.summary),
     make("p", { class: "path" }, make("span", { class: `method ${method.toLowerCase()}` }, method), make("code", {}, path)),
-    ...prose(operation.description ?? ""),
+    ...prose(operation.description ?? "", operation["x-rules"]?.length > 0),
     make("div", { class: "columns" },
       make("div", {},
         ...parameters(operation.parameters, api).filter(Boolean),
+        ...rules(operation),
         ...body(operation.requestBody, api),
-        make("h3", {}, "Answers"), ...answers(operation.responses, api)),
+        make("h3", {}, "Responses"), ...answers(operation.responses, api)),
       make("div", { class: "trying" }, make("h3", {}, "Try it here"), ...attempt(path, method, operation, api))),
   ];
 }

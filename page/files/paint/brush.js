@@ -1,6 +1,7 @@
 // The hand on the plane while something is painted: mouse, pen, finger or keys draw a line in world units. Two fingers
 // and the wheel move the view as always.
 
+import { contextOf } from "../dom.js";
 import { themeColor } from "../theme.js";
 import { toNumber } from "../place.js";
 
@@ -10,7 +11,19 @@ const STEP = 0.5;
 export class Brush {
   /** `drawn(line)` takes a whole line; `left()` hears of Escape; `say(words)` is read out. */
   constructor(canvas, plane, { drawn, left, say }) {
-    Object.assign(this, { canvas, plane, drawn, left, say, down: new Map(), line: null, cursor: null, size: 1, kind: "paint" });
+    this.canvas = canvas;
+    this.plane = plane;
+    this.drawn = drawn;
+    this.left = left;
+    this.say = say;
+    /** @type {Map<number, number[]>} */
+    this.down = new Map();
+    /** @type {number[][] | null} */
+    this.line = null;
+    /** @type {number[] | null} */
+    this.cursor = null;
+    this.size = 1;
+    this.kind = "paint";
     canvas.addEventListener("pointerdown", (event) => this.press(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, (event) => this.lift(event));
@@ -28,6 +41,7 @@ export class Brush {
     return [event.clientX - box.left, event.clientY - box.top];
   }
 
+  /** @param {number[]} pixel */
   world([px, py]) {
     const { x, y, unit, width, height } = this.plane.view;
     return [toNumber(x) + (px - width / 2) * unit, toNumber(y) + (height / 2 - py) * unit];
@@ -56,9 +70,10 @@ export class Brush {
   }
 
   pinch(id, now) {
-    const other = [...this.down].find(([key]) => key !== id)[1];
+    const [, other] = [...this.down].find(([key]) => key !== id) ?? [];
     const before = this.down.get(id);
-    const apart = (a) => Math.hypot(a[0] - other[0], a[1] - other[1]) || 1;
+    if (!other || !before) return;
+    const apart = (/** @type {number[]} */ a) => Math.hypot(a[0] - other[0], a[1] - other[1]) || 1;
     this.plane.drag((now[0] - before[0]) / 2, (now[1] - before[1]) / 2);
     this.plane.zoom(apart(now) / apart(before), [(now[0] + other[0]) / 2, (now[1] + other[1]) / 2]);
   }
@@ -132,10 +147,10 @@ export class Brush {
     const { view } = plane;
     const [width, height] = view.pixels;
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
-    const context = canvas.getContext("2d");
+    const context = contextOf(canvas);
     context.clearRect(0, 0, width, height);
     const pixel = view.unit / view.ratio;
-    const at = ([x, y]) => [width / 2 + (x - toNumber(view.x)) / pixel, height / 2 - (y - toNumber(view.y)) / pixel];
+    const at = (/** @type {number[]} */ [x, y]) => [width / 2 + (x - toNumber(view.x)) / pixel, height / 2 - (y - toNumber(view.y)) / pixel];
     const radius = Math.max(2, this.size / 2 / pixel);
     context.strokeStyle = themeColor(this.kind === "paint" ? "accent" : "bad");
     if (line) {
@@ -143,7 +158,7 @@ export class Brush {
       context.lineWidth = 2 * radius;
       context.lineCap = context.lineJoin = "round";
       context.beginPath();
-      [...line, line.at(-1)].map(at).forEach(([x, y], i) => (i === 0 ? context.moveTo(x, y) : context.lineTo(x, y)));
+      [...line, ...line.slice(-1)].map(at).forEach(([x, y], i) => (i === 0 ? context.moveTo(x, y) : context.lineTo(x, y)));
       context.stroke();
       context.globalAlpha = 1;
     }

@@ -1,6 +1,7 @@
 // Fields by hand: a bar of tools on the plane, what was painted with them, and the field that it is.
 
 import { byId, icon, make } from "../dom.js";
+import { Part } from "../part.js";
 import { describe, documentOf, isSent, send } from "../sent.js";
 import { MOST_PAINT } from "../state.js";
 import { Brush } from "./brush.js";
@@ -22,12 +23,48 @@ function strokes({ strokes: { length } }) {
   return `${length} ${length === 1 ? "stroke" : "strokes"}`;
 }
 
-export class Paint {
+export class Paint extends Part {
+  /** @type {HTMLButtonElement} */
+  toggle;
+  /** @type {HTMLButtonElement[]} */
+  tools;
+  /** @type {HTMLElement} */
+  strong;
+  /** @type {HTMLSelectElement} */
+  elsewhere;
+  /** @type {HTMLButtonElement} */
+  undoButton;
+  /** @type {HTMLButtonElement} */
+  clearButton;
+  /** @type {HTMLInputElement} */
+  file;
+  /** @type {HTMLElement} */
+  said;
+  /** @type {HTMLElement} */
+  bar;
+  /** @type {HTMLCanvasElement} */
+  canvas;
+
   /** `picked()` is the index of the layer that is painted on; `say(words)` shows what went wrong. */
   constructor(session, plane, { picked, say }) {
-    Object.assign(this, { session, plane, picked, fail: say, tool: null, width: 0.12, strength: 1, turn: 0 });
-    /** What is painted on a layer, and that layer. */
+    super();
+    this.session = session;
+    this.plane = plane;
+    this.picked = picked;
+    this.fail = say;
+    /** @type {string | null} */
+    this.tool = null;
+    this.width = 0.12;
+    this.strength = 1;
+    this.turn = 0;
+    /** @type {any} */
+    this.cleared = null;
+    /**
+     * What is painted on a layer, and that layer.
+     * @type {any}
+     */
     this.work = blank();
+    /** @type {any} */
     this.owner = null;
     /** Texts of what was painted by the fields that they are, for those that the address does not hold. */
     this.texts = new Map();
@@ -47,9 +84,10 @@ export class Paint {
       type: "range", id: `paint-${id}`, min: "0", max: "1", step: "0.01", value: String(value),
       oninput: (event) => changed(Number(event.target.value)),
     }));
-    this.toggle = button("open", [icon(BRUSH), make("span", {}, "Paint")], () => this.use(this.tool ? null : "paint"), {
-      "aria-expanded": "false", "aria-label": "Paint density and roads", title: "Paint density and roads",
-    });
+    // It is in the page from the start, so that nothing beside it moves.
+    this.toggle = byId("paint-open");
+    this.toggle.prepend(icon(BRUSH));
+    this.toggle.addEventListener("click", () => this.use(this.tool ? null : "paint"));
     this.tools = TOOLS.map(([tool, words, title]) => button(`tool-${tool}`, words, () => this.use(tool), { title, "aria-pressed": "false" }));
     this.size = slide("size", "Size", Math.sqrt(this.width), (value) => {
       this.width = Math.max(0.004, value ** 2);
@@ -61,7 +99,7 @@ export class Paint {
     this.undoButton = button("undo", "Undo", () => this.undo());
     this.clearButton = button("clear", "Clear", () => this.clear());
     this.file = make("input", { type: "file", id: "paint-file", accept: ".json,application/json", hidden: true, "aria-label": "A world file", onchange: () => {
-      const [file] = this.file.files;
+      const file = this.file.files?.[0];
       if (file) this.open(file);
       this.file.value = "";
     } });
@@ -77,11 +115,10 @@ export class Paint {
       id: "brush", tabindex: "0", role: "application", hidden: true,
       "aria-label": "Paint on the plane. Arrow keys move the brush, Space puts the pen down and lifts it, plus and minus zoom, Escape leaves.",
     });
-    byId("tools").prepend(this.toggle);
     byId("stage").append(this.canvas, this.bar);
     addEventListener("keydown", (event) => {
       if (!this.tool) return;
-      if (event.key === "z" && (event.ctrlKey || event.metaKey) && !event.target.matches("input:not([type=range]), textarea")) {
+      if (event.key === "z" && (event.ctrlKey || event.metaKey) && !/** @type {Element} */ (event.target).matches("input:not([type=range]), textarea")) {
         event.preventDefault();
         this.undo();
       } else if (event.key === "Escape" && event.target !== this.canvas) this.use(null);
@@ -114,9 +151,9 @@ export class Paint {
     this.clearButton.disabled = this.work.strokes.length === 0;
     this.undoButton.disabled = this.clearButton.disabled && !this.hasCleared;
     // A button that can do no more leaves the focus to what it worked on.
-    if (tool && activeElement?.disabled && this.bar.contains(activeElement)) this.canvas.focus({ preventScroll: true });
+    if (tool && activeElement?.hasAttribute("disabled") && this.bar.contains(activeElement)) this.canvas.focus({ preventScroll: true });
     this.elsewhere.value = String(this.work.ground);
-    this.elsewhere.parentElement.hidden = Boolean(this.work.base);
+    /** @type {HTMLElement} */ (this.elsewhere.parentElement).hidden = Boolean(this.work.base);
   }
 
   /** The size of a brush in world units: a part of what is in view. */
@@ -216,7 +253,7 @@ export class Paint {
     this.follow();
     if (this.hasCleared) {
       const { ground, strokes } = this.cleared.work;
-      this.change({ ground, strokes }, "Back again");
+      this.change({ ground, strokes }, "Restored");
     } else if (this.work.strokes.length > 0) this.change({ strokes: this.work.strokes.slice(0, -1) }, "Undone");
   }
 
@@ -243,7 +280,7 @@ export class Paint {
       if (text) this.texts.set(field, text);
       const amount = layer.by === "min_distance" ? { by: "spacing", amount: await this.spacing(layer) } : {};
       this.session.choose(() => Object.assign(layer, { field, paint: text, ...amount }), "layers");
-      const where = text.length > MOST_PAINT ? ", too much for the address: save it as a file" : "";
+      const where = text.length > MOST_PAINT ? ", too many for the address: save them as a file" : "";
       this.say(`${words ? `${words}: ` : ""}${strokes(work)}${where}`);
     } catch (error) {
       if (mine !== this.turn) return;
@@ -267,14 +304,14 @@ export class Paint {
     link.click();
     link.remove();
     setTimeout(() => URL.revokeObjectURL(url), 60_000);
-    this.say("world.json is with your browser's downloads. A folder of worlds takes it, too.");
+    this.say("world.json is in your downloads. The daemon's folder of worlds takes it, too.");
   }
 
   /** Opens a world from a file. */
   async open(file) {
     try {
       const layers = await layersOf(await file.text(), file.name);
-      this.session.choose((state) => (state.layers = layers), "layers");
+      this.session.choose((state) => Object.assign(state, { world: "", worldSeed: "", layers }), "layers");
       this.say(`“${file.name}” is open`);
     } catch (error) {
       this.say("");

@@ -10,9 +10,11 @@ const MOST_VERTICES = 10_000;
 /** Every stroke has two vertices at least. */
 const MOST_STROKES = MOST_VERTICES / 2;
 
+/** @typedef {{ kind: string, size: number, strength: number, line: number[][] }} Stroke */
+
 /** Nothing painted yet, over a field that a layer has already. */
 export function blank(base = "") {
-  return { base, ground: 1, strokes: [] };
+  return { base, ground: 1, strokes: /** @type {Stroke[]} */ ([]) };
 }
 
 /**
@@ -78,6 +80,7 @@ function shapesOf(strokes) {
  * the brush overlap, the denser one counts; erasers multiply, in the order in which all was painted. Roads are last.
  */
 export function fieldOf({ base, ground, strokes }, ofBase = (name) => ({ name })) {
+  /** @type {Record<string, any>} */
   let field = base ? ofBase(base) : { constant: ground };
   const join = (name, shape) => {
     if (field[name]) field[name].push(shape);

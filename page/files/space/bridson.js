@@ -6,7 +6,7 @@ import { streamOf } from "../compare/hash.js";
 /** Tries around a point before it is given up: the number of the paper. */
 const TRIES = 30;
 /** No two points are nearer than this, in mean spacings: chosen so that the density comes out as 1. */
-export const LEAST = 0.831;
+const LEAST = 0.831;
 
 /** Points x, y, z in turns in a box of three sides; no two are nearer than `least`. */
 export function bridson(seed, [width, depth, height], least = LEAST) {

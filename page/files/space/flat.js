@@ -1,5 +1,6 @@
 // The volume where there is no WebGL2: the same dots on a plain canvas, far ones first.
 
+import { contextOf } from "../dom.js";
 import { projected } from "../walk/camera.js";
 import { EDGES, RADIUS, WHOLE } from "./scene.js";
 
@@ -9,19 +10,24 @@ const STEPS = 16;
 const css = (color) => `rgb(${color.map((v) => Math.round(255 * v)).join(" ")})`;
 const mixed = (a, b, share) => a.map((v, i) => v + (b[i] - v) * share);
 
-/** A canvas with the members of a scene. */
+/**
+ * A canvas with the members of a scene.
+ * @param {HTMLCanvasElement} canvas
+ */
 export function flatOn(canvas) {
-  const context = canvas.getContext("2d");
+  const context = contextOf(canvas);
   return {
     isFlat: true,
+    /** @param {Record<string, any>} seen */
     draw({ camera, chunks, scale, middle, reach, depths, slab, box, colors }) {
       const { width, height } = canvas;
       context.fillStyle = css(colors.ground);
       context.fillRect(0, 0, width, height);
-      const place = ([x, y, z]) => {
-        const seen = projected(camera, [x, y, z]);
+      const place = (/** @type {number[]} */ at) => {
+        const seen = projected(camera, at);
         return seen && [(1 + seen.x) * width / 2, (1 - seen.y) * height / 2, seen.depth];
       };
+      /** @type {number[][][]} */
       const steps = Array.from({ length: STEPS }, () => [[], []]);
       const lens = height / 2 / camera.tall;
       for (const { chunk: { data, count, stride }, corner } of chunks) {

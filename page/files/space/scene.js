@@ -1,6 +1,6 @@
 // The volume by WebGL2: each chunk is a buffer of points, drawn as lit dots that shrink and pale with distance.
 
-import { programOf } from "../program.js";
+import { bufferOf, glOn, programOf } from "../program.js";
 
 /** Half of a dot's width in mean spacings. */
 export const RADIUS = 0.13;
@@ -62,37 +62,42 @@ export const EDGES = [0, 1, 2].flatMap((axis) => [[0, 0], [0, 1], [1, 0], [1, 1]
   [0, 1].map((end) => [...rest.slice(0, axis), end, ...rest.slice(axis)])
 )));
 
-const OPTIONS = { alpha: false, antialias: true, depth: true, stencil: false, powerPreference: "high-performance" };
-
-/** A scene on a canvas, or `null` where there is no WebGL2. */
+/**
+ * A scene on a canvas, or `null` where there is no WebGL2.
+ * @param {HTMLCanvasElement} canvas
+ */
 export function sceneOn(canvas) {
-  const gl = canvas.getContext("webgl2", OPTIONS);
-  return gl && !gl.isContextLost() ? new Scene(gl, canvas) : null;
+  const gl = glOn(canvas, { antialias: true, depth: true });
+  return gl && new Scene(gl, canvas);
 }
 
+/**
+ * Colors by what they are for: red, green and blue from 0 to 1.
+ * @typedef {Record<"ground" | "near" | "far" | "slab" | "line", number[]>} Colors
+ */
+
 class Scene {
+  isFlat = false;
+
+  /**
+   * @param {WebGL2RenderingContext} gl
+   * @param {HTMLCanvasElement} canvas
+   */
   constructor(gl, canvas) {
-    Object.assign(this, { gl, canvas });
+    this.gl = gl;
+    this.canvas = canvas;
     this.dots = programOf(gl, DOTS, ["place"]);
     this.lines = programOf(gl, LINES, ["place"]);
-    this.cube = this.buffer(new Float32Array(EDGES.flat()));
+    this.cube = bufferOf(gl, new Float32Array(EDGES.flat()));
     gl.enable(gl.DEPTH_TEST);
     gl.enable(gl.SAMPLE_ALPHA_TO_COVERAGE);
     gl.enableVertexAttribArray(0);
   }
 
-  buffer(contents) {
-    const { gl } = this;
-    const buffer = gl.createBuffer();
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, contents, gl.STATIC_DRAW);
-    return buffer;
-  }
-
   /** The buffer of a chunk, which goes when the chunk is dropped. */
   bufferOf(chunk) {
     if (!chunk.buffer) {
-      chunk.buffer = this.buffer(chunk.data);
+      chunk.buffer = bufferOf(this.gl, chunk.data);
       chunk.dropped = () => {
         this.gl.deleteBuffer(chunk.buffer);
         chunk.buffer = null;
@@ -101,10 +106,12 @@ class Scene {
     return chunk.buffer;
   }
 
+  /** @param {Record<string, any>} seen */
   draw({ camera, chunks, scale, middle, reach, depths, slab, box, colors }) {
     const { gl, canvas } = this;
     gl.viewport(0, 0, canvas.width, canvas.height);
-    gl.clearColor(...colors.ground, 1);
+    const [red, green, blue] = colors.ground;
+    gl.clearColor(red, green, blue, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const { program, uniforms } = this.dots;
     gl.useProgram(program);

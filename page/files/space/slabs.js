@@ -2,7 +2,7 @@
 // space; with the distances of the points in space.
 
 import { ask } from "../api.js";
-import { make } from "../dom.js";
+import { contextOf, make } from "../dom.js";
 import { formatPlace, moved } from "../place.js";
 import { callsOf } from "../worker.js";
 import { parametersOf } from "./volume.js";
@@ -23,12 +23,17 @@ const METHODS = [
 const call = callsOf("/page/space/worker.js");
 
 export class Slabs {
+  /** @param {HTMLElement} list */
   constructor(list) {
+    /** The seed of the sets that this page made. */
+    this.seed = "";
+    /** @type {AbortController | null} */
+    this.abort = null;
     this.all = METHODS.map(({ id, name, words }) => {
       const canvas = make("canvas", { id: `slab-${id}`, role: "img" });
       const [least, mean] = [make("dd"), make("dd")];
       list.append(make("figure", {}, canvas, make("figcaption", {}, make("h3", {}, name),
-        make("dl", {}, make("div", {}, make("dt", {}, "Least distance"), least), make("div", {}, make("dt", {}, "Mean distance"), mean)),
+        make("dl", {}, make("div", {}, make("dt", {}, "Minimum distance"), least), make("div", {}, make("dt", {}, "Mean distance"), mean)),
         make("p", { class: "note" }, words))));
       return { id, name, canvas, least, mean, points: null };
     });
@@ -75,7 +80,7 @@ export class Slabs {
     const side = Math.round(canvas.clientWidth * Math.min(2, devicePixelRatio));
     if (!points || side === 0) return;
     Object.assign(canvas, { width: side, height: side });
-    const context = canvas.getContext("2d");
+    const context = contextOf(canvas);
     context.fillStyle = getComputedStyle(canvas).color;
     const zoom = side / SIDE;
     let count = 0;

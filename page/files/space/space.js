@@ -1,7 +1,7 @@
 // The page of space: a volume to turn, zoom and fly through, the request for the chunk in the middle, and slabs beside
 // those of other methods.
 
-import { Gone, isAway, onPresence } from "../api.js";
+import { Gone, Problem, isAway, onPresence } from "../api.js";
 import { tools } from "../bar.js";
 import { byId, bytes, copy, counted, icon, make, settled, skipLinks } from "../dom.js";
 import { fault, field, refusal, select, setOptions } from "../form.js";
@@ -28,7 +28,10 @@ const state = fromHash(location.hash);
 const scene = (!state.isFlat && sceneOn(canvas)) || flatOn(canvas);
 root.dataset.renderer = scene.isFlat ? "2d" : "webgl2";
 
-/** What the banner says, by subject; the first that there is is shown. */
+/**
+ * What the banner says, by subject; the first that there is is shown.
+ * @type {Record<"gone" | "busy" | "refused" | "flat" | "link", string | Error | null>}
+ */
 const notes = { gone: null, busy: null, refused: null, flat: null, link: state.wrong.join(" ") || null };
 if (scene.isFlat) notes.flat = "This browser draws without WebGL2, so the picture is plainer and slower.";
 
@@ -44,7 +47,7 @@ function banner() {
   box.hidden = !words;
   if (words instanceof Error) {
     refusal(box, words, retry);
-    if (!words.isLocked) box.append(" ", make("button", { type: "button", onclick: retry }, "Try again"));
+    if (!(words instanceof Problem && words.isLocked)) box.append(" ", make("button", { type: "button", onclick: retry }, "Try again"));
   } else {
     box.textContent = words ?? "";
   }
@@ -73,11 +76,12 @@ const viewer = new Viewer(canvas, state, () => {
 });
 const slabs = new Slabs(byId("slabs"));
 
-let colors = null;
+/** @type {import("./scene.js").Colors} */
+let colors;
 let isStale = true;
 
 function themed() {
-  const of = (name) => themeColor(name).match(/[\d.]+/g).slice(0, 3).map((v) => Number(v) / 255);
+  const of = (/** @type {string} */ name) => (themeColor(name).match(/[\d.]+/g) ?? []).slice(0, 3).map((v) => Number(v) / 255);
   colors = { ground: of("void"), near: of("near"), far: of("far"), slab: of("slab"), line: of("ink") };
   isStale = true;
   slabs.draw();
@@ -189,7 +193,7 @@ byId("fields").append(
 function fill() {
   setOptions(byId("profile"), PROFILES, state.profile);
   for (const id of ["spacing", "seed", "reach"]) {
-    byId(id).value = state[id];
+    /** @type {HTMLInputElement} */ (byId(id)).value = String(state[/** @type {"spacing"} */ (id)]);
     fault(byId("fields"), id, null);
   }
 }
@@ -207,6 +211,7 @@ function go(next) {
   later();
 }
 
+/** @type {import("../place.js").Place[] | null} */
 let home = null;
 
 /** Goes to where doubles have nine digits fewer left, and back to the same points. */
@@ -236,7 +241,7 @@ byId("turn").addEventListener("click", () => {
   viewer.isTurning = !viewer.isTurning;
   isStale = true;
 });
-byId("copy").addEventListener("click", (event) => copy(byId("command"), event.currentTarget));
+byId("copy").addEventListener("click", (event) => copy(byId("command"), /** @type {HTMLElement} */ (event.currentTarget)));
 tools(viewer, () => go({ ...fromHash(""), spacing: state.spacing, seed: state.seed, profile: state.profile }), themed);
 canvas.addEventListener("webglcontextlost", () => location.reload());
 addEventListener("hashchange", ({ newURL }) => go(fromHash(new URL(newURL).hash)));

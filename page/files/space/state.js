@@ -13,7 +13,26 @@ const FARTHEST = 1e11;
 
 /** The middle of a chunk, so that its outline is around the middle of the view. */
 const MIDDLE = () => [place(4), place(4), place(4)];
+/** @type {Record<string, any>} */
 const BEGINNING = { yaw: 30, pitch: -18, away: 30, reach: 16, spacing: "1", seed: "7", profile: "blue" };
+
+/** @typedef {import("../place.js").Place} Place */
+
+/**
+ * What the address holds.
+ * @typedef {object} State
+ * @property {Place[]} at The place that is looked at.
+ * @property {number} yaw In radians, as `pitch`.
+ * @property {number} pitch
+ * @property {number} away How far the eye is, in mean spacings.
+ * @property {number} reach How far points are drawn, in mean spacings.
+ * @property {string} spacing
+ * @property {string} seed
+ * @property {string} profile
+ * @property {boolean} isFlat Whether it is drawn without WebGL2.
+ * @property {boolean} isPlain Whether the address says nothing of the view.
+ * @property {string[]} wrong What was not understood, in words.
+ */
 
 /** Whether a text is a seed: an integer of 64 bits. */
 export function isSeed(text) {
@@ -30,7 +49,11 @@ export function isInReach(at, spacing) {
   return at.every((one) => one && Math.abs(toNumber(one)) <= FARTHEST * Number(spacing));
 }
 
-/** The state of an address, with what in it was not understood, as words for each. */
+/**
+ * The state of an address, with what in it was not understood, as words for each.
+ * @param {string} hash
+ * @returns {State}
+ */
 export function fromHash(hash) {
   const given = new URLSearchParams(hash.slice(1));
   const wrong = [];
@@ -40,17 +63,17 @@ export function fromHash(hash) {
     wrong.push(words);
     return BEGINNING[name];
   };
-  const number = (name, [least, most]) => {
+  const number = (/** @type {string} */ name, /** @type {number[]} */ [least, most]) => {
     const value = given.has(name) ? Number(given.get(name)) : NaN;
     return Number.isFinite(value) ? Math.max(least, Math.min(most, value)) : BEGINNING[name];
   };
   const spacing = text("spacing", isSpacing, "The spacing in the address is no number from 0.001 to 1000000, so it is 1.");
-  const at = given.has("at") ? given.get("at").split(",").map(parsePlace) : MIDDLE();
+  const at = given.get("at")?.split(",").map(parsePlace) ?? MIDDLE();
   const isNear = at.length === 3 && isInReach(at, spacing);
   if (!isNear) wrong.push("The place in the address is not in reach. Here is the beginning instead.");
   const turn = Math.PI / 180;
   return {
-    at: isNear ? at : MIDDLE(),
+    at: isNear ? /** @type {Place[]} */ (at) : MIDDLE(),
     yaw: number("yaw", [-360, 360]) * turn,
     pitch: Math.max(-STEEPEST, Math.min(STEEPEST, number("pitch", [-90, 90]) * turn)),
     away: number("away", [0, 4 * REACH[1]]),

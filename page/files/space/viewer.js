@@ -21,10 +21,18 @@ const KEYS = {
 const ZOOMS = { "+": 1.25, "=": 1.25, "-": 0.8, _: 0.8 };
 
 export class Viewer {
-  /** `changed()` hears of whatever the visitor does. */
+  /**
+   * @param {HTMLCanvasElement} canvas
+   * @param {import("./state.js").State} state
+   * @param {() => void} changed Hears of whatever the visitor does.
+   */
   constructor(canvas, state, changed) {
-    Object.assign(this, { canvas, state, changed });
+    this.canvas = canvas;
+    this.state = state;
+    this.changed = changed;
+    /** The moves that are under way. */
     this.held = new Set();
+    this.isFast = false;
     // Readers who prefer reduced motion see nothing move by itself; the button still turns.
     this.isTurning = state.isPlain && !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.listenToKeys();

@@ -8,7 +8,10 @@ const WIDTH = 8;
 /** Room for chunks in bytes: some of those left behind stay for the way back. */
 const ROOM = 12e6;
 
-/** How chunks of space are requested; `z` follows x and y. */
+/**
+ * How chunks of space are requested; `z` follows x and y.
+ * @type {import("../chunks.js").Kind}
+ */
 const SPACE = {
   requestOf: ([set], address) => ({ path: pathOf(set, address, "f32") }),
   columnsOf: () => ["z"],
@@ -36,13 +39,17 @@ export function chunkAt(at, size) {
   return { size, cx, cy, cz };
 }
 
-/** The corner of a chunk as seen from a place. */
+/**
+ * The corner of a chunk as seen from a place.
+ * @param {import("../chunks.js").Address} address
+ * @param {import("../place.js").Place[]} at
+ */
 export function cornerOf({ size, cx, cy, cz }, at) {
-  return [cx, cy, cz].map((index, axis) => (index * size - at[axis].i) - at[axis].f);
+  return [cx, cy, cz ?? 0].map((index, axis) => (index * size - at[axis].i) - at[axis].f);
 }
 
 /** The chunks within a distance of a place, nearest first. */
-export function chunksAround(at, size, reach) {
+function chunksAround(at, size, reach) {
   const { cx, cy, cz } = chunkAt(at, size);
   const n = Math.ceil(reach / size);
   const found = [];

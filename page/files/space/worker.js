@@ -14,5 +14,5 @@ function chance(seed, sides) {
 // `points` are x, y, z in a box of these sides in mean spacings; without them, `method` says how they are made.
 addEventListener("message", ({ data: { id, method, seed, sides, margin, points } }) => {
   const own = points ?? (method === "poisson" ? bridson(seed, sides) : chance(seed, sides));
-  postMessage({ id, points: own, distances: distancesOf(own, sides, margin) }, [own.buffer]);
+  postMessage({ id, points: own, distances: distancesOf(own, sides, margin) }, { transfer: [own.buffer] });
 });

@@ -1,6 +1,7 @@
 // A threshold mask, repeated, and a ramp that it dithers.
 
 import { ask } from "../api.js";
+import { contextOf } from "../dom.js";
 import { distance } from "../place.js";
 import { joined } from "../query.js";
 
@@ -14,9 +15,14 @@ export function pairsOf({ profile, map, size, seed, bits }) {
 }
 
 export class Mask {
+  /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
     this.canvas = canvas;
-    this.clear();
+    this.side = 1;
+    /** @type {HTMLCanvasElement | null} */
+    this.tile = null;
+    /** @type {Uint8ClampedArray} */
+    this.thresholds = new Uint8ClampedArray(0);
   }
 
   /** Whether there is something to show. */
@@ -25,7 +31,7 @@ export class Mask {
   }
 
   clear() {
-    this.take({ side: 1, tile: null, thresholds: null });
+    this.tile = null;
   }
 
   /** The choice as the server resolves it: `{ words, … }`, for `take`. */
@@ -35,15 +41,17 @@ export class Mask {
     const bitmap = await createImageBitmap(await answer.blob());
     const canvas = document.createElement("canvas");
     Object.assign(canvas, { width: size, height: size });
-    const context = canvas.getContext("2d", { willReadFrequently: true });
+    const context = contextOf(canvas, { willReadFrequently: true });
     context.drawImage(bitmap, 0, 0);
-    const words = `${size} × ${size} pixels with ${Math.min(size ** 2, 2 ** Number(state.bits)).toLocaleString("en")} thresholds. A pixel of a picture becomes white `
+    const words = `${size} × ${size} pixels with ${Math.min(size ** 2, 2 ** Number(state.bits)).toLocaleString("en")} thresholds. A pixel of a picture turns white `
       + "where its gray is above the threshold.";
     return { side: size, tile: canvas, thresholds: context.getImageData(0, 0, size, size).data, words };
   }
 
   take({ side, tile, thresholds }) {
-    Object.assign(this, { side, tile, thresholds });
+    this.side = side;
+    this.tile = tile;
+    this.thresholds = thresholds;
   }
 
   renew() {}
@@ -52,11 +60,11 @@ export class Mask {
     const { canvas, side, tile } = this;
     const [width, height] = view.pixels;
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
-    const context = canvas.getContext("2d");
-    if (!this.isThere) return context.clearRect(0, 0, width, height);
+    const context = contextOf(canvas);
+    if (!tile) return context.clearRect(0, 0, width, height);
     const scale = view.ratio / view.unit;
     const [x, y] = [view.x, view.y].map((at) => distance({ i: 0, f: 0 }, at) % side);
-    const pattern = context.createPattern(tile, "repeat");
+    const pattern = /** @type {CanvasPattern} */ (context.createPattern(tile, "repeat"));
     pattern.setTransform(new DOMMatrix([scale, 0, 0, scale, width / 2 + x * scale, height / 2 - y * scale]));
     context.imageSmoothingEnabled = false;
     context.fillStyle = pattern;
@@ -68,7 +76,7 @@ export class Mask {
     const { side, thresholds } = this;
     const { width, height } = RAMP;
     Object.assign(canvas, RAMP);
-    const context = canvas.getContext("2d");
+    const context = contextOf(canvas);
     const pixels = context.createImageData(width, height);
     for (let y = 0; y < height; y += 1) {
       for (let x = 0; x < width; x += 1) {
@@ -78,6 +86,6 @@ export class Mask {
       }
     }
     context.putImageData(pixels, 0, 0);
-    return "A ramp from black to white that it dithers: black and white pixels only.";
+    return "A ramp from black to white, dithered: every pixel is black or white.";
   }
 }

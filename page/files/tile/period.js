@@ -18,7 +18,10 @@ export class Period {
   constructor(canvas) {
     this.sheet = new Sheet(canvas);
     this.version = 0;
-    this.clear();
+    this.points = new Float32Array(0);
+    this.side = 1;
+    /** @type {any} */
+    this.measured = null;
   }
 
   /** Whether there is something to show. */
@@ -35,14 +38,18 @@ export class Period {
     const set = joined(pairsOf(state));
     const [{ count, query }, answer] = await Promise.all([askJson(`/v1/count?${set}`), ask(`/v1/points?${set}&format=f32`)]);
     const points = new Float32Array(await answer.arrayBuffer());
-    const { side } = query.period;
+    const { side = 1 } = query.period ?? {};
+    const { least_distance: least = 0 } = query;
     const measured = await measure(Float64Array.from(points), side);
-    const apart = query.least_distance >= 0.005 ? `, any two at least ${query.least_distance.toFixed(2)} apart, across the seam too` : "";
+    const apart = least >= 0.005 ? `, no two closer than ${least.toFixed(2)}, even across the seam` : "";
     return { points, side, measured, words: `${counted(count)} on a square of ${side} × ${side} mean spacings${apart}.` };
   }
 
   take({ points, side, measured }) {
-    Object.assign(this, { points, side, measured, version: this.version + 1 });
+    this.points = points;
+    this.side = side;
+    this.measured = measured;
+    this.version += 1;
   }
 
   renew() {
@@ -70,6 +77,6 @@ export class Period {
   /** Draws the spectrum; returns what it is. */
   picture(canvas) {
     spectrumPicture(canvas, this.measured.image, this.measured.cells);
-    return "Its spectrum: frequency 0 in the middle, up to ν = 2.5. Empty there means even spreading.";
+    return "Its spectrum up to ν = 2.5, with frequency 0 in the middle. An empty middle means even spreading.";
   }
 }

@@ -15,6 +15,7 @@ export const LEAST_SHARE = 0.02;
 export function fromHash(hash) {
   const given = new URLSearchParams(hash.replace(/^#/, ""));
   const state = { ...START, x: place(0), y: place(0), span: spanOf(START) };
+  /** @type {(name: string, pattern: RegExp, read?: (text: string) => any) => void} */
   const take = (name, pattern, read = String) => {
     const text = given.get(name) ?? "";
     if (pattern.test(text)) state[name] = read(text);

@@ -4,7 +4,7 @@ import { Gone, askJson, onPresence } from "../api.js";
 import { tools } from "../bar.js";
 import { curl } from "../commands.js";
 import { Joint } from "../compare/joint.js";
-import { byId, copy, make, settled, skipLinks } from "../dom.js";
+import { byId, contextOf, copy, make, settled, skipLinks } from "../dom.js";
 import { save } from "../download.js";
 import { faultsOf } from "../faults.js";
 import { check, fault, field, refusal, select, setOptions } from "../form.js";
@@ -47,8 +47,9 @@ function draw() {
 }
 
 /** Lines where copies meet. */
-function seams({ x, y, unit, ratio, pixels: [width, height] }, side) {
-  const context = canvas.getContext("2d");
+function seams({ x, y, unit, ratio, pixels }, side) {
+  const [width, height] = pixels;
+  const context = contextOf(canvas);
   const scale = ratio / unit;
   const lines = (at, size, line) => {
     const from = size / 2 + at * scale;
@@ -106,8 +107,9 @@ async function show(how = "replaceState") {
 
 function picture() {
   const { isThere } = shown();
-  byId("shown").hidden = !isThere;
-  byId("download").disabled = byId("copy").disabled = !isThere;
+  // It keeps its room while it waits.
+  byId("shown").classList.toggle("waits", !isThere);
+  for (const id of ["download", "copy"]) byId(id).toggleAttribute("disabled", !isThere);
   if (!isThere) return;
   byId("caption").textContent = shown().picture(byId("picture"));
   byId("picture").setAttribute("aria-label", state.what === "mask" ? "A dithered ramp" : "The spectrum");
@@ -130,6 +132,8 @@ function mapOf(profile) {
 }
 
 function build() {
+  // Its room is known before it is drawn.
+  Object.assign(byId("picture"), { width: 320, height: state.what === "mask" ? 110 : 320 });
   const buttons = [["points", "Points"], ["mask", "Mask"]].map(([what, words]) => make("button", {
     type: "button", id: `what-${what}`, onclick: () => choose({ what }),
   }, words));
@@ -155,9 +159,9 @@ function build() {
     })),
     make("div", { class: "pair", id: "of-points" },
       field("Points", "points", select("points", (points) => choose({ points: Number(points) }))),
-      field("Share of them", "share", share)),
+      field("Share of points", "share", share)),
     make("div", { class: "pair", id: "of-mask" },
-      field("Pixels a side", "size", select("size", (size) => choose({ size: Number(size) }))),
+      field("Pixels per side", "size", select("size", (size) => choose({ size: Number(size) }))),
       field("Bits", "bits", select("bits", (bits) => choose({ bits })))),
     field("Seed", "seed", seed),
     check("seams", "Show the seams", (seams) => {
@@ -173,39 +177,46 @@ function build() {
   const side = select("side", (value) => {
     file.side = value;
     line();
-  }, { "aria-label": "Pixels a side of the picture" });
+  }, { "aria-label": "Pixels per side of the picture" });
   setOptions(format, FILES, file.format);
   setOptions(side, SIDES.map((v) => [v, `${v} pixels`]), file.side);
   byId("save").append(
     make("div", { class: "pair", id: "how" }, format, side),
     make("button", { type: "button", id: "download", class: "main", onclick: () => save({ path: pathOf() }, nameOf(), () => {})
       .catch((error) => refusal(byId("banner"), error, () => begin())) }, "Save"),
-    make("pre", { tabindex: "0", "aria-label": "The request" }, make("code", { id: "command" })),
+    make("pre", { role: "group", tabindex: "0", "aria-label": "The request" }, make("code", { id: "command" })),
     make("button", { type: "button", id: "copy", onclick: (event) => copy(byId("command"), event.currentTarget) }, "Copy"),
     make("p", { class: "note", id: "help" }),
   );
+  which();
+  picture();
+}
+
+/** Shows the fields of points, or those of a mask. */
+function which() {
+  const isMask = state.what === "mask";
+  byId("of-points").hidden = isMask;
+  byId("of-mask").hidden = !isMask;
+  byId("how").hidden = isMask;
 }
 
 /** Sets every field to what is chosen. */
 function update() {
-  const isMask = state.what === "mask";
+  which();
   for (const what of Object.keys(kinds)) byId(`what-${what}`).setAttribute("aria-pressed", String(what === state.what));
-  byId("of-points").hidden = isMask;
-  byId("of-mask").hidden = !isMask;
-  byId("how").hidden = isMask;
   setOptions(byId("size"), SIZES.map(String), String(state.size));
   setOptions(byId("bits"), [["8", "8"], ["16", "16"]], state.bits);
   if (byId("seed").value.trim() !== state.seed) byId("seed").value = state.seed;
   byId("share").value = String(state.share);
   sayShare();
-  byId("seams").checked = state.seams;
+  /** @type {HTMLInputElement} */ (byId("seams")).checked = state.seams;
   line();
 }
 
 function sayShare() {
   const share = `${Math.round(100 * state.share)} %`;
   byId("share").setAttribute("aria-valuetext", share);
-  document.querySelector("label[for=share]").textContent = `Share of them: ${share}`;
+  /** @type {HTMLElement} */ (document.querySelector("label[for=share]")).textContent = `Share of points: ${share}`;
 }
 
 function pathOf() {
@@ -220,12 +231,12 @@ const nameOf = () => (state.what === "mask" ? "mask.png" : `points.${file.format
 
 /** The line to paste, and what to do with the file. */
 function line() {
-  byId("side").disabled = !isPicture();
+  byId("side").toggleAttribute("disabled", !isPicture());
   byId("copy").textContent = "Copy";
   byId("command").textContent = curl(location.origin, { path: pathOf() }, nameOf());
   byId("help").textContent = state.what === "mask"
-    ? "Repeat it over a picture, a pixel of the mask for a pixel of the picture."
-    : "Pictures repeat as they are. Coordinates lie in [0, L)², L being the side in mean spacings.";
+    ? "Repeat it over a picture, one pixel of the mask to one pixel of the picture."
+    : "Pictures repeat as they are. Coordinates run from 0 to below L in x and y; L is the side in mean spacings.";
 }
 
 async function begin(how) {
@@ -234,7 +245,7 @@ async function begin(how) {
     const names = profileNames(tables);
     if (!names.includes(state.profile)) {
       byId("banner").hidden = false;
-      byId("banner").textContent = `No profile “${state.profile}” is loaded here.`;
+      byId("banner").textContent = `This server has no profile “${state.profile}”.`;
       [state.profile] = names.includes("blue") ? ["blue"] : names;
     }
     setOptions(byId("profile"), names, state.profile);
@@ -253,7 +264,7 @@ async function begin(how) {
 async function sizes() {
   const { periods } = await askJson(`/v1/periods?${joined([["profile", state.profile], ["map", mapOf(state.profile)], ["most", "12"]])}`);
   const counts = periods.map(({ points }) => points).filter((points, i) => i === 0 || points <= MOST_POINTS);
-  state.points = counts.find((points) => points >= state.points) ?? counts.at(-1);
+  state.points = counts.find((points) => points >= state.points) ?? counts[counts.length - 1];
   setOptions(byId("points"), counts.map((points) => [String(points), points.toLocaleString("en")]), String(state.points));
 }
 

@@ -1,20 +1,30 @@
-// How the walker moves: keys, mouse, fingers, buttons that are held; and a slow flight along the trail until the visitor
-// takes over.
+// How the walker moves: keys, mouse, fingers, sticks; and a slow flight above the crowns, along the trail, until the
+// visitor takes over.
 
-import { moved } from "../place.js";
-import { landFrom } from "./land.js";
+import { distance, moved } from "../place.js";
+import { clearingNear, landFrom } from "./land.js";
 
-/** Units a second, on foot and with Shift. */
+/** Units a second: on foot, with Shift, with a stick pushed to its rim; in the air all are faster. */
 const PACE = 5;
 const RUN = 24;
-/** Eyes are this high above the ground; a flight is higher. */
+const STRIDE = 9;
+const ALOFT = 3;
+/** Eyes are this high above the ground; in the air higher than the tallest crowns, which end at 20. */
 const EYE = 1.75;
-const WING = 12;
+const WING = 26;
+/** How far ahead a flight looks for higher ground. */
+const AHEAD = [0, 25, 50];
+/** A landing: the share of trees that is clear enough, units a second at least, and where the descent begins. */
+const CLEAR = 0.04;
+const GLIDE = 22;
+const OVER = 5;
 /** Radians a second that keys turn, and for a pixel of a drag. */
 const TURN = 1.3;
 const DRAG = 0.0034;
 /** A pointer that moves less than this many pixels taps. */
 const TAP = 6;
+/** The pitch of a view that is level, in radians. */
+const LEVEL = -0.06;
 /** The steepest look up or down, in radians. */
 export const STEEPEST = 1.3;
 
@@ -23,27 +33,50 @@ const KEYS = {
   arrowright: "turnRight", q: "turnLeft", e: "turnRight", pageup: "lookUp", pagedown: "lookDown",
 };
 
+/** @typedef {import("../place.js").Place} Place */
+
 export class Walker {
-  constructor(canvas, { x, y, yaw, pitch, isFlying }, tapped) {
-    Object.assign(this, { x, y, yaw, pitch, isFlying, tapped, canvas });
+  constructor(canvas, start, tapped) {
+    this.canvas = canvas;
+    this.tapped = tapped;
+    this.isFast = false;
     this.held = new Set();
-    this.height = null;
+    /** Where the sticks are pushed: to the right and forth, from −1 to 1. */
+    this.walks = [0, 0];
+    this.looks = [0, 0];
+    /**
+     * Where a landing ends, with the direction of the view from there.
+     * @type {ReturnType<Walker["clearing"]> | null}
+     */
+    this.target = null;
     // Readers who prefer reduced motion see nothing move by itself; the button still flies.
     this.mayFly = !matchMedia("(prefers-reduced-motion: reduce)").matches;
-    this.isFlying &&= this.mayFly;
+    this.begin(start);
     this.listen();
+  }
+
+  /**
+   * Begins at a place. `isAloft` is in the air, `isFlying` moves along the trail by itself, `isAnywhere` lands in a
+   * clearing nearby unless it flies.
+   */
+  begin({ x, y, yaw, pitch, isFlying, isAloft, isAnywhere }) {
+    Object.assign(this, { x, y, yaw, pitch, height: null, target: null });
+    this.isFlying = isFlying && this.mayFly;
+    this.isAloft = isAloft || this.isFlying;
+    if (isAnywhere && !this.isAloft) this.land();
   }
 
   listen() {
     const { canvas } = this;
     addEventListener("keydown", (event) => {
+      const target = /** @type {Element} */ (event.target);
       this.isFast = event.shiftKey;
-      if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest?.("input, select")) return;
+      if (event.ctrlKey || event.metaKey || event.altKey || target.closest?.("input, select")) return;
       // A button that was clicked keeps the focus, and its own keys.
-      if ([" ", "Enter"].includes(event.key) && event.target.closest?.("button, a")) return;
+      if ([" ", "Enter"].includes(event.key) && target.closest?.("button, a")) return;
       const move = KEYS[event.key.toLowerCase()];
       if (move) this.hold(move);
-      else if (event.key === "Enter" && event.target === canvas) this.tapped(null);
+      else if (event.key === "Enter" && target === canvas) this.tapped(null);
       else return;
       event.preventDefault();
     });
@@ -84,28 +117,38 @@ export class Walker {
     }, { passive: false });
   }
 
-  /** A button that moves for as long as it is held. */
-  button(element, move) {
-    const hold = (event) => {
-      event.preventDefault();
-      this.hold(move);
-    };
-    const free = () => this.held.delete(move);
-    element.addEventListener("pointerdown", hold);
-    for (const name of ["pointerup", "pointerleave", "pointercancel", "blur"]) element.addEventListener(name, free);
-    element.addEventListener("keydown", (event) => [" ", "Enter"].includes(event.key) && hold(event));
-    element.addEventListener("keyup", free);
-    element.addEventListener("contextmenu", (event) => event.preventDefault());
-  }
-
   hold(move) {
     this.take();
     this.held.add(move);
   }
 
-  /** The visitor takes over: the flight ends until its button is pressed. */
+  /** The visitor takes over: what moved by itself stops, and stays as high as it is. */
   take() {
     this.isFlying = false;
+    this.target = null;
+  }
+
+  /** Rises above the crowns and follows the trail. */
+  rise() {
+    Object.assign(this, { isAloft: true, isFlying: true, target: null });
+  }
+
+  /** Where the nearest clearing is, and the direction with the widest view from there. */
+  clearing(few) {
+    const { dx, dy, yaw } = clearingNear(landFrom([this.x.i, this.y.i]), this.x.f, this.y.f, few);
+    return { x: moved(this.x, dx - this.x.f), y: moved(this.y, dy - this.y.f), yaw };
+  }
+
+  /** Stands in a clearing nearby. */
+  land() {
+    Object.assign(this, this.clearing(), { pitch: LEVEL, height: null, isAloft: false, isFlying: false, target: null });
+  }
+
+  /** Glides to the next clearing and descends into it; at once where less motion is wanted. */
+  descend() {
+    if (!this.mayFly) return this.land();
+    this.isFlying = false;
+    this.target = this.clearing(CLEAR);
   }
 
   turn(yaw, pitch) {
@@ -123,14 +166,39 @@ export class Walker {
   /** Moves by some seconds; `heightAt` says where the ground is. */
   step(seconds, heightAt) {
     if (this.isFlying) this.fly(seconds);
+    else if (this.target) this.glide(seconds, this.target);
     const way = (one, other) => (this.held.has(one) ? 1 : 0) - (this.held.has(other) ? 1 : 0);
-    const pace = (this.isFast ? RUN : PACE) * seconds;
-    this.turn(way("turnRight", "turnLeft") * TURN * seconds, way("lookUp", "lookDown") * TURN * seconds);
-    if (this.held.size > 0) this.go(way("right", "left") * pace, way("forth", "back") * pace);
+    const by = seconds * (this.isAloft ? ALOFT : 1);
+    const pace = (this.isFast ? RUN : PACE) * by;
+    const [[right, forth], [across, up]] = [this.walks, this.looks];
+    this.turn((way("turnRight", "turnLeft") + across) * TURN * seconds, (way("lookUp", "lookDown") + up) * TURN * seconds);
+    const walk = [way("right", "left") * pace + right * STRIDE * by, way("forth", "back") * pace + forth * STRIDE * by];
+    if (walk.some(Boolean)) this.go(walk[0], walk[1]);
     const ground = heightAt(this);
-    const aim = ground + (this.isFlying ? WING : EYE);
-    const ease = 1 - Math.exp(-seconds * (this.isFlying ? 1.2 : 5));
+    const aim = this.isAloft ? Math.max(ground, this.groundAhead()) + WING : ground + EYE;
+    const ease = 1 - Math.exp(-seconds * (this.isAloft || (this.height ?? 0) > ground + 3 ? 1.4 : 5));
     this.height = this.height === null ? aim : Math.max(ground + 1.2, this.height + (aim - this.height) * ease);
+  }
+
+  /** The highest ground on the next units ahead. */
+  groundAhead() {
+    const land = landFrom([this.x.i, this.y.i]);
+    const [s, c] = [Math.sin(this.yaw), Math.cos(this.yaw)];
+    return Math.max(...AHEAD.map((away) => land.height(this.x.f + away * s, this.y.f + away * c)));
+  }
+
+  /** Moves towards the clearing to land in, and turns to its view; above it the descent begins. */
+  glide(seconds, { x, y, yaw }) {
+    const [dx, dy] = [distance(x, this.x), distance(y, this.y)];
+    const away = Math.hypot(dx, dy);
+    const share = Math.min(1, (Math.max(GLIDE, away) * seconds * 0.8) / Math.max(away, 1e-9));
+    this.x = moved(this.x, dx * share);
+    this.y = moved(this.y, dy * share);
+    const by = ((yaw - this.yaw + 3 * Math.PI) % (2 * Math.PI) + 2 * Math.PI) % (2 * Math.PI) - Math.PI;
+    const ease = Math.min(1, 1.2 * seconds);
+    this.turn(by * ease, (LEVEL - this.pitch) * ease);
+    if (away < OVER) this.isAloft = false;
+    if (away < 0.01 && Math.abs(by) < 0.02) this.target = null;
   }
 
   /** Follows the trail, gently. */
@@ -146,7 +214,7 @@ export class Walker {
     const back = Math.max(-0.9, Math.min(0.9, (-off / steep) * 0.04));
     const aim = [(side * -gy + back * gx) / steep, (side * gx + back * gy) / steep];
     const by = Math.atan2(aim[0] * c - aim[1] * s, aim[0] * s + aim[1] * c);
-    this.turn(by * Math.min(1, 0.5 * seconds), (-0.09 - this.pitch) * Math.min(1, 0.6 * seconds));
-    this.go(0, 6.5 * seconds);
+    this.turn(by * Math.min(1, 0.5 * seconds), (-0.14 - this.pitch) * Math.min(1, 0.6 * seconds));
+    this.go(0, 9 * seconds);
   }
 }

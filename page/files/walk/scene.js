@@ -1,7 +1,7 @@
 // The picture by WebGL2: sky, ground, shadows, and everything that stands, a draw for each kind and leaf. Instances go
 // to the graphics processor once; which of them are drawn is a beginning of each run, as these are sorted by rank.
 
-import { programOf } from "../program.js";
+import { bufferOf, glOn, isSoftware, programOf } from "../program.js";
 import { sees } from "./camera.js";
 import { GROUND_FLOATS, INSTANCE_FLOATS, below, netOf } from "./ground.js";
 import { GROUND, SHADOWS, SKY, THINGS } from "./shaders.js";
@@ -25,21 +25,23 @@ const LIGHTS = {
   },
 };
 
-const OPTIONS = { alpha: false, antialias: true, depth: true, stencil: false, powerPreference: "high-performance" };
-/** The names of renderers without graphics hardware. */
-const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
-
 /** A scene on a canvas, or `null` where there is no WebGL2. */
 export function sceneOn(canvas) {
-  const gl = canvas.getContext("webgl2", OPTIONS);
-  return gl && !gl.isContextLost() ? new Scene(gl, canvas) : null;
+  const gl = glOn(canvas, { antialias: true, depth: true });
+  return gl && new Scene(gl, canvas);
 }
 
 class Scene {
+  isMap = false;
+
+  /**
+   * @param {WebGL2RenderingContext} gl
+   * @param {HTMLCanvasElement} canvas
+   */
   constructor(gl, canvas) {
-    Object.assign(this, { gl, canvas });
-    const names = gl.getExtension("WEBGL_debug_renderer_info");
-    this.isSlow = SOFTWARE.test(String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER)));
+    this.gl = gl;
+    this.canvas = canvas;
+    this.isSlow = isSoftware(gl);
     this.programs = Object.fromEntries(
       Object.entries({ SKY, GROUND, THINGS, SHADOWS }).map(([name, source]) => [name, programOf(gl, source)]),
     );
@@ -54,11 +56,7 @@ class Scene {
 
   /** A buffer with these contents. */
   buffer(contents) {
-    const { gl } = this;
-    const buffer = gl.createBuffer();
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, contents, gl.STATIC_DRAW);
-    return buffer;
+    return bufferOf(this.gl, contents);
   }
 
   free(buffer) {
@@ -150,7 +148,7 @@ class Scene {
       const { buffer: indices, count } = this.net(ground.cells);
       gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, indices);
       this.slots(buffer, GROUND_FLOATS, 0, [[0, 3], [1, 3], [2, 2]], 0);
-      gl.uniform3f(uniforms.corner, ...leaf.from, -look.height);
+      gl.uniform3f(uniforms.corner, leaf.from[0], leaf.from[1], -look.height);
       gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_SHORT, 0);
     }
   }
@@ -171,8 +169,8 @@ class Scene {
 
   place(uniforms, look, { leaf, clip, near }) {
     const { gl } = this;
-    gl.uniform3f(uniforms.corner, ...leaf.from, -look.height);
-    gl.uniform3f(uniforms.clip, ...(clip ?? [0, 0, 0]));
+    gl.uniform3f(uniforms.corner, leaf.from[0], leaf.from[1], -look.height);
+    gl.uniform3fv(uniforms.clip, clip ?? [0, 0, 0]);
     gl.uniform2f(uniforms.near, near, leaf.keep);
   }
 
@@ -213,7 +211,7 @@ class Scene {
       const { near, far, plain } = this.shapes;
       const shapes = thing.leaf.away < full ? near : thing.leaf.away < some ? far : plain;
       this.slots(thing.buffer, INSTANCE_FLOATS, 4 * INSTANCE_FLOATS * run.first, [[3, 4], [4, 4]], 1);
-      gl.drawArraysInstanced(gl.TRIANGLES, ...shapes[run.kind], count);
+      gl.drawArraysInstanced(gl.TRIANGLES, shapes[run.kind][0], shapes[run.kind][1], count);
       drawn += count;
     });
     return drawn;

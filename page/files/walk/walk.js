@@ -8,9 +8,10 @@ import { joined, setOf } from "../query.js";
 import { LAYER, WORKS, toHash } from "../state.js";
 import { watchTheme } from "../theme.js";
 import { cameraOf } from "./camera.js";
-import { mapOn } from "./map.js";
+import { mapOn, smallMapOn } from "./map.js";
 import { STEEPEST, Walker } from "./move.js";
 import { sceneOn } from "./scene.js";
+import { stick } from "./stick.js";
 import { World, layersOf } from "./world.js";
 
 /**
@@ -29,6 +30,8 @@ const SLOW = 45;
 const QUICK = 18;
 /** Frames that decide about it. */
 const FRAMES = 30;
+/** The small map is drawn again after this time at the earliest, in milliseconds, with graphics hardware and without. */
+const MAPPED = [100, 500];
 
 const root = document.documentElement;
 const canvas = byId("view");
@@ -44,12 +47,14 @@ function fromHash(hash) {
   };
   const pitch = Math.max(-STEEPEST, Math.min(STEEPEST, degrees("pitch", -5)));
   const quality = given.get("quality") ?? "";
-  if (x && y && !isNear) banner("This walk ends at 1e14 in every direction. It begins at the beginning of the trail instead.");
+  if (x && y && !isNear) banner("This walk ends at 1e14 in every direction, so it starts at its beginning instead.");
   return {
     x: isNear ? x : place(START.x), y: isNear ? y : place(START.y), yaw: degrees("yaw", START.yaw), pitch,
     seed: isSeed(given.get("seed") ?? "") ? given.get("seed") : "7",
     quality: /^\d$/.test(quality) && QUALITIES[quality] ? Number(quality) : null,
     isFlying: given.get("fly") !== "0" && !given.has("at"),
+    isAloft: given.get("fly") === "1",
+    isAnywhere: !isNear,
   };
 }
 
@@ -58,8 +63,8 @@ function isSeed(text) {
   return /^\d{1,20}$/.test(text) && BigInt(text) < 2n ** 64n;
 }
 
-/** Where a walk begins: on the trail. */
-const START = { x: -126, y: 0, yaw: 20 };
+/** Where a walk begins: above the trail, or in a clearing nearby. */
+const START = { x: -126, y: 0, yaw: 16 };
 
 /** Says something above the picture, with buttons; `null` takes it away. */
 function banner(words, ...more) {
@@ -71,7 +76,7 @@ let given = fromHash(location.hash);
 const wantsMap = location.hash.includes("map=1");
 const scene = (!wantsMap && sceneOn(canvas)) || mapOn(canvas);
 root.dataset.renderer = scene.isMap ? "map" : "webgl2";
-if (scene.isMap) banner("This browser draws nothing in three dimensions (WebGL2 is missing), so here is the map. Keys and buttons walk as ever.");
+if (scene.isMap) banner("This browser cannot draw in three dimensions (WebGL2 is missing), so here is the map. Keys and sticks walk as usual.");
 
 function failed(error) {
   root.dataset.state = "failed";
@@ -87,6 +92,7 @@ const walker = new Walker(canvas, given, (at) => pick(at));
 let level = given.quality ?? (scene.isSlow ? 0 : 2);
 let best = QUALITIES.length - 1;
 let frames = [];
+/** @type {any} */
 let look = null;
 let before = performance.now();
 
@@ -104,6 +110,10 @@ function adapt(took) {
 /** The state that the last picture was drawn from. */
 let pictured = "";
 let drawn = 0;
+/** The small map, the state that it shows, and since when. */
+const chart = smallMapOn(byId("map"));
+let charted = "";
+let chartedAt = 0;
 
 function frame(now) {
   const seconds = Math.min(0.1, (now - before) / 1000);
@@ -117,8 +127,8 @@ function frame(now) {
   world.move(walker, [Math.sin(walker.yaw), Math.cos(walker.yaw)], quality);
   walker.step(seconds, (at) => world.heightAt(at));
   const camera = cameraOf(walker, canvas.clientWidth / Math.max(1, canvas.clientHeight), 1.5 * sets[0].reach);
-  const lift = walker.height - world.heightAt(walker);
-  look = { ...world.look(walker, now - last), camera, height: walker.height, lift, reach: sets[0].reach, isFine: quality.isFine, detail: quality.detail,
+  const lift = (walker.height ?? 0) - world.heightAt(walker);
+  look = { ...world.look(walker, now - last), camera, at: { x: walker.x, y: walker.y }, height: walker.height, lift, reach: sets[0].reach, isFine: quality.isFine, detail: quality.detail,
     time: hasWind ? now / 1000 : 0 };
   const { x, y, yaw, pitch, height } = walker;
   const same = [x.i, x.f, y.i, y.f, yaw, pitch, height, canvas.width, canvas.height, scene.mode, level, world.seed, world.composed].join();
@@ -127,6 +137,10 @@ function frame(now) {
     adapt(now - last);
     drawn = scene.draw(look);
     pictured = same;
+  }
+  if (!byId("map").hidden && same !== charted && now - chartedAt > MAPPED[Number(scene.isSlow)]) {
+    chart.draw(look, scene.mode);
+    [charted, chartedAt] = [same, now];
   }
   tell(now);
   requestAnimationFrame(frame);
@@ -140,7 +154,8 @@ function tell(now) {
   const state = root.dataset.state === "failed" ? "failed" : world.isReady ? "ready" : "loading";
   const isNews = state !== root.dataset.state;
   root.dataset.state = state;
-  byId("fly").setAttribute("aria-pressed", String(walker.isFlying));
+  const words = walker.isAloft && !walker.target ? "Land" : "Fly";
+  if (byId("fly").textContent !== words) byId("fly").textContent = words;
   if (now - updated < 500 && !isNews) return;
   updated = now;
   const { loaded, chunks, wanted, received } = world.sums;
@@ -158,7 +173,7 @@ function tell(now) {
 function remember() {
   const turned = (angle) => String(Math.round((angle * 180) / Math.PI));
   const hash = `#at=${formatPlace(walker.x, 2)},${formatPlace(walker.y, 2)}&yaw=${turned(walker.yaw)}&pitch=${turned(walker.pitch)}`;
-  const rest = [given.seed !== "7" && `seed=${given.seed}`, given.quality !== null && `quality=${given.quality}`, wantsMap && "map=1"];
+  const rest = [walker.isAloft && "fly=1", given.seed !== "7" && `seed=${given.seed}`, given.quality !== null && `quality=${given.quality}`, wantsMap && "map=1"];
   const address = [hash, ...rest.filter(Boolean)].join("&");
   if (address === location.hash) return;
   history.replaceState(null, "", address);
@@ -216,31 +231,41 @@ function close() {
   canvas.focus();
 }
 
+/** @type {any} */
 let home = null;
 
-/** Goes to where doubles have seven digits fewer left, and back to the same trees. */
+/** Goes to where doubles have seven digits fewer left, and back to the same trees: on foot from clearing to clearing. */
 function jump() {
-  const here = { x: walker.x, y: walker.y, yaw: walker.yaw, pitch: walker.pitch };
-  Object.assign(walker, home ?? { x: FAR[0], y: FAR[1] }, { height: null });
-  home = home ? null : here;
-  walker.take();
+  const { x, y, yaw, pitch, isAloft } = walker;
+  walker.begin({ yaw, pitch, isAloft, ...home ?? { x: FAR[0], y: FAR[1], isAnywhere: true } });
+  home = home ? null : { x, y, yaw, pitch, isAloft };
   byId("jump").textContent = home ? "Jump back" : "Jump far away";
   close();
 }
 
-const ICONS = {
-  theme: "M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z", "pad-left": "M15 5l-7 7 7 7", "pad-right": "M9 5l7 7-7 7",
-  "pad-forth": "M5 15l7-7 7 7", "pad-back": "M5 9l7 7 7-7",
-};
-for (const [id, path] of Object.entries(ICONS)) byId(id).append(icon(path));
-for (const [id, move] of [["left", "turnLeft"], ["right", "turnRight"], ["forth", "forth"], ["back", "back"]]) {
-  walker.button(byId(`pad-${id}`), move);
+/** Shows the small map, or puts it away. */
+function toggleMap(isShown) {
+  byId("map").hidden = !isShown;
+  byId("chart").setAttribute("aria-pressed", String(isShown));
+  charted = "";
 }
-byId("jump").addEventListener("click", jump);
-byId("fly").addEventListener("click", () => {
-  const isFlying = !walker.isFlying;
+
+byId("theme").append(icon("M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z"));
+stick(byId("stick-walk"), (push) => {
+  walker.walks = push;
   walker.take();
-  walker.isFlying = isFlying;
+});
+stick(byId("stick-look"), (push) => {
+  walker.looks = push;
+  walker.take();
+});
+byId("jump").addEventListener("click", jump);
+byId("chart").addEventListener("click", () => toggleMap(byId("map").hidden));
+byId("chart").hidden = scene.isMap;
+toggleMap(!scene.isMap && matchMedia("(min-width: 46.01rem) and (min-height: 30.01rem)").matches);
+byId("fly").addEventListener("click", () => {
+  if (walker.isAloft && !walker.target) walker.descend();
+  else walker.rise();
 });
 addEventListener("keydown", (event) => event.key === "Escape" && close());
 canvas.addEventListener("webglcontextlost", () => location.reload());
@@ -251,8 +276,7 @@ watchTheme(byId("theme"), () => {
 addEventListener("hashchange", ({ newURL }) => {
   // The place may have been written into the address since.
   given = fromHash(new URL(newURL).hash);
-  const { x, y, yaw, pitch, isFlying } = given;
-  Object.assign(walker, { x, y, yaw, pitch, isFlying: isFlying && walker.mayFly, height: null });
+  walker.begin(given);
   level = given.quality ?? level;
   if (given.seed !== world.seed) {
     world.stop();

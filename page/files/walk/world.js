@@ -22,6 +22,8 @@ const SETS = [
   { amount: "0.7", variant: false, range: "0.6,1.3", base: 16, parallel: 2 },
 ];
 
+/** @typedef {import("../place.js").Place} Place */
+
 /** The layers that the sets are for a seed, as the plane shows them and requests name them. */
 export function layersOf(seed) {
   const variants = Object.entries(VARIANTS).map(([name, weight]) => `${name}:${weight}`).join(",");
@@ -32,15 +34,25 @@ export function layersOf(seed) {
 
 export class World {
   constructor(scene, seed, failed) {
-    Object.assign(this, { scene, seed });
+    this.scene = scene;
+    this.seed = seed;
+    /** @type {any} */
+    this.quality = null;
+    /** When leaves are made ready no longer, in this frame. */
+    this.until = 0;
+    /** @type {any[]} */
+    this.grounds = [];
+    /** @type {any[]} */
+    this.things = [];
     this.nets = new Map();
     this.layers = layersOf(seed);
     this.sets = SETS.map((set, i) => {
       const changed = () => (this.isStale = true);
       const chunks = new Chunks(changed, failed, { parallel: set.parallel, room: ROOM });
       chunks.show([this.layers[i]]);
-      return { ...set, chunks, leaves: [], built: new Map() };
+      return { ...set, chunks, near: 0, leaves: /** @type {any[]} */ ([]), built: new Map() };
     });
+    /** @type {any} */
     this.around = null;
     this.isStale = true;
     /** How often it was said what is to be drawn. */
@@ -52,7 +64,8 @@ export class World {
     const isFar = !this.around || Math.hypot(distance(at.x, this.around.x), distance(at.y, this.around.y)) > STEP;
     if (isFar || quality !== this.quality) {
       if (quality.cells !== this.quality?.cells) this.forget();
-      Object.assign(this, { around: { x: at.x, y: at.y }, quality });
+      this.around = { x: at.x, y: at.y };
+      this.quality = quality;
       this.sets.forEach((set, i) => this.want(set, quality.sets[i], ahead));
       this.isStale = true;
     }
@@ -186,8 +199,13 @@ export class World {
   /**
    * The point whose picture is at a place of the window (from −1 to 1), or nearest to it within `miss`: its kind, its
    * coordinates and its size. `null` if there is none.
+   * @param {any} look
+   * @param {number[]} at
+   * @param {number} aspect
+   * @param {number} miss
    */
   pick(look, [x, y], aspect, miss) {
+    /** @type {any} */
     let best = null;
     for (const { leaf, clip, runs, floats, set } of look.things) {
       if (set !== this.sets[0] || clip || leaf.away > 2 * set.near) continue;
@@ -209,7 +227,7 @@ export class World {
     }
     if (!best) return null;
     const [px, py] = [best.leaf.cx, best.leaf.cy].map((index, axis) => (
-      moved(parsePlace(String(BigInt(index) * BigInt(best.leaf.size))), best.offset[axis])
+      moved(/** @type {Place} */ (parsePlace(String(BigInt(index) * BigInt(best.leaf.size)))), best.offset[axis])
     ));
     return { ...best, x: px, y: py };
   }

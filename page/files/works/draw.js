@@ -1,11 +1,17 @@
-// The three drawings of the tab How it works: the plane, the index torus, the set region.
+// The three drawings of the laboratory: the plane, the index torus, the set region.
 
+import { contextOf } from "../dom.js";
 import { themeColor } from "../theme.js";
 
 /** A square drawing with coordinates of its own, y upward. */
 export class Square {
+  /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
     this.canvas = canvas;
+    this.context = contextOf(canvas);
+    this.side = 1;
+    this.from = 0;
+    this.scale = 1;
   }
 
   /** Begins anew: the range of both coordinates, the same for x and y. */
@@ -14,10 +20,11 @@ export class Square {
     const ratio = Math.min(2, globalThis.devicePixelRatio || 1);
     const pixels = Math.round(side * ratio);
     if (this.canvas.width !== pixels) Object.assign(this.canvas, { width: pixels, height: pixels });
-    this.context = this.canvas.getContext("2d");
     this.context.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.context.clearRect(0, 0, side, side);
-    Object.assign(this, { side, from, scale: side / (to - from) });
+    this.side = side;
+    this.from = from;
+    this.scale = side / (to - from);
     return this;
   }
 
@@ -78,11 +85,11 @@ export class Square {
 /** The colors at the corners of the set region: (0, 0), (t, 0), (0, t), (t, t). */
 const CORNERS = [[42, 98, 190], [219, 68, 92], [28, 158, 108], [232, 172, 40]];
 
-/** The color of a place in the set region, from 0 to 1 along both axes. */
-export function shade([u, v]) {
+/** The color of a place in the set region, from 0 to 1 along both axes; `lift` is how far it goes toward white. */
+export function shade([u, v], lift = 0) {
   const weights = [(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v];
   const mixed = [0, 1, 2].map((channel) => CORNERS.reduce((sum, color, i) => sum + color[channel] * weights[i], 0));
-  return `rgb(${mixed.map(Math.round).join(" ")})`;
+  return `rgb(${mixed.map((v) => Math.round(v + lift * (255 - v))).join(" ")})`;
 }
 
 /** Colors of the theme that drawings use. */

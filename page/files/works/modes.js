@@ -1,4 +1,4 @@
-// The modes of the tab How it works, each a view of a pattern: index, arrangement, clusters, map, displacement.
+// The modes of the laboratory, each a view of a pattern: index, arrangement, clusters, map, displacement.
 
 import { make, spoken } from "../dom.js";
 import { shade } from "./draw.js";
@@ -61,9 +61,23 @@ function boxOf(pattern, starts, block) {
   return [ends.map(([from]) => from), ends.map(([from, to]) => to - from)];
 }
 
+/** Draws the lines between the blocks of a map onto the set region. */
+function lines(region, { t }, starts, color, thickness) {
+  for (const start of starts.slice(1).map(turns)) {
+    region.line([start, 0], [start, t], color, thickness);
+    region.line([0, start], [t, start], color, thickness);
+  }
+}
+
 const radiusOf = (chosen) => Number(chosen.radius);
 const words = (point) => `(${point.join(", ")})`;
 const radii = (works) => range(works, "radius", "Half-width R of the map", [1, 60, 1], (v) => `${v} grid units`);
+
+/** What a point has in common with the others of its block. */
+function fellows(others, radius) {
+  if (others === 0) return " and is alone in it here.";
+  return `, with ${others === 1 ? "another point" : `${others} others`} of this window: they have the same neighbors up to ${radius} grid units.`;
+}
 
 /** Lights up all points of the block that holds the point that is looked at. Says where it is. */
 function lightUp(works, pattern, chosen, palette) {
@@ -83,9 +97,7 @@ function lightUp(works, pattern, chosen, palette) {
   return {
     starts,
     point,
-    said: `The point ${words(point)} has the index dX = ${dx}, dY = ${dy}. Of the ${n} × ${n} blocks for R = ${chosen.radius} it is in `
-      + `block ${block.join(", ")}, ${same.length === 1 ? "which no other point of this window is in" : `with ${same.length - 1} others of this window`}: `
-      + `points of one block have the same neighbors up to ${chosen.radius} grid units.`,
+    said: `The point ${words(point)} has the index dX = ${dx}, dY = ${dy}. For R = ${chosen.radius} there are ${n} × ${n} blocks. It is in block ${block.join(", ")}${fellows(same.length - 1, chosen.radius)}`,
   };
 }
 
@@ -232,12 +244,8 @@ const map = {
     const radius = radiusOf(chosen);
     const [fine, coarse] = [pattern.starts(radius), pattern.starts(Math.floor(radius / 2))];
     const { t } = pattern;
-    for (const [starts, color, thickness] of [[fine, palette.soft, 0.7], [coarse, palette.accent, 1.6]]) {
-      for (const start of starts.slice(1).map(turns)) {
-        works.region.line([start, 0], [start, t], color, thickness);
-        works.region.line([0, start], [t, start], color, thickness);
-      }
-    }
+    lines(works.region, pattern, fine, palette.soft, 0.7);
+    lines(works.region, pattern, coarse, palette.accent, 1.6);
     const isNear = ([x, y], [u, v]) => Math.max(Math.abs(x - u), Math.abs(y - v)) <= radius;
     const point = works.point();
     dots(works, pattern, (other) => (isNear(other, point) ? palette.ink : palette.line));
@@ -252,6 +260,7 @@ const map = {
 };
 
 const displacement = {
+  caption: ({ moved }) => (Number(moved) === 0 ? "the grid points that belong to it" : Number(moved) < 1 ? "its points on their way, along their vectors" : "its points, displaced by their vectors"),
   settings: (works) => [
     range(works, "moved", "From the pattern to the displaced points", [0, 1, 0.01], (v) => `${Math.round(100 * v)} %`),
   ],
@@ -264,32 +273,38 @@ const displacement = {
       ["alpha", chosen.alpha], ["seed", 0], ["warp", "off"],
     ]);
   },
-  answered(works, { points }, path) {
-    works.moved = { path, places: new Map(points.map(({ id, x, y }) => [id, [x, y]])), words: null };
+  answered(works, { points, table }, path) {
+    works.displaced = { path, radius: table.radius, places: new Map(points.map(({ id, x, y }) => [id, [x, y]])), words: null };
   },
-  failed: (works, words) => (works.moved = { path: null, places: new Map(), words }),
+  failed: (works, words) => (works.displaced = { path: null, places: new Map(), words }),
   draw(works, pattern, chosen, palette) {
     begin(works, pattern, palette);
-    const isRight = works.moved?.path === this.path(works, pattern, chosen);
-    const places = isRight ? works.moved.places : new Map();
+    const isRight = works.displaced?.path === this.path(works, pattern, chosen);
+    const places = isRight ? works.displaced.places : new Map();
     const share = Number(chosen.moved);
     const colorOf = (point) => shade(placeOf(pattern, point).map((v) => v / pattern.t));
-    for (const point of works.points) {
+    const { region } = works;
+    if (isRight) lines(region, pattern, pattern.starts(works.displaced.radius), palette.line, 0.4);
+    for (const point of pattern.points(REACH + 8)) {
       const place = placeOf(pattern, point);
       works.torus.dot(place, 1.6, colorOf(point));
-      works.region.dot(place, 2.6, colorOf(point));
+      region.dot(place, 2.6, colorOf(point));
+      const to = places.get(point.join(":")) ?? point;
+      // Vectors are seen at the indices of their blocks, a grid unit being a hundredth of the drawing.
+      region.line(place, place.map((v, axis) => v + (to[axis] - point[axis]) * 0.01 * pattern.t), palette.soft, 1);
     }
     for (const point of pattern.points(REACH + 8)) {
       const [x, y] = point;
       const to = places.get(`${x}:${y}`) ?? point;
       const now = [x + share * (to[0] - x), y + share * (to[1] - y)];
-      if (share > 0 && share < 1) works.plane.line(point, now, palette.soft, 0.7);
+      if (share > 0) works.plane.line(point, now, palette.soft, 1);
       works.plane.dot(now, dotOf(works), colorOf(point));
     }
     end(works, pattern, palette);
-    const text = `A table has one vector for each block of a map. Points of one block have the same neighbors, so they all move alike, and the pattern becomes ${chosen.profile} noise.`;
-    if (works.moved?.words) return [text, `No table moves the points of this α: ${works.moved.words}`];
-    return [text, isRight ? `${places.size} places are the server's, of seed 0 without warp.` : "Asking for the places of the points…"];
+    const blocks = isRight && pattern.starts(works.displaced.radius).length;
+    const text = `Points of one block have the same neighbors, so they all move by the same vector, and the pattern becomes ${chosen.profile} noise.`;
+    if (works.displaced?.words) return [text, `No table moves the points of this α: ${works.displaced.words}`];
+    return [text, isRight ? `The table has ${blocks} × ${blocks} blocks. ${places.size} places are the server's, of seed 0 without warp.` : "Waiting for the server's places of the points…"];
   },
 };
 

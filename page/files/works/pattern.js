@@ -1,6 +1,5 @@
 // The AA pattern of any α in the page itself: the arithmetic of the server, in integers of 2⁻⁶⁴ turns.
 
-const TURN = 1n << 64n;
 const HALF = 1n << 63n;
 
 /** The α that are known by name, with what the buttons say. */
@@ -22,7 +21,7 @@ function root(n) {
 }
 
 /** α · 2⁶³, rounded to the nearest integer: a decimal, a fraction, or one of the known irrationals. */
-export function halfTurns(text) {
+function halfTurns(text) {
   const clean = text.replace(/\s/g, "");
   // √n · 2⁶⁴, rounded down: one bit more than is kept.
   const fine = (n) => root(n << 128n);
@@ -31,9 +30,9 @@ export function halfTurns(text) {
   if (clean === "(1+sqrt(5))/2") return ((1n << 64n) + fine(5n) + 2n) >> 2n;
   const fraction = /^(\d{1,15})\/(\d{1,15})$/.exec(clean);
   const decimal = /^(\d?)\.(\d{1,17})$/.exec(clean);
-  if (!fraction && !decimal) return null;
-  const p = fraction ? BigInt(fraction[1]) : BigInt(decimal[1] + decimal[2]);
-  const q = fraction ? BigInt(fraction[2]) : 10n ** BigInt(decimal[2].length);
+  const [, above, below] = fraction ?? (decimal ? [null, decimal[1] + decimal[2], `1${"0".repeat(decimal[2].length)}`] : []);
+  if (!above || !below) return null;
+  const [p, q] = [BigInt(above), BigInt(below)];
   if (q === 0n || p <= q || p >= 2n * q) return null;
   return (2n * p * HALF + q) / (2n * q);
 }

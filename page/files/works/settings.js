@@ -1,4 +1,4 @@
-// Shared by the modes of the tab How it works: the window, sliders, addresses of requests.
+// Shared by the modes of the laboratory: the window, sliders, addresses of requests.
 
 import { make } from "../dom.js";
 import { encoded } from "../state.js";
@@ -15,7 +15,7 @@ export function range(works, name, label, [min, max, step], words) {
     oninput: () => works.drag({ [name]: input.value }),
     onchange: () => works.choose({ [name]: input.value }),
   });
-  input.follow = (value) => {
+  /** @type {any} */ (input).follow = (value) => {
     input.value = value;
     said.textContent = words(Number(value));
     input.setAttribute("aria-valuetext", said.textContent);

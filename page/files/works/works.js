@@ -1,8 +1,9 @@
-// The tab How it works: the pattern of an α, its index torus and its set region side by side, and what
+// The laboratory: the pattern of an α, its index torus and its set region side by side, and what
 // follows from them. α and everything drawn is computed here; counts and displaced points are the server's.
 
 import { Gone, askJson } from "../api.js";
 import { byId, make, settled, spoken } from "../dom.js";
+import { Part } from "../part.js";
 import { Square, colors } from "./draw.js";
 import { KNOWN, Pattern } from "./pattern.js";
 import { MODES } from "./modes.js";
@@ -17,12 +18,43 @@ const WORDS = {
   displacement: "Displacement",
 };
 
-export class Works {
+/** What each of them is about. */
+const ABOUT = {
+  index: "Each grid point has a place on a torus, its index. The points of the pattern are those whose index lies in a square, the set region.",
+  arrangement: "An arrangement of points occurs if its image in index space fits the set region. What room is left, the margin, tells where and how often.",
+  clusters: "Points near each other form a few shapes, and each shape has its own places in the set region.",
+  map: "The index of a point decides all of its neighbors. Cut the set region into blocks: points of one block look alike as far as R.",
+  displacement: "A table moves all points of a block by the same vector. That is all it takes to turn the pattern into blue noise.",
+};
+
+export class Works extends Part {
+  /** @type {HTMLInputElement} */
+  slider;
+  /** @type {HTMLInputElement} */
+  field;
+  /** @type {HTMLButtonElement[]} */
+  known;
+  /** @type {HTMLButtonElement[]} */
+  modes;
+  /** @type {Square} */
+  plane;
+  /** @type {HTMLElement} */
+  settings;
+  /** @type {HTMLElement} */
+  facts;
+  /** @type {HTMLElement} */
+  about;
+  /** @type {HTMLElement} */
+  caption;
+  /** @type {Pattern | null} */
+  last = null;
+
   constructor(session) {
+    super();
     this.session = session;
     /** The value of a slider while it is held, before it is a choice. */
     this.live = {};
-    this.hovered = null;
+    this.pointed = null;
     this.build();
     session.on((changed) => {
       if (!changed.has("works")) return;
@@ -72,22 +104,24 @@ export class Works {
     }));
     this.torus = new Square(canvas("works-torus", "The index torus, with the index of every grid point of the window."));
     this.region = new Square(canvas("works-region", "The set region, enlarged."));
+    this.about = make("p", { id: "works-about" });
+    this.caption = make("span", { class: "soft", id: "works-caption" });
     this.settings = make("div", { class: "settings" });
     this.facts = make("div", { class: "facts", id: "works-facts", role: "status", "aria-live": "polite" });
-    const figure = (square, name, words) => {
-      const caption = make("span", { class: "soft" }, words);
-      return make("figure", {}, square.canvas, make("figcaption", {}, make("b", {}, name), caption));
-    };
+    const soft = (words) => make("span", { class: "soft" }, words);
+    const figure = (square, name, caption) => make("figure", {}, square.canvas, make("figcaption", {}, make("b", {}, name), caption));
     byId("works").replaceChildren(make("div", {},
-      make("h2", {}, "How it works"),
+      make("h2", {}, "The laboratory"),
+      make("p", {}, "Move α, choose points in the pattern, or use the arrow keys there. ", make("a", { href: "/how" }, "How it works, step by step"), " explains what is seen."),
       make("div", { class: "alpha" }, make("label", { class: "label", for: "works-alpha" }, "α, between 1 and 2"), this.slider, this.field,
         make("div", { class: "choices", role: "group", "aria-label": "Known α" }, known)),
       make("div", { class: "choices", role: "group", "aria-label": "What to look at" }, this.modes),
+      this.about,
       make("div", { class: "drawings" },
-        figure(this.plane, "The pattern", "grid points that belong to it"),
+        figure(this.plane, "The pattern", this.caption),
         make("div", { class: "side" },
-          figure(this.torus, "The index torus", "dX = {(αx + y)/2} right, dY = {(αy + x)/2} up"),
-          figure(this.region, "The set region", "[0, t)², t = (α − 1)/2")),
+          figure(this.torus, "The index torus", soft("(αx + y)/2 right, (αy + x)/2 up, without their whole parts")),
+          figure(this.region, "The set region", soft("from 0 to t = (α − 1)/2 both ways"))),
         make("div", { class: "said" }, this.settings, this.facts)),
     ));
   }
@@ -119,11 +153,12 @@ export class Works {
 
   /** The point that is looked at: the hovered one, or the chosen one if it is a point of this pattern. */
   point() {
-    if (this.hovered) return this.hovered;
+    if (this.pointed) return this.pointed;
     const [x, y] = this.chosen.point.split(":").map(Number);
-    return this.last.has(x, y) ? [x, y] : this.nearest([x, y]);
+    return this.last?.has(x, y) ? [x, y] : this.nearest([x, y]);
   }
 
+  /** @param {number[]} place */
   nearest([x, y], among = this.points) {
     const far = ([a, b]) => (a - x) ** 2 + (b - y) ** 2;
     return among.reduce((best, point) => (far(point) < far(best) ? point : best), among[0] ?? [0, 0]);
@@ -134,13 +169,13 @@ export class Works {
     const point = this.nearest(at);
     const isNear = Math.hypot(point[0] - at[0], point[1] - at[1]) < 1.5;
     const next = isNear ? point : null;
-    if (String(next) === String(this.hovered)) return;
-    this.hovered = next;
+    if (String(next) === String(this.pointed)) return;
+    this.pointed = next;
     this.draw();
   }
 
   leave() {
-    this.hovered = null;
+    this.pointed = null;
     this.draw();
   }
 
@@ -166,7 +201,7 @@ export class Works {
     const cost = (p) => along(p) + 2 * aside(p);
     const next = ahead.sort((p, q) => cost(p) - cost(q))[0];
     if (!next) return;
-    this.hovered = null;
+    this.pointed = null;
     this.live.point = next.join(":");
     // A move is in the address, but no step of its own.
     this.session.state.works = { ...this.session.state.works, point: next.join(":") };
@@ -193,14 +228,16 @@ export class Works {
     this.field.setAttribute("aria-invalid", String(!pattern));
     for (const button of this.known) button.setAttribute("aria-pressed", String(button.dataset.alpha === chosen.alpha));
     for (const button of this.modes) button.setAttribute("aria-pressed", String(button.id === `works-${chosen.mode}`));
+    const mode = MODES[chosen.mode];
+    mode.follow?.(this, chosen);
+    this.about.textContent = ABOUT[chosen.mode];
+    this.caption.textContent = mode.caption?.(chosen) ?? "the grid points that belong to it";
     if (!pattern) {
       this.tell([`“${chosen.alpha}” is no α: it must be a decimal or a fraction between 1 and 2, or one of the buttons.`]);
       return;
     }
     this.slider.value = String(pattern.alpha);
     this.slider.setAttribute("aria-valuetext", spoken(pattern.alpha, 6));
-    const mode = MODES[chosen.mode];
-    mode.follow?.(this, chosen);
     const said = mode.draw(this, pattern, chosen, colors());
     this.tell(said);
     document.documentElement.dataset.works = `${chosen.mode} ${chosen.alpha}`;

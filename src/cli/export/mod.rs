@@ -14,7 +14,7 @@ mod spec;
 mod zip;
 
 use std::{
-    io,
+    fs, io,
     path::{Path, PathBuf},
     sync::{
         Mutex, PoisonError,
@@ -310,8 +310,17 @@ impl Job<'_> {
             .flat_map(|record| &record.files)
             .map(|(_, length)| length)
             .sum();
+        // The forecast of an archive is about its own size.
+        let archive = self
+            .args
+            .archive
+            .as_ref()
+            .and_then(|file| fs::metadata(file).ok());
+        let packed = archive.map_or_else(String::new, |file| {
+            format!(" in an archive of {} bytes", file.len())
+        });
         eprintln!(
-            "{}: {} chunks, {points} points, {bytes} bytes",
+            "{}: {} chunks, {points} points, {bytes} bytes{packed}",
             place.display(),
             records.len()
         );

@@ -323,6 +323,13 @@ fn man_knows_every_command() {
 }
 
 #[test]
+fn the_version_is_a_command_as_it_is_a_flag() {
+    let [command, flag] = ["version", "--version"].map(|word| run(&[word], ""));
+    assert!(command.status.success(), "{}", errors(&command));
+    assert_eq!(command.stdout, flag.stdout);
+}
+
+#[test]
 fn profiles_are_listed() {
     let output = run(&["profiles"], "");
     let list = String::from_utf8_lossy(&output.stdout);

@@ -30,6 +30,7 @@ fn every_setting_in_the_files_exists() {
         "Dockerfile",
         "deploy/Dockerfile.scratch",
         "deploy/compose.yaml",
+        "deploy/stack.yaml",
         "deploy/helm/strew/templates/deployment.yaml",
     ] {
         for variable in variables(&text(path)) {

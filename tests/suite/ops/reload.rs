@@ -10,24 +10,10 @@ use strew_testkit::{
     wait::until,
 };
 
-use crate::support::daemon::{Daemon, PROFILE, table};
+use crate::support::daemon::{Daemon, PROFILE, other_table, table};
 
 const ALPHA: &str = "(5-sqrt(3))/2";
 const POINTS: &str = "/v1/points?bbox=0,0,50,50&density=1&profile=test&format=f64";
-
-/// Another table for the same queries.
-fn other() -> Table {
-    let table = table(ALPHA, PROFILE);
-    let mut displacements = table.displacements().to_vec();
-    displacements.reverse();
-    Table::new(
-        table.map().clone(),
-        PROFILE,
-        displacements,
-        table.provenance().clone(),
-    )
-    .expect("valid")
-}
 
 /// Replaces a file atomically.
 fn replace(folder: &Path, name: &str, bytes: &[u8]) {
@@ -62,12 +48,16 @@ fn a_signal_applies_new_changed_and_removed_tables() {
     let daemon = unwatched();
     let before = daemon.get(POINTS);
     assert!(!has_profile(&daemon, "added"));
-    replace(daemon.folder(), "a.strew", &other().to_bytes());
+    replace(
+        daemon.folder(),
+        "a.strew",
+        &other_table(ALPHA, PROFILE).to_bytes(),
+    );
     write(daemon.folder(), "c.strew", &table(ALPHA, "added"));
     fs::remove_file(daemon.folder().join("b.strew")).expect("removable");
     assert_eq!(digest(&daemon), before.header("strew-table"));
     daemon.signal("HUP");
-    until_served(&daemon, &other());
+    until_served(&daemon, &other_table(ALPHA, PROFILE));
     assert!(has_profile(&daemon, "added"));
     assert!(has_profile(&daemon, "blue"), "built-in tables stay");
     let gone = daemon.get(&format!("{POINTS}&alpha=sqrt(3)"));
@@ -90,8 +80,12 @@ fn a_signal_applies_new_changed_and_removed_tables() {
 fn a_change_of_the_folder_is_noticed() {
     let daemon = Daemon::start(&["reload.watch_seconds=0.05"]);
     let first = digest(&daemon);
-    replace(daemon.folder(), "a.strew", &other().to_bytes());
-    until_served(&daemon, &other());
+    replace(
+        daemon.folder(),
+        "a.strew",
+        &other_table(ALPHA, PROFILE).to_bytes(),
+    );
+    until_served(&daemon, &other_table(ALPHA, PROFILE));
     assert_ne!(digest(&daemon), first);
     // A file overrides a built-in table for as long as it exists.
     let built_in = |daemon: &Daemon| {
@@ -149,9 +143,13 @@ fn a_bad_file_is_refused_and_the_table_before_serves_on() {
     fs::rename(daemon.folder(), &hidden).expect("renamed");
     daemon.signal("HUP");
     fs::rename(&hidden, daemon.folder()).expect("renamed");
-    replace(daemon.folder(), "a.strew", &other().to_bytes());
+    replace(
+        daemon.folder(),
+        "a.strew",
+        &other_table(ALPHA, PROFILE).to_bytes(),
+    );
     daemon.signal("HUP");
-    until_served(&daemon, &other());
+    until_served(&daemon, &other_table(ALPHA, PROFILE));
     assert!(has_profile(&daemon, "foreign"));
 }
 
@@ -166,9 +164,13 @@ fn a_stream_ends_with_the_table_it_began_with() {
     );
     let reader = http1::open(daemon.address(), "GET", path, &[]);
     assert_eq!(reader.status, 200);
-    replace(daemon.folder(), "a.strew", &other().to_bytes());
+    replace(
+        daemon.folder(),
+        "a.strew",
+        &other_table(ALPHA, PROFILE).to_bytes(),
+    );
     daemon.signal("HUP");
-    until_served(&daemon, &other());
+    until_served(&daemon, &other_table(ALPHA, PROFILE));
     let (body, complete) = reader.finish();
     assert!(complete);
     assert!(body == whole.body, "the stream changed");
@@ -183,15 +185,22 @@ fn a_pin_of_a_replaced_table_is_a_conflict() {
     let daemon = unwatched();
     let first = daemon.get(&format!("{POINTS}&limit=10"));
     let (pinned, cursor) = (first.header("strew-table"), first.header("strew-next"));
-    replace(daemon.folder(), "a.strew", &other().to_bytes());
+    replace(
+        daemon.folder(),
+        "a.strew",
+        &other_table(ALPHA, PROFILE).to_bytes(),
+    );
     daemon.signal("HUP");
-    until_served(&daemon, &other());
+    until_served(&daemon, &other_table(ALPHA, PROFILE));
     let refused = daemon.get(&format!("{POINTS}&table={pinned}"));
     assert_eq!(refused.status, 409, "{}", refused.text());
     let problem = refused.json();
     assert_eq!(problem["pinned"], pinned);
-    assert_eq!(problem["loaded"], other().digest().to_string());
-    let loaded = format!("{POINTS}&table={}", other().digest());
+    assert_eq!(
+        problem["loaded"],
+        other_table(ALPHA, PROFILE).digest().to_string()
+    );
+    let loaded = format!("{POINTS}&table={}", other_table(ALPHA, PROFILE).digest());
     assert_eq!(daemon.get(&loaded).status, 200);
     // A cursor belongs to its table.
     let stale = daemon.get(&format!("{POINTS}&cursor={cursor}"));

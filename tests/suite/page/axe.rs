@@ -65,6 +65,16 @@ fn axe_finds_nothing_in_the_tabs() {
     }
     browser.click("#paint-open");
     assert_clean_in_both(&browser, "painting");
+    browser.click("#paint-done");
+    browser.click("#tab-choose");
+    browser.choose("#spread", "joint");
+    browser.until("strew.plane.look.layers[0].spread === 'joint'");
+    assert_clean_in_both(&browser, "kinds");
+    browser.go("about:blank");
+    browser.go(&daemon.url("/#at=0,0&span=30&alpha=3"));
+    browser.until("!document.querySelector('#trouble').hidden");
+    add(&browser, &axe);
+    assert_clean_in_both(&browser, "a link that is refused");
 }
 
 #[test]
@@ -78,6 +88,7 @@ fn axe_finds_nothing_on_the_other_pages() {
             "/compare#show=strew,white",
             "document.documentElement.dataset.measured",
         ),
+        ("/how", READY),
         ("/walk#fly=0&quality=0", READY),
         ("/tile", READY),
         ("/space#at=4,4,4", READY),

@@ -7,6 +7,9 @@ use crate::support::{
     daemon::Daemon,
 };
 
+/// All methods.
+const SIX: &str = "#show=strew,poisson,tile,jitter,halton,white";
+
 /// Opens the page, and waits until all that is shown is measured.
 fn open(browser: &Browser, daemon: &Daemon, hash: &str) {
     browser.go("about:blank");
@@ -87,7 +90,7 @@ fn methods_are_what_they_say() {
     let Some((daemon, browser)) = looking(1440, 900) else {
         return;
     };
-    open(&browser, &daemon, "");
+    open(&browser, &daemon, SIX);
     assert_eq!(browser.value(FAULTS), Value::from(Vec::<String>::new()));
     // Distances and counts as they are known of each kind, in mean spacings.
     for (id, least, mean) in [
@@ -106,7 +109,9 @@ fn methods_are_what_they_say() {
         assert!(mean.contains(&found), "{id}: {found}");
     }
     browser.until("document.documentElement.dataset.timed === '6'");
-    for id in ["strew", "poisson", "tile", "jitter", "halton", "white"] {
+    // Points that another program makes are not timed beside those that are made here.
+    assert_eq!(browser.text("#time-strew"), "–");
+    for id in ["poisson", "tile", "jitter", "halton", "white"] {
         let text = browser.text(&format!("#time-{id}"));
         assert!(
             text.ends_with(" ns") || text.ends_with(" µs"),
@@ -114,6 +119,85 @@ fn methods_are_what_they_say() {
         );
     }
     assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn what_each_method_has_to_make_is_counted() {
+    let Some((daemon, browser)) = looking(1280, 800) else {
+        return;
+    };
+    open(&browser, &daemon, "#at=0,0&span=40");
+    browser.until("document.documentElement.dataset.timed === '2'");
+    // The window holds as many points as the server counts, and Strew makes no others.
+    let window = "(({ x, y, unit, width, height }) => [-1, 1].flatMap((side) => \
+        [x.i + x.f + side * width * unit / 2, y.i + y.f + side * height * unit / 2]).join())(strew.joint.view)";
+    let window = browser.value(window);
+    let path = format!(
+        "/v1/count?bbox={}&spacing=1&seed=1",
+        window.as_str().expect("text")
+    );
+    let count = daemon.get(&path).json()["count"].as_f64().expect("a count");
+    assert!(
+        (figure(&browser, "made-strew") - count).abs() <= 1.0,
+        "{count}"
+    );
+    let why = browser.text("#price-strew");
+    assert!(why.ends_with(&browser.text("#made-strew")), "{why}");
+    // All of its square, for any part of it.
+    assert!((figure(&browser, "made-poisson") - 65_536.0).abs() < 1000.0);
+    // Alone: what has to be made, drawn beside nothing else; a move ends that.
+    browser.click("#alone");
+    browser.until("strew.panels[1].aloneSource?.runs(strew.joint.view)[0]?.count > 60000");
+    browser.until("strew.panels[0].aloneSource?.runs(strew.joint.view)[0]?.count > 0");
+    let drawn = browser.value("strew.panels[0].aloneSource.runs(strew.joint.view)[0].count");
+    assert!(
+        (drawn.as_f64().expect("a count") - count).abs() <= 1.0,
+        "{drawn}"
+    );
+    assert_eq!(
+        browser.value("document.querySelector('#alone').ariaPressed"),
+        "true"
+    );
+    // A billion units away Strew makes as many as here, and everything up to there comes first for the other.
+    browser.click("#far");
+    browser.until("document.documentElement.dataset.measured.startsWith('1000000000,')");
+    assert_eq!(
+        browser.value("document.querySelector('#alone').ariaPressed"),
+        "false"
+    );
+    browser.until("document.querySelector('#made-poisson').textContent === '4 × 10¹⁸'");
+    assert!(browser.text("#why-poisson").contains(" in this browser"));
+    assert!((figure(&browser, "made-strew") - count).abs() < 60.0);
+    assert_eq!(browser.text("#far"), "Back to the origin");
+    browser.click("#far");
+    browser.until("strew.joint.view.x.i === 0");
+    // The others on request; the address has them.
+    browser.click("#all");
+    browser.until(&format!("location.hash.endsWith('{}')", &SIX[1..]));
+    browser.until("Number(document.querySelector('#made-tile').textContent) === 256");
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn a_server_that_is_away_is_said_once_and_what_is_drawn_stays() {
+    let Some((daemon, browser)) = looking(1000, 700) else {
+        return;
+    };
+    open(&browser, &daemon, "#at=0,0&span=30");
+    let shown = browser.text("#made-strew");
+    browser.value("(globalThis.fetch = () => Promise.reject(new TypeError('away')), 0)");
+    browser.value("(strew.joint.lookAt({ i: 5000, f: 0 }, { i: 0, f: 0 }), 0)");
+    browser.until("!document.querySelector('#banner').hidden");
+    browser.value("(strew.joint.lookAt({ i: 0, f: 0 }, { i: 0, f: 0 }), 0)");
+    browser.until(&format!(
+        "document.querySelector('#made-strew').textContent === '{shown}'"
+    ));
+    // Another choice takes nothing of it back, and the other methods go on.
+    browser.choose("#seed", "2");
+    browser.until("document.querySelector('#made-strew').textContent === '…'");
+    let words = "The server does not answer. This page tries again by itself";
+    assert!(browser.text("#banner").starts_with(words));
+    browser.until("document.querySelector('#made-poisson').textContent.length > 5");
 }
 
 #[test]
@@ -125,12 +209,12 @@ fn one_view_moves_all_and_stands_in_the_address() {
     let plane = |id: &str| {
         let place = browser.value(&format!(
             "(() => {{ const box = document.querySelector('#plane-{id}').getBoundingClientRect(); \
-             return [box.left + box.width / 2, box.top + box.height / 2, box.width].map(Math.round); }})()"
+             return [box.left + box.width / 2, box.top + box.height / 2, Math.min(box.width, box.height)].map(Math.round); }})()"
         ));
         serde_json::from_value::<[i32; 3]>(place).expect("a place")
     };
-    let [x, y, width] = plane("jitter");
-    browser.drag([x, y], [-width / 4, 0]);
+    let [x, y, side] = plane("jitter");
+    browser.drag([x, y], [-side / 4, 0]);
     browser.until(
         "strew.joint.view.x.i === 7 && document.documentElement.dataset.measured.startsWith('7.')",
     );
@@ -183,7 +267,7 @@ fn far_away_on_a_phone_bounded_methods_say_that_they_end() {
     browser.choose("#jump-at", "1e15, 0");
     browser.value("document.querySelector('#jump').requestSubmit()");
     browser.until("!document.querySelector('#banner').hidden");
-    assert!(browser.text("#banner").contains("no place here"));
+    assert!(browser.text("#banner").contains("not a place here"));
     // A meaningless hash leaves the defaults.
     open(
         &browser,

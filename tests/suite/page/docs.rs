@@ -81,3 +81,71 @@ fn references_unfold_and_answers_have_examples() {
     assert_eq!(empty, serde_json::json!([]));
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
+
+#[test]
+fn a_search_without_a_hit_says_so_and_offers_the_way_back() {
+    let Some((daemon, browser)) = looking(1280, 900) else {
+        return;
+    };
+    open(&daemon, &browser, "");
+    browser.choose("#search", "stipple");
+    assert_eq!(browser.text("#hits"), "No operation found");
+    let main = browser.text("#main");
+    assert!(main.contains("“stipple” is in no operation"), "{main}");
+    assert!(!main.contains("Choose an operation"), "{main}");
+    browser.click("#clear");
+    assert_eq!(browser.text("#main h2"), "The API");
+    assert_eq!(browser.value("document.activeElement.id"), "search");
+    // An operation that is open stays.
+    open(&daemon, &browser, "#getCount");
+    browser.choose("#search", "stipple");
+    assert!(
+        browser
+            .value("document.querySelector('form.try')")
+            .is_object()
+    );
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn rules_between_parameters_are_a_table() {
+    let Some((daemon, browser)) = looking(1280, 900) else {
+        return;
+    };
+    open(&daemon, &browser, "#getNearest");
+    browser.value(
+        "(document.querySelectorAll('#main details').forEach((one) => { one.open = true; }), 0)",
+    );
+    let row = |name: &str| {
+        let rows = "[...document.querySelectorAll('.rules tbody tr')]";
+        let row = format!(
+            "{rows}.find((row) => row.cells[0].textContent === '{name}')?.cells[1].innerText"
+        );
+        let text = browser.until(&row);
+        text.as_str().expect("text").to_owned()
+    };
+    assert_eq!(row("heights"), "only with terrain");
+    assert_eq!(row("spacing"), "exactly one: this, density or min_distance");
+    assert_eq!(
+        row("scale_range"),
+        "only with attributes (scale)\nnot with scale_ranges"
+    );
+    assert_eq!(row("spread"), "even needs variants\njoint needs variants");
+}
+
+#[test]
+fn a_server_that_is_away_is_said() {
+    let Some((daemon, browser)) = looking(1280, 900) else {
+        return;
+    };
+    open(&daemon, &browser, "#getCount");
+    browser.value("(globalThis.fetch = () => Promise.reject(new TypeError('away')), 0)");
+    browser.click("form.try button[type=submit]");
+    browser.until("!document.querySelector('#banner').hidden");
+    assert!(
+        browser
+            .text("#banner")
+            .starts_with("The server does not answer.")
+    );
+    assert!(browser.text("#answer").starts_with("No answer came."));
+}

@@ -61,6 +61,7 @@ fn the_first_key_leads_past_what_repeats() {
     };
     for (path, target) in [
         ("/", "panel-body"),
+        ("/how", "essay"),
         ("/compare", "methods"),
         ("/tile", "choices"),
         ("/space#at=4,4,4", "choices"),
@@ -133,6 +134,6 @@ fn nothing_moves_by_itself_where_less_motion_is_wanted() {
     assert_eq!(browser.value(state), serde_json::json!([false, 0]));
     // The button flies all the same.
     browser.click("#fly");
-    browser.until("strew.walker.isFlying && document.querySelector('#fly').getAttribute('aria-pressed') === 'true'");
+    browser.until("strew.walker.isFlying && document.querySelector('#fly').textContent === 'Land'");
     assert_eq!(browser.errors(), Vec::<String>::new());
 }

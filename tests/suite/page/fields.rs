@@ -23,13 +23,14 @@ fn a_field_thins_the_points_and_is_shaded_under_them() {
     let forest = browser.ready();
     assert!(forest > 500 && forest < all * 3 / 4, "{forest} of {all}");
     assert!(browser.hash().contains("field=forest"));
+    // Points show it well enough; it is shaded on request.
+    assert_eq!(browser.value("strew.shade.canvas.hidden"), true);
+    browser.click("#shade-field");
     browser.until(SHADED);
     assert_eq!(browser.value(INK), true);
-    browser.click("#shade-field");
-    browser.until("strew.shade.canvas.hidden");
     browser.ready();
     let (hash, count) = (browser.hash(), browser.ready());
-    assert!(hash.contains("shade=0"), "{hash}");
+    assert!(hash.contains("shade=1"), "{hash}");
     browser.look(&daemon, &hash);
     assert_eq!((browser.hash(), browser.ready()), (hash, count));
     assert_eq!(browser.errors(), Vec::<String>::new());
@@ -64,9 +65,48 @@ fn a_picture_is_sent_once_and_becomes_dots_where_it_is_dark() {
     assert!((20_000..40_000).contains(&count), "{count}");
     let right = browser.in_view().iter().filter(|[x, _]| *x > 51.0).count();
     assert!(right < 50, "{right}");
-    browser.until(SHADED);
+    // It is dark on light in both themes, without a shade.
+    assert_eq!(browser.value("strew.shade.canvas.hidden"), true);
+    for theme in ["light", "dark"] {
+        browser.click("#theme");
+        browser.until(&format!(
+            "document.documentElement.dataset.theme !== '{theme}'"
+        ));
+        browser.ready();
+        let light = "[strew.plane.look.ground, strew.plane.look.colors[0]].map((rgb) => rgb.reduce((a, b) => a + b) / 3)";
+        let light = browser.value(light);
+        assert!(
+            light[0].as_f64() > Some(0.9) && light[1].as_f64() < Some(0.2),
+            "{theme}: {light}"
+        );
+    }
     assert_eq!(browser.errors(), Vec::<String>::new());
     // The page reports a file that is no picture.
     browser.value("(strew.stipple(new File(['GIF'], 'other.gif')), 0)");
-    browser.until("document.querySelector('#banner').textContent.includes('is no picture')");
+    browser.until("document.querySelector('#banner').textContent.includes('cannot read')");
+}
+
+#[test]
+fn a_forest_has_the_colors_of_woods_and_rocks_that_touch_no_tree() {
+    let Some((daemon, browser)) = looking(1280, 900) else {
+        return;
+    };
+    super::start::first_visit(&browser, &daemon);
+    browser.click("#view-forest");
+    browser.until("location.hash.includes('field=forest') && strew.plane.look.layers.length === 2");
+    browser.ready();
+    assert_eq!(browser.value("strew.shade.canvas.hidden"), true);
+    assert_eq!(
+        browser.value("strew.plane.look.layers.map(({ color }) => color)"),
+        serde_json::json!([9, 8])
+    );
+    // The largest rock and the largest tree, as they are drawn, are no wider than the distance that they keep.
+    let room = "(() => { const { look, view, sheets } = strew.plane; \
+        const [tree, rock] = look.layers.map(({ range }, i) => sheets.front.sizes[i] * Number(range.split(',')[1]) / 2 * view.unit); \
+        return [tree + rock, Number(look.layers[1].clear)]; })()";
+    let room = browser.value(room);
+    assert!(
+        room[0].as_f64() < room[1].as_f64().map(|v| v + 1e-9),
+        "{room}"
+    );
 }

@@ -25,7 +25,7 @@ fn places_without_points_are_said_and_left() {
     assert_eq!(browser.value("strew.plane.view.x.i"), 100);
     browser.choose("#jump-at", "nowhere");
     browser.click("#jump button");
-    assert!(browser.text("#banner").contains("is no place"));
+    assert!(browser.text("#banner").contains("is not a place"));
     // As far out as doubles reach there are points.
     browser.choose("#jump-at", "1e15, -1e15");
     browser.click("#jump button");
@@ -99,7 +99,8 @@ fn malformed_links_show_what_they_can() {
         "#%E0%A4%A&at=nowhere&seed=99999999999999999999999999&map=1",
     ] {
         open(&format!("/walk{hash}"), ready);
-        assert_eq!(browser.value("strew.walker.x.i"), -126, "{hash}");
+        let is_near = "Math.hypot(strew.walker.x.i + 126, strew.walker.y.i) < 700";
+        assert_eq!(browser.value(is_near), true, "{hash}");
     }
     for hash in ["#%", "#%E0%A4%A", "#nothing"] {
         open(&format!("/docs{hash}"), ready);

@@ -163,6 +163,29 @@ fn beyond_a_million_points_the_page_thins_and_says_so() {
 }
 
 #[test]
+fn beyond_a_64th_of_the_points_density_is_gray() {
+    let Some((daemon, browser)) = looking(1280, 800) else {
+        return;
+    };
+    // The least share at which points are drawn has no rows; see docs/quality.md.
+    browser.look(&daemon, "#at=0,0&span=7000");
+    assert_eq!(browser.value("strew.plane.keep"), 1.0 / 64.0);
+    browser.look(&daemon, "#at=0,0&span=20000&renderer=2d");
+    assert!(browser.text("#tally").contains("gray shows how dense"));
+    let colors = "(() => { const c = strew.plane.canvas; \
+        const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; return new Set(new Uint32Array(d.buffer)).size; })()";
+    assert_eq!(browser.value(colors), 1);
+    assert_eq!(browser.value("strew.plane.chunks.wanted.length"), 0);
+    // A field is drawn in its layer's color.
+    browser.choose("#field", "forest");
+    browser.until("!strew.shade.canvas.hidden && strew.shade.canvas.dataset.missing === '0'");
+    browser.value("strew.plane.zoom(16)");
+    assert!(browser.ready() > 10_000);
+    browser.until("strew.shade.canvas.hidden");
+    assert_eq!(browser.errors().len(), 1, "a count that is refused");
+}
+
+#[test]
 fn a_server_that_goes_away_is_waited_for() {
     let Some((daemon, browser)) = looking(1000, 700) else {
         return;

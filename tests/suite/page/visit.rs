@@ -103,7 +103,8 @@ fn a_first_visit_with_a_finger() {
     browser.touch("#tab-works");
     browser.until("document.documentElement.dataset.works?.startsWith('index')");
     let words = browser.text("#works-facts");
-    browser.tap([200, 400]);
+    let [x, y] = browser.middle("#works-plane");
+    browser.tap([x + 60, y - 70]);
     browser.until(&format!(
         "document.querySelector('#works-facts').textContent !== {words:?}"
     ));

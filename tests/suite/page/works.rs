@@ -1,4 +1,4 @@
-//! The tab How it works: its pattern is the server's, and everything it shows can be chosen by mouse, keys and
+//! The laboratory: its pattern is the server's, and everything it shows can be chosen by mouse, keys and
 //! address.
 
 use serde_json::Value;
@@ -140,14 +140,60 @@ fn alpha_is_a_slider_a_field_and_a_part_of_the_address() {
 }
 
 #[test]
+fn the_first_point_is_one_of_several_in_its_block() {
+    let Some((daemon, browser)) = looking(1440, 900) else {
+        return;
+    };
+    open(&browser, &daemon, "", "index (5-sqrt(3))/2");
+    let said = facts(&browser);
+    assert!(said.contains("others of this window: they have"), "{said}");
+    // One that is alone is not said to be like others.
+    open(&browser, &daemon, "&how.radius=40", "index (5-sqrt(3))/2");
+    let said = facts(&browser);
+    assert!(said.contains("alone in it here."), "{said}");
+    // Settings are right where α is not.
+    browser.look(&daemon, "#tab=works&how.alpha=1&how.radius=9");
+    browser.until("document.querySelector('#works-alpha').getAttribute('aria-invalid') === 'true'");
+    let slider = "document.querySelector('#works-radius')";
+    assert_eq!(browser.value(&format!("{slider}.value")), "9");
+    assert_eq!(
+        browser.value(&format!("{slider}.getAttribute('aria-valuetext')")),
+        "9 grid units"
+    );
+}
+
+#[test]
+fn a_phone_shows_what_a_mode_is_about_and_all_drawings() {
+    let Some((daemon, browser)) = looking(390, 844) else {
+        return;
+    };
+    open(&browser, &daemon, "", "index (5-sqrt(3))/2");
+    let top = |selector: &str| {
+        let script = format!("document.querySelector('{selector}').getBoundingClientRect().top");
+        browser.value(&script).as_f64().expect("pixels")
+    };
+    let about = browser.text("#works-about");
+    assert!(about.contains("place on a torus"), "{about}");
+    assert!(top("#works-about") + 60.0 < top("#panel"));
+    // The torus follows the pattern that it belongs to.
+    assert!(top("#works-torus") < top("#works-facts"));
+    let below =
+        browser.value("document.querySelector('#works-plane').getBoundingClientRect().bottom");
+    assert!(top("#works-torus") - below.as_f64().expect("pixels") < 80.0);
+    browser.click("#works-map");
+    drawn_as(&browser, "map (5-sqrt(3))/2");
+    assert!(browser.text("#works-about").contains("into blocks"));
+}
+
+#[test]
 fn displaced_points_end_where_the_server_has_them() {
     let Some((daemon, browser)) = looking(390, 844) else {
         return;
     };
     let hash = "&how.mode=displacement&how.moved=1";
     open(&browser, &daemon, hash, "displacement (5-sqrt(3))/2");
-    browser.until("strew.works.moved && strew.works.moved.places.size > 300");
-    let place = browser.value("[...strew.works.moved.places][40]");
+    browser.until("strew.works.displaced && strew.works.displaced.places.size > 300");
+    let place = browser.value("[...strew.works.displaced.places][40]");
     let id = place[0].as_str().expect("an id");
     let spacing = browser.value("1 / strew.works.last.t");
     let point = daemon
@@ -161,6 +207,14 @@ fn displaced_points_end_where_the_server_has_them() {
     };
     near(0, "x");
     near(1, "y");
+    // What this mode holds does not stand in the way of what the page tells its parts.
+    browser.value("strew.plane.drag(1, 0)");
+    // The caption says what is drawn.
+    let caption = browser.text("#works-caption");
+    assert!(caption.contains("displaced by their vectors"), "{caption}");
+    assert!(facts(&browser).contains("129 × 129 blocks"));
+    browser.choose("#works-moved", "0");
+    browser.until("document.querySelector('#works-caption').textContent.includes('belong to it')");
     // An α without a table has an answer in words.
     open(
         &browser,

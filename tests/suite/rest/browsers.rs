@@ -42,26 +42,54 @@ fn every_answer_has_security_headers() {
 
 #[test]
 fn pages_name_a_picture_for_those_who_pass_on_a_link() {
-    let unknown = Daemon::start(&[]);
+    let public = "https://points.example";
     let known = Daemon::start(&["http.public_url=https://points.example"]);
-    for path in ["/", "/compare", "/tile", "/walk", "/space"] {
-        let picture = |daemon: &Daemon| {
-            let page = daemon.get(path);
-            let (_, rest) = page
-                .text()
-                .split_once("og:image\" content=\"")
-                .expect("a picture");
-            let (address, _) = rest.split_once('"').expect("an end");
-            address.replace("&amp;", "&")
-        };
-        let relative = picture(&unknown);
-        assert_eq!(picture(&known), format!("https://points.example{relative}"));
-        let image = unknown.get(&relative);
+    for path in ["/", "/how", "/compare", "/tile", "/walk", "/space"] {
+        let page = known.get(path);
+        let text = page.text();
+        assert!(text.contains("summary_large_image"), "{path}");
+        let (_, rest) = text.split_once("og:image\" content=\"").expect("a picture");
+        let (address, _) = rest.split_once('"').expect("an end");
+        let address = address.replace("&amp;", "&");
+        let relative = address.strip_prefix(public).expect("an absolute address");
+        let image = known.get(relative);
         assert_eq!(image.status, 200, "{relative}");
-        assert_eq!(image.header("content-type"), "image/png", "{relative}");
-        let size = [1200_u32, 630].map(u32::to_be_bytes).concat();
-        assert_eq!(image.body[16..24], size, "{relative}");
+        let is_walk = ["/", "/walk"].contains(&path);
+        assert_eq!(relative == "/page/walk/preview.jpg", is_walk, "{path}");
+        if is_walk {
+            assert_eq!(image.header("content-type"), "image/jpeg", "{relative}");
+            assert_eq!(size_of_jpeg(&image.body), [1200, 630], "{relative}");
+        } else {
+            assert_eq!(image.header("content-type"), "image/png", "{relative}");
+            let size = [1200_u32, 630].map(u32::to_be_bytes).concat();
+            assert_eq!(image.body[16..24], size, "{relative}");
+        }
     }
+    // Readers of links drop relative addresses, so without a public one there is no picture.
+    let unknown = Daemon::start(&[]);
+    for path in ["/", "/walk"] {
+        let page = unknown.get(path);
+        let text = page.text();
+        assert!(text.contains("og:title"), "{path}");
+        assert!(!text.contains("og:image"), "{path}");
+    }
+}
+
+#[test]
+fn the_small_picture_of_the_forest_is_small() {
+    let daemon = Daemon::start(&[]);
+    let image = daemon.get("/page/forest.jpg");
+    assert_eq!(image.header("content-type"), "image/jpeg");
+    assert_eq!(size_of_jpeg(&image.body), [480, 252]);
+    assert!(image.body.len() <= 15_000, "{}", image.body.len());
+}
+
+/// The width and the height of a JPEG, from its baseline frame.
+fn size_of_jpeg(bytes: &[u8]) -> [u16; 2] {
+    let frame = bytes.windows(2).position(|two| two == [0xFF, 0xC0]);
+    let at = frame.expect("a baseline frame") + 5;
+    let number = |at: usize| u16::from_be_bytes([bytes[at], bytes[at + 1]]);
+    [number(at + 2), number(at)]
 }
 
 #[test]

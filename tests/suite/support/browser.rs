@@ -336,6 +336,27 @@ impl Browser {
         );
     }
 
+    /// Presses with two fingers at once, which stay down until [`release`](Self::release).
+    pub fn press_two(&self, first: [i32; 2], second: [i32; 2]) {
+        let finger = |id: &str, [x, y]: [i32; 2]| {
+            json!({
+                "type": "pointer", "id": id, "parameters": { "pointerType": "touch" },
+                "actions": [
+                    { "type": "pointerMove", "x": x, "y": y, "duration": 0 },
+                    { "type": "pointerDown", "button": 0 },
+                ],
+            })
+        };
+        let fingers = [finger("one", first), finger("two", second)];
+        self.call("actions", &json!({ "actions": fingers }));
+    }
+
+    /// Lifts all that is pressed.
+    pub fn release(&self) {
+        let path = format!("/session/{}/actions", self.session);
+        self.send("DELETE", &path, &json!({}));
+    }
+
     /// Drags with the mouse, in steps.
     pub fn drag(&self, from: [i32; 2], by: [i32; 2]) {
         self.stroke("mouse", from, by);

@@ -33,6 +33,15 @@ pub fn table(alpha: &str, profile: &str) -> Table {
     random(alpha, profile, 20)
 }
 
+/// Another table for the queries of [`table`].
+pub fn other_table(alpha: &str, profile: &str) -> Table {
+    let table = table(alpha, profile);
+    let mut displacements = table.displacements().to_vec();
+    displacements.reverse();
+    let (map, provenance) = (table.map().clone(), table.provenance().clone());
+    Table::new(map, profile, displacements, provenance).expect("valid")
+}
+
 /// A folder with the test tables: two values of α for [`PROFILE`].
 pub fn tables() -> TempDir {
     let folder = no_tables();

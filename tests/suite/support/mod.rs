@@ -10,6 +10,7 @@ pub mod daemon;
 pub mod disk;
 pub mod engine;
 pub mod fields;
+pub mod front;
 pub mod grpc;
 pub mod keys;
 pub mod library;

@@ -3,6 +3,7 @@
 use std::{collections::BTreeMap, fs};
 
 use super::{WORLDS, exported, number, settings, tree};
+use crate::support::command::{errors, run};
 
 /// The content of the members of a stored archive, by name, and the archive's central directory in order.
 fn members(archive: &[u8]) -> (Vec<String>, BTreeMap<String, Vec<u8>>) {
@@ -75,4 +76,17 @@ fn an_archive_has_all_levels_and_its_index_finds_them() {
         }
     }
     assert!(entries.next().is_none());
+}
+
+#[test]
+fn the_last_line_of_an_archive_says_its_own_size_beside_that_of_its_files() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let archive = folder.path().join("world.zip").display().to_string();
+    let world = "export --bbox 0,0,300,300 --spacing 1 --chunk 64 --format csv --archive";
+    let flags: Vec<&str> = world.split(' ').chain([archive.as_str()]).collect();
+    let said = errors(&run(&flags, ""));
+    let size = fs::metadata(&archive).expect("written").len();
+    let last = said.lines().last().expect("a line");
+    let end = format!(" bytes in an archive of {size} bytes");
+    assert!(last.ends_with(&end), "{said}");
 }

@@ -1,10 +1,11 @@
 //! The modules and styles of a page as one script and one style: a browser requests two files instead of forty.
 //!
 //! Each module becomes a function that returns what it exports, in the order in which modules need each other.
-//! It knows the few forms of imports and exports that the pages use, and refuses others. Modules below `vendor/`
-//! stay files of their own.
+//! It knows the few forms of imports and exports that the pages use, and refuses others.
 
 use std::fmt::Write as _;
+
+use crate::stripped;
 
 /// A page whose parts are joined.
 #[derive(Debug)]
@@ -17,7 +18,6 @@ pub struct Joined {
 
 const STYLE: &str = "<link rel=\"stylesheet\" href=\"/page/";
 const SCRIPT: &str = "<script type=\"module\" src=\"/page/";
-const FOREIGN: &str = "vendor/";
 
 /// Joins the parts that a page names; the two files are to be served as `/page/joined/NAME.js` and `.css`.
 ///
@@ -32,7 +32,9 @@ pub fn joined(name: &str, html: &str, parts: &[(&str, &str)]) -> Result<Joined, 
             if style.is_empty() {
                 lines.push(format!("{STYLE}joined/{name}.css\">"));
             }
-            style += text_of(parts, part)?;
+            let text = text_of(parts, part)?;
+            style += &stripped::style(text).map_err(|fault| format!("{part}: {fault}"))?;
+            style.push('\n');
         } else if let Some(part) = named(line, SCRIPT) {
             let mut modules = Modules {
                 parts,
@@ -86,27 +88,18 @@ impl Modules<'_> {
         if self.open.iter().any(|open| open == name) {
             return Err(format!("{name} imports itself, through {:?}", self.open));
         }
-        if name.starts_with(FOREIGN) {
-            let known = self.finish(name);
-            let import = format!("import * as {known} from \"/page/{name}\";\n");
-            self.text.insert_str(0, &import);
-            return Ok(known);
-        }
         self.open.push(name.to_owned());
         let (body, exports) = self.body(name)?;
+        let body = stripped::script(&body).map_err(|fault| format!("{name}: {fault}"))?;
         self.open.pop();
-        let known = self.finish(name);
-        let exports = exports.join(", ");
+        let known = format!("$module{}", self.done.len());
+        self.done.push(name.to_owned());
+        let exports = exports.join(",");
         let _ = writeln!(
             self.text,
-            "// {name}\nconst {known} = (() => {{\n{body}return {{ {exports} }};\n}})();"
+            "// {name}\nconst {known}=(()=>{{\n{body}\nreturn{{{exports}}};\n}})();"
         );
         Ok(known)
-    }
-
-    fn finish(&mut self, name: &str) -> String {
-        self.done.push(name.to_owned());
-        format!("$module{}", self.done.len() - 1)
     }
 
     /// The text of a module as that of a function, and the names that it exports.
@@ -210,7 +203,7 @@ mod tests {
             ("b.css", "b {}\n"),
             (
                 "in/main.js",
-                "import { two as deux,\n  one } from \"../b.js\";\nimport * as v from \"../vendor/v.js\";\none(deux);\n",
+                "import { two as deux,\n  one } from \"../b.js\";\nimport * as c from \"../c.js\";\none(deux);\n",
             ),
             (
                 "b.js",
@@ -225,12 +218,11 @@ mod tests {
         );
         assert_eq!(joined.html.lines().count(), 3);
         let script = joined.script;
-        let expected = "import * as $module2 from \"/page/vendor/v.js\";\n\
-            // c.js\nconst $module0 = (() => {\nfunction one() {}\nreturn { one };\n})();\n\
-            // b.js\nconst $module1 = (() => {\nconst { one } = $module0;\nconst two = 2;\nasync function other() {}\n\
-            return { two, other };\n})();\n\
-            // in/main.js\nconst $module3 = (() => {\nconst { two: deux,  one } = $module1;\nconst v = $module2;\n\
-            one(deux);\nreturn {  };\n})();\n";
+        let expected = "// c.js\nconst $module0=(()=>{\nfunction one(){}\nreturn{one};\n})();\n\
+            // b.js\nconst $module1=(()=>{\nconst{one}=$module0;\nconst two=2;\nasync function other(){}\n\
+            return{two,other};\n})();\n\
+            // in/main.js\nconst $module2=(()=>{\nconst{two:deux,one}=$module1;\nconst c=$module0;\n\
+            one(deux);\nreturn{};\n})();\n";
         assert_eq!(script, expected);
     }
 

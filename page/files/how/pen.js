@@ -1,0 +1,259 @@
+// Drawing for the figures of the essay: shapes in CSS pixels, panels with coordinates of their own, colors by quantity.
+
+import { themeColor } from "../theme.js";
+
+const NAMES = ["ink", "soft", "line", "edge", "ground", "clash", "gate", "index", "block", "vector"];
+
+/** @type {Record<string, string> | null} */
+let known = null;
+
+/** The colors of the theme and of the quantities, by name, and the `family` of the type; kept until `forget`. */
+export function palette() {
+  known ??= {
+    ...Object.fromEntries(NAMES.map((name) => [name, themeColor(name)])),
+    family: getComputedStyle(document.body).fontFamily,
+  };
+  return known;
+}
+
+/** Has colors looked up again. */
+export function forget() {
+  known = null;
+}
+
+/** Whether the ground is dark: its red is below 100 of 255. */
+export function isDark() {
+  return /^rgba?\(\d?\d\D/.test(palette().ground);
+}
+
+/** The radius of a dot of the grid where a step is so many pixels long. */
+export function dotOf(scale) {
+  return Math.max(1.7, scale * 0.4);
+}
+
+/**
+ * A circle, filled or, with a thickness, in outline.
+ * @param {CanvasRenderingContext2D} context
+ * @param {number[]} middle
+ * @param {number} radius
+ * @param {string} color
+ */
+export function disk(context, [x, y], radius, color, thickness = 0) {
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  if (thickness > 0) {
+    context.strokeStyle = color;
+    context.lineWidth = thickness;
+    context.stroke();
+  } else {
+    context.fillStyle = color;
+    context.fill();
+  }
+}
+
+/** Many circles of one color. */
+export function disks(context, places, radius, color) {
+  context.fillStyle = color;
+  context.beginPath();
+  for (const [x, y] of places) {
+    context.moveTo(x + radius, y);
+    context.arc(x, y, radius, 0, 2 * Math.PI);
+  }
+  context.fill();
+}
+
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {number[]} from
+ * @param {number[]} to
+ * @param {string} color
+ */
+export function line(context, [x, y], [u, v], color, thickness = 1) {
+  context.strokeStyle = color;
+  context.lineWidth = thickness;
+  context.beginPath();
+  context.moveTo(x, y);
+  context.lineTo(u, v);
+  context.stroke();
+}
+
+/**
+ * Many lines of one color, each `[from, to]`.
+ * @param {CanvasRenderingContext2D} context
+ * @param {number[][][]} pairs
+ * @param {string} color
+ */
+export function lines(context, pairs, color, thickness = 1) {
+  context.strokeStyle = color;
+  context.lineWidth = thickness;
+  context.beginPath();
+  for (const [[x, y], [u, v]] of pairs) {
+    context.moveTo(x, y);
+    context.lineTo(u, v);
+  }
+  context.stroke();
+}
+
+/**
+ * A line with a head at its end; what is too short has none.
+ * @param {CanvasRenderingContext2D} context
+ * @param {number[]} from
+ * @param {number[]} to
+ * @param {string} color
+ */
+export function arrow(context, from, to, color, thickness = 1.5) {
+  line(context, from, to, color, thickness);
+  const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
+  if (length < 3) return;
+  const [u, v] = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
+  const head = Math.min(length * 0.6, 3 + 2 * thickness);
+  context.fillStyle = color;
+  context.beginPath();
+  context.moveTo(to[0], to[1]);
+  context.lineTo(to[0] - head * (u + 0.5 * v), to[1] - head * (v - 0.5 * u));
+  context.lineTo(to[0] - head * (u - 0.5 * v), to[1] - head * (v + 0.5 * u));
+  context.fill();
+}
+
+/**
+ * Words on a canvas; `align` is that of canvases, the place is their middle in height.
+ * @param {CanvasRenderingContext2D} context
+ * @param {string} text
+ * @param {number[]} place
+ * @param {string} color
+ * @param {number} size
+ * @param {CanvasTextAlign} align
+ */
+export function words(context, text, [x, y], color, size = 12, align = "center") {
+  context.font = `${size}px ${palette().family}`;
+  context.textAlign = align;
+  context.textBaseline = "middle";
+  context.fillStyle = color;
+  context.fillText(text, x, y);
+}
+
+/**
+ * A dial: a gate of a number of turns from the right side on, and a hand at a turn; turns go against the clock.
+ * @param {CanvasRenderingContext2D} context
+ * @param {number[]} middle
+ * @param {number} radius
+ * @param {number} gate
+ * @param {number} turn
+ * @param {Record<string, string>} colors
+ */
+export function dial(context, [x, y], radius, gate, turn, colors) {
+  context.fillStyle = colors.gate;
+  context.globalAlpha = 0.3;
+  context.beginPath();
+  context.moveTo(x, y);
+  context.arc(x, y, radius, 0, -2 * Math.PI * gate, true);
+  context.fill();
+  context.globalAlpha = 1;
+  context.strokeStyle = colors.gate;
+  context.lineWidth = 3;
+  context.beginPath();
+  context.arc(x, y, radius, 0, -2 * Math.PI * gate, true);
+  context.stroke();
+  disk(context, [x, y], radius, colors.edge, 1);
+  const end = [x + radius * 0.94 * Math.cos(2 * Math.PI * turn), y - radius * 0.94 * Math.sin(2 * Math.PI * turn)];
+  arrow(context, [x, y], end, colors.index, Math.max(2, radius / 22));
+  disk(context, [x, y], Math.max(2, radius / 18), colors.index);
+}
+
+/** A part of a canvas, a box in pixels with a range of coordinates of its own, y upward. */
+export class Panel {
+  /**
+   * @param {number} left
+   * @param {number} top
+   * @param {number} width
+   * @param {number} height
+   * @param {number[]} low
+   * @param {number[]} high
+   */
+  constructor(left, top, width, height, [x0, y0], [x1, y1]) {
+    this.left = left;
+    this.top = top;
+    this.width = width;
+    this.height = height;
+    this.x0 = x0;
+    this.y0 = y0;
+    this.x1 = x1;
+    this.y1 = y1;
+    this.scale = width / (x1 - x0);
+  }
+
+  /**
+   * The pixels of a place.
+   * @param {number[]} place
+   */
+  to([x, y]) {
+    return [this.left + (x - this.x0) * this.scale, this.top + this.height - ((y - this.y0) * this.height) / (this.y1 - this.y0)];
+  }
+
+  /**
+   * The place of a pixel.
+   * @param {number[]} pixel
+   */
+  from([x, y]) {
+    return [this.x0 + (x - this.left) / this.scale, this.y0 + ((this.top + this.height - y) * (this.y1 - this.y0)) / this.height];
+  }
+
+  /** @param {number[]} pixel */
+  holds([x, y]) {
+    return x >= this.left && x <= this.left + this.width && y >= this.top && y <= this.top + this.height;
+  }
+
+  /** Draws inside of the panel only. */
+  clipped(context, draw) {
+    context.save();
+    context.beginPath();
+    context.rect(this.left, this.top, this.width, this.height);
+    context.clip();
+    draw();
+    context.restore();
+  }
+
+  /**
+   * @param {CanvasRenderingContext2D} context
+   * @param {number[]} corner
+   * @param {number[]} size
+   * @param {string} color
+   */
+  fill(context, [x, y], [width, height], color) {
+    const [left, bottom] = this.to([x, y]);
+    const [right, top] = this.to([x + width, y + height]);
+    context.fillStyle = color;
+    context.fillRect(left, top, right - left, bottom - top);
+  }
+
+  /**
+   * @param {CanvasRenderingContext2D} context
+   * @param {number[]} corner
+   * @param {number[]} size
+   * @param {string} color
+   */
+  outline(context, [x, y], [width, height], color, thickness = 1) {
+    const [left, bottom] = this.to([x, y]);
+    const [right, top] = this.to([x + width, y + height]);
+    context.strokeStyle = color;
+    context.lineWidth = thickness;
+    context.strokeRect(left, top, right - left, bottom - top);
+  }
+
+  frame(context, color, thickness = 1) {
+    this.outline(context, [this.x0, this.y0], [this.x1 - this.x0, this.y1 - this.y0], color, thickness);
+  }
+}
+
+/**
+ * Two square panels side by side with a gap in between, each with the range of its coordinates.
+ * @param {number} width
+ * @param {number} height
+ * @param {number[][]} first
+ * @param {number[][]} second
+ */
+export function pair(width, height, first, second) {
+  const side = Math.min(height - 2, width * 0.485);
+  const top = (height - side) / 2;
+  return [new Panel(1, top, side, side, first[0], first[1]), new Panel(width - side - 1, top, side, side, second[0], second[1])];
+}

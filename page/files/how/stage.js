@@ -1,0 +1,239 @@
+// A figure of the essay on its stage: it begins to move when it comes into view, rests while it is out of view, and
+// takes pointers and keys.
+
+import { Gone, ask, onPresence } from "../api.js";
+import { byId, contextOf } from "../dom.js";
+import { forget } from "./pen.js";
+
+/** The least time between two frames, in seconds: figures are calm, and processors may be slow. */
+const FRAME = 1 / 32;
+/** The longest step, in seconds: after a pause nothing jumps. */
+const LONGEST = 0.1;
+/** The share of a figure that has to be in view. */
+const SHARE = 0.4;
+
+const lessMotion = matchMedia("(prefers-reduced-motion: reduce)");
+
+/**
+ * A figure has `draw(context, width, height)`, and where it moves `step(seconds)`, which returns whether it goes on,
+ * `finish()`, which leads to its last frame, and `restart()`. `touched([x, y])` hears of pointers in pixels,
+ * `moved([right, up])` of arrow keys.
+ */
+export class Stage {
+  /**
+   * @param {string} id
+   * @param {any} figure
+   */
+  constructor(id, figure) {
+    this.id = id;
+    this.figure = figure;
+    this.isSeen = false;
+    this.isPaused = false;
+    this.isOver = !figure.step;
+    this.last = 0;
+    figure.stage = this;
+    this.element = byId(id);
+    this.canvas = /** @type {HTMLCanvasElement} */ (this.element.querySelector("canvas"));
+    this.said = this.element.querySelector(".said");
+    this.button = this.element.querySelector(".play");
+    this.button?.addEventListener("click", () => this.press());
+    if (figure.touched) this.listen();
+    if (lessMotion.matches) this.finish();
+    new ResizeObserver(() => this.draw()).observe(this.canvas);
+    new IntersectionObserver(([entry]) => this.seen(entry.isIntersecting), { threshold: SHARE }).observe(this.canvas);
+    this.show();
+  }
+
+  get isMoving() {
+    return this.isSeen && !this.isPaused && !this.isOver;
+  }
+
+  seen(isSeen) {
+    this.isSeen = isSeen;
+    this.go();
+  }
+
+  /** Has frames drawn while the figure moves. */
+  go() {
+    this.show();
+    if (!this.isMoving || this.frame) return;
+    this.last = performance.now();
+    this.frame = requestAnimationFrame((now) => this.step(now));
+  }
+
+  step(now) {
+    this.frame = 0;
+    if (!this.isMoving) return;
+    const seconds = (now - this.last) / 1000;
+    if (seconds >= FRAME) {
+      this.last = now;
+      if (!this.figure.step(Math.min(LONGEST, seconds))) this.isOver = true;
+      this.draw();
+    }
+    if (this.isOver) this.show();
+    else this.frame = requestAnimationFrame((next) => this.step(next));
+  }
+
+  finish() {
+    this.figure.finish?.();
+    this.isOver = true;
+  }
+
+  /** The button pauses, goes on, and plays what is over again. */
+  press() {
+    if (this.isOver) {
+      this.figure.restart();
+      Object.assign(this, { isOver: false, isPaused: false });
+    } else {
+      this.isPaused = !this.isPaused;
+    }
+    this.isSeen = true;
+    this.go();
+    this.draw();
+  }
+
+  show() {
+    this.element.dataset.state = this.isOver ? "over" : this.isMoving ? "moving" : "resting";
+    if (!this.button) return;
+    this.button.textContent = this.isOver ? "Play again" : this.isPaused ? "Play" : "Pause";
+  }
+
+  /** The visitor has taken over: the figure moves no further by itself, and what it says is read out. */
+  take() {
+    if (!this.isOver) this.finish();
+    this.said?.setAttribute("aria-live", "polite");
+    this.show();
+  }
+
+  listen() {
+    const { canvas, figure } = this;
+    const at = (event) => {
+      const box = canvas.getBoundingClientRect();
+      return [event.clientX - box.left, event.clientY - box.top];
+    };
+    const touch = (event) => {
+      this.take();
+      figure.touched(at(event));
+      this.draw();
+    };
+    canvas.addEventListener("pointerdown", touch);
+    canvas.addEventListener("pointermove", (event) => {
+      const isOn = event.pointerType === "mouse" ? figure.hovers || event.buttons > 0 : true;
+      if (isOn) touch(event);
+    });
+    canvas.addEventListener("keydown", (event) => {
+      const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+      const isChosen = event.key === "Enter" || event.key === " ";
+      if (!(step && figure.moved) && !(isChosen && figure.chosen)) return;
+      event.preventDefault();
+      this.take();
+      if (step) figure.moved(step);
+      else figure.chosen();
+      this.draw();
+    });
+  }
+
+  /** Binds a slider of the figure; `words(value)` is its value in words. */
+  slider(id, words, changed) {
+    const input = /** @type {HTMLInputElement} */ (byId(id));
+    const shown = /** @type {HTMLElement} */ (this.element.querySelector(`output[for="${id}"]`));
+    const follow = () => {
+      shown.textContent = words(Number(input.value));
+      input.setAttribute("aria-valuetext", shown.textContent);
+    };
+    input.addEventListener("input", () => {
+      this.take();
+      follow();
+      changed(Number(input.value));
+      this.draw();
+    });
+    follow();
+    return {
+      set(value) {
+        input.value = String(value);
+        follow();
+      },
+    };
+  }
+
+  /** Binds buttons of which one is pressed: `data-value` is what they choose. */
+  choices(id, changed) {
+    const buttons = [...byId(id).querySelectorAll("button")];
+    for (const button of buttons) {
+      button.addEventListener("click", () => {
+        for (const other of buttons) other.setAttribute("aria-pressed", String(other === button));
+        changed(button.dataset.value);
+        this.go();
+        this.draw();
+      });
+    }
+  }
+
+  /**
+   * What the canvas shows, for those who do not see it.
+   * @param {string} text
+   */
+  name(text) {
+    if (this.canvas.getAttribute("aria-label") !== text) this.canvas.setAttribute("aria-label", text);
+  }
+
+  say(text) {
+    if (this.said && this.said.textContent !== text) this.said.textContent = text;
+  }
+
+  draw() {
+    const { canvas } = this;
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+    // Before its style is there a canvas has next to no size.
+    if (width < 60 || height < 40) return;
+    const ratio = Math.min(2, devicePixelRatio || 1);
+    const pixels = [Math.round(width * ratio), Math.round(height * ratio)];
+    if (canvas.width !== pixels[0] || canvas.height !== pixels[1]) [canvas.width, canvas.height] = pixels;
+    const context = contextOf(canvas);
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, width, height);
+    this.figure.draw(context, width, height);
+  }
+
+  themed() {
+    forget();
+    this.draw();
+  }
+
+  /**
+   * The answer to a request as JSON, of the newest request only: an older one returns nothing. Waits for a server that
+   * is away or busy, and says so; what the server refuses is said and returns nothing.
+   */
+  async fetch(path) {
+    const mine = (this.turn = (this.turn ?? 0) + 1);
+    for (;;) {
+      try {
+        const answer = await (await ask(path)).json();
+        return mine === this.turn ? answer : null;
+      } catch (error) {
+        if (mine !== this.turn) return null;
+        if (error instanceof Gone) {
+          this.say("The server does not answer. This figure waits until it does.");
+          await presence();
+        } else if (error.isPassing) {
+          this.say("The server is busy. This figure tries again.");
+          await new Promise((later) => setTimeout(later, 1000 * Math.max(1, error.retryAfter)));
+        } else {
+          this.say(`The server refused: ${error.message}`);
+          return null;
+        }
+      }
+    }
+  }
+}
+
+/** Waits until the server is back. */
+function presence() {
+  return /** @type {Promise<void>} */ (new Promise((back) => {
+    const end = onPresence((isGone) => {
+      if (isGone) return;
+      end();
+      back();
+    });
+  }));
+}

@@ -1,0 +1,67 @@
+//! Nothing that is read moves away while a page loads: the layout of every page shifts by 0.05 at most, as Chromium
+//! counts it.
+
+use serde_json::Value;
+
+use crate::support::browser::looking;
+
+const SIZES: [(u32, u32); 2] = [(390, 844), (1280, 800)];
+const MOST: f64 = 0.05;
+
+/// Other contents of pages, by the hashes of their addresses.
+const MORE: [&str; 2] = [
+    "/compare#show=strew,poisson,tile,jitter,halton,white",
+    "/docs#getNearest",
+];
+
+/// What a page shows last: its points, and below them its pictures or its times.
+const READY: &str = "(({ state, start, timed }) => location.pathname === '/' ? state === 'ready' && start === 'ready' \
+                     : state === 'ready' || timed)(document.documentElement.dataset)";
+
+/// What has shifted, with the elements, since the page was opened.
+const SHIFTS: &str = "new Promise((resolve) => { \
+    const name = ({ node }) => node?.id ? `#${node.id}` : node?.className || node?.nodeName || 'something'; \
+    const found = []; \
+    const take = (list) => found.push(...list.filter((one) => !one.hadRecentInput) \
+        .map((one) => [one.value, one.sources.map(name).join(' ')])); \
+    const observer = new PerformanceObserver((list) => take(list.getEntries())); \
+    observer.observe({ type: 'layout-shift', buffered: true }); \
+    requestAnimationFrame(() => requestAnimationFrame(() => { take(observer.takeRecords()); resolve(found); })); })";
+
+#[test]
+fn no_page_shifts_while_it_loads() {
+    let Some((daemon, browser)) = looking(1280, 800) else {
+        return;
+    };
+    let counts = "PerformanceObserver.supportedEntryTypes.includes('layout-shift')";
+    if browser.value(counts) == false {
+        return eprintln!("skipped: only Chromium counts layout shifts");
+    }
+    let api = daemon.get("/openapi.json").json();
+    let is_page = |what: &Value| {
+        what["get"]["responses"]["200"]["content"]["text/html; charset=utf-8"].is_object()
+    };
+    let paths = api["paths"].as_object().expect("paths");
+    let pages = paths.iter().filter(|(_, what)| is_page(what));
+    let pages: Vec<&str> = pages.map(|(path, _)| path.as_str()).chain(MORE).collect();
+    assert!(pages.len() > 8, "{pages:?}");
+    let mut failed = vec![];
+    for (width, height) in SIZES {
+        for path in &pages {
+            browser.go("about:blank");
+            browser.resize(width, height);
+            browser.go(&daemon.url(path));
+            browser.until(READY);
+            let shifts = browser.value(SHIFTS);
+            let shifts = shifts.as_array().expect("a list");
+            let sum: f64 = shifts.iter().filter_map(|one| one[0].as_f64()).sum();
+            println!("{path} at {width} × {height}: {sum:.3}");
+            if sum > MOST {
+                failed.push(format!(
+                    "{path} at {width} × {height}: {sum:.3}, {shifts:?}"
+                ));
+            }
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
