@@ -1,6 +1,6 @@
 //! The image: confined, in little and much memory, healthy soon, with a log that programs read, stopped in good order.
 
-use std::{fs, io::Read as _};
+use std::{fs, io::Read as _, time::Instant};
 
 use serde_json::Value;
 use strew_testkit::http1;
@@ -39,14 +39,17 @@ fn it_is_known_to_be_healthy_a_second_after_it_serves() {
     if !docker::has(IMAGE) {
         return;
     }
+    let begun = Instant::now();
     let container = Container::daemon(&[], &[]);
     container.until_healthy();
+    let healthy = begun.elapsed();
     // The first check comes after one interval, and none precedes it.
     let health = container.inspect("{{json .Config.Healthcheck}}");
     assert!(health.contains("\"Interval\":1000000000,"), "{health}");
     let checks = container.inspect("{{range .State.Health.Log}}{{.End}} {{.ExitCode}}\n{{end}}");
     let started = container.inspect("{{.State.StartedAt}}");
-    println!("started {started}, checks:\n{checks}");
+    println!("healthy {healthy:?} after `docker run`: started {started}, checks\n{checks}");
+    println!("idle: {}", container.memory());
 }
 
 #[test]
