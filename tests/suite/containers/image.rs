@@ -120,7 +120,7 @@ fn a_stop_drains() {
     let address = container.address();
     let mut answer = http1::open(address, "GET", LONG, &[]);
     let count: usize = answer.header("strew-count").parse().expect("a number");
-    answer.read_exact(&mut vec![0; 8]).expect("a point");
+    answer.read_exact(&mut [0; 8]).expect("a point");
     std::thread::scope(|scope| {
         let stopped = scope.spawn(|| docker(&["stop", "-t", "90", &container.id]));
         let (rest, is_complete) = answer.finish();
