@@ -47,7 +47,7 @@ USER 65532:65532
 EXPOSE 8080
 STOPSIGNAL SIGTERM
 # The first check comes after one interval: a daemon is known to be healthy about a second after its start.
-HEALTHCHECK --interval=1s --timeout=3s --start-period=5s --retries=10 \
+HEALTHCHECK --interval=1s --timeout=3s --start-period=30s --retries=10 \
     CMD ["/usr/local/bin/strew", "probe", "--ready"]
 ENTRYPOINT ["/usr/local/bin/strew"]
 CMD ["serve"]

@@ -145,7 +145,7 @@ fn the_file_serves_while_replicas_are_killed_and_replaced() {
         replica.until_healthy();
         until_used(&replica);
     }
-    load.finish("three replicas killed one after another");
+    load.finish_after_kills("three replicas killed one after another");
 
     // As the comment in the file says.
     let load = Load::start(proxy);
@@ -161,6 +161,7 @@ fn the_file_serves_while_replicas_are_killed_and_replaced() {
     for replica in &new {
         assert_eq!(replica.inspect("{{.Config.Image}}"), "strew:ci-next");
         until_used(replica);
+        println!("a busy replica: {}", replica.memory());
     }
     load.finish("the image replaced");
 

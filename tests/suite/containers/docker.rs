@@ -128,6 +128,17 @@ impl Container {
         line.expect("a line").trim().to_owned()
     }
 
+    /// The memory that it uses, of what it may use, as the engine shows it: without pages that the kernel can take back.
+    pub fn memory(&self) -> String {
+        docker(&[
+            "stats",
+            "--no-stream",
+            "--format",
+            "{{.MemUsage}}",
+            &self.id,
+        ])
+    }
+
     /// Standard output and standard error so far.
     pub fn logs(&self) -> (String, String) {
         let output = command(&["logs", &self.id]);

@@ -1,6 +1,6 @@
 //! The image: confined, in little and much memory, healthy soon, with a log that programs read, stopped in good order.
 
-use std::{fs, io::Read as _};
+use std::{fs, io::Read as _, time::Instant};
 
 use serde_json::Value;
 use strew_testkit::http1;
@@ -39,14 +39,17 @@ fn it_is_known_to_be_healthy_a_second_after_it_serves() {
     if !docker::has(IMAGE) {
         return;
     }
+    let begun = Instant::now();
     let container = Container::daemon(&[], &[]);
     container.until_healthy();
+    let healthy = begun.elapsed();
     // The first check comes after one interval, and none precedes it.
     let health = container.inspect("{{json .Config.Healthcheck}}");
     assert!(health.contains("\"Interval\":1000000000,"), "{health}");
     let checks = container.inspect("{{range .State.Health.Log}}{{.End}} {{.ExitCode}}\n{{end}}");
     let started = container.inspect("{{.State.StartedAt}}");
-    println!("started {started}, checks:\n{checks}");
+    println!("healthy {healthy:?} after `docker run`: started {started}, checks\n{checks}");
+    println!("idle: {}", container.memory());
 }
 
 #[test]
@@ -117,7 +120,7 @@ fn a_stop_drains() {
     let address = container.address();
     let mut answer = http1::open(address, "GET", LONG, &[]);
     let count: usize = answer.header("strew-count").parse().expect("a number");
-    answer.read_exact(&mut vec![0; 8]).expect("a point");
+    answer.read_exact(&mut [0; 8]).expect("a point");
     std::thread::scope(|scope| {
         let stopped = scope.spawn(|| docker(&["stop", "-t", "90", &container.id]));
         let (rest, is_complete) = answer.finish();

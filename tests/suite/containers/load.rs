@@ -32,6 +32,14 @@ pub struct Load {
     shared: Arc<Shared>,
 }
 
+/// Why a chunk did not come.
+enum Fault {
+    /// There was no answer, or an error.
+    Refused(String),
+    /// The answer began and broke off.
+    Broken(String),
+}
+
 #[derive(Default)]
 struct Shared {
     is_over: AtomicBool,
@@ -43,6 +51,8 @@ struct Shared {
 pub struct Counts {
     pub rest: u64,
     pub grpc: u64,
+    /// The answers that broke off visibly in the middle, and were requested again.
+    pub broken: u64,
     /// The longest time of a request.
     pub longest: Duration,
     /// What went wrong, and when: seconds since the first request.
@@ -79,8 +89,15 @@ impl Load {
         }
     }
 
-    /// Ends reading; every request must have been answered, and every chunk by the same points.
+    /// Ends reading; every request must have been answered at once, and every chunk by the same points.
     pub fn finish(self, what: &str) {
+        assert_eq!(self.finish_after_kills(what), 0, "answers broke off");
+    }
+
+    /// Ends reading. A killed replica breaks off the answers that it has begun, which no proxy can repair: clients
+    /// request them again. Every other request must have been answered at once, and every chunk by the same points.
+    /// Returns the number of answers that broke off.
+    pub fn finish_after_kills(self, what: &str) -> u64 {
         self.shared.is_over.store(true, Ordering::Release);
         for reader in self.readers {
             reader.join().expect("no panic");
@@ -91,13 +108,16 @@ impl Load {
             grpc,
             failed,
             longest,
+            broken,
             ..
         } = &*counts;
         let wrong = failed.len();
         println!(
-            "{what}: {wrong} failed of {rest} by REST and {grpc} by gRPC; the longest took {longest:?}"
+            "{what}: {wrong} failed of {rest} by REST and {grpc} by gRPC, {broken} broke off and were requested again; \
+             the longest took {longest:?}"
         );
         assert_eq!(failed, &[]);
+        *broken
     }
 }
 
@@ -107,7 +127,7 @@ impl Shared {
         &self,
         reader: usize,
         (readers, rate): (usize, f64),
-        mut get: impl FnMut(u64) -> Result<Vec<u8>, String>,
+        mut get: impl FnMut(u64) -> Result<Vec<u8>, Fault>,
     ) {
         let begun = Instant::now();
         let period = Duration::from_secs_f64(1.0 / rate);
@@ -122,8 +142,15 @@ impl Shared {
             }
             next += period;
             let start = Instant::now();
-            let answer = get(chunk % CHUNKS);
+            let first = get(chunk % CHUNKS);
+            let is_broken = matches!(first, Err(Fault::Broken(_)));
+            let answer = if is_broken {
+                get(chunk % CHUNKS)
+            } else {
+                first
+            };
             let mut counts = self.counts.lock().expect("no panic");
+            counts.broken += u64::from(is_broken);
             counts.longest = counts.longest.max(start.elapsed());
             let count = if rate == REST.1 {
                 &mut counts.rest
@@ -132,7 +159,7 @@ impl Shared {
             };
             *count += 1;
             let fault = match answer {
-                Err(fault) => Some(fault),
+                Err(Fault::Refused(fault) | Fault::Broken(fault)) => Some(fault),
                 Ok(points) => {
                     let known = counts.known.entry(chunk % CHUNKS);
                     let differs = known.or_insert_with(|| points.clone()) != &points;
@@ -146,19 +173,21 @@ impl Shared {
     }
 }
 
-fn rest(address: SocketAddr, chunk: u64) -> Result<Vec<u8>, String> {
+fn rest(address: SocketAddr, chunk: u64) -> Result<Vec<u8>, Fault> {
     let path = format!("/v1/chunks/{SIZE}/{chunk}/-3?spacing=1&seed=7&format=f32");
     let answer = http1::try_open(address, "GET", &path, &[], None);
-    let answer = answer.map_err(|error| format!("REST: {error}"))?;
+    let answer = answer.map_err(|error| Fault::Refused(format!("REST: {error}")))?;
     let status = answer.status;
-    let body = answer.body().map_err(|error| format!("REST: {error}"))?;
+    let body = answer.body();
+    let body = body.map_err(|error| Fault::Broken(format!("REST: {error}")))?;
     if status != 200 {
-        return Err(format!("REST: {status} {}", String::from_utf8_lossy(&body)));
+        let text = String::from_utf8_lossy(&body);
+        return Err(Fault::Refused(format!("REST: {status} {text}")));
     }
     Ok(body)
 }
 
-async fn grpc(client: &mut PointServiceClient<Channel>, chunk: u64) -> Result<Vec<u8>, String> {
+async fn grpc(client: &mut PointServiceClient<Channel>, chunk: u64) -> Result<Vec<u8>, Fault> {
     let request = StreamPointsRequest {
         region: Some(Region {
             shape: Some(Shape::Chunk(Chunk {
@@ -175,14 +204,18 @@ async fn grpc(client: &mut PointServiceClient<Channel>, chunk: u64) -> Result<Ve
         encoding: Encoding::F32Le.into(),
         ..StreamPointsRequest::default()
     };
-    let failed = |status: tonic::Status| format!("gRPC: {status}");
-    let mut stream = client
-        .stream_points(request)
-        .await
-        .map_err(failed)?
+    let words = |status: tonic::Status| format!("gRPC: {status}");
+    let answer = client.stream_points(request).await;
+    let mut stream = answer
+        .map_err(|status| Fault::Refused(words(status)))?
         .into_inner();
     let (mut points, mut is_whole) = (vec![], false);
-    while let Some(response) = stream.message().await.map_err(failed)? {
+    loop {
+        let message = stream.message().await;
+        let message = message.map_err(|status| Fault::Broken(words(status)))?;
+        let Some(response) = message else {
+            break;
+        };
         match response.message {
             Some(Message::Block(block)) => points.extend_from_slice(&block.data),
             Some(Message::Summary(_)) => is_whole = true,
@@ -192,6 +225,6 @@ async fn grpc(client: &mut PointServiceClient<Channel>, chunk: u64) -> Result<Ve
     if is_whole {
         Ok(points)
     } else {
-        Err("gRPC: no summary".into())
+        Err(Fault::Refused("gRPC: no summary".into()))
     }
 }
