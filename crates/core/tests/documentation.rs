@@ -8,14 +8,17 @@ use std::{
 
 /// Types and traits that are public only because the sealed trait `Format` names them. They are not
 /// exported, and rustdoc does not show them.
-const SEALED: [&str; 7] = [
+const SEALED: [&str; 10] = [
     "Batch",
+    "Double",
     "Emit",
     "Geometry",
     "Lanes",
     "PatchShears",
+    "Picks",
     "Row",
     "Scope",
+    "Single",
 ];
 
 /// The sources of the library, as (path from `src`, text).
