@@ -62,7 +62,7 @@ pub struct Page {
 
 /// The markup before the address of the picture that previews of links to a page show.
 const PREVIEW: &str = "<meta property=\"og:image\" content=\"";
-/// What all lines about that picture have.
+/// The attributes of the lines about the preview picture, by which a page without an address for it leaves them out.
 const ABOUT_PREVIEW: [&str; 2] = ["property=\"og:image", "name=\"twitter:card\""];
 
 const HTML: &str = "text/html; charset=utf-8";

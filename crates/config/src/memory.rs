@@ -120,7 +120,7 @@ impl Config {
     }
 }
 
-/// What `bytes` take with the allocator's share.
+/// The memory of `bytes` with the overhead of the allocator.
 const fn with_overhead(bytes: u64) -> u64 {
     bytes + bytes / 100 * OVERHEAD
 }

@@ -46,7 +46,7 @@ struct Shared {
     counts: Mutex<Counts>,
 }
 
-/// What a client has seen.
+/// The answers of a client so far.
 #[derive(Debug, Default)]
 pub struct Counts {
     pub rest: u64,
@@ -55,7 +55,7 @@ pub struct Counts {
     pub broken: u64,
     /// The longest time of a request.
     pub longest: Duration,
-    /// What went wrong, and when: seconds since the first request.
+    /// Failures, each with its time in seconds since the first request.
     pub failed: Vec<(f64, String)>,
     /// The first answer to each chunk, which all others equal.
     known: BTreeMap<u64, Vec<u8>>,

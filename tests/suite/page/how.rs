@@ -142,7 +142,7 @@ fn what_the_figures_claim_is_so() {
     browser.click("#race-kind button:last-child");
     assert_eq!(browser.value("strew.figures.race.clashes.length"), 0);
     assert!(least("pieces.flat()") >= 0.098);
-    // Points of a color have the same neighbors as far as the frame, others do not.
+    // Points of a color have the same neighbors within the frame; others do not.
     let different = "(() => { const { pattern, alike } = strew.figures.same; const of = ([x, y]) => { let all = ''; \
         for (let j = -6; j <= 6; j += 1) for (let i = -6; i <= 6; i += 1) all += Number(pattern.has(x + i, y + j)); return all; }; \
         return new Set(alike.map(of)).size; })()";

@@ -14,11 +14,11 @@ const MORE: [&str; 2] = [
     "/docs#getNearest",
 ];
 
-/// What a page shows last: its points, and below them its pictures or its times.
+/// The elements that each page shows last: its points, then its pictures or its times.
 const READY: &str = "(({ state, start, timed }) => location.pathname === '/' ? state === 'ready' && start === 'ready' \
                      : state === 'ready' || timed)(document.documentElement.dataset)";
 
-/// What has shifted, with the elements, since the page was opened.
+/// The layout shift since the page was opened, with the elements that moved.
 const SHIFTS: &str = "new Promise((resolve) => { \
     const name = ({ node }) => node?.id ? `#${node.id}` : node?.className || node?.nodeName || 'something'; \
     const found = []; \

@@ -7,7 +7,7 @@ use std::{
     thread,
 };
 
-/// What becomes of requests for points.
+/// The answer to requests for points.
 #[derive(Clone, Copy, Debug)]
 pub enum Points {
     /// The daemon answers them.

@@ -57,7 +57,7 @@ impl Shears3 {
     }
 
     /// The shears of the points of a patch, whose displaced positions lie in some ranges relative to its origin, and from
-    /// their lattice coordinates as far as the reach tells. The origin is a multiple of the distance of the knots along all axes.
+    /// their lattice coordinates within the reach. The origin is a multiple of the distance of the knots along all axes.
     pub(super) fn patch(
         &self,
         origin: [i64; 3],
