@@ -11,7 +11,7 @@ use std::{
 
 use strew_config::bounded_file;
 use strew_core::Table;
-use strew_forge::{EXTENSION, Job, file_name, write_table};
+use strew_forge::{EXTENSION, Job, file_name, read_table, write_table};
 
 use super::job::Kept;
 
@@ -105,7 +105,13 @@ impl Folder {
     pub(super) fn store(&self, job: &Job, id: &str, table: &Table) -> Result<PathBuf, String> {
         let usual = file_name(&job.profile, job.alpha, job.radius);
         let usual = self.tables.join(usual);
-        let path = match usual.exists() {
+        let is_there = usual.exists();
+        let is_this = |there: Table| there.digest() == table.digest();
+        if is_there && read_table(&usual).is_ok_and(is_this) {
+            // From before a crash.
+            return Ok(usual);
+        }
+        let path = match is_there {
             // A table of another key, or a file that was refused.
             true => usual.with_extension(format!("{id}.{EXTENSION}")),
             false => usual,
@@ -121,5 +127,29 @@ fn remove(path: &Path) {
             tracing::warn!(path = %path.display(), %error, "a file of the forge cannot be removed");
         }
         _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::Spec, *};
+
+    #[test]
+    fn a_table_that_is_stored_again_after_a_crash_is_one_file() {
+        let tables = tempfile::tempdir().expect("a temporary folder");
+        let folder = Folder::new(tables.path().to_owned());
+        let spec = Spec {
+            profile: "blue".into(),
+            alpha: "sqrt(3)".into(),
+            map: "r4".into(),
+            target: None,
+        };
+        let job = spec.job().expect("valid");
+        let table = |profile| Table::undisplaced(job.alpha, 4, profile).expect("valid");
+        let store = |table: &Table| folder.store(&job, "a0", table).expect("stored");
+        let usual = store(&table("blue"));
+        assert_eq!(store(&table("blue")), usual);
+        assert_ne!(store(&table("other")), usual);
+        assert_eq!(folder.holds().expect("read").0, 2);
     }
 }

@@ -217,10 +217,11 @@ impl Job {
         }
     }
 
-    pub(super) fn kept_as(&self) -> Kept {
+    /// The job with a state, as it is kept.
+    pub(super) fn kept_as(&self, status: JobStatus) -> Kept {
         Kept {
             spec: self.spec.clone(),
-            status: self.status(),
+            status,
             by: self.by.clone(),
             number: self.number,
         }

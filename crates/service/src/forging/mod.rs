@@ -152,7 +152,10 @@ impl Forging {
             };
             jobs.last = jobs.last.max(number);
             let job = Arc::new(Job::kept(spec, made, by, number, status));
-            if !job.status().state.is_over() {
+            if job.status().state.is_over() {
+                // A crash may have left it.
+                folder.remove_checkpoint(job.id());
+            } else {
                 tracing::info!(id = job.id(), "a job of the forge is queued again");
                 jobs.waiting.push_back(job.clone());
             }
@@ -228,7 +231,7 @@ impl Forging {
         self.0.check_room(open)?;
         jobs.last += 1;
         let job = Arc::new(Job::new(spec, made, client, jobs.last));
-        self.0.keep(&job).map_err(|error| {
+        self.0.keep(&job, job.status()).map_err(|error| {
             tracing::error!(%error, "the folder of the forge cannot be written");
             Error::Internal("the folder of tables cannot be written")
         })?;
@@ -334,10 +337,10 @@ impl Inner {
         Ok(())
     }
 
-    /// Saves the state of a job in the folder.
-    fn keep(&self, job: &Job) -> std::io::Result<()> {
+    /// Saves a state of a job in the folder.
+    fn keep(&self, job: &Job, status: JobStatus) -> std::io::Result<()> {
         match &self.folder {
-            Some(folder) => folder.keep(&job.kept_as()),
+            Some(folder) => folder.keep(&job.kept_as(status)),
             None => Ok(()),
         }
     }
@@ -350,20 +353,21 @@ impl Inner {
         state: State,
         more: impl FnOnce(&mut JobStatus),
     ) {
-        job.change(|status| {
-            status.state = state;
-            (status.stage, status.seconds_left) = (None, None);
-            more(status);
-        });
+        let mut status = job.status();
+        status.state = state;
+        (status.stage, status.seconds_left) = (None, None);
+        more(&mut status);
         if let Some(at) = State::ENDED.iter().position(|ended| *ended == state) {
             jobs.outcomes[at] += 1;
+        }
+        // On the disk before anyone hears of it.
+        if let Err(error) = self.keep(job, status.clone()) {
+            tracing::warn!(%error, id = job.id(), "the outcome of a job of the forge could not be saved");
         }
         if let Some(folder) = &self.folder {
             folder.remove_checkpoint(job.id());
         }
-        if let Err(error) = self.keep(job) {
-            tracing::warn!(%error, id = job.id(), "the outcome of a job of the forge could not be saved");
-        }
+        job.change(|now| *now = status);
         tracing::info!(id = job.id(), state = state.name(), table = %job.status().name(), "a job of the forge ended");
         let over = |job: &&Arc<Job>| job.status().state.is_over();
         let mut ended: Vec<Arc<Job>> = jobs.by_id.values().filter(over).cloned().collect();
