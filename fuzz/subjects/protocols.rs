@@ -122,11 +122,12 @@ pub fn call(method: &str, message: &[u8]) -> (u32, String) {
         .version(http::Version::HTTP_2)
         .header(header::CONTENT_TYPE, "application/grpc")
         .header(header::TE, "trailers")
-        .extension(Caller::default())
         .body(Body::from(frame))
         .expect("a request");
     protocols.runtime.block_on(async {
-        let response = protocols.grpc.answer(request).await;
+        let route = grpc::route(request.uri().path()).expect("a method");
+        let caller = Caller::default();
+        let response = protocols.grpc.answer(route, caller, request).await;
         let (head, mut body) = response.into_parts();
         let mut trailers = head.headers;
         while let Some(frame) = next(&mut body).await {

@@ -1,15 +1,20 @@
-//! The services of gRPC on the common port, and which one a path belongs to.
+//! The services of gRPC on the common port, and where a path leads.
 
 use std::{convert::Infallible, fmt, future::ready, sync::Arc};
 
-use tonic::{body::Body as TonicBody, codegen::Service};
+use strew_access::Caller;
+use strew_service::Service;
+use tonic::{body::Body as TonicBody, codegen};
 
-use super::methods::{METHODS, unimplemented};
+use super::methods::{METHODS, Method, unimplemented};
 use crate::body::{Answering, Body, Request};
 
 type Answers = Arc<dyn Fn(Request) -> Answering + Send + Sync>;
 
-/// The paths of the services, in the order of [`Calls`]; what follows is a method.
+/// The name of the service of the contract.
+pub(super) const NAME: &str = "strew.v1.PointService";
+
+/// The paths of the services, that of the contract first, the others in the order of [`Calls`]; what follows is a method.
 const SERVICES: [(&str, &str); 4] = [
     (
         "/strew.v1.PointService/",
@@ -29,23 +34,46 @@ const SERVICES: [(&str, &str); 4] = [
     ),
 ];
 
-/// The place of the service that a path belongs to.
-fn service(path: &str) -> Option<usize> {
-    let is_of = |(prefix, _): &(&str, &str)| path.len() > prefix.len() && path.starts_with(prefix);
-    SERVICES.iter().position(is_of)
+/// Where the path of a call leads.
+#[derive(Clone, Copy, Debug)]
+pub struct Route {
+    /// As metrics and logs name it: a method of the contract, or any of a service.
+    pub name: &'static str,
+    to: To,
 }
 
-/// The route of a path, if it belongs to a service: a method of the contract, or any of the service.
+#[derive(Clone, Copy, Debug)]
+enum To {
+    Method(&'static Method),
+    /// A method that the contract does not have.
+    Unknown,
+    /// Another service, by its place.
+    Other(usize),
+}
+
+/// The route of a path, if it belongs to a service.
 #[must_use]
-pub fn route(path: &str) -> Option<&'static str> {
-    let (_, any) = SERVICES[service(path)?];
-    let method = METHODS.into_iter().find(|&method| method == path);
-    Some(method.unwrap_or(any))
+pub fn route(path: &str) -> Option<Route> {
+    let is_of = |(prefix, _): &(&str, &str)| path.len() > prefix.len() && path.starts_with(prefix);
+    let service = SERVICES.iter().position(is_of)?;
+    let any = SERVICES[service].1;
+    let method = || METHODS.iter().find(|method| method.path == path);
+    let (name, to) = match service.checked_sub(1) {
+        Some(other) => (any, To::Other(other)),
+        None => method().map_or((any, To::Unknown), |method| {
+            (method.path, To::Method(method))
+        }),
+    };
+    Some(Route { name, to })
 }
 
 /// The services of gRPC. Cheap to clone.
 #[derive(Clone)]
-pub struct Calls(Arc<[Answers; SERVICES.len()]>);
+pub struct Calls {
+    pub(super) service: Arc<Service>,
+    /// All but that of the contract.
+    pub(super) others: Arc<[Answers; SERVICES.len() - 1]>,
+}
 
 impl fmt::Debug for Calls {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -54,16 +82,13 @@ impl fmt::Debug for Calls {
 }
 
 impl Calls {
-    pub(super) fn new(services: [Answers; SERVICES.len()]) -> Self {
-        Self(Arc::new(services))
-    }
-
-    /// Answers a request to a path that has a [`route`].
+    /// Answers a request of a caller.
     #[must_use]
-    pub fn answer(&self, request: Request) -> Answering {
-        match service(request.uri().path()) {
-            Some(place) => self.0[place](request),
-            None => Box::pin(ready(unimplemented().map(Body::new))),
+    pub fn answer(&self, route: Route, caller: Caller, request: Request) -> Answering {
+        match route.to {
+            To::Method(method) => Box::pin(method.answer(self.service.clone(), caller, request)),
+            To::Unknown => Box::pin(ready(unimplemented())),
+            To::Other(service) => self.others[service](request),
         }
     }
 }
@@ -71,7 +96,11 @@ impl Calls {
 /// A service that the library generates, as it is called here.
 pub(super) fn answering<S>(service: S) -> Answers
 where
-    S: Service<http::Request<TonicBody>, Response = http::Response<TonicBody>, Error = Infallible>,
+    S: codegen::Service<
+            http::Request<TonicBody>,
+            Response = http::Response<TonicBody>,
+            Error = Infallible,
+        >,
     S: Clone + Send + Sync + 'static,
     S::Future: Send,
 {

@@ -23,7 +23,10 @@ pub struct Deadline {
 
 impl Deadline {
     /// The deadline of a call that begins now, if it has one.
-    pub(super) fn of(headers: &HeaderMap) -> Result<Option<Self>, Status> {
+    ///
+    /// # Errors
+    /// INVALID_ARGUMENT for one that is not written as the protocol does.
+    pub fn of(headers: &HeaderMap) -> Result<Option<Self>, Status> {
         let Some(value) = headers.get(HeaderName::from_static(HEADER)) else {
             return Ok(None);
         };

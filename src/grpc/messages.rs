@@ -209,23 +209,12 @@ fn around(data: usize, rest: &PointBlock) -> [Vec<u8>; 2] {
     [[&prefix[..], &block_tag, &data_tag].concat(), after]
 }
 
-impl Iterator for Messages {
-    type Item = StreamPointsResponse;
-
-    fn next(&mut self) -> Option<StreamPointsResponse> {
-        self.message()
-    }
-}
-
 /// The messages as frames.
-#[derive(Debug)]
-pub(super) struct Framed(pub(super) Messages);
-
-impl Iterator for Framed {
+impl Iterator for Messages {
     type Item = Bytes;
 
     fn next(&mut self) -> Option<Bytes> {
-        self.0.frame()
+        self.frame()
     }
 }
 

@@ -3,7 +3,6 @@
 mod calls;
 mod compression;
 mod deadline;
-mod direct;
 mod field;
 mod forging;
 mod frames;
@@ -28,19 +27,18 @@ use std::sync::Arc;
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use bytes::Bytes;
 use http::{HeaderMap, HeaderName, HeaderValue};
-use tonic::{Status, server::NamedService};
+use tonic::Status;
 use tonic_health::server::HealthReporter;
 
-use calls::answering;
-pub use calls::{Calls, route};
+pub use calls::{Calls, Route, route};
+use calls::{NAME, answering};
 pub use deadline::Deadline;
-use direct::Direct;
 pub use methods::unimplemented;
-use points::Points;
-use proto::point_service_server::PointServiceServer;
 use strew_error::Error;
 pub use strew_proto as proto;
 use strew_service::{Interrupted, Service};
+
+use crate::body::{Body, Response};
 
 /// The longest message to the services of health and reflection, which take names: those of files and of
 /// symbols.
@@ -79,23 +77,15 @@ pub type BuildError = tonic_reflection::server::Error;
 /// Never, unless the program was built wrongly.
 pub async fn calls(service: Arc<Service>) -> Result<(Calls, Health), BuildError> {
     let (reporter, health) = tonic_health::server::health_reporter();
-    reporter.set_serving::<PointServiceServer<Points>>().await;
+    let serving = tonic_health::ServingStatus::Serving;
+    reporter.set_service_status(NAME, serving).await;
     let reflection = || {
         tonic_reflection::server::Builder::configure()
             .register_encoded_file_descriptor_set(proto::DESCRIPTORS)
             .register_encoded_file_descriptor_set(tonic_types::pb::FILE_DESCRIPTOR_SET)
             .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
     };
-    let points = compression::COMPRESSIONS.into_iter().fold(
-        PointServiceServer::new(Points::new(service.clone())),
-        |server, coding| server.accept_compressed(coding).send_compressed(coding),
-    );
-    let points = Direct {
-        inner: points,
-        service,
-    };
-    let calls = Calls::new([
-        answering(points),
+    let others = [
         answering(health.max_decoding_message_size(NAMES)),
         answering(reflection().build_v1()?.max_decoding_message_size(NAMES)),
         answering(
@@ -103,7 +93,11 @@ pub async fn calls(service: Arc<Service>) -> Result<(Calls, Health), BuildError>
                 .build_v1alpha()?
                 .max_decoding_message_size(NAMES),
         ),
-    ]);
+    ];
+    let calls = Calls {
+        service,
+        others: Arc::new(others),
+    };
     Ok((calls, Health { reporter }))
 }
 
@@ -120,27 +114,16 @@ impl Health {
             true => tonic_health::ServingStatus::Serving,
             false => tonic_health::ServingStatus::NotServing,
         };
-        let name = <PointServiceServer<Points> as NamedService>::NAME;
-        for service in ["", name] {
+        for service in ["", NAME] {
             self.reporter.set_service_status(service, state).await;
         }
     }
 }
 
-/// The wishes of a call for its answer, corrected before the call: how it may be compressed, and by when
-/// it must be over.
-///
-/// # Errors
-/// A status that says what is wrong with the call.
-pub fn terms(headers: &mut HeaderMap) -> Result<Option<Deadline>, Status> {
-    compression::settle(headers);
-    Deadline::of(headers)
-}
-
 /// The answer to a call that is not let in, or that cannot be answered at all.
 #[must_use]
-pub fn refusal(error: &Error) -> http::Response<tonic::body::Body> {
-    broken(error).into_http()
+pub fn refusal(error: &Error) -> Response {
+    broken(error).into_http::<Body>()
 }
 
 /// An error as what a call ends with.
@@ -180,15 +163,17 @@ pub fn web_trailers(trailers: &HeaderMap, is_text: bool) -> Bytes {
 /// RESOURCE_EXHAUSTED, bytes that are not a message are the client's fault, and an unknown method has a
 /// text.
 pub fn improve(headers: &mut HeaderMap) {
-    let code = headers.get(GRPC_STATUS).map(HeaderValue::as_bytes);
+    let Some(code) = headers.get(GRPC_STATUS).map(HeaderValue::as_bytes) else {
+        return;
+    };
     let message = headers.get(GRPC_MESSAGE).map(HeaderValue::as_bytes);
     let message = String::from_utf8_lossy(message.unwrap_or_default());
     let better = match code {
-        Some(b"11") if message.contains("message%20length%20too%20large") => "8",
-        Some(b"12") if message.is_empty() => {
+        b"11" if message.contains("message%20length%20too%20large") => "8",
+        b"12" if message.is_empty() => {
             return headers.extend(unimplemented().into_parts().0.headers);
         }
-        Some(b"13") if MALFORMED.iter().any(|part| message.contains(part)) => "3",
+        b"13" if MALFORMED.iter().any(|part| message.contains(part)) => "3",
         _ => return,
     };
     headers.insert(GRPC_STATUS, HeaderValue::from_static(better));

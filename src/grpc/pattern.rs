@@ -1,8 +1,9 @@
 //! Arrangements, clusters and maps as messages.
 
-use std::{pin::Pin, sync::Arc};
+use std::sync::Arc;
 
-use futures_util::{Stream, TryStreamExt as _};
+use bytes::Bytes;
+use futures_util::TryStreamExt as _;
 use strew_access::Caller;
 use strew_core::server::Stop;
 use strew_error::{Error, Fault};
@@ -22,6 +23,7 @@ use strew_service::{
 use tonic::Status;
 
 use super::{
+    frames::{FrameStream, framed},
     message::Received,
     proto::{
         Arrangement, ArrangementRequest, Block, ClusterShape, ClustersRequest, ClustersResponse,
@@ -31,10 +33,6 @@ use super::{
     },
     set, status,
 };
-
-/// The messages of a list.
-pub(super) type OccurrenceStream =
-    Pin<Box<dyn Stream<Item = Result<ListOccurrencesResponse, Status>> + Send>>;
 
 /// The checked query of a request, with a list or without.
 fn query(
@@ -107,7 +105,7 @@ pub(super) async fn occurrences(
     service: &Arc<Service>,
     caller: &Caller,
     Received { message, effort }: Received<ArrangementRequest>,
-) -> Result<OccurrenceStream, Error> {
+) -> Result<FrameStream, Error> {
     let read = move |service: &Service, _: &Stop| query(service, &message, true);
     let query = service.process(effort, read).await??;
     let (permit, listing) = service.list(caller, &query).await?;
@@ -130,7 +128,7 @@ pub(super) async fn occurrences(
     Ok(Box::pin(stream.and_then(std::future::ready)))
 }
 
-/// A list as messages, made when they are taken.
+/// A list as framed messages, made when they are taken.
 struct ListMessages {
     first: Option<OccurrencesHeader>,
     rest: Occurrences,
@@ -138,7 +136,7 @@ struct ListMessages {
 }
 
 impl Iterator for ListMessages {
-    type Item = Result<ListOccurrencesResponse, Status>;
+    type Item = Result<Bytes, Status>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let message = if let Some(header) = self.first.take() {
@@ -161,9 +159,9 @@ impl Iterator for ListMessages {
                 None => Message::Summary(self.last.take()?),
             }
         };
-        Some(Ok(ListOccurrencesResponse {
+        Some(Ok(framed(&ListOccurrencesResponse {
             message: Some(message),
-        }))
+        })))
     }
 }
 

@@ -1,32 +1,30 @@
 //! The service of the contract.
 
-use std::{pin::Pin, sync::Arc};
+use std::sync::Arc;
 
-use futures_util::{Stream, StreamExt as _, TryStreamExt as _, stream};
+use futures_util::{StreamExt as _, TryStreamExt as _, stream};
 use strew_access::Caller;
 use strew_core::{ALGORITHM_VERSION, server::Stop};
 use strew_error::{Error, Fault};
 use strew_plan::{Found, Placed, effort::block_bytes};
 use strew_query::{Draft, Nearest, Query, Set, Values, groups};
 use strew_service::{Record, Service, allowance, forging::Submitted};
-use tonic::{Request, Response, Status};
+use tonic::Status;
 
 use super::{
-    compression, field, forging,
-    frames::Frames,
+    field, forging,
+    frames::{FrameStream, framed},
     mask,
-    message::{Received, received},
-    messages::{Framed, Messages},
-    pattern::{self, OccurrenceStream},
-    periods, profile,
+    message::Received,
+    messages::Messages,
+    pattern, periods, profile,
     proto::{
         Arrangement, ArrangementRequest, ClustersRequest, ClustersResponse, CountPointsRequest,
         CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse, ForgeTableRequest,
-        ForgeTableResponse, GetMaskRequest, GetMaskResponse, GetPointRequest, GetPointResponse,
-        ListFieldsRequest, ListFieldsResponse, ListPeriodsRequest, ListPeriodsResponse,
-        ListProfilesRequest, ListProfilesResponse, ListWorldsRequest, ListWorldsResponse,
-        LoadedWorld, MapRequest, MapResponse, SplitPointsRequest, SplitPointsResponse,
-        StreamPointsRequest, StreamPointsResponse, point_service_server::PointService,
+        GetMaskRequest, GetMaskResponse, GetPointRequest, GetPointResponse, ListFieldsRequest,
+        ListFieldsResponse, ListPeriodsRequest, ListPeriodsResponse, ListProfilesRequest,
+        ListProfilesResponse, ListWorldsRequest, ListWorldsResponse, LoadedWorld, MapRequest,
+        MapResponse, SplitPointsRequest, SplitPointsResponse, StreamPointsRequest,
     },
     query, resolved, set, single, split, status,
 };
@@ -66,13 +64,11 @@ impl Points {
         self.service.read(effort, read, price, check).await
     }
 
-    /// The answer of messages, which tonic has to compress, or of frames that are sent as they are.
     async fn stream(
         &self,
         caller: &Caller,
         request: Received<StreamPointsRequest>,
-        is_compressed: bool,
-    ) -> Result<Response<MessageStream>, Error> {
+    ) -> Result<FrameStream, Error> {
         let (request, query, encoding) = self.read(request).await?;
         let (permit, planned) = self.service.open(caller, query, None).await?;
         let block_bytes = block_bytes(&planned, self.service.limits().block_bytes);
@@ -82,16 +78,8 @@ impl Points {
             Encoding::F64Le => "f64",
             Encoding::Points | Encoding::Unspecified => "points",
         });
-        if is_compressed {
-            let stream = self.service.stream(permit, messages);
-            let stream = stream.map_err(status::interrupted);
-            return Ok(Response::new(Box::pin(stream)));
-        }
-        let frames = self.service.stream(permit, Framed(messages));
-        let frames = Frames::new(frames.map_err(status::interrupted));
-        let mut response = Response::new(Box::pin(stream::empty()) as MessageStream);
-        response.extensions_mut().insert(frames);
-        Ok(response)
+        let frames = self.service.stream(permit, messages);
+        Ok(Box::pin(frames.map_err(status::interrupted)))
     }
 
     async fn count(
@@ -154,14 +142,19 @@ impl Points {
         })
     }
 
-    async fn forge(&self, caller: &Caller, request: ForgeTableRequest) -> Result<JobStream, Error> {
+    async fn forge(
+        &self,
+        caller: &Caller,
+        request: ForgeTableRequest,
+    ) -> Result<FrameStream, Error> {
         self.service.forging().admit(caller)?;
         let spec = forging::request(request).spec()?;
         let states = match self.service.forge(caller, spec).await? {
             Submitted::Loaded(state) => stream::once(async { *state }).boxed(),
             Submitted::Job(job) => self.service.follow_job(caller, &job)?.boxed(),
         };
-        Ok(states.map(|state| Ok(forging::response(state))).boxed())
+        let frames = states.map(|state| Ok(framed(&forging::response(state))));
+        Ok(frames.boxed())
     }
 
     async fn nearest(
@@ -187,11 +180,6 @@ impl Points {
     }
 }
 
-fn caller<T>(request: &Request<T>) -> Result<Caller, Status> {
-    let caller = Caller::noted(request.extensions().get());
-    caller.map_err(|denied| status::status(&denied.into()))
-}
-
 /// The query of a request, which must be there.
 fn required(
     query: Option<Box<StreamPointsRequest>>,
@@ -204,93 +192,82 @@ fn required(
     Ok(Received { message, effort })
 }
 
-fn answered<T>(answer: Result<T, Error>) -> Result<Response<T>, Status> {
-    let answer = answer.map(Response::new);
-    answer.map_err(|error| status::status(&query::by_field(error)))
+/// An answer; faults of its set are named by their fields.
+fn answered<T>(answer: Result<T, Error>) -> Result<T, Status> {
+    plainly(answer.map_err(query::by_field))
 }
 
-type JobStream = Pin<Box<dyn Stream<Item = Result<ForgeTableResponse, Status>> + Send>>;
 /// The answer to a request that has no set: its faults already name its fields.
-fn plainly<T>(answer: Result<T, Error>) -> Result<Response<T>, Status> {
-    let answer = answer.map(Response::new);
+fn plainly<T>(answer: Result<T, Error>) -> Result<T, Status> {
     answer.map_err(|error| status::status(&error))
 }
 
-type MessageStream = Pin<Box<dyn Stream<Item = Result<StreamPointsResponse, Status>> + Send>>;
-
-#[tonic::async_trait]
-impl PointService for Points {
-    type StreamPointsStream = MessageStream;
-    type ForgeTableStream = JobStream;
-
-    async fn forge_table(
-        &self,
-        request: Request<ForgeTableRequest>,
-    ) -> Result<Response<JobStream>, Status> {
-        let caller = caller(&request)?;
-        let states = self.forge(&caller, *received(request).message).await;
-        states
-            .map(Response::new)
-            .map_err(|error| status::status(&error))
+/// The calls, by the names of the contract.
+impl Points {
+    pub(super) async fn forge_table(
+        self,
+        caller: Caller,
+        request: Received<ForgeTableRequest>,
+    ) -> Result<FrameStream, Status> {
+        plainly(self.forge(&caller, *request.message).await)
     }
 
-    async fn stream_points(
-        &self,
-        request: Request<StreamPointsRequest>,
-    ) -> Result<Response<MessageStream>, Status> {
-        let caller = caller(&request)?;
-        let is_compressed = compression::is_asked(request.metadata());
-        let answer = self.stream(&caller, received(request), is_compressed).await;
-        answer.map_err(|error| status::status(&query::by_field(error)))
+    pub(super) async fn stream_points(
+        self,
+        caller: Caller,
+        request: Received<StreamPointsRequest>,
+    ) -> Result<FrameStream, Status> {
+        answered(self.stream(&caller, request).await)
     }
 
-    async fn count_points(
-        &self,
-        request: Request<CountPointsRequest>,
-    ) -> Result<Response<CountPointsResponse>, Status> {
-        let caller = caller(&request)?;
-        let Received { message, effort } = received(request);
+    pub(super) async fn count_points(
+        self,
+        caller: Caller,
+        request: Received<CountPointsRequest>,
+    ) -> Result<CountPointsResponse, Status> {
+        let Received { message, effort } = request;
         let query = required(message.query.map(Box::new), effort)?;
         let answer = self.count(&caller, query).await;
         answered(answer.map_err(|error| status::within("query", query::by_field(error))))
     }
 
-    async fn split_points(
-        &self,
-        request: Request<SplitPointsRequest>,
-    ) -> Result<Response<SplitPointsResponse>, Status> {
-        let caller = caller(&request)?;
-        let Received { message, effort } = received(request);
+    pub(super) async fn split_points(
+        self,
+        caller: Caller,
+        request: Received<SplitPointsRequest>,
+    ) -> Result<SplitPointsResponse, Status> {
+        let Received { message, effort } = request;
         let SplitPointsRequest { query, parts } = *message;
         let query = required(query.map(Box::new), effort)?;
-        let parts = split::check(&query.message, parts).map_err(|error| status::status(&error))?;
+        let parts = plainly(split::check(&query.message, parts))?;
         let answer = self.split(&caller, query, parts).await;
         answered(answer.map_err(|error| status::within("query", query::by_field(error))))
     }
 
-    async fn get_point(
-        &self,
-        request: Request<GetPointRequest>,
-    ) -> Result<Response<GetPointResponse>, Status> {
-        let caller = caller(&request)?;
-        answered(self.point(&caller, received(request)).await)
+    pub(super) async fn get_point(
+        self,
+        caller: Caller,
+        request: Received<GetPointRequest>,
+    ) -> Result<GetPointResponse, Status> {
+        answered(self.point(&caller, request).await)
     }
 
-    async fn find_nearest(
-        &self,
-        request: Request<FindNearestRequest>,
-    ) -> Result<Response<FindNearestResponse>, Status> {
-        let caller = caller(&request)?;
-        answered(self.nearest(&caller, received(request)).await)
+    pub(super) async fn find_nearest(
+        self,
+        caller: Caller,
+        request: Received<FindNearestRequest>,
+    ) -> Result<FindNearestResponse, Status> {
+        answered(self.nearest(&caller, request).await)
     }
 
-    async fn list_profiles(
-        &self,
-        _request: Request<ListProfilesRequest>,
-    ) -> Result<Response<ListProfilesResponse>, Status> {
+    pub(super) async fn list_profiles(
+        self,
+        _: Caller,
+        _: Received<ListProfilesRequest>,
+    ) -> Result<ListProfilesResponse, Status> {
         let catalog = self.service.catalog();
         let entries = catalog.entries();
-        Ok(Response::new(ListProfilesResponse {
+        Ok(ListProfilesResponse {
             profiles: entries
                 .map(|entry| profile::profile(entry, &catalog))
                 .collect(),
@@ -298,72 +275,74 @@ impl PointService for Points {
                 .map(|entry| profile::profile(entry, &catalog))
                 .collect(),
             algorithm: ALGORITHM_VERSION,
-        }))
+        })
     }
 
-    async fn list_periods(
-        &self,
-        request: Request<ListPeriodsRequest>,
-    ) -> Result<Response<ListPeriodsResponse>, Status> {
-        let listed = periods::list(*received(request).message, &self.service);
-        listed
-            .map(Response::new)
-            .map_err(|error| status::status(&error))
+    pub(super) async fn list_periods(
+        self,
+        _: Caller,
+        request: Received<ListPeriodsRequest>,
+    ) -> Result<ListPeriodsResponse, Status> {
+        plainly(periods::list(*request.message, &self.service))
     }
 
-    async fn get_mask(
-        &self,
-        request: Request<GetMaskRequest>,
-    ) -> Result<Response<GetMaskResponse>, Status> {
-        let caller = caller(&request)?;
-        plainly(mask::mask(&self.service, &caller, *received(request).message).await)
+    pub(super) async fn get_mask(
+        self,
+        caller: Caller,
+        request: Received<GetMaskRequest>,
+    ) -> Result<GetMaskResponse, Status> {
+        plainly(mask::mask(&self.service, &caller, *request.message).await)
     }
 
-    async fn get_arrangement(
-        &self,
-        request: Request<ArrangementRequest>,
-    ) -> Result<Response<Arrangement>, Status> {
-        answered(pattern::arrangement(&self.service, received(request)).await)
+    pub(super) async fn get_arrangement(
+        self,
+        _: Caller,
+        request: Received<ArrangementRequest>,
+    ) -> Result<Arrangement, Status> {
+        answered(pattern::arrangement(&self.service, request).await)
     }
 
-    type ListOccurrencesStream = OccurrenceStream;
-
-    async fn list_occurrences(
-        &self,
-        request: Request<ArrangementRequest>,
-    ) -> Result<Response<OccurrenceStream>, Status> {
-        let caller = caller(&request)?;
-        answered(pattern::occurrences(&self.service, &caller, received(request)).await)
+    pub(super) async fn list_occurrences(
+        self,
+        caller: Caller,
+        request: Received<ArrangementRequest>,
+    ) -> Result<FrameStream, Status> {
+        answered(pattern::occurrences(&self.service, &caller, request).await)
     }
 
-    async fn get_clusters(
-        &self,
-        request: Request<ClustersRequest>,
-    ) -> Result<Response<ClustersResponse>, Status> {
-        let caller = caller(&request)?;
-        plainly(pattern::clusters(&self.service, &caller, &received(request).message).await)
+    pub(super) async fn get_clusters(
+        self,
+        caller: Caller,
+        request: Received<ClustersRequest>,
+    ) -> Result<ClustersResponse, Status> {
+        plainly(pattern::clusters(&self.service, &caller, &request.message).await)
     }
 
-    async fn get_map(&self, request: Request<MapRequest>) -> Result<Response<MapResponse>, Status> {
-        let caller = caller(&request)?;
-        plainly(pattern::map(&self.service, &caller, &received(request).message).await)
+    pub(super) async fn get_map(
+        self,
+        caller: Caller,
+        request: Received<MapRequest>,
+    ) -> Result<MapResponse, Status> {
+        plainly(pattern::map(&self.service, &caller, &request.message).await)
     }
 
-    async fn list_fields(
-        &self,
-        _request: Request<ListFieldsRequest>,
-    ) -> Result<Response<ListFieldsResponse>, Status> {
+    pub(super) async fn list_fields(
+        self,
+        _: Caller,
+        _: Received<ListFieldsRequest>,
+    ) -> Result<ListFieldsResponse, Status> {
         let catalog = self.service.catalog();
         let fields = catalog.fields().iter().map(|loaded| field::loaded(loaded));
-        Ok(Response::new(ListFieldsResponse {
+        Ok(ListFieldsResponse {
             fields: fields.collect(),
-        }))
+        })
     }
 
-    async fn list_worlds(
-        &self,
-        _request: Request<ListWorldsRequest>,
-    ) -> Result<Response<ListWorldsResponse>, Status> {
+    pub(super) async fn list_worlds(
+        self,
+        _: Caller,
+        _: Received<ListWorldsRequest>,
+    ) -> Result<ListWorldsResponse, Status> {
         let catalog = self.service.catalog();
         let worlds = catalog.worlds.iter().map(|world| LoadedWorld {
             name: world.name.clone(),
@@ -371,8 +350,8 @@ impl PointService for Points {
             layers: world.layers.clone(),
             query: world.json.to_string(),
         });
-        Ok(Response::new(ListWorldsResponse {
+        Ok(ListWorldsResponse {
             worlds: worlds.collect(),
-        }))
+        })
     }
 }

@@ -23,8 +23,9 @@ use super::{
     gate,
 };
 use crate::{
-    body::{Body, Request, Response},
-    grpc, rest,
+    body::{Body, Response},
+    grpc::{self, Deadline, Route},
+    rest,
 };
 
 /// The calls of gRPC, behind the gate. Cheap to clone.
@@ -37,16 +38,17 @@ pub(super) struct Calls {
 
 impl Calls {
     /// Answers a request to the path of a call. What is no call gets a problem document instead of a gRPC status.
-    pub(super) async fn answer(&self, mut visit: Box<Visit>) -> Response {
+    pub(super) async fn answer(&self, route: Route, mut visit: Box<Visit>) -> Response {
         let request = &mut visit.request;
         match visit.dialect {
             Dialect::Rest => rest::not_a_call(request),
             Dialect::Grpc if request.version() < Version::HTTP_2 => rest::needs_http2(request),
-            Dialect::Grpc => self.on_terms(visit).await,
+            Dialect::Grpc => self.in_time(route, visit).await,
             Dialect::GrpcWeb | Dialect::GrpcWebText => {
                 let request = std::mem::take(request);
                 let inner = OfPage {
                     calls: self.clone(),
+                    route,
                     visit: Arc::new(Mutex::new(Some(visit))),
                 };
                 let answer = GrpcWebLayer::new().layer(inner).call(request).await;
@@ -55,17 +57,17 @@ impl Calls {
         }
     }
 
-    /// Calls are answered as compressed as they ask, and in time.
-    async fn on_terms(&self, mut visit: Box<Visit>) -> Response {
+    /// Answers a call in the time that it allows.
+    async fn in_time(&self, route: Route, visit: Box<Visit>) -> Response {
         let is_of_page = visit.dialect != Dialect::Grpc;
-        let mut response = match grpc::terms(visit.request.headers_mut()) {
-            Err(refusal) => refusal.into_http::<tonic::body::Body>().map(Body::new),
-            Ok(None) => self.admitted(visit).await,
+        let mut response = match Deadline::of(visit.request.headers()) {
+            Err(refusal) => refusal.into_http(),
+            Ok(None) => self.admitted(route, visit).await,
             Ok(Some(deadline)) => {
-                let answer = pin!(self.admitted(visit));
+                let answer = pin!(self.admitted(route, visit));
                 let mut response = match deadline.answer(answer).await {
                     Ok(response) => response,
-                    Err(late) => late.into_http::<tonic::body::Body>().map(Body::new),
+                    Err(late) => late.into_http(),
                 };
                 // The exchange ends with it, also after the head.
                 response.extensions_mut().insert(deadline);
@@ -95,15 +97,12 @@ impl Calls {
         })
     }
 
-    async fn admitted(&self, mut visit: Box<Visit>) -> Response {
-        match gate::of_calls(&self.gate, &visit) {
-            Ok(Some(caller)) => {
-                visit.request.extensions_mut().insert(caller);
-            }
-            Ok(None) => {}
-            Err(denied) => return grpc::refusal(&denied.into()).map(Body::new),
-        }
-        let answer = |request: Request| self.calls.answer(request);
+    async fn admitted(&self, route: Route, visit: Box<Visit>) -> Response {
+        let caller = match gate::of_calls(&self.gate, &visit) {
+            Ok(caller) => caller,
+            Err(denied) => return grpc::refusal(&denied.into()),
+        };
+        let answer = |request| self.calls.answer(route, caller, request);
         self.intake.answer(visit, answer).await
     }
 }
@@ -112,6 +111,7 @@ impl Calls {
 #[derive(Clone)]
 struct OfPage {
     calls: Calls,
+    route: Route,
     /// All of the request but itself: there is one.
     visit: Arc<Mutex<Option<Box<Visit>>>>,
 }
@@ -126,13 +126,17 @@ impl Service<http::Request<tonic::body::Body>> for OfPage {
     }
 
     fn call(&mut self, request: http::Request<tonic::body::Body>) -> Self::Future {
-        let Self { calls, visit } = self.clone();
+        let Self {
+            calls,
+            route,
+            visit,
+        } = self.clone();
         Box::pin(async move {
             let Some(mut visit) = visit.lock().take() else {
-                return Ok(grpc::unimplemented().map(Body::new));
+                return Ok(grpc::unimplemented());
             };
             visit.request = request.map(Body::new);
-            Ok(calls.on_terms(visit).await)
+            Ok(calls.in_time(route, visit).await)
         })
     }
 }

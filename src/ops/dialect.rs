@@ -8,7 +8,7 @@ use strew_service::Interrupted;
 
 use super::metrics::Protocol;
 use crate::{
-    body::{Body, BoxError, Response},
+    body::{BoxError, Response},
     grpc,
     rest::Refused,
 };
@@ -67,7 +67,7 @@ impl Dialect {
     /// An error as a whole answer.
     pub(super) fn refusal(self, error: &Error) -> Response {
         if self.is_call() {
-            grpc::refusal(error).map(Body::new)
+            grpc::refusal(error)
         } else {
             Refused(error.clone()).response()
         }

@@ -42,7 +42,7 @@ pub(super) struct Front {
 
 /// What a path leads to.
 enum Place<'a> {
-    Call(&'static str),
+    Call(grpc::Route),
     Rest(Found<'a>),
     Nothing,
 }
@@ -51,7 +51,7 @@ impl Place<'_> {
     /// The route, as metrics and logs name it: never the path as it was written.
     fn name(&self) -> &'static str {
         match self {
-            Self::Call(name) => name,
+            Self::Call(route) => route.name,
             Self::Rest(found) => found.path(),
             Self::Nothing => NO_ROUTE,
         }
@@ -85,8 +85,8 @@ impl Front {
 
     fn place(&self, path: &str) -> Place<'_> {
         let call = self.calls.as_ref().and_then(|_| grpc::route(path));
-        if let Some(name) = call {
-            return Place::Call(name);
+        if let Some(route) = call {
+            return Place::Call(route);
         }
         self.routes.find(path).map_or(Place::Nothing, Place::Rest)
     }
@@ -112,9 +112,9 @@ impl Front {
     /// The answer of what the path leads to.
     async fn placed(self: &Arc<Self>, place: Place<'_>, visit: Box<Visit>) -> Response {
         match (place, &self.calls) {
-            (Place::Call(_), Some(calls)) => {
+            (Place::Call(route), Some(calls)) => {
                 // On the heap, lest all requests have room for a call.
-                Box::pin(calls.answer(visit)).await
+                Box::pin(calls.answer(route, visit)).await
             }
             (Place::Rest(found), _) if found.is_open() => {
                 let answer = |request| found.answer(request, Caller::default());
@@ -143,7 +143,7 @@ impl Front {
                 let dialect = visit.dialect;
                 let answer = |request: Request| -> Answering {
                     Box::pin(ready(match dialect.is_call() {
-                        true => grpc::unimplemented().map(Body::new),
+                        true => grpc::unimplemented(),
                         false => self.routes.nothing(request.uri().path()),
                     }))
                 };

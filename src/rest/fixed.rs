@@ -59,9 +59,8 @@ impl Fixed {
     pub(super) fn answer(&self, uri: &Uri, headers: &HeaderMap) -> Response {
         let inner = &*self.inner;
         let freshness = Freshness::of(uri, headers, inner.content_type, &inner.digest);
-        let unchanged = freshness.unchanged(headers);
-        if let Some(unchanged) = unchanged.or_else(|| freshness.unwanted(headers)) {
-            return unchanged;
+        if freshness.is_listed(headers) || Freshness::is_any_unwanted(headers) {
+            return freshness.not_modified();
         }
         let chosen = freshness.coding();
         let coded = inner

@@ -114,29 +114,19 @@ impl Freshness {
     /// # Errors
     /// As making it.
     pub(super) async fn answer(
-        &self,
+        self,
         headers: &HeaderMap,
         make: Pin<&mut impl Future<Output = Result<Response, Error>>>,
     ) -> Result<Response, Error> {
-        if let Some(unchanged) = self.unchanged(headers) {
-            return Ok(unchanged);
+        if self.is_listed(headers) {
+            return Ok(self.not_modified());
         }
         let mut response = make.await?;
-        if let Some(unwanted) = self.unwanted(headers) {
-            return Ok(unwanted);
+        if Self::is_any_unwanted(headers) {
+            return Ok(self.not_modified());
         }
         self.stamp(&mut response);
         Ok(response)
-    }
-
-    /// The answer to a client that has the current copy.
-    pub(super) fn unchanged(&self, headers: &HeaderMap) -> Option<Response> {
-        self.listed(headers).then(|| self.not_modified())
-    }
-
-    /// The 304 for `If-None-Match: *`. Call it only once the resource is known to exist.
-    pub(super) fn unwanted(&self, headers: &HeaderMap) -> Option<Response> {
-        Self::is_any_unwanted(headers).then(|| self.not_modified())
     }
 
     /// Whether a client wants no answer if there is any.
@@ -146,9 +136,8 @@ impl Freshness {
     }
 
     /// Puts what caches need onto an answer.
-    pub(super) fn stamp(&self, response: &mut Response) {
-        let tag = self.tag.clone();
-        response.headers_mut().insert(header::ETAG, tag);
+    pub(super) fn stamp(self, response: &mut Response) {
+        response.headers_mut().insert(header::ETAG, self.tag);
         // Of another type than text no coding would be chosen later, either.
         if self.is_text {
             response.extensions_mut().insert(Decided(self.coding));
@@ -161,8 +150,11 @@ impl Freshness {
         }
     }
 
-    fn not_modified(&self) -> Response {
+    /// The answer to a client that has the current copy, or wants none if there is any.
+    pub(super) fn not_modified(self) -> Response {
         let mut response = Response::new(Body::empty());
+        // With what is put onto it later there are a dozen: a map that grows is filled anew.
+        response.headers_mut().reserve(12);
         *response.status_mut() = StatusCode::NOT_MODIFIED;
         self.stamp(&mut response);
         response
@@ -170,7 +162,7 @@ impl Freshness {
 
     /// Whether one of the tags in `If-None-Match` is ours, by weak comparison. Our tags hold
     /// neither commas nor quotes, so that splitting at commas cannot fake one.
-    fn listed(&self, headers: &HeaderMap) -> bool {
+    pub(super) fn is_listed(&self, headers: &HeaderMap) -> bool {
         let ours = self.tag.as_bytes();
         headers
             .get_all(header::IF_NONE_MATCH)
@@ -256,7 +248,7 @@ mod tests {
                 let line = HeaderValue::from_str(line).expect("text");
                 headers.append(header::IF_NONE_MATCH, line);
             }
-            ours.unchanged(&headers).is_some()
+            ours.is_listed(&headers)
         };
         assert!(listed(std::slice::from_ref(&tag)));
         assert!(listed(&[format!("W/{tag}")]));

@@ -54,14 +54,6 @@ impl Drop for Place {
 }
 
 impl Caller {
-    /// The caller of a request that passed the gate.
-    ///
-    /// # Errors
-    /// [`Denied::NoKey`] for a request that did not pass the gate.
-    pub fn noted(noted: Option<&Self>) -> Result<Self, Denied> {
-        noted.cloned().ok_or(Denied::NoKey)
-    }
-
     /// A caller at the administrators' address.
     #[must_use]
     pub fn admin() -> Self {

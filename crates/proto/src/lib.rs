@@ -1,4 +1,4 @@
-//! The contract of `proto/strew/v1/` in Rust: its messages, its server and client, and its descriptors.
+//! The contract of `proto/strew/v1/` in Rust: its messages, its client and its descriptors.
 //!
 //! Everything is generated and kept in the repository, so that a build needs no compiler of contracts. After a change of
 //! a `.proto` file, `UPDATE_GOLDEN=1 cargo test -p strew-proto` writes it anew; without the variable the test compares.

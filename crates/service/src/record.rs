@@ -35,7 +35,7 @@ pub struct Record {
     is_making: AtomicBool,
     is_expected: AtomicBool,
     code: AtomicU32,
-    clock: Arc<Clock>,
+    clock: Clock,
     /// The memory of what the request has brought along.
     held: Mutex<Option<Held>>,
 }
@@ -71,7 +71,7 @@ impl Record {
             is_making: AtomicBool::new(false),
             is_expected: AtomicBool::new(false),
             code: AtomicU32::new(NONE),
-            clock: Arc::default(),
+            clock: Clock::default(),
             held: Mutex::default(),
         })
     }
@@ -131,7 +131,7 @@ impl Record {
 
     /// How long the request has waited for turns.
     #[must_use]
-    pub const fn clock(&self) -> &Arc<Clock> {
+    pub const fn clock(&self) -> &Clock {
         &self.clock
     }
 

@@ -1,6 +1,9 @@
 // This file is @generated from proto/strew/v1.
 /// The most fields of a message.
 const MOST_FIELDS: usize = 27;
+/// The number of shapes that are requests: the first ones.
+#[cfg(test)]
+pub(super) const REQUESTS: usize = 14;
 pub(super) static SHAPES: [Shape; 51] = [
     Shape {
         bytes: size_of::<proto::StreamPointsRequest>(),
@@ -952,82 +955,5 @@ pub(super) static SHAPES: [Shape; 51] = [
         bytes: size_of::<proto::FieldBox>(),
         is_field: false,
         fields: &[],
-    },
-];
-pub(super) static METHODS: &[Method] = &[
-    Method {
-        path: "/strew.v1.PointService/StreamPoints",
-        shape: 0,
-        decode: decoded::<proto::StreamPointsRequest>,
-    },
-    Method {
-        path: "/strew.v1.PointService/CountPoints",
-        shape: 1,
-        decode: decoded::<proto::CountPointsRequest>,
-    },
-    Method {
-        path: "/strew.v1.PointService/SplitPoints",
-        shape: 2,
-        decode: decoded::<proto::SplitPointsRequest>,
-    },
-    Method {
-        path: "/strew.v1.PointService/GetPoint",
-        shape: 3,
-        decode: decoded::<proto::GetPointRequest>,
-    },
-    Method {
-        path: "/strew.v1.PointService/FindNearest",
-        shape: 4,
-        decode: decoded::<proto::FindNearestRequest>,
-    },
-    Method {
-        path: "/strew.v1.PointService/ListProfiles",
-        shape: 5,
-        decode: decoded::<proto::ListProfilesRequest>,
-    },
-    Method {
-        path: "/strew.v1.PointService/ListPeriods",
-        shape: 6,
-        decode: decoded::<proto::ListPeriodsRequest>,
-    },
-    Method {
-        path: "/strew.v1.PointService/GetMask",
-        shape: 7,
-        decode: decoded::<proto::GetMaskRequest>,
-    },
-    Method {
-        path: "/strew.v1.PointService/ListFields",
-        shape: 8,
-        decode: decoded::<proto::ListFieldsRequest>,
-    },
-    Method {
-        path: "/strew.v1.PointService/ListWorlds",
-        shape: 9,
-        decode: decoded::<proto::ListWorldsRequest>,
-    },
-    Method {
-        path: "/strew.v1.PointService/ForgeTable",
-        shape: 10,
-        decode: decoded::<proto::ForgeTableRequest>,
-    },
-    Method {
-        path: "/strew.v1.PointService/GetArrangement",
-        shape: 11,
-        decode: decoded::<proto::ArrangementRequest>,
-    },
-    Method {
-        path: "/strew.v1.PointService/ListOccurrences",
-        shape: 11,
-        decode: decoded::<proto::ArrangementRequest>,
-    },
-    Method {
-        path: "/strew.v1.PointService/GetClusters",
-        shape: 12,
-        decode: decoded::<proto::ClustersRequest>,
-    },
-    Method {
-        path: "/strew.v1.PointService/GetMap",
-        shape: 13,
-        decode: decoded::<proto::MapRequest>,
     },
 ];

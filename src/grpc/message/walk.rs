@@ -4,10 +4,6 @@
 //! An empty layer is 2 bytes on the wire and 2 kB in memory, and a decoder joins messages that occur twice where
 //! the contract has one. So the limits of a query, which is checked once it is read, would come too late.
 
-use std::any::Any;
-
-use bytes::Bytes;
-use prost::{DecodeError, Message};
 use strew_config::Limits;
 use strew_error::{Error, Fault};
 
@@ -46,22 +42,7 @@ pub(super) enum Kind {
     Message(usize),
 }
 
-/// A method, and how its request is decoded.
-#[derive(Debug)]
-pub(super) struct Method {
-    pub(super) path: &'static str,
-    pub(super) shape: usize,
-    pub(super) decode: fn(Bytes) -> Result<Decoded, DecodeError>,
-}
-
-/// A request of any method.
-pub(super) type Decoded = Box<dyn Any + Send>;
-
-fn decoded<M: Message + Default + 'static>(bytes: Bytes) -> Result<Decoded, DecodeError> {
-    Ok(Box::new(M::decode(bytes)?))
-}
-
-// Made from the contract: `SHAPES`, the messages that requests are made of, and `METHODS`.
+// Made from the contract: `SHAPES`, the messages that requests are made of.
 include!("../generated/shapes.rs");
 
 /// The price of a message.

@@ -1,5 +1,5 @@
-//! The shapes of the messages that requests are made of, as a table for the look at a message before it is
-//! decoded (`src/grpc/message/walk.rs`).
+//! The methods of the contract, and the shapes of the messages that requests are made of, as tables: for calls
+//! (`src/grpc/methods.rs`) and for the look at a message before it is decoded (`src/grpc/message/walk.rs`).
 
 use std::{error::Error, fmt::Write as _};
 
@@ -8,8 +8,14 @@ use prost_types::{
     field_descriptor_proto::{Label, Type},
 };
 
-/// The code of the table. A repeated field needs a limit, by its name, in `src/grpc/message/most.rs`.
-pub fn code(descriptors: &FileDescriptorSet) -> Result<String, Box<dyn Error>> {
+/// The code of the tables.
+pub struct Code {
+    pub shapes: String,
+    pub methods: String,
+}
+
+/// Writes the tables. A repeated field needs a limit, by its name, in `src/grpc/message/most.rs`.
+pub fn code(descriptors: &FileDescriptorSet) -> Result<Code, Box<dyn Error>> {
     let files = || descriptors.file.iter();
     let mut known = vec![];
     for message in files().flat_map(|file| &file.message_type) {
@@ -33,13 +39,20 @@ pub fn code(descriptors: &FileDescriptorSet) -> Result<String, Box<dyn Error>> {
     let (mut wanted, mut of_methods): (Vec<String>, _) = (vec![], String::new());
     for method in methods {
         let at = place(&mut wanted, method.input_type());
-        let input = find(method.input_type())?.name();
+        let read = if method.server_streaming() {
+            "streamed"
+        } else {
+            "once"
+        };
         writeln!(
             of_methods,
-            "Method {{ path: \"/strew.v1.PointService/{}\", shape: {at}, decode: decoded::<proto::{input}> }},",
-            method.name()
+            "Method {{ path: \"/strew.v1.PointService/{}\", shape: {at}, read: |bytes| {read}(bytes, Points::{}) }},",
+            method.name(),
+            words(method.name()).to_lowercase()
         )?;
     }
+    // Requests are the first of the shapes.
+    let requests = wanted.len();
     let (mut shapes, mut most, mut i) = (String::new(), 0, 0);
     while let Some(name) = wanted.get(i).cloned() {
         let message = find(&name)?;
@@ -64,11 +77,17 @@ pub fn code(descriptors: &FileDescriptorSet) -> Result<String, Box<dyn Error>> {
         )?;
         i += 1;
     }
-    Ok(format!(
-        "/// The most fields of a message.\nconst MOST_FIELDS: usize = {most};\n\
-         pub(super) static SHAPES: [Shape; {i}] = [{shapes}];\n\
-         pub(super) static METHODS: &[Method] = &[{of_methods}];\n"
-    ))
+    Ok(Code {
+        shapes: format!(
+            "/// The most fields of a message.\nconst MOST_FIELDS: usize = {most};\n\
+             /// The number of shapes that are requests: the first ones.\n#[cfg(test)]\n\
+             pub(super) const REQUESTS: usize = {requests};\n\
+             pub(super) static SHAPES: [Shape; {i}] = [{shapes}];\n"
+        ),
+        methods: format!(
+            "/// The methods of the contract.\npub(super) static METHODS: &[Method] = &[{of_methods}];\n"
+        ),
+    })
 }
 
 /// The place of a message in the table.
@@ -103,14 +122,20 @@ fn limit(message: &DescriptorProto, field: &FieldDescriptorProto) -> String {
     if field.label() != Label::Repeated {
         return "most::ONCE".into();
     }
-    let mut name = String::new();
-    for (i, letter) in message.name().chars().enumerate() {
+    let name = format!("{}_{}", words(message.name()), field.name());
+    format!("most::{}", name.to_uppercase())
+}
+
+/// A name in camel case as words joined by underscores.
+fn words(name: &str) -> String {
+    let mut words = String::new();
+    for (i, letter) in name.chars().enumerate() {
         if i > 0 && letter.is_uppercase() {
-            name.push('_');
+            words.push('_');
         }
-        name.push(letter.to_ascii_uppercase());
+        words.push(letter);
     }
-    format!("most::{name}_{}", field.name().to_uppercase())
+    words
 }
 
 /// The type that a message is decoded to: of a map's entry a pair.

@@ -1,7 +1,7 @@
 //! The clock of a request, which stands still while its work waits for a turn.
 
 use std::{
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    sync::{Mutex, MutexGuard, PoisonError},
     time::{Duration, Instant},
 };
 
@@ -26,13 +26,15 @@ impl Clock {
         waited.before + waited.since.map_or(Duration::ZERO, |since| since.elapsed())
     }
 
-    fn wait(&self) {
+    /// Some of its work begins to wait.
+    pub(super) fn wait(&self) {
         let mut waited = self.lock();
         waited.waiting += 1;
         waited.since.get_or_insert_with(Instant::now);
     }
 
-    fn go_on(&self) {
+    /// Some of its work waits no longer.
+    pub(super) fn go_on(&self) {
         let mut waited = self.lock();
         waited.waiting -= 1;
         if waited.waiting == 0
@@ -47,40 +49,18 @@ impl Clock {
     }
 }
 
-/// Work that waits for its turn, until this is dropped.
-#[derive(Debug)]
-pub(super) struct Waiting(Option<Arc<Clock>>);
-
-impl Waiting {
-    /// Work of the request that has this clock, if it has one.
-    pub(super) fn of(clock: Option<Arc<Clock>>) -> Self {
-        if let Some(clock) = &clock {
-            clock.wait();
-        }
-        Self(clock)
-    }
-}
-
-impl Drop for Waiting {
-    fn drop(&mut self) {
-        if let Some(clock) = &self.0 {
-            clock.go_on();
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn a_request_waits_while_any_of_its_work_does() {
-        let clock = Arc::new(Clock::default());
-        let wait = || Waiting::of(Some(clock.clone()));
-        let (one, two) = (wait(), wait());
-        drop(one);
+        let clock = Clock::default();
+        clock.wait();
+        clock.wait();
+        clock.go_on();
         assert!(clock.lock().since.is_some());
-        drop(two);
+        clock.go_on();
         let waited = clock.waited();
         assert!(clock.lock().since.is_none() && clock.waited() == waited);
     }

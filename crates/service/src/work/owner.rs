@@ -4,7 +4,6 @@
 
 use std::sync::Arc;
 
-use super::clock::Waiting;
 use crate::{Budget, Record};
 
 /// The request that work is done for. Cheap to clone.
@@ -39,6 +38,21 @@ impl Owner {
 
     /// Waits for a turn until the guard is dropped.
     pub(super) fn wait(&self) -> Waiting {
-        Waiting::of(self.0.as_ref().map(|record| record.clock().clone()))
+        if let Some(record) = &self.0 {
+            record.clock().wait();
+        }
+        Waiting(self.clone())
+    }
+}
+
+/// Work that waits for its turn, until this is dropped.
+#[derive(Debug)]
+pub(super) struct Waiting(Owner);
+
+impl Drop for Waiting {
+    fn drop(&mut self) {
+        if let Some(record) = &self.0.0 {
+            record.clock().go_on();
+        }
     }
 }

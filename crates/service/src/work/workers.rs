@@ -12,7 +12,7 @@ use tokio::sync::oneshot;
 
 use super::{
     Owner,
-    clock::Waiting,
+    owner::Waiting,
     shift::Shift,
     turns::{Turn, Turns, Waiter},
 };
