@@ -3,6 +3,8 @@
 use alloc::{borrow::Cow, boxed::Box, string::String, string::ToString};
 use core::fmt;
 
+use crate::parts::NUMBERS;
+
 /// The reason why a request was refused.
 ///
 /// One opaque type serves the whole crate. Every error names the *field* that was wrong, the *value*
@@ -271,10 +273,19 @@ impl core::error::Error for Error {}
 /// A number for a message: plain digits, or an exponent where there would be too many.
 pub(crate) fn number(value: f64) -> String {
     let plain = value == 0.0 || !value.is_finite() || (1e-5..1e16).contains(&value.abs());
-    if plain {
+    if plain && NUMBERS {
         alloc::format!("{value}")
     } else {
+        exponential(value)
+    }
+}
+
+/// A number for a message, with an exponent.
+pub(crate) fn exponential(value: f64) -> String {
+    if NUMBERS {
         alloc::format!("{value:e}")
+    } else {
+        alloc::format!("#{:016x}", value.to_bits())
     }
 }
 

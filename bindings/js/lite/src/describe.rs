@@ -1,6 +1,10 @@
 //! Sets with attributes, and their values.
 
-use strew_core::{Attribute, Attributes, Column, Error, Point, PointSet, Variants};
+use alloc::{vec, vec::Vec};
+
+use strew_core::{
+    Attribute, Attributes, Column, Error, Exact, Format, Place, Point, PointSet, Points, Variants,
+};
 
 use crate::state::Planned;
 
@@ -55,14 +59,21 @@ impl Described {
 }
 
 impl Planned {
-    /// Values to be written over, one for each point.
-    pub fn room<T: Clone + Default>(&self) -> Vec<T> {
-        vec![T::default(); self.plan.count() as usize]
+    /// All points, in the one format that the walks of this module are compiled for.
+    pub fn places(&self) -> Vec<Place> {
+        let mut places = vec![Place::default(); self.plan.count() as usize];
+        self.plan.blocks::<Exact>().fill(&mut places);
+        places
+    }
+
+    /// All points in a format.
+    pub fn converted<F: Format>(&self) -> Vec<F::Item> {
+        self.plan.converted::<F>(&self.places())
     }
 
     /// The ids of all points, then the values of each attribute.
     pub fn words(&self) -> Vec<u64> {
-        let points = self.plan.to_vec();
+        let points = self.converted::<Points>();
         let ids = points
             .iter()
             .flat_map(|point| [point.id.x as u64, point.id.y as u64]);

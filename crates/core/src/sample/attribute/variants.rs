@@ -3,7 +3,7 @@
 use alloc::{string::String, sync::Arc, vec::Vec};
 use core::{fmt, str::FromStr};
 
-use crate::error::{Error, ErrorKind, number, shown};
+use crate::error::{Error, ErrorKind, exponential, number, shown};
 
 /// Named things with weights. Each point is one of them, with a probability in proportion to its
 /// weight.
@@ -166,7 +166,8 @@ fn thresholds(entries: &[Entry]) -> Arc<[u64]> {
 fn bad_weight(name: &str, weight: String) -> Error {
     let field = alloc::format!("the weight of variant `{name}`");
     let (min, max) = (Variants::MIN_WEIGHT, Variants::MAX_WEIGHT);
-    let allowed = alloc::format!("a number from {min:e} to {max:e}");
+    let [min, max] = [min, max].map(exponential);
+    let allowed = alloc::format!("a number from {min} to {max}");
     Error::new(ErrorKind::Variants, field, weight, allowed)
 }
 

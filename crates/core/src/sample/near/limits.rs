@@ -1,7 +1,7 @@
 //! The limits of searches, checked before the work.
 
 use crate::{
-    error::{Error, ErrorKind, number},
+    error::{Error, ErrorKind, exponential, number},
     sample::lattice::{LATTICE_LIMIT, Lattice},
     table::fixed,
 };
@@ -37,8 +37,9 @@ pub(super) fn check_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> Resul
     for (name, value) in ["x", "y"].into_iter().zip(at) {
         if value.abs() + radius > limit {
             let allowed = alloc::format!(
-                "within ±{limit:e}, with the radius searched, where f64 coordinates with this spacing \
-                 still keep neighbors apart"
+                "within ±{}, with the radius searched, where f64 coordinates with this spacing \
+                 still keep neighbors apart",
+                exponential(limit)
             );
             let error = Error::new(ErrorKind::TooFar, name, number(value), allowed);
             return Err(error.because("too far from the origin").with_limit(limit));
