@@ -285,8 +285,22 @@ pub(crate) fn exponential(value: f64) -> String {
     if NUMBERS {
         alloc::format!("{value:e}")
     } else {
-        alloc::format!("#{:016x}", value.to_bits())
+        bits(value)
     }
+}
+
+/// A number for a message, with some digits after the point.
+pub(crate) fn rounded(value: f64, digits: usize) -> String {
+    if NUMBERS {
+        alloc::format!("{value:.digits$}")
+    } else {
+        bits(value)
+    }
+}
+
+/// The bits of a number, where texts of numbers are left out.
+fn bits(value: f64) -> String {
+    alloc::format!("#{:016x}", value.to_bits())
 }
 
 /// Cuts long input for a message.

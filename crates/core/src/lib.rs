@@ -43,8 +43,18 @@
 //! The crate knows no network, no async runtime, no file system and no serialization framework.
 #![cfg_attr(not(feature = "std"), no_std)]
 #![cfg_attr(
-    not(all(feature = "clearance", feature = "fields")),
-    allow(dead_code, unused_imports, reason = "of the parts that are left out")
+    not(all(
+        feature = "clearance",
+        feature = "fields",
+        feature = "kinds",
+        feature = "polygons"
+    )),
+    allow(
+        dead_code,
+        unused_imports,
+        unused_variables,
+        reason = "of the parts that are left out"
+    )
 )]
 
 extern crate alloc;
@@ -61,6 +71,7 @@ mod parts;
 pub mod pattern;
 mod sample;
 pub mod server;
+mod sort;
 pub mod space;
 mod stop;
 pub mod table;

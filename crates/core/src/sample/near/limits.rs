@@ -1,7 +1,7 @@
 //! The limits of searches, checked before the work.
 
 use crate::{
-    error::{Error, ErrorKind, exponential, number},
+    error::{Error, ErrorKind, exponential, number, rounded},
     sample::lattice::{LATTICE_LIMIT, Lattice},
     table::fixed,
 };
@@ -93,7 +93,7 @@ pub(super) fn check_number(
 
 /// The error of a radius within which about `about` points lie.
 pub(super) fn too_many(radius: f64, about: f64, limit: usize) -> Error {
-    let problem = alloc::format!("about {about:.0} points lie within");
+    let problem = alloc::format!("about {} points lie within", rounded(about, 0));
     let allowed = alloc::format!("a radius with at most {limit} points");
     let error = Error::new(ErrorKind::TooMany, "radius", number(radius), allowed);
     error.because(problem).with_limit(limit as f64)
