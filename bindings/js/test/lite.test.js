@@ -113,6 +113,20 @@ test("what is wrong has its member, its value and what is allowed", () => {
     assert.throws(() => lite.points({ spacing: 1, bbox: [0, 0, 9, 9] }).document("csv"), { kind: "unsupported" });
 });
 
+test("numbers of errors of the module are those of the whole package", () => {
+    const far = { spacing: 1, bbox: [0, 0, 1e300, 1] };
+    const faults = [lite, whole].map((strew) => {
+        try {
+            return strew.points({ ...far, ...(strew === whole && { map: "s" }) }).count();
+        } catch (error) {
+            return error.faults[0];
+        }
+    });
+    assert.match(faults[0].detail, /too far from the origin|1e300/);
+    assert.equal(faults[0].allowed, faults[1].allowed);
+    assert.doesNotMatch(JSON.stringify(faults[0]), /#/);
+});
+
 test("sets that were dropped are made again, and freed plans have no points", () => {
     const first = lite.points({ spacing: 2, seed: 3, bbox: [0, 0, 20, 20] });
     const [xy, plan] = [first.xy(), first.plan()];

@@ -3,7 +3,7 @@
 use alloc::{borrow::Cow, boxed::Box, string::String, string::ToString};
 use core::fmt;
 
-use crate::parts::NUMBERS;
+use crate::parts::WORDS;
 
 /// The reason why a request was refused.
 ///
@@ -273,7 +273,7 @@ impl core::error::Error for Error {}
 /// A number for a message: plain digits, or an exponent where there would be too many.
 pub(crate) fn number(value: f64) -> String {
     let plain = value == 0.0 || !value.is_finite() || (1e-5..1e16).contains(&value.abs());
-    if plain && NUMBERS {
+    if plain && WORDS {
         alloc::format!("{value}")
     } else {
         exponential(value)
@@ -282,7 +282,7 @@ pub(crate) fn number(value: f64) -> String {
 
 /// A number for a message, with an exponent.
 pub(crate) fn exponential(value: f64) -> String {
-    if NUMBERS {
+    if WORDS {
         alloc::format!("{value:e}")
     } else {
         bits(value)
@@ -291,10 +291,20 @@ pub(crate) fn exponential(value: f64) -> String {
 
 /// A number for a message, with some digits after the point.
 pub(crate) fn rounded(value: f64, digits: usize) -> String {
-    if NUMBERS {
+    if WORDS {
         alloc::format!("{value:.digits$}")
     } else {
         bits(value)
+    }
+}
+
+/// A text in quotes, cut and escaped.
+pub(crate) fn quoted(text: &str) -> String {
+    let text = shown(text);
+    if WORDS {
+        alloc::format!("{text:?}")
+    } else {
+        ["\"", &text, "\""].concat()
     }
 }
 

@@ -11,8 +11,8 @@ pub(crate) const FIELDS: bool = cfg!(feature = "fields");
 /// Sets that keep clear of others.
 pub(crate) const CLEARANCE: bool = cfg!(feature = "clearance");
 
-/// Texts of numbers in errors, which take tables and long division.
-pub(crate) const NUMBERS: bool = cfg!(feature = "numbers");
+/// Numbers and escapes in the words of errors, which take tables and long division.
+pub(crate) const WORDS: bool = cfg!(feature = "words");
 
 /// The mark of what has kinds of points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -59,16 +59,19 @@ impl Described {
 }
 
 impl Planned {
-    /// All points, in the one format that the walks of this module are compiled for.
-    pub fn places(&self) -> Vec<Place> {
-        let mut places = vec![Place::default(); self.plan.count() as usize];
-        self.plan.blocks::<Exact>().fill(&mut places);
-        places
+    /// Hands all points to `take`, some at a time, in the one format that the walks of this module are compiled for.
+    fn walk(&self, take: &mut dyn FnMut(&[Place])) {
+        let (mut blocks, mut block) = (self.plan.blocks::<Exact>(), [Place::default(); 512]);
+        while let filled @ 1.. = blocks.fill(&mut block) {
+            take(&block[..filled]);
+        }
     }
 
     /// All points in a format.
     pub fn converted<F: Format>(&self) -> Vec<F::Item> {
-        self.plan.converted::<F>(&self.places())
+        let mut items = Vec::with_capacity(self.plan.count() as usize);
+        self.walk(&mut |places| items.extend(self.plan.converted::<F>(places)));
+        items
     }
 
     /// The ids of all points, then the values of each attribute.

@@ -19,7 +19,7 @@ use crate::sample::lattice::PointId;
 /// let (mut places, mut offsets) = ([Place::default(); 20], [[0.0; 2]; 20]);
 /// plan.blocks::<Exact>().fill(&mut places);
 /// plan.blocks_f32().fill(&mut offsets);
-/// assert_eq!(plan.converted::<F32>(&places), offsets);
+/// assert!(plan.converted::<F32>(&places).eq(offsets));
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug)]

@@ -253,13 +253,12 @@ impl Plan {
     /// let plan = PointSet::new(table).chunk(8.0, [3, -2])?;
     /// let mut places = vec![Place::default(); plan.len().expect("small")];
     /// plan.blocks::<Exact>().fill(&mut places);
-    /// assert_eq!(plan.converted::<Points>(&places), plan.to_vec());
+    /// assert!(plan.converted::<Points>(&places).eq(plan.to_vec()));
     /// # Ok::<(), strew_core::Error>(())
     /// ```
-    #[must_use]
-    pub fn converted<F: Format>(&self, places: &[Place]) -> Vec<F::Item> {
+    pub fn converted<F: Format>(&self, places: &[Place]) -> impl Iterator<Item = F::Item> {
         let format: F = format_of(&self.scope);
-        places.iter().map(|place| place.item(&format)).collect()
+        places.iter().map(move |place| place.item(&format))
     }
 
     /// The whole request cut into tiles of at most `max_points` points each, or one lattice row of a band
