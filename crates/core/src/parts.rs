@@ -3,7 +3,7 @@
 //! Without its feature a part has no methods, or constructors that return an error. The compiler drops the code behind a
 //! constant that is false, and behind a mark that has no values.
 
-use crate::error::{Error, ErrorKind};
+use crate::error::Error;
 
 /// Sets in fields.
 pub(crate) const FIELDS: bool = cfg!(feature = "fields");
@@ -26,7 +26,7 @@ impl OfKinds {
         #[cfg(feature = "kinds")]
         return Ok(Self::Built);
         #[cfg(not(feature = "kinds"))]
-        Err(missing(ErrorKind::Kinds, "kinds"))
+        Err(missing(crate::error::ErrorKind::Kinds, "kinds"))
     }
 }
 
@@ -42,12 +42,12 @@ impl OfPolygons {
         #[cfg(feature = "polygons")]
         return Ok(Self::Built);
         #[cfg(not(feature = "polygons"))]
-        Err(missing(ErrorKind::Area, "polygons"))
+        Err(missing(crate::error::ErrorKind::Area, "polygons"))
     }
 }
 
 #[cfg(not(all(feature = "kinds", feature = "polygons")))]
-fn missing(kind: ErrorKind, part: &'static str) -> Error {
+fn missing(kind: crate::error::ErrorKind, part: &'static str) -> Error {
     let allowed = "built in, by the feature of this name";
     Error::new(kind, part, "left out", allowed)
 }

@@ -281,7 +281,7 @@ fn splits(map: &Map, shares: &Shares, labels: &[u8]) -> Result<Vec<Split>, Error
 pub(crate) struct Labels {
     labels: Vec<u8>,
     splits: Vec<Strip>,
-    part: OfKinds,
+    _part: OfKinds,
 }
 
 /// A split block: its intervals of dX and dY, and the index dX from which on points are of another kind.
@@ -319,7 +319,7 @@ impl Labels {
         Self {
             labels,
             splits,
-            part: mix.part,
+            _part: mix.part,
         }
     }
 

@@ -43,7 +43,7 @@ pub struct Polygon {
     vertices: usize,
     min: [f64; 2],
     max: [f64; 2],
-    part: OfPolygons,
+    _part: OfPolygons,
 }
 
 impl Polygon {
@@ -76,7 +76,7 @@ impl Polygon {
             vertices: 0,
             min: [f64::INFINITY; 2],
             max: [f64::NEG_INFINITY; 2],
-            part: OfPolygons::get()?,
+            _part: OfPolygons::get()?,
         };
         for (which, ring) in rings.iter().enumerate() {
             polygon.add(which, ring.as_ref())?;

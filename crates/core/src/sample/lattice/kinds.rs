@@ -29,7 +29,7 @@ pub(crate) struct OneKind {
 #[derive(Clone, Debug)]
 pub(crate) struct Chosen {
     kind: Arc<OneKind>,
-    part: OfKinds,
+    _part: OfKinds,
 }
 
 impl Deref for Chosen {
@@ -82,7 +82,7 @@ impl OneKind {
         };
         Chosen {
             kind: Arc::new(of_kind),
-            part: mix.part(),
+            _part: mix.part(),
         }
     }
 

@@ -52,7 +52,7 @@ pub struct VaryingKinds {
     fields: Arc<[Option<Arc<dyn Field>>]>,
     /// The kinds as they lie in [0, 1).
     arranged: Arc<[u8]>,
-    part: OfKinds,
+    _part: OfKinds,
 }
 
 impl fmt::Debug for VaryingKinds {
@@ -101,7 +101,7 @@ impl VaryingKinds {
             arranged: arranged(shares.kinds()).into(),
             shares,
             fields: fields.into(),
-            part: OfKinds::get()?,
+            _part: OfKinds::get()?,
         })
     }
 
