@@ -294,7 +294,8 @@ pub(crate) fn rounded(value: f64, digits: usize) -> String {
     if WORDS {
         alloc::format!("{value:.digits$}")
     } else {
-        bits(value)
+        let scale = 10_u64.pow(digits as u32) as f64;
+        bits(libm::round(value * scale) / scale)
     }
 }
 
