@@ -3,7 +3,8 @@
 use alloc::{borrow::Cow, boxed::Box, string::String, string::ToString};
 use core::fmt;
 
-use crate::parts::WORDS;
+/// Whether the words of errors have decimal numbers and escapes, which take tables and long division.
+const WORDS: bool = cfg!(feature = "words");
 
 /// The reason why a request was refused.
 ///

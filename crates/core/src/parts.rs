@@ -4,15 +4,14 @@
 //! constant that is false, and behind a mark that has no values.
 
 use crate::error::Error;
+#[cfg(not(all(feature = "kinds", feature = "polygons")))]
+use crate::error::ErrorKind;
 
 /// Sets in fields.
 pub(crate) const FIELDS: bool = cfg!(feature = "fields");
 
 /// Sets that keep clear of others.
 pub(crate) const CLEARANCE: bool = cfg!(feature = "clearance");
-
-/// Numbers and escapes in the words of errors, which take tables and long division.
-pub(crate) const WORDS: bool = cfg!(feature = "words");
 
 /// The mark of what has kinds of points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +25,7 @@ impl OfKinds {
         #[cfg(feature = "kinds")]
         return Ok(Self::Built);
         #[cfg(not(feature = "kinds"))]
-        Err(missing(crate::error::ErrorKind::Kinds, "kinds"))
+        Err(missing(ErrorKind::Kinds, "kinds"))
     }
 }
 
@@ -42,12 +41,12 @@ impl OfPolygons {
         #[cfg(feature = "polygons")]
         return Ok(Self::Built);
         #[cfg(not(feature = "polygons"))]
-        Err(missing(crate::error::ErrorKind::Area, "polygons"))
+        Err(missing(ErrorKind::Area, "polygons"))
     }
 }
 
 #[cfg(not(all(feature = "kinds", feature = "polygons")))]
-fn missing(kind: crate::error::ErrorKind, part: &'static str) -> Error {
+fn missing(kind: ErrorKind, part: &'static str) -> Error {
     let allowed = "built in, by the feature of this name";
     Error::new(kind, part, "left out", allowed)
 }
