@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn digests_are_those_of_the_crate() {
-        let bytes: Vec<u8> = (0..9000u32).map(|i| (i * i >> 3) as u8).collect();
+        let bytes: Vec<u8> = (0..9000u32).map(|i| ((i * i) >> 3) as u8).collect();
         let near = [0, 64, 1024, 2048, 3072, 4096, 8192].map(|n: usize| n.saturating_sub(1)..n + 3);
         for length in near.into_iter().flatten().chain((0..9000).step_by(311)) {
             let bytes = &bytes[..length];
