@@ -16,7 +16,7 @@ function optimizer() {
 }
 
 /** Builds a crate as a module. Features of WebAssembly are those that it is compiled for. */
-function built(manifest, crate, module, features) {
+function built(manifest, crate, module, features, more = []) {
     const flags = `${process.env.RUSTFLAGS ?? ""} -C target-feature=${features.map((name) => `+${name}`).join()}`.trim();
     const how = ["--lib", "--profile", "wasm", "--target", TARGET, "--manifest-path", here(manifest)];
     execFileSync("cargo", ["build", "--locked", ...how], {
@@ -27,7 +27,7 @@ function built(manifest, crate, module, features) {
     const known = ["nontrapping-float-to-int", "sign-ext", "mutable-globals", "multivalue", "reference-types"];
     const enabled = [...known, ...features.map((name) => name.replace("128", ""))].map((name) => `--enable-${name}`);
     const [program, ...first] = optimizer();
-    const options = [...first, "-Oz", "--strip-debug", "--strip-producers", ...enabled, from, "-o", module];
+    const options = [...first, "-Oz", "--strip-debug", "--strip-producers", ...enabled, ...more, from, "-o", module];
     try {
         execFileSync(program, options, { stdio: "inherit" });
         console.log(`${basename(module)}: wasm-opt ${statSync(from).size} to ${statSync(module).size} bytes`);
@@ -40,8 +40,8 @@ function built(manifest, crate, module, features) {
 mkdirSync(here("lib/tables"), { recursive: true });
 mkdirSync(here("lib/embedded"), { recursive: true });
 built("../c/Cargo.toml", "strew_c", here("lib/strew.wasm"), ["simd128", "bulk-memory"]);
-// Without vectors it is smaller by 8 kB, and has the same bits.
-built("lite/Cargo.toml", "strew_lite", here("lib/lite.wasm"), ["bulk-memory"]);
+// Without vectors it is smaller by 8 kB, and has the same bits; it only takes square roots by them.
+built("lite/Cargo.toml", "strew_lite", here("lib/lite.wasm"), ["bulk-memory"], ["--enable-simd"]);
 
 // The tables of this package, and all of them in a package of their own, each with a module that bundlers understand.
 const OWN = ["blue-5-sqrt3-over-2-m.strew", "blue-5-sqrt3-over-2-s.strew", "space-blue-5-sqrt3-over-2-r16.strew"];

@@ -2,6 +2,14 @@
 
 import { StrewError } from "./error.js";
 
+// The module writes numbers of its errors as their bits.
+const BITS = /#([0-9a-f]{16})/g;
+const decimal = (_, bits) => {
+    const value = new DataView(BigUint64Array.of(BigInt(`0x${bits}`)).buffer).getFloat64(0, true);
+    const size = Math.abs(value);
+    return size === 0 || (1e-5 <= size && size < 1e16) ? `${value}` : value.toExponential().replace("+", "");
+};
+
 const ENCODER = new TextEncoder();
 const DECODER = new TextDecoder();
 
@@ -26,7 +34,7 @@ export class LiteModule {
     call(name, field, ...values) {
         const result = this.calls[name](...values);
         if (result !== -1) return result;
-        const words = DECODER.decode(this.output());
+        const words = DECODER.decode(this.output()).replace(BITS, decimal);
         const [part, value, problem, allowed] = words.split("\0");
         const detail = problem || `${part} is ${value}`;
         throw new StrewError(`\`${field}\`: ${detail}; allowed: ${allowed}`, "invalid-query", [

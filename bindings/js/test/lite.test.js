@@ -113,6 +113,21 @@ test("what is wrong has its member, its value and what is allowed", () => {
     assert.throws(() => lite.points({ spacing: 1, bbox: [0, 0, 9, 9] }).document("csv"), { kind: "unsupported" });
 });
 
+test("numbers of errors of the module are those of the whole package", () => {
+    const far = { spacing: 1, bbox: [0, 0, 1e300, 1] };
+    const faults = [lite, whole].map((strew) => {
+        try {
+            return strew.points({ ...far, ...(strew === whole && { map: "s" }) }).count();
+        } catch (error) {
+            return error.faults[0];
+        }
+    });
+    const limit = /within ±[\d.]+/;
+    assert.equal(faults[0].value, "1e300");
+    assert.deepEqual(faults[0].allowed.match(limit)[0], faults[1].allowed.match(limit)[0]);
+    assert.throws(() => lite.points({ spacing: 1 }).nearest([0, 0], { radius: 1000 }), /about 3141593 points lie within/);
+});
+
 test("sets that were dropped are made again, and freed plans have no points", () => {
     const first = lite.points({ spacing: 2, seed: 3, bbox: [0, 0, 20, 20] });
     const [xy, plan] = [first.xy(), first.plan()];

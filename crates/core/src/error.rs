@@ -3,6 +3,9 @@
 use alloc::{borrow::Cow, boxed::Box, string::String, string::ToString};
 use core::fmt;
 
+/// Whether the words of errors have decimal numbers and escapes, which take tables and long division.
+const WORDS: bool = cfg!(feature = "words");
+
 /// The reason why a request was refused.
 ///
 /// One opaque type serves the whole crate. Every error names the *field* that was wrong, the *value*
@@ -271,11 +274,45 @@ impl core::error::Error for Error {}
 /// A number for a message: plain digits, or an exponent where there would be too many.
 pub(crate) fn number(value: f64) -> String {
     let plain = value == 0.0 || !value.is_finite() || (1e-5..1e16).contains(&value.abs());
-    if plain {
+    if plain && WORDS {
         alloc::format!("{value}")
     } else {
-        alloc::format!("{value:e}")
+        exponential(value)
     }
+}
+
+/// A number for a message, with an exponent.
+pub(crate) fn exponential(value: f64) -> String {
+    if WORDS {
+        alloc::format!("{value:e}")
+    } else {
+        bits(value)
+    }
+}
+
+/// A number for a message, with some digits after the point.
+pub(crate) fn rounded(value: f64, digits: usize) -> String {
+    if WORDS {
+        alloc::format!("{value:.digits$}")
+    } else {
+        let scale = 10_u64.pow(digits as u32) as f64;
+        bits(libm::round(value * scale) / scale)
+    }
+}
+
+/// A text in quotes, cut and escaped.
+pub(crate) fn quoted(text: &str) -> String {
+    let text = shown(text);
+    if WORDS {
+        alloc::format!("{text:?}")
+    } else {
+        ["\"", &text, "\""].concat()
+    }
+}
+
+/// The bits of a number, where texts of numbers are left out.
+fn bits(value: f64) -> String {
+    alloc::format!("#{:016x}", value.to_bits())
 }
 
 /// Cuts long input for a message.

@@ -42,6 +42,20 @@
 //!
 //! The crate knows no network, no async runtime, no file system and no serialization framework.
 #![cfg_attr(not(feature = "std"), no_std)]
+#![cfg_attr(
+    not(all(
+        feature = "clearance",
+        feature = "fields",
+        feature = "kinds",
+        feature = "polygons"
+    )),
+    allow(
+        dead_code,
+        unused_imports,
+        unused_variables,
+        reason = "of the parts that are left out"
+    )
+)]
 
 extern crate alloc;
 #[cfg(feature = "std")]
@@ -53,9 +67,11 @@ mod error;
 pub mod field;
 pub mod map;
 mod once;
+mod parts;
 pub mod pattern;
 mod sample;
 pub mod server;
+mod sort;
 pub mod space;
 mod stop;
 pub mod table;
@@ -65,10 +81,10 @@ pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
 pub use sample::{
     Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column,
-    Cursor, F32, F64, Field, Format, Keep, Kind, Kinds, LATTICE_LIMIT, LeastDistance, Member,
-    Members, Neighbor, Offsets, Placement, Plan, Point, PointId, PointSet, Points, Polygon, Raster,
-    Region, ScaleRange, Seed, Settle, Spacing, Tile, UniformNumber, VariantScales, Variants,
-    VaryingKinds, Warp,
+    Cursor, Exact, F32, F64, Field, Format, Keep, Kind, Kinds, LATTICE_LIMIT, LeastDistance,
+    Member, Members, Neighbor, Offsets, Place, Placement, Plan, Point, PointId, PointSet, Points,
+    Polygon, Raster, Region, ScaleRange, Seed, Settle, Spacing, Tile, UniformNumber, VariantScales,
+    Variants, VaryingKinds, Warp,
 };
 pub use sample::{PeriodicBlocks, PeriodicPlan, PeriodicSet};
 pub use table::Table;

@@ -1,12 +1,17 @@
-//! Values that are computed once. Without the standard library, which has the cell, they are computed
-//! each time.
+//! Values that are computed once. Without a cell for them, of the standard library or of the feature `cells`, they are
+//! computed each time.
+
+#[cfg(all(feature = "cells", not(feature = "std")))]
+use alloc::boxed::Box;
 
 /// The value of a computation that always has the same result.
 #[derive(Debug, Default)]
 pub(crate) struct Once<T> {
     #[cfg(feature = "std")]
     cell: std::sync::OnceLock<T>,
-    #[cfg(not(feature = "std"))]
+    #[cfg(all(feature = "cells", not(feature = "std")))]
+    cell: once_cell::race::OnceBox<T>,
+    #[cfg(not(any(feature = "cells", feature = "std")))]
     of: core::marker::PhantomData<T>,
 }
 
@@ -15,7 +20,9 @@ impl<T: Clone> Once<T> {
         Self {
             #[cfg(feature = "std")]
             cell: std::sync::OnceLock::new(),
-            #[cfg(not(feature = "std"))]
+            #[cfg(all(feature = "cells", not(feature = "std")))]
+            cell: once_cell::race::OnceBox::new(),
+            #[cfg(not(any(feature = "cells", feature = "std")))]
             of: core::marker::PhantomData,
         }
     }
@@ -24,7 +31,9 @@ impl<T: Clone> Once<T> {
     pub(crate) fn get_or(&self, compute: impl FnOnce() -> T) -> T {
         #[cfg(feature = "std")]
         return self.cell.get_or_init(compute).clone();
-        #[cfg(not(feature = "std"))]
+        #[cfg(all(feature = "cells", not(feature = "std")))]
+        return self.cell.get_or_init(|| Box::new(compute())).clone();
+        #[cfg(not(any(feature = "cells", feature = "std")))]
         compute()
     }
 }

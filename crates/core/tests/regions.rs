@@ -5,7 +5,7 @@ mod subject;
 use proptest::prelude::*;
 use rayon::prelude::*;
 use strew_core::{
-    Backend, F32, F64, LATTICE_LIMIT, Offsets, Pattern, Placement, Point, PointId, PointSet,
+    Backend, Exact, F32, F64, LATTICE_LIMIT, Offsets, Pattern, Placement, Point, PointId, PointSet,
     Points, Region, Spacing, Warp, table::FRACTION_BITS,
 };
 use subject::{all, all_by, any_seed, any_table, definition, in_order_of_ids, set, tables, unit};
@@ -178,6 +178,11 @@ proptest! {
 
         let (min, max) = (region.min(), region.max());
         let offsets = all::<Offsets>(&plan, block);
+        let places = all::<Exact>(&plan, block);
+        prop_assert!(plan.converted::<Offsets>(&places).eq(offsets.iter().copied()));
+        prop_assert!(plan.converted::<F32>(&places).eq(all::<F32>(&plan, block)));
+        prop_assert!(plan.converted::<Points>(&places).eq(plan.to_vec()));
+        prop_assert!(places.iter().map(|place| place.id()).eq(plan.iter().map(|member| member.id())));
         for ((relative, p), exact) in all::<F32>(&plan, block).iter().zip(&pairs).zip(offsets) {
             for axis in 0..2 {
                 let extent = max[axis] - min[axis];

@@ -1,6 +1,10 @@
 //! Sets with attributes, and their values.
 
-use strew_core::{Attribute, Attributes, Column, Error, Point, PointSet, Variants};
+use alloc::{vec, vec::Vec};
+
+use strew_core::{
+    Attribute, Attributes, Column, Error, Exact, Format, Place, Point, PointSet, Points, Variants,
+};
 
 use crate::state::Planned;
 
@@ -55,14 +59,24 @@ impl Described {
 }
 
 impl Planned {
-    /// Values to be written over, one for each point.
-    pub fn room<T: Clone + Default>(&self) -> Vec<T> {
-        vec![T::default(); self.plan.count() as usize]
+    /// Hands all points to `take`, some at a time, in the one format that the walks of this module are compiled for.
+    fn walk(&self, take: &mut dyn FnMut(&[Place])) {
+        let (mut blocks, mut block) = (self.plan.blocks::<Exact>(), [Place::default(); 512]);
+        while let filled @ 1.. = blocks.fill(&mut block) {
+            take(&block[..filled]);
+        }
+    }
+
+    /// All points in a format.
+    pub fn converted<F: Format>(&self) -> Vec<F::Item> {
+        let mut items = Vec::with_capacity(self.plan.count() as usize);
+        self.walk(&mut |places| items.extend(self.plan.converted::<F>(places)));
+        items
     }
 
     /// The ids of all points, then the values of each attribute.
     pub fn words(&self) -> Vec<u64> {
-        let points = self.plan.to_vec();
+        let points = self.converted::<Points>();
         let ids = points
             .iter()
             .flat_map(|point| [point.id.x as u64, point.id.y as u64]);

@@ -4,19 +4,35 @@
 //! Calls take numbers. What is longer than a number goes through two buffers of the module: [`input`] makes room that
 //! the caller writes to, and after a call [`output`] is where its result lies, or the words of its error. Tables, sets
 //! and plans are numbers of their places in lists. A call returns −1 if it fails. No block is unsafe: exported functions
-//! have attributes that keep their names.
+//! have attributes that keep their names. Without the standard library no panic has words: it is a trap.
+
+#![no_std]
+
+extern crate alloc;
 
 mod describe;
 mod output;
 mod state;
 
-use strew_core::{Circle, Error, F32, Offsets, PointId, PointSet, Region, Table};
+use alloc::vec::Vec;
+use core::panic::PanicInfo;
+
+use dlmalloc::GlobalDlmalloc;
+use strew_core::{Circle, Error, F32, F64, Offsets, PointId, PointSet, Region, Table};
 
 use crate::{
     describe::{Described, described},
     output::Output,
     state::{Planned, State, with},
 };
+
+#[global_allocator]
+static ALLOCATOR: GlobalDlmalloc = GlobalDlmalloc;
+
+#[panic_handler]
+fn trap(_: &PanicInfo) -> ! {
+    core::arch::wasm32::unreachable()
+}
 
 /// The result of a call that fails.
 const FAILED: i32 = -1;
@@ -177,7 +193,11 @@ pub extern "C" fn coordinates(plan: u32) -> i32 {
         let Some(planned) = state.plans.get(plan) else {
             return FAILED;
         };
-        state.output = Output::Places(planned.places());
+        state.output = Output::Places(if planned.relative {
+            planned.converted::<Offsets>()
+        } else {
+            planned.converted::<F64>()
+        });
         0
     })
 }
@@ -189,9 +209,7 @@ pub extern "C" fn offsets(plan: u32) -> i32 {
         let Some(planned) = state.plans.get(plan) else {
             return FAILED;
         };
-        let mut places = planned.room();
-        planned.plan.blocks::<F32>().fill(&mut places);
-        state.output = Output::Near(places);
+        state.output = Output::Near(planned.converted::<F32>());
         0
     })
 }
@@ -263,20 +281,4 @@ pub extern "C" fn free_set(set: u32) {
 #[unsafe(no_mangle)]
 pub extern "C" fn free_output() {
     with(|state| state.output = Output::default());
-}
-
-impl Planned {
-    fn places(&self) -> Vec<[f64; 2]> {
-        let mut places = self.room();
-        if self.relative {
-            self.plan.blocks::<Offsets>().fill(&mut places);
-        } else {
-            let points = self.plan.to_vec();
-            places
-                .iter_mut()
-                .zip(points)
-                .for_each(|(place, point)| *place = point.at());
-        }
-        places
-    }
 }

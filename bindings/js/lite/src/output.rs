@@ -1,5 +1,7 @@
 //! What a call leaves for its caller.
 
+use alloc::{string::String, vec, vec::Vec};
+
 use strew_core::Error;
 
 /// The output of a call.

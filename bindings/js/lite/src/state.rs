@@ -1,7 +1,8 @@
 //! What the module holds between calls.
 
-use std::cell::RefCell;
+use alloc::vec::Vec;
 
+use spin::Mutex;
 use strew_core::{BoundAttributes, Plan, Table};
 
 use crate::{describe::Described, output::Output};
@@ -63,19 +64,15 @@ pub struct State {
     pub plans: List<Planned>,
 }
 
-thread_local! {
-    static STATE: RefCell<State> = const {
-        RefCell::new(State {
-            input: vec![],
-            output: Output::Words(vec![]),
-            tables: List(vec![]),
-            sets: List(vec![]),
-            plans: List(vec![]),
-        })
-    };
-}
+static STATE: Mutex<State> = Mutex::new(State {
+    input: Vec::new(),
+    output: Output::Words(Vec::new()),
+    tables: List(Vec::new()),
+    sets: List(Vec::new()),
+    plans: List(Vec::new()),
+});
 
 /// Does something with all that is held.
 pub fn with<T>(work: impl FnOnce(&mut State) -> T) -> T {
-    STATE.with_borrow_mut(work)
+    work(&mut STATE.lock())
 }

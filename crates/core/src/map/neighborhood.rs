@@ -9,7 +9,7 @@ use super::{
     size::check_radius,
     twin::MAX_Q,
 };
-use crate::{error::Error, pattern::Alpha};
+use crate::{error::Error, pattern::Alpha, sort};
 
 /// The intervals of [0, t) for one α and one half-width R. Both axes share them.
 ///
@@ -53,14 +53,17 @@ impl Map {
     pub fn new(alpha: Alpha, radius: u32) -> Result<Self, Error> {
         check_radius(radius)?;
         let side = alpha.set_side();
-        let mut labeled: Vec<(u64, Label)> = cell::labels(radius)
+        let mut labeled: Vec<_> = cell::labels(radius)
             .map(|label| (label.index(alpha), label))
             .filter(|&(index, _)| index < side)
             .chain([(0, Label::ZERO), (side, Label::SET_SIDE)])
+            .enumerate()
             .collect();
-        labeled.sort_by_key(|&(index, _)| index);
-        labeled.dedup_by_key(|&mut (index, _)| index);
-        let (bounds, labels): (Vec<u64>, Vec<Label>) = labeled.into_iter().unzip();
+        // Of equal ones the first stays.
+        sort::by_key(&mut labeled, |&(i, (index, _))| (index, i));
+        labeled.dedup_by_key(|&mut (_, (index, _))| index);
+        let labeled = labeled.into_iter().map(|(_, labeled)| labeled);
+        let (bounds, labels): (Vec<u64>, Vec<Label>) = labeled.unzip();
         let (buckets, shift) = buckets(&bounds);
         Ok(Self {
             alpha,

@@ -59,7 +59,7 @@ pub use attribute::{
 };
 pub use cursor::Cursor;
 pub use field::{Edges, Field, FieldSpec, Filter, Marks, Noise, Pixels, Raster, Terrain};
-pub use kernel::{Backend, F32, F64, Format, Offsets, Points};
+pub use kernel::{Backend, Exact, F32, F64, Format, Offsets, Place, Points};
 pub use lattice::{Keep, LATTICE_LIMIT, Placement, Point, PointId, Settle, Spacing, VaryingKinds};
 pub use member::{Member, Members};
 pub use near::{Clearance, LeastDistance, Visits};

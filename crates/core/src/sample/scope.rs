@@ -12,7 +12,7 @@ use super::{
     sieve::Sieve,
 };
 use crate::{
-    error::{Error, ErrorKind, number},
+    error::{Error, ErrorKind, exponential, number},
     stop::Stop,
 };
 
@@ -182,8 +182,9 @@ impl Scope {
         for (name, value) in CORNERS.into_iter().zip([min_x, min_y, max_x, max_y]) {
             if value.abs() > limit {
                 let allowed = alloc::format!(
-                    "within ±{limit:e} with this spacing, where f64 coordinates still keep \
-                     neighbors apart"
+                    "within ±{} with this spacing, where f64 coordinates still keep \
+                     neighbors apart",
+                    exponential(limit)
                 );
                 let error = Error::new(ErrorKind::TooFar, name, number(value), allowed);
                 return Err(error.because("too far from the origin").with_limit(limit));

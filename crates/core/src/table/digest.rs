@@ -31,7 +31,10 @@ impl Digest {
     /// ```
     #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
-        Self(*blake3::hash(bytes).as_bytes())
+        #[cfg(feature = "digests")]
+        return Self(*::blake3::hash(bytes).as_bytes());
+        #[cfg(not(feature = "digests"))]
+        Self(super::blake3::hash(bytes))
     }
 
     /// The digest with these bytes.
@@ -77,7 +80,7 @@ impl FromStr for Digest {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self, Error> {
-        let hash = blake3::Hash::from_hex(text).map_err(|_| {
+        let hash = ::blake3::Hash::from_hex(text).map_err(|_| {
             Error::new(
                 ErrorKind::Digest,
                 "digest",

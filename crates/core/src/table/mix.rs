@@ -13,6 +13,7 @@ use super::{Shares, ranks::scattered};
 use crate::{
     error::{Error, ErrorKind},
     map::Map,
+    parts::OfKinds,
 };
 
 /// A block with points of two kinds: those whose dX lies at least `offset` beyond the start of the block's
@@ -60,6 +61,7 @@ pub struct Mix {
     shares: Shares,
     labels: Vec<u8>,
     splits: Vec<Split>,
+    part: OfKinds,
 }
 
 impl Mix {
@@ -99,7 +101,12 @@ impl Mix {
             shares,
             labels,
             splits,
+            part: OfKinds::get()?,
         })
+    }
+
+    pub(crate) const fn part(&self) -> OfKinds {
+        self.part
     }
 
     /// A mix whose kinds are no more even than random ones: labels in a hashed order of the blocks. The forge makes
@@ -274,6 +281,7 @@ fn splits(map: &Map, shares: &Shares, labels: &[u8]) -> Result<Vec<Split>, Error
 pub(crate) struct Labels {
     labels: Vec<u8>,
     splits: Vec<Strip>,
+    _part: OfKinds,
 }
 
 /// A split block: its intervals of dX and dY, and the index dX from which on points are of another kind.
@@ -308,7 +316,11 @@ impl Labels {
             }
         });
         let splits = splits.collect();
-        Self { labels, splits }
+        Self {
+            labels,
+            splits,
+            _part: mix.part,
+        }
     }
 
     /// The kinds of all blocks, row by row. Of a split block, the kind of its first points.

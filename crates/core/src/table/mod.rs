@@ -22,6 +22,8 @@
 //! `symmetry` has the ways to turn all of these, `turned` a table that is turned, `shipped` the tables and labels built into
 //! this crate.
 
+#[cfg(any(test, not(feature = "digests")))]
+mod blake3;
 mod derived;
 mod digest;
 mod displacement;

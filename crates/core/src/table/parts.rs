@@ -4,7 +4,7 @@ use alloc::{format, string::String, vec::Vec};
 
 use super::{Displacement, FRACTION_BITS, MAX_DISPLACEMENT, Mix, Provenance, Ranks, to_grid_units};
 use crate::{
-    error::{Error, ErrorKind},
+    error::{Error, ErrorKind, number, quoted},
     map::Map,
 };
 
@@ -39,10 +39,11 @@ impl Parts {
         let too_long = |d: &Displacement| d.iter().any(|v| !(-limit < *v && *v < limit));
         if let Some(block) = self.displacements.iter().position(too_long) {
             let [x, y] = self.displacements[block].map(to_grid_units);
-            let allowed = format!("less than {MAX_DISPLACEMENT} grid units along an axis");
+            let most = number(MAX_DISPLACEMENT);
+            let allowed = format!("less than {most} grid units along an axis");
             return refused(
                 "displacements",
-                format!("({x}, {y}) in block {block}"),
+                format!("({}, {}) in block {block}", number(x), number(y)),
                 allowed,
             );
         }
@@ -71,6 +72,6 @@ pub(super) fn check_profile(profile: &str) -> Result<(), Error> {
         return Ok(());
     }
     let allowed = "1 to 32 characters of a-z, 0-9 and -";
-    let value = format!("{profile:?}");
+    let value = quoted(profile);
     Err(Error::new(ErrorKind::Table, "profile", value, allowed))
 }

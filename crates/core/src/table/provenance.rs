@@ -3,7 +3,7 @@
 use alloc::{format, string::String, vec::Vec};
 
 use crate::{
-    error::{Error, ErrorKind},
+    error::{Error, ErrorKind, number},
     map::Twin,
 };
 
@@ -131,7 +131,10 @@ impl Provenance {
             .flat_map(|f| &f.values)
             .find(|(_, v)| !v.is_finite());
         if let Some((name, value)) = not_finite {
-            return Err(refused(format!("{name} = {value}"), "finite".into()));
+            return Err(refused(
+                format!("{name} = {}", number(*value)),
+                "finite".into(),
+            ));
         }
         Ok(())
     }

@@ -18,6 +18,7 @@ use alloc::{sync::Arc, vec, vec::Vec};
 use crate::{
     error::{Error, ErrorKind},
     map::Map,
+    sort,
 };
 
 /// The order in which blocks leave: for each block its position, 0 for the one that leaves last.
@@ -92,7 +93,7 @@ impl Ranks {
 /// The numbers of blocks in a hashed order.
 pub(super) fn scattered(blocks: usize) -> Vec<u32> {
     let mut order: Vec<u32> = (0..blocks as u32).collect();
-    order.sort_unstable_by_key(|&block| scrambled(block.into()));
+    sort::by_key(&mut order, |&block| scrambled(block.into()));
     order
 }
 

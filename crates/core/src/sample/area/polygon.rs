@@ -7,7 +7,10 @@ use super::{
     edge::{Edge, is_odd},
     steps::{Reach, State, Stepper},
 };
-use crate::error::{Error, ErrorKind, number};
+use crate::{
+    error::{Error, ErrorKind, number},
+    parts::OfPolygons,
+};
 
 /// A polygon of one or more rings. A point is inside if a ray from it crosses the rings an odd number
 /// of times, so rings within rings are holes.
@@ -40,6 +43,7 @@ pub struct Polygon {
     vertices: usize,
     min: [f64; 2],
     max: [f64; 2],
+    _part: OfPolygons,
 }
 
 impl Polygon {
@@ -72,6 +76,7 @@ impl Polygon {
             vertices: 0,
             min: [f64::INFINITY; 2],
             max: [f64::NEG_INFINITY; 2],
+            _part: OfPolygons::get()?,
         };
         for (which, ring) in rings.iter().enumerate() {
             polygon.add(which, ring.as_ref())?;

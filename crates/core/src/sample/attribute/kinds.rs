@@ -3,7 +3,7 @@
 use core::{fmt, str::FromStr};
 
 use super::{Kinds, ScaleRange, VariantScales, Variants};
-use crate::error::{Error, ErrorKind, shown};
+use crate::error::{Error, ErrorKind, quoted};
 
 /// A value that every point has.
 ///
@@ -212,7 +212,7 @@ impl FromStr for Attribute {
             _ => match (1..).zip(UNIFORM_NAMES).find(|(_, name)| *name == text) {
                 Some((n, _)) => Self::uniform(n),
                 None => {
-                    let value = alloc::format!("{:?}", shown(text));
+                    let value = quoted(text);
                     let allowed =
                         "angle, scale, variant, rank or u1 to u16, in space rotation for angle";
                     Err(Error::new(

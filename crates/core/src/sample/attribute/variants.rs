@@ -3,7 +3,7 @@
 use alloc::{string::String, sync::Arc, vec::Vec};
 use core::{fmt, str::FromStr};
 
-use crate::error::{Error, ErrorKind, number, shown};
+use crate::error::{Error, ErrorKind, exponential, number, quoted};
 
 /// Named things with weights. Each point is one of them, with a probability in proportion to its
 /// weight.
@@ -166,7 +166,8 @@ fn thresholds(entries: &[Entry]) -> Arc<[u64]> {
 fn bad_weight(name: &str, weight: String) -> Error {
     let field = alloc::format!("the weight of variant `{name}`");
     let (min, max) = (Variants::MIN_WEIGHT, Variants::MAX_WEIGHT);
-    let allowed = alloc::format!("a number from {min:e} to {max:e}");
+    let [min, max] = [min, max].map(exponential);
+    let allowed = alloc::format!("a number from {min} to {max}");
     Error::new(ErrorKind::Variants, field, weight, allowed)
 }
 
@@ -175,7 +176,7 @@ fn check_name(name: &str) -> Result<(), Error> {
     if (1..=Variants::MAX_NAME).contains(&name.len()) && name.bytes().all(allowed) {
         return Ok(());
     }
-    let value = alloc::format!("{:?}", shown(name));
+    let value = quoted(name);
     let most = Variants::MAX_NAME;
     let allowed = alloc::format!("1 to {most} characters of a-z, A-Z, 0-9, `_`, `-` and `.`");
     Err(Error::new(ErrorKind::Variants, "variants", value, allowed).because("not a name"))
@@ -191,7 +192,7 @@ impl FromStr for Variants {
             check_name(name)?;
             let value = weight
                 .parse()
-                .map_err(|_| bad_weight(name, alloc::format!("{:?}", shown(weight))))?;
+                .map_err(|_| bad_weight(name, quoted(weight)))?;
             parsed.push((name, value));
         }
         Self::new(parsed)

@@ -1,7 +1,7 @@
 //! The innermost loops: a row is a template of its columns plus the place of the row.
 //!
 //! `format` defines, in plain code, how a position becomes an item of each output format (`singles`,
-//! `doubles`, `offsets`). That code is the definition; every faster path has the same bits. Positions are
+//! `doubles`, `offsets`, `exact`). That code is the definition; every faster path has the same bits. Positions are
 //! 32-bit fixed-point offsets from the origin of a patch. Their sum with the origin is exact in `f64`
 //! while lattice coordinates stay below 2⁵³, so it rounds once, as the conversion of the whole integer
 //! would.
@@ -30,6 +30,7 @@
 mod arch;
 mod backend;
 mod doubles;
+mod exact;
 mod format;
 mod groups;
 mod lanes;
@@ -47,6 +48,7 @@ pub use backend::Backend;
 pub(super) use backend::write_numbers;
 pub(crate) use backend::{compiled, compiled_loop};
 pub use doubles::{F64, Points};
+pub use exact::{Exact, Place};
 pub use format::Format;
 pub(super) use format::{Geometry, Row};
 pub(crate) use groups::{Extents, GROUP, PLANES, SpaceShears, warp_groups};

@@ -1,6 +1,6 @@
 //! The share of points that a set keeps.
 
-use crate::error::{Error, ErrorKind, number};
+use crate::error::{Error, ErrorKind, exponential, number};
 
 /// The share of the points that is kept: those whose [rank](crate::PointSet::rank) is below it. By
 /// default all are.
@@ -44,7 +44,7 @@ impl Keep {
         if (Self::MIN..=1.0).contains(&share) {
             Ok(Self(share))
         } else {
-            let allowed = alloc::format!("a number from {:e} to 1", Self::MIN);
+            let allowed = alloc::format!("a number from {} to 1", exponential(Self::MIN));
             Err(Error::new(ErrorKind::Keep, "keep", number(share), allowed))
         }
     }

@@ -3,12 +3,13 @@
 //! A kind has all points of a block, none, or those whose dX lies in a strip; so has a rank below
 //! a share. What a set has of a block is therefore an interval of dX, and counts have closed forms.
 
-use alloc::vec::Vec;
-use core::ops::Range;
+use alloc::{sync::Arc, vec::Vec};
+use core::ops::{Deref, Range};
 
 use crate::{
     error::{Error, ErrorKind},
     map::Map,
+    parts::OfKinds,
     table::{Labels, Mix},
 };
 
@@ -24,6 +25,21 @@ pub(crate) struct OneKind {
     strips: Vec<Strip>,
 }
 
+/// The one kind that a lattice has the points of.
+#[derive(Clone, Debug)]
+pub(crate) struct Chosen {
+    kind: Arc<OneKind>,
+    _part: OfKinds,
+}
+
+impl Deref for Chosen {
+    type Target = OneKind;
+
+    fn deref(&self) -> &OneKind {
+        &self.kind
+    }
+}
+
 /// The part of a block's interval of dX that is of the kind.
 #[derive(Debug)]
 struct Strip {
@@ -37,7 +53,7 @@ const STRIP: u8 = 2;
 
 impl OneKind {
     /// The points of a kind of a mix, by the labels of its blocks, turned or not.
-    pub(crate) fn new(map: &Map, mix: &Mix, labels: &Labels, kind: u8) -> Self {
+    pub(crate) fn chosen(map: &Map, mix: &Mix, labels: &Labels, kind: u8) -> Chosen {
         let n = map.intervals();
         let state = |&label: &u8| if label == kind { WHOLE } else { NONE };
         let mut states: Vec<u8> = labels.all().iter().map(state).collect();
@@ -58,11 +74,15 @@ impl OneKind {
                 interval,
             });
         }
-        Self {
+        let of_kind = Self {
             kind,
             share: mix.shares().of(kind),
             states,
             strips,
+        };
+        Chosen {
+            kind: Arc::new(of_kind),
+            _part: mix.part(),
         }
     }
 

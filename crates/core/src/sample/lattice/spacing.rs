@@ -1,6 +1,6 @@
 //! The mean spacing of points.
 
-use crate::error::{Error, ErrorKind, number};
+use crate::error::{Error, ErrorKind, exponential, number};
 
 /// The mean spacing of points in world units: density^−½.
 ///
@@ -42,7 +42,8 @@ impl Spacing {
         if (Self::MIN..=Self::MAX).contains(&spacing) {
             Ok(Self(spacing))
         } else {
-            let allowed = alloc::format!("a number from {:e} to {:e}", Self::MIN, Self::MAX);
+            let [min, max] = [Self::MIN, Self::MAX].map(exponential);
+            let allowed = alloc::format!("a number from {min} to {max}");
             Err(Error::new(
                 ErrorKind::Spacing,
                 "spacing",
@@ -74,8 +75,8 @@ impl Spacing {
                 (1.0 / libm::sqrt(density)).clamp(Self::MIN, Self::MAX),
             ))
         } else {
-            let (min, max) = (Self::MIN_DENSITY, Self::MAX_DENSITY);
-            let allowed = alloc::format!("a number from {min:e} to {max:e}");
+            let [min, max] = [Self::MIN_DENSITY, Self::MAX_DENSITY].map(exponential);
+            let allowed = alloc::format!("a number from {min} to {max}");
             Err(Error::new(
                 ErrorKind::Density,
                 "density",

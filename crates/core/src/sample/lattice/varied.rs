@@ -9,6 +9,7 @@ use core::fmt;
 
 use crate::{
     error::{Error, ErrorKind},
+    parts::OfKinds,
     sample::field::Field,
     table::{Shares, Symmetry, Table, TurnedTable},
 };
@@ -51,6 +52,7 @@ pub struct VaryingKinds {
     fields: Arc<[Option<Arc<dyn Field>>]>,
     /// The kinds as they lie in [0, 1).
     arranged: Arc<[u8]>,
+    _part: OfKinds,
 }
 
 impl fmt::Debug for VaryingKinds {
@@ -99,6 +101,7 @@ impl VaryingKinds {
             arranged: arranged(shares.kinds()).into(),
             shares,
             fields: fields.into(),
+            _part: OfKinds::get()?,
         })
     }
 

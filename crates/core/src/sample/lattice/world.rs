@@ -6,7 +6,7 @@ use core::ops::Range;
 use super::{
     Keep, Line, OneKind, Placement, Point, PointId, Settle,
     grade::Grade,
-    kinds::KindRow,
+    kinds::{Chosen, KindRow},
     rank::{kind, rank},
     varied::Varied,
 };
@@ -47,7 +47,7 @@ pub(crate) struct Lattice {
     /// The cut between points that are kept and others, if not all are kept.
     cut: Option<Cut>,
     /// The kind that points are of, if not any.
-    pub(super) kinds: Option<Arc<OneKind>>,
+    pub(super) kinds: Option<Chosen>,
     /// The kinds whose shares vary, if there are such.
     pub(super) varied: Option<Varied>,
     /// The field that decides which points are kept.
@@ -106,7 +106,7 @@ impl Lattice {
         }
         let (map, mix) = (self.table.map(), self.table.mix());
         let kinds = self.turned.labels().zip(mix);
-        let kinds = kinds.map(|(labels, mix)| Arc::new(OneKind::new(map, mix, labels, kind)));
+        let kinds = kinds.map(|(labels, mix)| OneKind::chosen(map, mix, labels, kind));
         Self { kinds, ..self }
     }
 

@@ -19,7 +19,7 @@
 
 use super::pairs::{HEXAGONAL, least_of_kinds, least_squared};
 use crate::{
-    error::{Error, ErrorKind, number},
+    error::{Error, ErrorKind, number, rounded},
     sample::{
         Seed, Warp,
         lattice::Spacing,
@@ -268,10 +268,10 @@ impl LeastDistance {
         let kept = self.with_warp(warp);
         if !self.is_useful() || kept <= 0.0 {
             let problem = alloc::format!(
-                "the profile guarantees no least distance: its nearest points are {:.4} of the hexagonal \
+                "the profile guarantees no least distance: its nearest points are {} of the hexagonal \
                  distance apart, and at least {} is needed",
-                self.relative_to_all(),
-                Self::MIN_RELATIVE
+                rounded(self.relative_to_all(), 4),
+                number(Self::MIN_RELATIVE)
             );
             let error = Error::new(
                 ErrorKind::NoLeastDistance,

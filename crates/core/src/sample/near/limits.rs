@@ -1,7 +1,7 @@
 //! The limits of searches, checked before the work.
 
 use crate::{
-    error::{Error, ErrorKind, number},
+    error::{Error, ErrorKind, exponential, number, rounded},
     sample::lattice::{LATTICE_LIMIT, Lattice},
     table::fixed,
 };
@@ -37,8 +37,9 @@ pub(super) fn check_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> Resul
     for (name, value) in ["x", "y"].into_iter().zip(at) {
         if value.abs() + radius > limit {
             let allowed = alloc::format!(
-                "within ±{limit:e}, with the radius searched, where f64 coordinates with this spacing \
-                 still keep neighbors apart"
+                "within ±{}, with the radius searched, where f64 coordinates with this spacing \
+                 still keep neighbors apart",
+                exponential(limit)
             );
             let error = Error::new(ErrorKind::TooFar, name, number(value), allowed);
             return Err(error.because("too far from the origin").with_limit(limit));
@@ -92,7 +93,7 @@ pub(super) fn check_number(
 
 /// The error of a radius within which about `about` points lie.
 pub(super) fn too_many(radius: f64, about: f64, limit: usize) -> Error {
-    let problem = alloc::format!("about {about:.0} points lie within");
+    let problem = alloc::format!("about {} points lie within", rounded(about, 0));
     let allowed = alloc::format!("a radius with at most {limit} points");
     let error = Error::new(ErrorKind::TooMany, "radius", number(radius), allowed);
     error.because(problem).with_limit(limit as f64)

@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorKind, number},
+    parts::CLEARANCE,
     sample::{
         area::{Area, Region},
         lattice::{Lattice, Point},
@@ -51,9 +52,10 @@ impl Mask {
     /// Tests that together hold up to `most` points of other sets.
     fn guards_holding(&self, most: usize) -> Guards {
         let each = most / self.clear.len().max(1);
+        let clear = self.clear.iter().filter(|_| CLEARANCE);
         Guards {
             area: self.area.clone(),
-            clear: self.clear.iter().map(|of| of.guard(each)).collect(),
+            clear: clear.map(|of| of.guard(each)).collect(),
         }
     }
 
@@ -188,13 +190,15 @@ impl Guard {
     /// Whether a place is far enough from all points of the other set.
     #[inline]
     pub(crate) fn permits(&self, p: [f64; 2]) -> bool {
-        !self.0.borrow_mut().is_any_near(p)
+        !(CLEARANCE && self.0.borrow_mut().is_any_near(p))
     }
 
     /// Says that many of the next places lie within a box. They are tested faster; the answers are the same for all
     /// places.
     pub(crate) fn aim(&self, within: Region) {
-        self.0.borrow_mut().aim(within);
+        if CLEARANCE {
+            self.0.borrow_mut().aim(within);
+        }
     }
 }
 

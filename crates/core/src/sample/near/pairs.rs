@@ -5,6 +5,7 @@ use alloc::{vec, vec::Vec};
 use crate::{
     map::Map,
     pattern::{Axis, Pattern},
+    sort,
     table::{FRACTION_BITS, Labels, Shares, Table},
 };
 
@@ -46,7 +47,9 @@ impl<'a> Pairs<'a> {
             }
         }
         // Offsets that can be nearest come first; most of the others are never visited.
-        offsets.sort_unstable_by_key(|&(nearest, i, j)| (nearest, i * i + j * j));
+        sort::by_key(&mut offsets, |&(nearest, i, j)| {
+            (nearest, i * i + j * j, i, j)
+        });
         Some(Self {
             table,
             meetings: Meetings::new(table.map(), reach[0].max(reach[1])),

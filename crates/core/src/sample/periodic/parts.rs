@@ -85,6 +85,7 @@ impl PeriodicSet {
     /// assert!((share - 0.2827).abs() < 0.01);
     /// # Ok::<(), strew_core::Error>(())
     /// ```
+    #[cfg(feature = "fields")]
     #[must_use]
     pub fn in_field(&self, field: impl Field + 'static) -> Self {
         let mut set = self.clone();

@@ -9,12 +9,12 @@ use alloc::{sync::Arc, vec, vec::Vec};
 use super::{
     area::{Area, Region},
     attribute::{Attributes, BoundAttributes},
-    kernel::{F32, F64, Format, Points},
+    kernel::{F32, F64, Format, Place, Points},
     lattice::{Keep, Lattice, Placement, Point, Spacing},
     member::Members,
     near::Mask,
     scope::Scope,
-    walk::{Blocks, Counted, Tile, Window, tiles},
+    walk::{Blocks, Counted, Tile, Window, format_of, tiles},
 };
 use crate::{error::Error, stop::Stop, table::Table};
 
@@ -242,6 +242,23 @@ impl Plan {
     #[must_use]
     pub fn blocks_points(&self) -> Blocks<Points> {
         self.blocks()
+    }
+
+    /// Exact places of points of this plan, in another format.
+    ///
+    /// ```
+    /// use strew_core::{Exact, Place, PointSet, Points, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(8.0, [3, -2])?;
+    /// let mut places = vec![Place::default(); plan.len().expect("small")];
+    /// plan.blocks::<Exact>().fill(&mut places);
+    /// assert!(plan.converted::<Points>(&places).eq(plan.to_vec()));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn converted<F: Format>(&self, places: &[Place]) -> impl Iterator<Item = F::Item> {
+        let format: F = format_of(&self.scope);
+        places.iter().map(move |place| place.item(&format))
     }
 
     /// The whole request cut into tiles of at most `max_points` points each, or one lattice row of a band

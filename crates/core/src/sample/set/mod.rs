@@ -338,6 +338,7 @@ impl PointSet {
     /// }
     /// # Ok::<(), strew_core::Error>(())
     /// ```
+    #[cfg(feature = "clearance")]
     pub fn clear_of(mut self, other: &Self, distance: f64) -> Result<Self, Error> {
         let other = ClearOf::new(&other.lattice, &other.mask, distance)?;
         self.mask = self.mask.and_clear_of(other);
@@ -367,6 +368,7 @@ impl PointSet {
     /// }
     /// # Ok::<(), strew_core::Error>(())
     /// ```
+    #[cfg(feature = "fields")]
     #[must_use]
     pub fn in_field(&self, field: impl Field + 'static) -> Self {
         Self {

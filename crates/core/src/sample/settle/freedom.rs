@@ -56,10 +56,7 @@ pub(super) fn local(share: f64) -> f64 {
 
 /// The square root, which rounds alike everywhere.
 pub(super) fn root(v: f64) -> f64 {
-    #[cfg(feature = "std")]
-    return v.sqrt();
-    #[cfg(not(feature = "std"))]
-    libm::sqrt(v)
+    super::instruction::sqrt(v)
 }
 
 /// The eight places around a place at which a field is looked at.

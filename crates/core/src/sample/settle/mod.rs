@@ -54,6 +54,7 @@ mod boxes;
 mod cells;
 mod freedom;
 mod guess;
+mod instruction;
 mod kin;
 mod lister;
 mod near;

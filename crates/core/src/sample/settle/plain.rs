@@ -52,9 +52,6 @@ pub(super) trait Root {
 impl Root for f32 {
     #[inline(always)]
     fn sqrt_(self) -> Self {
-        #[cfg(feature = "std")]
-        return self.sqrt();
-        #[cfg(not(feature = "std"))]
-        libm::sqrtf(self)
+        super::instruction::sqrt_f32(self)
     }
 }

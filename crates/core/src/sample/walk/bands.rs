@@ -180,7 +180,7 @@ impl<F: Format> Bands<F> {
 }
 
 /// The format of a scope's points.
-pub(super) fn format_of<F: Format>(scope: &Scope) -> F {
+pub(in crate::sample) fn format_of<F: Format>(scope: &Scope) -> F {
     let Corner {
         first, gap, extent, ..
     } = scope.corner;

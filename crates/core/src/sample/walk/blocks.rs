@@ -53,10 +53,11 @@
 
 use alloc::{boxed::Box, sync::Arc};
 
+#[cfg(feature = "fields")]
+use super::graded::FieldWalk;
 use super::{
     bands::Bands,
     few::{Few, Kept},
-    graded::FieldWalk,
     rows::RowWalk,
     settled::{Pieces, SettledWalk},
     tile::Tile,
@@ -110,6 +111,7 @@ enum Walk<F: Format> {
     /// The points were found when they were counted.
     Kept(Kept<F>),
     Rows(Box<RowWalk<F>>),
+    #[cfg(feature = "fields")]
     Field(Box<FieldWalk<F>>),
     Settled(Box<SettledWalk<F>>),
 }
@@ -118,8 +120,9 @@ impl<F: Format> Walk<F> {
     /// A walk over some bands from an address on, or from the first one.
     fn new(bands: Bands<F>, start: Option<PointId>) -> Self {
         match bands.scope.lattice.grade {
+            #[cfg(feature = "fields")]
             Some(_) => Self::Field(Box::new(FieldWalk::new(bands, start))),
-            None => Self::Rows(Box::new(RowWalk::new(bands, start))),
+            _ => Self::Rows(Box::new(RowWalk::new(bands, start))),
         }
     }
 }
@@ -186,6 +189,7 @@ impl<F: Format> Blocks<F> {
         match &mut self.walk {
             Walk::Kept(kept) => kept.backend = backend,
             Walk::Rows(walk) => walk.bands.backend = backend,
+            #[cfg(feature = "fields")]
             Walk::Field(walk) => walk.set_backend(backend),
             Walk::Settled(walk) => walk.set_backend(backend),
         }
@@ -213,6 +217,7 @@ impl<F: Format> Blocks<F> {
         let filled = match &mut self.walk {
             Walk::Kept(kept) => kept.fill(out),
             Walk::Rows(walk) => walk.fill(out),
+            #[cfg(feature = "fields")]
             Walk::Field(walk) => walk.fill(out),
             Walk::Settled(walk) => walk.fill(out),
         };
@@ -243,6 +248,7 @@ impl<F: Format> Blocks<F> {
         let at = match &self.walk {
             Walk::Kept(kept) => kept.place()?,
             Walk::Rows(walk) => walk.place().unwrap_or_else(|| walk.bands.next_start()),
+            #[cfg(feature = "fields")]
             Walk::Field(walk) => walk.place(),
             Walk::Settled(walk) => walk.place(),
         };

@@ -9,12 +9,15 @@ use super::{
     graded::{FieldWalk, Next},
     settled::{Pieces, count_settled, find_few_settled, locate_settled},
 };
-use crate::sample::{
-    count::count,
-    kernel::Points,
-    lattice::{Point, PointId},
-    scope::Scope,
-    sieve::Sieve,
+use crate::{
+    parts::FIELDS,
+    sample::{
+        count::count,
+        kernel::Points,
+        lattice::{Point, PointId},
+        scope::Scope,
+        sieve::Sieve,
+    },
 };
 
 /// The most marks of a count. Where there would be more, every other one is left out.
@@ -46,7 +49,7 @@ impl Counted {
         if let Some(pieces) = Pieces::new(scope) {
             return Self::settled(pieces);
         }
-        if scope.lattice.grade.is_some() {
+        if FIELDS && scope.lattice.grade.is_some() {
             return Self::in_field(scope);
         }
         match find_few(scope) {

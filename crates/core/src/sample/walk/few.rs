@@ -8,7 +8,7 @@ use super::{
     rows::RowWalk,
 };
 use crate::sample::{
-    kernel::{Backend, F64, Format},
+    kernel::{Backend, Exact, Format},
     lattice::{Found, PointId},
     scope::Scope,
     sieve::Scale,
@@ -137,7 +137,7 @@ pub(super) fn find_few(scope: &Arc<Scope>) -> Option<Few> {
         Some(_) => Arc::new(scope.of_box()),
         None => scope.clone(),
     };
-    let mut walk = RowWalk::<F64>::new(Bands::from(of_box, None), None);
+    let mut walk = RowWalk::<Exact>::new(Bands::from(of_box, None), None);
     if !walk.is_flat() {
         return None;
     }

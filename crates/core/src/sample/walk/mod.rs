@@ -18,6 +18,7 @@ mod strips;
 mod template;
 mod tile;
 
+pub(super) use bands::format_of;
 pub use blocks::Blocks;
 pub(super) use blocks::Window;
 pub(super) use counted::{Counted, Mark, locate_graded};

@@ -57,7 +57,7 @@ impl Warp {
                 strength: libm::round(strength * 256.0) as u16,
             })
         } else {
-            let allowed = alloc::format!("a number from 0 (off) to {}", Self::MAX_STRENGTH);
+            let allowed = alloc::format!("a number from 0 (off) to {}", number(Self::MAX_STRENGTH));
             Err(Error::new(
                 ErrorKind::Warp,
                 "warp",

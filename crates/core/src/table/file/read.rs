@@ -175,7 +175,8 @@ impl<'a> Sections<'a> {
             read_disp(disp, map.intervals()).map_err(|p| wrong(b"DISP", disp_at, p))?;
         let blocks = displacements.len();
         let ranks = self.rank.map(|payload| ranks(payload, blocks));
-        let mix = self.kind.map(|payload| mix(payload, &map));
+        let kind = self.kind.filter(|_| cfg!(feature = "kinds"));
+        let mix = kind.map(|payload| mix(payload, &map));
         let parts = Parts {
             map,
             profile: head.profile,

@@ -1,0 +1,120 @@
+//! Places as they are before any format rounds them.
+
+use super::{
+    Format,
+    format::{Emit, Geometry, Row},
+    lanes::{Lanes, stored},
+};
+use crate::sample::lattice::PointId;
+
+/// Exact places with their ids, which [`Plan::converted`](crate::Plan::converted) turns into items of any other format.
+///
+/// Code for each format is made of the same walks. A program that must be small makes all of its points in this one.
+///
+/// ```
+/// use strew_core::{Exact, F32, Place, PointSet, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let plan = PointSet::new(table).chunk(8.0, [3, -2])?;
+/// let (mut places, mut offsets) = ([Place::default(); 20], [[0.0; 2]; 20]);
+/// plan.blocks::<Exact>().fill(&mut places);
+/// plan.blocks_f32().fill(&mut offsets);
+/// assert!(plan.converted::<F32>(&places).eq(offsets));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Exact;
+
+/// The exact place of a point of a plan.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Place {
+    id: PointId,
+    /// The lattice address that `offset` is relative to.
+    origin: [i64; 2],
+    /// In fixed-point units.
+    offset: [i32; 2],
+}
+
+impl Place {
+    /// The id of the point.
+    ///
+    /// ```
+    /// use strew_core::{Exact, Place, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(8.0, [3, -2])?;
+    /// let mut places = [Place::default(); 20];
+    /// plan.blocks::<Exact>().fill(&mut places);
+    /// assert!(plan.iter().zip(places).all(|(member, place)| member.id() == place.id()));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn id(&self) -> PointId {
+        self.id
+    }
+
+    /// The item of a format.
+    pub(crate) fn item<F: Emit>(&self, format: &F) -> F::Item {
+        let base = format.base(self.origin);
+        let [x, y] = self.offset;
+        format.item(base, format.column(base, x, self.id.x), y, self.id.y)
+    }
+}
+
+impl Format for Exact {}
+
+impl Emit for Exact {
+    type Item = Place;
+    /// The offset along x and the lattice column.
+    type Column = (i32, i64);
+
+    fn new(_: &Geometry) -> Self {
+        Self
+    }
+
+    /// Lattice coordinates are exact in `f64`.
+    fn base(&self, origin: [i64; 2]) -> [f64; 2] {
+        origin.map(|v| v as f64)
+    }
+
+    #[inline]
+    fn column(&self, _: [f64; 2], x: i32, column: i64) -> (i32, i64) {
+        (x, column)
+    }
+
+    #[inline]
+    fn item(&self, base: [f64; 2], (x, column): (i32, i64), y: i32, row: i64) -> Place {
+        Place {
+            id: PointId { x: column, y: row },
+            origin: base.map(|v| v as i64),
+            offset: [x, y],
+        }
+    }
+
+    /// Plain code writes these rows.
+    #[inline(always)]
+    unsafe fn vector_row<L: Lanes>(
+        &self,
+        _: Row,
+        _: &[(i32, i64)],
+        _: &[i32],
+        _: &mut [Place],
+    ) -> usize {
+        0
+    }
+
+    #[inline(always)]
+    unsafe fn vector_items<L: Lanes>(
+        &self,
+        row: Row,
+        position: [L::Ints; 2],
+        lattice: &[i64],
+        out: &mut [Place],
+    ) {
+        // SAFETY: the machine has the instructions.
+        let [xs, ys] = position.map(|v| unsafe { stored::<L>(v) });
+        for (out, ((x, y), &column)) in out.iter_mut().zip(xs.into_iter().zip(ys).zip(lattice)) {
+            *out = self.item(row.base, (x, column), y, row.lattice);
+        }
+    }
+}
