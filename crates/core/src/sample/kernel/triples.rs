@@ -2,8 +2,8 @@
 
 use super::{
     Backend,
-    backend::run_vectors,
-    lanes::{Lanes, VectorLoop},
+    backend::{compiled_loop, run_vectors},
+    lanes::{Lanes, PlainLoop, VectorLoop},
     rows::vector_starts,
 };
 
@@ -23,11 +23,71 @@ pub(crate) fn pick_triples(
         out,
     };
     if run_vectors(backend, &mut picked) == 0 {
-        let [ys, zs] = across;
-        for ((out, &x), &place) in picked.out.iter_mut().zip(xs).zip(places) {
+        pick_quads(backend, xs, places, across, picked.out);
+    }
+}
+
+/// [`pick_triples`] of any numbers, by plain code: a triple is written together with the number after it, which the next
+/// triple replaces.
+pub(crate) fn pick_quads<T: Copy + Default>(
+    backend: Backend,
+    xs: &[T],
+    places: &[u16],
+    across: [&[T]; 2],
+    out: &mut [[T; 3]],
+) {
+    /// From this number of triples on, quads are worth their table.
+    const MANY: usize = 24;
+    let [ys, zs] = across;
+    if out.len() < MANY || ys.len() > PICKS || zs.len() > PICKS {
+        for ((out, &x), &place) in out.iter_mut().zip(xs).zip(places) {
             let place = usize::from(place);
             *out = [x, ys[place], zs[place]];
         }
+        return;
+    }
+    let mut quads = Quads {
+        xs,
+        places,
+        across,
+        out,
+    };
+    compiled_loop(backend, &mut quads);
+}
+
+struct Quads<'a, T> {
+    xs: &'a [T],
+    places: &'a [u16],
+    across: [&'a [T]; 2],
+    out: &'a mut [[T; 3]],
+}
+
+impl<T: Copy + Default> PlainLoop for Quads<'_, T> {
+    #[inline(always)]
+    fn run(&mut self) {
+        let mut table = [[T::default(); 4]; PICKS];
+        let [ys, zs] = self.across;
+        for ((quad, &y), &z) in table.iter_mut().zip(ys).zip(zs) {
+            *quad = [z, y, z, z];
+        }
+        let length = self.out.len().min(self.xs.len()).min(self.places.len());
+        let Some(last) = length.checked_sub(1) else {
+            return;
+        };
+        let (xs, places) = (&self.xs[..length], &self.places[..length]);
+        let of = |place: u16| table[usize::from(place) % PICKS];
+        let mut to: *mut T = self.out.as_mut_ptr().cast();
+        for (&x, &place) in xs[..last].iter().zip(places) {
+            let mut quad = of(place);
+            quad[0] = x;
+            // SAFETY: a triple is left after this one, so there is room for four numbers.
+            unsafe {
+                to.cast::<[T; 4]>().write_unaligned(quad);
+                to = to.add(3);
+            }
+        }
+        let [_, y, z, _] = of(places[last]);
+        self.out[last] = [xs[last], y, z];
     }
 }
 
