@@ -12,7 +12,7 @@ use crate::{
     F32, F64, Points,
     sample::{
         Backend,
-        space::{PlainLoop, compiled_loop, pick_quads, pick_triples, write_triples},
+        space::{PlainLoop, compiled_loop, pick_pairs, pick_triples, write_triples},
     },
     table::FRACTION_BITS,
 };
@@ -103,6 +103,30 @@ impl<T: Copy> Picks<'_, T> {
             [self.places[i], y, z],
             [x + i64::from(column), along_y, along_z],
         )
+    }
+
+    /// Writes the items of the points whose intervals are inside. Returns their number; there is room for all.
+    pub(super) fn write_inside<F: Emit<Part = T>>(
+        &self,
+        inside: &[bool],
+        out: &mut [F::Item],
+    ) -> usize {
+        let ([ys, zs], [x, along_y, along_z]) = (self.across, self.address);
+        let number = inside.len().min(ys.len()).min(zs.len());
+        let (inside, ys, zs) = (&inside[..number], &ys[..number], &zs[..number]);
+        let mut written = 0;
+        for (i, (&place, &block)) in self.places.iter().zip(self.blocks).enumerate() {
+            let block = usize::from(block);
+            let column = if F::HAS_IDS {
+                self.columns[i] >> FRACTION_BITS
+            } else {
+                0
+            };
+            let address = [x + i64::from(column), along_y, along_z];
+            out[written] = F::item([place, ys[block], zs[block]], address);
+            written += usize::from(inside[block]);
+        }
+        written
     }
 
     /// Writes the items of the points for which the test holds. Returns their number; there is room for all.
@@ -304,7 +328,7 @@ impl Emit for F64 {
     }
 
     fn pick(backend: Backend, picks: Picks<'_, f64>, out: &mut [[f64; 3]]) {
-        pick_quads(backend, picks.places, picks.blocks, picks.across, out);
+        pick_pairs(backend, picks.places, picks.blocks, picks.across, out);
     }
 }
 

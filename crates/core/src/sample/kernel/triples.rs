@@ -23,71 +23,56 @@ pub(crate) fn pick_triples(
         out,
     };
     if run_vectors(backend, &mut picked) == 0 {
-        pick_quads(backend, xs, places, across, picked.out);
+        pick_pairs(backend, xs, places, across, picked.out);
     }
 }
 
-/// [`pick_triples`] of any numbers, by plain code: a triple is written together with the number after it, which the next
-/// triple replaces.
-pub(crate) fn pick_quads<T: Copy + Default>(
+/// [`pick_triples`] of any numbers, by plain code. The numbers along y and z that a place picks are copied together.
+pub(crate) fn pick_pairs<T: Copy + Default>(
     backend: Backend,
     xs: &[T],
     places: &[u16],
     across: [&[T]; 2],
     out: &mut [[T; 3]],
 ) {
-    /// From this number of triples on, quads are worth their table.
+    /// From this number of points on, pairs are worth their table.
     const MANY: usize = 24;
     let [ys, zs] = across;
-    if out.len() < MANY || ys.len() > PICKS || zs.len() > PICKS {
+    if out.len() < MANY || ys.len().max(zs.len()) > PICKS {
         for ((out, &x), &place) in out.iter_mut().zip(xs).zip(places) {
             let place = usize::from(place);
             *out = [x, ys[place], zs[place]];
         }
         return;
     }
-    let mut quads = Quads {
+    let mut pairs = Pairs {
         xs,
         places,
         across,
         out,
     };
-    compiled_loop(backend, &mut quads);
+    compiled_loop(backend, &mut pairs);
 }
 
-struct Quads<'a, T> {
+struct Pairs<'a, T> {
     xs: &'a [T],
     places: &'a [u16],
     across: [&'a [T]; 2],
     out: &'a mut [[T; 3]],
 }
 
-impl<T: Copy + Default> PlainLoop for Quads<'_, T> {
+impl<T: Copy + Default> PlainLoop for Pairs<'_, T> {
     #[inline(always)]
     fn run(&mut self) {
-        let mut table = [[T::default(); 4]; PICKS];
+        let mut pairs = [[T::default(); 2]; PICKS];
         let [ys, zs] = self.across;
-        for ((quad, &y), &z) in table.iter_mut().zip(ys).zip(zs) {
-            *quad = [z, y, z, z];
+        for ((pair, &y), &z) in pairs.iter_mut().zip(ys).zip(zs) {
+            *pair = [y, z];
         }
-        let length = self.out.len().min(self.xs.len()).min(self.places.len());
-        let Some(last) = length.checked_sub(1) else {
-            return;
-        };
-        let (xs, places) = (&self.xs[..length], &self.places[..length]);
-        let of = |place: u16| table[usize::from(place) % PICKS];
-        let mut to: *mut T = self.out.as_mut_ptr().cast();
-        for (&x, &place) in xs[..last].iter().zip(places) {
-            let mut quad = of(place);
-            quad[0] = x;
-            // SAFETY: a triple is left after this one, so there is room for four numbers.
-            unsafe {
-                to.cast::<[T; 4]>().write_unaligned(quad);
-                to = to.add(3);
-            }
+        for ((out, &x), &place) in self.out.iter_mut().zip(self.xs).zip(self.places) {
+            let [y, z] = pairs[usize::from(place) % PICKS];
+            *out = [x, y, z];
         }
-        let [_, y, z, _] = of(places[last]);
-        self.out[last] = [xs[last], y, z];
     }
 }
 
@@ -302,6 +287,13 @@ mod tests {
                         })
                         .collect();
                     assert_eq!(picked[1..=length], made, "{backend:?} {length}");
+                    let [xs, ys, zs] = [xs, across[0], across[1]]
+                        .map(|list| list.iter().map(|&v| f64::from(v)).collect::<Vec<f64>>());
+                    let mut doubles = vec![[-1.0; 3]; length + 2];
+                    pick_pairs(backend, &xs, places, [&ys, &zs], &mut doubles[1..=length]);
+                    let wide = made.iter().map(|triple| triple.map(f64::from));
+                    assert!(doubles[1..=length].iter().copied().eq(wide));
+                    assert_eq!([doubles[0], doubles[length + 1]], [[-1.0; 3]; 2]);
                     let [x, y, z] = [0, 1, 2].map(|axis| {
                         let parts = made.iter().map(|triple| triple[axis]);
                         parts.collect::<Vec<f32>>()

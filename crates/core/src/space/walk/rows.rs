@@ -228,8 +228,7 @@ impl<F: Format> Rows<F> {
             inside.extend(
                 both.map(|(dy, dz)| across.contains(&(y + dy)) && high.contains(&(z + dz))),
             );
-            let is_inside = |i: usize| inside[usize::from(templates.blocks[i])];
-            return picks(points.clone()).write_some::<F>(out, |i| is_inside(points.start + i));
+            return picks(points).write_inside::<F>(inside, out);
         }
         let [dx, dy, dz] = scope.lattice.vectors(plane.block, row.block as usize);
         let ends = relative(&scope.bounds, origin);
