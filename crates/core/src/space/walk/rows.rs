@@ -32,9 +32,9 @@ pub(in crate::space) struct Rows<F: Format> {
     /// The places along y of the points of a row, by interval, and whether they are inside.
     across: Vec<F::Part>,
     inside: Vec<bool>,
-    /// Whether a box is all that is requested, and the points of the plane and those of the others that lie within it along
-    /// y and z whatever their vectors are.
+    /// Whether the scope is a box.
     is_box: bool,
+    /// The rows and the planes whose points lie within its bounds along y and z whatever their vectors are.
     within: [Range<i64>; 2],
     /// The items of a row of which only some were taken.
     pending: Vec<F::Item>,
