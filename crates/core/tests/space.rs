@@ -277,6 +277,19 @@ fn backends_have_the_same_bits() {
 }
 
 #[test]
+fn wide_boxes_outlast_the_templates_that_are_kept() {
+    let set = SpaceSet::blue();
+    let wide = Region::new([1.0; 3], [321.0, 25.0, 321.0]).expect("ordered");
+    let plan = set.within(wide).expect("near");
+    let mut points = 0;
+    for point in plan.iter() {
+        assert_eq!(set.point(point.id), Some(point));
+        points += 1;
+    }
+    assert_eq!(points, plan.count());
+}
+
+#[test]
 fn bad_input_is_refused() {
     use strew_core::ErrorKind;
     let set = set(1.0, 7);

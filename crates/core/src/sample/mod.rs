@@ -44,8 +44,8 @@ pub(crate) mod space {
     pub(crate) use super::{
         kernel::{
             Extents, GROUP, PICKS, PLANES, PlainLoop, SpaceShears, add_picked, compiled,
-            compiled_loop, lift_picked, pick_triples, retain_parts, warp_all, warp_groups,
-            warp_lists, write_triples,
+            compiled_loop, lift_picked, pick_pairs, pick_triples, retain_parts, warp_all,
+            warp_groups, warp_lists, write_triples,
         },
         warp::{PatchShears, Shears, Stretch},
     };

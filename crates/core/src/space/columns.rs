@@ -34,6 +34,8 @@ pub(super) struct Row {
 /// The lines along x and y of the points of a column of planes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lines {
+    /// The number of times that they were listed.
+    pub(super) number: u64,
     /// Along x, by the parity of the coordinate, and of the sum of the others.
     pub(super) x: [[Across; 2]; 2],
     /// Along y, ascending.
@@ -43,6 +45,7 @@ pub(super) struct Lines {
 impl Lines {
     /// Lists the lines of a part of the lattice, along x from an origin on.
     pub(super) fn list(&mut self, lattice: &Lattice, origin: i64, [x, y]: [Range<i64>; 2]) {
+        self.number += 1;
         let (pattern, map) = (&lattice.pattern, lattice.table.map());
         for across in self.x.iter_mut().flatten() {
             across.at.clear();

@@ -12,7 +12,7 @@ use crate::{
     F32, F64, Points,
     sample::{
         Backend,
-        space::{PlainLoop, compiled_loop, pick_triples, write_triples},
+        space::{PlainLoop, compiled_loop, pick_pairs, pick_triples, write_triples},
     },
     table::FRACTION_BITS,
 };
@@ -105,6 +105,30 @@ impl<T: Copy> Picks<'_, T> {
         )
     }
 
+    /// Writes the items of the points whose intervals are inside. Returns their number; there is room for all.
+    pub(super) fn write_inside<F: Emit<Part = T>>(
+        &self,
+        inside: &[bool],
+        out: &mut [F::Item],
+    ) -> usize {
+        let ([ys, zs], [x, along_y, along_z]) = (self.across, self.address);
+        let number = inside.len().min(ys.len()).min(zs.len());
+        let (inside, ys, zs) = (&inside[..number], &ys[..number], &zs[..number]);
+        let mut written = 0;
+        for (i, (&place, &block)) in self.places.iter().zip(self.blocks).enumerate() {
+            let block = usize::from(block);
+            let column = if F::HAS_IDS {
+                self.columns[i] >> FRACTION_BITS
+            } else {
+                0
+            };
+            let address = [x + i64::from(column), along_y, along_z];
+            out[written] = F::item([place, ys[block], zs[block]], address);
+            written += usize::from(inside[block]);
+        }
+        written
+    }
+
     /// Writes the items of the points for which the test holds. Returns their number; there is room for all.
     pub(super) fn write_some<F: Emit<Part = T>>(
         &self,
@@ -120,9 +144,10 @@ impl<T: Copy> Picks<'_, T> {
     }
 }
 
-/// The parts of some offsets along an axis.
+/// The parts of the sums of a number and some others, offsets along an axis.
 struct Conversion<'a, F: Emit> {
     how: F::Axis,
+    lift: i32,
     offsets: &'a [i32],
     made: &'a mut [F::Part],
 }
@@ -130,10 +155,27 @@ struct Conversion<'a, F: Emit> {
 impl<F: Emit> PlainLoop for Conversion<'_, F> {
     #[inline(always)]
     fn run(&mut self) {
+        let (how, lift) = (self.how, self.lift);
         for (made, &offset) in self.made.iter_mut().zip(self.offsets) {
-            *made = F::part(self.how, offset);
+            *made = F::part(how, lift + offset);
         }
     }
+}
+
+/// Finds the parts of the sums of a number and some others, offsets along an axis; there are as many of each.
+pub(super) fn convert<F: Emit>(
+    backend: Backend,
+    how: F::Axis,
+    (lift, offsets): (i32, &[i32]),
+    made: &mut [F::Part],
+) {
+    let mut conversion = Conversion::<F> {
+        how,
+        lift,
+        offsets,
+        made,
+    };
+    compiled_loop(backend, &mut conversion);
 }
 
 /// Writes the points of a batch from a place on, as many as `out` has.
@@ -154,6 +196,7 @@ pub(super) fn write<F: Emit>(
         for (axis, made) in made.iter_mut().enumerate() {
             let mut convert = Conversion::<F> {
                 how: how[axis],
+                lift: 0,
                 offsets: &batch.places[axis][from..][..length],
                 made: &mut made[..length],
             };
@@ -282,6 +325,10 @@ impl Emit for F64 {
     #[inline(always)]
     fn item(parts: [f64; 3], _: [i64; 3]) -> [f64; 3] {
         parts
+    }
+
+    fn pick(backend: Backend, picks: Picks<'_, f64>, out: &mut [[f64; 3]]) {
+        pick_pairs(backend, picks.places, picks.blocks, picks.across, out);
     }
 }
 

@@ -124,10 +124,15 @@ impl Lattice {
     /// The components of the vectors of the blocks of an interval of dZ and one of dY, by that of dX. Some more numbers,
     /// which mean nothing, make their number a multiple of [`PICKS`].
     pub(super) fn vectors(&self, plane: usize, row: usize) -> [&[i32]; 3] {
+        [0, 1, 2].map(|axis| self.components(axis, plane, row))
+    }
+
+    /// The [`vectors`](Self::vectors) along one axis.
+    #[inline]
+    pub(super) fn components(&self, axis: usize, plane: usize, row: usize) -> &[i32] {
         let first = self.number([0, row, plane]);
         let n = self.table.map().intervals();
-        let vectors = self.turned.vectors.each_ref();
-        vectors.map(|components| &components[first..][..n.next_multiple_of(PICKS)])
+        &self.turned.vectors[axis][first..][..n.next_multiple_of(PICKS)]
     }
 
     /// Whether the cut keeps all points of a block.

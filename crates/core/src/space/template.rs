@@ -1,14 +1,14 @@
-//! Templates: what the rows of one plane, one parity and one interval of dY have in common.
+//! Templates: the places along x of the rows of a column of planes that have the same lines, interval of dY and interval of
+//! dZ, and the intervals of dX of their points.
 //!
-//! All points of such rows have the same places along x, and the same intervals of dX. Their places along y and z depend
-//! on these intervals alone: a row has n of each, so they are found once, and points pick theirs. A plane has two
-//! templates for each interval of dY, few enough to stay in the nearest cache.
+//! The places of these points along y and z depend on the intervals alone: a row has n of each, so they are found once, and
+//! points pick theirs. Rows of many planes share a template.
 
 use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::{
-    columns::Lines,
+    columns::{Across, Lines},
     lattice::{Lattice, fixed},
 };
 use crate::{
@@ -32,48 +32,59 @@ pub(super) struct Plane {
     pub(super) block: usize,
 }
 
-/// The templates of a plane, with places of a kind: fixed-point offsets from an origin, or what a format makes of them.
+/// The templates of a column of planes, with places of a kind: fixed-point offsets from an origin, or what a format makes
+/// of them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Templates<T> {
-    /// Where the template of a parity and interval lies, if it has been made.
-    made: [Vec<Option<(u32, u32)>>; 2],
+    /// The lines that templates are made of.
+    of: u64,
+    /// By lines and intervals, the number of a template in `parts` from 1 on, or 0 if it has not been made.
+    made: Vec<u32>,
+    /// Where the templates lie.
+    parts: Vec<Range<usize>>,
     /// The places along x.
     pub(super) places: Vec<T>,
     /// The intervals of dX.
     pub(super) blocks: Vec<u16>,
     /// The lattice columns, relative to the origin, in fixed-point units.
     pub(super) columns: Vec<i32>,
-    /// For each interval of dY, where the places along z of those of dX lie, if they have been made.
+    /// For each interval of dY, where the places along z of those of dX lie in this plane, if they have been made.
     high: Vec<Option<u32>>,
     heights: Vec<T>,
     /// Room for offsets.
     offsets: Vec<i32>,
 }
 
-/// How the offsets along an axis become places, which are added to a list.
-pub(super) trait Convert<T>: Fn(usize, &[i32], &mut Vec<T>) {}
+/// The number of places beyond which all templates are made anew: some 2.5 MB of `f32`.
+const MOST: usize = 1 << 18;
 
-impl<T, F: Fn(usize, &[i32], &mut Vec<T>)> Convert<T> for F {}
+/// How the sums of a number and some others, offsets along an axis, become places, which are added to a list.
+pub(super) trait Convert<T>: Fn(usize, i32, &[i32], &mut Vec<T>) {}
 
-/// The origin of offsets, and the bounds between which points along x and z lie, if they are tested.
-pub(super) type Frame<'a> = ([i64; 3], Option<&'a [Range<i64>; 3]>);
+impl<T, F: Fn(usize, i32, &[i32], &mut Vec<T>)> Convert<T> for F {}
+
+/// The origin of offsets, and the bounds between which points along x lie, if they are tested.
+pub(super) type Frame<'a> = ([i64; 3], Option<&'a Range<i64>>);
 
 impl<T> Templates<T> {
-    /// Forgets the templates of another plane.
-    pub(super) fn clear(&mut self, intervals: usize) {
-        for made in &mut self.made {
-            made.clear();
-            made.resize(intervals, None);
+    /// Begins a plane of a column.
+    pub(super) fn begin_plane(&mut self, lines: &Lines, intervals: usize) {
+        if self.of != lines.number || self.places.len() > MOST {
+            self.of = lines.number;
+            self.made.clear();
+            self.made.resize(4 * intervals * intervals, 0);
+            self.parts.clear();
+            self.places.clear();
+            self.blocks.clear();
+            self.columns.clear();
         }
         self.high.clear();
         self.high.resize(intervals, None);
-        self.places.clear();
-        self.blocks.clear();
-        self.columns.clear();
         self.heights.clear();
     }
 
-    /// The template of the rows of a parity and an interval of dY: with bounds, of the points between those along x and z.
+    /// The template of the rows of a parity and an interval of dY: with bounds, of the points between them along x.
+    #[inline]
     pub(super) fn get(
         &mut self,
         (lattice, lines): (&Lattice, &Lines),
@@ -82,25 +93,29 @@ impl<T> Templates<T> {
         (own, block): (u8, usize),
         (backend, convert): (Backend, &impl Convert<T>),
     ) -> Range<usize> {
-        if let Some((start, end)) = self.made[usize::from(own)][block] {
-            return start as usize..end as usize;
-        }
-        let made = self.make(
-            (lattice, lines),
-            plane,
-            frame,
-            (own, block),
-            (backend, convert),
-        );
-        self.made[usize::from(own)][block] = Some((made.start as u32, made.end as u32));
+        // The sum of x and y has the parity that the plane demands.
+        let parities = [plane.others ^ own, plane.own ^ own].map(usize::from);
+        let intervals = self.high.len();
+        let key = (2 * parities[0] + parities[1]) * intervals + plane.block;
+        let key = key * intervals + block;
         if self.high[block].is_none() {
             self.high[block] = Some(self.heights.len() as u32);
-            let [_, _, zs] = lattice.vectors(plane.block, block);
+            let zs = lattice.components(2, plane.block, block);
             let z = ((plane.at - frame.0[2]) << FRACTION_BITS) as i32;
-            self.offsets.clear();
-            self.offsets.extend(zs.iter().map(|dz| z + dz));
-            convert(2, &self.offsets, &mut self.heights);
+            convert(2, z, zs, &mut self.heights);
         }
+        if let Some(number) = self.made[key].checked_sub(1) {
+            return self.parts[number as usize].clone();
+        }
+        let [parity, sum] = parities;
+        let made = self.make(
+            (lattice, &lines.x[parity][sum]),
+            frame,
+            [block, plane.block],
+            (backend, convert),
+        );
+        self.parts.push(made.clone());
+        self.made[key] = self.parts.len() as u32;
         made
     }
 
@@ -126,46 +141,36 @@ impl<T> Templates<T> {
 
     fn make(
         &mut self,
-        (lattice, lines): (&Lattice, &Lines),
-        plane: Plane,
+        (lattice, lines): (&Lattice, &Across),
         (origin, bounds): Frame<'_>,
-        (own, block): (u8, usize),
+        [row, plane]: [usize; 2],
         (backend, convert): (Backend, &impl Convert<T>),
     ) -> Range<usize> {
-        let [dx, _, dz] = lattice.vectors(plane.block, block);
-        // The sum of x and y has the parity that the plane demands.
-        let parity = usize::from(plane.others ^ own);
-        let lines = &lines.x[parity][usize::from(own ^ plane.own)];
+        let dx = lattice.components(0, plane, row);
         let start = self.columns.len();
         // Points of the lines between lie inside whatever their vectors are.
         let mut whole = 0..lines.at.len();
         let from = fixed(origin[0]);
-        if let Some([x, _, z]) = bounds {
-            let [reach_x, _, reach_z] = lattice.turned.reach.map(|ends| ends.map(i64::from));
-            let at = fixed(plane.at);
-            let is_inside = z.start <= at + reach_z[0] && at + reach_z[1] < z.end;
+        if let Some(x) = bounds {
+            let reach = lattice.turned.reach[0].map(i64::from);
             let before = |reach: i64, end: i64| {
                 let is_before = |&line: &i32| from + i64::from(line) + reach < end;
                 lines.at.partition_point(is_before)
             };
-            let (first, last) = (before(reach_x[0], x.start), before(reach_x[1], x.end));
-            whole = if is_inside {
-                first..last.max(first)
-            } else {
-                0..0
-            };
+            let (first, last) = (before(reach[0], x.start), before(reach[1], x.end));
+            whole = first..last.max(first);
         }
         if lattice.cut.is_some() {
             whole = 0..0;
         }
-        let row = lattice.number([0, block, plane.block]);
+        let first = lattice.number([0, row, plane]);
         let test = |&line: &usize| {
             let block = usize::from(lines.blocks[line]);
-            let is_inside = bounds.is_none_or(|[x, _, z]| {
-                x.contains(&(from + i64::from(lines.at[line] + dx[block])))
-                    && z.contains(&(fixed(plane.at) + i64::from(dz[block])))
-            });
-            is_inside && (lattice.cut.is_none() || lattice.keeps(row + block, lines.indices[line]))
+            let at = from + i64::from(lines.at[line] + dx[block]);
+            let is_inside = bounds.is_none_or(|x| x.contains(&at));
+            let is_kept =
+                || lattice.cut.is_none() || lattice.keeps(first + block, lines.indices[line]);
+            is_inside && is_kept()
         };
         let (columns, blocks) = (&mut self.columns, &mut self.blocks);
         let mut push = |line: usize| {
@@ -183,7 +188,7 @@ impl<T> Templates<T> {
         let (columns, blocks) = (&self.columns[start..], &self.blocks[start..]);
         self.offsets.resize(columns.len(), 0);
         add_picked(backend, columns, blocks, dx, &mut self.offsets);
-        convert(0, &self.offsets, &mut self.places);
+        convert(0, 0, &self.offsets, &mut self.places);
         start..self.columns.len()
     }
 }

@@ -1,7 +1,8 @@
 //! The warp of points in space: all shears of the three planes, for points in groups of successive ones of a row.
 //!
-//! A shear waits for the one before it, so four vectors take turns. Each has tables of its own: the places of a group in
-//! the lattice and bounds of everything else tell which cells its points can touch, so no point is looked at for that.
+//! A shear waits for the one before it, so four vectors take turns. The places of a group in the lattice and bounds of
+//! everything else tell which cells its points can touch, so no point is looked at for that. Along a row only x goes
+//! through many cells: six of the twelve shears do not depend on it, and have tables that all four vectors share.
 
 use super::{
     Backend,
@@ -74,13 +75,17 @@ impl SpaceShears {
         (widest << FRACTION_BITS) + self.width <= (cells as i64 - 1) << CELL_BITS
     }
 
-    /// The first cell of each direction of a plane that the points of a group touch.
+    /// The first cell of a direction of a plane that the points of a group touch.
     #[inline(always)]
-    fn cells(&self, plane: usize, extents: &Extents) -> [i32; 4] {
+    fn cell(&self, plane: usize, direction: usize, extents: &Extents) -> i32 {
         let [a, b] = PLANES[plane].map(|axis| extents[axis]);
-        let across = [a[0], b[0], a[0] - b[1], a[0] + b[0]];
-        let leads = self.leads[plane];
-        [0, 1, 2, 3].map(|i| ((across[i] << FRACTION_BITS) + leads[i]) >> CELL_BITS)
+        let across = match direction {
+            0 => a[0],
+            1 => b[0],
+            2 => a[0] - b[1],
+            _ => a[0] + b[0],
+        };
+        ((across << FRACTION_BITS) + self.leads[plane][direction]) >> CELL_BITS
     }
 }
 
@@ -118,23 +123,43 @@ impl VectorLoop for Groups<'_> {
             return 0;
         }
         for start in (0..length).step_by(TURNS * L::WIDTH) {
-            // SAFETY: the machine has the instructions, and the lists have a vector from `start` on.
-            unsafe { self.turns::<L>(start, length - L::WIDTH) };
+            // Beyond the end, the last vector is done again.
+            let starts = [0, 1, 2, 3].map(|k| (start + k * L::WIDTH).min(length - L::WIDTH));
+            let extents = starts.map(|start| &self.extents[start / GROUP]);
+            let mut rows = *extents[0];
+            for extents in &extents[1..] {
+                for (all, [least, most]) in rows.iter_mut().zip(extents.iter()) {
+                    *all = [all[0].min(*least), all[1].max(*most)];
+                }
+            }
+            // Of the directions that x has no part in.
+            rows[0] = [0; 2];
+            // SAFETY: the machine has the instructions, and the lists have a vector from all starts on.
+            unsafe {
+                if self.shears.fits(&rows, L::WINDOW) {
+                    self.turns::<L, _>(starts, extents, [&rows]);
+                } else {
+                    self.turns::<L, _>(starts, extents, extents);
+                }
+            }
         }
         length
     }
 }
 
 impl Groups<'_> {
-    /// Warps the vectors from a place on, of which `last` is the last one's.
+    /// Warps the vectors at some places, with the extents of each, and for shears that x has no part in with one of all or
+    /// of each.
     ///
     /// # Safety
-    /// The machine has the instructions of `L`, and the lists have a vector from `start` and from `last` on.
+    /// The machine has the instructions of `L`, and the lists have a vector from each of `starts` on.
     #[inline(always)]
-    unsafe fn turns<L: Lanes>(&mut self, start: usize, last: usize) {
-        // Beyond the end, the last vector is done again.
-        let starts = [0, 1, 2, 3].map(|k| (start + k * L::WIDTH).min(last));
-        let extents = starts.map(|start| &self.extents[start / GROUP]);
+    unsafe fn turns<L: Lanes, const ROWS: usize>(
+        &mut self,
+        starts: [usize; TURNS],
+        extents: [&Extents; TURNS],
+        rows: [&Extents; ROWS],
+    ) {
         // SAFETY: as the caller ensures.
         unsafe {
             let mut at = [0, 1, 2].map(|axis| {
@@ -144,24 +169,29 @@ impl Groups<'_> {
             for (plane, [a, b]) in PLANES.into_iter().enumerate() {
                 let tables = |direction| Tables::new(&self.shears.planes[plane], direction);
                 let tables = [tables(0), tables(1), tables(2), tables(3)];
-                let cells = extents.map(|extents| self.shears.cells(plane, extents));
+                let shear = |direction: usize, k: usize| {
+                    let has_x = match direction {
+                        0 => a == 0,
+                        1 => b == 0,
+                        _ => a == 0 || b == 0,
+                    };
+                    let extents = if has_x { extents[k] } else { rows[k % ROWS] };
+                    let cell = self.shears.cell(plane, direction, extents);
+                    Near::<L>::new(tables[direction], cell)
+                };
                 for k in 0..TURNS {
-                    let shear = Near::<L>::new(tables[0], cells[k][0]);
-                    at[b][k] = L::add_ints(at[b][k], noise(shear, at[a][k]));
+                    at[b][k] = L::add_ints(at[b][k], noise(shear(0, k), at[a][k]));
                 }
                 for k in 0..TURNS {
-                    let shear = Near::<L>::new(tables[1], cells[k][1]);
-                    at[a][k] = L::add_ints(at[a][k], noise(shear, at[b][k]));
+                    at[a][k] = L::add_ints(at[a][k], noise(shear(1, k), at[b][k]));
                 }
                 for k in 0..TURNS {
-                    let shear = Near::<L>::new(tables[2], cells[k][2]);
-                    let rising = noise(shear, L::sub_ints(at[a][k], at[b][k]));
+                    let rising = noise(shear(2, k), L::sub_ints(at[a][k], at[b][k]));
                     at[a][k] = L::add_ints(at[a][k], rising);
                     at[b][k] = L::add_ints(at[b][k], rising);
                 }
                 for k in 0..TURNS {
-                    let shear = Near::<L>::new(tables[3], cells[k][3]);
-                    let falling = noise(shear, L::add_ints(at[a][k], at[b][k]));
+                    let falling = noise(shear(3, k), L::add_ints(at[a][k], at[b][k]));
                     at[a][k] = L::add_ints(at[a][k], falling);
                     at[b][k] = L::sub_ints(at[b][k], falling);
                 }

@@ -41,6 +41,7 @@ impl<P: Iterator<Item = Range<usize>> + Clone> VectorLoop for Retain<'_, P> {
         if !L::HAS_TRIPLES || !length.is_multiple_of(L::WIDTH) || !self.lists.iter().all(is_whole) {
             return 0;
         }
+        let keeps_all = self.ends.iter().all(|ends| *ends == (i32::MIN..i32::MAX));
         let mut kept = 0;
         for part in self.parts.clone() {
             assert!(
@@ -54,6 +55,13 @@ impl<P: Iterator<Item = Range<usize>> + Clone> VectorLoop for Retain<'_, P> {
                 unsafe {
                     let places =
                         [0, 1, 2].map(|axis| L::load_ints(self.lists[axis].as_ptr().add(start)));
+                    if keeps_all {
+                        for (list, v) in self.lists.iter_mut().zip(places) {
+                            L::store_ints(list.as_mut_ptr().add(kept), v);
+                        }
+                        kept += number;
+                        continue;
+                    }
                     for (v, ends) in places.iter().zip(self.ends) {
                         mask &= L::between(*v, ends.start, ends.end);
                     }

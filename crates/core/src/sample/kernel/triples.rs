@@ -2,8 +2,8 @@
 
 use super::{
     Backend,
-    backend::run_vectors,
-    lanes::{Lanes, VectorLoop},
+    backend::{compiled_loop, run_vectors},
+    lanes::{Lanes, PlainLoop, VectorLoop},
     rows::vector_starts,
 };
 
@@ -23,10 +23,55 @@ pub(crate) fn pick_triples(
         out,
     };
     if run_vectors(backend, &mut picked) == 0 {
-        let [ys, zs] = across;
-        for ((out, &x), &place) in picked.out.iter_mut().zip(xs).zip(places) {
+        pick_pairs(backend, xs, places, across, picked.out);
+    }
+}
+
+/// [`pick_triples`] of any numbers, by plain code. The numbers along y and z that a place picks are copied together.
+pub(crate) fn pick_pairs<T: Copy + Default>(
+    backend: Backend,
+    xs: &[T],
+    places: &[u16],
+    across: [&[T]; 2],
+    out: &mut [[T; 3]],
+) {
+    /// From this number of points on, pairs are worth their table.
+    const MANY: usize = 24;
+    let [ys, zs] = across;
+    if out.len() < MANY || ys.len().max(zs.len()) > PICKS {
+        for ((out, &x), &place) in out.iter_mut().zip(xs).zip(places) {
             let place = usize::from(place);
             *out = [x, ys[place], zs[place]];
+        }
+        return;
+    }
+    let mut pairs = Pairs {
+        xs,
+        places,
+        across,
+        out,
+    };
+    compiled_loop(backend, &mut pairs);
+}
+
+struct Pairs<'a, T> {
+    xs: &'a [T],
+    places: &'a [u16],
+    across: [&'a [T]; 2],
+    out: &'a mut [[T; 3]],
+}
+
+impl<T: Copy + Default> PlainLoop for Pairs<'_, T> {
+    #[inline(always)]
+    fn run(&mut self) {
+        let mut pairs = [[T::default(); 2]; PICKS];
+        let [ys, zs] = self.across;
+        for ((pair, &y), &z) in pairs.iter_mut().zip(ys).zip(zs) {
+            *pair = [y, z];
+        }
+        for ((out, &x), &place) in self.out.iter_mut().zip(self.xs).zip(self.places) {
+            let [y, z] = pairs[usize::from(place) % PICKS];
+            *out = [x, y, z];
         }
     }
 }
@@ -242,6 +287,13 @@ mod tests {
                         })
                         .collect();
                     assert_eq!(picked[1..=length], made, "{backend:?} {length}");
+                    let [xs, ys, zs] = [xs, across[0], across[1]]
+                        .map(|list| list.iter().map(|&v| f64::from(v)).collect::<Vec<f64>>());
+                    let mut doubles = vec![[-1.0; 3]; length + 2];
+                    pick_pairs(backend, &xs, places, [&ys, &zs], &mut doubles[1..=length]);
+                    let wide = made.iter().map(|triple| triple.map(f64::from));
+                    assert!(doubles[1..=length].iter().copied().eq(wide));
+                    assert_eq!([doubles[0], doubles[length + 1]], [[-1.0; 3]; 2]);
                     let [x, y, z] = [0, 1, 2].map(|axis| {
                         let parts = made.iter().map(|triple| triple[axis]);
                         parts.collect::<Vec<f32>>()

@@ -104,7 +104,8 @@ impl Walk {
                             return false;
                         }
                         let map = self.course.scope.lattice.table.map();
-                        self.templates.clear(map.intervals());
+                        let lines = &self.course.column.lines;
+                        self.templates.begin_plane(lines, map.intervals());
                     }
                     is_complete
                 }
@@ -170,14 +171,15 @@ impl Walk {
         let origin = pending.origin;
         let templates = &mut self.templates;
         let key = (row.own, row.block as usize);
-        let bounds = scope.is_box().then_some(&scope.bounds);
         let lattice = &scope.lattice;
-        let convert = |_, offsets: &[i32], places: &mut Vec<i32>| places.extend_from_slice(offsets);
+        let convert = |_, lift: i32, offsets: &[i32], places: &mut Vec<i32>| {
+            places.extend(offsets.iter().map(|offset| lift + offset));
+        };
         let how = (self.backend, &convert);
         let mut points = templates.get(
             (lattice, &course.column.lines),
             plane,
-            (origin, bounds),
+            (origin, None),
             key,
             how,
         );
@@ -186,7 +188,7 @@ impl Walk {
         }
         let [y, z] = [row.at - origin[1], plane.at - origin[2]].map(|v| v as i32);
         let lift = y << FRACTION_BITS;
-        let [_, ys, _] = scope.lattice.vectors(plane.block, row.block as usize);
+        let ys = lattice.components(1, plane.block, row.block as usize);
         let heights = templates.heights(row.block as usize);
         let mut runs = course.runs(row);
         let whole = [Run {

@@ -8,12 +8,11 @@ use core::ops::Range;
 
 use super::{course::Course, relative, world};
 use crate::{
-    sample::{Backend, space::compiled},
+    sample::Backend,
     space::{
         cells::{IN, OUT},
         columns::Row,
-        format::{Format, Picks},
-        lattice::fixed,
+        format::{Format, Picks, convert},
         scope::Scope,
         template::{Plane, Templates},
     },
@@ -26,12 +25,17 @@ pub(in crate::space) struct Rows<F: Format> {
     course: Course,
     pub(in crate::space) backend: Backend,
     templates: Templates<F::Part>,
-    /// How offsets from an origin become places.
-    axes: Option<([i64; 3], [F::Axis; 3])>,
+    /// How offsets from the origin of a patch become places.
+    axes: Option<[F::Axis; 3]>,
+    /// The number of the slab, from 1 on, and the patch.
+    axes_of: (u64, usize),
     /// The places along y of the points of a row, by interval, and whether they are inside.
     across: Vec<F::Part>,
     inside: Vec<bool>,
-    offsets: Vec<i32>,
+    /// Whether the scope is a box.
+    is_box: bool,
+    /// The rows and the planes whose points lie within its bounds along y and z whatever their vectors are.
+    within: [Range<i64>; 2],
     /// The items of a row of which only some were taken.
     pending: Vec<F::Item>,
     taken: usize,
@@ -50,13 +54,15 @@ impl<F: Format> Rows<F> {
     pub(in crate::space) fn new(scope: Arc<Scope>, start: Option<[i64; 3]>) -> Self {
         let ranges = scope.all.clone();
         Self {
-            course: Course::new(scope, &ranges, start),
+            course: Course::new(scope.clone(), &ranges, start),
             backend: Backend::best(),
             templates: Templates::default(),
             axes: None,
+            axes_of: (0, 0),
             across: Vec::new(),
             inside: Vec::new(),
-            offsets: Vec::new(),
+            is_box: scope.is_box(),
+            within: [1, 2].map(|axis| within(&scope, axis)),
             pending: Vec::new(),
             taken: 0,
         }
@@ -131,7 +137,8 @@ impl<F: Format> Rows<F> {
                 return None;
             }
             let map = self.course.scope.lattice.table.map();
-            self.templates.clear(map.intervals());
+            let lines = &self.course.column.lines;
+            self.templates.begin_plane(lines, map.intervals());
         }
     }
 
@@ -140,21 +147,21 @@ impl<F: Format> Rows<F> {
         let (course, backend) = (&self.course, self.backend);
         let scope = &*course.scope;
         let origin = course.origin(course.patch(row));
-        let (_, axes) = match self.axes {
-            Some(axes) if axes.0 == origin => axes,
-            _ => (
-                origin,
-                [0, 1, 2].map(|axis| F::axis(scope, axis, origin[axis])),
-            ),
+        let key = (course.slab.number, course.patch(row));
+        if self.axes_of != key {
+            self.axes_of = key;
+            self.axes = Some([0, 1, 2].map(|axis| F::axis(scope, axis, origin[axis])));
+        }
+        let axes = &self.axes;
+        let add = |axis: usize, lift: i32, offsets: &[i32], places: &mut Vec<F::Part>| {
+            let Some(axes) = axes else {
+                return;
+            };
+            let start = places.len();
+            places.resize(start + offsets.len(), F::Part::default());
+            convert::<F>(backend, axes[axis], (lift, offsets), &mut places[start..]);
         };
-        self.axes = Some((origin, axes));
-        let convert = |axis: usize, offsets: &[i32], places: &mut Vec<F::Part>| {
-            let how = axes[axis];
-            compiled(backend, || {
-                places.extend(offsets.iter().map(|&offset| F::part(how, offset)));
-            });
-        };
-        let bounds = scope.is_box().then_some(&scope.bounds);
+        let bounds = self.is_box.then_some(&scope.bounds[0]);
         let (lines, key) = (&course.column.lines, (row.own, row.block as usize));
         let templates = &mut self.templates;
         let mut points = templates.get(
@@ -162,17 +169,17 @@ impl<F: Format> Rows<F> {
             plane,
             (origin, bounds),
             key,
-            (backend, &convert),
+            (backend, &add),
         );
         if let Some(first) = course.first(plane, row, origin[0]) {
             points.start += templates.columns[points.clone()].partition_point(|&at| at < first);
         }
-        let [_, ys, _] = scope.lattice.vectors(plane.block, row.block as usize);
+        let ys = scope.lattice.components(1, plane.block, row.block as usize);
         let lift = ((row.at - origin[1]) << FRACTION_BITS) as i32;
-        self.offsets.clear();
-        self.offsets.extend(ys.iter().map(|dy| lift + dy));
-        self.across.clear();
-        convert(1, &self.offsets, &mut self.across);
+        self.across.resize(ys.len(), F::Part::default());
+        if let Some(axes) = axes {
+            convert::<F>(backend, axes[1], (lift, ys), &mut self.across);
+        }
         Part {
             plane,
             row,
@@ -188,7 +195,7 @@ impl<F: Format> Rows<F> {
             templates,
             across,
             inside,
-            offsets,
+            within,
             ..
         } = self;
         let scope = &*course.scope;
@@ -205,19 +212,23 @@ impl<F: Format> Rows<F> {
             across: [across, templates.heights(row.block as usize)],
             address: [origin[0], row.at, plane.at],
         };
-        if scope.is_box() {
-            let [least, most] = scope.lattice.turned.reach[1].map(i64::from);
-            let (at, bounds) = (fixed(row.at), &scope.bounds[1]);
-            if bounds.start <= at + least && at + most < bounds.end {
+        if self.is_box {
+            // Templates have been tested along x.
+            if within[0].contains(&row.at) && within[1].contains(&plane.at) {
                 let length = points.len();
                 F::pick(self.backend, picks(points), &mut out[..length]);
                 return length;
             }
-            let [_, ends, _] = relative(&scope.bounds, origin);
+            let [_, ys, zs] = scope.lattice.vectors(plane.block, row.block as usize);
+            let [_, across, high] = relative(&scope.bounds, origin);
+            let [y, z] =
+                [row.at - origin[1], plane.at - origin[2]].map(|v| (v << FRACTION_BITS) as i32);
+            let both = ys.iter().zip(zs);
             inside.clear();
-            inside.extend(offsets.iter().map(|y| ends.contains(y)));
-            let is_inside = |i: usize| inside[usize::from(templates.blocks[i])];
-            return picks(points.clone()).write_some::<F>(out, |i| is_inside(points.start + i));
+            inside.extend(
+                both.map(|(dy, dz)| across.contains(&(y + dy)) && high.contains(&(z + dz))),
+            );
+            return picks(points).write_inside::<F>(inside, out);
         }
         let [dx, dy, dz] = scope.lattice.vectors(plane.block, row.block as usize);
         let ends = relative(&scope.bounds, origin);
@@ -247,4 +258,12 @@ impl<F: Format> Rows<F> {
         }
         written
     }
+}
+
+/// The lattice coordinates whose points lie within the bounds along an axis whatever their vectors are.
+fn within(scope: &Scope, axis: usize) -> Range<i64> {
+    let [least, most] = scope.lattice.turned.reach[axis].map(i64::from);
+    let bounds = &scope.bounds[axis];
+    let from_on = |place: i64| -(-place >> FRACTION_BITS);
+    from_on(bounds.start - least)..from_on(bounds.end - most)
 }
