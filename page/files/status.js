@@ -85,7 +85,7 @@ export class Status {
     const words = () => {
       if (error?.faults?.length > 0) return "Check the field marked red";
       if (error?.isPassing) return "Counted when the server has time";
-      if (error?.status === 413) return "Too many points in view to count";
+      if (error?.status === 413) return `Too many points in view to count${this.plane.isGray ? ": gray shows how dense they are" : ""}`;
       if (error) return "Not counted";
       if (this.plane.isGray) return `${counted(this.all)} in view, too many to draw: gray shows how dense they are`;
       if (keep < 1) {

@@ -129,7 +129,7 @@ export class Take extends Part {
       this.size.textContent = "weighing …";
       this.weight = await sizeOf(request, format, this.count, signal);
       const { bytes: size, isExact } = this.weight;
-      const words = Number.isFinite(size) ? `${isExact ? "" : "about "}${bytes(size)}` : "size not known before";
+      const words = Number.isFinite(size) ? `${isExact ? "" : "about "}${bytes(size)}` : "size not known in advance";
       this.size.textContent = `${words} as ${format}`;
       const isHeld = request.body && size > MOST_HELD;
       if (isHeld) this.size.textContent += ": too much for this page to hold, use the command below";

@@ -135,7 +135,7 @@ function tell(now) {
   const { points, chunks, wanted, received, isBusy } = volume.sums;
   if (received !== heard.received || chunks === wanted) heard = { received, at: now };
   const isLong = now - heard.at > PATIENCE && !isAway();
-  note("busy", isBusy ? "The server is busy. This page tries again by itself." : isLong ? "The server takes long to answer." : null);
+  note("busy", isBusy ? "The server is busy. This page tries again by itself." : isLong ? "The server is slow to answer." : null);
   root.dataset.state = notes.refused ? "failed" : chunks === wanted ? "ready" : "loading";
   const parts = [`${counted(points)} in ${chunks === wanted ? counted(chunks, "chunk") : `${chunks} of ${wanted} chunks`}`, bytes(received),
     `at ${state.at.map((one) => formatPlace(one, Number(state.spacing) < 1 ? 2 : 0)).join(", ")}`];

@@ -233,7 +233,7 @@ export class Works extends Part {
     this.about.textContent = ABOUT[chosen.mode];
     this.caption.textContent = mode.caption?.(chosen) ?? "the grid points that belong to it";
     if (!pattern) {
-      this.tell([`“${chosen.alpha}” is no α: it must be a decimal or a fraction between 1 and 2, or one of the buttons.`]);
+      this.tell([`“${chosen.alpha}” is not an α: it must be a decimal or a fraction between 1 and 2, or one of the buttons.`]);
       return;
     }
     this.slider.value = String(pattern.alpha);

@@ -170,15 +170,39 @@ fn beyond_a_64th_of_the_points_density_is_gray() {
     // The least share at which points are drawn has no rows; see docs/quality.md.
     browser.look(&daemon, "#at=0,0&span=7000");
     assert_eq!(browser.value("strew.plane.keep"), 1.0 / 64.0);
+    // Points have faded by then, so no step is seen where they end.
+    let fading = |span: u32| {
+        browser.look(&daemon, &format!("#at=0,0&span={span}&renderer=2d"));
+        let gray = browser.value("strew.plane.gray").as_f64();
+        let mean = "(() => { const c = strew.plane.canvas; \
+            const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; \
+            let sum = 0; for (let i = 0; i < d.length; i += 4) sum += d[i]; return 4 * sum / d.length; })()";
+        let mean = browser.value(mean).as_f64();
+        (gray.expect("a share"), mean.expect("a mean"))
+    };
+    assert_eq!(fading(2000).0, 0.0);
+    let (last, beyond) = (fading(7300), fading(7700));
+    assert!((0.9..1.0).contains(&last.0), "{last:?}");
+    assert_eq!(beyond.0, 1.0);
+    assert!((last.1 - beyond.1).abs() < 4.0, "{last:?} {beyond:?}");
     browser.look(&daemon, "#at=0,0&span=20000&renderer=2d");
     assert!(browser.text("#tally").contains("gray shows how dense"));
     let colors = "(() => { const c = strew.plane.canvas; \
         const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; return new Set(new Uint32Array(d.buffer)).size; })()";
     assert_eq!(browser.value(colors), 1);
     assert_eq!(browser.value("strew.plane.chunks.wanted.length"), 0);
-    // A field is drawn in its layer's color.
+    // A field is drawn in its layer's color, by its means where it is finer than pixels.
     browser.choose("#field", "forest");
     browser.until("!strew.shade.canvas.hidden && strew.shade.canvas.dataset.missing === '0'");
+    browser.until("document.querySelector('#tally').textContent.includes('gray shows how dense')");
+    let spread = "(() => { const c = strew.shade.canvas; \
+        const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; \
+        const all = Array.from({ length: d.length / 4 }, (_, i) => d[4 * i + 3]); \
+        const mean = all.reduce((a, b) => a + b) / all.length; \
+        return [mean, Math.sqrt(all.reduce((a, b) => a + (b - mean) ** 2, 0) / all.length)]; })()";
+    let spread = browser.value(spread);
+    let number = |i: usize| spread[i].as_f64().expect("a number");
+    assert!(number(0) > 30.0 && number(1) < 4.0, "{spread}");
     browser.value("strew.plane.zoom(16)");
     assert!(browser.ready() > 10_000);
     browser.until("strew.shade.canvas.hidden");
