@@ -1,6 +1,6 @@
 // The line at the bottom: how many points are in view, where, and how long a stretch of it is.
 
-import { askJson } from "./api.js";
+import { Problem, askJson, isAborted } from "./api.js";
 import { byId, counted, settled, spoken } from "./dom.js";
 import { decimalsFor, formatPlace } from "./place.js";
 import { Digits, json } from "./digits.js";
@@ -75,9 +75,9 @@ export class Status {
       this.count = shown;
       this.say(keep);
     } catch (error) {
-      if (error.name === "AbortError") return;
+      if (isAborted(error)) return;
       this.say(keep, error);
-      if (error.isPassing) this.later = setTimeout(() => this.tally(), Math.max(1, error.retryAfter) * 1000);
+      if (error instanceof Problem && error.isPassing) this.later = setTimeout(() => this.tally(), Math.max(1, error.retryAfter) * 1000);
     }
   }
 

@@ -1,6 +1,6 @@
 // The tab Take away: the view's request to paste, and its points as a file.
 
-import { hasKey } from "./api.js";
+import { hasKey, isAborted, wordsOf } from "./api.js";
 import { FORMATS, curl, grpcurl, python, requestOf } from "./commands.js";
 import { byId, bytes, copy, counted, make, settled } from "./dom.js";
 import { MOST_HELD, save, sizeOf } from "./download.js";
@@ -136,8 +136,8 @@ export class Take extends Part {
       this.button.disabled = Boolean(isHeld);
       document.documentElement.dataset.weighed = String(this.count);
     } catch (error) {
-      if (error.name === "AbortError") return;
-      this.size.textContent = error.message;
+      if (isAborted(error)) return;
+      this.size.textContent = wordsOf(error);
       this.size.classList.add("bad");
       this.button.disabled = true;
     }
@@ -152,7 +152,7 @@ export class Take extends Part {
       await save(request, file, (come) => (this.bar.value = come));
       this.size.textContent = `${file} is in your downloads`;
     } catch (error) {
-      this.size.textContent = error.message;
+      this.size.textContent = wordsOf(error);
       this.size.classList.add("bad");
     }
     this.bar.hidden = true;

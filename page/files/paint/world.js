@@ -1,5 +1,6 @@
 // Worlds as files: what the page shows, as the server reads it from a folder of worlds, and back.
 
+import { wordsOf } from "../api.js";
 import { Digits, json } from "../digits.js";
 import { bodyOf, memberOf } from "../query.js";
 import { send } from "../sent.js";
@@ -40,7 +41,7 @@ export async function layersOf(text, name) {
   try {
     world = parsed(text);
   } catch (error) {
-    throw new Error(`“${name}” is not JSON: ${error.message}`);
+    throw new Error(`“${name}” is not JSON: ${wordsOf(error)}`);
   }
   const list = world?.layers ?? [world];
   if (!Array.isArray(list) || list.length < 1 || list.length > MOST_LAYERS) {

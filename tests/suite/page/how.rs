@@ -270,7 +270,7 @@ fn a_server_that_is_busy_or_away_is_said_and_waited_for() {
     // Answers put in by the test; the page hears them as the server's.
     let answers = |with: &str| {
         browser.value(&format!(
-            "(globalThis.kept ??= fetch, globalThis.fetch = {with}, 0)"
+            "(window.kept ??= fetch, window.fetch = {with}, 0)"
         ));
     };
     let said = |words: &str| {

@@ -137,7 +137,7 @@ fn a_busy_server_and_one_that_is_away_are_said() {
     // Answers put in by the test; the page hears them as the server's.
     let answers = |with: &str| {
         browser.value(&format!(
-            "(globalThis.kept ??= fetch, globalThis.fetch = {with}, 0)"
+            "(window.kept ??= fetch, window.fetch = {with}, 0)"
         ));
     };
     let seed = |seed: &str| browser.choose("#seed", seed);

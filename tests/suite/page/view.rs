@@ -168,25 +168,26 @@ fn beyond_a_64th_of_the_points_density_is_gray() {
         return;
     };
     // The least share at which points are drawn has no rows; see docs/quality.md.
-    browser.look(&daemon, "#at=0,0&span=7000");
+    browser.look(&daemon, "#at=0,0&span=7300&renderer=2d");
     assert_eq!(browser.value("strew.plane.keep"), 1.0 / 64.0);
-    // Points have faded by then, so no step is seen where they end.
-    let fading = |span: u32| {
-        browser.look(&daemon, &format!("#at=0,0&span={span}&renderer=2d"));
-        let gray = browser.value("strew.plane.gray").as_f64();
-        let mean = "(() => { const c = strew.plane.canvas; \
-            const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; \
-            let sum = 0; for (let i = 0; i < d.length; i += 4) sum += d[i]; return 4 * sum / d.length; })()";
-        let mean = browser.value(mean).as_f64();
-        (gray.expect("a share"), mean.expect("a mean"))
+    let number = |value: Value| value.as_f64().expect("a number");
+    let mean = "(() => { const c = strew.plane.canvas; \
+        const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; \
+        let sum = 0; for (let i = 0; i < d.length; i += 4) sum += d[i]; return 4 * sum / d.length; })()";
+    // Points have almost faded by then, and begin to at one in 8: no step is seen where they end.
+    let last = number(browser.value(mean));
+    let gray = |span: u32| {
+        number(browser.value(&format!(
+            "(await import('/page/grid.js')).grayOf({{ width: 800, height: 800, unit: {span} / 800 }}, [1])"
+        )))
     };
-    assert_eq!(fading(2000).0, 0.0);
-    let (last, beyond) = (fading(7300), fading(7700));
-    assert!((0.9..1.0).contains(&last.0), "{last:?}");
-    assert_eq!(beyond.0, 1.0);
-    assert!((last.1 - beyond.1).abs() < 4.0, "{last:?} {beyond:?}");
+    assert!((0.9..1.0).contains(&number(browser.value("strew.plane.gray"))));
+    assert_eq!([gray(1000), gray(2828), gray(8001)], [0.0, 0.0, 1.0]);
+    assert!((0.45..0.55).contains(&gray(4757)));
     browser.look(&daemon, "#at=0,0&span=20000&renderer=2d");
     assert!(browser.text("#tally").contains("gray shows how dense"));
+    let beyond = number(browser.value(mean));
+    assert!((last - beyond).abs() < 4.0, "{last} {beyond}");
     let colors = "(() => { const c = strew.plane.canvas; \
         const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; return new Set(new Uint32Array(d.buffer)).size; })()";
     assert_eq!(browser.value(colors), 1);
@@ -201,8 +202,8 @@ fn beyond_a_64th_of_the_points_density_is_gray() {
         const mean = all.reduce((a, b) => a + b) / all.length; \
         return [mean, Math.sqrt(all.reduce((a, b) => a + (b - mean) ** 2, 0) / all.length)]; })()";
     let spread = browser.value(spread);
-    let number = |i: usize| spread[i].as_f64().expect("a number");
-    assert!(number(0) > 30.0 && number(1) < 4.0, "{spread}");
+    let share = |i: usize| spread[i].as_f64().expect("a share");
+    assert!(share(0) > 30.0 && share(1) < 4.0, "{spread}");
     browser.value("strew.plane.zoom(16)");
     assert!(browser.ready() > 10_000);
     browser.until("strew.shade.canvas.hidden");
