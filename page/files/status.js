@@ -66,6 +66,8 @@ export class Status {
     clearTimeout(this.later);
     this.abort = new AbortController();
     const { keep } = plane;
+    // So many points of a field are not counted: the server would refuse, after a while.
+    if (plane.isGray && session.state.layers.some(({ field }) => field)) return this.say(keep, { status: 413 });
     try {
       const box = boxOf(plane.view);
       const { layers } = session.state;
