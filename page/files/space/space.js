@@ -32,7 +32,7 @@ root.dataset.renderer = scene.isFlat ? "2d" : "webgl2";
  * What the banner says, by subject; the first that there is is shown.
  * @type {Record<"gone" | "busy" | "refused" | "flat" | "link", string | Error | null>}
  */
-const notes = { gone: null, busy: null, refused: null, flat: null, link: state.wrong.join(" ") || null };
+const notes = { gone: null, busy: null, refused: null, link: state.wrong.join(" ") || null, flat: null };
 if (scene.isFlat) notes.flat = "This browser draws without WebGL2, so the picture is plainer and slower.";
 
 function note(subject, words) {
