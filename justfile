@@ -67,7 +67,8 @@ bundlers *names:
 types:
     .ci/page
 
-# The tests of the pages in Firefox (firefox-esr and geckodriver) instead of Chromium.
+# The tests of the pages in Firefox instead of Chromium: Debian's firefox-esr, and `cargo install geckodriver`. Half an hour on
+# two busy cores.
 firefox:
     STREW_TEST_BROWSER=firefox cargo test --locked --test suite -- page:: --test-threads 1
 

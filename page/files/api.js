@@ -34,6 +34,16 @@ export class Problem extends Error {
 /** The server cannot be reached, or went away in the middle. */
 export class Gone extends Error {}
 
+/** Whether an error is that of a request which this page gave up. */
+export function isAborted(error) {
+  return error instanceof DOMException && error.name === "AbortError";
+}
+
+/** What an error says. */
+export function wordsOf(error) {
+  return error instanceof Error ? error.message : String(error);
+}
+
 const KEY = "strew-key";
 
 /**
@@ -140,7 +150,7 @@ export async function ask(path, { body, signal, method, isAgain } = {}) {
       signal,
     });
   } catch (error) {
-    if (error.name === "AbortError") throw error;
+    if (isAborted(error)) throw error;
     presence(true);
     throw new Gone("the server does not answer");
   }
@@ -164,7 +174,7 @@ export async function askJson(path, options) {
   try {
     return await answer.json();
   } catch (error) {
-    if (error.name === "AbortError") throw error;
+    if (isAborted(error)) throw error;
     throw brokeOff();
   }
 }

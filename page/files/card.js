@@ -1,6 +1,6 @@
 // A point that is pointed at: its card, and its place and neighbors above the plane.
 
-import { askJson } from "./api.js";
+import { askJson, isAborted, wordsOf } from "./api.js";
 import { byId, contextOf, make, settled, spoken } from "./dom.js";
 import { Part } from "./part.js";
 import { decimalsFor, distance, formatPlace, moved, parsePlace, toNumber } from "./place.js";
@@ -110,9 +110,9 @@ export class Card extends Part {
       this.found = { self: known.point, near: neighbors.slice(1), layer, index: point.layer };
       this.show();
     } catch (error) {
-      if (error.name === "AbortError") return;
-      this.element.replaceChildren(make("p", { class: "bad" }, error.message));
-      this.say(error.message);
+      if (isAborted(error)) return;
+      this.element.replaceChildren(make("p", { class: "bad" }, wordsOf(error)));
+      this.say(wordsOf(error));
       this.place();
     }
     this.draw();

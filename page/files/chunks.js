@@ -206,7 +206,7 @@ export class Chunks {
       chunk.state = "done";
       this.bytes += chunk.data.byteLength;
     } catch (error) {
-      this.lost(chunk, error);
+      this.lost(chunk, /** @type {Error} */ (error));
     }
     this.running -= 1;
     this.changed();

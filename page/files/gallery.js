@@ -1,7 +1,7 @@
 // The gallery: every profile as points, spectrum and radial power, side by side; each opens in the
 // view.
 
-import { ask } from "./api.js";
+import { ask, wordsOf } from "./api.js";
 import { lineChart, pointPicture, spectrumPicture, topOf } from "./charts.js";
 import { byId, make, spoken } from "./dom.js";
 import { measure } from "./measure.js";
@@ -85,7 +85,7 @@ export class Gallery extends Part {
       card.draw();
       return true;
     } catch (error) {
-      about.textContent = `Not shown: ${error.message}`;
+      about.textContent = `Not shown: ${wordsOf(error)}`;
       about.className = "bad";
       spectrum.parentElement.classList.remove("awaited");
       return false;

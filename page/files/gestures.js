@@ -1,68 +1,27 @@
 // Mouse, pen, fingers and keys that move the plane.
 
+import { followPointers, followWheel, placeOf } from "./hands.js";
+
 /** How far a key moves the view, as a share of its shorter side; with Shift a whole one. */
 const STEP = 0.15;
-/** A pointer that moves less than this many pixels taps. */
-const TAP = 5;
 
 /** Lets a canvas move its plane; `tapped(at)` and `hovered(at)` get CSS pixels, or `null` on leaving. */
 export function moveBy(canvas, plane, { tapped, hovered }) {
-  const down = new Map();
-  let travel = 0;
-  const at = (event) => {
-    const box = canvas.getBoundingClientRect();
-    return [event.clientX - box.left, event.clientY - box.top];
-  };
-  const pinch = () => {
-    const [a, b] = [...down.values()];
-    return { middle: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], apart: Math.hypot(a[0] - b[0], a[1] - b[1]) || 1 };
-  };
-
-  canvas.addEventListener("pointerdown", (event) => {
-    canvas.setPointerCapture(event.pointerId);
-    if (down.size === 0) travel = 0;
-    down.set(event.pointerId, at(event));
-    canvas.classList.add("held");
+  followPointers(canvas, {
+    tapped, hovered,
+    moved: ({ dx, dy, fingers, was, is, isDrag }) => {
+      if (was && is) {
+        plane.drag(is.middle[0] - was.middle[0], is.middle[1] - was.middle[1]);
+        plane.zoom(is.apart / was.apart, is.middle);
+      } else if (fingers === 1 && isDrag) plane.drag(dx, dy);
+    },
   });
-
-  canvas.addEventListener("pointermove", (event) => {
-    const before = down.get(event.pointerId);
-    const now = at(event);
-    if (!before) {
-      if (event.pointerType === "mouse") hovered(now);
-      return;
-    }
-    const was = down.size === 2 ? pinch() : null;
-    down.set(event.pointerId, now);
-    const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
-    travel += Math.abs(dx) + Math.abs(dy);
-    if (was) {
-      const is = pinch();
-      plane.drag(is.middle[0] - was.middle[0], is.middle[1] - was.middle[1]);
-      plane.zoom(is.apart / was.apart, is.middle);
-    } else if (down.size === 1 && travel > TAP) plane.drag(dx, dy);
-  });
-
-  const up = (event) => {
-    if (!down.delete(event.pointerId) || down.size > 0) return;
-    canvas.classList.remove("held");
-    if (event.type === "pointerup" && travel <= TAP) tapped(at(event));
-  };
-  canvas.addEventListener("pointerup", up);
-  canvas.addEventListener("pointercancel", up);
-  canvas.addEventListener("pointerleave", () => hovered(null));
-
-  canvas.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    const lines = event.deltaMode === 1 ? 16 : event.deltaMode === 2 ? 400 : 1;
-    const turn = Math.max(-240, Math.min(240, event.deltaY * lines));
-    plane.zoom(Math.exp(-turn * (event.ctrlKey ? 0.01 : 0.0022)), at(event));
-  }, { passive: false });
+  followWheel(canvas, (factor, at) => plane.zoom(factor, at));
 
   canvas.addEventListener("dblclick", (event) => {
     // The taps before meant the zoom, not a point.
     tapped(null);
-    plane.zoom(event.shiftKey ? 0.5 : 2, at(event));
+    plane.zoom(event.shiftKey ? 0.5 : 2, placeOf(event, canvas));
   });
 
   canvas.addEventListener("keydown", (event) => {

@@ -6,6 +6,8 @@ import { distance, place, toNumber } from "./place.js";
 const MOST_POINTS = 1_000_000;
 /** The least share of points that is even: fewer of them lie in rows. Beyond, density is drawn as gray. */
 const LEAST_SHARE = 1 / 64;
+/** The share of points from which on they fade into that gray. */
+const FADING = 1 / 8;
 /** The number of chunks in a view, about. */
 const CHUNKS = 20;
 /** No chunk is smaller than this number of spacings: a thousand points take as long to come as ten. */
@@ -39,9 +41,10 @@ export function shareFor(view, spacings) {
   return Math.max(LEAST_SHARE, 2 ** -Math.ceil(Math.log2(points / MOST_POINTS)));
 }
 
-/** Whether a view has more points than the least share of them can stand for. */
-export function isBeyondPoints(view, spacings) {
-  return pointsIn(view, spacings) * LEAST_SHARE > MOST_POINTS;
+/** How far points have faded into gray: 0 where they are drawn as they are, 1 where a view has more than can be drawn. */
+export function grayOf(view, spacings) {
+  const share = MOST_POINTS / pointsIn(view, spacings);
+  return Math.max(0, Math.min(1, Math.log2(share / FADING) / Math.log2(LEAST_SHARE / FADING)));
 }
 
 function pointsIn(view, spacings) {

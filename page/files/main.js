@@ -1,6 +1,6 @@
 // The page: puts its parts together.
 
-import { Gone, Problem, askJson, onPresence } from "./api.js";
+import { Gone, Problem, askJson, onPresence, wordsOf } from "./api.js";
 import { Card } from "./card.js";
 import { Controls } from "./controls.js";
 import { byId, icon, make, settled, skipLinks, spoken } from "./dom.js";
@@ -386,7 +386,7 @@ async function stipple(file) {
     session.leaveWorld();
     controls.change(members);
   } catch (error) {
-    banner(error.message, [["Close", () => banner(null)]]);
+    banner(wordsOf(error), [["Close", () => banner(null)]]);
   }
 }
 
@@ -452,9 +452,9 @@ async function begin() {
     gallery.opened(session.state.tab);
     await refresh();
   } catch (error) {
-    if (error.isLocked) return askForKey();
-    if (error.isPassing) return later(error, begin);
-    if (!(error instanceof Gone)) return banner(error.message, [["Try again", begin]]);
+    if (error instanceof Problem && error.isLocked) return askForKey();
+    if (error instanceof Problem && error.isPassing) return later(error, begin);
+    if (!(error instanceof Gone)) return banner(wordsOf(error), [["Try again", begin]]);
     onPresence((gone) => gone || controls || begin());
   }
 }

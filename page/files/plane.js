@@ -195,9 +195,14 @@ export class Plane {
     return this.isGray ? 1 : this.sheets.front?.keep ?? 1;
   }
 
+  /** How far points have faded into gray, which shows density where there are too many: 0 to 1. */
+  get gray() {
+    return this.sheets.front?.gray ?? 0;
+  }
+
   /** Whether density is drawn as gray, in place of points. */
   get isGray() {
-    return this.sheets.front?.isGray ?? false;
+    return this.gray === 1;
   }
 
   /** How large a chunk is here. */

@@ -1,6 +1,6 @@
 // The choices on the page, kept in step with the address and with the server's resolved values.
 
-import { askJson } from "./api.js";
+import { Problem, askJson } from "./api.js";
 import { joined, setOf, togetherBody, worldIn } from "./query.js";
 import { LAYER, fromHash, toHash } from "./state.js";
 import { settled } from "./dom.js";
@@ -125,7 +125,7 @@ export class Session {
       await askJson("/v1/count", { body: togetherBody(layers) });
       return null;
     } catch (error) {
-      const [, layer] = /^layers\[(\d+)\]/.exec(error.faults?.[0]?.field ?? "") ?? [];
+      const [, layer] = /^layers\[(\d+)\]/.exec((error instanceof Problem && error.faults[0]?.field) || "") ?? [];
       return { layer: Number(layer ?? 0), error };
     }
   }

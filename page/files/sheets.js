@@ -1,7 +1,7 @@
 // Sheets, painted once and shown in many frames: a sheet is larger than the canvas, so that a drag
 // only moves it. The one before stays underneath until the next one is full.
 
-import { chunkSize, chunksOf, cornerFrom, isBeyondPoints, shareFor } from "./grid.js";
+import { chunkSize, chunksOf, cornerFrom, grayOf, shareFor } from "./grid.js";
 import { runsOf } from "./chunks.js";
 import { isColored, sizesOf, tonesOf } from "./marks.js";
 import { distance } from "./place.js";
@@ -86,15 +86,17 @@ export class Sheets {
       return Math.min(painter.most, wanted + (wanted % 2));
     });
     const surface = this.surface(width, height);
-    const isGray = isBeyondPoints(view, look.spacings);
-    painter.clear(surface, isGray ? grayOf(look) : look.ground, look.layers);
+    const gray = grayOf(view, look.spacings);
+    const ground = mixed(look.ground, grounded(look), gray);
+    painter.clear(surface, ground, look.layers);
     const { x, y, unit, ratio } = view;
     const wide = { x, y, unit, width: width / ratio, height: height / ratio };
     const size = chunkSize(view, look.spacing);
     const keep = shareFor(view, look.spacings);
-    const wanted = this.chunks.want(isGray ? [] : chunksOf(wide, size), keep);
+    const wanted = this.chunks.want(gray === 1 ? [] : chunksOf(wide, size), keep);
     this.front = {
-      surface, x, y, unit, ratio, size, keep, isGray, canvas: [...view.pixels],
+      surface, x, y, unit, ratio, size, keep, gray, canvas: [...view.pixels],
+      colors: look.colors.map((color) => mixed(color, ground, gray)),
       parts: wanted.map((chunk) => ({ chunk, done: 0, isWhole: false })),
       isFull: false, isStale: false,
     };
@@ -133,9 +135,9 @@ export class Sheets {
       const count = Math.min(run.first + run.count, until) - first;
       if (count <= 0) continue;
       const layer = look.layers[run.layer];
-      const tones = isColored(layer) ? tonesOf(look.layers, run.layer, look.colors) : null;
+      const tones = isColored(layer) ? tonesOf(look.layers, run.layer, front.colors) : null;
       painter.paint(front.surface, chunk, {
-        layer, first, count, corner, zoom: 1 / pixel, size: front.sizes[run.layer] * front.ratio, color: look.colors[layer.color], tones,
+        layer, first, count, corner, zoom: 1 / pixel, size: front.sizes[run.layer] * front.ratio, color: front.colors[layer.color], tones,
       });
     }
   }
@@ -171,11 +173,13 @@ export class Sheets {
   }
 }
 
+/** A color on its way to another one. */
+function mixed(from, to, share) {
+  return from.map((v, c) => v + (to[c] - v) * share);
+}
+
 /** The ground under layers that are too dense for points: those everywhere mix their colors into it. */
-function grayOf({ ground, colors, layers, spacings }) {
+function grounded({ ground, colors, layers, spacings }) {
   const nearest = Math.min(...spacings);
-  return layers.reduce((mix, layer, i) => {
-    const share = layer.field ? 0 : (GRAY * nearest) / spacings[i];
-    return mix.map((v, c) => v + (colors[layer.color][c] - v) * share);
-  }, ground);
+  return layers.reduce((mix, layer, i) => mixed(mix, colors[layer.color], layer.field ? 0 : (GRAY * nearest) / spacings[i]), ground);
 }

@@ -1,6 +1,6 @@
 // The line at the bottom: how many points are in view, where, and how long a stretch of it is.
 
-import { askJson } from "./api.js";
+import { Problem, askJson, isAborted } from "./api.js";
 import { byId, counted, settled, spoken } from "./dom.js";
 import { decimalsFor, formatPlace } from "./place.js";
 import { Digits, json } from "./digits.js";
@@ -66,6 +66,8 @@ export class Status {
     clearTimeout(this.later);
     this.abort = new AbortController();
     const { keep } = plane;
+    // So many points of a field are not counted: the server would refuse, after a while.
+    if (plane.isGray && session.state.layers.some(({ field }) => field)) return this.say(keep, { status: 413 });
     try {
       const box = boxOf(plane.view);
       const { layers } = session.state;
@@ -75,9 +77,9 @@ export class Status {
       this.count = shown;
       this.say(keep);
     } catch (error) {
-      if (error.name === "AbortError") return;
+      if (isAborted(error)) return;
       this.say(keep, error);
-      if (error.isPassing) this.later = setTimeout(() => this.tally(), Math.max(1, error.retryAfter) * 1000);
+      if (error instanceof Problem && error.isPassing) this.later = setTimeout(() => this.tally(), Math.max(1, error.retryAfter) * 1000);
     }
   }
 
@@ -85,7 +87,7 @@ export class Status {
     const words = () => {
       if (error?.faults?.length > 0) return "Check the field marked red";
       if (error?.isPassing) return "Counted when the server has time";
-      if (error?.status === 413) return "Too many points in view to count";
+      if (error?.status === 413) return `Too many points in view to count${this.plane.isGray ? ": gray shows how dense they are" : ""}`;
       if (error) return "Not counted";
       if (this.plane.isGray) return `${counted(this.all)} in view, too many to draw: gray shows how dense they are`;
       if (keep < 1) {

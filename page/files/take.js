@@ -1,6 +1,6 @@
 // The tab Take away: the view's request to paste, and its points as a file.
 
-import { hasKey } from "./api.js";
+import { hasKey, isAborted, wordsOf } from "./api.js";
 import { FORMATS, curl, grpcurl, python, requestOf } from "./commands.js";
 import { byId, bytes, copy, counted, make, settled } from "./dom.js";
 import { MOST_HELD, save, sizeOf } from "./download.js";
@@ -129,15 +129,15 @@ export class Take extends Part {
       this.size.textContent = "weighing …";
       this.weight = await sizeOf(request, format, this.count, signal);
       const { bytes: size, isExact } = this.weight;
-      const words = Number.isFinite(size) ? `${isExact ? "" : "about "}${bytes(size)}` : "size not known before";
+      const words = Number.isFinite(size) ? `${isExact ? "" : "about "}${bytes(size)}` : "size not known in advance";
       this.size.textContent = `${words} as ${format}`;
       const isHeld = request.body && size > MOST_HELD;
       if (isHeld) this.size.textContent += ": too much for this page to hold, use the command below";
       this.button.disabled = Boolean(isHeld);
       document.documentElement.dataset.weighed = String(this.count);
     } catch (error) {
-      if (error.name === "AbortError") return;
-      this.size.textContent = error.message;
+      if (isAborted(error)) return;
+      this.size.textContent = wordsOf(error);
       this.size.classList.add("bad");
       this.button.disabled = true;
     }
@@ -152,7 +152,7 @@ export class Take extends Part {
       await save(request, file, (come) => (this.bar.value = come));
       this.size.textContent = `${file} is in your downloads`;
     } catch (error) {
-      this.size.textContent = error.message;
+      this.size.textContent = wordsOf(error);
       this.size.classList.add("bad");
     }
     this.bar.hidden = true;

@@ -1,6 +1,6 @@
 // The tab Understand: what the points in view measure, beside what the table was measured to be.
 
-import { ask, askJson } from "./api.js";
+import { ask, askJson, wordsOf } from "./api.js";
 import { lineChart, spectrumPicture, topOf } from "./charts.js";
 import { byId, make, settled, spoken } from "./dom.js";
 import { measure } from "./measure.js";
@@ -144,7 +144,7 @@ export class Understand extends Part {
       this.draw();
       document.documentElement.dataset.measured = String(measured.figures.count);
     } catch (error) {
-      if (mine === this.turn) this.say(`Not measured: ${error.message}`);
+      if (mine === this.turn) this.say(`Not measured: ${wordsOf(error)}`);
     }
   }
 

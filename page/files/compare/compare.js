@@ -58,7 +58,7 @@ function showAlone(isAlone) {
   alone = isAlone ? { window: windowAround(view, view.width * view.unit, view.height * view.unit), unit, key: keyOf(view) } : null;
   byId("alone").setAttribute("aria-pressed", String(isAlone));
   byId("said").textContent = isAlone
-    ? "The frame is the window, from farther away. Drawn is what has to be made to show it, and nothing else."
+    ? "The frame is the window, from farther away. Only what has to be made to show it is drawn."
     : TRY;
   draw();
 }

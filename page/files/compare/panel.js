@@ -1,7 +1,7 @@
 // One method: its points, what had to be made for them, and what they measure.
 
 import { lineChart, spectrumPicture } from "../charts.js";
-import { contextOf, make, spoken } from "../dom.js";
+import { byId, contextOf, make, spoken } from "../dom.js";
 import { MOST_NU } from "../spectrum.js";
 import { measure } from "../measure.js";
 import { distance } from "../place.js";
@@ -21,6 +21,13 @@ const NOTHING = { version: "none", runs: () => [] };
 function time(nanoseconds) {
   if (!Number.isFinite(nanoseconds)) return "–";
   return nanoseconds < 1000 ? `${spoken(nanoseconds, 2)} ns` : `${spoken(nanoseconds / 1000, 2)} µs`;
+}
+
+/** Goes to the words about times; the address keeps what is compared. */
+function toTime(event) {
+  event.preventDefault();
+  byId("about-time").scrollIntoView();
+  byId("about-time").focus();
 }
 
 export class Panel {
@@ -158,7 +165,7 @@ export class Panel {
     const { nanoseconds, built } = await this.source.time();
     this.nanoseconds = nanoseconds;
     this.figures.time.textContent = time(nanoseconds);
-    if (nanoseconds === undefined) this.timing.textContent = "not made in this browser: see below";
+    if (nanoseconds === undefined) this.timing.replaceChildren("made by the server: ", make("a", { href: "#about-time", onclick: toTime }, "its own figures"));
     else if (this.method.box) this.timing.textContent = `all of its region, built in ${spoken(built, 2)} ms`;
     else if (built) this.timing.textContent = `after ${spoken(built, 2)} ms for the tile`;
     else this.timing.textContent = "for any window alone";

@@ -140,7 +140,7 @@ async function begin() {
     api = await askJson("/openapi.json");
   } catch (error) {
     // The page begins again when the server is back.
-    const words = error instanceof Gone ? "It is shown here as soon as the server answers." : `The server refused /openapi.json: ${error.message}`;
+    const words = error instanceof Gone ? "It is shown here as soon as the server answers." : `The server refused /openapi.json: ${/** @type {Error} */ (error).message}`;
     byId("main").replaceChildren(make("h2", {}, "The API"), make("p", { class: "bad" }, words));
     return;
   }

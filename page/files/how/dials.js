@@ -93,7 +93,7 @@ export class Row {
     // As many digits of α as a product of that size needs.
     const factor = degrees(pattern.alpha / 2, String(at).length);
     const product = `${at.toLocaleString("en")} × ${factor} = ${sum.toLocaleString("en", { maximumFractionDigits: 1 })}°`;
-    this.stage?.say(`Place ${at.toLocaleString("en")}: ${product}${full}. The gate ends at ${degrees(pattern.t)}, so here is ${isPoint ? "a point" : "no point"}.`);
+    this.stage?.say(`Place ${at.toLocaleString("en")}: ${product}${full}. The gate ends at ${degrees(pattern.t)}, so there is ${isPoint ? "a point" : "no point"} here.`);
   }
 
   draw(context, width, height) {

@@ -103,7 +103,7 @@ export class Race {
     }
     this.stage?.say(this.isTogether
       ? `Both pieces are full, and ${clashes} pairs across the border are too close.`
-      : "No clash. But the right piece had to wait for the left one, as each would in a plane without edge.");
+      : "No clash. But the right piece had to wait for the left one, as each would on a plane without an edge.");
   }
 
   draw(context, width, height) {

@@ -1,7 +1,7 @@
 // A figure of the essay on its stage: it begins to move when it comes into view, rests while it is out of view, and
 // takes pointers and keys.
 
-import { Gone, ask, onPresence } from "../api.js";
+import { Gone, Problem, ask, onPresence, wordsOf } from "../api.js";
 import { byId, contextOf } from "../dom.js";
 import { forget } from "./pen.js";
 
@@ -215,11 +215,11 @@ export class Stage {
         if (error instanceof Gone) {
           this.say("The server does not answer. This figure waits until it does.");
           await presence();
-        } else if (error.isPassing) {
+        } else if (error instanceof Problem && error.isPassing) {
           this.say("The server is busy. This figure tries again.");
           await new Promise((later) => setTimeout(later, 1000 * Math.max(1, error.retryAfter)));
         } else {
-          this.say(`The server refused: ${error.message}`);
+          this.say(`The server refused: ${wordsOf(error)}`);
           return null;
         }
       }

@@ -136,7 +136,7 @@ export class Brush {
     if (this.line) {
       this.line = null;
       this.down.clear();
-      this.say("Line given up");
+      this.say("Line discarded");
       this.draw();
     } else this.left();
   }

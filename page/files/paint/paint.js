@@ -1,5 +1,6 @@
 // Fields by hand: a bar of tools on the plane, what was painted with them, and the field that it is.
 
+import { wordsOf } from "../api.js";
 import { byId, icon, make } from "../dom.js";
 import { Part } from "../part.js";
 import { describe, documentOf, isSent, send } from "../sent.js";
@@ -223,7 +224,7 @@ export class Paint extends Part {
       this.session.correct(() => (layer.field = field));
       this.session.tell("layers");
     } catch (error) {
-      this.fail(error.message);
+      this.fail(wordsOf(error));
     }
   }
 
@@ -286,7 +287,7 @@ export class Paint extends Part {
       if (mine !== this.turn) return;
       if (this.owner === layer) this.work = before;
       this.render();
-      this.fail(error.message);
+      this.fail(wordsOf(error));
     }
   }
 
@@ -315,7 +316,7 @@ export class Paint extends Part {
       this.say(`“${file.name}” is open`);
     } catch (error) {
       this.say("");
-      this.fail(error.message);
+      this.fail(wordsOf(error));
     }
   }
 }

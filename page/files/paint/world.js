@@ -1,5 +1,6 @@
 // Worlds as files: what the page shows, as the server reads it from a folder of worlds, and back.
 
+import { wordsOf } from "../api.js";
 import { Digits, json } from "../digits.js";
 import { bodyOf, memberOf } from "../query.js";
 import { send } from "../sent.js";
@@ -31,7 +32,7 @@ function parsed(text) {
 /** Refuses members of a file that this page would lose. */
 function known(object, members, name) {
   const unknown = Object.keys(object).find((member) => !members.includes(member));
-  if (unknown) throw new Error(`“${name}” is no world that this page shows: it does not know \`${unknown}\`.`);
+  if (unknown) throw new Error(`“${name}” is not a world that this page can show: it does not know \`${unknown}\`.`);
 }
 
 /** The layers of a world's text. Fields that it describes are sent. */
@@ -40,14 +41,14 @@ export async function layersOf(text, name) {
   try {
     world = parsed(text);
   } catch (error) {
-    throw new Error(`“${name}” is no JSON: ${error.message}`);
+    throw new Error(`“${name}” is not JSON: ${wordsOf(error)}`);
   }
   const list = world?.layers ?? [world];
   if (!Array.isArray(list) || list.length < 1 || list.length > MOST_LAYERS) {
     throw new Error(`“${name}” has no layers that this page shows: from 1 to ${MOST_LAYERS} are possible.`);
   }
   for (const set of list) {
-    if (!set || typeof set !== "object") throw new Error(`“${name}” is no world that this page shows: a layer is no object.`);
+    if (!set || typeof set !== "object") throw new Error(`“${name}” is not a world that this page can show: a layer is not an object.`);
     known(set, MEMBERS, name);
   }
   if (world.layers) known(world, ["layers", "seed"], name);
@@ -64,7 +65,7 @@ function clearOf({ clear_of: distances }, before, name) {
   const [distance, ...others] = before.map((set) => distances?.[set.name]);
   const isOne = typeof distance === "number" && others.every((other) => other === distance);
   if (!isOne || Object.keys(distances).length !== before.length) {
-    throw new Error(`“${name}” has a layer whose \`clear_of\` this page cannot show: it keeps one distance from all layers before.`);
+    throw new Error(`“${name}” has a layer whose \`clear_of\` this page cannot show: it keeps one distance from all layers above.`);
   }
   return String(distance);
 }

@@ -1,7 +1,7 @@
 // Three slabs seen from above, each one mean spacing thick: of the volume, of white noise, of a Poisson disk set in
 // space; with the distances of the points in space.
 
-import { ask } from "../api.js";
+import { ask, isAborted } from "../api.js";
 import { contextOf, make } from "../dom.js";
 import { formatPlace, moved } from "../place.js";
 import { callsOf } from "../worker.js";
@@ -54,7 +54,7 @@ export class Slabs {
       const made = await call({ sides: SIDES, margin: MARGIN, points });
       if (mine === this.turn) this.take(this.all[0], made);
     } catch (error) {
-      if (error.name !== "AbortError") throw error;
+      if (!isAborted(error)) throw error;
     }
     await Promise.all(others);
     if (mine === this.turn) document.documentElement.dataset.slabs = state.at.map((one) => one.i).join();

@@ -32,7 +32,7 @@ root.dataset.renderer = scene.isFlat ? "2d" : "webgl2";
  * What the banner says, by subject; the first that there is is shown.
  * @type {Record<"gone" | "busy" | "refused" | "flat" | "link", string | Error | null>}
  */
-const notes = { gone: null, busy: null, refused: null, flat: null, link: state.wrong.join(" ") || null };
+const notes = { gone: null, busy: null, refused: null, link: state.wrong.join(" ") || null, flat: null };
 if (scene.isFlat) notes.flat = "This browser draws without WebGL2, so the picture is plainer and slower.";
 
 function note(subject, words) {
@@ -135,7 +135,7 @@ function tell(now) {
   const { points, chunks, wanted, received, isBusy } = volume.sums;
   if (received !== heard.received || chunks === wanted) heard = { received, at: now };
   const isLong = now - heard.at > PATIENCE && !isAway();
-  note("busy", isBusy ? "The server is busy. This page tries again by itself." : isLong ? "The server takes long to answer." : null);
+  note("busy", isBusy ? "The server is busy. This page tries again by itself." : isLong ? "The server is slow to answer." : null);
   root.dataset.state = notes.refused ? "failed" : chunks === wanted ? "ready" : "loading";
   const parts = [`${counted(points)} in ${chunks === wanted ? counted(chunks, "chunk") : `${chunks} of ${wanted} chunks`}`, bytes(received),
     `at ${state.at.map((one) => formatPlace(one, Number(state.spacing) < 1 ? 2 : 0)).join(", ")}`];

@@ -67,10 +67,10 @@ export function fromHash(hash) {
     const value = given.has(name) ? Number(given.get(name)) : NaN;
     return Number.isFinite(value) ? Math.max(least, Math.min(most, value)) : BEGINNING[name];
   };
-  const spacing = text("spacing", isSpacing, "The spacing in the address is no number from 0.001 to 1000000, so it is 1.");
+  const spacing = text("spacing", isSpacing, "The spacing in the address is not a number from 0.001 to 1000000, so it is 1.");
   const at = given.get("at")?.split(",").map(parsePlace) ?? MIDDLE();
   const isNear = at.length === 3 && isInReach(at, spacing);
-  if (!isNear) wrong.push("The place in the address is not in reach. Here is the beginning instead.");
+  if (!isNear) wrong.push("The place in the address is out of reach. Here is the beginning instead.");
   const turn = Math.PI / 180;
   return {
     at: isNear ? /** @type {Place[]} */ (at) : MIDDLE(),
@@ -79,7 +79,7 @@ export function fromHash(hash) {
     away: number("away", [0, 4 * REACH[1]]),
     reach: Math.round(number("reach", REACH)),
     spacing,
-    seed: text("seed", isSeed, "The seed in the address is no whole number below 2⁶⁴, so it is 7."),
+    seed: text("seed", isSeed, "The seed in the address is not a whole number below 2⁶⁴, so it is 7."),
     profile: text("profile", (value) => PROFILES.includes(value), "The profile in the address is not for space, so it is blue."),
     isFlat: given.get("renderer") === "2d",
     isPlain: !given.has("at"),

@@ -1,6 +1,7 @@
 // The viewer: the place that is looked at, and the eye around it. A drag turns, a wheel or two fingers zoom, keys and
 // buttons that are held fly.
 
+import { Held, followPointers, followWheel } from "../hands.js";
 import { moved } from "../place.js";
 import { REACH, STEEPEST } from "./state.js";
 
@@ -31,71 +32,34 @@ export class Viewer {
     this.state = state;
     this.changed = changed;
     /** The moves that are under way. */
-    this.held = new Set();
-    this.isFast = false;
+    this.held = new Held();
     // Readers who prefer reduced motion see nothing move by itself; the button still turns.
     this.isTurning = state.isPlain && !matchMedia("(prefers-reduced-motion: reduce)").matches;
-    this.listenToKeys();
-    this.listenToPointers();
+    this.listen();
   }
 
-  listenToKeys() {
-    this.canvas.addEventListener("keydown", (event) => {
-      this.isFast = event.shiftKey;
-      if (event.ctrlKey || event.metaKey || event.altKey) return;
-      const move = KEYS[event.key.toLowerCase()];
-      if (move) this.hold(move);
-      else if (ZOOMS[event.key]) this.zoom(ZOOMS[event.key]);
-      else return;
-      event.preventDefault();
-    });
-    addEventListener("keyup", (event) => {
-      this.isFast = event.shiftKey;
-      this.held.delete(KEYS[event.key.toLowerCase()]);
-    });
-    addEventListener("blur", () => this.held.clear());
-  }
-
-  listenToPointers() {
+  listen() {
     const { canvas } = this;
-    const down = new Map();
-    const apart = () => {
-      const [a, b] = [...down.values()];
-      return Math.hypot(a[0] - b[0], a[1] - b[1]) || 1;
-    };
-    canvas.addEventListener("pointerdown", (event) => {
-      canvas.setPointerCapture(event.pointerId);
-      down.set(event.pointerId, [event.clientX, event.clientY]);
-      canvas.classList.add("held");
+    this.held.listen(canvas, KEYS, ({ key }, move) => {
+      if (move) this.hold(move);
+      else if (ZOOMS[key]) this.zoom(ZOOMS[key]);
+      return Boolean(move || ZOOMS[key]);
     });
-    canvas.addEventListener("pointermove", (event) => {
-      const before = down.get(event.pointerId);
-      if (!before) return;
-      const was = down.size === 2 ? apart() : 0;
-      down.set(event.pointerId, [event.clientX, event.clientY]);
-      const [dx, dy] = [event.clientX - before[0], event.clientY - before[1]];
-      if (was > 0) {
-        // Half of the way, because the other finger reports its own.
-        const step = (this.state.away + 4) / canvas.clientHeight / 2;
-        this.go(-dx * step, 0, dy * step);
-        this.zoom(apart() / was);
-      } else if (down.size === 1) {
-        const way = this.state.away > INSIDE ? 1 : -1;
-        this.turn(way * dx * DRAG, -way * dy * DRAG);
-        this.took();
-      }
+    followPointers(canvas, {
+      moved: ({ dx, dy, fingers, was, is }) => {
+        if (was && is) {
+          // Half of the way, because the other finger reports its own.
+          const step = (this.state.away + 4) / canvas.clientHeight / 2;
+          this.go(-dx * step, 0, dy * step);
+          this.zoom(is.apart / was.apart);
+        } else if (fingers === 1) {
+          const way = this.state.away > INSIDE ? 1 : -1;
+          this.turn(way * dx * DRAG, -way * dy * DRAG);
+          this.took();
+        }
+      },
     });
-    const up = (event) => {
-      if (down.delete(event.pointerId) && down.size === 0) canvas.classList.remove("held");
-    };
-    canvas.addEventListener("pointerup", up);
-    canvas.addEventListener("pointercancel", up);
-    canvas.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      const lines = event.deltaMode === 1 ? 16 : event.deltaMode === 2 ? 400 : 1;
-      const turn = Math.max(-240, Math.min(240, event.deltaY * lines));
-      this.zoom(Math.exp(-turn * (event.ctrlKey ? 0.01 : 0.002)));
-    }, { passive: false });
+    followWheel(canvas, (factor) => this.zoom(factor));
   }
 
   /** A button that moves while it is held. */
@@ -152,9 +116,9 @@ export class Viewer {
   step(seconds) {
     if (this.isTurning) this.turn(SLOWLY * seconds, 0);
     if (this.held.size === 0) return;
-    const way = (one, other) => (this.held.has(one) ? 1 : 0) - (this.held.has(other) ? 1 : 0);
-    this.turn(way("turnRight", "turnLeft") * TURN * seconds, way("turnUp", "turnDown") * TURN * seconds);
-    const pace = PACE * (this.isFast ? RUN : 1) * seconds;
-    this.go(way("right", "left") * pace, way("forth", "back") * pace, way("up", "down") * pace);
+    const { held } = this;
+    this.turn(held.way("turnRight", "turnLeft") * TURN * seconds, held.way("turnUp", "turnDown") * TURN * seconds);
+    const pace = PACE * (held.isFast ? RUN : 1) * seconds;
+    this.go(held.way("right", "left") * pace, held.way("forth", "back") * pace, held.way("up", "down") * pace);
   }
 }

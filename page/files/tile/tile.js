@@ -159,7 +159,7 @@ function build() {
     })),
     make("div", { class: "pair", id: "of-points" },
       field("Points", "points", select("points", (points) => choose({ points: Number(points) }))),
-      field("Share of points", "share", share)),
+      field("Share kept", "share", share)),
     make("div", { class: "pair", id: "of-mask" },
       field("Pixels per side", "size", select("size", (size) => choose({ size: Number(size) }))),
       field("Bits", "bits", select("bits", (bits) => choose({ bits })))),
@@ -216,7 +216,7 @@ function update() {
 function sayShare() {
   const share = `${Math.round(100 * state.share)} %`;
   byId("share").setAttribute("aria-valuetext", share);
-  /** @type {HTMLElement} */ (document.querySelector("label[for=share]")).textContent = `Share of points: ${share}`;
+  /** @type {HTMLElement} */ (document.querySelector("label[for=share]")).textContent = `Share kept: ${share}`;
 }
 
 function pathOf() {

@@ -1,6 +1,7 @@
 // How the walker moves: keys, mouse, fingers, sticks; and a slow flight above the crowns, along the trail, until the
 // visitor takes over.
 
+import { Held, followPointers } from "../hands.js";
 import { distance, moved } from "../place.js";
 import { clearingNear, landFrom } from "./land.js";
 
@@ -18,11 +19,11 @@ const AHEAD = [0, 25, 50];
 const CLEAR = 0.04;
 const GLIDE = 22;
 const OVER = 5;
+/** Seconds of a frame that keys and flights follow, so that no slow frame carries them far; a landing takes the time it takes. */
+const LONGEST = 0.1;
 /** Radians a second that keys turn, and for a pixel of a drag. */
 const TURN = 1.3;
 const DRAG = 0.0034;
-/** A pointer that moves less than this many pixels taps. */
-const TAP = 6;
 /** The pitch of a view that is level, in radians. */
 const LEVEL = -0.06;
 /** The steepest look up or down, in radians. */
@@ -39,8 +40,7 @@ export class Walker {
   constructor(canvas, start, tapped) {
     this.canvas = canvas;
     this.tapped = tapped;
-    this.isFast = false;
-    this.held = new Set();
+    this.held = new Held();
     /** Where the sticks are pushed: to the right and forth, from −1 to 1. */
     this.walks = [0, 0];
     this.looks = [0, 0];
@@ -68,48 +68,25 @@ export class Walker {
 
   listen() {
     const { canvas } = this;
-    addEventListener("keydown", (event) => {
-      const target = /** @type {Element} */ (event.target);
-      this.isFast = event.shiftKey;
-      if (event.ctrlKey || event.metaKey || event.altKey || target.closest?.("input, select")) return;
+    this.held.listen(globalThis, KEYS, ({ key, target }, move) => {
+      const element = /** @type {Element} */ (target);
       // A button that was clicked keeps the focus, and its own keys.
-      if ([" ", "Enter"].includes(event.key) && target.closest?.("button, a")) return;
-      const move = KEYS[event.key.toLowerCase()];
+      if (element.closest?.([" ", "Enter"].includes(key) ? "input, select, button, a" : "input, select")) return false;
+      const isPick = !move && key === "Enter" && element === canvas;
       if (move) this.hold(move);
-      else if (event.key === "Enter" && target === canvas) this.tapped(null);
-      else return;
-      event.preventDefault();
+      else if (isPick) this.tapped(null);
+      return Boolean(move) || isPick;
     });
-    addEventListener("keyup", (event) => {
-      this.isFast = event.shiftKey;
-      this.held.delete(KEYS[event.key.toLowerCase()]);
+    followPointers(canvas, {
+      tapped: this.tapped,
+      moved: ({ dx, dy, fingers, isDrag }) => {
+        if (!isDrag) return;
+        this.take();
+        // Two fingers walk, one looks around.
+        if (fingers > 1) this.go(-dx * 0.04, dy * 0.08);
+        else this.turn(-dx * DRAG, dy * DRAG);
+      },
     });
-    addEventListener("blur", () => this.held.clear());
-    const down = new Map();
-    let travel = 0;
-    canvas.addEventListener("pointerdown", (event) => {
-      canvas.setPointerCapture(event.pointerId);
-      if (down.size === 0) travel = 0;
-      down.set(event.pointerId, [event.clientX, event.clientY]);
-    });
-    canvas.addEventListener("pointermove", (event) => {
-      const before = down.get(event.pointerId);
-      if (!before) return;
-      const [dx, dy] = [event.clientX - before[0], event.clientY - before[1]];
-      down.set(event.pointerId, [event.clientX, event.clientY]);
-      travel += Math.abs(dx) + Math.abs(dy);
-      if (travel <= TAP) return;
-      this.take();
-      // Two fingers walk, one looks around.
-      if (down.size > 1) this.go(-dx * 0.04, dy * 0.08);
-      else this.turn(-dx * DRAG, dy * DRAG);
-    });
-    const up = (event) => {
-      if (!down.delete(event.pointerId) || down.size > 0) return;
-      if (event.type === "pointerup" && travel <= TAP) this.tapped([event.clientX, event.clientY]);
-    };
-    canvas.addEventListener("pointerup", up);
-    canvas.addEventListener("pointercancel", up);
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.take();
@@ -163,20 +140,21 @@ export class Walker {
     this.y = moved(this.y, forth * c - right * s);
   }
 
-  /** Moves by some seconds; `heightAt` says where the ground is. */
-  step(seconds, heightAt) {
+  /** Moves after some seconds; `heightAt` says where the ground is. */
+  step(passed, heightAt) {
+    const seconds = Math.min(LONGEST, passed);
     if (this.isFlying) this.fly(seconds);
-    else if (this.target) this.glide(seconds, this.target);
-    const way = (one, other) => (this.held.has(one) ? 1 : 0) - (this.held.has(other) ? 1 : 0);
+    else if (this.target) this.glide(Math.min(1, passed), this.target);
+    const { held } = this;
     const by = seconds * (this.isAloft ? ALOFT : 1);
-    const pace = (this.isFast ? RUN : PACE) * by;
+    const pace = (held.isFast ? RUN : PACE) * by;
     const [[right, forth], [across, up]] = [this.walks, this.looks];
-    this.turn((way("turnRight", "turnLeft") + across) * TURN * seconds, (way("lookUp", "lookDown") + up) * TURN * seconds);
-    const walk = [way("right", "left") * pace + right * STRIDE * by, way("forth", "back") * pace + forth * STRIDE * by];
+    this.turn((held.way("turnRight", "turnLeft") + across) * TURN * seconds, (held.way("lookUp", "lookDown") + up) * TURN * seconds);
+    const walk = [held.way("right", "left") * pace + right * STRIDE * by, held.way("forth", "back") * pace + forth * STRIDE * by];
     if (walk.some(Boolean)) this.go(walk[0], walk[1]);
     const ground = heightAt(this);
     const aim = this.isAloft ? Math.max(ground, this.groundAhead()) + WING : ground + EYE;
-    const ease = 1 - Math.exp(-seconds * (this.isAloft || (this.height ?? 0) > ground + 3 ? 1.4 : 5));
+    const ease = 1 - Math.exp(-passed * (this.isAloft || (this.height ?? 0) > ground + 3 ? 1.4 : 5));
     this.height = this.height === null ? aim : Math.max(ground + 1.2, this.height + (aim - this.height) * ease);
   }
 

@@ -176,9 +176,12 @@ function sprout(color) {
   return shape;
 }
 
+/** A crown that is round from the side, and open below. */
 function crown() {
   const shape = new Shape();
-  shape.ball([0, 0, 0.56], [0.33, 0.33, 0.42], LEAVES, { seed: 5, faces: OCTAHEDRON });
+  shape.cone(4, [0.2, 0.22], [0.45, 0.34], LEAVES, 0.4);
+  shape.cone(4, [0.45, 0.34], [0.86, 0.2], LEAVES, 0.4);
+  shape.cone(4, [0.86, 0.2], [0.96, 0], LEAVES, 0.4);
   return shape;
 }
 

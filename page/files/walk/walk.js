@@ -116,7 +116,7 @@ let charted = "";
 let chartedAt = 0;
 
 function frame(now) {
-  const seconds = Math.min(0.1, (now - before) / 1000);
+  const passed = (now - before) / 1000;
   const last = before;
   before = now;
   const quality = QUALITIES[level];
@@ -125,7 +125,7 @@ function frame(now) {
   const { sets } = quality;
   scene.resize(Math.min(quality.ratio, devicePixelRatio * Math.min(1, quality.ratio)));
   world.move(walker, [Math.sin(walker.yaw), Math.cos(walker.yaw)], quality);
-  walker.step(seconds, (at) => world.heightAt(at));
+  walker.step(passed, (at) => world.heightAt(at));
   const camera = cameraOf(walker, canvas.clientWidth / Math.max(1, canvas.clientHeight), 1.5 * sets[0].reach);
   const lift = (walker.height ?? 0) - world.heightAt(walker);
   look = { ...world.look(walker, now - last), camera, at: { x: walker.x, y: walker.y }, height: walker.height, lift, reach: sets[0].reach, isFine: quality.isFine, detail: quality.detail,

@@ -1,7 +1,7 @@
 // The laboratory: the pattern of an α, its index torus and its set region side by side, and what
 // follows from them. α and everything drawn is computed here; counts and displaced points are the server's.
 
-import { Gone, askJson } from "../api.js";
+import { Gone, askJson, wordsOf } from "../api.js";
 import { byId, make, settled, spoken } from "../dom.js";
 import { Part } from "../part.js";
 import { Square, colors } from "./draw.js";
@@ -233,7 +233,7 @@ export class Works extends Part {
     this.about.textContent = ABOUT[chosen.mode];
     this.caption.textContent = mode.caption?.(chosen) ?? "the grid points that belong to it";
     if (!pattern) {
-      this.tell([`“${chosen.alpha}” is no α: it must be a decimal or a fraction between 1 and 2, or one of the buttons.`]);
+      this.tell([`“${chosen.alpha}” is not an α: it must be a decimal or a fraction between 1 and 2, or one of the buttons.`]);
       return;
     }
     this.slider.value = String(pattern.alpha);
@@ -259,7 +259,7 @@ export class Works extends Part {
       const answer = await askJson(path);
       if (this.asked === path) mode.answered(this, answer, path);
     } catch (error) {
-      if (this.asked === path) mode.failed?.(this, error instanceof Gone ? "The server does not answer." : error.message);
+      if (this.asked === path) mode.failed?.(this, error instanceof Gone ? "The server does not answer." : wordsOf(error));
       this.asked = null;
     }
     this.draw();

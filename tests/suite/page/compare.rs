@@ -185,7 +185,7 @@ fn a_server_that_is_away_is_said_once_and_what_is_drawn_stays() {
     };
     open(&browser, &daemon, "#at=0,0&span=30");
     let shown = browser.text("#made-strew");
-    browser.value("(globalThis.fetch = () => Promise.reject(new TypeError('away')), 0)");
+    browser.value("(window.fetch = () => Promise.reject(new TypeError('away')), 0)");
     browser.value("(strew.joint.lookAt({ i: 5000, f: 0 }, { i: 0, f: 0 }), 0)");
     browser.until("!document.querySelector('#banner').hidden");
     browser.value("(strew.joint.lookAt({ i: 0, f: 0 }, { i: 0, f: 0 }), 0)");

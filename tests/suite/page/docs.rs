@@ -139,7 +139,7 @@ fn a_server_that_is_away_is_said() {
         return;
     };
     open(&daemon, &browser, "#getCount");
-    browser.value("(globalThis.fetch = () => Promise.reject(new TypeError('away')), 0)");
+    browser.value("(window.fetch = () => Promise.reject(new TypeError('away')), 0)");
     browser.click("form.try button[type=submit]");
     browser.until("!document.querySelector('#banner').hidden");
     assert!(

@@ -37,6 +37,27 @@ fn edges_and_dots_stand_out_and_text_is_legible() {
 }
 
 #[test]
+fn no_page_is_wider_than_its_window() {
+    let Some((daemon, browser)) = looking(390, 844) else {
+        return;
+    };
+    for (width, height) in [(390, 844), (320, 568)] {
+        browser.resize(width, height);
+        for path in ["/", "/how", "/compare", "/walk", "/space", "/tile", "/docs"] {
+            browser.go(&daemon.url(path));
+            browser.until(
+                "document.querySelector('button, a, canvas') && document.readyState === 'complete'",
+            );
+            let wide = browser.value("document.documentElement.scrollWidth - innerWidth");
+            assert!(
+                wide.as_i64() <= Some(0),
+                "{path} at {width} × {height}: {wide}"
+            );
+        }
+    }
+}
+
+#[test]
 fn the_gallery_shows_points_before_it_has_measured_them() {
     let Some((daemon, browser)) = looking(1280, 900) else {
         return;

@@ -100,6 +100,22 @@ fn assert_in_sight(browser: &Browser, selector: &str) {
 }
 
 #[test]
+fn the_three_kinds_of_points_are_above_the_fold() {
+    let Some((daemon, browser)) = looking(1280, 800) else {
+        return;
+    };
+    browser.look(&daemon, "");
+    for selector in [
+        "#view-walk",
+        "#view-plane",
+        "#kind-white",
+        "#kinds figure:last-child figcaption",
+    ] {
+        assert_in_sight(&browser, selector);
+    }
+}
+
+#[test]
 fn what_leads_on_is_in_sight_on_phones() {
     let Some((daemon, browser)) = looking(390, 844) else {
         return;
@@ -119,6 +135,10 @@ fn what_leads_on_is_in_sight_on_phones() {
     for (width, height) in [(844, 390), (320, 568)] {
         browser.resize(width, height);
         browser.look(&daemon, "#at=0,0&span=30&tab=start");
+        let cards = ["#view-walk", "#view-portrait", "#view-plane"];
+        for selector in cards.iter().filter(|_| width > height) {
+            assert_in_sight(&browser, selector);
+        }
         for selector in [
             "#paint-open",
             "#jump-at",

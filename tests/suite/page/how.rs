@@ -270,7 +270,7 @@ fn a_server_that_is_busy_or_away_is_said_and_waited_for() {
     // Answers put in by the test; the page hears them as the server's.
     let answers = |with: &str| {
         browser.value(&format!(
-            "(globalThis.kept ??= fetch, globalThis.fetch = {with}, 0)"
+            "(window.kept ??= fetch, window.fetch = {with}, 0)"
         ));
     };
     let said = |words: &str| {
@@ -297,8 +297,8 @@ fn nothing_jumps_and_little_is_sent() {
     };
     open(&browser, &daemon);
     browser.value(
-        "(globalThis.shift = 0, new PerformanceObserver((list) => list.getEntries().filter((e) => !e.hadRecentInput) \
-         .forEach(({ value }) => (globalThis.shift += value))).observe({ type: 'layout-shift', buffered: true }), 0)",
+        "(window.shift = 0, new PerformanceObserver((list) => list.getEntries().filter((e) => !e.hadRecentInput) \
+         .forEach(({ value }) => (window.shift += value))).observe({ type: 'layout-shift', buffered: true }), 0)",
     );
     for id in FIGURES {
         scroll_to(&browser, id);
@@ -306,7 +306,7 @@ fn nothing_jumps_and_little_is_sent() {
             "document.querySelector('#{id} .said').textContent"
         ));
     }
-    let shift = browser.value("globalThis.shift").as_f64().expect("a sum");
+    let shift = browser.value("window.shift").as_f64().expect("a sum");
     assert!(shift <= 0.05, "{shift}");
     let packed = http1::get(
         daemon.address(),

@@ -30,6 +30,12 @@ fn a_tile_repeats_and_is_saved_as_it_is_shown() {
             .text("#about")
             .starts_with("5,041 points on a square of 71 × 71")
     );
+    let is_whole = "(({ scrollHeight, clientHeight }) => scrollHeight <= clientHeight)(document.querySelector('#about'))";
+    assert_eq!(
+        browser.value(is_whole),
+        true,
+        "no picture lies on its words"
+    );
     // A period farther everything looks the same, half of one farther it does not.
     browser.click("#seams");
     let here = picture(&browser, 0);
