@@ -8,6 +8,9 @@ use super::{
     walk::{Cost, Kind, REQUESTS, SHAPES, cost},
 };
 
+/// The shape of StreamPointsRequest.
+const STREAM: usize = 0;
+
 /// A field of bytes.
 fn field(number: u32, bytes: &[u8]) -> Vec<u8> {
     let mut all = vec![];
@@ -80,14 +83,13 @@ fn every_field_that_is_repeated_and_every_message_that_decoders_join_has_a_limit
 #[test]
 fn lists_of_a_request_are_counted_together_and_parts_by_field() {
     let limits = limits();
-    let stream = METHODS[0].shape;
     // 64 parts in each of two fields, and 100 in one, in two lists.
     let parts = |count| field(10, &field(1, b"").repeat(count));
     let nested = field(10, &[field(1, &parts(50)), field(1, &parts(50))].concat());
     let set = |fields: &[Vec<u8>]| field(2, &fields.concat());
     let both = set(&[field(15, &parts(64)), field(21, &parts(64))]);
-    assert!(cost(stream, &both, &limits).is_ok());
-    let refused = cost(stream, &set(&[field(15, &nested)]), &limits);
+    assert!(cost(STREAM, &both, &limits).is_ok());
+    let refused = cost(STREAM, &set(&[field(15, &nested)]), &limits);
     let refused = refused.expect_err("too many").to_string();
     assert!(
         refused.contains("`set.field.multiply.fields[1].multiply.fields`"),
@@ -103,7 +105,7 @@ fn lists_of_a_request_are_counted_together_and_parts_by_field() {
         5,
         &[field(1, &regions(600)), field(2, &regions(600))].concat(),
     );
-    let refused = cost(stream, &field(1, &two), &limits);
+    let refused = cost(STREAM, &field(1, &two), &limits);
     let refused = refused.expect_err("too many").to_string();
     assert!(
         refused.contains("1202 regions") && refused.contains("at most 1000"),
@@ -118,7 +120,6 @@ fn lists_of_a_request_are_counted_together_and_parts_by_field() {
 #[test]
 fn what_is_no_message_is_refused_and_what_is_unknown_is_skipped() {
     let limits = limits();
-    let stream = METHODS[0].shape;
     let deep = |levels| {
         let regions = (0..levels).fold(vec![], |inner, _| field(5, &field(1, &inner)));
         field(1, &regions)
@@ -131,25 +132,24 @@ fn what_is_no_message_is_refused_and_what_is_unknown_is_skipped() {
         &[0xff; 3],
         &deep(60),
     ] {
-        let refused = cost(stream, bytes, &limits);
+        let refused = cost(STREAM, bytes, &limits);
         assert!(
             matches!(refused, Err(Error::Invalid(_))),
             "{bytes:x?}: {refused:?}"
         );
     }
     let unknown = [field(9999, &[0xff; 100]), vec![0x80, 0x7d, 1]].concat();
-    let plain = cost(stream, b"", &limits).expect("in order");
-    assert_eq!(cost(stream, &unknown, &limits), Ok(plain));
+    let plain = cost(STREAM, b"", &limits).expect("in order");
+    assert_eq!(cost(STREAM, &unknown, &limits), Ok(plain));
 }
 
 #[test]
 fn memory_and_pixels_are_known_beforehand() {
     let limits = limits();
-    let stream = METHODS[0].shape;
-    let layers = cost(stream, &field(3, b"").repeat(16), &limits).expect("in order");
+    let layers = cost(STREAM, &field(3, b"").repeat(16), &limits).expect("in order");
     let layer = size_of::<super::super::proto::Layer>();
     assert!(layers.memory >= 16 * layer, "{layers:?}");
     let raster = field(2, &field(15, &field(7, &field(1, &[0; 1000]))));
-    let Cost { pixels, .. } = cost(stream, &raster, &limits).expect("in order");
+    let Cost { pixels, .. } = cost(STREAM, &raster, &limits).expect("in order");
     assert_eq!(pixels, 1000);
 }

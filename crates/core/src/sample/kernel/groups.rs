@@ -162,9 +162,9 @@ impl Groups<'_> {
     ) {
         // SAFETY: as the caller ensures.
         unsafe {
-            let mut at = [0, 1, 2].map(|axis| {
-                let list = self.places[axis].as_ptr();
-                starts.map(|start| L::load_ints(list.add(start)))
+            let mut all = starts.map(|start| {
+                let list = |axis: usize| self.places[axis].as_ptr().add(start);
+                [0, 1, 2].map(|axis| L::load_ints(list(axis)))
             });
             for (plane, [a, b]) in PLANES.into_iter().enumerate() {
                 let tables = |direction| Tables::new(&self.shears.planes[plane], direction);
@@ -179,25 +179,25 @@ impl Groups<'_> {
                     let cell = self.shears.cell(plane, direction, extents);
                     Near::<L>::new(tables[direction], cell)
                 };
-                for k in 0..TURNS {
-                    at[b][k] = L::add_ints(at[b][k], noise(shear(0, k), at[a][k]));
+                for (k, at) in all.iter_mut().enumerate() {
+                    at[b] = L::add_ints(at[b], noise(shear(0, k), at[a]));
                 }
-                for k in 0..TURNS {
-                    at[a][k] = L::add_ints(at[a][k], noise(shear(1, k), at[b][k]));
+                for (k, at) in all.iter_mut().enumerate() {
+                    at[a] = L::add_ints(at[a], noise(shear(1, k), at[b]));
                 }
-                for k in 0..TURNS {
-                    let rising = noise(shear(2, k), L::sub_ints(at[a][k], at[b][k]));
-                    at[a][k] = L::add_ints(at[a][k], rising);
-                    at[b][k] = L::add_ints(at[b][k], rising);
+                for (k, at) in all.iter_mut().enumerate() {
+                    let rising = noise(shear(2, k), L::sub_ints(at[a], at[b]));
+                    at[a] = L::add_ints(at[a], rising);
+                    at[b] = L::add_ints(at[b], rising);
                 }
-                for k in 0..TURNS {
-                    let falling = noise(shear(3, k), L::add_ints(at[a][k], at[b][k]));
-                    at[a][k] = L::add_ints(at[a][k], falling);
-                    at[b][k] = L::sub_ints(at[b][k], falling);
+                for (k, at) in all.iter_mut().enumerate() {
+                    let falling = noise(shear(3, k), L::add_ints(at[a], at[b]));
+                    at[a] = L::add_ints(at[a], falling);
+                    at[b] = L::sub_ints(at[b], falling);
                 }
             }
-            for (list, at) in self.places.iter_mut().zip(at) {
-                for (start, v) in starts.into_iter().zip(at) {
+            for (start, at) in starts.into_iter().zip(all) {
+                for (list, v) in self.places.iter_mut().zip(at) {
                     L::store_ints(list.as_mut_ptr().add(start), v);
                 }
             }
