@@ -26,6 +26,18 @@ use crate::sample::lattice::PointId;
 pub struct Exact;
 
 /// The exact place of a point of a plan.
+///
+/// ```
+/// use strew_core::{Exact, F64, Place, PointSet, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let plan = PointSet::new(table).chunk(8.0, [3, -2])?;
+/// let mut first = [Place::default()];
+/// plan.blocks::<Exact>().fill(&mut first);
+/// let at = plan.converted::<F64>(&first).next();
+/// assert_eq!(at, plan.iter().next().map(|member| member.at()));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Place {
     id: PointId,
