@@ -66,7 +66,7 @@ export class Status {
     clearTimeout(this.later);
     this.abort = new AbortController();
     const { keep } = plane;
-    // So many points of a field are not counted: the server would refuse, after a while.
+    // The server refuses to count so many points in a field, but only after a while: it is not asked.
     if (plane.isGray && session.state.layers.some(({ field }) => field)) return this.say(keep, { status: 413 });
     try {
       const box = boxOf(plane.view);

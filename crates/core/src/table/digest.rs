@@ -31,10 +31,7 @@ impl Digest {
     /// ```
     #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
-        #[cfg(feature = "digests")]
-        return Self(*::blake3::hash(bytes).as_bytes());
-        #[cfg(not(feature = "digests"))]
-        Self(super::blake3::hash(bytes))
+        Self(*blake3::hash(bytes).as_bytes())
     }
 
     /// The digest with these bytes.
@@ -80,7 +77,7 @@ impl FromStr for Digest {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self, Error> {
-        let hash = ::blake3::Hash::from_hex(text).map_err(|_| {
+        let hash = blake3::Hash::from_hex(text).map_err(|_| {
             Error::new(
                 ErrorKind::Digest,
                 "digest",

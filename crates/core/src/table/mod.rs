@@ -22,8 +22,6 @@
 //! `symmetry` has the ways to turn all of these, `turned` a table that is turned, `shipped` the tables and labels built into
 //! this crate.
 
-#[cfg(any(test, not(feature = "digests")))]
-mod blake3;
 mod derived;
 mod digest;
 mod displacement;

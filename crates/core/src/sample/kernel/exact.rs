@@ -9,7 +9,7 @@ use crate::sample::lattice::PointId;
 
 /// Exact places with their ids, which [`Plan::converted`](crate::Plan::converted) turns into items of any other format.
 ///
-/// Code for each format is made of the same walks. A program that must be small makes all of its points in this one.
+/// The compiler copies the walks for each format that a program uses. A program that must be small uses this one alone.
 ///
 /// ```
 /// use strew_core::{Exact, F32, Place, PointSet, Table};
@@ -101,18 +101,6 @@ impl Emit for Exact {
             origin: base.map(|v| v as i64),
             offset: [x, y],
         }
-    }
-
-    /// Plain code writes these rows.
-    #[inline(always)]
-    unsafe fn vector_row<L: Lanes>(
-        &self,
-        _: Row,
-        _: &[(i32, i64)],
-        _: &[i32],
-        _: &mut [Place],
-    ) -> usize {
-        0
     }
 
     #[inline(always)]

@@ -69,17 +69,20 @@ pub trait Emit: Copy + Send + Debug + 'static {
     /// The item of a column and a `y` relative to the patch's origin; `row` is the lattice row.
     fn item(&self, base: [f64; 2], column: Self::Column, y: i32, row: i64) -> Self::Item;
 
-    /// Writes the items of a row in whole vectors. Returns the number written: all, or none.
+    /// Writes the items of a row in whole vectors. Returns the number written: all, or none, and plain code writes them.
     ///
     /// # Safety
     /// The machine has the instructions of `L`.
+    #[inline(always)]
     unsafe fn vector_row<L: Lanes>(
         &self,
-        row: Row,
-        columns: &[Self::Column],
-        displacements: &[i32],
-        out: &mut [Self::Item],
-    ) -> usize;
+        _row: Row,
+        _columns: &[Self::Column],
+        _displacements: &[i32],
+        _out: &mut [Self::Item],
+    ) -> usize {
+        0
+    }
 
     /// Writes one vector of items at positions relative to the patch's origin. `lattice` and `out` have
     /// [`Lanes::WIDTH`] entries.

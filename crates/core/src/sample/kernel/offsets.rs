@@ -123,18 +123,6 @@ impl Emit for Offsets {
         [x, self.place(1, base[1], y)]
     }
 
-    /// Plain code writes these rows.
-    #[inline(always)]
-    unsafe fn vector_row<L: Lanes>(
-        &self,
-        _: Row,
-        _: &[f64],
-        _: &[i32],
-        _: &mut [[f64; 2]],
-    ) -> usize {
-        0
-    }
-
     #[inline(always)]
     unsafe fn vector_items<L: Lanes>(
         &self,
