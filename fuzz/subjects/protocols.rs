@@ -39,7 +39,7 @@ static PROTOCOLS: LazyLock<Protocols> = LazyLock::new(|| {
         ..settings.limits
     };
     let catalog = Catalog::load(true, None).expect("built in");
-    let workers = Workers::new(1).expect("a thread");
+    let workers = Workers::new(1);
     let service = Arc::new(Service::new(catalog, limits, workers));
     let (grpc, _) = runtime
         .block_on(grpc::calls(service.clone()))

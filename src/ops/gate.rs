@@ -7,6 +7,7 @@
 use http::{HeaderMap, HeaderName, HeaderValue, header};
 use strew_access::{Caller, Gate};
 use strew_error::{Denied, Level};
+use strew_service::Record;
 
 use super::exchange::Visit;
 use crate::{body::Response, rest::Refused};
@@ -22,7 +23,9 @@ const OPEN: [&str; 2] = ["/grpc.health.", "/grpc.reflection."];
 pub(super) fn of_rest(gate: &Gate, visit: &Visit) -> Result<Caller, Denied> {
     let key = visit.heard.key.then(|| shown(visit.request.headers()));
     let client = &visit.client;
-    gate.admit(key.flatten(), client.address, client.usage.clone())
+    let caller = gate.admit(key.flatten(), client.address, client.usage.clone())?;
+    Record::of(&caller);
+    Ok(caller)
 }
 
 /// The answer to a request that is not let in, and the level of its rate.

@@ -44,9 +44,6 @@ pub enum ServeError {
     /// The fields cannot be loaded.
     #[error(transparent)]
     Fields(#[from] FieldError),
-    /// No threads to work with.
-    #[error("cannot start the workers: {0}")]
-    Workers(#[from] rayon::ThreadPoolBuildError),
     /// The program was built wrongly.
     #[error("cannot serve gRPC: {0}")]
     Grpc(#[from] grpc::BuildError),
@@ -110,7 +107,10 @@ impl App {
         } = config.tables;
         let catalog = Catalog::preloading(preload_bytes, embedded, folder)?.with_fields(fields);
         let catalog = catalog.with_room(config.fields.max_sent_bytes);
-        let workers = Workers::new(config.workers.threads)?;
+        let workers = Workers::new(config.workers.threads);
+        // For what work does side by side. There may be such threads already, where this is part of a program.
+        let side_by_side = rayon::ThreadPoolBuilder::new().num_threads(config.workers.threads);
+        let _ = side_by_side.build_global();
         let metrics = Metrics::default();
         let lists = Lists::load(&config.except)?;
         let catalog = catalog.with_except(lists);

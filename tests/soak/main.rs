@@ -1,10 +1,10 @@
 //! A soak: mixed requests over REST and gRPC for a given time, with faults injected, and every
 //! answer compared with the library's.
 //!
-//! Two daemons run. One is never stopped: it must answer everything, and its memory is reported. It
-//! gets SIGHUPs while a table in its folder is damaged and repaired. The other is killed and
+//! Three daemons run. One is never stopped: it must answer everything, and its memory is reported. It
+//! gets SIGHUPs while a table in its folder is damaged and repaired. The second is killed and
 //! restarted again and again; what fails on it meanwhile is excused, but what it answers must be
-//! right. `cargo test` runs this for a few seconds; for longer:
+//! right. A third one has a rate, and what requests cost is compared with what they are charged. `cargo test` runs this for a few seconds; for longer:
 //!
 //! ```sh
 //! cargo test --release --test soak -- --seconds 1800
@@ -23,6 +23,7 @@ mod grpc;
 mod hostile;
 #[path = "../queries/library.rs"]
 mod library;
+mod prices;
 mod replica;
 mod tally;
 
@@ -117,6 +118,7 @@ fn soak(arguments: &Arguments) -> u64 {
             let seed = arguments.seed << 32 | number;
             scope.spawn(move || client(library, [steady, shaky], tally, seed, end));
         }
+        scope.spawn(|| prices::compare(tables.path(), &tally, arguments.seed, end));
         scope.spawn(|| disturb(&steady, &shaky, &tally, tables.path(), &table, end));
         let mut reported = start;
         while Instant::now() < end {

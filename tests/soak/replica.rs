@@ -35,7 +35,7 @@ impl Replica {
     /// Starts one on a free port.
     pub fn start(tables: &Path) -> Self {
         let any_port = SocketAddr::from(([127, 0, 0, 1], 0));
-        let daemon = launch(any_port, tables).expect("ready");
+        let daemon = launch(any_port, tables, &[]).expect("ready");
         Self {
             address: daemon.address(),
             tables: tables.into(),
@@ -66,7 +66,7 @@ impl Replica {
         daemon.wait();
         // A client's end of a connection may hold the port for a moment.
         *daemon = until("the daemon is back", || {
-            launch(self.address, &self.tables).ok()
+            launch(self.address, &self.tables, &[]).ok()
         });
         self.epoch.fetch_add(1, Ordering::SeqCst);
     }
@@ -105,16 +105,17 @@ pub fn strew() -> Command {
     process::command(PROGRAM)
 }
 
-fn launch(address: SocketAddr, tables: &Path) -> Result<Daemon, NotReady> {
+pub fn launch(address: SocketAddr, tables: &Path, settings: &[&str]) -> Result<Daemon, NotReady> {
+    let common = [
+        // Faults are injected all the time: only errors are worth reading, and damaged tables
+        // are none.
+        "log.filter=error,strew::ops::reload=off",
+        "shutdown.drain_seconds=1",
+    ];
     Launcher::new(PROGRAM)
         .listen(address)
         .tables(tables)
-        .settings(&[
-            // Faults are injected all the time: only errors are worth reading, and damaged tables
-            // are none.
-            "log.filter=error,strew::ops::reload=off",
-            "shutdown.drain_seconds=1",
-        ])
+        .settings(&[&common, settings].concat())
         .log_to(Stdio::inherit())
         .start()
 }

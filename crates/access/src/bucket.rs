@@ -58,6 +58,11 @@ impl Bucket {
         })
     }
 
+    /// Takes points that are not there, too.
+    pub(super) fn owe(&self, points: f64, now: Instant) {
+        self.with(now, |_, held| *held -= points);
+    }
+
     /// The points in the bucket, and when it will be full.
     pub(super) fn level(&self, now: Instant) -> Level {
         self.with(now, |rate, held| level(rate, *held))

@@ -3,10 +3,10 @@
 use std::{
     net::IpAddr,
     sync::{
-        Arc,
+        Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicUsize, Ordering},
     },
-    time::Instant,
+    time::{Duration, Instant},
 };
 
 use strew_error::{Denied, Level};
@@ -14,7 +14,11 @@ use strew_error::{Denied, Level};
 use super::{InUse, Quota, Usage, bucket::Bucket};
 
 /// The price of a request, in points.
-const REQUEST: f64 = 1.0;
+const REQUEST: u128 = 1;
+/// A price is an estimate, and may be wrong. Work that takes longer than this for each point charged is charged a point
+/// for each such time, beyond the first milliseconds: so what is quick has the same price always.
+const POINT: Duration = Duration::from_micros(5);
+const QUICK: Duration = Duration::from_millis(2);
 
 /// A client that the gate has admitted. Cheap to clone.
 #[derive(Clone, Debug, Default)]
@@ -27,8 +31,19 @@ pub struct Caller {
     pub(super) address: Option<IpAddr>,
     pub(super) places: Option<Arc<Places>>,
     pub(super) bucket: Option<Arc<Bucket>>,
+    /// The expenses of its request; those of a key are not kept.
+    pub(super) spent: Option<Arc<Mutex<Spent>>>,
     /// The usage of its address.
     pub(super) usage: Option<Arc<Usage>>,
+}
+
+/// What a request has cost so far.
+#[derive(Debug, Default)]
+pub(super) struct Spent {
+    /// The points charged.
+    points: f64,
+    /// The processor time of its work.
+    time: Duration,
 }
 
 /// The streams that a key may have at once, and those that it has.
@@ -131,26 +146,48 @@ impl Caller {
         Ok(place)
     }
 
-    /// Takes points from the caller's rate. `charged` are those that were charged for the same request
-    /// before, besides the request itself.
+    /// Takes points from the caller's rate, before the work that they are the price of.
     ///
     /// # Errors
     /// [`Denied::TooFast`] if there are too few; then nothing is taken.
-    pub fn charge(&self, points: u128, charged: u128) -> Result<(), Denied> {
-        self.take(points, REQUEST + charged as f64)
-    }
-
-    /// Takes the fixed price of a request from the bucket.
-    pub(super) fn charge_request(&self) -> Result<(), Denied> {
-        self.take(REQUEST as u128, 0.0)
-    }
-
-    fn take(&self, points: u128, taken: f64) -> Result<(), Denied> {
+    pub fn charge(&self, points: u128) -> Result<(), Denied> {
         let Some(bucket) = &self.bucket else {
             return Ok(());
         };
-        let taken = bucket.take(points as f64, taken, Instant::now());
-        taken.map_err(|short| Denied::TooFast { points, short })
+        let mut spent = self.spent();
+        let before = spent.as_ref().map_or(0.0, |spent| spent.points);
+        let taken = bucket.take(points as f64, before, Instant::now());
+        taken.map_err(|short| Denied::TooFast { points, short })?;
+        if let Some(spent) = &mut spent {
+            spent.points += points as f64;
+        }
+        Ok(())
+    }
+
+    /// Counts the processor time of work for the request. What it took beyond the points charged is charged now, also
+    /// where there are too few: the work is done.
+    pub fn took(&self, time: Duration) {
+        let (Some(bucket), Some(mut spent)) = (&self.bucket, self.spent()) else {
+            return;
+        };
+        spent.time += time;
+        let time = spent.time.saturating_sub(QUICK);
+        let owed = time.div_duration_f64(POINT) - spent.points;
+        if owed > 0.0 {
+            bucket.owe(owed, Instant::now());
+            spent.points += owed;
+        }
+    }
+
+    /// Takes the fixed price of a new request from the bucket.
+    pub(super) fn begin(&mut self) -> Result<(), Denied> {
+        self.spent = self.bucket.is_some().then(Arc::default);
+        self.charge(REQUEST)
+    }
+
+    fn spent(&self) -> Option<MutexGuard<'_, Spent>> {
+        let spent = self.spent.as_ref()?;
+        Some(spent.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// The state of the rate, where there is one.

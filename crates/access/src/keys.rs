@@ -241,6 +241,7 @@ impl Keys {
                 Arc::new(Places { limit, open })
             }),
             bucket,
+            spent: None,
             usage: None,
         };
         Ok(Key { hash, caller, open })
@@ -332,7 +333,7 @@ mod tests {
         assert!(b.must_be_admin().is_ok() && b.level().is_none());
         assert!(keys.find(b"").is_none() && keys.find(hash.to_string().as_bytes()).is_none());
         // Reading the file again forgets neither streams nor points taken.
-        a.charge(30, 0).expect("within the burst");
+        a.charge(30).expect("within the burst");
         let again = read(&text, &keys).expect("valid");
         let a = again.find(secret.as_bytes()).expect("known");
         assert!(a.place(&all).is_err());

@@ -135,7 +135,7 @@ impl Gate {
         };
         caller.usage = Some(usage);
         caller.address = Some(address);
-        caller.charge_request()?;
+        caller.begin()?;
         Ok(caller)
     }
 }

@@ -160,7 +160,7 @@ mod tests {
     async fn many_ask_one_builds() {
         let (_folder, catalog) = catalog();
         let entry = catalog.entries().next().expect("two").clone();
-        let workers = Workers::new(2).expect("threads");
+        let workers = Workers::new(2);
         let samplers = Samplers::new(1 << 20);
         let asked = (0..50).map(|_| samplers.get(&entry, &workers));
         let got = futures_util::future::join_all(asked).await;
@@ -174,7 +174,7 @@ mod tests {
     #[tokio::test]
     async fn a_table_that_is_gone_takes_its_mixes_along() {
         let (_folder, catalog) = catalog();
-        let workers = Workers::new(1).expect("threads");
+        let workers = Workers::new(1);
         let samplers = Samplers::new(1 << 30);
         for entry in catalog.entries() {
             let ready = samplers.get(entry, &workers).await.expect("built");
@@ -193,7 +193,7 @@ mod tests {
     #[tokio::test]
     async fn what_does_not_fit_is_answered_all_the_same_and_not_kept() {
         let (_folder, catalog) = catalog();
-        let workers = Workers::new(1).expect("threads");
+        let workers = Workers::new(1);
         let samplers = Samplers::new(100);
         for entry in catalog.entries() {
             samplers.get(entry, &workers).await.expect("built");

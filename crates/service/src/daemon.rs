@@ -204,9 +204,9 @@ impl Service {
         // Waiting for labels takes no place.
         let tables = self.tables(caller, &query).await?;
         let permit = self.admit(caller, picture)?;
-        let (planned, charged) = self.charged(caller, query, tables).await?;
+        let planned = self.charged(caller, query, tables).await?;
         self.check_points(caller, &planned)?;
-        caller.charge(considered(&planned), charged)?;
+        caller.charge(considered(&planned))?;
         // No more than the limit, which has 64 bits.
         let points = u64::try_from(planned.count()).unwrap_or(u64::MAX);
         Record::promise(&self.points_in_flight, points);
@@ -236,8 +236,7 @@ impl Service {
     /// rate does not allow it.
     pub async fn count(&self, caller: &Caller, query: Box<Query>) -> Result<Planned, Error> {
         let tables = self.tables(caller, &query).await?;
-        let (planned, _) = self.charged(caller, query, tables).await?;
-        Ok(planned)
+        self.charged(caller, query, tables).await
     }
 
     /// The tables of the sets of a query.
@@ -250,40 +249,36 @@ impl Service {
         Ok(tables)
     }
 
-    /// Plans a query. Returns the plan and the points charged for it.
+    /// Plans a query, and charges for it.
     async fn charged(
         &self,
         caller: &Caller,
         query: Box<Query>,
         tables: Vec<Ready>,
-    ) -> Result<(Planned, u128), Error> {
-        let mut charged = 0;
+    ) -> Result<Planned, Error> {
         let planned = if query.is_small() {
             // Handing it over would take longer.
             Planned::new(query, &tables, &self.limits)?
         } else {
             // On the heap, lest small boxes have room for it.
             let limits = self.limits.clone();
-            let turns = Box::pin(self.planned_in_turns(caller, query, tables, limits));
-            let (planned, rows) = turns.await?;
-            charged = rows;
-            planned
+            Box::pin(self.planned_in_turns(caller, query, tables, limits)).await?
         };
         tracing::debug!(count = planned.count(), table = %planned.entry().key, "planned");
         if let Some(record) = Record::current() {
             record.take_lane(effort::block_lane(&planned));
         }
-        Ok((planned, charged))
+        Ok(planned)
     }
 
-    /// Plans a query on the workers, as its price says. Returns the plan and the points charged for it.
+    /// Plans a query on the workers, as its price says, and charges for it.
     async fn planned_in_turns(
         &self,
         caller: &Caller,
         query: Box<Query>,
         tables: Vec<Ready>,
         limits: Limits,
-    ) -> Result<(Planned, u128), Error> {
+    ) -> Result<Planned, Error> {
         let most = limits.max_rows;
         let is_plain = effort::is_plain(&query);
         let price = move |_: &Stop| (effort::planning(&query, &tables, most), query, tables);
@@ -292,14 +287,12 @@ impl Service {
             false => self.workers.take_turn(Lane::Short, price).await?,
         };
         let rows = rows?;
-        let charged = rows as u128;
         // Before the work, which is done even if the answer is refused.
-        if charged > 0 {
-            caller.charge(charged, 0)?;
+        if rows >= 1.0 {
+            caller.charge(rows as u128)?;
         }
         let plan = move |stop: &Stop| Planned::unless_stopped(query, &tables, &limits, stop);
-        let planned = self.workers.take_turn(effort::lane(rows), plan).await??;
-        Ok((planned, charged))
+        self.workers.take_turn(effort::lane(rows), plan).await?
     }
 
     /// The table of a set, ready to answer. Making a mix is charged.
@@ -313,7 +306,7 @@ impl Service {
             Some(Need::Made(what)) => match self.mixes.known(&ready, &what, &self.workers).await? {
                 Some(known) => known,
                 None => {
-                    caller.charge(POINTS * set.entry.blocks() as u128, 0)?;
+                    caller.charge(POINTS * set.entry.blocks() as u128)?;
                     let _making = Record::making();
                     Box::pin(self.mixes.get(&ready, &what, &self.workers)).await?
                 }
@@ -410,7 +403,7 @@ impl Service {
             let found = placed.nearest_visiting(nearest, &visits)?;
             // Points that are thinned out take as long to find.
             let considered = found.len() as f64 / placed.set.keep.get();
-            caller.charge(effort.considered(considered, visits.made()), 0)?;
+            caller.charge(effort.considered(considered, visits.made()))?;
             answer(&placed, found)
         };
         self.workers.take_turn(effort.lane, search).await?
@@ -467,7 +460,6 @@ impl Service {
         I: Iterator + Send + 'static,
         I::Item: Send,
     {
-        let lane = Record::current().map_or(Lane::Short, |record| record.lane());
-        BlockStream::new(items, permit, self.workers.clone(), lane)
+        BlockStream::new(items, permit, self.workers.clone())
     }
 }

@@ -107,7 +107,7 @@ impl Service {
         /// The bytes of a pixel: its energy, its rank, its place in the spectrum.
         const PIXEL: usize = 64;
         let pixels = query.size as usize * query.size as usize;
-        caller.charge(pixels as u128 * POINTS, 0)?;
+        caller.charge(pixels as u128 * POINTS)?;
         let budget = self.own_budget();
         let make = move |stop: &Stop| {
             let _held = budget.hold(pixels * PIXEL)?;

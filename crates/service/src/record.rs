@@ -4,11 +4,15 @@
 //! writes down what only it knows: the format, the points, the reason of a refusal. So REST and gRPC
 //! need no counters. The record also has the byte budget of the request and the lane of its work.
 
-use std::sync::{
-    Arc, Mutex, OnceLock, PoisonError,
-    atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering},
+use std::{
+    sync::{
+        Arc, Mutex, OnceLock, PoisonError,
+        atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering},
+    },
+    time::Duration,
 };
 
+use strew_access::Caller;
 use strew_catalog::field::Allowance;
 use strew_core::server::Stop;
 use strew_encode::{Answer, EncodeError};
@@ -36,6 +40,8 @@ pub struct Record {
     is_expected: AtomicBool,
     code: AtomicU32,
     clock: Clock,
+    /// Who pays for its work.
+    caller: OnceLock<Caller>,
     /// The memory of what the request has brought along.
     held: Mutex<Option<Held>>,
 }
@@ -72,6 +78,7 @@ impl Record {
             is_expected: AtomicBool::new(false),
             code: AtomicU32::new(NONE),
             clock: Clock::default(),
+            caller: OnceLock::new(),
             held: Mutex::default(),
         })
     }
@@ -116,6 +123,18 @@ impl Record {
     /// Notes why the request that is being answered was refused.
     pub fn refuse(kind: Kind) {
         let _ = CURRENT.try_with(|record| record.refused.set(kind));
+    }
+
+    /// Notes who pays for the work of the request that is being answered.
+    pub fn of(caller: &Caller) {
+        let _ = CURRENT.try_with(|record| record.caller.set(caller.clone()));
+    }
+
+    /// Charges the caller for processor time.
+    pub(super) fn took(&self, time: Duration) {
+        if let Some(caller) = self.caller.get() {
+            caller.took(time);
+        }
     }
 
     /// Notes in which format the request is answered.

@@ -18,7 +18,6 @@ use std::{
 use futures_util::{FutureExt as _, Stream};
 use strew_access::{OneOf, Place, Quota};
 use strew_error::Error;
-use strew_plan::Lane;
 use tokio_util::sync::{CancellationToken, WaitForCancellationFutureOwned};
 
 use crate::{Held, Owner, Workers};
@@ -163,7 +162,6 @@ pub struct BlockStream<I: Iterator> {
     shared: Option<Arc<Mutex<Shared<I>>>>,
     workers: Workers,
     owner: Owner,
-    lane: Lane,
     stop: Pin<Box<WaitForCancellationFutureOwned>>,
     /// When the last block was taken.
     taken: Instant,
@@ -176,7 +174,7 @@ where
     I: Iterator + Send + 'static,
     I::Item: Send,
 {
-    pub(super) fn new(items: I, permit: Permit, workers: Workers, lane: Lane) -> Self {
+    pub(super) fn new(items: I, permit: Permit, workers: Workers) -> Self {
         let stop = Box::pin(permit.streams.stop.clone().cancelled_owned());
         let shared = Shared {
             ready: VecDeque::new(),
@@ -192,7 +190,6 @@ where
             shared: Some(Arc::new(Mutex::new(shared))),
             workers,
             owner: Owner::current(),
-            lane,
             stop,
             taken: Instant::now(),
             quick: 0,
@@ -303,8 +300,8 @@ where
                 shared: Arc::downgrade(&all),
             };
             drop(shared);
-            self.workers
-                .take_piece(&self.owner, self.lane, || turn.run());
+            let lane = self.owner.lane();
+            self.workers.take_piece(&self.owner, lane, || turn.run());
         }
         match item {
             Some(item) => Poll::Ready(Some(Ok(item))),
@@ -318,6 +315,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use futures_util::StreamExt as _;
+    use strew_plan::Lane;
 
     use super::*;
 
@@ -351,11 +349,8 @@ mod tests {
     fn stream(numbers: Numbers) -> (BlockStream<Numbers>, Arc<Streams>) {
         let streams = Arc::new(Streams::new(1));
         let permit = streams.admit().expect("the first");
-        let workers = Workers::new(1).expect("threads");
-        (
-            BlockStream::new(numbers, permit, workers, Lane::Short),
-            streams,
-        )
+        let workers = Workers::new(1);
+        (BlockStream::new(numbers, permit, workers), streams)
     }
 
     fn until(what: impl Fn() -> bool) {

@@ -87,6 +87,12 @@ impl Metrics {
         ] {
             counter(name, help, &[], value as f64);
         }
+        counter(
+            "strew_work_moved_total",
+            "Short work that took too long and went on as long work: its price was too low",
+            &[],
+            service.workers().moved() as f64,
+        );
         for (state, ended) in forging::State::ENDED.into_iter().zip(forge.ended) {
             counter(
                 "strew_forge_jobs_ended_total",
@@ -128,6 +134,11 @@ impl Metrics {
                 "strew_streams_limit",
                 "The most answers with points at once",
                 Some(service.limits().max_streams as f64),
+            ),
+            (
+                "strew_work_short_seconds_max",
+                "The longest processor time of short work before it ended or became long work",
+                Some(service.workers().longest_short().as_secs_f64()),
             ),
             (
                 "strew_points_in_flight",

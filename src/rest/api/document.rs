@@ -245,7 +245,7 @@ mod tests {
     fn parameters_and_members_are_loops_over_the_table() {
         let catalog = Catalog::load(true, None).expect("built in");
         let settings = Layers::new().and_then(Layers::finish).expect("valid");
-        let workers = Workers::new(1).expect("threads");
+        let workers = Workers::new(1);
         let service = Arc::new(Service::new(catalog, settings.limits, workers));
         let document = document(&crate::rest::endpoints(&service));
         let listed = &document["paths"]["/v1/points"]["get"]["parameters"];

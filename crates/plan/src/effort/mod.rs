@@ -151,10 +151,6 @@ pub fn is_plain(query: &Query) -> bool {
 /// # Errors
 /// [`Error::TooManyRows`] if all sets together have more than `limit` rows that are counted one by one.
 pub fn planning(query: &Query, tables: &[Ready], limit: u64) -> Result<f64, Error> {
-    // With a cursor nothing is counted.
-    if query.window.cursor.is_some() {
-        return Ok(0.0);
-    }
     if query.region.volume.is_some() {
         let rows = volume::counting(query) / ROW;
         return match rows > limit as f64 {
@@ -169,8 +165,8 @@ pub fn planning(query: &Query, tables: &[Ready], limit: u64) -> Result<f64, Erro
     let (mut all, mut weighted) = (0.0, 0.0);
     for (i, (set, ready)) in query.sets.iter().zip(tables).enumerate() {
         let (rows, weight) = counted(query, set, ready, limit as f64, &mut layers);
-        if query.only.is_some_and(|only| only != i) {
-            // Its points are not counted; those of later layers may look at them.
+        if !is_counted(query, i, set) {
+            // Those of later layers may look at its points.
             continue;
         }
         all += rows;
@@ -181,6 +177,22 @@ pub fn planning(query: &Query, tables: &[Ready], limit: u64) -> Result<f64, Erro
         }
     }
     Ok(weighted)
+}
+
+/// Whether planning counts the points of set number `i`. Those before a cursor and in its own set are not counted
+/// again, and those of layers that are not requested are not, unless their spacing follows from their number.
+pub(super) fn is_counted(query: &Query, i: usize, set: &Set) -> bool {
+    let is_requested = query.only.is_none_or(|only| only == i);
+    let passed = query
+        .window
+        .cursor
+        .filter(|token| i <= usize::from(token.set));
+    if is_requested && passed.is_none() {
+        return true;
+    }
+    let here = passed.filter(|token| is_requested && i == usize::from(token.set));
+    let is_known = here.is_some_and(|token| token.spacing.is_some());
+    matches!(set.amount, Amount::Count(_)) && !is_known
 }
 
 /// The rows that counting the points of a set in a volume takes, where testing one against others takes `test`

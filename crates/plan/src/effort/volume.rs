@@ -8,6 +8,7 @@ use strew_core::{
 };
 use strew_query::Query;
 
+use super::is_counted;
 use crate::amount_in_space::placed;
 
 /// The nanoseconds that counting takes for each square of a spacing's side on the surface, without and with warp.
@@ -33,7 +34,7 @@ pub(super) fn counting(query: &Query) -> f64 {
     };
     let mut layers: Vec<Option<SpaceSet>> = vec![];
     let mut all = 0.0;
-    for set in &*query.sets {
+    for (i, set) in query.sets.iter().enumerate() {
         // Planning refuses what cannot be planned.
         let placed = set.space().and_then(|table| placed(set, table).ok());
         let points = placed.map(|(points, _)| points);
@@ -43,7 +44,9 @@ pub(super) fn counting(query: &Query) -> f64 {
                 Some(cleared(points, layers.get(place)?.as_ref()?, distance))
             });
             let own = set.region.as_ref().and_then(|own| own.volume.as_ref());
-            all += counting_set(points, &whole.and(own), others.sum());
+            if is_counted(query, i, set) {
+                all += counting_set(points, &whole.and(own), others.sum());
+            }
         }
         layers.push(points);
     }

@@ -169,7 +169,7 @@ impl Service {
     ) -> Result<T, Error> {
         /// The bytes of a shape's point, in memory and as text.
         const POINT: usize = 96;
-        caller.charge(query.points(), 0)?;
+        caller.charge(query.points())?;
         let budget = self.own_budget();
         let search = move |stop: &Stop| {
             let found = query.search(stop)?;

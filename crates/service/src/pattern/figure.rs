@@ -190,7 +190,7 @@ impl Service {
             What::Map(radius, _) => u128::from(*radius) * u128::from(*radius),
             What::Index | What::Arrangement(_) => 0,
         };
-        caller.charge(window * window + searched, 0)?;
+        caller.charge(window * window + searched)?;
         let budget = self.own_budget();
         let draw = move |stop: &Stop| {
             let _held = budget.hold(BYTES)?;

@@ -278,7 +278,7 @@ impl Service {
         let most = caller.max_points(self.limits().max_points);
         let listing = Listing::new(query, placed, most)?;
         let points = u128::from(listing.count) * listing.each() as u128;
-        caller.charge(points, 0)?;
+        caller.charge(points)?;
         let points = u64::try_from(points).unwrap_or(u64::MAX);
         Record::promise(self.points_in_flight(), points);
         Ok((permit, listing))

@@ -174,7 +174,7 @@ impl Service {
         const NEIGHBOR: usize = 64;
         const INTERVALS: usize = 1 << 19;
         let neighbors = query.neighbors();
-        caller.charge(neighbors as u128, 0)?;
+        caller.charge(neighbors as u128)?;
         let budget = self.own_budget();
         let make = move |_: &Stop| {
             let _held = budget.hold(INTERVALS + neighbors * NEIGHBOR)?;

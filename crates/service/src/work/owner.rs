@@ -2,7 +2,9 @@
 //!
 //! The work takes turns with that of other addresses, and the request's clock stands still while it waits for one.
 
-use std::sync::Arc;
+use std::{sync::Arc, time::Duration};
+
+use strew_plan::Lane;
 
 use crate::{Budget, Record};
 
@@ -34,6 +36,25 @@ impl Owner {
             Some(record) => record.scope(future).await,
             None => future.await,
         }
+    }
+
+    /// Charges the request for processor time.
+    pub(super) fn took(&self, time: Duration) {
+        if let Some(record) = &self.0 {
+            record.took(time);
+        }
+    }
+
+    /// What the request needs further is long work.
+    pub(super) fn is_long(&self) {
+        if let Some(record) = &self.0 {
+            record.take_lane(Lane::Long);
+        }
+    }
+
+    /// The lane of the blocks of the request's answer.
+    pub(crate) fn lane(&self) -> Lane {
+        self.0.as_ref().map_or(Lane::Short, |record| record.lane())
     }
 
     /// Waits for a turn until the guard is dropped.

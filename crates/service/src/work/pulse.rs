@@ -59,7 +59,7 @@ mod tests {
 
     #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
     async fn stuck_workers_have_no_pulse() {
-        let workers = Workers::new(1).expect("threads");
+        let workers = Workers::new(1);
         let (release, held) = mpsc::channel::<()>();
         let stuck = workers.clone();
         let job = move |_: &_| held.recv().is_err();

@@ -1,66 +1,150 @@
-//! Long work that pauses: after some time it lets other addresses have their turns, then goes on. Work that all clients
-//! share does not pause, since it would hold its memory meanwhile.
+//! The hold of work on its turn: work that has had its time lets others have theirs, then goes on.
 //!
-//! The work itself is an ordinary function that checks a [`Stop`] now and then. It pauses in such a check.
+//! The price of work decides its lane, and a price can be wrong. So short work that takes longer than short work may
+//! gives its place up, whatever its price said: it goes on as long work, on the same thread at lower priority, when it
+//! is the turn of its address. Long work gives way to other addresses after a while. What all clients share does not,
+//! since it would hold its memory meanwhile. All of it is charged for the time that it took.
+//!
+//! The work itself is an ordinary function that checks a [`Stop`] now and then. It waits in such a check.
 
 use std::{
-    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
+    cell::RefCell,
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::{
+        Arc, Condvar, LazyLock, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
     time::{Duration, Instant},
 };
 
 use strew_core::server::Stop;
+use strew_plan::Lane;
 
 use super::{
+    crew::lower_priority,
     owner::Owner,
     turns::{Turn, Turns, Waiter},
 };
 
-/// How long work goes on while others wait.
-const SHIFT: Duration = Duration::from_millis(200);
+/// The processor time that short work may take in all.
+const SHORT: Duration = Duration::from_millis(50);
+/// How long long work goes on while others wait.
+const LONG: Duration = Duration::from_millis(200);
+/// Work that may give way, while no others wait, looks for them as often as this.
+const AGAIN: Duration = Duration::from_millis(1);
 
-/// The hold of long work on its turn.
+thread_local! {
+    /// The work of this thread.
+    static CURRENT: RefCell<Option<Arc<Shift>>> = const { RefCell::new(None) };
+}
+
+/// A flag whose looks may wait: for the work of the thread that looks, whichever that is. So what a plan was made with
+/// serves the blocks that are made from it, too.
+pub(super) fn stop() -> Stop {
+    Stop::with_look(|| {
+        CURRENT.with_borrow(|current| {
+            if let Some(shift) = current {
+                shift.look();
+            }
+        });
+    })
+}
+
+/// The turns of each lane.
+pub(super) struct Lanes {
+    turns: [Turns; 3],
+    /// How often short work became long.
+    pub(super) moved: AtomicU64,
+    /// The longest processor time that short work had before it ended or became long, in nanoseconds.
+    pub(super) longest: AtomicU64,
+}
+
+impl Lanes {
+    /// Lanes in which this number of pieces of work has a turn at once.
+    pub(super) fn new(places: impl Fn(Lane) -> usize) -> Arc<Self> {
+        Arc::new(Self {
+            turns: Lane::ALL.map(|lane| Turns::new(places(lane))),
+            moved: AtomicU64::new(0),
+            longest: AtomicU64::new(0),
+        })
+    }
+
+    pub(super) const fn turns(&self, lane: Lane) -> &Turns {
+        &self.turns[lane as usize]
+    }
+}
+
+/// The hold of work on its turn.
 pub(super) struct Shift {
-    turns: Turns,
+    lanes: Arc<Lanes>,
     owner: Owner,
-    gives_way: bool,
+    /// When the next look may have to do something, on the clock of this process.
+    due: AtomicU64,
     state: Mutex<State>,
     changed: Condvar,
 }
 
 struct State {
+    lane: Lane,
     /// The turn, while the work has it.
     turn: Option<Turn>,
-    since: Instant,
+    /// The processor time of the thread up to which the work is charged.
+    charged: Duration,
+    /// The same when short work began.
+    begun: Duration,
     /// The result is no longer wanted.
     is_over: bool,
 }
 
 impl Shift {
-    pub(super) fn new(turns: Turns, owner: Owner, gives_way: bool) -> Arc<Self> {
+    pub(super) fn new(lanes: Arc<Lanes>, owner: Owner, lane: Lane) -> Arc<Self> {
         Arc::new(Self {
-            gives_way,
-            turns,
+            lanes,
             owner,
+            due: AtomicU64::new(u64::MAX),
             state: Mutex::new(State {
+                lane,
                 turn: None,
-                since: Instant::now(),
+                charged: Duration::ZERO,
+                begun: Duration::ZERO,
                 is_over: false,
             }),
             changed: Condvar::new(),
         })
     }
 
-    /// A flag whose looks may wait.
-    pub(super) fn stop(self: &Arc<Self>) -> Stop {
-        let shift = self.clone();
-        Stop::with_look(move || shift.look())
+    /// Whether its thread has lower priority.
+    pub(super) fn is_long(&self) -> bool {
+        self.lock().lane != Lane::Short
     }
 
     /// The work has a turn.
-    pub(super) fn start(&self, turn: Turn) {
+    pub(super) fn take(&self, turn: Turn) {
         let mut state = self.lock();
-        (state.turn, state.since) = (Some(turn), Instant::now());
+        self.due_in(match state.lane {
+            Lane::Short => Some(SHORT),
+            Lane::Long => Some(LONG),
+            Lane::Making => None,
+        });
+        state.turn = Some(turn);
         self.changed.notify_all();
+    }
+
+    /// Runs the work, in its turn, on the calling thread. Returns the turn that it has at the end.
+    pub(super) fn run(self: &Arc<Self>, job: Box<dyn FnOnce() + Send>) -> Option<Turn> {
+        {
+            let mut state = self.lock();
+            state.begun = processor_time();
+            state.charged = state.begun;
+        }
+        CURRENT.set(Some(self.clone()));
+        // Whoever waits for the result notices that there is none; the thread goes on.
+        if catch_unwind(AssertUnwindSafe(job)).is_err() {
+            tracing::error!("a worker panicked");
+        }
+        CURRENT.set(None);
+        self.charge(&mut self.lock());
+        self.end()
     }
 
     /// The result is not wanted any more, so the work does not wait for another turn. It keeps the one that it
@@ -70,38 +154,73 @@ impl Shift {
         self.changed.notify_all();
     }
 
-    /// The work has ended.
-    pub(super) fn end(&self) {
+    /// There is no more work to do. Returns the turn.
+    pub(super) fn end(&self) -> Option<Turn> {
         let mut state = self.lock();
         state.is_over = true;
-        let turn = state.turn.take();
-        drop(state);
-        drop(turn);
+        state.turn.take()
     }
 
-    /// Gives way to other addresses if the work has gone on for long.
+    /// Lets others have their turn if the work has had its time.
     fn look(self: &Arc<Self>) {
-        if !self.gives_way {
-            return;
+        if now() >= self.due.load(Ordering::Relaxed) {
+            self.give_way();
         }
+    }
+
+    #[cold]
+    fn give_way(self: &Arc<Self>) {
         let mut state = self.lock();
         let address = self.owner.address();
-        if state.since.elapsed() < SHIFT || !self.turns.is_wanted_by_others(address) {
-            return;
+        let long = self.lanes.turns(Lane::Long);
+        match state.lane {
+            Lane::Short => {
+                let left = SHORT.saturating_sub(processor_time() - state.begun);
+                if !left.is_zero() {
+                    return self.due_in(Some(left));
+                }
+            }
+            Lane::Long if !long.is_wanted_by_others(address) => return self.due_in(Some(AGAIN)),
+            Lane::Long | Lane::Making => {}
         }
         let Some(turn) = state.turn.take() else {
-            return;
+            return self.due_in(None);
         };
-        let _waiting = self.owner.wait();
+        self.charge(&mut state);
+        let was = std::mem::replace(&mut state.lane, Lane::Long);
         drop(state);
+        let _waiting = self.owner.wait();
         let paused = Box::new(Paused(self.clone()));
-        self.turns.give_way(turn, address, paused);
-        let state = self.lock();
+        if was == Lane::Short {
+            self.owner.is_long();
+            self.lanes.moved.fetch_add(1, Ordering::Relaxed);
+            lower_priority();
+            long.take(address, paused);
+            drop(turn);
+        } else {
+            long.give_way(turn, address, paused);
+        }
         let waits = |state: &mut State| state.turn.is_none() && !state.is_over;
         let _state = self
             .changed
-            .wait_while(state, waits)
+            .wait_while(self.lock(), waits)
             .unwrap_or_else(PoisonError::into_inner);
+    }
+
+    /// Charges the owner for the processor time since this was done last.
+    fn charge(&self, state: &mut State) {
+        let now = processor_time();
+        if state.lane == Lane::Short {
+            let time = nanoseconds(now.saturating_sub(state.begun));
+            self.lanes.longest.fetch_max(time, Ordering::Relaxed);
+        }
+        self.owner.took(now.saturating_sub(state.charged));
+        state.charged = now;
+    }
+
+    fn due_in(&self, time: Option<Duration>) {
+        let due = time.map_or(u64::MAX, |time| now() + nanoseconds(time));
+        self.due.store(due, Ordering::Relaxed);
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
@@ -109,7 +228,7 @@ impl Shift {
     }
 }
 
-/// Work that gave way.
+/// Work that waits for its next turn.
 struct Paused(Arc<Shift>);
 
 impl Waiter for Paused {
@@ -118,6 +237,27 @@ impl Waiter for Paused {
     }
 
     fn begin(self: Box<Self>, turn: Turn) {
-        self.0.start(turn);
+        self.0.take(turn);
     }
+}
+
+/// Nanoseconds on the clock of this process.
+fn now() -> u64 {
+    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+    nanoseconds(START.elapsed())
+}
+
+fn nanoseconds(time: Duration) -> u64 {
+    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
+}
+
+/// The processor time of the calling thread; where the system does not count it, the time on the clock.
+fn processor_time() -> Duration {
+    #[cfg(unix)]
+    {
+        let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+        Duration::try_from(time).unwrap_or_default()
+    }
+    #[cfg(not(unix))]
+    Duration::from_nanos(now())
 }

@@ -1,8 +1,11 @@
-//! The threads of each lane.
+//! Handing work over: in which lane it takes its turn, and how its result comes back.
 
 use std::{
     fmt,
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    num::NonZero,
+    sync::{Arc, atomic::Ordering},
+    thread,
+    time::Duration,
 };
 
 use strew_core::server::Stop;
@@ -12,64 +15,56 @@ use tokio::sync::oneshot;
 
 use super::{
     Owner,
+    crew::Crew,
     owner::Waiting,
-    shift::Shift,
-    turns::{Turn, Turns, Waiter},
+    shift::{self, Lanes, Shift},
+    turns::{Turn, Waiter},
 };
 
-/// The lanes. Cheap to clone.
+/// The threads and whose turn it is. Cheap to clone.
 #[derive(Clone)]
 pub struct Workers {
-    short: Arc<rayon::ThreadPool>,
-    /// For what of long work is short: blocks. Whole long jobs have a thread each, since they may pause.
-    long: Arc<rayon::ThreadPool>,
-    /// Threads of jobs that have ended, for the next ones.
-    idle: Arc<Idle>,
-    /// The turns of each lane.
-    turns: [Turns; 3],
+    crew: Crew,
+    lanes: Arc<Lanes>,
+    threads: usize,
 }
-
-/// Pools of one thread each, in which jobs stay.
-type Idle = Mutex<Vec<Arc<rayon::ThreadPool>>>;
-
-/// The most threads that are kept for further jobs.
-const MOST_IDLE: usize = 4;
 
 impl fmt::Debug for Workers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let threads = self.threads;
         f.debug_struct("Workers")
-            .field("short", &self.short.current_num_threads())
-            .field("long", &self.long.current_num_threads())
+            .field("threads", &threads)
             .finish()
     }
 }
 
-/// The niceness of the threads for all but short work.
-const NICENESS: i32 = 10;
-
 impl Workers {
-    /// Starts this number of threads for short work, 0 for one per core, and half of it for long work.
-    ///
-    /// # Errors
-    /// If the system cannot start threads.
-    pub fn new(threads: usize) -> Result<Self, rayon::ThreadPoolBuildError> {
-        let short = pool(threads, "worker").build()?;
-        let threads = short.current_num_threads();
-        let long = pool((threads / 2).max(1), "long")
-            .start_handler(|_| lower_priority())
-            .build()?;
-        Ok(Self {
-            turns: Lane::ALL.map(|lane| {
-                Turns::new(match lane {
-                    Lane::Short => threads,
-                    Lane::Long => long.current_num_threads(),
-                    Lane::Making => 1,
-                })
+    /// Threads for this number of pieces of short work at once, 0 for one per core, and half of it for long work.
+    #[must_use]
+    pub fn new(threads: usize) -> Self {
+        let cores = || thread::available_parallelism().map_or(1, NonZero::get);
+        let threads = if threads == 0 { cores() } else { threads };
+        Self {
+            crew: Crew::new(threads),
+            lanes: Lanes::new(|lane| match lane {
+                Lane::Short => threads,
+                Lane::Long => (threads / 2).max(1),
+                Lane::Making => 1,
             }),
-            idle: Arc::default(),
-            short: Arc::new(short),
-            long: Arc::new(long),
-        })
+            threads,
+        }
+    }
+
+    /// How often short work took too long and became long work.
+    #[must_use]
+    pub fn moved(&self) -> u64 {
+        self.lanes.moved.load(Ordering::Relaxed)
+    }
+
+    /// The longest processor time that short work had before it ended or became long.
+    #[must_use]
+    pub fn longest_short(&self) -> Duration {
+        Duration::from_nanos(self.lanes.longest.load(Ordering::Relaxed))
     }
 
     /// Runs a job when it is the turn of its owner's address, and waits for its result. The job
@@ -96,24 +91,17 @@ impl Workers {
         job: impl FnOnce(&Stop) -> T + Send + 'static,
     ) -> Result<T, Error> {
         let (answer, answered) = oneshot::channel();
-        let shift = (lane != Lane::Short).then(|| {
-            Shift::new(
-                self.turns[lane as usize].clone(),
-                owner.clone(),
-                lane == Lane::Long,
-            )
-        });
-        let stop = shift.as_ref().map_or_else(Stop::new, Shift::stop);
+        let shift = Shift::new(self.lanes.clone(), owner.clone(), lane);
+        let stop = shift::stop();
         let wanted = Wanted(Some((stop.clone(), shift.clone())));
         let job = Job {
             waiting: owner.wait(),
-            short: self.short.clone(),
-            idle: self.idle.clone(),
+            crew: self.crew.clone(),
             shift,
             answer,
             job: move || job(&stop),
         };
-        self.turns[lane as usize].take(owner.address(), Box::new(job));
+        self.lanes.turns(lane).take(owner.address(), Box::new(job));
         let answer = answered.await;
         wanted.over();
         answer.map_err(|_| Error::Internal("a computation failed"))
@@ -126,36 +114,19 @@ impl Workers {
         lane: Lane,
         piece: impl FnOnce() + Send + 'static,
     ) {
-        let pool = match lane {
-            Lane::Short => &self.short,
-            Lane::Long | Lane::Making => &self.long,
-        };
         let piece = Piece {
-            pool: pool.clone(),
+            crew: self.crew.clone(),
+            shift: Shift::new(self.lanes.clone(), owner.clone(), lane),
             piece,
         };
-        self.turns[lane as usize].take(owner.address(), Box::new(piece));
+        self.lanes
+            .turns(lane)
+            .take(owner.address(), Box::new(piece));
     }
 }
 
-fn pool(threads: usize, name: &'static str) -> rayon::ThreadPoolBuilder {
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .thread_name(move |i| format!("strew-{name}-{i}"))
-        // A job that panics drops its answer, which its owner notices; the thread goes on.
-        .panic_handler(|_| tracing::error!("a worker panicked"))
-}
-
-/// Lowers the priority of the calling thread. (On Linux a thread has a priority of its own.)
-fn lower_priority() {
-    #[cfg(any(target_os = "android", target_os = "linux"))]
-    let _ = rustix::process::setpriority_process(None, NICENESS);
-    #[cfg(not(any(target_os = "android", target_os = "linux")))]
-    let _ = NICENESS;
-}
-
 /// Stops a job if it is dropped before its result arrives.
-struct Wanted(Option<(Stop, Option<Arc<Shift>>)>);
+struct Wanted(Option<(Stop, Arc<Shift>)>);
 
 impl Wanted {
     /// The result is there, and may look at the flag later.
@@ -166,9 +137,8 @@ impl Wanted {
 
 impl Drop for Wanted {
     fn drop(&mut self) {
-        let Some((stop, shift)) = &self.0 else { return };
-        stop.raise();
-        if let Some(shift) = shift {
+        if let Some((stop, shift)) = &self.0 {
+            stop.raise();
             shift.leave();
         }
     }
@@ -177,10 +147,9 @@ impl Drop for Wanted {
 /// A job that waits for its turn.
 struct Job<T, F> {
     waiting: Waiting,
-    short: Arc<rayon::ThreadPool>,
-    idle: Arc<Idle>,
-    /// The hold on the job's turn, unless the job is short.
-    shift: Option<Arc<Shift>>,
+    crew: Crew,
+    /// The hold on the job's turn.
+    shift: Arc<Shift>,
     answer: oneshot::Sender<T>,
     job: F,
 }
@@ -193,59 +162,26 @@ impl<T: Send + 'static, F: FnOnce() -> T + Send + 'static> Waiter for Job<T, F> 
     fn begin(self: Box<Self>, turn: Turn) {
         let Self {
             waiting,
-            short,
-            idle,
+            crew,
             shift,
             answer,
             job,
         } = *self;
         drop(waiting);
-        let Some(shift) = shift else {
-            return short.spawn(move || {
-                let _turn = turn;
-                if !answer.is_closed() {
-                    let _ = answer.send(job());
-                }
-            });
-        };
-        // A thread of its own, which may pause, in a pool of its own, where it stays.
-        let start = || pool(1, "job").start_handler(|_| lower_priority()).build();
-        let free = lock(&idle).pop();
-        let thread = match free.map_or_else(|| start().map(Arc::new), Ok) {
-            Ok(thread) => thread,
-            Err(error) => return tracing::error!(%error, "no thread for long work"),
-        };
-        let own = thread.clone();
-        thread.spawn(move || {
-            let _end = EndOnDrop(shift.clone());
-            shift.start(turn);
+        shift.take(turn);
+        let job = move || {
             if !answer.is_closed() {
                 let _ = answer.send(job());
             }
-            let mut idle = lock(&idle);
-            if idle.len() < MOST_IDLE {
-                idle.push(own);
-            }
-        });
-    }
-}
-
-fn lock(idle: &Idle) -> MutexGuard<'_, Vec<Arc<rayon::ThreadPool>>> {
-    idle.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Ends a shift, also when its job panics.
-struct EndOnDrop(Arc<Shift>);
-
-impl Drop for EndOnDrop {
-    fn drop(&mut self) {
-        self.0.end();
+        };
+        crew.work(shift, Box::new(job));
     }
 }
 
 /// A piece of work that waits for its turn.
 struct Piece<F> {
-    pool: Arc<rayon::ThreadPool>,
+    crew: Crew,
+    shift: Arc<Shift>,
     piece: F,
 }
 
@@ -255,21 +191,20 @@ impl<F: FnOnce() + Send + 'static> Waiter for Piece<F> {
     }
 
     fn begin(self: Box<Self>, turn: Turn) {
-        let piece = self.piece;
-        self.pool.spawn(move || {
-            let _turn = turn;
-            piece();
-        });
+        self.shift.take(turn);
+        self.crew.work(self.shift, Box::new(self.piece));
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::sync::mpsc;
+    use std::{sync::mpsc, time::Instant};
+
+    use strew_access::{Caller, Gate, Usage};
+    use strew_config::Layers;
 
     use super::*;
     use crate::{Budget, Record};
-    use strew_access::Usage;
 
     /// The owner of an address of its own.
     fn record() -> Arc<Record> {
@@ -282,7 +217,7 @@ mod tests {
 
     #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
     async fn long_work_leaves_short_work_its_threads() {
-        let workers = Workers::new(1).expect("threads");
+        let workers = Workers::new(1);
         let (end, held) = mpsc::channel::<()>();
         let long = workers.clone();
         let long = tokio::spawn(async move {
@@ -299,22 +234,8 @@ mod tests {
 
     #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
     async fn long_work_gives_way_to_other_addresses_and_goes_on_then() {
-        let workers = Workers::new(1).expect("threads");
-        let (begun, has_begun) = mpsc::channel();
-        let (end, is_over) = mpsc::channel::<()>();
-        let endless = {
-            let (workers, record) = (workers.clone(), record());
-            tokio::spawn(record.scope(async move {
-                let job = move |stop: &Stop| {
-                    begun.send(()).expect("the test listens");
-                    while is_over.try_recv() == Err(mpsc::TryRecvError::Empty) {
-                        assert!(!stop.is_raised());
-                    }
-                };
-                workers.take_turn(Lane::Long, job).await
-            }))
-        };
-        has_begun.recv().expect("it begins");
+        let workers = Workers::new(1);
+        let (end, endless) = endless(&workers, record(), Lane::Long);
         // The only place is taken by work that ends after this.
         let other = record().scope(workers.take_turn(Lane::Long, |_| 7)).await;
         assert_eq!(other, Ok(7));
@@ -322,9 +243,100 @@ mod tests {
         assert_eq!(endless.await.expect("no panic"), Ok(()));
     }
 
+    /// Starts work that ends when the sender is dropped, and waits until it has begun.
+    fn endless(
+        workers: &Workers,
+        record: Arc<Record>,
+        lane: Lane,
+    ) -> (mpsc::Sender<()>, tokio::task::JoinHandle<Result<(), Error>>) {
+        let (begun, has_begun) = mpsc::channel();
+        let (end, is_over) = mpsc::channel::<()>();
+        let job = move |stop: &Stop| {
+            begun.send(()).expect("the test listens");
+            while is_over.try_recv() == Err(mpsc::TryRecvError::Empty) {
+                assert!(!stop.is_raised());
+            }
+        };
+        let workers = workers.clone();
+        let task = async move { workers.take_turn(lane, job).await };
+        let task = tokio::spawn(record.scope(task));
+        has_begun.recv().expect("it begins");
+        (end, task)
+    }
+
+    #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+    async fn short_work_that_takes_long_goes_on_as_long_work() {
+        let workers = Workers::new(1);
+        // Both at one address, which also has to wait for its turn among long work.
+        let record = record();
+        let (end, is_long) = endless(&workers, record.clone(), Lane::Long);
+        let (end_other, is_short) = endless(&workers, record.clone(), Lane::Short);
+        // The only place for short work is taken until it is given up.
+        let short = record.scope(workers.take_turn(Lane::Short, |_| 7)).await;
+        assert_eq!((short, workers.moved()), (Ok(7), 1));
+        drop(end);
+        assert_eq!(is_long.await.expect("no panic"), Ok(()));
+        drop(end_other);
+        assert_eq!(is_short.await.expect("no panic"), Ok(()));
+        // A thread of the right priority does what comes next.
+        for lane in [Lane::Short, Lane::Long] {
+            let name = workers.take_turn(lane, |_| thread::current().name().map(String::from));
+            let expected = if lane == Lane::Short {
+                "strew-worker"
+            } else {
+                "strew-"
+            };
+            let name = name.await.expect("no panic").expect("a name");
+            assert!(name.starts_with(expected), "{lane:?}: {name}");
+        }
+    }
+
+    #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+    async fn all_work_is_charged_for_the_time_it_took() {
+        let settings = Layers::new().and_then(|settings| {
+            let settings = settings.assignment("rate.points_per_second=1e-3")?;
+            settings.assignment("rate.burst_points=1e9")?.finish()
+        });
+        let config = settings.expect("valid");
+        let gate = Gate::new(config.access, &config.rate, config.per_address);
+        let gate = gate.expect("valid");
+        let address = std::net::IpAddr::from([192, 0, 2, 1]);
+        let admitted = || gate.admit(None, address, Usage::unlimited());
+        let left = |caller: &Caller| caller.level().expect("a rate").left;
+        let workers = Workers::new(1);
+        let busy = |lane, time: Duration| {
+            let (workers, caller) = (workers.clone(), admitted().expect("let in"));
+            record().scope(async move {
+                Record::of(&caller);
+                let start = Instant::now();
+                let job = move |stop: &Stop| while start.elapsed() < time && !stop.is_raised() {};
+                workers.take_turn(lane, job).await.expect("no panic");
+                // The answer comes a moment before the thread is done with the job.
+                workers.take_turn(lane, |_| ()).await.expect("no panic");
+                caller
+            })
+        };
+        let quick = busy(Lane::Short, Duration::ZERO).await;
+        assert_eq!(left(&quick), 999_999_999);
+        for lane in Lane::ALL {
+            let before = left(&quick);
+            let charged = before - left(&busy(lane, Duration::from_millis(60)).await);
+            // Other programs may have had the processor meanwhile.
+            assert!((100..=12_000).contains(&charged), "{lane:?}: {charged}");
+        }
+        // The price counts first.
+        let caller = admitted().expect("let in");
+        caller.charge(1_000_000).expect("there");
+        let before = left(&caller);
+        caller.took(Duration::from_secs(5));
+        assert_eq!(left(&caller), before);
+        caller.took(Duration::from_secs(2));
+        assert_eq!(before - left(&caller), 399_599);
+    }
+
     #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
     async fn work_that_is_not_wanted_ends_also_while_it_waits() {
-        let workers = Workers::new(1).expect("threads");
+        let workers = Workers::new(1);
         let (begun, has_begun) = mpsc::channel();
         let (ended, has_ended) = mpsc::channel();
         let job = move |stop: &Stop| {

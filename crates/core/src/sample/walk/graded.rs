@@ -137,8 +137,12 @@ impl<F: Format> FieldWalk<F> {
     }
 
     /// Finds the next points: some of the next patch, about `room` of them, or rows in which the field
-    /// is constant. All that were found before are taken. `None` after the last band.
+    /// is constant. All that were found before are taken. `None` after the last band, and once the scope's flag is
+    /// raised.
     pub(super) fn next(&mut self, room: usize) -> Option<Next> {
+        if self.bands.scope.stop.is_raised() {
+            return None;
+        }
         if self.bands.is_done() && !self.next_band() {
             return None;
         }

@@ -52,6 +52,9 @@ const TALL: i64 = 512;
 /// The most points of a warped patch that are listed before some are written: 20 bytes each.
 const FLAT: usize = 2048;
 
+/// The scope's flag is looked at every so many sifted rows.
+const LOOK: i64 = 8;
+
 /// A walk outside fields.
 #[derive(Clone, Debug)]
 pub(super) struct RowWalk<F: Format> {
@@ -143,8 +146,11 @@ impl<F: Format> RowWalk<F> {
     }
 
     /// Moves to the next band and patch if the current ones are done. Returns the end of the patch's rows;
-    /// `None` after the last band.
+    /// `None` after the last band, and once the scope's flag is raised.
     fn advance(&mut self) -> Option<i64> {
+        if self.bands.scope.stop.is_raised() {
+            return None;
+        }
         if self.bands.is_done() && !self.next_band() {
             return None;
         }
@@ -336,6 +342,10 @@ impl<F: Format> RowWalk<F> {
                 at.next_row();
                 continue;
             };
+            // A point may take long to test.
+            if y % LOOK == 0 && scope.stop.is_raised() {
+                break;
+            }
             if sifting.next_strip(y, end, &range) {
                 *at = Place::row(sifting.runs_end);
                 continue;

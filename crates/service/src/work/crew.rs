@@ -1,0 +1,120 @@
+//! The threads that work is done on: one for each piece of work that has a turn, kept for the next one.
+//!
+//! How many work at once is for [`Turns`](super::turns) to say. Work that waits for another turn keeps its thread, so
+//! that whatever it does may wait; the thread of another takes its place.
+
+use std::{
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        mpsc::{Sender, channel},
+    },
+    thread,
+};
+
+use super::shift::Shift;
+
+/// The threads. Cheap to clone.
+#[derive(Clone)]
+pub(super) struct Crew(Arc<Threads>);
+
+struct Threads {
+    /// Those for short work that wait for more, and those of lower priority.
+    idle: [Mutex<Vec<Sender<Task>>>; 2],
+    /// The most that are kept of each.
+    most_idle: usize,
+}
+
+/// Work with its thread.
+struct Task {
+    shift: Arc<Shift>,
+    job: Box<dyn FnOnce() + Send>,
+    /// By which the thread gets its next work.
+    thread: Sender<Task>,
+    crew: Crew,
+}
+
+/// The niceness of threads of lower priority.
+const NICENESS: i32 = 10;
+/// The fewest threads that are kept for further work.
+const LEAST_IDLE: usize = 4;
+
+impl Crew {
+    /// Without threads yet. Keeps about this number of them.
+    pub(super) fn new(threads: usize) -> Self {
+        Self(Arc::new(Threads {
+            idle: Default::default(),
+            most_idle: threads.max(LEAST_IDLE),
+        }))
+    }
+
+    /// Does work that has its turn, on a thread of the shift's priority. If there is no thread, the work is dropped.
+    pub(super) fn work(&self, shift: Arc<Shift>, job: Box<dyn FnOnce() + Send>) {
+        let is_long = shift.is_long();
+        let idle = lock(&self.0.idle[usize::from(is_long)]).pop();
+        let thread = match idle.map_or_else(|| start(is_long), Ok) {
+            Ok(thread) => thread,
+            Err(error) => {
+                tracing::error!(%error, "no thread for work");
+                return drop(shift.end());
+            }
+        };
+        let task = Task {
+            shift,
+            job,
+            thread: thread.clone(),
+            crew: self.clone(),
+        };
+        // Idle threads listen.
+        let _ = thread.send(task);
+    }
+}
+
+impl Task {
+    fn run(self) {
+        let Self {
+            shift,
+            job,
+            thread,
+            crew,
+        } = self;
+        let turn = shift.run(job);
+        let mut idle = lock(&crew.0.idle[usize::from(shift.is_long())]);
+        if idle.len() < crew.0.most_idle {
+            idle.push(thread);
+        }
+        drop(idle);
+        // The next work of this lane may begin on this thread.
+        drop(turn);
+    }
+}
+
+fn start(is_long: bool) -> std::io::Result<Sender<Task>> {
+    let (sender, tasks) = channel::<Task>();
+    let name = if is_long {
+        "strew-long"
+    } else {
+        "strew-worker"
+    };
+    thread::Builder::new().name(name.into()).spawn(move || {
+        if is_long {
+            lower_priority();
+        }
+        // Ends once nobody can send any more.
+        while let Ok(task) = tasks.recv() {
+            task.run();
+        }
+    })?;
+    Ok(sender)
+}
+
+/// Lowers the priority of the calling thread for good. (On Linux a thread has a priority of its own.)
+pub(super) fn lower_priority() {
+    #[cfg(any(target_os = "android", target_os = "linux"))]
+    let _ = rustix::process::setpriority_process(None, NICENESS);
+    #[cfg(not(any(target_os = "android", target_os = "linux")))]
+    let _ = NICENESS;
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
