@@ -15,6 +15,7 @@ import base64
 import gzip
 import http.client
 import json
+import math
 import multiprocessing
 import os
 import pathlib
@@ -450,6 +451,30 @@ def longlane(daemon):
     repeated(daemon, 3, daemon.request("POST", "/v1/points:split?parts=10000", json.dumps(split).encode()), victims)
 
 
+def underpriced(daemon):
+    """What was once taken for short work: chains of layers in space, later layers behind a cursor, stars of many
+    corners, parts of a ball."""
+    ball = {"ball": {"center": [0, 0, 0], "radius": 3}}
+    chain = [{"name": f"l{i}", "spacing": 1, "seed": i, "clear_of": {f"l{i - 1}": 0.6} if i else {}} for i in range(6)]
+    circle = {"circle": {"center": [0, 0], "radius": 60000}}
+    layers = [{"name": "a", "spacing": 9000}, *({"name": f"b{i}", "spacing": 1, "warp": 1, "seed": i} for i in range(4))]
+    page = {"region": circle, "layers": layers, "limit": 10, "format": "json"}
+    page["cursor"] = daemon.json("POST", "/v1/points:query", page)["next"]
+    turns = [2 * math.pi * i / 60_000 for i in range(60_000)]
+    radii = [1e4 if i % 2 else 4e3 for i in range(60_000)]
+    ring = [[round(r * math.cos(t), 3), round(r * math.sin(t), 3)] for r, t in zip(radii, turns)]
+    star = {"polygon": {"type": "Polygon", "coordinates": [[*ring, ring[0]]]}}
+    victims = [*VICTIMS, "/v1/points?bbox=0,0,200,200&spacing=1&format=csv", "/readyz"]
+    for path, body in [
+        ("/v1/space/count", {"region": ball, "layers": chain}),
+        ("/v1/points:query", page),
+        ("/v1/count", {"region": star, "spacing": 1e9}),
+        ("/v1/space/points:split?parts=300", {"region": {"ball": {"center": [0, 0, 0], "radius": 40}}, "spacing": 1}),
+    ]:
+        print(path, flush=True)
+        repeated(daemon, 4, daemon.request("POST", path, json.dumps(body).encode()), victims)
+
+
 def four(daemon):
     """Four addresses, each within its share: bodies that do not end, and readers of 5 kB/s."""
     body = daemon.request("POST", "/v1/points:query", bytes(1000))[:-900]
@@ -589,6 +614,7 @@ ATTACKS = [
     mixes,
     streams,
     longlane,
+    underpriced,
     four,
 ]
 

@@ -129,7 +129,8 @@ fn region(random: &mut SplitMix, is_space: bool, depth: u32) -> Value {
         0..=2 => {
             let high = low.iter().map(|low| low + power(random, -0.5, widest));
             let high: Vec<f64> = high.collect();
-            json!({ "bbox": [low, high].concat() })
+            let corners = [low, high].concat();
+            json!({ "bbox": corners })
         }
         3 | 4 => {
             let name = if is_space { "ball" } else { "circle" };
