@@ -9,6 +9,8 @@ use std::{
 mod circles;
 #[path = "tidy/imports.rs"]
 mod imports;
+#[path = "tidy/lines.rs"]
+mod lines;
 #[path = "tidy/page.rs"]
 mod page;
 #[path = "tidy/releasing.rs"]
@@ -17,7 +19,7 @@ mod releasing;
 /// Every source file of the workspace, as (path from the root, text).
 fn sources() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut open: Vec<PathBuf> = [
+    let folders = [
         "src",
         "page",
         "bindings/python/src",
@@ -29,34 +31,46 @@ fn sources() -> Vec<(String, String)> {
         "examples",
         "fuzz/subjects",
         "fuzz/fuzz_targets",
-    ]
-    .map(|d| root.join(d))
-    .to_vec();
-    let mut found = Vec::new();
+    ];
+    let found = folders.map(|folder| files(&root.join(folder), &["rs"]));
+    let mut found = found.concat();
+    assert!(
+        found.len() > 30,
+        "the sources are where they are looked for"
+    );
+    found.retain(|(name, _)| name != "tests/tidy.rs");
+    found
+}
+
+/// Every file below a folder with one of these endings that is written by hand, as (path from the root, text).
+fn files(folder: &Path, endings: &[&str]) -> Vec<(String, String)> {
+    let mut open: Vec<PathBuf> = vec![folder.into()];
+    let mut found = vec![];
     while let Some(path) = open.pop() {
-        // A crate of its own workspace has its build beside its sources.
-        if path.ends_with("target") {
+        // What is built, installed or printed may stand beside the sources.
+        if BUILT.iter().any(|built| path.ends_with(built)) {
             continue;
         }
         if path.is_dir() {
             let entries = fs::read_dir(&path).expect("readable");
             open.extend(entries.map(|entry| entry.expect("readable").path()));
-        } else if path.extension().is_some_and(|e| e == "rs") {
+            continue;
+        }
+        let ending = path.extension().unwrap_or_default();
+        if endings.iter().any(|other| ending == *other) {
             let name = path
-                .strip_prefix(root)
+                .strip_prefix(env!("CARGO_MANIFEST_DIR"))
                 .expect("inside")
                 .to_string_lossy()
                 .replace('\\', "/");
             found.push((name, fs::read_to_string(&path).expect("UTF-8")));
         }
     }
-    assert!(
-        found.len() > 30,
-        "the sources are where they are looked for"
-    );
-    found.retain(|(name, _)| name != "tests/tidy.rs" && !name.contains("/generated/"));
     found
 }
+
+/// Folders beside the sources that nobody writes.
+const BUILT: [&str; 5] = ["target", "generated", "node_modules", "dist", ".venv"];
 
 /// Code without its comments.
 fn code(text: &str) -> impl Iterator<Item = (usize, &str)> {

@@ -30,8 +30,8 @@ use super::{
 const SHORT: Duration = Duration::from_millis(50);
 /// How long long work goes on while others wait.
 const LONG: Duration = Duration::from_millis(200);
-/// Work that may give way, while no others wait, looks for them as often as this.
-const AGAIN: Duration = Duration::from_millis(1);
+/// Work that may give way looks as often as this whether others wait, and is charged for its time.
+const AGAIN: Duration = Duration::from_millis(5);
 
 thread_local! {
     /// The work of this thread.
@@ -48,6 +48,15 @@ pub(super) fn stop() -> Stop {
             }
         });
     })
+}
+
+/// Charges the work of this thread for its time so far: before its result is seen.
+pub(super) fn charge() {
+    CURRENT.with_borrow(|current| {
+        if let Some(shift) = current {
+            shift.charge(&mut shift.lock());
+        }
+    });
 }
 
 /// The turns of each lane.
@@ -173,9 +182,10 @@ impl Shift {
         let mut state = self.lock();
         let address = self.owner.address();
         let long = self.lanes.turns(Lane::Long);
+        self.charge(&mut state);
         match state.lane {
             Lane::Short => {
-                let left = SHORT.saturating_sub(processor_time() - state.begun);
+                let left = SHORT.saturating_sub(state.charged - state.begun);
                 if !left.is_zero() {
                     return self.due_in(Some(left));
                 }
@@ -186,7 +196,6 @@ impl Shift {
         let Some(turn) = state.turn.take() else {
             return self.due_in(None);
         };
-        self.charge(&mut state);
         let was = std::mem::replace(&mut state.lane, Lane::Long);
         drop(state);
         let _waiting = self.owner.wait();
