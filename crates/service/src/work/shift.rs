@@ -183,6 +183,10 @@ impl Shift {
         let address = self.owner.address();
         let long = self.lanes.turns(Lane::Long);
         self.charge(&mut state);
+        if state.turn.is_none() {
+            // The result is not wanted. What may still wait in the queue locks this state.
+            return self.due_in(None);
+        }
         match state.lane {
             Lane::Short => {
                 let left = SHORT.saturating_sub(state.charged - state.begun);
@@ -194,7 +198,7 @@ impl Shift {
             Lane::Long | Lane::Making => {}
         }
         let Some(turn) = state.turn.take() else {
-            return self.due_in(None);
+            return;
         };
         let was = std::mem::replace(&mut state.lane, Lane::Long);
         drop(state);
