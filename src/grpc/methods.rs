@@ -62,7 +62,8 @@ impl Method {
         request: Request,
     ) -> Result<Frames, Status> {
         // The memory of the message is held until the head of the answer.
-        let (job, effort, _held) = message::read(&service, self.shape, self.read, request).await?;
+        let (job, effort, _held) =
+            message::read(&service, &caller, (self.shape, self.read), request).await?;
         job(Points::new(service), caller, effort).await
     }
 }

@@ -11,7 +11,7 @@ use serde::Serialize;
 use strew_access::Caller;
 use strew_error::{Error, Fault};
 use strew_query::{Group, Values, parse_pairs};
-use strew_service::Service;
+use strew_service::{Service, charge_reading};
 
 use super::{body, document, freshness::Freshness, problem::Refused};
 use crate::body::{Body, Response};
@@ -101,6 +101,7 @@ impl Sent {
     ) -> Result<Self, Refused> {
         context.no_parameters()?;
         let body = body::whole(service, &context.headers, body).await?;
+        charge_reading(&context.caller, body.len())?;
         Ok(Self { context, body })
     }
 }

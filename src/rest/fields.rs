@@ -205,8 +205,10 @@ async fn chunk(service: Arc<Service>, context: Context) -> Result<Response, Refu
     let (size, x, y) = (SIZE.read(size), COLUMN.read(x), ROW.read(y)).together()?;
     let parts = field.spec.parts();
     let digest = field.digest();
+    let price = field.picture_price(size, [x, y]);
     let make = async {
-        let draw = move |_: &Service, _: &Stop| field.picture(size, [x, y]);
+        context.caller.charge(price)?;
+        let draw = move |_: &Service, stop: &Stop| field.picture(size, [x, y], stop);
         let picture = service.process(SIDE * SIDE * parts, draw).await??;
         Ok(document::file(picture, PNG))
     };

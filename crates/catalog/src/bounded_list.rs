@@ -4,6 +4,8 @@ use std::{fmt, marker::PhantomData, ops::RangeInclusive};
 
 use serde::de::{Deserialize, Deserializer, Error as _, IgnoredAny, SeqAccess, Visitor};
 
+use crate::wanted;
+
 /// Reads a list of a number of elements, called `what`.
 ///
 /// # Errors
@@ -39,6 +41,7 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for List<T> {
         let what = self.what;
         let mut all = vec![];
         while all.len() < most {
+            wanted::look(all.len()).map_err(A::Error::custom)?;
             match elements.next_element()? {
                 Some(element) => all.push(element),
                 None if all.len() < least => {
@@ -52,6 +55,7 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for List<T> {
         }
         let mut count = most;
         while elements.next_element::<IgnoredAny>()?.is_some() {
+            wanted::look(count).map_err(A::Error::custom)?;
             count += 1;
         }
         if count > most {
@@ -65,7 +69,30 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for List<T> {
 
 #[cfg(test)]
 mod tests {
+    use strew_core::server::Stop;
+
     use super::*;
+
+    #[test]
+    fn reading_ends_when_it_is_not_wanted() {
+        let stop = Stop::new();
+        let read = || {
+            let mut json = serde_json::Deserializer::from_str("[1, 2, 3]");
+            wanted::until(&stop, || list::<_, u8>(&mut json, 0..=9, "numbers")).is_ok()
+        };
+        assert!(read());
+        stop.raise();
+        assert!(!read());
+        // Whatever the thread reads next is wanted.
+        assert!(
+            list::<_, u8>(
+                &mut serde_json::Deserializer::from_str("[1]"),
+                0..=9,
+                "numbers"
+            )
+            .is_ok()
+        );
+    }
 
     #[test]
     fn lists_are_as_long_as_they_may_be_and_faults_say_how_long_they_are() {

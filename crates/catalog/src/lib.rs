@@ -20,6 +20,7 @@ mod patterns;
 mod ready;
 mod reload;
 pub mod sent;
+pub mod wanted;
 
 pub use catalog::{Built, Catalog};
 pub use dimension::Dimension;

@@ -346,6 +346,38 @@ pub fn windows(plan: &Plan, offsets: &[u128]) -> Vec<Plan> {
     plan.windows(offsets, plan.count())
 }
 
+/// The bytes of the points and places that counting has kept in a plan, beside its area.
+///
+/// ```
+/// use strew_core::{PointSet, Region, Table, server::{forgetting, kept}};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let plan = PointSet::new(table).seed(7).within(Region::chunk(20.0, [0, 0])?)?;
+/// let lean = forgetting(plan.clone());
+/// assert!(kept(&plan) >= 12 * plan.iter().len() && kept(&lean) == 0);
+/// assert_eq!(lean.to_vec(), plan.to_vec());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[must_use]
+pub fn kept(plan: &Plan) -> usize {
+    plan.kept()
+}
+
+/// Returns the plan without the points and places that counting has kept. It finds them again, which takes time.
+///
+/// ```
+/// use strew_core::{PointSet, Region, Table, server::forgetting};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let plan = PointSet::new(table).seed(7).within(Region::chunk(20.0, [0, 0])?)?;
+/// assert_eq!(forgetting(plan.clone()).count(), plan.count());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[must_use]
+pub fn forgetting(plan: Plan) -> Plan {
+    plan.forgetting()
+}
+
 /// A sparser or denser set of the same table and seed in the area of a plan, whatever its window and
 /// share, clear of the same other sets. Its points are not counted: [`Plan::count`] is only a bound.
 ///
@@ -442,25 +474,24 @@ pub fn outline(area: &Area, within: Region) -> f64 {
     area.outline(within)
 }
 
-/// The sum, over strips of height `strip` from the bottom of `within` up, of the [`outline`] in the strip
-/// times the number of edges, boxes and circles that touch it, in world units. Points beside an outline
-/// are compared with all of these: a further cost of areas with many edges.
-///
-/// Takes time in proportion to the edges and to the outline in strips. There are at most 65,536 strips,
-/// and they are higher where that number is not enough.
+/// About how many comparisons of points with sides of polygons, boxes and circles it takes to count an area inside
+/// `within`, at this spacing: points beside an outline are compared with all sides near them. A further cost of areas with
+/// many sides. Takes time in proportion to them and to the outline.
 ///
 /// ```
-/// use strew_core::{Area, Circle, Region, server::comparisons};
+/// use strew_core::{Area, Circle, Region, Spacing, server::comparisons};
 ///
 /// let view = Region::chunk(100.0, [0, 0])?;
 /// let pond = Area::from(Circle::new([50.0, 50.0], 9.0)?);
 /// let ponds = Area::any_of(vec![pond.clone(); 50]);
-/// // Fifty times the outline, and points beside it are compared with fifty circles.
-/// let ratio = comparisons(&ponds, view, 1.0) / comparisons(&pond, view, 1.0);
-/// assert!((ratio - 2500.0).abs() < 1e-6);
+/// // Points beside fifty circles are compared with fifty circles, until all points of the view are.
+/// let ratio = |spacing| comparisons(&ponds, view, spacing) / comparisons(&pond, view, spacing);
+/// assert!(ratio(Spacing::new(0.1)?) > 500.0 && ratio(Spacing::new(9.0)?) >= 50.0);
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 #[must_use]
-pub fn comparisons(area: &Area, within: Region, strip: f64) -> f64 {
-    area.comparisons(within, strip)
+pub fn comparisons(area: &Area, within: Region, spacing: Spacing) -> f64 {
+    /// About the lattice units in a mean spacing.
+    const UNITS: f64 = 3.0;
+    area.comparisons(within, spacing.get() / UNITS)
 }

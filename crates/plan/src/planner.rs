@@ -29,7 +29,13 @@ pub(super) struct Planner<'a> {
     prices: Layers,
     /// The number of points that all sets together may still leave out.
     room: usize,
+    /// The bytes that counting has kept for all sets.
+    kept: usize,
 }
+
+/// The most bytes that counting keeps for all sets of a query together: points of small ones, places in the order of
+/// others. Those of further sets are found again.
+const MOST_KEPT: usize = 2 << 20;
 
 impl<'a> Planner<'a> {
     /// `stop` ends the counting early; the plan is then meaningless.
@@ -42,6 +48,7 @@ impl<'a> Planner<'a> {
             volumes: vec![],
             prices: Layers::default(),
             room: MOST_HOLES,
+            kept: 0,
         }
     }
 
@@ -110,6 +117,12 @@ impl<'a> Planner<'a> {
                 plan.window(start, is_over.then_some(0))
             }
         };
+        let kept = server::kept(&plan);
+        let plan = match self.kept + kept > MOST_KEPT {
+            true => server::forgetting(plan),
+            false => plan,
+        };
+        self.kept += server::kept(&plan);
         let spacing = plan.placement().spacing;
         let candidates = match set.field {
             Some(_) => {

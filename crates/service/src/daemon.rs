@@ -201,12 +201,15 @@ impl Service {
         query: Box<Query>,
         picture: Option<u32>,
     ) -> Result<(Permit, Planned), Error> {
+        /// The pixels of a picture that are drawn and packed in a microsecond.
+        const PIXELS: u128 = 500;
         // Waiting for labels takes no place.
         let tables = self.tables(caller, &query).await?;
         let permit = self.admit(caller, picture)?;
         let planned = self.charged(caller, query, tables).await?;
         self.check_points(caller, &planned)?;
-        caller.charge(considered(&planned))?;
+        let drawn = picture.map_or(0, |side| u128::from(side).pow(2) / PIXELS);
+        caller.charge(considered(&planned) + drawn)?;
         // No more than the limit, which has 64 bits.
         let points = u64::try_from(planned.count()).unwrap_or(u64::MAX);
         Record::promise(&self.points_in_flight, points);
@@ -281,7 +284,10 @@ impl Service {
     ) -> Result<Planned, Error> {
         let most = limits.max_rows;
         let is_plain = effort::is_plain(&query);
-        let price = move |_: &Stop| (effort::planning(&query, &tables, most), query, tables);
+        let price = move |stop: &Stop| {
+            let rows = effort::planning(&query, &tables, most, stop);
+            (rows, query, tables)
+        };
         let (rows, query, tables) = match is_plain {
             true => price(&Stop::default()),
             false => self.workers.take_turn(Lane::Short, price).await?,

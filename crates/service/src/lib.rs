@@ -28,6 +28,7 @@ pub use budget::{Budget, Held};
 pub use daemon::Service;
 pub use portrait::Portrait;
 pub use promise::PointsInFlight;
+pub use reading::charge_reading;
 pub use record::{Record, allowance};
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
 pub use work::{Owner, Pulse, Workers};

@@ -4,6 +4,8 @@
 
 use std::sync::Arc;
 
+use strew_access::Caller;
+use strew_catalog::wanted;
 use strew_core::server::Stop;
 use strew_error::Error;
 use strew_plan::Lane;
@@ -27,6 +29,19 @@ fn lane(bytes: usize) -> Option<Lane> {
     })
 }
 
+/// Charges a caller for a request of this many bytes, before any of them is read.
+///
+/// # Errors
+/// [`Denied::TooFast`](strew_error::Denied) if the caller takes points too fast.
+pub fn charge_reading(caller: &Caller, bytes: usize) -> Result<(), Error> {
+    /// The bytes that are read and checked in a microsecond.
+    const BYTES: usize = 50;
+    match bytes <= FEW {
+        true => Ok(()),
+        false => Ok(caller.charge((bytes / BYTES) as u128)?),
+    }
+}
+
 impl Service {
     /// Reads or writes this many bytes of a request or an answer: at once if they are few, else on the
     /// workers. The job should stop when the flag is raised: then the result is not wanted any more.
@@ -42,7 +57,8 @@ impl Service {
             return Ok(job(self, &Stop::NEVER));
         };
         let (service, record) = (self.clone(), Record::current());
-        let job = move |stop: &Stop| Record::within(record, || job(&service, stop));
+        let job = move |stop: &Stop| wanted::until(stop, || job(&service, stop));
+        let job = move |stop: &Stop| Record::within(record, || job(stop));
         self.workers.take_turn(lane, job).await
     }
 

@@ -8,9 +8,10 @@ use std::sync::Arc;
 use bytes::Bytes;
 use http_body_util::BodyExt as _;
 use prost::DecodeError;
+use strew_access::Caller;
 use strew_core::server::Stop;
 use strew_error::Error;
-use strew_service::{Held, Service, segments::Segments};
+use strew_service::{Held, Service, charge_reading, segments::Segments};
 use tonic::Status;
 
 use super::{compression, frames::PREFIX, status};
@@ -33,8 +34,8 @@ pub(super) struct Received<T> {
 /// the byte budget for it.
 pub(super) async fn read<T: Send + 'static>(
     service: &Arc<Service>,
-    shape: usize,
-    decode: fn(Bytes) -> Result<T, DecodeError>,
+    caller: &Caller,
+    (shape, decode): (usize, fn(Bytes) -> Result<T, DecodeError>),
     request: Request,
 ) -> Result<(T, usize, Held), Status> {
     let coding = compression::sent(request.headers())?;
@@ -53,6 +54,7 @@ pub(super) async fn read<T: Send + 'static>(
         }
     };
     let length = bytes.len();
+    charge_reading(caller, length).map_err(refused)?;
     let mut held = service.hold(0).map_err(refused)?;
     let decode = move |service: &Service, _: &Stop| {
         let cost = walk::cost(shape, &bytes, service.limits())?;

@@ -99,6 +99,44 @@ fn a_rate_is_charged_for_the_time_that_points_take() {
     // Five looks a point at 480 octaves.
     let charged = left(&first) - left(&second);
     assert!(charged > 20 * points, "{charged} for {points}");
+    let mut before = left(&second);
+    let mut charged = |answer: &http1::Answer| {
+        let charged = before - left(answer);
+        before = left(answer);
+        charged
+    };
+    // A vertex takes time at any spacing.
+    let vertex = |i: u32| {
+        let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 9e3).sin_cos();
+        let radius = if i.is_multiple_of(2) { 1.0 } else { 0.3 };
+        [radius * cos, radius * sin]
+    };
+    let ring: Vec<[f64; 2]> = (0..9_000).map(vertex).collect();
+    let star = json!({
+        "region": { "polygon": { "type": "Polygon", "coordinates": [ring] } },
+        "spacing": 1e9, "profile": "test",
+    });
+    let bytes = star.to_string().len() as u64;
+    let answer = daemon.post("/v1/count", &star);
+    assert_eq!(answer.status, 200, "{}", answer.text());
+    assert!(charged(&answer) >= 4_500 + bytes / 50);
+    // Bytes are read also if they are refused.
+    let answer = daemon.post("/v1/except", &json!({ "ids": ["x".repeat(400_000)] }));
+    assert_eq!(answer.status, 400);
+    assert!(charged(&answer) >= 8_000);
+    let answer = daemon.get("/v1/points?bbox=0,0,2,2&spacing=1&profile=test&format=png&size=4096");
+    assert_eq!(answer.status, 200);
+    assert!(charged(&answer) >= 4096 * 4096 / 500);
+    let noise = json!({ "noise": { "wavelength": 50, "octaves": 8 } });
+    let answer = daemon.post("/v1/fields", &noise);
+    assert!(charged(&answer) <= 1);
+    let name = answer.json()["digest"]
+        .as_str()
+        .expect("a digest")
+        .to_owned();
+    let answer = daemon.get(&format!("/v1/fields/{name}/chunks/64/0/0"));
+    assert_eq!(answer.status, 200, "{}", answer.text());
+    assert!(charged(&answer) >= 256 * 256 * 20 / 1000);
 }
 
 #[test]

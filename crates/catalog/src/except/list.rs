@@ -3,7 +3,7 @@
 //! A list is text, an id a line: `12:-3`, or `trees/12:-3` for a point of a layer. What follows `#` is a comment. Or
 //! it is an object of JSON with these ids: `{"ids": ["12:-3"]}`.
 
-use std::{borrow::Cow, collections::BTreeMap, mem::size_of, sync::Arc};
+use std::{borrow::Cow, collections::BTreeMap, iter, mem::size_of, sync::Arc};
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -15,6 +15,7 @@ use super::Ids;
 use crate::{
     named::{self, Changes, NamedError, Places, Refused},
     sent::{Sendable, Sender, Sent},
+    wanted,
 };
 
 /// The most layers that a list has ids of.
@@ -157,6 +158,7 @@ impl NamedList {
         // Editors of Windows begin files with this mark.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut list = Unsorted::default();
+        let not_wanted = |detail| Fault::new("body", "", detail, "a list");
         if text.trim_start().starts_with('{') {
             // No id has a comma, so several are counted before they take memory.
             let commas = text.bytes().filter(|&byte| byte == b',').count();
@@ -169,18 +171,22 @@ impl NamedList {
             })?;
             check_count(section.ids.len(), most)?;
             for (i, Item(item)) in section.ids.iter().enumerate() {
+                wanted::look(i).map_err(not_wanted)?;
                 list.add(item, || format!("ids[{i}]"))?;
             }
         } else {
-            let items = || {
-                let lines = text.lines().enumerate();
-                let items = lines.map(|(i, line)| (i, line.split('#').next().unwrap_or_default()));
-                let items = items.map(|(i, item)| (i, item.trim()));
-                items.filter(|(_, item)| !item.is_empty())
-            };
-            check_count(items().count(), most)?;
-            for (i, item) in items() {
-                list.add(item, || format!("line {}", i + 1))?;
+            for (i, (item, rest)) in lines(text).enumerate() {
+                wanted::look(i).map_err(not_wanted)?;
+                if item.is_empty() {
+                    continue;
+                }
+                if list.1 == most {
+                    let others = lines(rest).filter(|(item, _)| !item.is_empty());
+                    check_count(most + 1 + others.count(), most)?;
+                }
+                let before = &text[..text.len() - rest.len()];
+                let line = || before.trim_end_matches('\n').matches('\n').count() + 1;
+                list.add(item, || format!("line {}", line()))?;
             }
         }
         let ids = |(layer, ids)| (layer, Arc::new(Ids::new(ids)));
@@ -245,9 +251,9 @@ impl Sendable for NamedList {
     }
 }
 
-/// The ids of a list by layer, as they are read.
+/// The ids of a list by layer, as they are read, and their number.
 #[derive(Default)]
-struct Unsorted(BTreeMap<String, Vec<PointId>>);
+struct Unsorted(BTreeMap<String, Vec<PointId>>, usize);
 
 impl Unsorted {
     /// Adds the item of a place.
@@ -257,6 +263,7 @@ impl Unsorted {
             return Err(Fault::new(&place(), item, "not an id", allowed));
         };
         let layer = layer.unwrap_or_default();
+        self.1 += 1;
         if let Some(ids) = self.0.get_mut(layer) {
             ids.push(id);
         } else if self.0.len() == MOST_LAYERS {
@@ -267,6 +274,21 @@ impl Unsorted {
         }
         Ok(())
     }
+}
+
+/// The item of each line of a text that is not blank, without its comment, and the lines after it.
+fn lines(text: &str) -> impl Iterator<Item = (&str, &str)> {
+    let mut rest = text;
+    iter::from_fn(move || {
+        rest = rest.trim_start();
+        if rest.is_empty() {
+            return None;
+        }
+        let (line, after) = rest.split_once('\n').unwrap_or((rest, ""));
+        rest = after;
+        let item = line.split('#').next().unwrap_or_default();
+        Some((item.trim_end(), after))
+    })
 }
 
 /// Refuses a list that is too long.

@@ -1,7 +1,10 @@
 //! Pictures of fields.
 
 use png::{BitDepth, ColorType, Encoder};
-use strew_core::{Field as _, Region};
+use strew_core::{
+    Field as _, Region,
+    server::{self, Stop},
+};
 use strew_error::{Error, Fault};
 
 use super::NamedField;
@@ -10,11 +13,20 @@ use super::NamedField;
 pub const SIDE: usize = 256;
 
 impl NamedField {
+    /// The price of a picture of a chunk, in microseconds.
+    #[must_use]
+    pub fn picture_price(&self, size: f64, cell: [i64; 2]) -> u128 {
+        /// The nanoseconds to place and pack a pixel.
+        const PIXEL: f64 = 20.0;
+        let look = Region::chunk(size, cell).map_or(0.0, |region| server::look(&self.spec, region));
+        ((SIDE * SIDE) as f64 * (PIXEL + look) / 1e3) as u128
+    }
+
     /// The shares at the centers of the pixels of a chunk, as a gray PNG: black for 0.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for a chunk that is too far out for `f64`.
-    pub fn picture(&self, size: f64, cell: [i64; 2]) -> Result<Vec<u8>, Error> {
+    /// [`Error::Invalid`] for a chunk that is too far out for `f64`, and [`Error::Internal`] once the flag is raised.
+    pub fn picture(&self, size: f64, cell: [i64; 2], stop: &Stop) -> Result<Vec<u8>, Error> {
         let refused = |detail: String| {
             let value = format!("{size}/{}/{}", cell[0], cell[1]);
             Error::from(Fault::new(
@@ -35,7 +47,13 @@ impl NamedField {
             ];
             (self.spec.share(at) * 255.0 + 0.5) as u8
         };
-        let pixels: Vec<u8> = (0..SIDE * SIDE).map(share).collect();
+        let mut pixels = Vec::with_capacity(SIDE * SIDE);
+        for row in 0..SIDE {
+            if stop.is_raised() {
+                return Err(Error::Internal("a picture was not wanted any more"));
+            }
+            pixels.extend((row * SIDE..(row + 1) * SIDE).map(share));
+        }
         write(&pixels).map_err(|_| Error::Internal("a picture cannot be written"))
     }
 }

@@ -33,11 +33,9 @@ pub(super) use volume::cleared;
 
 /// The approximate number of lattice units in a mean spacing.
 const UNITS: f64 = 3.0;
-/// The rows that are looked at together, in mean spacings.
-const STRIP: f64 = 256.0 / UNITS;
-/// Points beside an outline are compared with every edge in their strip. One comparison for each unit of outline and
-/// each edge takes this share of a row.
-const COMPARISON: f64 = 5e-4;
+/// Comparing a point with a side of a polygon takes this share of a row, and sorting a side in its strips this much.
+const COMPARISON: f64 = 6e-4;
+const SIDE: f64 = 0.5;
 
 /// Looking at a point of a field takes this many nanoseconds, besides the look at the field itself.
 const CANDIDATE: f64 = 30.0;
@@ -149,8 +147,9 @@ pub fn is_plain(query: &Query) -> bool {
 /// The price of planning a query, in rows of warped sets.
 ///
 /// # Errors
-/// [`Error::TooManyRows`] if all sets together have more than `limit` rows that are counted one by one.
-pub fn planning(query: &Query, tables: &[Ready], limit: u64) -> Result<f64, Error> {
+/// [`Error::TooManyRows`] if all sets together have more than `limit` rows that are counted one by one, and
+/// [`Error::Internal`] once the flag is raised.
+pub fn planning(query: &Query, tables: &[Ready], limit: u64, stop: &Stop) -> Result<f64, Error> {
     if query.region.volume.is_some() {
         let rows = volume::counting(query) / ROW;
         return match rows > limit as f64 {
@@ -164,13 +163,16 @@ pub fn planning(query: &Query, tables: &[Ready], limit: u64) -> Result<f64, Erro
     let mut layers = Layers::default();
     let (mut all, mut weighted) = (0.0, 0.0);
     for (i, (set, ready)) in query.sets.iter().zip(tables).enumerate() {
-        let (rows, weight) = counted(query, set, ready, limit as f64, &mut layers);
+        if stop.is_raised() {
+            return Err(Error::Internal("a price was not wanted any more"));
+        }
+        let (rows, price) = counted(query, set, ready, limit as f64 - all, &mut layers);
         if !is_counted(query, i, set) {
             // Those of later layers may look at its points.
             continue;
         }
         all += rows;
-        weighted += rows * weight;
+        weighted += price;
         if all > limit as f64 {
             let rows = all as u128;
             return Err(Error::TooManyRows { rows, limit });
@@ -219,10 +221,11 @@ pub fn lane(rows: f64) -> Lane {
     }
 }
 
-/// The rows that are counted to plan a set, and how much of a row of a warped set each takes.
+/// The rows that are counted to plan a set, and the price of these in rows of warped sets.
 fn counted(query: &Query, set: &Set, ready: &Ready, most: f64, layers: &mut Layers) -> (f64, f64) {
     if set.period.is_some() {
-        return (rows_of_period(set), 1.0);
+        let rows = rows_of_period(set);
+        return (rows, rows);
     }
     let bounds = query.region.bbox();
     let (spacing, counts) = match resolve(set, ready) {
@@ -256,8 +259,10 @@ fn counted(query: &Query, set: &Set, ready: &Ready, most: f64, layers: &mut Laye
     let weight = if is_plain { PLAIN } else { 1.0 };
     // Seeking an offset counts again.
     let seeks = 1.0 + f64::from(u8::from(query.window.offset > 0));
-    let rows = rows_and_edges(&selection, most / counts);
-    (rows * counts, weight * seeks)
+    let rows = rows(&selection);
+    let edges = edges(&selection, rows, most / counts);
+    let times = counts * seeks;
+    ((rows + edges) * counts, (rows * weight + edges) * times)
 }
 
 /// The points that counting a selection looks at one by one; none without a field.
@@ -324,19 +329,24 @@ fn settled(selection: &Selection, bounds: Region, candidates: f64) -> f64 {
     places * steps * STEP / ROW
 }
 
+/// The rows that the sides of polygons take, beside those along outlines; none if the rows alone exceed `most`.
+fn edges(selection: &Selection, rows: f64, most: f64) -> f64 {
+    let area = &selection.area;
+    let sorted = area.vertices() as f64 * SIDE;
+    let is_box = matches!(area, Area::Region(_));
+    match area.bounds() {
+        Some(bounds) if rows > 0.0 && rows + sorted <= most && !is_box => {
+            let spacing = selection.set.placement().spacing;
+            sorted + server::comparisons(area, bounds, spacing) * COMPARISON
+        }
+        _ => sorted,
+    }
+}
+
 /// The number of rows, and the work for polygons of many edges unless the rows alone exceed `most`.
 pub(super) fn rows_and_edges(selection: &Selection, most: f64) -> f64 {
     let rows = rows(selection);
-    let area = &selection.area;
-    let is_box = matches!(area, Area::Region(_));
-    match area.bounds() {
-        Some(bounds) if rows > 0.0 && rows <= most && !is_box => {
-            let spacing = selection.set.placement().spacing.get();
-            let compared = server::comparisons(area, bounds, STRIP * spacing);
-            rows + compared * UNITS / spacing * COMPARISON
-        }
-        _ => rows,
-    }
+    rows + edges(selection, rows, most)
 }
 
 /// The smallest spacing that stays within `most` rows, searched downward from the selection's own; 0 if there are no
@@ -359,20 +369,29 @@ pub(super) fn least_spacing(
         .iter()
         .flatten()
         .fold(0.0, |reach: f64, v| reach.max(v.abs()));
-    let mut trial = selection.clone();
-    loop {
-        let mut placement = trial.set.placement();
-        let spacing = placement.spacing.get();
-        let Ok(next) = Spacing::new(spacing * STEP) else {
-            return spacing;
-        };
-        placement.spacing = next;
-        trial.set = trial.set.placed(placement);
-        if stop.is_raised() || trial.set.limit() < reach {
-            return spacing;
+    let placement = selection.set.placement();
+    // The selection some steps further; `None` if it is out of reach or has too many rows.
+    let step = |number: i32| {
+        let spacing = placement.spacing.get() * STEP.powi(number);
+        let spacing = Spacing::new(spacing).ok()?;
+        let set = selection.set.clone().placed(Placement {
+            spacing,
+            ..placement
+        });
+        if stop.is_raised() || set.limit() < reach {
+            return None;
         }
-        if rows_and_edges(&trial, most) > most {
-            return spacing;
+        let trial = selection.with_set(set);
+        (rows_and_edges(&trial, most) <= most).then_some(spacing.get())
+    };
+    // Steps are doubled until one is too far, then halved: each takes as long as looking at all edges.
+    let (mut known, mut number, mut length, mut is_over) = (placement.spacing.get(), 0, 1, false);
+    while length > 0 {
+        match step(number + length) {
+            Some(spacing) => (known, number) = (spacing, number + length),
+            None => is_over = true,
         }
+        length = if is_over { length / 2 } else { length * 2 };
     }
+    known
 }

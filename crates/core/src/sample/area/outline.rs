@@ -8,83 +8,113 @@ impl Area {
     /// About half the length, along the axes, of the outlines of all shapes inside `within`: width +
     /// height for a box.
     pub(crate) fn outline(&self, within: Region) -> f64 {
-        let sides = |region: Region| {
+        let mut all = 0.0;
+        self.sides(&within, &mut |side| all += length(side));
+        all / 2.0
+    }
+
+    /// About how many comparisons of points with sides of polygons, boxes and circles it takes to count this area in a
+    /// lattice with a unit of this length. Points beside an outline are compared with all sides in their patch.
+    pub(crate) fn comparisons(&self, within: Region, unit: f64) -> f64 {
+        let least = within.min();
+        // Larger cells overestimate.
+        let cells = self.outline(within) / (PATCH[1] * unit);
+        let scale = unit * (cells / MOST_CELLS).max(1.0);
+        let mut all: Vec<([u32; 2], f64)> = Vec::new();
+        self.sides(&within, &mut |side| {
+            // Casts saturate.
+            let cell =
+                |p: [f64; 2]| [0, 1].map(|i| ((p[i] - least[i]) / (PATCH[i] * scale)) as u32);
+            let [a, b] = side.map(cell);
+            let rows = a[1].min(b[1])..=a[1].max(b[1]);
+            let along = length(side) / scale;
+            for row in rows.clone() {
+                // From where the side enters the row to where it leaves it.
+                let column = |row: u32| {
+                    let y = least[1] + f64::from(row) * PATCH[1] * scale;
+                    let part = ((y - side[0][1]) / (side[1][1] - side[0][1])).clamp(0.0, 1.0);
+                    let x = side[0][0] + (side[1][0] - side[0][0]) * part;
+                    cell([x, y])[0]
+                };
+                let [from, to] = match rows.start() == rows.end() {
+                    true => [a[0], b[0]],
+                    false => [column(row), column(row + 1)],
+                };
+                let columns = from.min(to)..=from.max(to);
+                let crossed = (rows.clone().count() * columns.clone().count()) as f64;
+                all.extend(columns.map(|column| ([row, column], along / crossed)));
+            }
+        });
+        all.sort_unstable_by_key(|&(cell, _)| cell);
+        // The places of a cell, and those beside sides of any length.
+        let [width, height] =
+            [0, 1].map(|i| (PATCH[i] * scale).min(within.sides()[i]) / unit + REACH);
+        let compared = all.chunk_by(|a, b| a.0 == b.0).map(|sides| {
+            let beside = sides
+                .iter()
+                .map(|(_, along)| REACH * (REACH + along * scale / unit));
+            sides.len() as f64 * beside.sum::<f64>().min(width * height) * DENSITY
+        });
+        compared.sum()
+    }
+
+    /// Calls `visit` for the parts inside `within` of all sides of polygons and boxes. Circles have those of the boxes
+    /// around them.
+    fn sides(&self, within: &Region, visit: &mut impl FnMut([[f64; 2]; 2])) {
+        let mut of_box = |region: Region| {
             let ([x0, y0], [x1, y1]) = (region.min(), region.max());
-            (x1 - x0) + (y1 - y0)
+            let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+            for (i, &corner) in corners.iter().enumerate() {
+                clipped([corner, corners[(i + 1) % 4]], within)
+                    .into_iter()
+                    .for_each(&mut *visit);
+            }
         };
         match self {
-            Self::Region(region) => sides(region.and(within)),
-            Self::Circle(circle) => circle.bounds().map_or(0.0, |b| sides(b.and(within))),
+            Self::Region(region) => of_box(*region),
+            Self::Circle(circle) => circle.bounds().into_iter().for_each(of_box),
             Self::Polygon(polygon) => {
-                let all = polygon.sides().map(|side| sides(side.and(within)));
-                all.sum::<f64>() / 2.0
+                let sides = polygon.sides().filter_map(|side| clipped(side, within));
+                sides.for_each(visit);
             }
             Self::AnyOf(areas) | Self::AllOf(areas) => {
-                areas.iter().map(|area| area.outline(within)).sum()
+                areas.iter().for_each(|area| area.sides(within, visit));
             }
-            Self::Outside(area) => area.outline(within),
-        }
-    }
-
-    /// The sum, over strips of a height, of the [`outline`](Self::outline) in the strip times the number
-    /// of edges, boxes and circles that touch it: points beside an outline are compared with all of
-    /// these.
-    pub(crate) fn comparisons(&self, within: Region, strip: f64) -> f64 {
-        let height = within.max()[1] - within.min()[1];
-        let mut strips = Strips {
-            within,
-            strip: strip.max(height / MOST_STRIPS),
-            all: Vec::new(),
-        };
-        self.gather(&mut strips);
-        let products = strips.all.iter().map(|[edges, outline]| edges * outline);
-        products.sum()
-    }
-
-    fn gather(&self, strips: &mut Strips) {
-        match self {
-            Self::Region(region) => strips.add(*region, 1.0),
-            Self::Circle(circle) => circle.bounds().into_iter().for_each(|b| strips.add(b, 1.0)),
-            Self::Polygon(polygon) => polygon.sides().for_each(|side| strips.add(side, 0.5)),
-            Self::AnyOf(areas) | Self::AllOf(areas) => {
-                areas.iter().for_each(|area| area.gather(strips));
-            }
-            Self::Outside(area) => area.gather(strips),
+            Self::Outside(area) => area.sides(within, visit),
         }
     }
 }
 
-/// The most strips, which bounds the memory. Higher strips overestimate.
-const MOST_STRIPS: f64 = 65_536.0;
+/// The sides of a patch, in lattice units.
+const PATCH: [f64; 2] = [1024.0, 256.0];
+/// About the most cells of the size of a patch that outlines cross, which bounds the memory.
+const MOST_CELLS: f64 = 65_536.0;
+/// Points to be compared lie this far from a side, in lattice units, on both sides together.
+const REACH: f64 = 26.0;
+/// About the points in a lattice unit squared.
+const DENSITY: f64 = 0.1;
 
-/// The number of edges and the length of outline of each strip.
-struct Strips {
-    within: Region,
-    strip: f64,
-    all: Vec<[f64; 2]>,
+/// The length of a side along the axes.
+const fn length([a, b]: [[f64; 2]; 2]) -> f64 {
+    (a[0] - b[0]).abs() + (a[1] - b[1]).abs()
 }
 
-impl Strips {
-    /// Adds `share` of the width and height of an edge's box.
-    fn add(&mut self, part: Region, share: f64) {
-        let ([x0, y0], [x1, y1]) = (part.min(), part.max());
-        let (min, max) = (self.within.min(), self.within.max());
-        if x1 < min[0] || x0 > max[0] || y1 < min[1] || y0 > max[1] {
-            return;
+/// The part of a side inside a box.
+fn clipped([a, b]: [[f64; 2]; 2], within: &Region) -> Option<[[f64; 2]; 2]> {
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    for i in 0..2 {
+        let (min, max, along) = (within.min()[i], within.max()[i], b[i] - a[i]);
+        if a[i].max(b[i]) < min || a[i].min(b[i]) > max {
+            return None;
         }
-        let part = part.and(self.within);
-        let ([x0, y0], [x1, y1]) = (part.min(), part.max());
-        // Casts saturate.
-        let [first, last] = [y0, y1].map(|y| ((y - min[1]) / self.strip) as usize);
-        if self.all.len() <= last {
-            self.all.resize(last + 1, [0.0; 2]);
-        }
-        let each = share * ((x1 - x0) + (y1 - y0)) / (last - first + 1) as f64;
-        for [edges, outline] in &mut self.all[first..=last] {
-            *edges += 1.0;
-            *outline += each;
+        if along != 0.0 {
+            let ends = [min, max].map(|end| (end - a[i]) / along);
+            from = from.max(ends[0].min(ends[1]));
+            to = to.min(ends[0].max(ends[1]));
         }
     }
+    let at = |part: f64| [0, 1].map(|i| a[i] + (b[i] - a[i]) * part);
+    (from <= to).then(|| [at(from), at(to)])
 }
 
 #[cfg(test)]
@@ -106,11 +136,22 @@ mod tests {
         assert!(near(circle.outline(all), 20.0));
         let part = Region::new([0.0; 2], [1.0; 2]).expect("ordered");
         assert!(near(square.outline(part), 2.0));
-        // The circle touches three strips, the square the second.
-        let both = circle.clone().without([square.clone()]);
-        let disc = Region::new([-5.0; 2], [5.0; 2]).expect("ordered");
-        let compared = both.comparisons(disc, 4.9);
-        assert!(near(compared, 4.0 * 20.0 / 3.0 + 2.0 * 3.0), "{compared}");
+        // A triangle across the plane crosses patches; many short sides in one are compared with all points there.
+        let triangle = |at: f64, side: f64| {
+            let ring = [[at, 0.0], [at + side, 0.0], [at, side]];
+            Area::from(Polygon::new(&[ring]).expect("valid"))
+        };
+        let one = triangle(0.0, 1e-3).comparisons(all, 1.0);
+        let beside = REACH * (3.0 * REACH + 4e-3);
+        assert!((one / (3.0 * beside * DENSITY) - 1.0).abs() < 1e-9, "{one}");
+        let apart = Area::any_of([triangle(-99.0, 1e-3), triangle(0.0, 1e-3)]);
+        assert!(
+            (apart.comparisons(all, 0.1) / one - 2.0).abs() < 1e-3,
+            "{one}"
+        );
+        let many = Area::any_of((0..1000).map(|_| triangle(0.0, 1e-3)));
+        let points = DENSITY * (200.0 + REACH) * (200.0 + REACH);
+        assert!(near(many.comparisons(all, 1.0), 3000.0 * points));
         let both = circle.without([square]);
         assert!(near(both.outline(all), 23.0));
     }

@@ -1,6 +1,6 @@
 //! Polygons, with exact and half-open membership.
 
-use alloc::vec::Vec;
+use alloc::{sync::Arc, vec::Vec};
 
 use super::{
     Region,
@@ -31,10 +31,10 @@ use crate::{
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
-    /// The edges that rays can cross: all but the horizontal ones.
-    edges: Vec<Edge>,
+    /// The edges that rays can cross: all but the horizontal ones. Layers share them.
+    edges: Arc<Vec<Edge>>,
     /// The horizontal edges. Rays cross none of them, but strips end there.
-    flat: Vec<Edge>,
+    flat: Arc<Vec<Edge>>,
     /// The y at which a ray crosses one more or one fewer of the edges that were left out because they
     /// lie at greater x than the box in focus. Ascending.
     turns: Vec<f64>,
@@ -69,8 +69,8 @@ impl Polygon {
             return Err(Error::new(ErrorKind::Area, "polygon", value, allowed));
         }
         let mut polygon = Self {
-            edges: Vec::new(),
-            flat: Vec::new(),
+            edges: Arc::default(),
+            flat: Arc::default(),
             turns: Vec::new(),
             right: f64::INFINITY,
             vertices: 0,
@@ -116,7 +116,7 @@ impl Polygon {
             } else {
                 &mut self.edges
             };
-            edges.push(Edge::new(low, high));
+            Arc::make_mut(edges).push(Edge::new(low, high));
         }
         Ok(())
     }
@@ -175,30 +175,24 @@ impl Polygon {
     /// `Ok` if all of the box is inside or all of it outside.
     pub(super) fn focus(&self, within: &Region) -> Result<bool, Self> {
         let ([x0, y0], [x1, y1]) = (within.min(), within.max());
-        let mut near = Self {
-            edges: Vec::new(),
-            flat: Vec::new(),
-            turns: self.turns.clone(),
-            right: x1,
-            ..*self
-        };
+        let (mut edges, mut all) = (Vec::new(), self.turns.clone());
         for edge in self.edges.iter().filter(|edge| edge.touches([y0, y1])) {
             let [left, right] = edge.ends();
             if left > x1 {
-                near.turns.extend([edge.low[1], edge.high[1]]);
+                all.extend([edge.low[1], edge.high[1]]);
             } else if right >= x0 {
-                near.edges.push(*edge);
+                edges.push(*edge);
             }
         }
         let meets = |edge: &&Edge| {
             let [left, right] = edge.ends();
             edge.touches([y0, y1]) && left <= x1 && right >= x0
         };
-        near.flat.extend(self.flat.iter().filter(meets));
-        near.turns.sort_unstable_by(f64::total_cmp);
+        let flat: Vec<Edge> = self.flat.iter().filter(meets).copied().collect();
+        all.sort_unstable_by(f64::total_cmp);
         // Nothing changes where one edge ends and the next begins.
-        let mut turns: Vec<f64> = Vec::with_capacity(near.turns.len());
-        for &turn in near.turns.iter().filter(|&&turn| turn <= y1) {
+        let mut turns: Vec<f64> = Vec::new();
+        for turn in all.into_iter().take_while(|&turn| turn <= y1) {
             // Of those below all rays of the box only the parity counts.
             let turn = if turn <= y0 { f64::NEG_INFINITY } else { turn };
             if turns.last() == Some(&turn) {
@@ -207,21 +201,23 @@ impl Polygon {
                 turns.push(turn);
             }
         }
-        near.turns = turns;
+        let near = Self {
+            edges: Arc::new(edges),
+            flat: Arc::new(flat),
+            turns,
+            right: x1,
+            ..*self
+        };
         if near.edges.is_empty() && near.flat.is_empty() && near.turns.iter().all(|&t| t <= y0) {
             return Ok(near.is_in_beyond(y0));
         }
         Err(near)
     }
 
-    /// The boxes around the edges.
-    pub(super) fn sides(&self) -> impl Iterator<Item = Region> {
-        let side = |edge: &Edge| {
-            let (a, b) = (edge.low, edge.high);
-            let pick = |f: fn(f64, f64) -> f64| [f(a[0], b[0]), f(a[1], b[1])];
-            Region::between(pick(f64::min), pick(f64::max))
-        };
-        self.edges.iter().chain(&self.flat).map(side)
+    /// The ends of the edges.
+    pub(super) fn sides(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
+        let edges = self.edges.iter().chain(self.flat.iter());
+        edges.map(|edge| [edge.low, edge.high])
     }
 
     /// The states of a strip y₀ ≤ y ≤ y₁ along x, within the box in focus.
@@ -231,7 +227,7 @@ impl Polygon {
         edges.clear();
         let beyond = self.is_in_beyond(y0);
         let mut inside = beyond;
-        for edge in self.edges.iter().chain(&self.flat) {
+        for edge in self.edges.iter().chain(self.flat.iter()) {
             if edge.touches(strip) {
                 let crosses = edge.low[1] <= y0 && y0 < edge.high[1];
                 inside ^= crosses;
@@ -240,12 +236,10 @@ impl Polygon {
                     crosses,
                     edge: *edge,
                 };
-                // Few edges, mostly in order already.
-                let is_after = |other: &&Reach| other.extent[0] > reach.extent[0];
-                let after = edges.iter().rev().take_while(is_after).count();
-                edges.insert(edges.len() - after, reach);
+                edges.push(reach);
             }
         }
+        edges.sort_unstable_by(|a, b| a.extent[0].total_cmp(&b.extent[0]));
         let state = |inside| if inside { State::In } else { State::Out };
         steps.restart(state(inside));
         // Edges whose extents meet are tested together. The outline beyond them crosses every level of

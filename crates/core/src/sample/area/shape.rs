@@ -224,6 +224,16 @@ impl Area {
         }
     }
 
+    /// The number of boxes, circles and edges that points are compared with.
+    pub(crate) fn parts(&self) -> usize {
+        match self {
+            Self::Region(_) | Self::Circle(_) => 1,
+            Self::Polygon(polygon) => polygon.sides().count(),
+            Self::AnyOf(areas) | Self::AllOf(areas) => areas.iter().map(Self::parts).sum(),
+            Self::Outside(area) => area.parts(),
+        }
+    }
+
     /// The area for points of a box, its upper sides included, reduced to what matters there.
     pub(crate) fn focus(&self, within: &Region) -> Self {
         let near =

@@ -39,23 +39,21 @@ pub(super) fn count(lattice: &Lattice, sieve: &Sieve, [x, y]: [&Span; 2], stop: 
         start = end;
         strip.aim(sieve.area(), &rows, columns);
         strip.runs(rows.clone(), columns, &mut runs);
-        for run in &runs {
-            if run.passes {
-                count += product(lattice, &run.columns, &rows);
-                continue;
-            }
-            let mut from = run.columns.start;
-            // A run along an edge can span thousands of bands.
-            while from < run.columns.end && !stop.is_raised() {
-                let band = from.div_euclid(BAND_WIDTH);
-                let to = run.columns.end.min((band + 1) * BAND_WIDTH);
-                let patch = Patch::new(lattice, band, rows.start, x, y);
-                count += edges.count(strip.area(), band, &patch, rows.clone(), from..to);
-                from = to;
-            }
+        for run in runs.iter().filter(|run| run.passes) {
+            count += product(lattice, &run.columns, &rows);
+        }
+        runs.retain(|run| !run.passes);
+        if let [first, .., last] | [first @ last] = runs.as_slice() {
+            let bands = bands_of(&(first.columns.start..last.columns.end));
+            count += edges.count_bands(&strip, strip.area(), &runs, (bands, &rows));
         }
     }
     count
+}
+
+/// The bands of some columns.
+const fn bands_of(columns: &Range<i64>) -> Range<i64> {
+    columns.start.div_euclid(BAND_WIDTH)..(columns.end - 1).div_euclid(BAND_WIDTH) + 1
 }
 
 /// Counts pieces of patches through which an edge may run, row by row.
@@ -81,6 +79,39 @@ struct Band {
 }
 
 impl Edges<'_> {
+    /// The number of points in runs of some rows that must be tested, those in some bands. Bands are halved, and the
+    /// area with them: many runs, or a run along an edge, can span thousands of bands.
+    fn count_bands(
+        &mut self,
+        strip: &LocalSieve,
+        area: Option<&Area>,
+        runs: &[Run],
+        (bands, rows): (Range<i64>, &Range<i64>),
+    ) -> u128 {
+        let all = bands.start * BAND_WIDTH..bands.end * BAND_WIDTH;
+        let runs = &runs[runs.partition_point(|run| run.columns.end <= all.start)..];
+        let runs = &runs[..runs.partition_point(|run| run.columns.start < all.end)];
+        if runs.is_empty() || self.stop.is_raised() {
+            return 0;
+        }
+        if bands.end - bands.start > 1 {
+            let middle = bands.start.midpoint(bands.end);
+            return [bands.start..middle, middle..bands.end]
+                .map(|half| {
+                    let columns = half.start * BAND_WIDTH..half.end * BAND_WIDTH;
+                    let near = area.map(|area| area.focus(&strip.world([&columns, rows])));
+                    self.count_bands(strip, near.as_ref(), runs, (half, rows))
+                })
+                .into_iter()
+                .sum();
+        }
+        let [x, y] = self.spans;
+        let patch = Patch::new(self.lattice, bands.start, rows.start, x, y);
+        let in_band = |run: &Run| run.columns.start.max(all.start)..run.columns.end.min(all.end);
+        let count = |run: &Run| self.count(area, bands.start, &patch, rows.clone(), in_band(run));
+        runs.iter().map(count).sum()
+    }
+
     fn count(
         &mut self,
         area: Option<&Area>,

@@ -414,6 +414,19 @@ impl Plan {
         Self::new(&lattice, &mask, area, stop.clone(), Some(u64::MAX.into()))
     }
 
+    /// The bytes of points and places that counting has kept.
+    pub(crate) fn kept(&self) -> usize {
+        self.counted.bytes()
+    }
+
+    /// This plan without points and places that counting has kept: they are found again.
+    pub(crate) fn forgetting(self) -> Self {
+        Self {
+            counted: Counted::known(self.counted.count),
+            ..self
+        }
+    }
+
     /// This plan with another flag that stops its further counting.
     pub(crate) fn with_stop(self, stop: Stop) -> Self {
         let mut scope = Arc::unwrap_or_clone(self.scope);

@@ -107,8 +107,7 @@ impl LocalSieve {
 
     /// Narrows the sieve to the points of some rows and columns that lie in `area`.
     pub(crate) fn aim(&mut self, area: Option<&Area>, rows: &Range<i64>, columns: &Range<i64>) {
-        let [x, y] = [self.strip(Axis::X, columns), self.strip(Axis::Y, rows)];
-        let within = Region::between([x[0], y[0]], [x[1], y[1]]);
+        let within = self.world([columns, rows]);
         self.area = area.map(|area| area.focus(&within));
         if !self.guards.is_empty() {
             let bounds = area.and_then(Area::bounds);
@@ -122,6 +121,12 @@ impl LocalSieve {
     /// The area, reduced to what matters here.
     pub(crate) const fn area(&self) -> Option<&Area> {
         self.area.as_ref()
+    }
+
+    /// The box of the points of some columns and rows, with room for rounding.
+    pub(crate) fn world(&self, [columns, rows]: [&Range<i64>; 2]) -> Region {
+        let [x, y] = [self.strip(Axis::X, columns), self.strip(Axis::Y, rows)];
+        Region::between([x[0], y[0]], [x[1], y[1]])
     }
 
     /// The range of world coordinates of the points of some rows or columns, with room for rounding.

@@ -3,11 +3,15 @@
 use alloc::sync::Arc;
 use core::ops::Range;
 
-use super::{sifting::Sifting, tile::Tile};
+use super::{
+    sifting::{Halves, Sifting},
+    tile::Tile,
+};
 use crate::sample::{
     kernel::{Backend, Format, Geometry, compiled},
     lattice::{BAND_WIDTH, Columns, Found, Patch, PointId, Span, clip_to_band},
     scope::{Corner, Scope},
+    sieve::Sieve,
 };
 
 /// The place of the next point in a band.
@@ -57,6 +61,7 @@ pub(super) struct Bands<F> {
     /// All columns of the band.
     pub(super) columns: Columns,
     pub(super) sieve: Option<Sifting>,
+    halves: Halves,
     pub(super) patch: Patch,
     /// The scope's spans in the patch.
     pub(super) piece: [Span; 2],
@@ -80,6 +85,7 @@ impl<F: Format> Bands<F> {
             rows,
             columns: Columns::default(),
             sieve: scope.sieve.as_ref().map(Sifting::new),
+            halves: Halves::default(),
             piece: [x.clone(), y.clone()],
             patch,
             scope,
@@ -100,9 +106,9 @@ impl<F: Format> Bands<F> {
         Self::new(scope, bands, rows)
     }
 
-    /// Continues at an address of the current band. Returns whether the bands have its row.
+    /// Continues at an address if it is in the current band. Returns whether it is.
     pub(super) fn go_to(&mut self, at: PointId) -> bool {
-        let is_inside = self.rows.contains(&at.y);
+        let is_inside = self.rows.contains(&at.y) && at.x.div_euclid(BAND_WIDTH) == self.band;
         if is_inside {
             self.at = Place {
                 from: Some(at.x),
@@ -130,18 +136,28 @@ impl<F: Format> Bands<F> {
         clip_to_band(self.band, &self.scope.x.all)
     }
 
-    /// Lists the columns of the next band and moves to its first row, whose patch is not made yet. Returns
-    /// `false` after the last band.
+    /// Lists the columns of the next band that may have points and moves to its first row, whose patch is not made yet.
+    /// Returns `false` after the last band.
     pub(super) fn next_band(&mut self) -> bool {
+        let whole = self.scope.sieve.as_ref().and_then(Sieve::area);
+        let mut near = None;
+        if let (Some(whole), Some(sifting)) = (whole, &self.sieve) {
+            let (x, rows) = (&self.scope.x.all, &self.rows);
+            near = self.halves.next(whole, &mut self.ahead, |area, bands| {
+                let columns =
+                    x.start.max(bands.start * BAND_WIDTH)..x.end.min(bands.end * BAND_WIDTH);
+                area.focus(&sifting.band.world([&columns, rows]))
+            });
+        }
         let Some(band) = self.ahead.next() else {
             return false;
         };
         self.band = band;
         self.at = Place::row(self.rows.start);
-        let columns = self.range();
+        let columns = clip_to_band(band, &self.scope.x.all);
         self.columns.list(&self.scope.lattice, columns.clone());
-        if let (Some(sieve), Some(sifting)) = (&self.scope.sieve, &mut self.sieve) {
-            sifting.band.aim(sieve.area(), &self.rows, &columns);
+        if let Some(sifting) = &mut self.sieve {
+            sifting.band.aim(near, &self.rows, &columns);
             sifting.prefix.update(&columns, &self.columns);
         }
         true

@@ -86,6 +86,12 @@ impl Counted {
         }
     }
 
+    /// The bytes of the points and places that are kept.
+    pub(crate) fn bytes(&self) -> usize {
+        let kept = self.kept.as_ref().map_or(0, |kept| kept.bytes());
+        kept + size_of_val(&*self.marks)
+    }
+
     fn in_field(scope: &Arc<Scope>) -> Self {
         let mut walk = FieldWalk::<Points>::new(Bands::from(scope.clone(), None), None);
         let (mut count, mut marks) = (0, Marks::default());

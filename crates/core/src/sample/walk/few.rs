@@ -34,6 +34,12 @@ impl Few {
         self.found.extend(found);
     }
 
+    /// The memory that this takes.
+    pub(crate) const fn bytes(&self) -> usize {
+        size_of::<Found>() * self.found.capacity()
+            + size_of::<([i64; 2], usize)>() * self.patches.capacity()
+    }
+
     /// The number of points.
     pub(crate) const fn len(&self) -> usize {
         self.found.len()

@@ -3,14 +3,15 @@
 //! `blocks` fills blocks of points of a window or a tile (`tile` cuts a plan into tiles, which threads fill
 //! independently). Four walks make the points: `rows` in boxes and areas, `graded` in a field, `settled` where points
 //! settle, and `few` has those of small plans, which were found when `counted` counted them. `bands` is where a walk
-//! is, `strips` where one of points that settle is, `sifting` its state in a sieve, and `template` holds the columns
-//! that the rows of a band share.
+//! is, `strips` where one of points that settle is and `inside` what these must meet, `sifting` its state in a sieve, and
+//! `template` holds the columns that the rows of a band share.
 
 mod bands;
 mod blocks;
 mod counted;
 mod few;
 mod graded;
+mod inside;
 mod rows;
 mod settled;
 mod sifting;

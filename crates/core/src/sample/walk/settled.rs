@@ -42,6 +42,8 @@ use core::ops::Range;
 use super::{
     bands::{format_of, write_found},
     few::Few,
+    inside::{Inside, Tiles},
+    sifting::Halves,
     strips::{PIECE, Rows},
     tile::Tile,
 };
@@ -49,15 +51,13 @@ use crate::sample::{
     area::Area,
     count::count,
     kernel::{Backend, Format},
-    lattice::{BAND_WIDTH, Found, Lattice, PATCH_HEIGHT, PointId, clip_to_band, places_of},
+    lattice::{BAND_WIDTH, Found, PATCH_HEIGHT, PointId, clip_to_band, places_of},
     near::Guard,
     scope::Scope,
     settle::{Box2, Placed, Settled, Settler, add_place, common, joined, widened},
+    sieve::Sieve,
 };
 use crate::table::fixed;
-
-/// The sides of the tiles that are compared with an outline as a whole, in bits of fixed-point units: 128 grid units.
-const TILE_BITS: u32 = 27;
 
 /// About how far around a box points matter to those in it, in greatest moves, in sets without kinds.
 const MARGIN: i128 = 16;
@@ -75,30 +75,9 @@ pub(super) struct Pieces {
     bounds: Box2,
     around: Box2,
     clear: Vec<Guard>,
-}
-
-/// The conditions of a scope that a settled point of a piece must meet.
-struct Inside<'a> {
-    bounds: &'a Box2,
-    area: Option<Area>,
-    clear: &'a [Guard],
-    lattice: &'a Lattice,
-}
-
-impl Inside<'_> {
-    /// Whether a point that has settled lies inside.
-    fn holds(&self, settled: &Settled) -> bool {
-        let [x, y] = &settled.place;
-        if !self.bounds[0].contains(x) || !self.bounds[1].contains(y) {
-            return false;
-        }
-        if self.area.is_none() && self.clear.is_empty() {
-            return true;
-        }
-        let at = settled.place.map(|k| self.lattice.world(k));
-        self.area.as_ref().is_none_or(|area| area.contains(at))
-            && self.clear.iter().all(|guard| guard.permits(at))
-    }
+    halves: Halves,
+    /// The part of the scope's area in the current band; `None` for all of it.
+    near: Option<Area>,
 }
 
 impl Pieces {
@@ -113,7 +92,27 @@ impl Pieces {
             clear: sieve.map_or_else(Vec::new, |sieve| sieve.mask().clear_guards()),
             settler,
             scope: scope.clone(),
+            halves: Halves::default(),
+            near: None,
         })
+    }
+
+    /// Moves to the next band in which the area has anything, before the first of its rows is taken.
+    fn next_band(&mut self, rows: &mut Rows) {
+        let whole = self.scope.sieve.as_ref().and_then(Sieve::area);
+        let (Some(whole), true) = (whole, rows.is_new_band()) else {
+            return;
+        };
+        let mut halves = core::mem::take(&mut self.halves);
+        let near = halves.next(whole, &mut rows.ahead, |area, bands| {
+            let x = &self.scope.x.all;
+            let columns = x.start.max(bands.start * BAND_WIDTH)..x.end.min(bands.end * BAND_WIDTH);
+            let within = self.places(&[columns, rows.all.clone()]);
+            let ends = widened(&within, self.settler.most_move(&within));
+            area.focus(&self.settler.region(&ends))
+        });
+        self.near = near.cloned();
+        self.halves = halves;
     }
 
     /// The box of the places of the points of some columns and rows that may end inside.
@@ -127,7 +126,8 @@ impl Pieces {
 
     /// The part of the scope's area that matters to points that end in a box.
     fn area(&self, within: &Box2) -> Option<Area> {
-        let area = self.scope.sieve.as_ref()?.area()?;
+        let whole = self.scope.sieve.as_ref().and_then(Sieve::area);
+        let area = self.near.as_ref().or(whole)?;
         Some(area.focus(&self.settler.region(within)))
     }
 
@@ -140,20 +140,24 @@ impl Pieces {
     /// Calls `visit` for the settled points of some columns and rows of a band that lie inside, in their order.
     fn settle(&mut self, piece: &[Range<i64>; 2], mut visit: impl FnMut(Settled)) {
         let within = self.places(piece);
+        if within.iter().any(Range::is_empty) {
+            return;
+        }
         let ends = widened(&within, self.settler.most_move(&within));
         self.aim(&ends);
-        let inside = Inside {
-            bounds: &self.bounds,
-            area: self.area(&ends),
-            clear: &self.clear,
-            lattice: &self.scope.lattice,
-        };
+        let area = self.area(&ends);
+        let state = area.as_ref().map_or(Some(true), Area::is_all_or_nothing);
+        if state == Some(false) {
+            return;
+        }
         let lattice = &self.scope.lattice;
         let is_deep = common(&ends, &self.bounds) == ends;
-        let is_inside = is_deep && inside.area.is_none() && self.clear.is_empty();
+        let is_inside = is_deep && state == Some(true) && self.clear.is_empty();
+        let by = (lattice, &self.settler);
+        let inside = Inside::new((&self.bounds, &ends), area, &self.clear, by);
         let wants = |placed: &Placed| {
             holds(piece, placed.id)
-                && (is_deep || placed.side(inside.bounds) != Some(false))
+                && (is_deep || placed.side(&self.bounds) != Some(false))
                 && lattice.shows(placed.id, placed.share)
         };
         self.settler.settle(&within, wants, |settled| {
@@ -163,41 +167,39 @@ impl Pieces {
         });
     }
 
-    /// The number of settled points of some columns and rows of a band that lie inside.
-    fn count(&mut self, piece: &[Range<i64>; 2]) -> u128 {
+    /// The number of settled points of some columns and rows of a band that lie inside. `thinned` has the same points
+    /// where they were placed, if shares are the same everywhere.
+    fn count(&mut self, piece: &[Range<i64>; 2], thinned: Option<&Scope>) -> u128 {
         let within = self.places(piece);
         if within.iter().any(Range::is_empty) {
             return 0;
         }
         let lattice = &self.scope.lattice;
         let is_guarded = !self.clear.is_empty();
-        let corner = [0, 1].map(|i| within[i].start >> TILE_BITS);
-        let across = [0, 1].map(|i| (((within[i].end - 1) >> TILE_BITS) - corner[i] + 1) as usize);
-        let tile_box = |i: usize| {
-            let at = [i % across[0], i / across[0]];
-            let tile = [0, 1].map(|axis| {
-                let start = (corner[axis] + at[axis] as i128) << TILE_BITS;
-                start..start + (1 << TILE_BITS)
-            });
-            common(&tile, &within)
-        };
+        let ends = widened(&within, self.settler.most_move(&within));
+        let area = self.area(&ends);
+        let state = area.as_ref().map_or(Some(true), Area::is_all_or_nothing);
+        let [columns, rows] = piece;
+        match (state, thinned) {
+            (Some(false), _) => return 0,
+            (Some(true), Some(thinned)) if !is_guarded && common(&ends, &self.bounds) == ends => {
+                return count(thinned, columns, rows);
+            }
+            _ => {}
+        }
+        let tiles = Tiles::new(&within);
         // By tile: whether the area has all or nothing of it and around.
-        let states: Vec<Option<bool>> = (0..across[0] * across[1])
-            .map(|i| {
-                let tile = tile_box(i);
-                let ends = widened(&tile, self.settler.most_move(&tile));
-                match self.area(&ends) {
-                    None => Some(true),
-                    Some(area) => area.is_all_or_nothing(),
-                }
-            })
-            .collect();
-        let tile_of = |place: [i128; 2]| {
-            let [x, y] = [0, 1].map(|i| ((place[i] >> TILE_BITS) - corner[i]) as usize);
-            y * across[0] + x
+        let state = |tile: Box2| {
+            let ends = common(&ends, &widened(&tile, self.settler.most_move(&tile)));
+            let area = area.as_ref()?;
+            area.focus(&self.settler.region(&ends)).is_all_or_nothing()
+        };
+        let states: Vec<Option<bool>> = match area {
+            Some(_) => tiles.boxes().map(state).collect(),
+            None => tiles.boxes().map(|_| Some(true)).collect(),
         };
         let bounds = &self.bounds;
-        let decide = |placed: &Placed| match (placed.side(bounds), states[tile_of(placed.place)]) {
+        let decide = |placed: &Placed| match (placed.side(bounds), states[tiles.of(placed.place)]) {
             (Some(false), _) | (_, Some(false)) => Some(false),
             (Some(true), Some(true)) if !is_guarded => Some(true),
             _ => None,
@@ -211,7 +213,7 @@ impl Pieces {
             if is_own(&placed) {
                 match decide(&placed) {
                     Some(is_inside) => number += u128::from(is_inside),
-                    None => add_place(&mut unsure[tile_of(placed.place)], placed.place),
+                    None => add_place(&mut unsure[tiles.of(placed.place)], placed.place),
                 }
             }
         });
@@ -221,14 +223,13 @@ impl Pieces {
             if self.scope.stop.is_raised() {
                 break;
             }
-            let ends = widened(&some, self.settler.most_move(&some));
+            let ends = common(&ends, &widened(&some, self.settler.most_move(&some)));
             self.aim(&ends);
-            let inside = Inside {
-                bounds,
-                area: self.area(&ends),
-                clear: &self.clear,
-                lattice,
-            };
+            let near = area
+                .as_ref()
+                .map(|area| area.focus(&self.settler.region(&ends)));
+            let by = (lattice, &self.settler);
+            let inside = Inside::new((bounds, &ends), near, &self.clear, by);
             let wants = |placed: &Placed| is_own(placed) && decide(placed).is_none();
             self.settler.settle(&some, wants, |settled| {
                 number += u128::from(inside.holds(&settled));
@@ -330,6 +331,7 @@ impl<F: Format> SettledWalk<F> {
     fn next_piece(&mut self) -> bool {
         self.found.clear();
         self.taken = 0;
+        self.pieces.next_band(&mut self.rows);
         let Some((band, rows, _)) = self.rows.take(|_| 0..0) else {
             return false;
         };
@@ -397,13 +399,16 @@ fn found_at(origin: [i64; 2], settled: &Settled) -> Found {
 /// points before it.
 pub(super) fn count_settled(mut pieces: Pieces, mut mark: impl FnMut(PointId, u128)) -> u128 {
     let scope = pieces.scope.clone();
-    let thinned = scope
-        .lattice
-        .constant_share()
-        .map(|share| scope.with_lattice(scope.lattice.in_constant(share)));
+    let share = scope.lattice.constant_share();
+    let share = share.filter(|_| !scope.lattice.picks());
+    let thinned = share.map(|share| {
+        let lattice = scope.lattice.in_constant(share);
+        scope.of_box().with_lattice(lattice)
+    });
     let mut rows = Rows::new(scope.bands(), scope.y.all.clone());
     let mut number = 0;
     while !scope.stop.is_raised() {
+        pieces.next_band(&mut rows);
         let sure = |band| pieces.sure_rows(&clip_to_band(band, &scope.x.all));
         let Some((band, rows, is_sure)) = rows.take(sure) else {
             break;
@@ -416,7 +421,7 @@ pub(super) fn count_settled(mut pieces: Pieces, mut mark: impl FnMut(PointId, u1
         mark(start, number);
         number += match &thinned {
             Some(thinned) if is_sure => count(thinned, &columns, &rows),
-            _ => pieces.count(&[columns, rows]),
+            _ => pieces.count(&[columns, rows], thinned.as_ref()),
         };
     }
     number

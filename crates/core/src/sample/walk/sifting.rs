@@ -1,9 +1,10 @@
-//! A walk through a sieve.
+//! A walk through a sieve: bands in which an area has nothing are passed over, whatever their number.
 
 use alloc::vec::Vec;
 use core::ops::Range;
 
 use crate::sample::{
+    area::Area,
     lattice::PrefixCounts,
     sieve::{LocalSieve, Run, STRIP_ROWS, Sieve},
 };
@@ -56,5 +57,79 @@ impl Sifting {
             self.patch.runs(y..self.runs_end, columns, &mut self.runs);
         }
         self.runs.is_empty()
+    }
+}
+
+/// An area reduced to one band after another. Bands are halved down to the next one, so each of n bands costs the edges
+/// around it, and each edge is looked at some log n times.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Halves(Vec<(Range<i64>, Area)>);
+
+impl Halves {
+    /// The part of `whole` in the first band in which it has anything, to which `ahead` moves. `None` if there is no such
+    /// band. `focus` reduces an area to some bands.
+    pub(super) fn next(
+        &mut self,
+        whole: &Area,
+        ahead: &mut Range<i64>,
+        focus: impl Fn(&Area, &Range<i64>) -> Area,
+    ) -> Option<&Area> {
+        while !ahead.is_empty() {
+            self.0.retain(|(bands, _)| bands.contains(&ahead.start));
+            let (bands, area) = match self.0.last() {
+                Some((bands, area)) => (bands.clone(), area),
+                None => (ahead.clone(), whole),
+            };
+            if area.is_all_or_nothing() == Some(false) {
+                ahead.start = bands.end;
+                continue;
+            }
+            let half = match bands.end - bands.start {
+                1 if !self.0.is_empty() => break,
+                1 => bands,
+                _ => {
+                    let middle = bands.start.midpoint(bands.end);
+                    match ahead.start < middle {
+                        true => bands.start..middle,
+                        false => middle..bands.end,
+                    }
+                }
+            };
+            let near = focus(area, &half);
+            self.0.push((half, near));
+        }
+        self.0
+            .last()
+            .filter(|_| !ahead.is_empty())
+            .map(|(_, area)| area)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use core::cell::Cell;
+
+    use super::*;
+    use crate::sample::area::Region;
+
+    #[test]
+    fn bands_without_a_part_of_the_area_are_passed_over() {
+        let square = |x: f64| Area::from(Region::between([x + 0.2, 0.0], [x + 0.7, 1.0]));
+        let both = Area::any_of([square(3.0), square(999_999.0)]);
+        let (mut halves, mut ahead, looks) = (Halves::default(), 0..1_000_000, Cell::new(0));
+        let focus = |area: &Area, bands: &Range<i64>| {
+            looks.set(looks.get() + 1);
+            area.focus(&Region::between(
+                [bands.start as f64, 0.0],
+                [bands.end as f64, 1.0],
+            ))
+        };
+        let mut seen = Vec::new();
+        while let Some(near) = halves.next(&both, &mut ahead, focus) {
+            assert!(near.contains([ahead.start as f64 + 0.5, 0.5]));
+            seen.extend(ahead.next());
+        }
+        assert_eq!(seen, [3, 999_999]);
+        assert!(looks.get() < 100, "{}", looks.get());
     }
 }

@@ -31,7 +31,7 @@ impl Rows {
         &mut self,
         sure: impl FnOnce(i64) -> Range<i64>,
     ) -> Option<(i64, Range<i64>, bool)> {
-        if self.next >= self.all.end {
+        if self.is_new_band() {
             self.band = self.ahead.next()?;
             self.next = self.all.start;
             if self.all.is_empty() {
@@ -48,6 +48,11 @@ impl Rows {
         };
         self.next = end.min(self.all.end);
         Some((self.band, start..self.next, is_sure))
+    }
+
+    /// Whether the next rows are the first of a band.
+    pub(super) const fn is_new_band(&self) -> bool {
+        self.next >= self.all.end
     }
 
     /// The address of the next row.
