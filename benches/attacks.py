@@ -114,7 +114,7 @@ class Daemon:
 
     def request(self, method, path, body=b""):
         """An HTTP/1.1 request."""
-        lines = [f"{method} {path} HTTP/1.1", "host: x", f"content-length: {len(body)}"]
+        lines = [f"{method} {path} HTTP/1.1", "host: localhost", f"content-length: {len(body)}"]
         lines += [f"{name}: {value}" for name, value in self.headers().items()]
         return "\r\n".join([*lines, "", ""]).encode() + body
 

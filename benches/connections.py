@@ -41,7 +41,7 @@ def idle(program, connections):
     daemon, port = start(program)
     try:
         def ask(stream):
-            stream.sendall(b"GET /livez HTTP/1.1\r\nhost: a\r\n\r\n")
+            stream.sendall(b"GET /livez HTTP/1.1\r\nhost: localhost\r\n\r\n")
             stream.recv(4096)
 
         ask(connect(port, 0))

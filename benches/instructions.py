@@ -134,7 +134,7 @@ class Http1:
 
     def ask(self, method, path, headers=(), body=b""):
         """The head, in small letters, and the body of an answer."""
-        lines = [f"{method} {path} HTTP/1.1", "host: a", *headers]
+        lines = [f"{method} {path} HTTP/1.1", "host: localhost", *headers]
         if body:
             lines.append(f"content-length: {len(body)}")
         self.stream.sendall(("\r\n".join(lines) + "\r\n\r\n").encode() + body)

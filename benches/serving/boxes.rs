@@ -29,7 +29,7 @@ struct Connection {
 impl Connection {
     /// Requests a path and reads the answer.
     async fn get(&mut self, path: &str) {
-        let head = format!("GET {path} HTTP/1.1\r\nhost: bench\r\n\r\n");
+        let head = format!("GET {path} HTTP/1.1\r\nhost: localhost\r\n\r\n");
         self.socket.write_all(head.as_bytes()).await.expect("sent");
         let mut read = 0;
         let end = loop {

@@ -1,8 +1,9 @@
 //! `strew count`: the number of points of a query, exactly, without making them.
 
-use anyhow::Context as _;
+use anyhow::{Context as _, anyhow};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
+use strew_error::integer::{Long, integer};
 use strew_query::Resolved;
 
 use super::{Failure, config, flags::Counted, output, query::QueryArgs, remote::RemoteArgs};
@@ -25,12 +26,13 @@ pub(super) struct Args {
 /// The answer of a server.
 #[derive(Deserialize)]
 struct FromServer {
-    count: u128,
+    /// A number, or text if it is long.
+    count: Box<RawValue>,
 }
 
 #[derive(Serialize)]
 struct Document {
-    count: u128,
+    count: Long<u128>,
     query: Resolved,
 }
 
@@ -44,7 +46,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let count = planned.count();
     if args.json {
         let query = planned.resolved();
-        return output::print_json([Document { count, query }]);
+        return output::print_json([Document {
+            count: Long(count),
+            query,
+        }]);
     }
     output::print(&format!("{count}\n"))
 }
@@ -62,5 +67,7 @@ fn from_server(args: &Args) -> Result<(), Failure> {
         return output::print(&format!("{document}\n"));
     }
     let counted: FromServer = serde_json::from_slice(&text).context("the answer holds no count")?;
-    output::print(&format!("{}\n", counted.count))
+    let count = counted.count.get().trim_matches('"');
+    let count: u128 = integer(count).map_err(|detail| anyhow!("the count {detail}"))?;
+    output::print(&format!("{count}\n"))
 }

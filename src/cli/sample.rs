@@ -10,7 +10,10 @@ use strew_core::{F32, F64, Plan, Tile};
 use strew_encode::{Answer, Encoding, Output, Plain, Scalars, write_number};
 use strew_error::Error;
 use strew_plan::Planned;
-use strew_query::{options, parameters::FORMAT};
+use strew_query::{
+    options,
+    parameters::{FORMAT, SUMMARY},
+};
 
 use super::{
     Failure,
@@ -151,6 +154,11 @@ fn from_server(args: &Args) -> Result<(), Failure> {
     check_terminal(args, encoding)?;
     let mut body = draft.to_body();
     body.insert(FORMAT.name.into(), encoding.name().into());
+    let has_summary = named.summary.unwrap_or(true);
+    if encoding.has_summary() {
+        // Its lines are counted.
+        body.insert(SUMMARY.name.into(), has_summary.into());
+    }
     let answer = {
         let path = args.query.path("/v1/points:query", "/v1/space/points");
         args.remote.request(path, &body)?
@@ -159,7 +167,7 @@ fn from_server(args: &Args) -> Result<(), Failure> {
     if !args.quiet {
         remote::announce(&answer, encoding.name());
     }
-    remote::write(answer, (count, encoding), output)
+    remote::write(answer, count, (encoding, has_summary), output)
 }
 
 /// Writes an answer. Errors of the service are returned as they are, because the caller knows the names of its

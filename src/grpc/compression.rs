@@ -12,6 +12,8 @@ use http::{HeaderMap, HeaderName, HeaderValue};
 use strew_service::unpack::Coding;
 use tonic::{Status, metadata::MetadataValue};
 
+use super::status;
+
 const ACCEPTED: HeaderName = HeaderName::from_static("grpc-accept-encoding");
 pub(super) const SENT: HeaderName = HeaderName::from_static("grpc-encoding");
 
@@ -43,7 +45,7 @@ pub(super) fn sent(headers: &HeaderMap) -> Result<Option<Coding>, Status> {
         None | Some(b"identity") => return Ok(None),
         Some(b"gzip") => return Ok(Some(Coding::Gzip)),
         Some(b"zstd") => return Ok(Some(Coding::Zstd)),
-        Some(unknown) => String::from_utf8_lossy(unknown),
+        Some(unknown) => status::cut(&String::from_utf8_lossy(unknown), 60),
     };
     let detail = format!("Content is compressed with `{unknown}` which isn't supported");
     let mut status = Status::unimplemented(detail);

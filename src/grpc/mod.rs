@@ -132,6 +132,12 @@ pub fn broken(error: &Error) -> Status {
     status::status(error)
 }
 
+/// The end of a call whose client broke it off.
+#[must_use]
+pub fn left() -> Status {
+    Status::cancelled("the call broke off before the end of its message")
+}
+
 /// The trailers of a stream that is not complete.
 #[must_use]
 pub fn interrupted(why: Interrupted) -> Option<HeaderMap> {
@@ -180,7 +186,8 @@ pub fn improve(headers: &mut HeaderMap) {
 }
 
 /// Parts of the texts with which the libraries report that bytes are not a message.
-const MALFORMED: [&str; 4] = [
+const MALFORMED: [&str; 5] = [
+    "Missing%20request%20message",
     "failed%20to%20decode%20Protobuf",
     "protocol%20error:%20received%20message",
     "Error%20decompressing",

@@ -44,8 +44,8 @@ pub(super) fn query(
             })
             .collect(),
         encoding: encoding.into(),
-        offset: u64::try_from(offset).unwrap_or(u64::MAX),
-        limit,
+        offset: u64::try_from(offset.0).unwrap_or(u64::MAX),
+        limit: limit.map(|limit| limit.0),
         world,
         world_digest,
     }
@@ -82,7 +82,7 @@ fn resolved(echo: ResolvedSet, entry: &Entry, region: Option<Region>) -> proto::
             })
             .collect(),
         kinds: (echo.kinds.into_iter())
-            .map(|(name, count)| (name, u64::try_from(count).unwrap_or(u64::MAX)))
+            .map(|(name, count)| (name, u64::try_from(count.0).unwrap_or(u64::MAX)))
             .collect(),
         period: echo.period.map(periods::period),
         delta_min: entry.measured("delta_min"),

@@ -19,10 +19,19 @@ pub(super) fn status(error: &Error) -> Status {
     if let Some(record) = Record::current() {
         details.set_request_info(record.id(), "");
     }
-    for fault in error.faults() {
+    let (mut room, faults) = (MOST_FAULTS, error.faults());
+    for (place, fault) in faults.iter().enumerate() {
         let value = fault.value.as_ref();
         let value = value.map_or_else(String::new, |value| format!("`{value}`: "));
         let description = format!("{value}{}; allowed: {}", fault.detail, fault.allowed);
+        let description = cut(&description, MOST_FAULT);
+        let bytes = fault.field.len() + description.len();
+        if bytes > room {
+            let left = format!("{} more faults", faults.len() - place);
+            details.add_bad_request_violation("", left);
+            break;
+        }
+        room -= bytes;
         details.add_bad_request_violation(&fault.field, description);
     }
     let quota = match error {
@@ -42,7 +51,36 @@ pub(super) fn status(error: &Error) -> Status {
     if let Some(seconds) = error.retry_seconds() {
         details.set_retry_info(Some(Duration::from_secs(seconds)));
     }
-    Status::with_error_details(code(error.kind()), error.to_string(), details)
+    let message = cut(&error.to_string(), MOST_MESSAGE);
+    Status::with_error_details(code(error.kind()), message, details)
+}
+
+/// The most bytes of a status's message, which the head of an answer has twice: percent-encoded, and among the details.
+const MOST_MESSAGE: usize = 600;
+/// The most bytes of the description of a fault.
+const MOST_FAULT: usize = 500;
+/// The most bytes of all faults together. So the head of an answer has 4 kB at most, which is what proxies hold.
+const MOST_FAULTS: usize = 800;
+
+/// The beginning of a text, with as much of it as takes `most` bytes where every byte that is not plain takes three.
+pub(super) fn cut(text: &str, most: usize) -> String {
+    let encoded = |byte: u8| match byte.is_ascii_alphanumeric() || b"_-.,:;/".contains(&byte) {
+        true => 1,
+        false => 3,
+    };
+    let mut room = 2 * most;
+    for (at, char) in text.char_indices() {
+        let bytes: usize = text.as_bytes()[at..at + char.len_utf8()]
+            .iter()
+            .copied()
+            .map(encoded)
+            .sum();
+        if at + char.len_utf8() > most || bytes > room {
+            return format!("{}…", &text[..at]);
+        }
+        room -= bytes;
+    }
+    text.into()
 }
 
 /// An error of a message that is a field of the request.
@@ -71,6 +109,7 @@ pub(super) fn interrupted(why: Interrupted) -> Status {
 /// A fault of the call rather than of its message.
 pub(super) fn faulty_metadata(name: &str, value: &str, detail: &str) -> Status {
     let mut details = ErrorDetails::new();
+    let value = cut(value, MOST_FAULT / 4);
     details.set_error_info(reason(Kind::Invalid), DOMAIN, HashMap::new());
     details.add_bad_request_violation(name, format!("`{value}`: {detail}"));
     let message = format!("`{name}` = `{value}`: {detail}");

@@ -3,10 +3,13 @@
 use bytes::Bytes;
 use http::{HeaderMap, header};
 use http_body::Frame;
-use strew_error::Error;
+use strew_error::{Error, Fault};
 use strew_service::Interrupted;
 
-use super::metrics::Protocol;
+use super::{
+    exchange::grpc_code,
+    metrics::{Broken, Protocol},
+};
 use crate::{
     body::{BoxError, Response},
     grpc,
@@ -33,6 +36,29 @@ pub(super) enum Ending {
     Interrupted(Interrupted),
     /// The deadline of the client is over.
     Deadline(grpc::Deadline),
+}
+
+impl Ending {
+    /// The trailers of a call that ends so.
+    fn trailers(self) -> Option<HeaderMap> {
+        match self {
+            Self::Interrupted(why) => grpc::interrupted(why),
+            Self::Deadline(deadline) => deadline.trailers(),
+        }
+    }
+
+    /// The code of a call that ends so.
+    pub(super) fn code(self) -> Option<u32> {
+        self.trailers().as_ref().and_then(grpc_code)
+    }
+
+    /// The side that wants no more.
+    pub(super) const fn by(self) -> Broken {
+        match self {
+            Self::Interrupted(_) => Broken::Server,
+            Self::Deadline(_) => Broken::Client,
+        }
+    }
 }
 
 impl Dialect {
@@ -82,16 +108,27 @@ impl Dialect {
         }
     }
 
+    /// The error of a body that cannot be read to its end, in the place of the rest.
+    pub(super) fn unreadable(self, error: BoxError) -> BoxError {
+        match self {
+            Self::Rest => error,
+            Self::Grpc => grpc::left().into(),
+            // Of these the library says that it failed itself.
+            Self::GrpcWeb | Self::GrpcWebText => {
+                let detail = "it broke off, or is not framed as the content type says";
+                let error = Fault::new("body", "", detail, "gRPC-Web, in Base64 as text").into();
+                self.broken(error)
+            }
+        }
+    }
+
     /// The last frame of an answer that is not complete. Calls end with a status, others with an
     /// error, which the client sees as a broken connection or stream.
     pub(super) fn ending(self, why: Ending) -> Option<Result<Frame<Bytes>, BoxError>> {
-        let trailers = match why {
-            Ending::Interrupted(why) if !self.is_call() => {
-                return Some(Err(why.into()));
-            }
-            Ending::Interrupted(why) => grpc::interrupted(why),
-            Ending::Deadline(deadline) => deadline.trailers(),
-        }?;
+        if let (Ending::Interrupted(why), false) = (why, self.is_call()) {
+            return Some(Err(why.into()));
+        }
+        let trailers = why.trailers()?;
         Some(Ok(match self {
             Self::GrpcWeb => Frame::data(grpc::web_trailers(&trailers, false)),
             Self::GrpcWebText => Frame::data(grpc::web_trailers(&trailers, true)),

@@ -94,11 +94,13 @@ impl Front {
     /// The answer with all that answers have.
     async fn finished(self: &Arc<Self>, place: Place<'_>, visit: Box<Visit>) -> Response {
         let (request, dialect) = (&visit.request, visit.dialect);
-        if let Some(allowed) = self.finish.preflight(request) {
+        let misdirected = self.finish.misdirected(request);
+        if let (None, Some(allowed)) = (&misdirected, self.finish.preflight(request)) {
             return allowed;
         }
         let wishes = Wishes::of(request, visit.heard.wishes);
-        let mut response = match self.finish.refusal(request) {
+        let refusal = misdirected.map(|error| dialect.refusal(&error));
+        let mut response = match refusal.or_else(|| self.finish.refusal(request)) {
             Some(refusal) => refusal,
             None => {
                 let answer = pin!(self.placed(place, visit));

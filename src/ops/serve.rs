@@ -219,7 +219,9 @@ impl App {
         let begin = forging.clone();
         let _ = tokio::task::spawn_blocking(move || begin.resume()).await;
         let readiness = Readiness::within(config::seconds(self.config.server.ready_within_seconds));
-        let (front, grpc_health) = self.front(readiness.clone()).await?;
+        let (front, grpc_health) = self
+            .front(readiness.clone(), is_on_loopback(&listener))
+            .await?;
         let watch = readiness.clone();
         let watch = watch.watch(self.service.workers().clone(), grpc_health.clone());
         let _pulse = AbortOnDropHandle::new(tokio::spawn(watch));
@@ -230,7 +232,8 @@ impl App {
         let server = &self.config.server;
         let admins = Connections::new(server, self.tls.clone(), None, handshakes.clone());
         if let Some(listener) = self.admin.take() {
-            let (listener, front) = (asynchronous(listener)?, self.admin_front(readiness.clone()));
+            let front = self.admin_front(readiness.clone(), is_on_loopback(&listener));
+            let listener = asynchronous(listener)?;
             let admins = admins.clone();
             tokio::spawn(async move { admins.take(listener, Arc::new(front)).await });
         }
@@ -287,7 +290,11 @@ impl App {
     }
 
     /// Both protocols, and health.
-    async fn front(&self, readiness: Readiness) -> Result<(Front, grpc::Health), ServeError> {
+    async fn front(
+        &self,
+        readiness: Readiness,
+        is_on_loopback: bool,
+    ) -> Result<(Front, grpc::Health), ServeError> {
         let (calls, health) = grpc::calls(self.service.clone()).await?;
         let mut endpoints = rest::endpoints(&self.service);
         endpoints.extend(health::endpoints(readiness, self.service.clone()));
@@ -304,11 +311,12 @@ impl App {
         };
         let admission = Admission::Gate(self.gate.clone(), intake);
         let routes = routes.with(self.more.clone());
-        Ok((self.answering(routes, Some(calls), admission), health))
+        let front = self.answering(routes, Some(calls), admission, is_on_loopback);
+        Ok((front, health))
     }
 
     /// What the address for administrators answers.
-    fn admin_front(&self, readiness: Readiness) -> Front {
+    fn admin_front(&self, readiness: Readiness, is_on_loopback: bool) -> Front {
         let mut endpoints = health::endpoints(readiness, self.service.clone());
         endpoints.push(admin::endpoint(self.reloader.clone()));
         endpoints.extend(rest::forge_endpoints(&self.service));
@@ -316,14 +324,20 @@ impl App {
             endpoints.push(self.metrics_endpoint());
         }
         let routes = Routes::new(endpoints, &self.pages, &self.config.http.public_url);
-        self.answering(routes, None, Admission::Admins)
+        self.answering(routes, None, Admission::Admins, is_on_loopback)
     }
 
-    fn answering(&self, routes: Routes, calls: Option<Calls>, admission: Admission) -> Front {
+    fn answering(
+        &self,
+        routes: Routes,
+        calls: Option<Calls>,
+        admission: Admission,
+        is_on_loopback: bool,
+    ) -> Front {
         let finish = rest::Finish::new(
-            &self.config.http,
-            self.config.server.max_header_bytes,
+            &self.config,
             self.gate.settings().needs_key(),
+            is_on_loopback,
             self.service.clone(),
         );
         let exchanges = Exchanges {
@@ -355,6 +369,12 @@ impl Drop for EndOnDrop {
         self.0.close();
         self.0.end();
     }
+}
+
+/// Whether only programs of this machine reach a socket.
+fn is_on_loopback(listener: &TcpListener) -> bool {
+    let address = listener.local_addr();
+    address.is_ok_and(|address| address.ip().to_canonical().is_loopback())
 }
 
 fn asynchronous(listener: TcpListener) -> io::Result<tokio::net::TcpListener> {

@@ -8,7 +8,7 @@ use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
 use schemars::JsonSchema;
 use strew_core::ALGORITHM_VERSION;
 use strew_encode::{Answer, Encoding, Output, legend, write_number};
-use strew_error::{Error, Kind};
+use strew_error::{Error, Kind, integer::Long};
 use strew_plan::{Planned, QueryEcho, TableEcho};
 use strew_query::{Options, Query};
 use strew_service::{Record, Service};
@@ -17,7 +17,7 @@ use super::{
     api::{self, schemas},
     coding,
     context::Context,
-    freshness::Freshness,
+    freshness::{Freshness, Verdict},
     negotiate::{self, Chosen},
     range::{self, Wanted},
 };
@@ -34,6 +34,8 @@ static VERSION: LazyLock<HeaderValue> = LazyLock::new(|| ALGORITHM_VERSION.into(
 /// The columns of what most requests ask for.
 const PLAIN_F32: HeaderValue = HeaderValue::from_static(legend::F32);
 const KINDS: HeaderName = HeaderName::from_static("strew-kinds");
+/// Proxies hold the head of an answer in 4 kB, and the other headers take up to 3.6.
+const LONGEST_KINDS: usize = 400;
 const WARNING: HeaderName = HeaderName::from_static("strew-warning");
 const NEXT: HeaderName = HeaderName::from_static("strew-next");
 const CURSOR: HeaderName = HeaderName::from_static("strew-cursor");
@@ -41,7 +43,11 @@ const CURSOR: HeaderName = HeaderName::from_static("strew-cursor");
 /// The headers of an answer with points, and what they say.
 const HEADERS: [(&str, &str); 12] = [
     ("strew-count", "The exact number of points that follow."),
-    ("strew-table", "The digest of the table that answers."),
+    (
+        "strew-table",
+        "The digest of the table that answers; with layers each digest once, in the order of the layers, joined by \
+         commas.",
+    ),
     (
         "strew-world",
         "The digest of the world, if the query names one: of its document, tables, fields and lists.",
@@ -67,12 +73,14 @@ const HEADERS: [(&str, &str); 12] = [
     (
         "strew-columns",
         "With npy, f32, f64 and ply: the columns in their order, as a JSON list of objects with name, \
-         type and, where values are indices, the names that they stand for.",
+         type and, where values are indices, the names that they stand for; their number, names_left_out, where they \
+         would make it longer than 1,000 bytes: formats with names in them have them, and the query of /v1/count.",
     ),
     (
         "strew-kinds",
         "The number of points of the region that each variant has, if they are evenly spread: a JSON object by name; \
-         with layers, one for each layer that has such variants.",
+         with layers, one for each layer that has such variants. One of more than 400 bytes is left out: the answer of \
+         /v1/count has the same numbers.",
     ),
     (
         "accept-ranges",
@@ -103,7 +111,7 @@ struct PointsDocument {
     #[schemars(default)]
     tables: Option<Vec<TableEcho>>,
     /// The number of points.
-    count: u128,
+    count: Long<u128>,
     /// The cursor of the points after these, if there are any.
     #[schemars(default)]
     next: Option<String>,
@@ -187,33 +195,29 @@ pub(super) async fn stream(
     output.relative_to = query.region.corner;
     if *method == Method::POST {
         // A body is not part of the address, so caches do not keep its answer.
-        return points(service, context, query, chosen, output).await;
+        return points(service, context, query, (chosen, output), true).await;
     }
     let freshness = freshness(service, context, &query, chosen.content_type).negotiated();
-    if let Some(wanted) = Wanted::of(method, headers, &freshness) {
+    let is_wanted = freshness.verdict(headers) == Verdict::Wanted;
+    if is_wanted && let Some(wanted) = Wanted::of(method, headers, &freshness) {
         // On the heap, lest all answers have room for it.
         let mut make = Box::pin(part(service, context, query, chosen, output, wanted));
         return freshness.answer(headers, make.as_mut()).await;
     }
-    let make = points(service, context, query, chosen, output);
+    let is_wanted = is_wanted && *method != Method::HEAD;
+    let make = points(service, context, query, (chosen, output), is_wanted);
     freshness.answer(headers, pin!(make)).await
 }
 
-/// The response with the points.
+/// The response with the points, or without a body if they are not wanted.
 async fn points(
     service: &Service,
     context: &Context,
     query: Box<Query>,
-    chosen: Chosen,
-    output: Output,
+    (chosen, output): (Chosen, Output),
+    is_wanted: bool,
 ) -> Result<Response, Error> {
-    let Context {
-        caller,
-        method,
-        headers,
-        ..
-    } = context;
-    let is_wanted = *method != Method::HEAD && !Freshness::is_any_unwanted(headers);
+    let caller = &context.caller;
     let picture = chosen.encoding.is_picture().then_some(output.size);
     let (permit, planned) = if is_wanted {
         let (permit, planned) = service.open(caller, query, picture).await?;
@@ -261,7 +265,7 @@ async fn part(
     let planned = service.plan(&context.caller, query.clone()).await?;
     let whole = planned.answer(&output, block_bytes)?;
     let (Some(size), Some(record)) = (whole.size(), whole.record_bytes()) else {
-        return points(service, context, query, chosen, output).await;
+        return points(service, context, query, (chosen, output), true).await;
     };
     let Some(part) = wanted.within(size) else {
         return Ok(range::unsatisfiable(size));
@@ -283,7 +287,7 @@ async fn part(
         let rows = planned.answer(&output, block_bytes)?;
         if rows.legend() != whole.legend() || rows.origin() != whole.origin() {
             drop(permit);
-            return points(service, context, query, chosen, output).await;
+            return points(service, context, query, (chosen, output), true).await;
         }
         let head = rows.head().map_or(0, |head| head.len() as u64);
         let start = head + bytes.start - records.start * record;
@@ -372,16 +376,9 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
         HeaderValue::from_static(chosen.content_type),
     );
     headers.insert(COUNT, text(itoa::Buffer::new().format(count))?);
-    let mut digests = planned.sets.iter().map(|set| set.entry.digest.as_str());
-    let tables = match (digests.next(), planned.sets.len()) {
-        (Some(only), 1) => table(only)?,
-        (first, _) => text(
-            &first
-                .into_iter()
-                .chain(digests)
-                .collect::<Vec<_>>()
-                .join(", "),
-        )?,
+    let tables = match planned.query.tables().as_slice() {
+        [only] => table(only)?,
+        all => text(&all.join(", "))?,
     };
     headers.insert(TABLE, tables);
     if let Some(token) = planned.next() {
@@ -411,8 +408,10 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
     }
     if planned.sets.iter().any(|set| !set.kinds.is_empty())
         && let Some(kinds) = planned.resolved().kinds()
+        && let kinds = kinds.to_string()
+        && kinds.len() <= LONGEST_KINDS
     {
-        headers.insert(KINDS, text(&kinds.to_string())?);
+        headers.insert(KINDS, text(&kinds)?);
     }
     if let Some(columns) = answer.legend() {
         headers.insert(

@@ -3,7 +3,7 @@
 
 use http::{HeaderMap, HeaderValue, Method, StatusCode, header};
 
-use super::vary;
+use super::{host::Hosts, vary};
 use crate::body::{Body, Request, Response};
 
 const ALL: HeaderValue = HeaderValue::from_static("*");
@@ -45,13 +45,13 @@ impl Origins {
 
 /// Why a page of another origin may not send a request, if that is not only for reading: browsers send some with a
 /// body without a preflight. Any page may send requests that only read, and then cannot see the answer.
-pub(super) fn refusal(origins: &Origins, request: &Request) -> Option<String> {
+pub(super) fn refusal(origins: &Origins, hosts: &Hosts, request: &Request) -> Option<String> {
     let method = request.method();
     if [Method::GET, Method::HEAD, Method::OPTIONS].contains(method) {
         return None;
     }
     let origin = request.headers().get(header::ORIGIN)?;
-    if is_own(origin, request) || origins.allowed(origin).is_some() {
+    if hosts.is_own(origin, request) || origins.allowed(origin).is_some() {
         return None;
     }
     let origin: String = String::from_utf8_lossy(origin.as_bytes())
@@ -62,24 +62,6 @@ pub(super) fn refusal(origins: &Origins, request: &Request) -> Option<String> {
         "pages of `{origin}` may not send {method}; allowed: this server's own pages, and those of \
          http.cors_origins"
     ))
-}
-
-/// Whether a request comes from a page of this server: its browser says so, or the origin has the host that the
-/// request is sent to. (Behind a proxy the scheme may be another.)
-fn is_own(origin: &HeaderValue, request: &Request) -> bool {
-    let headers = request.headers();
-    if headers
-        .get("sec-fetch-site")
-        .is_some_and(|site| site == "same-origin")
-    {
-        return true;
-    }
-    let host = headers.get(header::HOST).map(HeaderValue::as_bytes);
-    let authority = request.uri().authority().map(|of| of.as_str().as_bytes());
-    let own = origin.to_str().ok().and_then(|of| of.split_once("://"));
-    let own = own.map(|(_, own)| own.as_bytes());
-    own.zip(host.or(authority))
-        .is_some_and(|(own, host)| own.eq_ignore_ascii_case(host))
 }
 
 /// The seconds for which a browser may keep the answer to a preflight request; browsers cut it.

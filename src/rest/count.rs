@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::json;
 use strew_core::server::Stop;
-use strew_error::{Error, Kind};
+use strew_error::{Error, Kind, integer::Long};
 use strew_query::{Draft, Group, Query, Resolved, groups};
 use strew_service::Service;
 
@@ -73,7 +73,7 @@ pub(super) fn problems() -> Vec<Kind> {
 #[derive(Serialize, JsonSchema)]
 pub(super) struct Count {
     /// The number of points.
-    count: u128,
+    count: Long<u128>,
     /// The query with everything filled in.
     query: Resolved,
 }
@@ -117,7 +117,7 @@ async fn counted(
 ) -> Result<Response, Error> {
     let planned = service.count(&context.caller, query).await?;
     document::json(&Count {
-        count: planned.count(),
+        count: Long(planned.count()),
         query: planned.resolved(),
     })
 }

@@ -4,7 +4,8 @@
 use std::{mem::take, sync::Arc};
 
 use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Version, header};
-use strew_config::Http;
+use strew_config::Config;
+use strew_error::Error;
 use strew_service::Service;
 
 use super::{
@@ -12,6 +13,7 @@ use super::{
     cors::{self, Origins},
     freshness::Keeping,
     harden,
+    host::Hosts,
     problem::{self, Problem},
 };
 use crate::body::{Request, Response};
@@ -20,6 +22,7 @@ use crate::body::{Request, Response};
 #[derive(Clone, Debug)]
 pub struct Finish {
     origins: Origins,
+    hosts: Hosts,
     keeping: Keeping,
     head_bytes: usize,
     service: Arc<Service>,
@@ -48,16 +51,33 @@ impl Wishes {
 }
 
 impl Finish {
-    /// Heads of requests longer than `head_bytes` are refused. Answers that are private are not kept by caches that
-    /// several clients share.
+    /// Answers that are private are not kept by caches that several clients share. On loopback requests for foreign
+    /// hosts are refused.
     #[must_use]
-    pub fn new(settings: &Http, head_bytes: u32, is_private: bool, service: Arc<Service>) -> Self {
+    pub fn new(
+        config: &Config,
+        is_private: bool,
+        is_on_loopback: bool,
+        service: Arc<Service>,
+    ) -> Self {
+        let settings = &config.http;
+        let head_bytes = config.server.max_header_bytes;
         Self {
             origins: Origins::read(&settings.cors_origins),
+            hosts: Hosts::new(&settings.public_url, is_on_loopback),
             keeping: Keeping::new(settings.cache_seconds, is_private),
             head_bytes: usize::try_from(head_bytes).unwrap_or(usize::MAX),
             service,
         }
+    }
+
+    /// Why a request is refused in the words of its protocol, before anything else is done: it is for a foreign host.
+    #[must_use]
+    pub fn misdirected(&self, request: &Request) -> Option<Error> {
+        // Requests without one host are refused later.
+        self.hosts
+            .refusal(request)
+            .filter(|_| wrong_host(request).is_none())
     }
 
     /// The answer to a preflight of a browser, which is complete.
@@ -71,7 +91,7 @@ impl Finish {
     pub fn refusal(&self, request: &Request) -> Option<Response> {
         too_long(request, self.head_bytes)
             .or_else(|| wrong_host(request))
-            .or_else(|| foreign(&self.origins, request))
+            .or_else(|| foreign(&self.origins, &self.hosts, request))
     }
 
     /// Puts onto an answer what all have.
@@ -118,8 +138,8 @@ fn wrong_host(request: &Request) -> Option<Response> {
 }
 
 /// The refusal of a request of a page that may not send it, before its body is read.
-fn foreign(origins: &Origins, request: &Request) -> Option<Response> {
-    let detail = cors::refusal(origins, request)?;
+fn foreign(origins: &Origins, hosts: &Hosts, request: &Request) -> Option<Response> {
+    let detail = cors::refusal(origins, hosts, request)?;
     Some(Problem::of_status(StatusCode::FORBIDDEN, detail))
 }
 

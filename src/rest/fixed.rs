@@ -9,7 +9,7 @@ use http::{HeaderMap, HeaderValue, Uri, header};
 
 use super::{
     coding::{Coding, Encoder},
-    freshness::Freshness,
+    freshness::{Freshness, Verdict},
 };
 use crate::body::{Body, Response};
 
@@ -59,8 +59,9 @@ impl Fixed {
     pub(super) fn answer(&self, uri: &Uri, headers: &HeaderMap) -> Response {
         let inner = &*self.inner;
         let freshness = Freshness::of(uri, headers, inner.content_type, &inner.digest);
-        if freshness.is_listed(headers) || Freshness::is_any_unwanted(headers) {
-            return freshness.not_modified();
+        let verdict = freshness.verdict(headers);
+        if verdict != Verdict::Wanted {
+            return freshness.instead(verdict);
         }
         let chosen = freshness.coding();
         let coded = inner

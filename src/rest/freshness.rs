@@ -6,13 +6,14 @@
 
 use std::pin::Pin;
 
-use http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
+use http::{HeaderMap, HeaderName, HeaderValue, StatusCode, Uri, header};
 use serde::Serialize;
 use strew_core::ALGORITHM_VERSION;
 use strew_error::Error;
 
 use super::{
     coding::{Coding, Decided},
+    problem::Problem,
     vary,
 };
 use crate::body::{Body, Response};
@@ -109,7 +110,8 @@ impl Freshness {
         self
     }
 
-    /// Answers a conditional request: makes the answer if the client needs it.
+    /// Answers a conditional request: makes the answer if the client needs it. One that fails is answered as it would
+    /// be without conditions.
     ///
     /// # Errors
     /// As making it.
@@ -118,21 +120,31 @@ impl Freshness {
         headers: &HeaderMap,
         make: Pin<&mut impl Future<Output = Result<Response, Error>>>,
     ) -> Result<Response, Error> {
-        if self.is_listed(headers) {
-            return Ok(self.not_modified());
+        let verdict = self.verdict(headers);
+        if verdict == Verdict::Same {
+            // A client with this tag was answered before.
+            return Ok(self.instead(verdict));
         }
         let mut response = make.await?;
-        if Self::is_any_unwanted(headers) {
-            return Ok(self.not_modified());
+        if verdict != Verdict::Wanted && response.status().is_success() {
+            return Ok(self.instead(verdict));
         }
         self.stamp(&mut response);
         Ok(response)
     }
 
-    /// Whether a client wants no answer if there is any.
-    pub(super) fn is_any_unwanted(headers: &HeaderMap) -> bool {
-        let tag = headers.get(header::IF_NONE_MATCH);
-        tag.is_some_and(|tag| tag.as_bytes().trim_ascii() == b"*")
+    /// What the conditions of a GET or HEAD make of its answer, in the order of RFC 9110, 13.2.2: `If-Match`, then
+    /// `If-None-Match`. Answers have no date of change, so conditions about dates do not count (13.1.3 and 13.1.4).
+    pub(super) fn verdict(&self, headers: &HeaderMap) -> Verdict {
+        match self.listed(headers, &header::IF_MATCH, false) {
+            Listed::Other => return Verdict::Failed,
+            Listed::Absent | Listed::Ours | Listed::Any => {}
+        }
+        match self.listed(headers, &header::IF_NONE_MATCH, true) {
+            Listed::Ours => Verdict::Same,
+            Listed::Any => Verdict::Unwanted,
+            Listed::Absent | Listed::Other => Verdict::Wanted,
+        }
     }
 
     /// Puts what caches need onto an answer.
@@ -150,8 +162,14 @@ impl Freshness {
         }
     }
 
-    /// The answer to a client that has the current copy, or wants none if there is any.
-    pub(super) fn not_modified(self) -> Response {
+    /// The answer to a client that does not want what there is.
+    pub(super) fn instead(self, verdict: Verdict) -> Response {
+        if verdict == Verdict::Failed {
+            let ours = String::from_utf8_lossy(self.tag.as_bytes());
+            let detail =
+                format!("`if-match`: no tag of the answer is in it; allowed: {ours}, or *");
+            return Problem::of_status(StatusCode::PRECONDITION_FAILED, detail);
+        }
         let mut response = Response::new(Body::empty());
         // With what is put onto it later there are a dozen: a map that grows is filled anew.
         response.headers_mut().reserve(12);
@@ -160,17 +178,54 @@ impl Freshness {
         response
     }
 
-    /// Whether one of the tags in `If-None-Match` is ours, by weak comparison. Our tags hold
+    /// Whether a list of tags has ours, by weak comparison or by strong, which no weak tag passes. Our tags hold
     /// neither commas nor quotes, so that splitting at commas cannot fake one.
-    pub(super) fn is_listed(&self, headers: &HeaderMap) -> bool {
+    fn listed(&self, headers: &HeaderMap, name: &HeaderName, weakly: bool) -> Listed {
+        if !headers.contains_key(name) {
+            return Listed::Absent;
+        }
         let ours = self.tag.as_bytes();
-        headers
-            .get_all(header::IF_NONE_MATCH)
-            .iter()
-            .flat_map(|line| line.as_bytes().split(|&byte| byte == b','))
-            .map(<[u8]>::trim_ascii)
-            .any(|tag| tag.strip_prefix(b"W/").unwrap_or(tag) == ours)
+        let lines = headers.get_all(name).iter().map(HeaderValue::as_bytes);
+        let tags = lines.flat_map(|line| line.split(|&byte| byte == b','));
+        let mut tags = tags.map(<[u8]>::trim_ascii).filter(|tag| !tag.is_empty());
+        let first = tags.next();
+        if first == Some(b"*") && tags.next().is_none() {
+            return Listed::Any;
+        }
+        let is_ours = |tag: &[u8]| {
+            let strong = tag.strip_prefix(b"W/").filter(|_| weakly);
+            strong.unwrap_or(tag) == ours
+        };
+        match first.into_iter().chain(tags).any(is_ours) {
+            true => Listed::Ours,
+            false => Listed::Other,
+        }
     }
+}
+
+/// What the conditions of a request make of its answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// It is wanted.
+    Wanted,
+    /// The client has it: 304.
+    Same,
+    /// The client wants none if there is any: 304.
+    Unwanted,
+    /// The client wants another one: 412.
+    Failed,
+}
+
+/// What a list of tags is to ours.
+enum Listed {
+    /// There is no list.
+    Absent,
+    /// It has ours.
+    Ours,
+    /// It stands for any.
+    Any,
+    /// It has none of ours.
+    Other,
 }
 
 /// How long answers may be kept.
@@ -239,25 +294,59 @@ mod tests {
     }
 
     #[test]
-    fn tags_match_weakly_in_lists_and_over_lines() {
+    fn conditions_count_in_the_order_of_the_rfc() {
+        use Verdict::{Failed, Same, Unwanted, Wanted};
         let ours = of("/a", "identity", "table");
         let tag = ours.tag.to_str().expect("text").to_owned();
-        let listed = |lines: &[String]| {
+        let (if_match, if_none_match) = (header::IF_MATCH, header::IF_NONE_MATCH);
+        let past = "Sat, 01 Jan 2000 00:00:00 GMT";
+        let verdict = |lines: &[(&HeaderName, &str)]| {
             let mut headers = HeaderMap::new();
-            for line in lines {
-                let line = HeaderValue::from_str(line).expect("text");
-                headers.append(header::IF_NONE_MATCH, line);
+            for (name, line) in lines {
+                let line = line.replace("OURS", &tag);
+                headers.append(*name, HeaderValue::from_str(&line).expect("text"));
             }
-            ours.is_listed(&headers)
+            ours.verdict(&headers)
         };
-        assert!(listed(std::slice::from_ref(&tag)));
-        assert!(listed(&[format!("W/{tag}")]));
-        assert!(listed(&[format!("\"x\", W/\"y\",{tag} ")]));
-        assert!(listed(&["\"x\"".into(), tag.clone()]));
-        assert!(!listed(&[]));
-        assert!(!listed(&["\"x\"".into()]));
-        assert!(!listed(&[tag.trim_matches('"').into()]));
-        assert!(!listed(&[format!("w/{tag}")]));
-        assert!(!listed(&["*".into()]));
+        // By weak comparison (RFC 9110, 13.1.2).
+        for (lines, expected) in [
+            (&["OURS"][..], Same),
+            (&["W/OURS"], Same),
+            (&["\"x\", W/\"y\",OURS "], Same),
+            (&["\"x\"", "OURS"], Same),
+            (&["\"x\""], Wanted),
+            (&[tag.trim_matches('"')], Wanted),
+            (&["w/OURS"], Wanted),
+            (&[" * "], Unwanted),
+            (&["\"x\", *"], Wanted),
+        ] {
+            let lines: Vec<_> = lines.iter().map(|line| (&if_none_match, *line)).collect();
+            assert_eq!(verdict(&lines), expected, "{lines:?}");
+        }
+        // By strong comparison (13.1.1).
+        for (lines, expected) in [
+            (&["OURS"][..], Wanted),
+            (&["\"x\", OURS"], Wanted),
+            (&["\"x\"", "OURS"], Wanted),
+            (&["*"], Wanted),
+            (&["W/OURS"], Failed),
+            (&["\"x\""], Failed),
+            (&["x"], Failed),
+            (&[""], Failed),
+            (&["*, \"x\""], Failed),
+        ] {
+            let lines: Vec<_> = lines.iter().map(|line| (&if_match, *line)).collect();
+            assert_eq!(verdict(&lines), expected, "{lines:?}");
+        }
+        for (lines, expected) in [
+            (&[][..], Wanted),
+            (&[(&if_match, "\"x\""), (&if_none_match, "OURS")], Failed),
+            (&[(&if_match, "OURS"), (&if_none_match, "OURS")], Same),
+            (&[(&if_match, "*"), (&if_none_match, "*")], Unwanted),
+            (&[(&header::IF_UNMODIFIED_SINCE, past)], Wanted),
+            (&[(&header::IF_MODIFIED_SINCE, past)], Wanted),
+        ] {
+            assert_eq!(verdict(lines), expected, "{lines:?}");
+        }
     }
 }

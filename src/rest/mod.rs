@@ -15,6 +15,7 @@ mod finish;
 mod fixed;
 mod freshness;
 mod harden;
+mod host;
 mod jobs;
 mod mask;
 mod negotiate;

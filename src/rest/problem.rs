@@ -3,7 +3,7 @@
 use http::{HeaderValue, StatusCode, header};
 use schemars::JsonSchema;
 use serde::Serialize;
-use strew_error::{Denied, Error, Fault, Kind, Short};
+use strew_error::{Denied, Error, Fault, Kind, Short, integer::Long};
 use strew_service::Record;
 
 use crate::body::{Body, Response};
@@ -28,10 +28,10 @@ pub(super) struct Problem<'a> {
     errors: &'a [Fault],
     /// The exact number of points, if there are too many.
     #[serde(skip_serializing_if = "Option::is_none")]
-    count: Option<u128>,
+    count: Option<Long<u128>>,
     /// The limit that was exceeded.
     #[serde(skip_serializing_if = "Option::is_none")]
-    limit: Option<u64>,
+    limit: Option<Long<u64>>,
     /// The digest of the table that the query pins, if another one would answer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pinned: Option<&'a str>,
@@ -49,9 +49,9 @@ pub(super) struct Problem<'a> {
 #[derive(Debug, Serialize, JsonSchema)]
 struct Rate {
     /// The number of points that were requested.
-    points: u128,
+    points: Long<u128>,
     /// The number that is left now.
-    left: u64,
+    left: Long<u64>,
     /// The number that is added each second.
     points_per_second: f64,
     /// The greatest number there can be.
@@ -63,8 +63,8 @@ struct Rate {
 impl Rate {
     fn new(points: u128, short: &Short) -> Self {
         Self {
-            points,
-            left: short.level.left,
+            points: Long(points),
+            left: Long(short.level.left),
             points_per_second: short.level.rate.points_per_second,
             burst_points: short.level.rate.burst_points,
             retry_after_seconds: short.wait.as_secs_f64(),
@@ -91,7 +91,7 @@ impl<'a> Problem<'a> {
     fn new(error: &'a Error) -> Self {
         let wire = error.kind().wire();
         let count = match error {
-            Error::TooManyPoints { count, .. } => Some(*count),
+            Error::TooManyPoints { count, .. } => Some(Long(*count)),
             _ => None,
         };
         let rate = match error {
@@ -105,7 +105,7 @@ impl<'a> Problem<'a> {
             detail: error.to_string(),
             errors: error.faults(),
             count,
-            limit: error.limit(),
+            limit: error.limit().map(Long),
             pinned: error.digests().map(|(pinned, _)| pinned),
             loaded: error.digests().map(|(_, loaded)| loaded),
             rate,

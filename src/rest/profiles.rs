@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Serialize, Serializer, ser::SerializeMap as _};
 use strew_catalog::{Catalog, Entry};
 use strew_core::{ALGORITHM_VERSION, table};
+use strew_error::integer::Long;
 use strew_query::groups;
 use strew_service::Service;
 
@@ -104,7 +105,7 @@ struct Provenance<'a> {
     #[schemars(with = "BTreeMap<String, String>")]
     parameters: &'a [(String, String)],
     /// The seed of its random start.
-    seed: u64,
+    seed: Long<u64>,
     /// The periodic twins it was optimized on, as fractions p/q.
     twins: Vec<String>,
     /// The figures that were measured.
@@ -149,7 +150,7 @@ impl<'a> Provenance<'a> {
         Self {
             optimizer: &of.optimizer,
             parameters: &of.parameters,
-            seed: of.seed,
+            seed: Long(of.seed),
             twins: of
                 .twins
                 .iter()

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use strew_core::server::Stop;
-use strew_error::Kind;
+use strew_error::{Kind, integer::Long};
 use strew_query::{Group, Token, groups, parts};
 use strew_service::Service;
 
@@ -57,7 +57,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
 #[derive(Serialize, JsonSchema)]
 pub(super) struct Split {
     /// The number of points of all parts.
-    count: u128,
+    count: Long<u128>,
     /// The parts in their order.
     parts: Vec<Part>,
 }
@@ -66,7 +66,7 @@ pub(super) struct Split {
 #[derive(Serialize, JsonSchema)]
 struct Part {
     /// The number of points of the part.
-    count: u64,
+    count: Long<u64>,
     /// The body of POST /v1/points:query, in space of POST /v1/space/points, that requests it.
     #[schemars(with = "AnyQuery")]
     query: Map<String, Value>,
@@ -99,11 +99,11 @@ pub(super) async fn posted(
     let _held = service.hold(bytes.saturating_mul(3))?;
     let write = move |_: &Service, _: &Stop| {
         let part = |(token, count): (Token, u64)| Part {
-            count,
+            count: Long(count),
             query: draft.part(&token, count).to_body(),
         };
         document::json(&Split {
-            count,
+            count: Long(count),
             parts: places.into_iter().map(part).collect(),
         })
     };

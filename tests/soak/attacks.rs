@@ -71,7 +71,7 @@ fn refused_body(at: SocketAddr) -> io::Result<()> {
     let body = format!("{{\"unknown\": [0{}]}}", ",0".repeat(2_000_000));
     let mut stream = attack::connect(at)?;
     let head = format!(
-        "POST /v1/points:query HTTP/1.1\r\nhost: x\r\ncontent-length: {}\r\n\r\n",
+        "POST /v1/points:query HTTP/1.1\r\nhost: localhost\r\ncontent-length: {}\r\n\r\n",
         body.len()
     );
     stream.write_all(head.as_bytes())?;

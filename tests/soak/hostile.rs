@@ -17,7 +17,10 @@ const LONG: &str = "/v1/points?bbox=0,0,30000,30000&spacing=1&format=";
 pub fn vanish(at: SocketAddr, random: &mut SplitMix) -> Done {
     let format = ["f32", "f64", "csv", "ndjson", "arrow", "json"][random.index(6)];
     let mut stream = http1::connect(at)?;
-    write!(stream, "GET {LONG}{format} HTTP/1.1\r\nhost: x\r\n\r\n")?;
+    write!(
+        stream,
+        "GET {LONG}{format} HTTP/1.1\r\nhost: localhost\r\n\r\n"
+    )?;
     let mut part = vec![0; 1 + random.index(1 << 18)];
     for _ in 0..random.below(4) {
         let _ = stream.read(&mut part)?;
@@ -32,7 +35,7 @@ pub fn vanish(at: SocketAddr, random: &mut SplitMix) -> Done {
 /// Sends a part of a request and hangs up.
 pub fn half(at: SocketAddr, random: &mut SplitMix) -> Done {
     let request =
-        b"POST /v1/points:query HTTP/1.1\r\nhost: x\r\ncontent-length: 1000\r\n\r\n{\"region\":";
+        b"POST /v1/points:query HTTP/1.1\r\nhost: localhost\r\ncontent-length: 1000\r\n\r\n{\"region\":";
     let mut stream = http1::connect(at)?;
     stream.write_all(&request[..random.index(request.len())])?;
     if random.once_in(2) {
@@ -47,7 +50,7 @@ pub fn garbage(at: SocketAddr, random: &mut SplitMix) -> Done {
     let mut stream = http1::connect(at)?;
     let mut bytes = match random.below(4) {
         0 => b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n".to_vec(),
-        1 => b"GET / HTTP/1.1\r\nhost: x\r\ntransfer-encoding: chunked\r\n\r\n".to_vec(),
+        1 => b"GET / HTTP/1.1\r\nhost: localhost\r\ntransfer-encoding: chunked\r\n\r\n".to_vec(),
         2 => b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03".to_vec(),
         _ => vec![],
     };

@@ -7,6 +7,7 @@ use ::strew_plan::{
     library::{Further, FurtherValues},
 };
 use serde_json::json;
+use strew_error::integer::Long;
 use strew_query::{Draft, RegionDraft, ShapeDraft};
 
 use crate::{
@@ -274,7 +275,7 @@ pub unsafe extern "C" fn strew_plan_split(
         // SAFETY: as the caller promises.
         let plan = unsafe { borrowed(plan, "plan")? };
         let parts = plan.library.split(&plan.planned, &parts.to_string())?;
-        let part = |(cursor, count): (strew_query::Token, u64)| json!({"cursor": cursor.to_string(), "limit": count});
+        let part = |(cursor, count): (strew_query::Token, u64)| json!({"cursor": cursor.to_string(), "limit": Long(count)});
         let text = json!(parts.into_iter().map(part).collect::<Vec<_>>()).to_string();
         // SAFETY: as the caller promises.
         unsafe { strew_bytes::hand_over(text.into_bytes(), list) }

@@ -199,8 +199,9 @@ export interface Parameters {
 /** The options of a document, beside its format. */
 export interface Output {
     /**
-     * The number of decimals in text formats, rounded to the nearest, ties to even; zero has no sign. Allowed: an
-     * integer from 0 to 17. Default: the fewest digits that read back as the same number.
+     * The number of decimals in text formats, rounded to the nearest, ties to even; zero has no sign. Coordinates are
+     * rounded within the box around the region: min ≤ p < max stays true. Allowed: an integer from 0 to 17. Default:
+     * the fewest digits that read back as the same number.
      */
     decimals?: number;
     /**

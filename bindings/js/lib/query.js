@@ -70,14 +70,16 @@ export function text(value) {
     return JSON.stringify(value, plain).replace(/"\\u0001(-?\d+)\\u0001"/g, "$1");
 }
 
-const TOKEN = /"(?:[^"\\]|\\.)*"|-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?/g;
+/** The members that hold integers, which are text from 2⁵³ on. */
+const LONG = ["seed", "count", "limit", "offset"];
 
 /** JSON as a value. Integers that a number cannot hold exactly are bigints. */
 export function parsed(json) {
-    const isLarge = (token) => /^-?\d{16,}$/.test(token) && !Number.isSafeInteger(Number(token));
-    const marked = json.replace(TOKEN, (token) => (isLarge(token) ? `"\\u0001${token}"` : token));
-    const isMarked = (part) => typeof part === "string" && /^\u0001-?\d+$/.test(part);
-    return JSON.parse(marked, (_, part) => (isMarked(part) ? BigInt(part.slice(1)) : part));
+    const long = (part) => (typeof part === "string" && /^\d{16,}$/.test(part) ? BigInt(part) : part);
+    return JSON.parse(json, (name, part) => {
+        if (name !== "kinds" || typeof part !== "object") return LONG.includes(name) ? long(part) : part;
+        return Array.isArray(part) ? part : Object.fromEntries(Object.entries(part).map(([of, count]) => [of, long(count)]));
+    });
 }
 
 function word(value) {

@@ -38,8 +38,8 @@ impl Plan {
 
     /// The digests of its tables.
     fn tables(&self) -> Vec<String> {
-        let sets = self.0.sets.iter();
-        sets.map(|set| set.entry.digest.clone()).collect()
+        let tables = self.0.query.tables();
+        tables.into_iter().map(Into::into).collect()
     }
 
     /// The cursor of the points after these, if there are any.

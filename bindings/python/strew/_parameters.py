@@ -266,8 +266,9 @@ ABOUT = {
         "rotations. "
     ),
     "decimals": (
-        "The number of decimals in text formats, rounded to the nearest, ties to even; zero has no sign. Allowed: an "
-        "integer from 0 to 17. Default: the fewest digits that read back as the same number. "
+        "The number of decimals in text formats, rounded to the nearest, ties to even; zero has no sign. Coordinates are "
+        "rounded within the box around the region: min ≤ p < max stays true. Allowed: an integer from 0 to 17. Default: "
+        "the fewest digits that read back as the same number. "
     ),
     "size": (
         "The longer side of a picture (png, svg) in pixels. Allowed: an integer from 16 to 4096. Default: 512. "

@@ -98,7 +98,7 @@ class Points:
 
     @property
     def tables(self) -> list[str]:
-        """The digests of the tables that answer: ``table=`` pins one."""
+        """The digests of the tables that answer, each once: ``table=`` pins one."""
         return self.plan().tables()
 
     @property

@@ -248,7 +248,7 @@ class _Asked:
             window = {"offset", "limit", "cursor"} & set(self._query)
             if window:
                 # The count of a window comes with its split into one part.
-                count = self._daemon.json("POST", self._split(1), self._body())["count"]
+                count = int(self._daemon.json("POST", self._split(1), self._body())["count"])
                 one = self._body(format="json", limit=1)
                 first = self._daemon.json("POST", self._dimension.queries, one)["query"]
                 # These members describe the document, not the points.
@@ -258,7 +258,7 @@ class _Asked:
                 self._counted = count, first
             else:
                 counted = self._daemon.json("POST", f"{self._dimension.root}/count", self._body())
-                self._counted = counted["count"], counted["query"]
+                self._counted = int(counted["count"]), counted["query"]
         return self._counted
 
     def count(self) -> int:
@@ -284,7 +284,7 @@ class _Asked:
 
     def split(self, parts: int) -> list[tuple[str, int]]:
         answer = self._daemon.json("POST", self._split(parts), self._body())
-        return [(part["query"]["cursor"], part["count"]) for part in answer["parts"]]
+        return [(part["query"]["cursor"], int(part["count"])) for part in answer["parts"]]
 
     def document(self, options: Sequence[tuple[str, str]]) -> bytes:
         given: dict[str, Any] = dict(options)

@@ -6,8 +6,8 @@
 
 use std::fmt::Write as _;
 
-/// The beginning of every key, by which scanners find leaked ones.
-const PREFIX: &str = "strew_";
+use strew_error::KEY_PREFIX;
+
 /// The bytes of randomness in a key: twice the number needed.
 const RANDOM_BYTES: usize = 32;
 
@@ -48,7 +48,7 @@ impl std::fmt::Display for Hashed {
 pub fn new_key() -> Result<(String, Hashed), getrandom::Error> {
     let mut random = [0; RANDOM_BYTES];
     getrandom::fill(&mut random)?;
-    let mut key = PREFIX.to_owned();
+    let mut key = KEY_PREFIX.to_owned();
     for byte in random {
         let _ = write!(key, "{byte:02x}");
     }
@@ -65,7 +65,7 @@ mod tests {
         let (one, hashed) = new_key().expect("random numbers");
         let (other, _) = new_key().expect("random numbers");
         assert_ne!(one, other);
-        assert_eq!(one.len(), PREFIX.len() + 64);
+        assert_eq!(one.len(), KEY_PREFIX.len() + 64);
         assert_eq!(Hashed::of(one.as_bytes()), hashed);
         assert_eq!(Hashed::read(&hashed.to_string()), Some(hashed));
         assert!(Hashed::of(other.as_bytes()) != hashed);

@@ -99,6 +99,10 @@ impl Answer {
         };
         let head = || head(count);
         let rows = Rows::new(parts, coordinates);
+        let rows = match output.decimals {
+            Some(decimals) if !output.encoding.is_picture() => rows.rounded(decimals)?,
+            _ => rows,
+        };
         let members = || Members::new(&rows, output);
         let (layout, before) = match output.encoding {
             Encoding::F32 => (Layout::F32, None),

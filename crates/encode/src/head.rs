@@ -3,6 +3,8 @@
 use serde::Serialize;
 use serde_json::value::RawValue;
 
+use strew_error::integer::Long;
+
 use crate::{crs::Crs, members::write_json};
 
 /// The head of a document, or its summary.
@@ -14,7 +16,7 @@ pub struct Head {
     #[serde(flatten)]
     pub tables: Tables,
     /// The exact number of points.
-    pub count: u128,
+    pub count: Long<u128>,
     /// The cursor of the points after these, if there are any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next: Option<String>,
@@ -60,7 +62,7 @@ impl Head {
         [
             ("strew.query", self.query.text().into()),
             ("strew.table", self.tables.text()),
-            ("strew.count", self.count.to_string()),
+            ("strew.count", self.count.0.to_string()),
         ]
     }
 }

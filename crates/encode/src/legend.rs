@@ -10,8 +10,8 @@ use super::{
     schema::{Column, Kind, LAYER, Schema, Z},
 };
 
-/// Longer texts break proxies that hold the head of an answer in a page of memory.
-const MOST_BYTES: usize = 4000;
+/// The most bytes of a legend with names: proxies hold the whole head of an answer in 4 kB.
+const MOST_BYTES: usize = 1000;
 
 /// The legend of `f32` for points that have nothing but a place.
 pub const F32: &str = r#"[{"name":"x","type":"f32"},{"name":"y","type":"f32"}]"#;

@@ -60,6 +60,7 @@ mod svg;
 mod text;
 mod triples;
 mod usda;
+mod within;
 mod writer;
 
 pub use answer::{Answer, Plain};

@@ -1,6 +1,7 @@
 //! A JSON document a line: the points, then a summary unless it is switched off.
 
 use serde::Serialize;
+use strew_error::integer::Long;
 
 use super::{
     head::{Head, Json as Written, Tables},
@@ -30,7 +31,7 @@ struct Last<'a> {
 
 #[derive(Serialize)]
 struct Summary<'a> {
-    count: u64,
+    count: Long<u64>,
     query: &'a Written,
     #[serde(flatten)]
     tables: &'a Tables,
@@ -50,7 +51,7 @@ impl TextFormat for Ndjson {
         let Some(head) = &self.head else { return };
         let last = Last {
             summary: Summary {
-                count: points,
+                count: Long(points),
                 query: &head.query,
                 tables: &head.tables,
                 next: head.next.as_deref(),

@@ -7,6 +7,7 @@
 use std::{ops::Range, sync::Arc, vec};
 
 use strew_core::{Plan, Point, space};
+use strew_error::Fault;
 
 use super::{
     part::{Current, Part},
@@ -17,6 +18,7 @@ use crate::{
     height::{Height, Located},
     mark::Mark,
     place::Place,
+    within::Within,
 };
 
 /// Some rows.
@@ -71,6 +73,8 @@ pub struct Rows {
     coordinates: Coordinates,
     parts: vec::IntoIter<(usize, Part)>,
     current: Option<Current>,
+    /// For each part, where coordinates are rounded.
+    within: Vec<Within>,
     points: Vec<Point>,
     near: Vec<[f32; 2]>,
     heights: Vec<Height>,
@@ -102,10 +106,23 @@ impl Rows {
                 .collect::<Vec<_>>()
                 .into_iter(),
             current: None,
+            within: vec![],
             points: vec![],
             near: vec![],
             heights: vec![],
         }
+    }
+
+    /// The rows for a format that rounds coordinates: those that would be rounded out of the box around the points of
+    /// their part are moved to the nearest decimal within. Call it before the first batch.
+    ///
+    /// # Errors
+    /// A fault of `decimals` if there is no such number.
+    pub(super) fn rounded(mut self, decimals: u8) -> Result<Self, Fault> {
+        let origin = self.coordinates.origin().unwrap_or(Place::Plane([0.0; 2]));
+        let within = |part: &Part| Within::new(&*part.plan, origin, decimals);
+        self.within = self.parts().map(within).collect::<Result<_, _>>()?;
+        Ok(self)
     }
 
     /// The columns besides id, x and y.
@@ -200,6 +217,7 @@ impl Rows {
         let room = self.points.len();
         let points = &mut self.points[..filled];
         let heights = &mut self.heights[..];
+        let within = self.within.get(current.number);
         current.fill_attributes(Located { points, heights });
         match self.coordinates {
             Coordinates::World => {}
@@ -207,6 +225,14 @@ impl Rows {
             Coordinates::Near(origin) => {
                 self.near.resize(room, [0.0; 2]);
                 current.fill_near(points, heights, origin, &mut self.near[..filled]);
+            }
+        }
+        if let Some(within) = within {
+            for point in points.iter_mut() {
+                (point.x, point.y) = (within.apply(0, point.x), within.apply(1, point.y));
+            }
+            for height in heights.iter_mut() {
+                height.z = within.apply(2, height.z);
             }
         }
         current.fill_columns(Located { points, heights }, &mut self.columns);

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use bytes::Bytes;
 use strew_core::{Point, PointSet, Region};
+use strew_error::integer::Long;
 
 use crate::{
     Answer, Attributes, Column, Head, Json, Located, Output, Part, Source, Tables, Values,
@@ -69,7 +70,7 @@ pub(super) fn head(count: u128) -> Head {
     Head {
         query: Json::of(&serde_json::json!({ "bbox": [-10.0, 5.0, 30.0, 40.5] })),
         tables: Tables::Table(Json::of(&serde_json::json!({ "profile": "blue" }))),
-        count,
+        count: Long(count),
         next: None,
         crs: None,
     }

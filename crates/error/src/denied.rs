@@ -11,6 +11,15 @@ pub enum Denied {
     /// The key is not known.
     #[error("this server does not know the key: request another from its administrator")]
     WrongKey,
+    /// The request is for a host that is not this daemon's: a page may have turned its name to this machine.
+    #[error(
+        "the request is for the host `{host}`, and a daemon on loopback answers for addresses, localhost and the \
+         host of http.public_url alone"
+    )]
+    ForeignHost {
+        /// The host, as the client names it.
+        host: String,
+    },
     /// Only administrators may do that.
     #[error(
         "{} may not do this: it takes a key with `admin = true`, or the address of `admin.listen`, \

@@ -3,7 +3,7 @@
 //! One type for both protocols; its [`Kind`] has the status on each. Text here is for clients; what only operators
 //! should see goes to the log where it happens.
 
-use crate::{denied::Denied, fault::Fault, faults::Faults};
+use crate::{denied::Denied, fault::Fault, faults::Faults, secret::without_keys};
 
 /// Why a request has no answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -82,13 +82,13 @@ pub enum Error {
         available: String,
     },
     /// The set has no point with that id.
-    #[error("this set has no point `{id}`")]
+    #[error("this set has no point `{}`", without_keys(id))]
     NoSuchPoint {
         /// The id.
         id: String,
     },
     /// Nothing is at that path.
-    #[error("nothing is at `{path}`; available: {available}")]
+    #[error("nothing is at `{}`; available: {available}", without_keys(path))]
     NoSuchPath {
         /// The path.
         path: String,
@@ -96,7 +96,10 @@ pub enum Error {
         available: String,
     },
     /// The path does not take that method.
-    #[error("`{path}` does not take the method {method}; allowed: {allowed}")]
+    #[error(
+        "`{}` does not take the method {method}; allowed: {allowed}",
+        without_keys(path)
+    )]
     NoSuchMethod {
         /// The path.
         path: String,
@@ -106,7 +109,10 @@ pub enum Error {
         allowed: String,
     },
     /// There is no such job.
-    #[error("there is no job `{id}`: it was never begun here, or has been forgotten")]
+    #[error(
+        "there is no job `{}`: it was never begun here, or has been forgotten",
+        without_keys(id)
+    )]
     NoSuchJob {
         /// The id.
         id: String,
@@ -296,6 +302,7 @@ kinds! {
     NoSuchMethod: "no-such-method", "The path does not take this method", 405, UNIMPLEMENTED, None;
     Unauthenticated: "unauthenticated", "A key is needed", 401, UNAUTHENTICATED, None;
     NotAllowed: "not-allowed", "The caller may not do this", 403, PERMISSION_DENIED, None;
+    Misdirected: "misdirected", "The request is for another host", 421, PERMISSION_DENIED, None;
     TooManyStreams: "too-many-streams", "Too many current streams", 429, RESOURCE_EXHAUSTED, Some(1);
     TooManyJobs: "too-many-jobs", "Too many tables are being made for the client", 429, RESOURCE_EXHAUSTED, Some(1);
     TooManyForAddress: "too-many-for-address", "The client's address uses as much as one address may", 429, RESOURCE_EXHAUSTED, Some(1);
@@ -329,6 +336,7 @@ impl Error {
             Self::Denied(denied) => match denied {
                 Denied::NoKey | Denied::WrongKey => Kind::Unauthenticated,
                 Denied::NotAdmin { .. } => Kind::NotAllowed,
+                Denied::ForeignHost { .. } => Kind::Misdirected,
                 Denied::TooManyStreams { .. } => Kind::TooManyStreams,
                 Denied::TooManyJobs { .. } => Kind::TooManyJobs,
                 Denied::Address { .. } | Denied::Share { .. } => Kind::TooManyForAddress,

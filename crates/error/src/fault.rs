@@ -5,6 +5,8 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::secret::{names_a_key, without_keys};
+
 /// One thing that is wrong with a query.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Fault {
@@ -26,9 +28,14 @@ impl Fault {
         detail: impl Into<String>,
         allowed: impl Into<String>,
     ) -> Self {
+        let value = value.to_string();
+        let value = match names_a_key(field) {
+            true => "***".into(),
+            false => without_keys(&value),
+        };
         Self {
-            field: shortened(field),
-            value: Some(shortened(&value.to_string())),
+            field: shortened(&without_keys(field)),
+            value: Some(shortened(&value)),
             detail: cut(&detail.into(), 3 * SHOWN),
             allowed: allowed.into(),
         }

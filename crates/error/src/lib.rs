@@ -8,8 +8,10 @@ mod denied;
 mod error;
 mod fault;
 pub mod faults;
+pub mod integer;
 mod number;
 mod rate;
+mod secret;
 mod unknown;
 
 pub use denied::Denied;
@@ -18,4 +20,5 @@ pub use fault::Fault;
 pub use faults::{Checked, Faults, Together, all};
 pub use number::number;
 pub use rate::{Level, Rate, Short};
+pub use secret::{KEY_PREFIX, without_keys};
 pub use unknown::unknown;

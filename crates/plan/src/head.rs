@@ -5,7 +5,7 @@ use serde::Serialize;
 use strew_catalog::{Dimension, Entry};
 use strew_core::ALGORITHM_VERSION;
 use strew_encode::{Answer, Crs, Head, Json, Output, Place, Tables};
-use strew_error::Error;
+use strew_error::{Error, integer::Long};
 use strew_query::Resolved;
 
 use crate::{effort, planned::Planned};
@@ -82,7 +82,7 @@ impl Planned {
         Head {
             query: Json::of(&query),
             tables,
-            count,
+            count: Long(count),
             next: self.next().map(|token| token.to_string()),
             crs: output.crs.clone(),
         }

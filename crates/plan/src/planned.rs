@@ -6,7 +6,7 @@ use strew_catalog::{Entry, Ready};
 use strew_config::Limits;
 use strew_core::{Member, PeriodicSet, PointId, PointSet, server::Stop, space::SpaceSet};
 use strew_encode::{Attributes, Bound, Mark, Part};
-use strew_error::Error;
+use strew_error::{Error, integer::Long};
 use strew_query::{Amount, Query, Resolved, ResolvedSet, Set, Token, other_kinds};
 
 use crate::{
@@ -449,8 +449,8 @@ impl Planned {
             only_layer: only.map(|set| set.name.clone()),
             set,
             layers: sets,
-            offset: self.offset,
-            limit: self.query.window.limit,
+            offset: Long(self.offset),
+            limit: self.query.window.limit.map(Long),
         }
     }
 }

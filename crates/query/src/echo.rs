@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 use serde_json::{Map, Value as Json, json};
 use strew_catalog::{except::Except, field::Document};
 use strew_core::{ALGORITHM_VERSION, Spacing};
+use strew_error::integer::Long;
 
 use crate::{
     json::AnyRegionSchema,
@@ -53,11 +54,11 @@ pub struct Resolved {
     pub layers: Vec<ResolvedSet>,
     /// The number of points of the region before those of the answer, if any.
     #[serde(default, skip_serializing_if = "is_zero")]
-    pub offset: u128,
+    pub offset: Long<u128>,
     /// The greatest number of points of the answer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "u64")]
-    pub limit: Option<u64>,
+    #[schemars(with = "Long<u64>")]
+    pub limit: Option<Long<u64>>,
 }
 
 impl Resolved {
@@ -134,7 +135,7 @@ pub struct ResolvedSet {
     pub clear_of: Vec<(String, f64)>,
     /// The number of points of the region with each variant, if variants are evenly spread.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub kinds: BTreeMap<String, u128>,
+    pub kinds: BTreeMap<String, Long<u128>>,
     /// The distances that the points of two evenly spread variants, or of one, keep.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub kind_distances: Vec<KindDistance>,
@@ -200,8 +201,8 @@ impl JsonSchema for Echoed {
     }
 }
 
-fn is_zero(value: &u128) -> bool {
-    *value == 0
+fn is_zero(value: &Long<u128>) -> bool {
+    value.0 == 0
 }
 
 /// Pairs as an object, in their order.
@@ -245,7 +246,10 @@ impl Set {
             except_digest: self.except.as_ref().map(Except::digest),
             values: Echoed(self.values()),
             clear_of: self.named_clear_of(all),
-            kinds: names.map(Into::into).zip(kinds.iter().copied()).collect(),
+            kinds: names
+                .map(Into::into)
+                .zip(kinds.iter().copied().map(Long))
+                .collect(),
             kind_distances: kind_distances.into(),
             period: self.period.map(Period::echo),
         }

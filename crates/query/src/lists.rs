@@ -1,6 +1,6 @@
 //! Numbers and lists of numbers and names, as text has them.
 
-use std::{borrow::Cow, iter, str::FromStr, sync::Arc};
+use std::{borrow::Cow, iter, sync::Arc};
 
 use strew_catalog::field::Document;
 use strew_error::number;
@@ -22,19 +22,6 @@ pub(super) fn finite(text: &str) -> Result<f64, &'static str> {
         Ok(_) => Err("must be finite"),
         Err(_) => Err("must be a number"),
     }
-}
-
-/// An integer within the range of its type.
-pub(super) fn integer<T: FromStr>(text: &str) -> Result<T, &'static str> {
-    text.parse().map_err(|_| {
-        let digits = text.strip_prefix('-').unwrap_or(text);
-        let is_integer = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
-        if is_integer {
-            "out of range"
-        } else {
-            "must be an integer"
-        }
-    })
 }
 
 /// The parts of a text between characters of ASCII. (`str::split` takes several times as long for short ones.)

@@ -374,7 +374,7 @@ parameters! {
     DECIMALS = Parameter {
         name: "decimals",
         about: "The number of decimals in text formats, rounded to the nearest, ties to even; zero has \
-                no sign.",
+                no sign. Coordinates are rounded within the box around the region: min ≤ p < max stays true.",
         group: Group::Output,
         shape: Shape::Integer { min: 0, max: MOST_DECIMALS as u64 },
         default: Some("the fewest digits that read back as the same number"),

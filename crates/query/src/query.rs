@@ -48,6 +48,21 @@ impl Query {
         }
     }
 
+    /// The digests of the tables that answer, each once, in the order of the sets. There are 16 at most: queries of more
+    /// layers than that have one table.
+    #[must_use]
+    pub fn tables(&self) -> Vec<&str> {
+        let mut tables: Vec<&str> = vec![];
+        for set in self.sets.iter() {
+            let digest = set.entry.digest.as_str();
+            // Layers of one table mostly stand together.
+            if tables.last() != Some(&digest) && !tables.contains(&digest) {
+                tables.push(digest);
+            }
+        }
+        tables
+    }
+
     /// The digests of everything that its points depend on beyond the query itself.
     pub fn digests(&self) -> impl Iterator<Item = &str> {
         self.sets.iter().flat_map(Set::digests)

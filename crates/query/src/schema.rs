@@ -13,6 +13,11 @@ pub const NAME: &str = "[A-Za-z0-9_.-]{1,64}";
 pub fn schema(shape: Shape) -> Value {
     match shape {
         Shape::Number { min, max } => json!({ "type": "number", "minimum": min, "maximum": max }),
+        // Programs that hold numbers as `f64` write the long ones as text.
+        Shape::Integer { min, max } if max >= 1 << 53 => json!({ "anyOf": [
+            { "type": "integer", "minimum": min, "maximum": max },
+            { "type": "string", "pattern": "^[0-9]+$" },
+        ] }),
         Shape::Integer { min, max } => {
             json!({ "type": "integer", "minimum": min, "maximum": max })
         }

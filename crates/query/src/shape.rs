@@ -5,11 +5,11 @@ use std::borrow::Cow;
 use serde_json::value::RawValue;
 use strew_catalog::field::Document;
 use strew_encode::Encoding;
-use strew_error::{number, unknown};
+use strew_error::{integer::integer, number, unknown};
 
 use crate::{
     json::object as json,
-    lists::{Detail, fields, finite, integer, integers, numbers, offsets, ranges, weights},
+    lists::{Detail, fields, finite, integers, numbers, offsets, ranges, weights},
     value::{OTHER_TYPE, Value},
 };
 
@@ -390,6 +390,8 @@ mod tests {
                 "18446744073709551616",
                 Err("out of range"),
             ),
+            (seed, "7.0", "7.0", Ok(Value::Integer(7))),
+            (seed, "1e3", "1e3", Ok(Value::Integer(1000))),
             (seed, "1.5", "1.5", Err("must be an integer")),
             (seed, "-1", "-1", Err("out of range")),
             (warp, "on", "\"on\"", Ok(Value::Number(1.0))),

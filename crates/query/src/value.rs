@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Serialize, Serializer, ser::SerializeMap as _};
 use strew_catalog::field::Document;
-use strew_error::number;
+use strew_error::{integer::Long, number};
 
 /// A value of a parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -147,8 +147,8 @@ impl Serialize for Value {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::Number(value) => value.serialize(serializer),
-            Self::Integer(value) => value.serialize(serializer),
-            Self::Signed(value) => value.serialize(serializer),
+            Self::Integer(value) => Long(*value).serialize(serializer),
+            Self::Signed(value) => Long(*value).serialize(serializer),
             Self::Switch(value) => value.serialize(serializer),
             Self::Numbers(values) => values.serialize(serializer),
             Self::Names(names) => names.serialize(serializer),
@@ -172,5 +172,51 @@ impl Serialize for Value {
                 serializer.collect_map(fields.iter().map(|(name, field)| (name, Written(field))))
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use strew_error::integer::Whole;
+
+    use super::*;
+
+    #[test]
+    fn serde_reads_what_is_exact() {
+        let read = |json: &str| {
+            serde_json::from_str::<Whole<u32>>(json)
+                .map(|whole| whole.0)
+                .ok()
+        };
+        assert_eq!([read("7"), read("7.0"), read("7e0")], [Some(7); 3]);
+        for wrong in ["7.5", "-1.0", "1e10", "\"7\"", "true", "null", "[7]"] {
+            assert_eq!(read(wrong), None, "{wrong}");
+        }
+        let long = |json: &str| {
+            serde_json::from_str::<Whole<u64>>(json)
+                .map(|whole| whole.0)
+                .ok()
+        };
+        assert_eq!(long("18446744073709551615"), Some(u64::MAX));
+        assert_eq!(long("9007199254740993.0"), None);
+    }
+
+    #[test]
+    fn long_integers_are_text() {
+        let json = |value: &dyn Fn() -> serde_json::Result<String>| value().expect("JSON");
+        for (value, expected) in [
+            (0, "0"),
+            ((1 << 53) - 1, "9007199254740991"),
+            (1 << 53, "\"9007199254740992\""),
+            (u64::MAX, "\"18446744073709551615\""),
+        ] {
+            assert_eq!(json(&|| serde_json::to_string(&Long(value))), expected);
+            assert_eq!(
+                json(&|| serde_json::to_string(&Long(u128::from(value)))),
+                expected
+            );
+        }
+        let negative = json(&|| serde_json::to_string(&Long(i64::MIN)));
+        assert_eq!(negative, "\"-9223372036854775808\"");
     }
 }

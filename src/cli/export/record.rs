@@ -116,16 +116,10 @@ pub(super) fn documents(
             world_document(world).context("a world cannot be written")?,
         ));
     }
-    let tables: Vec<&str> = maker
-        .query()
-        .sets
-        .iter()
-        .map(|set| set.entry.digest.as_str())
-        .collect();
     let served = servers::Served {
         spec,
         grid: &maker.grid,
-        tables: tables.join(", "),
+        tables: maker.query().tables().join(", "),
         columns: legend.as_deref(),
     };
     files.push((servers::NGINX.into(), served.nginx().into()));

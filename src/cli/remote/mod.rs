@@ -160,10 +160,11 @@ pub(super) fn promised(answer: &Answer) -> Result<u64, Failure> {
 /// Writes the body of an answer as it arrives. Fails if it holds another number of points than its head promises.
 pub(super) fn write(
     mut answer: Answer,
-    (count, encoding): (u64, Encoding),
+    count: u64,
+    (encoding, has_summary): (Encoding, bool),
     mut output: Output,
 ) -> Result<(), Failure> {
-    let mut tally = Tally::new(encoding, text(&answer, "strew-columns"));
+    let mut tally = Tally::new(encoding, has_summary, text(&answer, "strew-columns"));
     while let Some(part) = answer.next().context("the answer broke off")? {
         tally.add(&part);
         output.write(&part)?;

@@ -195,7 +195,7 @@ impl Timed for Exchange {
         state.rest = Bytes::new();
         // Bytes that have left hold their share of a whole document until they are written or dropped.
         state.whole = None;
-        state.report.broken_off();
+        state.report.cut(why);
         let reader = state.reader.take();
         drop(state);
         drop(body);

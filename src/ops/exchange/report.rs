@@ -3,12 +3,12 @@
 //! It is made when the exchange is over. The access line (target `strew::access`) has the level
 //! `info`, for probes and scrapes `debug`.
 
-use std::{net::SocketAddr, sync::Arc};
+use std::{borrow::Cow, net::SocketAddr, sync::Arc};
 
 use bytes::Bytes;
 use http::{HeaderMap, Method, StatusCode, header, uri::PathAndQuery};
 use http_body::{Body as _, Frame};
-use strew_error::Kind;
+use strew_error::{Kind, without_keys};
 use strew_service::{Budget, Record};
 use tokio::time::Instant;
 
@@ -16,6 +16,7 @@ use crate::{
     body::{Request, Response},
     grpc,
     ops::{
+        dialect::Ending,
         identity::{Identity, Trace},
         metrics::{Broken, Metrics, NO_FORMAT, NO_ROUTE, Protocol},
         peer::Peer,
@@ -29,7 +30,7 @@ use crate::{
 enum Stand {
     Open,
     Whole,
-    BrokenOff,
+    BrokenOff(Broken),
 }
 
 /// The facts about a request and its answer; reported when dropped.
@@ -120,9 +121,17 @@ impl Report {
         self.stand = Stand::Whole;
     }
 
-    /// The answer ends before it is complete.
+    /// What makes the answer fails before it is complete.
     pub(super) fn broken_off(&mut self) {
-        self.stand = Stand::BrokenOff;
+        self.stand = Stand::BrokenOff(Broken::Server);
+    }
+
+    /// The answer is cut before it is complete.
+    pub(super) fn cut(&mut self, why: Ending) {
+        self.stand = Stand::BrokenOff(why.by());
+        if let (Protocol::Grpc, Some(code)) = (self.protocol, why.code()) {
+            self.record.ended(code);
+        }
     }
 
     /// The last frame of a call leaves, with its status.
@@ -187,7 +196,7 @@ impl Report {
     fn broken(&self) -> Option<Broken> {
         match self.stand {
             Stand::Open => Some(Broken::Client),
-            Stand::BrokenOff => Some(Broken::Server),
+            Stand::BrokenOff(by) => Some(by),
             // A call says with its last word that it is not complete.
             Stand::Whole => {
                 let has_failed = self.record.code().is_some_and(|code| code != 0);
@@ -212,13 +221,18 @@ impl Report {
         }
     }
 
-    /// Path and query, as far as they are shown.
-    fn address(&self) -> &str {
+    /// Path and query, as far as they are shown, without keys.
+    fn address(&self) -> Cow<'_, str> {
         let whole = self.address.as_ref().map_or("", PathAndQuery::as_str);
+        // Before the end of a key is cut off.
+        let whole = without_keys(whole);
         // A character has 4 bytes at most.
         let ends = (LONGEST - 3..=LONGEST).rev();
         let cut = ends.filter_map(|end| whole.get(..end)).next();
-        cut.unwrap_or(whole)
+        match cut {
+            Some(cut) if cut.len() < whole.len() => cut.to_owned().into(),
+            _ => whole,
+        }
     }
 
     fn is_refused(&self) -> bool {
@@ -249,7 +263,7 @@ impl Drop for Report {
         let requests = metrics.requests(protocol, self.route, method, outcome);
         requests.inc();
 
-        let trace = self.trace.as_ref();
+        let (trace, address) = (self.trace.as_ref(), self.address());
         let reason = self.record.refused().map(Kind::slug);
         macro_rules! line {
             ($level:ident) => {
@@ -263,7 +277,7 @@ impl Drop for Report {
                     client = %self.client,
                     protocol = self.protocol.name(),
                     method = self.method.as_str(),
-                    address = self.address(),
+                    address = &*address,
                     route = self.route,
                     status = self.status.map(|status| status.as_u16()),
                     outcome,
@@ -292,7 +306,7 @@ impl Drop for Report {
                 call: is_call.then_some(self.route),
                 route: Some(self.route).filter(|route| *route != NO_ROUTE),
                 method,
-                address: self.address(),
+                address: &address,
                 client: Some(self.client),
                 status: self.status.map(|status| status.as_u16()),
                 code: self.record.code(),

@@ -20,6 +20,8 @@ use strew_query::{Group, Parameter};
 
 use schemas::Content;
 
+use super::problem::Problem;
+
 pub(super) use document::document;
 pub use handler::{Handle, Handler, handler};
 
@@ -139,7 +141,7 @@ impl Answer {
         }
     }
 
-    /// This answer, and the one to a client whose copy is still right.
+    /// This answer, and those to clients whose conditions say that they do not want it.
     pub(super) fn or_unchanged(self) -> Vec<Self> {
         let unchanged = Self {
             status: 304,
@@ -147,7 +149,13 @@ impl Answer {
             headers: vec![],
             contents: vec![],
         };
-        vec![self, unchanged]
+        let failed = Self {
+            status: 412,
+            about: "The answer has none of the tags of If-Match.",
+            headers: vec![],
+            contents: vec![("application/problem+json", schemas::of::<Problem<'_>>)],
+        };
+        vec![self, unchanged, failed]
     }
 }
 

@@ -104,7 +104,7 @@ fn query(
     let published = rules::of(groups);
     json!({
         "type": "object",
-        "description": about,
+        "description": format!("{about} Parameters may also be text, written as in an address."),
         "properties": properties,
         "additionalProperties": false,
         "allOf": rules_of_all,

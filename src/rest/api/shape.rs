@@ -44,6 +44,9 @@ pub(super) fn as_text(shape: Shape) -> Value {
             let pair = format!("{}:{}", NAME, NAME);
             json!({ "type": "string", "pattern": format!("^{pair}(,{pair})*$") })
         }
+        Shape::Integer { min, max } => {
+            json!({ "type": "integer", "minimum": min, "maximum": max })
+        }
         other => schema(other),
     }
 }

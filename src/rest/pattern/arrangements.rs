@@ -7,7 +7,7 @@ use http::{HeaderName, HeaderValue, Method};
 use schemars::JsonSchema;
 use serde_json::json;
 use strew_core::server::Stop;
-use strew_error::{Error, Kind};
+use strew_error::{Error, Kind, integer::Long};
 use strew_query::{groups, read_members};
 use strew_service::{
     Interrupted, Record, Service,
@@ -130,7 +130,7 @@ struct Listed {
 #[allow(dead_code, reason = "only described; a stream writes it")]
 struct Occurrence {
     /// The column and the row of its first point, which are the point's id.
-    at: [i64; 2],
+    at: [Long<i64>; 2],
     /// With an amount: the places of its points, the first one and those at the offsets.
     #[schemars(default)]
     places: Option<Vec<[f64; 2]>>,

@@ -7,6 +7,9 @@ use std::{
     thread,
 };
 
+use serde_json::json;
+use strew_encode::Encoding;
+
 use super::{output, refused};
 use crate::support::{
     command::{errors, run},
@@ -55,6 +58,53 @@ fn a_daemon_answers_what_the_program_would() {
         "{}",
         errors(&there)
     );
+}
+
+#[test]
+fn layers_and_features_come_whole_in_every_format() {
+    let daemon = Daemon::built_in();
+    let url = daemon.url("");
+    let ring = |x: u32| json!([[[x, 0], [x + 9, 0], [x + 9, 9], [x, 0]]]);
+    let feature = |id: &str, x: u32| {
+        json!({ "type": "Feature", "properties": { "id": id },
+            "geometry": { "type": "Polygon", "coordinates": ring(x) } })
+    };
+    let queries = [
+        // A name that looks like that of a column.
+        json!({ "region": { "bbox": [0, 0, 9, 9] }, "layers": [
+            { "name": "id", "spacing": 2 }, { "name": "b", "density": 1, "clear_of": { "id": 1 } },
+        ] }),
+        json!({ "spacing": 1, "features": { "id": "id", "of": {
+            "type": "FeatureCollection", "features": [feature("layer", 0), feature("id", 20)],
+        } } }),
+        json!({ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 2, "summary": false }),
+    ];
+    for (number, query) in queries.iter().enumerate() {
+        for encoding in Encoding::ALL {
+            let mut query = query.clone();
+            query["format"] = encoding.name().into();
+            if !encoding.is_streamed() {
+                continue;
+            }
+            if !encoding.has_summary() && query["summary"] == false {
+                continue;
+            }
+            let there = ["sample", "-q", "--query", "-", "--url", &url];
+            let there = run(&there, &query.to_string());
+            let said = errors(&there);
+            // Not every format can hold every query.
+            let is_whole = there.status.success() || said.contains("allowed:");
+            assert!(
+                is_whole && !said.contains("incomplete"),
+                "{number} {}: {said}",
+                encoding.name()
+            );
+            assert!(
+                encoding != Encoding::Csv || there.status.success(),
+                "{number}: {said}"
+            );
+        }
+    }
 }
 
 #[test]

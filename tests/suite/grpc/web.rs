@@ -1,15 +1,18 @@
 //! gRPC-Web on the same port, as scripts of a page use it: POST over HTTP/1.1, with the status in
 //! the last frame of the body.
 
+use base64::{Engine as _, engine::general_purpose::STANDARD};
 use prost::Message as _;
 use strew::grpc::proto::{
-    StreamPointsRequest, StreamPointsResponse, point_set::Amount, stream_points_response::Message,
+    Layer, PointSet, StreamPointsRequest, StreamPointsResponse, point_set::Amount,
+    stream_points_response::Message,
 };
-use strew_testkit::http1;
+use strew_testkit::{http1, wait::until};
 
 use crate::support::{
     daemon::Daemon,
     grpc::{boxed, set},
+    metrics::{samples, sum},
 };
 
 const STREAM: &str = "/strew.v1.PointService/StreamPoints";
@@ -134,4 +137,117 @@ fn answers_are_compressed_on_request() {
     assert_eq!(gzip.as_deref(), Some("gzip"));
     let zstd = ask(&[("grpc-accept-encoding", "gzip,zstd")]);
     assert_eq!(zstd.as_deref(), Some("zstd"));
+}
+
+/// The bytes of a head.
+fn head_bytes(opened: &http1::Response) -> usize {
+    let lines = opened.headers.iter();
+    lines
+        .map(|(name, value)| name.len() + value.len() + 4)
+        .sum()
+}
+
+#[test]
+fn statuses_fit_the_heads_that_proxies_hold() {
+    let daemon = Daemon::start(&[]);
+    let layers = (0..1000).map(|i| Layer {
+        name: format!("{}{i}", "\u{101}".repeat(60)),
+        set: Some(PointSet {
+            profile: Some("\u{101}".repeat(200)),
+            amount: Some(Amount::Density(-1.0)),
+            ..PointSet::default()
+        }),
+        ..Layer::default()
+    });
+    let request = StreamPointsRequest {
+        region: boxed([0.0, 0.0, 20.0, 20.0]),
+        layers: layers.collect(),
+        ..StreamPointsRequest::default()
+    };
+    let request = frame(&request.encode_to_vec());
+    let opened = http1::open_post(daemon.address(), STREAM, &[WEB, PAGE], &request);
+    assert_eq!(opened.headers["grpc-status"], "3");
+    let long = "x".repeat(5000);
+    let timeout = [WEB, ("grpc-timeout", &*long)];
+    let coding = [WEB, ("grpc-encoding", &*long)];
+    let request = self::request(2.0);
+    let others =
+        [timeout, coding].map(|head| http1::open_post(daemon.address(), STREAM, &head, &request));
+    for opened in [opened].into_iter().chain(others) {
+        let bytes = head_bytes(&opened);
+        assert!(bytes <= 4096, "{bytes}: {:?}", opened.headers);
+    }
+}
+
+#[test]
+fn calls_that_are_not_framed_are_the_clients_fault() {
+    let daemon = Daemon::start(&[]);
+    const CHECK: &str = "/grpc.health.v1.Health/Check";
+    let text = "application/grpc-web-text";
+    let binary = "application/grpc-web+proto";
+    let length = [0, 0, 0, 0, 9];
+    for path in [STREAM, CHECK] {
+        for (content_type, body) in [
+            (text, &b"AAA"[..]),
+            (text, b"AAAAAAA"),
+            (text, b"!!!!"),
+            (text, b"AAAA\xff\xff\xff\xff"),
+            (text, b"AAAAAAk="),
+            (binary, b""),
+            (binary, b"\0\0\0"),
+            (binary, &length),
+            (binary, b"\x02\0\0\0\0"),
+            (binary, b"\x01\0\0\0\0"),
+            (binary, b"\x01\0\0\0\x02\x1f\x8b"),
+            (binary, b"\0\0\0\0\x02\xff\xff"),
+        ] {
+            let headers = [("content-type", content_type), PAGE];
+            let opened = http1::open_post(daemon.address(), path, &headers, body);
+            let code = opened.headers.get("grpc-status").cloned();
+            let code = code.unwrap_or_else(|| {
+                let (body, _) = opened.finish();
+                panic!("{path} {content_type} {body:?}");
+            });
+            assert_eq!(code, "3", "{path} {content_type} {body:?}");
+        }
+    }
+    let samples = samples(&daemon);
+    let count = |status: &str| {
+        sum(
+            &samples,
+            "strew_requests_total",
+            &["protocol=\"grpc\"", status],
+        )
+    };
+    assert_eq!(count("status=\"INVALID_ARGUMENT\""), 24.0);
+    assert_eq!(count("status=\"INTERNAL\""), 0.0);
+    assert_eq!(count("status=\"UNKNOWN\""), 0.0);
+}
+
+#[test]
+fn streams_that_their_deadline_cuts_are_counted_so() {
+    let daemon = Daemon::start(&["limits.max_points=4000000000"]);
+    let text = STANDARD.encode(request(1e6));
+    for (content_type, body) in [
+        ("application/grpc-web+proto", request(1e6)),
+        ("application/grpc-web-text", text.into_bytes()),
+    ] {
+        let headers = [
+            ("content-type", content_type),
+            PAGE,
+            ("grpc-timeout", "200m"),
+        ];
+        let opened = http1::open_post(daemon.address(), STREAM, &headers, &body);
+        assert_eq!(opened.status, 200);
+        let _ = opened.finish();
+    }
+    // The report is made when the connection is over.
+    let count =
+        |name: &str, label: &str| sum(&samples(&daemon), name, &["protocol=\"grpc\"", label]);
+    until("both are counted", || {
+        (count("strew_requests_total", "status=\"DEADLINE_EXCEEDED\"") == 2.0).then_some(())
+    });
+    assert_eq!(count("strew_requests_total", "status=\"2xx\""), 0.0);
+    assert_eq!(count("strew_broken_total", "by=\"server\""), 0.0);
+    assert_eq!(count("strew_broken_total", "by=\"client\""), 2.0);
 }

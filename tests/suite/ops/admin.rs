@@ -2,7 +2,7 @@
 
 use std::net::SocketAddr;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use strew_testkit::{http1, tables::write};
 
 use crate::support::{
@@ -96,4 +96,60 @@ fn the_admin_address_needs_no_key() {
     assert_eq!(page.status, 403, "{}", page.text());
     daemon.terminate();
     assert_eq!(daemon.wait().code(), Some(0));
+}
+
+#[test]
+fn pages_whose_name_was_turned_to_this_machine_are_refused_by_every_port_and_protocol() {
+    let daemon = Daemon::start(&["admin.listen=127.0.0.1:0", "http.cors_origins="]);
+    let line = daemon.line();
+    let admin = line.strip_prefix("administrators on http://").expect(&line);
+    let admin = admin.parse().expect("an address");
+    let call = ("content-type", "application/grpc-web+proto");
+    let check = "/grpc.health.v1.Health/Check";
+    let frame = [0; 5];
+    let evil = [
+        ("host", "evil.example:8080"),
+        ("origin", "http://evil.example:8080"),
+    ];
+    for address in [daemon.address(), admin] {
+        for (method, path) in [
+            ("GET", "/metrics"),
+            ("GET", "/"),
+            ("OPTIONS", "/metrics"),
+            ("POST", RELOAD),
+        ] {
+            let refused = http1::request(address, method, path, &evil);
+            assert_eq!(refused.status, 421, "{method} {path}: {}", refused.text());
+            let problem = refused.json();
+            assert_eq!(problem["type"], "urn:strew:problem:misdirected");
+            let detail = problem["detail"].as_str().expect("a text");
+            assert!(
+                detail.contains("`evil.example:8080`") && detail.contains("http.public_url"),
+                "{detail}"
+            );
+        }
+        for host in ["localhost", "127.0.0.1:1", "[::1]", "strew.localhost"] {
+            let answer = http1::request(address, "GET", "/metrics", &[("host", host)]);
+            assert_eq!(answer.status, 200, "{host}");
+        }
+    }
+    let count =
+        json!({ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1, "profile": "test" }).to_string();
+    let posted = http1::post(daemon.address(), "/v1/count", &evil, count.as_bytes());
+    assert_eq!(posted.status, 421);
+    let calls = [&[call], &evil[..]].concat();
+    let called = http1::open_post(daemon.address(), check, &calls, &frame);
+    assert_eq!(called.headers["grpc-status"], "7", "{:?}", called.headers);
+    // The daemon's own pages.
+    let own = format!("http://{}", daemon.address());
+    let own = [("origin", own.as_str())];
+    assert_eq!(
+        http1::post(daemon.address(), "/v1/count", &own, count.as_bytes()).status,
+        200
+    );
+    let other = [("origin", "http://127.0.0.1:1")];
+    assert_eq!(
+        http1::post(daemon.address(), "/v1/count", &other, count.as_bytes()).status,
+        403
+    );
 }

@@ -323,7 +323,7 @@ fn long_counts_do_not_stop_short_ones() {
         .map(|_| {
             let mut stream = attack::connect(daemon.address()).expect("connected");
             let head = format!(
-                "POST /v1/count HTTP/1.1\r\nhost: x\r\ncontent-length: {}\r\n\r\n",
+                "POST /v1/count HTTP/1.1\r\nhost: localhost\r\ncontent-length: {}\r\n\r\n",
                 body.len()
             );
             stream.write_all(head.as_bytes()).expect("sent");
@@ -443,7 +443,7 @@ fn host_is_required_once() {
     for (hosts, expected) in [
         ("", "400"),
         ("host: a\r\nhost: b\r\n", "400"),
-        ("host: a\r\n", "200"),
+        ("host: localhost\r\n", "200"),
     ] {
         let mut stream = attack::connect(daemon.address()).expect("connected");
         write!(

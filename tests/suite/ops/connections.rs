@@ -20,7 +20,7 @@ fn connect(daemon: &Daemon) -> TcpStream {
 /// Whether a request over a new connection is answered.
 fn is_served(daemon: &Daemon) -> bool {
     let mut stream = connect(daemon);
-    let request = b"GET /livez HTTP/1.1\r\nhost: x\r\nconnection: close\r\n\r\n";
+    let request = b"GET /livez HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n";
     stream.write_all(request).is_ok() && read_to_close(stream).starts_with("HTTP/1.1 200")
 }
 
@@ -32,7 +32,7 @@ fn one_connection_too_many_gets_a_problem_and_the_others_go_on() {
     // The system may accept a connection before the daemon counts it.
     let refusal = until("no connection is left", || {
         let mut stream = connect(&daemon);
-        let request = b"GET /livez HTTP/1.1\r\nhost: x\r\nconnection: close\r\n\r\n";
+        let request = b"GET /livez HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n";
         let _ = stream.write_all(request);
         let response = read_to_close(stream);
         (!response.starts_with("HTTP/1.1 200")).then_some(response)
@@ -62,8 +62,8 @@ fn silent_and_incomplete_connections_are_closed() {
         b"",
         b"P",
         b"PRI * HTTP/2.0\r\n",
-        b"GET /livez HTTP/1.1\r\nhost: x\r\n",
-        b"GET /livez HTTP/1.1\r\nhost: x\r\n\r\n",
+        b"GET /livez HTTP/1.1\r\nhost: localhost\r\n",
+        b"GET /livez HTTP/1.1\r\nhost: localhost\r\n\r\n",
     ];
     let streams = beginnings.map(|beginning| {
         let mut stream = connect(&daemon);

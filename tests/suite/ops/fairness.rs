@@ -67,7 +67,7 @@ fn large_body() -> Vec<u8> {
         ",0".repeat(2_000_000)
     );
     let head = format!(
-        "POST /v1/points:query HTTP/1.1\r\nhost: x\r\nconnection: close\r\ncontent-length: {}\r\n\r\n",
+        "POST /v1/points:query HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\ncontent-length: {}\r\n\r\n",
         body.len()
     );
     [head.as_bytes(), body.as_bytes()].concat()
@@ -108,7 +108,7 @@ fn large_bodies_that_are_refused() {
 fn long_counts() {
     let daemon = Daemon::start(&[]);
     let path = "/v1/count?circle=0,0,270000&spacing=1&warp=2&seed=7&profile=test";
-    let request = format!("GET {path} HTTP/1.1\r\nhost: x\r\nconnection: close\r\n\r\n");
+    let request = format!("GET {path} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n");
     let victims = [
         SMALL,
         "/livez",

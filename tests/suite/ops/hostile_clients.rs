@@ -61,7 +61,7 @@ fn ten_thousand_idle_connections_take_little_memory_and_others_are_served() {
         b"",
         b"",
         b"GET /livez HTTP/1.1\r\nhost",
-        b"GET /livez HTTP/1.1\r\nhost: x\r\n\r\n",
+        b"GET /livez HTTP/1.1\r\nhost: localhost\r\n\r\n",
     ];
     let idle: Vec<TcpStream> = (0..count)
         .map(|i| {
@@ -91,7 +91,7 @@ fn ten_thousand_idle_connections_take_little_memory_and_others_are_served() {
 /// Connections that send bodies of 1 MB without the last `missing` bytes, each as fast as it can.
 fn bodies(daemon: &Daemon, connections: usize, missing: usize) -> Vec<TcpStream> {
     let body = vec![b' '; 1_000_000 - missing];
-    let head = "POST /v1/count HTTP/1.1\r\nhost: x\r\ncontent-length: 1000000\r\n\r\n";
+    let head = "POST /v1/count HTTP/1.1\r\nhost: localhost\r\ncontent-length: 1000000\r\n\r\n";
     let send = |_| {
         let mut stream = TcpStream::connect(daemon.address()).expect("connected");
         stream.write_all(head.as_bytes()).expect("sent");
@@ -139,7 +139,7 @@ fn silent_connections_are_closed_to_make_room() {
     // They are still open on our side, yet there is room.
     until("there is room", || {
         let mut stream = connect();
-        let request = b"GET /livez HTTP/1.1\r\nhost: x\r\nconnection: close\r\n\r\n";
+        let request = b"GET /livez HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n";
         stream.write_all(request).ok()?;
         let mut response = String::new();
         std::io::Read::read_to_string(&mut stream, &mut response).ok()?;

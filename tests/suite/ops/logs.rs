@@ -103,3 +103,40 @@ fn text_lines_have_request_ids_and_probes_are_not_logged() {
     );
     assert!(serde_json::from_str::<Value>(&line).is_err());
 }
+
+#[test]
+fn keys_in_an_address_reach_neither_log_nor_answer() {
+    let daemon = Daemon::with_log(&["log.format=json", "log.filter=trace"]);
+    let key = "strew_0123456789abcdef";
+    for (path, shown) in [
+        (
+            format!("{POINTS}&x-api-key={key}"),
+            format!("{POINTS}&x-api-key=***"),
+        ),
+        (
+            format!("{POINTS}&key=secret-7-secret"),
+            format!("{POINTS}&key=***"),
+        ),
+        (
+            format!("{POINTS}&seed=%73trew_0123456789abcdef"),
+            format!("{POINTS}&seed=***"),
+        ),
+        (
+            format!("/v1/points/{key}?spacing=1"),
+            "/v1/points/***?spacing=1".into(),
+        ),
+        (format!("/{key}"), "/***".into()),
+    ] {
+        let answer = daemon.get(&path);
+        assert!((400..500).contains(&answer.status), "{path}");
+        let line = json_line(&daemon, "strew::access");
+        assert_eq!(line["address"], shown);
+        for secret in ["0123456789abcdef", "secret-7-secret"] {
+            assert!(!answer.text().contains(secret), "{}", answer.text());
+        }
+    }
+    let log = daemon.log();
+    for secret in ["0123456789abcdef", "secret-7-secret"] {
+        assert!(!log.contains(secret), "{log}");
+    }
+}

@@ -245,7 +245,7 @@ fn four_addresses_leave_places_for_a_fifth() {
     ]);
     let addresses = [2, 3, 4, 5].map(|last| Ipv4Addr::new(127, 0, 0, last));
     // Bodies that do not come to their end take no place.
-    let head = "POST /v1/points:query HTTP/1.1\r\nhost: x\r\ncontent-length: 100\r\n\r\n{";
+    let head = "POST /v1/points:query HTTP/1.1\r\nhost: localhost\r\ncontent-length: 100\r\n\r\n{";
     let arriving: Vec<TcpStream> = addresses
         .iter()
         .flat_map(|&from| [from; 7])
@@ -262,7 +262,7 @@ fn four_addresses_leave_places_for_a_fifth() {
     for from in addresses.iter().flat_map(|&from| [from; 4]) {
         let mut stream = attack::connect_from(from, daemon.address()).expect("connected");
         let path = long("f32");
-        write!(stream, "GET {path} HTTP/1.1\r\nhost: x\r\n\r\n").expect("sent");
+        write!(stream, "GET {path} HTTP/1.1\r\nhost: localhost\r\n\r\n").expect("sent");
         let mut head = [0; 12];
         stream.read_exact(&mut head).expect("an answer");
         open.push((stream, String::from_utf8_lossy(&head[9..]).into_owned()));

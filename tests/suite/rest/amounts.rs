@@ -111,8 +111,11 @@ fn numbers_beyond_64_bits_are_counted() {
     let query = "bbox=-1e14,-1e14,1e14,1e14&density=1";
     let whole: u128 = {
         let answer = daemon.get(&format!("/v1/count?{query}"));
-        let text = answer.text().strip_prefix("{\"count\":").expect("a count");
-        text.split(',')
+        let text = answer
+            .text()
+            .strip_prefix("{\"count\":\"")
+            .expect("a count");
+        text.split('"')
             .next()
             .expect("digits")
             .parse()

@@ -205,3 +205,110 @@ fn a_region_without_points_has_a_complete_answer() {
         assert!(answer.body.is_empty());
     }
 }
+
+#[test]
+fn decimals_take_no_point_out_of_its_box() {
+    let daemon = Daemon::built_in();
+    let chunk = "/v1/chunks/64/3/-2?spacing=0.5&decimals=1&format=";
+    let space = "/v1/space/chunks/8/1/-2/3?spacing=0.5&decimals=1&format=";
+    for (path, axes, least, end) in [
+        (chunk, 2, 0.0, 64.0),
+        (
+            "/v1/points?bbox=-64,-64,0,0&spacing=0.5&decimals=0&format=",
+            2,
+            -64.0,
+            0.0,
+        ),
+        (
+            "/v1/points?bbox=0.04,0.04,9.96,9.96&spacing=0.1&decimals=1&format=",
+            2,
+            0.04,
+            9.96,
+        ),
+        (space, 3, 0.0, 8.0),
+    ] {
+        let csv = daemon.get(&format!("{path}csv"));
+        assert_eq!(csv.status, 200, "{}", csv.text());
+        let rows: Vec<Vec<f64>> = csv
+            .text()
+            .lines()
+            .skip(1)
+            .map(|line| {
+                line.split(',')
+                    .skip(1)
+                    .map(|n| n.parse().expect("a number"))
+                    .collect()
+            })
+            .collect();
+        assert_eq!(rows.len().to_string(), csv.header("strew-count"));
+        let outside = |at: &f64| !(least..end).contains(at);
+        assert!(
+            !rows.iter().any(|row| row[..axes].iter().any(outside)),
+            "{path}"
+        );
+        let document = daemon.get(&format!("{path}json")).json();
+        let geojson = daemon.get(&format!("{path}geojson")).json();
+        let (points, features) = (&document["points"], &geojson["features"]);
+        for (i, row) in rows.iter().enumerate() {
+            for (axis, name) in ["x", "y", "z"].into_iter().take(axes).enumerate() {
+                assert_eq!(points[i][name], row[axis], "{path}");
+                assert_eq!(
+                    features[i]["geometry"]["coordinates"][axis], row[axis],
+                    "{path}"
+                );
+            }
+        }
+    }
+    let none = daemon.get("/v1/points?bbox=0.31,0,0.39,9&spacing=0.1&decimals=1&format=csv");
+    assert_eq!(none.status, 400);
+    let fault = &none.json()["errors"][0];
+    assert_eq!(
+        (&fault["field"], &fault["allowed"]),
+        (&"decimals".into(), &"2 or more".into())
+    );
+}
+
+#[test]
+fn integers_are_read_and_written_so_that_programs_with_floats_keep_them() {
+    let daemon = Daemon::built_in();
+    let ask = |body: &str| http1::post(daemon.address(), "/v1/points:query", &[], body.as_bytes());
+    let query = |more: &str| {
+        let region = r#""region":{"chunk":{"size":8,"x":3.0,"y":-2e0}},"spacing":1"#;
+        format!("{{{region},{more}}}")
+    };
+    let points = |answer: &http1::Answer| {
+        assert_eq!(answer.status, 200, "{}", answer.text());
+        answer.json()["points"].clone()
+    };
+    let plain = points(&ask(&query(r#""seed":7,"limit":2,"decimals":3"#)));
+    assert_eq!(
+        points(&ask(&query(r#""seed":7.0,"limit":2.0,"decimals":3.0"#))),
+        plain
+    );
+    let address = daemon.get("/v1/chunks/8/3.0/-2?spacing=1&seed=7.0&limit=2e0&decimals=3");
+    assert_eq!(points(&address), plain);
+    let layers = r#"{"region":{"bbox":[0,0,9,9]},"limit":2.0,"layers":[{"name":"a","spacing":1,"seed":7.0,"settle":0.0}]}"#;
+    assert_eq!(ask(layers).status, 200, "{}", ask(layers).text());
+    for wrong in [
+        r#""seed":7.5"#,
+        r#""limit":0.5"#,
+        r#""seed":1e20"#,
+        r#""seed":true"#,
+    ] {
+        assert_eq!(ask(&query(wrong)).status, 400, "{wrong}");
+    }
+    // 2^53 + 1, which JSON.parse would round.
+    let long = ask(&query(r#""seed":9007199254740993,"limit":2"#)).json();
+    assert_eq!(long["query"]["seed"], "9007199254740993");
+    let again = ask(&query(&format!(
+        r#""seed":{},"limit":2"#,
+        long["query"]["seed"]
+    )))
+    .json();
+    assert_eq!(again, long);
+    let count = daemon
+        .get("/v1/count?bbox=-5e8,-5e8,5e8,5e8&spacing=1&map=s")
+        .json();
+    let text = count["count"].as_str().expect("text");
+    assert!(text.len() >= 18, "{text}");
+}

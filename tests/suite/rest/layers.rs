@@ -251,3 +251,81 @@ fn features_are_layers_with_numbers_of_their_own() {
     let counted: Value = serde_json::from_slice(&answer.body).expect("JSON");
     assert_eq!(counted["count"], 1000, "{counted}");
 }
+
+/// The bytes of the head of an answer: what nginx holds in a buffer of 4 kB by default (`proxy_buffer_size`).
+fn head_bytes(headers: &std::collections::BTreeMap<String, String>) -> usize {
+    let lines = headers
+        .iter()
+        .map(|(name, value)| name.len() + value.len() + 4);
+    lines.sum::<usize>() + "HTTP/1.1 200 OK\r\n\r\n".len()
+}
+
+#[test]
+fn heads_have_4_kb_at_most_whatever_the_query() {
+    let daemon = Daemon::built_in();
+    let ring = |x: usize| json!([[[x, 0], [x + 2, 0], [x + 2, 2], [x, 2], [x, 0]]]);
+    let features: Vec<Value> = (0..1000)
+        .map(|i| {
+            json!({ "type": "Feature", "properties": { "name": format!("{i:064}") },
+                "geometry": { "type": "Polygon", "coordinates": ring(3 * i) } })
+        })
+        .collect();
+    let features =
+        json!({ "id": "name", "of": { "type": "FeatureCollection", "features": features } });
+    let profiles = [
+        "blue",
+        "sharp",
+        "spaced",
+        "step",
+        "green",
+        "pink",
+        "single-peak",
+        "lloyd",
+    ];
+    let layers: Vec<Value> = (0..16)
+        .map(|i| {
+            let map = if i % 2 == 1 && i < 6 { "m" } else { "s" };
+            json!({ "name": format!("{i:064}"), "spacing": 1, "profile": profiles[i / 2], "map": map })
+        })
+        .collect();
+    let variants: serde_json::Map<_, _> = (0..32).map(|i| (format!("{i:064}"), json!(1))).collect();
+    let numbers = (1..=16).map(|i| format!("u{i}"));
+    let attributes: Vec<String> = ["variant".to_owned()].into_iter().chain(numbers).collect();
+    for (query, tables) in [
+        (json!({ "features": features, "spacing": 1 }), 1),
+        (
+            json!({ "region": { "bbox": [0, 0, 9, 9] }, "layers": layers }),
+            9,
+        ),
+        (
+            json!({ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1, "spread": "even", "limit": 2,
+                "variants": variants, "attributes": attributes }),
+            1,
+        ),
+    ] {
+        for encoding in Encoding::ALL
+            .into_iter()
+            .filter(|encoding| encoding.is_streamed())
+        {
+            let mut query = query.clone();
+            query["format"] = encoding.name().into();
+            let answer = daemon.post("/v1/points:query", &query);
+            // Not every format can hold every query.
+            if answer.status != 200 {
+                assert_ne!(encoding, Encoding::F32, "{}", answer.text());
+                continue;
+            }
+            let bytes = head_bytes(&answer.headers);
+            assert!(
+                bytes <= 4096,
+                "{}: {bytes} {:?}",
+                encoding.name(),
+                answer.headers
+            );
+            let digests: Vec<&str> = answer.header("strew-table").split(", ").collect();
+            assert!(digests.len() >= tables, "{digests:?}");
+            let different: std::collections::BTreeSet<_> = digests.iter().collect();
+            assert_eq!(different.len(), digests.len(), "{digests:?}");
+        }
+    }
+}

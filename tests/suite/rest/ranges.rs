@@ -75,6 +75,63 @@ fn what_is_no_single_range_of_the_present_answer_is_answered_in_full() {
     assert_eq!(get(&daemon, &path, &current).status, 206);
     let known = [("range", "bytes=0-9"), ("if-none-match", tag)];
     assert_eq!(get(&daemon, &path, &known).status, 304);
+    // RFC 9110, 13.2.2: If-Match first, then If-None-Match, then If-Range.
+    let weak = format!("W/{tag}");
+    for (condition, status) in [
+        (("if-match", tag), 206),
+        (("if-match", "*"), 206),
+        (("if-match", "\"stale\""), 412),
+        (("if-match", &*weak), 412),
+    ] {
+        let ranged = [condition, ("range", "bytes=0-9"), ("if-range", tag)];
+        let answer = get(&daemon, &path, &ranged);
+        assert_eq!(answer.status, status, "{condition:?}");
+        let whole = if status == 206 { 200 } else { status };
+        assert_eq!(
+            get(&daemon, &path, &[condition]).status,
+            whole,
+            "{condition:?}"
+        );
+        let head = http1::open(daemon.address(), "HEAD", &path, &[condition]);
+        assert_eq!(head.status, whole, "{condition:?}");
+        let known = [condition, ("if-none-match", tag)];
+        let known = get(&daemon, &path, &known).status;
+        assert_eq!(
+            known,
+            if status == 412 { 412 } else { 304 },
+            "{condition:?}"
+        );
+    }
+    let stale = [("if-match", "\"stale\"")];
+    let failed = get(&daemon, &path, &stale);
+    assert_eq!(failed.header("content-type"), "application/problem+json");
+    for path in [
+        "/v1/profiles",
+        "/openapi.json",
+        "/docs",
+        "/v1/count?bbox=0,0,9,9&spacing=1",
+    ] {
+        assert_eq!(get(&daemon, path, &stale).status, 412, "{path}");
+        assert_eq!(
+            get(&daemon, path, &[("if-match", "*")]).status,
+            200,
+            "{path}"
+        );
+    }
+    // A request that fails in any case is answered as without conditions (13.2.1).
+    assert_eq!(
+        get(&daemon, "/v1/points?bbox=0,0,1e9,1e9&spacing=1", &stale).status,
+        413
+    );
+    // A query in a body has no answer that is kept.
+    let body = r#"{"region":{"bbox":[0,0,3,2]},"spacing":1,"format":"csv"}"#;
+    let posted = http1::post(
+        daemon.address(),
+        "/v1/points:query",
+        &[("if-none-match", "*")],
+        body.as_bytes(),
+    );
+    assert!(posted.status == 200 && posted.text().lines().count() > 1);
     let head = http1::open(daemon.address(), "HEAD", &path, &current);
     assert_eq!(head.status, 200);
     let csv = get(&daemon, &format!("{QUERY}csv"), &[("range", "bytes=0-9")]);

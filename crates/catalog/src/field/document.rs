@@ -7,6 +7,7 @@ use base64::{Engine as _, prelude::BASE64_STANDARD};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use strew_core::field::{Edges, FieldSpec, Filter};
+use strew_error::integer::Whole;
 use strew_raster::Price;
 
 use crate::bounded_list::list;
@@ -203,12 +204,12 @@ pub struct Distance {
 #[schemars(rename = "FieldNoise")]
 pub struct Noise {
     /// Another seed makes other patches; 0 by default. It has nothing to do with the seed of the points.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "Whole::read")]
     pub seed: u64,
     /// The size of the largest patches, in world units.
     pub wavelength: f64,
     /// The number of sizes, 1 to 8; 1 by default. More makes patches rougher.
-    #[serde(default = "one_octave")]
+    #[serde(default = "one_octave", deserialize_with = "Whole::read")]
     pub octaves: u32,
     /// The shares between which the noise lies; 0 and 1 by default.
     #[serde(default = "rising")]
@@ -232,10 +233,18 @@ pub struct Pixels {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub f32: Option<String>,
     /// The width of bare floats, in pixels.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "Whole::read_some"
+    )]
     pub width: Option<usize>,
     /// Their height.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "Whole::read_some"
+    )]
     pub height: Option<usize>,
     /// Where the pixels lie: min x, min y, max x, max y. By default the place that a GeoTIFF states, else one
     /// world unit for each pixel from the origin on.

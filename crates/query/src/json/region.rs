@@ -5,7 +5,7 @@ use serde::Deserialize;
 use serde_json::value::RawValue;
 use strew_catalog::Dimension;
 use strew_encode::Crs;
-use strew_error::{Checked, Fault, Faults, all, unknown};
+use strew_error::{Checked, Fault, Faults, all, integer::Whole, unknown};
 
 use super::{
     super::{MOST_LEVELS, MOST_REGIONS, RegionDraft, Rings, ShapeDraft},
@@ -44,9 +44,11 @@ pub struct ChunkJson {
     size: f64,
     /// The column.
     #[schemars(range(min = -4_503_599_627_370_496_i64, max = 4_503_599_627_370_496_i64))]
+    #[serde(deserialize_with = "Whole::read")]
     x: i64,
     /// The row.
     #[schemars(range(min = -4_503_599_627_370_496_i64, max = 4_503_599_627_370_496_i64))]
+    #[serde(deserialize_with = "Whole::read")]
     y: i64,
 }
 

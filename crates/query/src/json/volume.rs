@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::value::RawValue;
-use strew_error::{Checked, Fault};
+use strew_error::{Checked, Fault, integer::Whole};
 
 use super::{
     super::volume::{PRISM, VolumeDraft},
@@ -40,12 +40,15 @@ pub struct CubeJson {
     size: f64,
     /// The place along x.
     #[schemars(range(min = -4_503_599_627_370_496_i64, max = 4_503_599_627_370_496_i64))]
+    #[serde(deserialize_with = "Whole::read")]
     x: i64,
     /// The place along y.
     #[schemars(range(min = -4_503_599_627_370_496_i64, max = 4_503_599_627_370_496_i64))]
+    #[serde(deserialize_with = "Whole::read")]
     y: i64,
     /// The place along z.
     #[schemars(range(min = -4_503_599_627_370_496_i64, max = 4_503_599_627_370_496_i64))]
+    #[serde(deserialize_with = "Whole::read")]
     z: i64,
 }
 

@@ -8,8 +8,8 @@ use std::{io::Write as _, ops::Range, sync::Arc};
 use bytes::Bytes;
 use strew_access::Caller;
 use strew_core::{PointId, pattern::Arrangement};
-use strew_encode::write_number;
-use strew_error::Error;
+use strew_encode::{Json, write_number};
+use strew_error::{Error, integer::Long};
 use strew_plan::Placed;
 
 use super::{ArrangementQuery, Facts, List};
@@ -241,7 +241,8 @@ impl Text {
         if self.list == List::Json && !std::mem::take(&mut self.is_first) {
             text.push(b',');
         }
-        let _ = write!(text, "{{\"at\":[{x},{y}]");
+        let [x, y] = [x, y].map(|number| Json::of(&Long(number)));
+        let _ = write!(text, "{{\"at\":[{},{}]", x.text(), y.text());
         for (i, [x, y]) in one.places.iter().enumerate() {
             let start: &[u8] = if i == 0 { b",\"places\":[[" } else { b",[" };
             text.extend_from_slice(start);
