@@ -102,6 +102,10 @@ pub(super) fn exactly(
                     alloc::format!("no point is left here, down to a spacing of {spacing}"),
                     "a region in which the field leaves points",
                 ),
+                0 => (
+                    alloc::format!("the region has no area: no point lies in it, down to a spacing of {spacing}"),
+                    "a region with an area",
+                ),
                 _ => (
                     alloc::format!("{count} points take a spacing below {spacing} here"),
                     "a smaller number",
