@@ -117,7 +117,8 @@ mod tests {
             let help = command.get_after_long_help().map(ToString::to_string);
             let help = help.unwrap_or_else(|| panic!("{} has no examples", command.get_name()));
             for line in help.lines().skip(1) {
-                let taken = Cli::command().try_get_matches_from(words(line));
+                let given = joined(Cli::command(), words(line).into_iter().map(OsString::from));
+                let taken = Cli::command().try_get_matches_from(given);
                 let taken = taken.unwrap_or_else(|error| panic!("{line}: {error}"));
                 assert_eq!(taken.subcommand_name(), Some(command.get_name()), "{line}");
             }

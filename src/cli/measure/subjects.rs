@@ -19,8 +19,7 @@ pub(super) struct Subjects {
     #[arg(
         long,
         value_name = "X,Y,Z",
-        requires = "table",
-        allow_hyphen_values = true
+        requires = "table"
     )]
     pub(super) window_at: Option<Corner>,
     /// With --table of points in space: the seed of the 60 places whose small windows show a local lattice.
