@@ -188,7 +188,9 @@ fn joined(mut command: clap::Command, given: impl IntoIterator<Item = OsString>)
     for argument in given {
         let text = argument.to_string_lossy();
         let is_value = match text.strip_prefix('-') {
-            Some(rest) => !rest.is_empty() && !rest.starts_with('-') && rest.parse::<char>().is_err(),
+            Some(rest) => {
+                !rest.is_empty() && !rest.starts_with('-') && rest.parse::<char>().is_err()
+            }
             None => false,
         };
         if let Some(option) = all.last_mut().filter(|_| open && is_value) {
@@ -199,7 +201,8 @@ fn joined(mut command: clap::Command, given: impl IntoIterator<Item = OsString>)
         }
         let takes = |name: &str| {
             let is_it = |arg: &&clap::Arg| {
-                arg.get_long_and_visible_aliases().is_some_and(|all| all.contains(&name))
+                arg.get_long_and_visible_aliases()
+                    .is_some_and(|all| all.contains(&name))
                     || arg.get_all_aliases().is_some_and(|all| all.contains(&name))
             };
             let range = command.get_arguments().find(is_it)?.get_num_args()?;
@@ -233,7 +236,9 @@ mod tests {
     /// The options of a command and of those in it, with the words that lead there.
     fn options(command: &clap::Command, words: &[String], all: &mut Vec<(Vec<String>, String)>) {
         for arg in command.get_arguments() {
-            let takes = arg.get_num_args().is_some_and(|range| range.min_values() > 0);
+            let takes = arg
+                .get_num_args()
+                .is_some_and(|range| range.min_values() > 0);
             if let (Some(long), true) = (arg.get_long(), takes) {
                 all.push((words.to_vec(), format!("--{long}")));
             }
@@ -253,7 +258,9 @@ mod tests {
         let of = |words: &[String], more: &[&str]| -> Vec<String> {
             let line = words.iter().map(String::as_str).chain(more.iter().copied());
             let joined = joined(Cli::command(), line.map(OsString::from));
-            let texts = joined.into_iter().map(|text| text.into_string().expect("UTF-8"));
+            let texts = joined
+                .into_iter()
+                .map(|text| text.into_string().expect("UTF-8"));
             texts.skip(words.len()).collect()
         };
         for (words, option) in all {
@@ -267,7 +274,14 @@ mod tests {
                 assert_eq!(with(flag)[..2], [option.clone(), flag.into()], "{words:?}");
             }
         }
-        let line = ["sample", "--bbox=-1,-1,0,0", "--except", "-1:-4", "--spacing", "1"];
+        let line = [
+            "sample",
+            "--bbox=-1,-1,0,0",
+            "--except",
+            "-1:-4",
+            "--spacing",
+            "1",
+        ];
         let line = ["strew"].iter().chain(&line).map(OsString::from);
         assert!(Cli::try_parse_from(joined(Cli::command(), line)).is_ok());
     }

@@ -102,7 +102,10 @@ mod tests {
         };
         assert_eq!(text(b"\xef\xbb\xbf{}"), Ok("{}".into()));
         assert_eq!(text(b"{}"), Ok("{}".into()));
-        assert_eq!(text(b"\xff\xfe{\0"), Err("UTF-16 text; save it as UTF-8".into()));
+        assert_eq!(
+            text(b"\xff\xfe{\0"),
+            Err("UTF-16 text; save it as UTF-8".into())
+        );
         assert!(text(b"\xef\xbb").is_err_and(|error| error.contains("utf-8")));
     }
 

@@ -29,10 +29,26 @@ mod tests {
 
     #[test]
     fn titles_are_texts_in_any_script() {
-        for title in ["Bad Tölz", "Île-de-France", "東京 \"23\", a,b/c", "🌲", ".", "--x", &"ö".repeat(64)] {
+        for title in [
+            "Bad Tölz",
+            "Île-de-France",
+            "東京 \"23\", a,b/c",
+            "🌲",
+            ".",
+            "--x",
+            &"ö".repeat(64),
+        ] {
             assert!(is_title(title), "{title}");
         }
-        for no_title in ["", "a\nb", "\u{1b}[31m", "a\u{202e}b", "a\u{85}b", "\0", &"ö".repeat(65)] {
+        for no_title in [
+            "",
+            "a\nb",
+            "\u{1b}[31m",
+            "a\u{202e}b",
+            "a\u{85}b",
+            "\0",
+            &"ö".repeat(65),
+        ] {
             assert!(!is_title(no_title), "{no_title:?}");
         }
     }

@@ -27,8 +27,7 @@ pub struct LayerDraft {
 }
 
 /// The rule for names of layers, in words.
-pub(super) const NAME: &str =
-    "1 to 64 characters, none of them a control character or a line break, another name for each layer";
+pub(super) const NAME: &str = "1 to 64 characters, none of them a control character or a line break, another name for each layer";
 /// The rule for `clear_of`, in words.
 const CLEAR_OF: &str = "names of layers before this one, each with a finite distance above 0";
 

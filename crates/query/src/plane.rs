@@ -76,7 +76,9 @@ impl Draft {
                 "without a crs GeoJSON is in degrees of WGS 84 (RFC 7946), {place} is in {crs}, and coordinates are not converted"
             );
             let allowed = format!("a region in {crs} that says so, or crs={crs} if it is in {crs}");
-            seen.fault = seen.fault.or(Some(Fault::new(region, "EPSG:4326", detail, allowed)));
+            seen.fault = seen
+                .fault
+                .or(Some(Fault::new(region, "EPSG:4326", detail, allowed)));
         }
         match seen.fault {
             Some(fault) => Err(fault.into()),

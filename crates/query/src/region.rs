@@ -216,7 +216,8 @@ impl RegionDraft {
         let area = self.area()?;
         let bounds = area.bounds().filter(|bounds| !bounds.is_empty());
         // Polygons without area have no points, and are no fault.
-        let flat = || around([self].into_iter()).and_then(|[a, b, c, d]| Region::new([a, b], [c, d]).ok());
+        let flat =
+            || around([self].into_iter()).and_then(|[a, b, c, d]| Region::new([a, b], [c, d]).ok());
         let bounds = bounds.or_else(flat);
         let bounds = bounds.ok_or_else(|| {
             let detail = "empty: nothing is left of what it includes";

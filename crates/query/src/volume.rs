@@ -99,12 +99,7 @@ impl VolumeDraft {
         }
     }
 
-    fn prism(
-        &self,
-        path: &str,
-        polygons: &[Rings],
-        heights: [f64; 2],
-    ) -> Result<Volume, Fault> {
+    fn prism(&self, path: &str, polygons: &[Rings], heights: [f64; 2]) -> Result<Volume, Fault> {
         let [bottom, top] = heights.map(number);
         let fault = |detail: String| {
             let value = format!(

@@ -201,7 +201,13 @@ fn features_have_any_names_and_a_field_of_all() {
     // White in the upper half.
     let half = |_, row| if row < 50 { 255 } else { 0 };
     let raster = "über my+mask.tif";
-    geotiff(&folder.path().join(raster), [100, 100], 25832, [5e5, 5_301_000.0], half);
+    geotiff(
+        &folder.path().join(raster),
+        [100, 100],
+        25832,
+        [5e5, 5_301_000.0],
+        half,
+    );
     let mut map = municipalities(Some("EPSG:25832"));
     map["features"][0]["properties"]["key"] = json!("Bad Tölz, \"alt\"");
     map["features"][0]["properties"]["trees"] = json!(30.0);
@@ -210,8 +216,15 @@ fn features_have_any_names_and_a_field_of_all() {
     for flag in ["--field", "--raster"] {
         let csv = output(
             &[
-                "sample", "-q", "--format=csv", "--features", &path("map.json"), "--feature-id=key",
-                "--feature-count=trees", flag, &path(raster),
+                "sample",
+                "-q",
+                "--format=csv",
+                "--features",
+                &path("map.json"),
+                "--feature-id=key",
+                "--feature-count=trees",
+                flag,
+                &path(raster),
             ],
             "",
         );
@@ -220,15 +233,29 @@ fn features_have_any_names_and_a_field_of_all() {
         assert_eq!(rows.len(), 30);
         for row in rows {
             assert!(row.starts_with("\"Bad Tölz, \"\"alt\"\"\","), "{row}");
-            let y: f64 = row.rsplit(',').next().and_then(|y| y.parse().ok()).expect("a number");
+            let y: f64 = row
+                .rsplit(',')
+                .next()
+                .and_then(|y| y.parse().ok())
+                .expect("a number");
             assert!(y >= 5_300_500.0 - 10.0, "{row}");
         }
     }
     // Without area no number of points fits.
-    map["features"][0]["geometry"]["coordinates"] =
-        json!([[[5e5, 5_300_000.0], [5e5, 5_300_100.0], [5e5, 5_300_000.0], [5e5, 5_300_000.0]]]);
+    map["features"][0]["geometry"]["coordinates"] = json!([[
+        [5e5, 5_300_000.0],
+        [5e5, 5_300_100.0],
+        [5e5, 5_300_000.0],
+        [5e5, 5_300_000.0]
+    ]]);
     fs::write(path("flat.json"), map.to_string()).expect("writable");
-    let flat = ["sample", "-q", "--format=csv", "--features", &path("flat.json")];
+    let flat = [
+        "sample",
+        "-q",
+        "--format=csv",
+        "--features",
+        &path("flat.json"),
+    ];
     let message = refused(&[&flat[..], &["--feature-count=trees"]].concat(), 2);
     assert!(message.contains("has no area"), "{message}");
     let thin = output(&[&flat[..], &["--spacing=1000"]].concat(), "");
@@ -236,9 +263,19 @@ fn features_have_any_names_and_a_field_of_all() {
     // Degrees by RFC 7946 over a raster in metres.
     let degrees = r#"{"type": "Polygon", "coordinates": [[[8.9, 47.8], [9.1, 47.8], [9.1, 47.9], [8.9, 47.8]]]}"#;
     fs::write(path("degrees.json"), degrees).expect("writable");
-    let over = ["count", "--spacing=10", "--region", &path("degrees.json"), "--raster", &path(raster)];
+    let over = [
+        "count",
+        "--spacing=10",
+        "--region",
+        &path("degrees.json"),
+        "--raster",
+        &path(raster),
+    ];
     let message = refused(&over, 2);
-    assert!(message.contains("WGS 84") && message.contains("EPSG:25832"), "{message}");
+    assert!(
+        message.contains("WGS 84") && message.contains("EPSG:25832"),
+        "{message}"
+    );
     let said = ["sample", "-q", "--format=csv", "--crs=EPSG:25832"];
     output(&[&said[..], &over[1..]].concat(), "");
 }

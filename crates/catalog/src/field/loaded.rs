@@ -115,9 +115,11 @@ impl Fields {
         }
         if let Some(folder) = settings.folder() {
             match files::of_folder(folder) {
-                Ok(paths) => {
-                    open.extend(paths.into_iter().map(|path| Unbuilt::of_file(path, base, None)))
-                }
+                Ok(paths) => open.extend(
+                    paths
+                        .into_iter()
+                        .map(|path| Unbuilt::of_file(path, base, None)),
+                ),
                 Err(detail) => {
                     let source_name = format!("folder {}", folder.display());
                     refused.push((

@@ -103,7 +103,9 @@ pub(super) fn exactly(
                     "a region in which the field leaves points",
                 ),
                 0 => (
-                    alloc::format!("the region has no area: no point lies in it, down to a spacing of {spacing}"),
+                    alloc::format!(
+                        "the region has no area: no point lies in it, down to a spacing of {spacing}"
+                    ),
                     "a region with an area",
                 ),
                 _ => (

@@ -22,7 +22,8 @@ const COLLECTION: &str =
 const NAMES: &str = "a property that is text of 1 to 64 characters in one line, or a number, and tells features apart; \
                      without it features have the names 0, 1, 2, …";
 /// The rule for numbers of points.
-const COUNTS: &str = "a property that is an integer, 0 or more; a feature without it, or with null, has no points";
+const COUNTS: &str =
+    "a property that is an integer, 0 or more; a feature without it, or with null, has no points";
 
 /// Features of a body.
 pub(super) fn read(json: &RawValue) -> Checked<Vec<Feature>> {
@@ -84,7 +85,9 @@ fn features(json: &RawValue, names: [Option<&str>; 2]) -> Checked<Vec<Feature>> 
             continue;
         };
         if names[1].is_some() {
-            counted = counted.or(Some(false)).map(|found| found || feature.count.is_some());
+            counted = counted
+                .or(Some(false))
+                .map(|found| found || feature.count.is_some());
             feature.count = feature.count.or(Some(0));
         }
         if feature.count == Some(0) {
@@ -145,10 +148,12 @@ fn feature(
         None => i.to_string(),
         Some(id) => {
             let text = property(id).ok_or_else(|| Fault::missing(&field(id), NAMES))?;
-            let name = serde_json::from_str::<String>(text).ok().or_else(|| match integer(text) {
-                Some(whole) => Some(whole.to_string()),
-                None => text.parse::<f64>().ok().map(|_| text.to_owned()),
-            });
+            let name = serde_json::from_str::<String>(text)
+                .ok()
+                .or_else(|| match integer(text) {
+                    Some(whole) => Some(whole.to_string()),
+                    None => text.parse::<f64>().ok().map(|_| text.to_owned()),
+                });
             let name = name.filter(|name| is_title(name));
             name.ok_or_else(|| Fault::new(&field(id), text, "no name of a feature", NAMES))?
         }
@@ -156,7 +161,11 @@ fn feature(
     let count = count.and_then(|count| {
         let text = property(count)?;
         let wrong = || Fault::new(&field(count), text, "no number of points", COUNTS);
-        Some(integer(text).and_then(|count| u64::try_from(count).ok()).ok_or_else(wrong))
+        Some(
+            integer(text)
+                .and_then(|count| u64::try_from(count).ok())
+                .ok_or_else(wrong),
+        )
     });
     let count = count.transpose()?;
     let shape = ShapeDraft::Polygons(polygons, own.or_else(|| crs.cloned()));
@@ -174,7 +183,11 @@ fn feature(
 /// An integer of JSON, also one that is written as 7.0, as by tools in which every number is a float.
 fn integer(text: &str) -> Option<i64> {
     const EXACT: f64 = (1u64 << 53) as f64;
-    let whole = || text.parse().ok().filter(|v: &f64| v.fract() == 0.0 && v.abs() <= EXACT);
+    let whole = || {
+        text.parse()
+            .ok()
+            .filter(|v: &f64| v.fract() == 0.0 && v.abs() <= EXACT)
+    };
     text.parse().ok().or_else(|| whole().map(|v| v as i64))
 }
 
@@ -289,7 +302,13 @@ mod tests {
         ] {
             assert_eq!(named(id), Ok(name.into()));
         }
-        for wrong in [json!(null), json!(""), json!("a\nb"), json!(["a"]), json!(true)] {
+        for wrong in [
+            json!(null),
+            json!(""),
+            json!("a\nb"),
+            json!(["a"]),
+            json!(true),
+        ] {
             let fault = named(wrong).expect_err("refused");
             assert!(fault.contains("features[0].properties.id"), "{fault}");
         }

@@ -347,7 +347,8 @@ mod tests {
     /// RFC 7946, 3.1: geometries without coordinates are as good as null.
     #[test]
     fn empty_geometries_are_left_out() {
-        let of = |kind: &str, coordinates: Value| json!({ "type": kind, "coordinates": coordinates });
+        let of =
+            |kind: &str, coordinates: Value| json!({ "type": kind, "coordinates": coordinates });
         let ring = polygon()["coordinates"][0].clone();
         let empty = [
             of("Polygon", json!([])),

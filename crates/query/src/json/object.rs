@@ -234,14 +234,29 @@ pub(super) fn parse(bytes: &[u8]) -> Result<&RawValue, String> {
 
 /// Files of other kinds that are given in the place of JSON, by their first bytes.
 const KINDS: [(&[u8], &str); 10] = [
-    (&[0, 0, 0x27, 0x0a], "a shapefile; ogr2ogr map.geojson map.shp converts it"),
-    (b"SQLite format 3", "a GeoPackage or another database of SQLite; ogr2ogr map.geojson map.gpkg converts it"),
-    (b"fgb", "a file of FlatGeobuf; ogr2ogr map.geojson map.fgb converts it"),
+    (
+        &[0, 0, 0x27, 0x0a],
+        "a shapefile; ogr2ogr map.geojson map.shp converts it",
+    ),
+    (
+        b"SQLite format 3",
+        "a GeoPackage or another database of SQLite; ogr2ogr map.geojson map.gpkg converts it",
+    ),
+    (
+        b"fgb",
+        "a file of FlatGeobuf; ogr2ogr map.geojson map.fgb converts it",
+    ),
     (b"PAR1", "a file of Parquet"),
     (b"PK\x03\x04", "a zip file"),
     (&[0x1f, 0x8b], "compressed by gzip"),
-    (b"\x1e", "a text sequence (RFC 8142), and one FeatureCollection is read"),
-    (b"<", "XML, as KML and GML are; ogr2ogr map.geojson map.kml converts it"),
+    (
+        b"\x1e",
+        "a text sequence (RFC 8142), and one FeatureCollection is read",
+    ),
+    (
+        b"<",
+        "XML, as KML and GML are; ogr2ogr map.geojson map.kml converts it",
+    ),
     (b"II*\0", "a TIFF, a raster"),
     (b"\x89PNG", "a PNG, a picture"),
 ];
