@@ -139,7 +139,7 @@ const INTERRUPTED: u8 = 130;
 pub fn main(pages: fn() -> Pages) -> ExitCode {
     // Shells run the program with COMPLETE=SHELL to complete a line.
     CompleteEnv::with_factory(Cli::command).complete();
-    let done = match Cli::parse_from(joined(Cli::command(), std::env::args_os())).command {
+    let done = match Cli::parse_from(joined(&built(), std::env::args_os())).command {
         Command::Serve(args) => serve::run(&args, pages),
         Command::Sample(args) => sample::run(&args),
         Command::Export(args) => export::run(&args),
@@ -178,20 +178,25 @@ pub fn main(pages: fn() -> Pages) -> ExitCode {
     ExitCode::from(code)
 }
 
+/// The commands, whose flags know what they take.
+fn built() -> clap::Command {
+    let mut command = Cli::command();
+    command.build();
+    command
+}
+
 /// Arguments in which values that begin with a minus, as half of all ids do, are joined to their options: clap takes
 /// them for flags. What may be a flag by mistake, --word or -w, stays one.
-fn joined(mut command: clap::Command, given: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
-    command.build();
-    let mut command = &command;
+fn joined(mut command: &clap::Command, given: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut all: Vec<OsString> = vec![];
     let mut open = false;
     for argument in given {
         let text = argument.to_string_lossy();
-        let is_value = match text.strip_prefix('-') {
-            Some(rest) => {
-                !rest.is_empty() && !rest.starts_with('-') && rest.parse::<char>().is_err()
-            }
-            None => false,
+        let is_value = match text.as_bytes() {
+            [b'-'] | [b'-', b'-', ..] => false,
+            [b'-', letter] => !letter.is_ascii_alphabetic(),
+            [b'-', ..] => true,
+            _ => false,
         };
         if let Some(option) = all.last_mut().filter(|_| open && is_value) {
             option.push("=");
@@ -250,28 +255,21 @@ mod tests {
 
     #[test]
     fn the_value_of_any_option_may_begin_with_a_minus() {
-        let mut command = Cli::command();
-        command.build();
-        let mut all = vec![];
+        let (command, mut all) = (built(), vec![]);
         options(&command, &["strew".into()], &mut all);
         assert!(all.len() > 100, "{}", all.len());
-        let of = |words: &[String], more: &[&str]| -> Vec<String> {
-            let line = words.iter().map(String::as_str).chain(more.iter().copied());
-            let joined = joined(Cli::command(), line.map(OsString::from));
-            let texts = joined
-                .into_iter()
-                .map(|text| text.into_string().expect("UTF-8"));
-            texts.skip(words.len()).collect()
-        };
         for (words, option) in all {
-            let with = |value: &str| of(&words, &[&option, value, "-7"]);
-            for value in ["-1:-4", "-1,-1,0,0", "-0.5", "-.5", "-oak", "-3=10"] {
-                let expected = [format!("{option}={value}"), "-7".into()];
-                assert_eq!(with(value), expected, "{words:?}");
+            let with = |value: &str| -> Vec<OsString> {
+                let line = words.iter().map(String::as_str).chain([&*option, value]);
+                let joined = joined(&command, line.map(OsString::from));
+                joined[words.len()..].to_vec()
+            };
+            for value in ["-1:-4", "-1,-1,0,0", "-0.5", "-.5", "-7", "-oak", "-3=10"] {
+                assert_eq!(with(value), [&*format!("{option}={value}")], "{words:?}");
             }
             // A forgotten value is found out by the flag in its place.
             for flag in ["--spacing", "-q", "--", "-"] {
-                assert_eq!(with(flag)[..2], [option.clone(), flag.into()], "{words:?}");
+                assert_eq!(with(flag), [&*option, flag], "{words:?}");
             }
         }
         let line = [
@@ -283,6 +281,6 @@ mod tests {
             "1",
         ];
         let line = ["strew"].iter().chain(&line).map(OsString::from);
-        assert!(Cli::try_parse_from(joined(Cli::command(), line)).is_ok());
+        assert!(Cli::try_parse_from(joined(&command, line)).is_ok());
     }
 }

@@ -79,7 +79,7 @@ impl<T: Takes> QueryArgs<T> {
         let crs = self.defined()?;
         let (mut draft, source) = self.read(crs.as_ref())?;
         let catalog = self.field.load(&mut draft.values, config.tables()?)?;
-        let (draft, catalog) = self.strata.split(self.in_features(draft)?, catalog)?;
+        let (draft, catalog) = self.strata.split(draft, self.features()?, catalog)?;
         let catalog = config.with_worlds(catalog)?;
         let planned = config.planned(&draft, &catalog);
         let (planned, options) = planned.map_err(|error| source.refused(error))?;
@@ -105,7 +105,10 @@ impl<T: Takes> QueryArgs<T> {
         let (draft, source) = self.read(self.defined()?.as_ref())?;
         self.field.must_be_named(&draft.values)?;
         self.strata.must_be_absent()?;
-        let draft = self.in_features(draft)?;
+        let draft = match self.features()? {
+            Some(features) => draft.in_features(Ok(features)),
+            None => draft,
+        };
         let refused = |faults: Faults| source.refused(faults.into());
         draft.read().map_err(refused)?;
         Ok(draft)
@@ -209,15 +212,11 @@ impl<T: Takes> QueryArgs<T> {
         chunk.into_iter().chain(region).chain(features)
     }
 
-    /// A query of flags in each feature, if there are any, with the field of the flags.
-    fn in_features(&self, draft: Draft) -> Result<Draft, Failure> {
-        match &self.features {
-            Some(file) => Ok(draft.in_features(Ok(self.features(file)?))),
-            None => Ok(draft),
-        }
-    }
-
-    fn features(&self, file: &Path) -> Result<Vec<Feature>, Failure> {
+    /// The features of the flags, if there are any. Everything else that is given is common to all of them.
+    fn features(&self) -> Result<Option<Vec<Feature>>, Failure> {
+        let Some(file) = &self.features else {
+            return Ok(None);
+        };
         if self.space {
             refuse!(
                 "--features is flat; in space a polygon between two heights is a prism of --query"
@@ -235,7 +234,8 @@ impl<T: Takes> QueryArgs<T> {
         let bytes = read_file("--features", file)?;
         let source = Source::File(format!("--features {}", file.display()));
         let names = [self.feature_id.as_deref(), self.feature_count.as_deref()];
-        read_features(&bytes, names).map_err(|faults| source.refused(faults.into()))
+        let read = read_features(&bytes, names).map(Some);
+        read.map_err(|faults| source.refused(faults.into()))
     }
 
     /// A region that is no parameter.

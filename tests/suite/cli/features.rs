@@ -256,7 +256,8 @@ fn features_have_any_names_and_a_field_of_all() {
         "--features",
         &path("flat.json"),
     ];
-    let message = refused(&[&flat[..], &["--feature-count=trees"]].concat(), 2);
+    let counted = [&flat[..], &["--feature-count=trees"]].concat();
+    let message = crate::support::command::errors(&crate::support::command::run(&counted, ""));
     assert!(message.contains("has no area"), "{message}");
     let thin = output(&[&flat[..], &["--spacing=1000"]].concat(), "");
     assert!(!by_layer(&thin).contains_key("0"));
@@ -276,6 +277,29 @@ fn features_have_any_names_and_a_field_of_all() {
         message.contains("WGS 84") && message.contains("EPSG:25832"),
         "{message}"
     );
-    let said = ["sample", "-q", "--format=csv", "--crs=EPSG:25832"];
+    let said = ["sample", "-q", "--format=geojson", "--crs=EPSG:25832"];
     output(&[&said[..], &over[1..]].concat(), "");
+    // Each class in each feature.
+    let mut one = municipalities(Some("EPSG:25832"));
+    one["features"]
+        .as_array_mut()
+        .expect("features")
+        .truncate(1);
+    fs::write(path("one.json"), one.to_string()).expect("writable");
+    let csv = output(
+        &[
+            "sample",
+            "-q",
+            "--format=csv",
+            "--features",
+            &path("one.json"),
+            "--feature-id=key",
+            "--strata",
+            &path(raster),
+            "--classes=255=5,0=3",
+        ],
+        "",
+    );
+    let expected = [("09162000/255".into(), 5), ("09162000/0".into(), 3)];
+    assert_eq!(by_layer(&csv), BTreeMap::from(expected));
 }
