@@ -235,7 +235,7 @@ impl Polygon {
     pub(super) fn steps(&self, strip: [f64; 2], stepper: &mut Stepper) {
         let Stepper { steps, edges } = stepper;
         let [y0, _] = strip;
-        edges.clear();
+        let own = edges.len();
         let beyond = self.is_in_beyond(y0);
         let mut inside = beyond;
         for edge in self.edges.iter().chain(&self.flat) {
@@ -249,7 +249,7 @@ impl Polygon {
                 };
                 // Few edges, mostly in order already.
                 let is_after = |other: &&Reach| other.extent[0] > reach.extent[0];
-                let after = edges.iter().rev().take_while(is_after).count();
+                let after = edges[own..].iter().rev().take_while(is_after).count();
                 edges.insert(edges.len() - after, reach);
             }
         }
@@ -257,7 +257,7 @@ impl Polygon {
         steps.restart(state(inside));
         // Edges whose extents meet are tested together. The outline beyond them crosses every level of
         // the strip an even number of times, or every level an odd number.
-        let mut next = 0;
+        let mut next = own;
         while let Some(first) = edges.get(next) {
             steps.push(first.extent[0], State::Test);
             let start = next;
