@@ -92,9 +92,11 @@ Examples:
 
 #[cfg(test)]
 mod tests {
+    use std::ffi::OsString;
+
     use clap::CommandFactory as _;
 
-    use crate::cli::Cli;
+    use crate::cli::{Cli, built, joined};
 
     /// The words of a line; quotes hold one together, and what follows > or | is not ours.
     fn words(line: &str) -> Vec<String> {
@@ -117,7 +119,8 @@ mod tests {
             let help = command.get_after_long_help().map(ToString::to_string);
             let help = help.unwrap_or_else(|| panic!("{} has no examples", command.get_name()));
             for line in help.lines().skip(1) {
-                let taken = Cli::command().try_get_matches_from(words(line));
+                let given = joined(&built(), words(line).into_iter().map(OsString::from));
+                let taken = Cli::command().try_get_matches_from(given);
                 let taken = taken.unwrap_or_else(|error| panic!("{line}: {error}"));
                 assert_eq!(taken.subcommand_name(), Some(command.get_name()), "{line}");
             }

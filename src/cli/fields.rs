@@ -35,8 +35,7 @@ pub(super) struct FieldArgs {
         long,
         value_name = "MINX,MINY,MAXX,MAXY",
         help_heading = WHERE,
-        requires = "raster",
-        allow_hyphen_values = true
+        requires = "raster"
     )]
     raster_bbox: Option<String>,
 }
@@ -137,8 +136,10 @@ fn file(parameter: &Parameter, values: &Values, fields: &Fields) -> Option<Strin
         return None;
     };
     let endings = ["json", "toml", "png", "tif", "tiff", "npy"];
-    let ending = Path::new(given).extension();
+    let path = Path::new(given);
+    let ending = path.extension();
     let is_like_one = ending.is_some_and(|ending| endings.iter().any(|known| ending == *known));
-    let is_file = fields.get(given).is_none() && (is_like_one || given.contains('/'));
+    let is_one = || is_like_one || given.contains('/') || path.is_file();
+    let is_file = fields.get(given).is_none() && is_one();
     is_file.then(|| given.clone())
 }

@@ -33,7 +33,6 @@ pub(super) enum Command {
             long,
             value_name = "X,Y …",
             default_value = "2,1 3,3",
-            allow_hyphen_values = true,
             value_parser = pairs
         )]
         offsets: Pairs,

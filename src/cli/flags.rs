@@ -259,7 +259,6 @@ fn argument(parameter: &'static Parameter, default: Option<&'static str>) -> Arg
     };
     let allowed = parameter.allowed();
     let long = format!("{about}{default}\n\nAllowed: {allowed}");
-    let is_name = parameter.shape.is_of_names() || name == "profile" || name == "map";
     let argument = match parameter.group {
         Group::Arrangement => Arg::new(name).required(true),
         group => Arg::new(name)
@@ -281,8 +280,7 @@ fn argument(parameter: &'static Parameter, default: Option<&'static str>) -> Arg
         .hide_short_help(parameter.is_rare)
         .action(ArgAction::Set)
         .add(candidates::completer(parameter))
-        // Negative numbers, even where none is allowed: the query refuses them in better words.
-        .allow_hyphen_values(!is_name)
+        .allow_hyphen_values(parameter.group == Group::Arrangement)
 }
 
 /// The value in the usage of a flag.

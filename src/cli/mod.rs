@@ -39,7 +39,7 @@ mod threads;
 mod watcher;
 mod worlds;
 
-use std::process::ExitCode;
+use std::{ffi::OsString, process::ExitCode};
 
 use clap::{CommandFactory as _, Parser, Subcommand};
 use clap_complete::CompleteEnv;
@@ -139,7 +139,7 @@ const INTERRUPTED: u8 = 130;
 pub fn main(pages: fn() -> Pages) -> ExitCode {
     // Shells run the program with COMPLETE=SHELL to complete a line.
     CompleteEnv::with_factory(Cli::command).complete();
-    let done = match Cli::parse().command {
+    let done = match Cli::parse_from(joined(&built(), std::env::args_os())).command {
         Command::Serve(args) => serve::run(&args, pages),
         Command::Sample(args) => sample::run(&args),
         Command::Export(args) => export::run(&args),
@@ -178,6 +178,48 @@ pub fn main(pages: fn() -> Pages) -> ExitCode {
     ExitCode::from(code)
 }
 
+/// The commands, whose flags know what they take.
+fn built() -> clap::Command {
+    let mut command = Cli::command();
+    command.build();
+    command
+}
+
+/// Arguments in which values that begin with a minus, as half of all ids do, are joined to their options: clap takes
+/// them for flags. What may be a flag by mistake, --word or -w, stays one.
+fn joined(mut command: &clap::Command, given: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut all: Vec<OsString> = vec![];
+    let mut open = false;
+    for argument in given {
+        let text = argument.to_string_lossy();
+        let is_value = match text.as_bytes() {
+            [b'-'] | [b'-', b'-', ..] => false,
+            [b'-', letter] => !letter.is_ascii_alphabetic(),
+            [b'-', ..] => true,
+            _ => false,
+        };
+        if let Some(option) = all.last_mut().filter(|_| open && is_value) {
+            option.push("=");
+            option.push(&argument);
+            open = false;
+            continue;
+        }
+        let takes = |name: &str| {
+            let is_it = |arg: &&clap::Arg| {
+                arg.get_long_and_visible_aliases()
+                    .is_some_and(|all| all.contains(&name))
+                    || arg.get_all_aliases().is_some_and(|all| all.contains(&name))
+            };
+            let range = command.get_arguments().find(is_it)?.get_num_args()?;
+            Some(range.min_values() > 0)
+        };
+        open = text.strip_prefix("--").and_then(takes) == Some(true);
+        command = command.find_subcommand(&argument).unwrap_or(command);
+        all.push(argument);
+    }
+    all
+}
+
 /// The text of an error and of its causes, each once.
 fn in_full(error: &anyhow::Error) -> String {
     error.chain().fold(String::new(), |text, cause| {
@@ -190,4 +232,55 @@ fn in_full(error: &anyhow::Error) -> String {
             format!("{text}: {cause}")
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The options of a command and of those in it, with the words that lead there.
+    fn options(command: &clap::Command, words: &[String], all: &mut Vec<(Vec<String>, String)>) {
+        for arg in command.get_arguments() {
+            let takes = arg
+                .get_num_args()
+                .is_some_and(|range| range.min_values() > 0);
+            if let (Some(long), true) = (arg.get_long(), takes) {
+                all.push((words.to_vec(), format!("--{long}")));
+            }
+        }
+        for inner in command.get_subcommands() {
+            options(inner, &[words, &[inner.get_name().into()]].concat(), all);
+        }
+    }
+
+    #[test]
+    fn the_value_of_any_option_may_begin_with_a_minus() {
+        let (command, mut all) = (built(), vec![]);
+        options(&command, &["strew".into()], &mut all);
+        assert!(all.len() > 100, "{}", all.len());
+        for (words, option) in all {
+            let with = |value: &str| -> Vec<OsString> {
+                let line = words.iter().map(String::as_str).chain([&*option, value]);
+                let joined = joined(&command, line.map(OsString::from));
+                joined[words.len()..].to_vec()
+            };
+            for value in ["-1:-4", "-1,-1,0,0", "-0.5", "-.5", "-7", "-oak", "-3=10"] {
+                assert_eq!(with(value), [&*format!("{option}={value}")], "{words:?}");
+            }
+            // A forgotten value is found out by the flag in its place.
+            for flag in ["--spacing", "-q", "--", "-"] {
+                assert_eq!(with(flag), [&*option, flag], "{words:?}");
+            }
+        }
+        let line = [
+            "sample",
+            "--bbox=-1,-1,0,0",
+            "--except",
+            "-1:-4",
+            "--spacing",
+            "1",
+        ];
+        let line = ["strew"].iter().chain(&line).map(OsString::from);
+        assert!(Cli::try_parse_from(joined(&command, line)).is_ok());
+    }
 }

@@ -38,7 +38,7 @@ pub(super) struct QueryArgs<T: Takes> {
     pub(super) space: bool,
     /// The region: a chunk of the world grid. Coordinates are relative to its corner,
     /// SIZE·CX,SIZE·CY.
-    #[arg(long, value_name = "SIZE/CX/CY[/CZ]", help_heading = WHERE, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SIZE/CX/CY[/CZ]", help_heading = WHERE)]
     chunk: Option<String>,
     /// The region: the polygons of a GeoJSON file; - is standard input.
     #[arg(long, value_name = "FILE", help_heading = WHERE)]
@@ -79,7 +79,7 @@ impl<T: Takes> QueryArgs<T> {
         let crs = self.defined()?;
         let (mut draft, source) = self.read(crs.as_ref())?;
         let catalog = self.field.load(&mut draft.values, config.tables()?)?;
-        let (draft, catalog) = self.strata.split(draft, catalog)?;
+        let (draft, catalog) = self.strata.split(draft, self.features()?, catalog)?;
         let catalog = config.with_worlds(catalog)?;
         let planned = config.planned(&draft, &catalog);
         let (planned, options) = planned.map_err(|error| source.refused(error))?;
@@ -103,10 +103,14 @@ impl<T: Takes> QueryArgs<T> {
     /// The query for a server, whose tables and names this program does not know.
     pub(super) fn for_server(&self) -> Result<Draft, Failure> {
         let (draft, source) = self.read(self.defined()?.as_ref())?;
-        let refused = |faults: Faults| source.refused(faults.into());
-        draft.read().map_err(refused)?;
         self.field.must_be_named(&draft.values)?;
         self.strata.must_be_absent()?;
+        let draft = match self.features()? {
+            Some(features) => draft.in_features(Ok(features)),
+            None => draft,
+        };
+        let refused = |faults: Faults| source.refused(faults.into());
+        draft.read().map_err(refused)?;
         Ok(draft)
     }
 
@@ -162,10 +166,9 @@ impl<T: Takes> QueryArgs<T> {
             };
             name(&mut values);
             let draft = Draft::of(values);
-            let draft = match (self.region()?, &self.features) {
-                (Some(region), _) => draft.within(Ok(region)),
-                (None, Some(file)) => draft.in_features(Ok(self.features(file)?)),
-                (None, None) => draft,
+            let draft = match self.region()? {
+                Some(region) => draft.within(Ok(region)),
+                None => draft,
             };
             return Ok((draft, Source::Flags));
         };
@@ -209,7 +212,11 @@ impl<T: Takes> QueryArgs<T> {
         chunk.into_iter().chain(region).chain(features)
     }
 
-    fn features(&self, file: &Path) -> Result<Vec<Feature>, Failure> {
+    /// The features of the flags, if there are any. Everything else that is given is common to all of them.
+    fn features(&self) -> Result<Option<Vec<Feature>>, Failure> {
+        let Some(file) = &self.features else {
+            return Ok(None);
+        };
         if self.space {
             refuse!(
                 "--features is flat; in space a polygon between two heights is a prism of --query"
@@ -227,7 +234,8 @@ impl<T: Takes> QueryArgs<T> {
         let bytes = read_file("--features", file)?;
         let source = Source::File(format!("--features {}", file.display()));
         let names = [self.feature_id.as_deref(), self.feature_count.as_deref()];
-        read_features(&bytes, names).map_err(|faults| source.refused(faults.into()))
+        let read = read_features(&bytes, names).map(Some);
+        read.map_err(|faults| source.refused(faults.into()))
     }
 
     /// A region that is no parameter.

@@ -23,13 +23,13 @@ use super::{Failure, flags::WHERE, refuse};
 #[group(skip)]
 pub(super) struct StrataArgs {
     /// The classes of a raster, each with its own points as a layer of its number: a GeoTIFF, PNG or npy of integers.
-    /// Without a region, in all of it.
+    /// Without a region, in all of it; with --features in each of them, as layers feature/class.
     #[arg(
         long,
         value_name = "FILE",
         help_heading = WHERE,
         requires = "classes",
-        conflicts_with_all = ["query", "features", "raster", "space"]
+        conflicts_with_all = ["query", "raster", "space"]
     )]
     strata: Option<PathBuf>,
     /// The classes of --strata, with their numbers of points, such as 3=100,7=50, or with one amount for each, such as
@@ -39,13 +39,18 @@ pub(super) struct StrataArgs {
 }
 
 impl StrataArgs {
-    /// The query in each class, if there are any, with their fields.
+    /// The query in each feature, and there in each class, if there are any, with their fields.
     pub(super) fn split(
         &self,
         mut draft: Draft,
+        features: Option<Vec<Feature>>,
         catalog: Catalog,
     ) -> Result<(Draft, Catalog), Failure> {
         let (Some(file), Some(classes)) = (&self.strata, &self.classes) else {
+            let draft = match features {
+                Some(features) => draft.in_features(Ok(features)),
+                None => draft,
+            };
             return Ok((draft, catalog));
         };
         let given = draft.values.given().map(|(parameter, _)| parameter);
@@ -67,17 +72,23 @@ impl StrataArgs {
                 amount.name.replace('_', "-")
             );
         }
+        let mut own = features.iter().flatten().map(|feature| feature.count);
+        if has_counts && own.any(|count| count.is_some()) {
+            refuse!(
+                "--feature-count beside --classes with numbers of points; allowed: one of both"
+            );
+        }
         let mut fields = catalog.fields().clone();
-        let mut features = vec![];
+        let mut parts = vec![];
         for (class, count) in classes {
             let field = field(file, class, &catalog)?;
-            if let (Ok(None), Some(frame)) = (&draft.region, field.bbox) {
+            if let (Ok(None), Some(frame), None) = (&draft.region, field.bbox, &features) {
                 draft.region = Ok(Some(RegionDraft {
                     path: "strata".into(),
                     shape: ShapeDraft::Box(frame),
                 }));
             }
-            features.push(Feature {
+            parts.push(Feature {
                 name: class.to_string(),
                 region: None,
                 field: Some(Document::Name(field.name.clone()).into()),
@@ -85,7 +96,18 @@ impl StrataArgs {
             });
             fields.insert(field);
         }
-        Ok((draft.in_features(Ok(features)), catalog.with_fields(fields)))
+        if let Some(features) = features {
+            let of = |feature: &Feature, class: &Feature| Feature {
+                name: format!("{}/{}", feature.name, class.name),
+                region: feature.region.clone(),
+                field: class.field.clone(),
+                count: class.count.or(feature.count),
+            };
+            let each = features.iter();
+            let each = each.flat_map(|feature| parts.iter().map(move |class| of(feature, class)));
+            parts = each.collect();
+        }
+        Ok((draft.in_features(Ok(parts)), catalog.with_fields(fields)))
     }
 
     /// Refuses classes: a server has its own fields.

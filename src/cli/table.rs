@@ -59,7 +59,7 @@ pub(super) struct Import {
     #[arg(value_name = "TEXT")]
     text: PathBuf,
     /// The number alpha.
-    #[arg(long, allow_hyphen_values = true)]
+    #[arg(long)]
     alpha: Option<Alpha>,
     /// t/r of the published tables, such as 191861/110771, instead of alpha = 1 + t/(t + r).
     #[arg(long, value_name = "T/R", value_parser = of_published)]
@@ -100,7 +100,7 @@ pub(super) struct Which {
     #[arg(long, conflicts_with = "file")]
     profile: Option<String>,
     /// Only loaded tables of this alpha.
-    #[arg(long, conflicts_with = "file", allow_hyphen_values = true)]
+    #[arg(long, conflicts_with = "file")]
     alpha: Option<Alpha>,
     /// Only loaded tables with a map of this size: s, m or l.
     #[arg(long, conflicts_with = "file")]

@@ -30,8 +30,23 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// # Errors
 /// As [`read`], and [`io::ErrorKind::InvalidData`] if it is not UTF-8.
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
-    let not_text = |error| io::Error::new(io::ErrorKind::InvalidData, error);
-    String::from_utf8(read(path, most)?).map_err(not_text)
+    let not_text = |problem: String| io::Error::new(io::ErrorKind::InvalidData, problem);
+    let content = read(path, most)?;
+    let text = without_mark(&content).map_err(|problem| not_text(problem.into()))?;
+    let text = std::str::from_utf8(text).map_err(|error| not_text(error.to_string()))?;
+    Ok(text.to_owned())
+}
+
+/// Text without the byte order mark of UTF-8, which editors and GIS write (RFC 8259, 8.1, allows to skip it).
+///
+/// # Errors
+/// Names UTF-16 or UTF-32, which the mark says.
+pub fn without_mark(bytes: &[u8]) -> Result<&[u8], &'static str> {
+    match bytes {
+        [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => Err("UTF-32 text; save it as UTF-8"),
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => Err("UTF-16 text; save it as UTF-8"),
+        [0xef, 0xbb, 0xbf, text @ ..] | text => Ok(text),
+    }
 }
 
 /// Opens a regular file.
@@ -75,6 +90,23 @@ mod tests {
         assert_eq!(kind(&path, 4), io::ErrorKind::FileTooLarge);
         assert_eq!(kind(folder.path(), 9), io::ErrorKind::InvalidInput);
         assert_eq!(kind(&folder.path().join("no"), 9), io::ErrorKind::NotFound);
+    }
+
+    #[test]
+    fn the_mark_of_utf_8_is_skipped_and_that_of_others_named() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("file");
+        let text = |bytes: &[u8]| {
+            std::fs::write(&path, bytes).expect("writable");
+            read_text(&path, 99).map_err(|error| error.to_string())
+        };
+        assert_eq!(text(b"\xef\xbb\xbf{}"), Ok("{}".into()));
+        assert_eq!(text(b"{}"), Ok("{}".into()));
+        assert_eq!(
+            text(b"\xff\xfe{\0"),
+            Err("UTF-16 text; save it as UTF-8".into())
+        );
+        assert!(text(b"\xef\xbb").is_err_and(|error| error.contains("utf-8")));
     }
 
     #[cfg(target_os = "linux")]

@@ -63,6 +63,10 @@ impl Output {
             Some(crs) if crs.is_geographic() => Some(
                 "points are even in degrees, not on the ground: use a projected plane, such as a UTM zone",
             ),
+            Some(_) if self.encoding == Encoding::Geojsonseq => Some(
+                "text sequences (RFC 8142) have no place for a reference system, so readers take coordinates for degrees \
+                 of longitude and latitude: use geojson, or parquet",
+            ),
             Some(_) => None,
         }
     }

@@ -12,6 +12,7 @@ use strew_error::Checked;
 use super::{
     Draft, LayerDraft, RegionDraft, ShapeDraft, Value, Values, groups,
     parameters::{COUNT, EXCEPT, FIELD, LOD, ONLY},
+    region::around,
 };
 
 /// A part of the plane with a name.
@@ -33,9 +34,11 @@ impl Draft {
     #[must_use]
     pub fn in_features(mut self, features: Checked<Vec<Feature>>) -> Self {
         if matches!(self.region, Ok(None)) {
+            let known = features.as_deref().unwrap_or_default().iter();
+            let frame = around(known.filter_map(|feature| feature.region.as_ref()));
             self.region = Ok(Some(RegionDraft {
                 path: "features".into(),
-                shape: ShapeDraft::Box(around(features.as_deref().unwrap_or_default())),
+                shape: ShapeDraft::Box(frame.unwrap_or([0.0, 0.0, 1.0, 1.0])),
             }));
         }
         if self.values.read().is_err() {
@@ -75,28 +78,5 @@ impl Draft {
             layers.map(layer).collect()
         });
         self
-    }
-}
-
-/// A box around all features, whose upper sides belong to none of them.
-fn around(features: &[Feature]) -> [f64; 4] {
-    let rings = features.iter().flat_map(|feature| {
-        match feature.region.as_ref().map(|region| &region.shape) {
-            Some(ShapeDraft::Polygons(polygons, _)) => polygons.iter().flatten().collect(),
-            _ => vec![],
-        }
-    });
-    let none = [
-        f64::INFINITY,
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-        f64::NEG_INFINITY,
-    ];
-    let all = rings.flatten().fold(none, |[a, b, c, d], &[x, y]| {
-        [a.min(x), b.min(y), c.max(x.next_up()), d.max(y.next_up())]
-    });
-    match all.iter().all(|v| v.is_finite()) {
-        true => all,
-        false => [0.0, 0.0, 1.0, 1.0],
     }
 }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use serde_json::Value as Json;
-use strew_config::name::is_name;
+use strew_config::name::is_title;
 use strew_error::{Checked, Fault, Faults, Together as _, faults::all, number};
 
 use super::{
@@ -27,8 +27,7 @@ pub struct LayerDraft {
 }
 
 /// The rule for names of layers, in words.
-pub(super) const NAME: &str =
-    "1 to 64 ASCII letters, digits, _, - and ., not dots alone, another name for each layer";
+pub(super) const NAME: &str = "1 to 64 characters, none of them a control character or a line break, another name for each layer";
 /// The rule for `clear_of`, in words.
 const CLEAR_OF: &str = "names of layers before this one, each with a finite distance above 0";
 
@@ -137,7 +136,7 @@ impl LayerDraft {
         };
         let detail = if before.contains(&Some(&name)) {
             "an earlier layer has this name"
-        } else if !is_name(&name) {
+        } else if !is_title(&name) {
             "not a name of layers"
         } else {
             return Ok(name);

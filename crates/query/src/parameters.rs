@@ -12,6 +12,7 @@ use strew_encode::{
 use crate::{
     defaults::{DEFAULT_ALPHA, DEFAULT_PROFILE, MOST_PARTS},
     parameter::{Group, Parameter},
+    schema::TITLE,
     shape::Shape,
     spread::Spread,
 };
@@ -320,7 +321,7 @@ parameters! {
         about: "The one variant whose points are wanted, of those that are evenly spread. Beside layers: the one \
                 layer.",
         group: Group::Attributes,
-        shape: Shape::Pattern("^[A-Za-z0-9_.-]{1,64}$"),
+        shape: Shape::Pattern(TITLE),
         allowed: Some("one of the names in variants, with spread even or joint; or the name of a layer"),
         default: Some("all of them"),
         example: "oak",

@@ -7,6 +7,9 @@ use strew_error::{Checked, Fault};
 
 use super::{Draft, LayerDraft, RegionDraft, Set, parameters::CRS};
 
+/// Longitude and latitude, the plane of GeoJSON that states none.
+const WGS_84: u16 = 4326;
+
 /// The planes seen so far.
 #[derive(Default)]
 struct Seen {
@@ -41,9 +44,12 @@ impl Draft {
         let regions = [self.region.as_ref().ok().and_then(Option::as_ref)]
             .into_iter()
             .chain(regions);
+        let mut degrees = None;
         for region in regions.flatten() {
             RegionDraft::each_plane(region, &mut |field, crs| seen.add(field, crs));
+            degrees = degrees.or(region.in_degrees());
         }
+        let degrees = degrees.filter(|_| seen.first.is_none() && stated.is_none());
         for set in sets {
             let layer = match set.name.as_str() {
                 "" => String::new(),
@@ -62,6 +68,17 @@ impl Draft {
         }
         if let Some(crs) = stated {
             seen.add(CRS.name, crs);
+        }
+        if let (Some(region), Some((place, crs))) = (degrees, &seen.first)
+            && !crs.is_plane_of(&Crs::epsg(WGS_84))
+        {
+            let detail = format!(
+                "without a crs GeoJSON is in degrees of WGS 84 (RFC 7946), {place} is in {crs}, and coordinates are not converted"
+            );
+            let allowed = format!("a region in {crs} that says so, or crs={crs} if it is in {crs}");
+            seen.fault = seen
+                .fault
+                .or(Some(Fault::new(region, "EPSG:4326", detail, allowed)));
         }
         match seen.fault {
             Some(fault) => Err(fault.into()),

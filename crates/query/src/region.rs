@@ -26,6 +26,50 @@ pub(super) const REGION: &str =
 /// The rings of a polygon: the outer one, then holes.
 pub type Rings = Vec<Vec<[f64; 2]>>;
 
+/// Polygons, each with the polygons of its holes. Those that are empty or lie on one line have no points and are left
+/// out.
+///
+/// # Errors
+/// Says what is wrong: there is none that is not empty, or a ring cannot be one.
+pub(super) fn surfaces(polygons: &[Rings]) -> Result<Vec<(Polygon, Vec<Polygon>)>, String> {
+    // Two different positions in all.
+    let is_flat = |ring: &[[f64; 2]]| match ring {
+        [] => true,
+        [first, .., _] if ring.len() > 2 => {
+            let second = ring.iter().find(|p| *p != first).unwrap_or(first);
+            ring.iter().all(|p| p == first || p == second)
+        }
+        _ => false,
+    };
+    let is_empty = |rings: &Rings| rings.first().is_none_or(Vec::is_empty);
+    if polygons.iter().all(is_empty) {
+        return Err("there is no polygon, or empty ones alone".into());
+    }
+    let kept = polygons.iter().enumerate();
+    let kept = kept.filter(|(_, rings)| rings.first().is_some_and(|ring| !is_flat(ring)));
+    let read = |(i, rings): (usize, &Rings)| {
+        let rings: Vec<_> = rings.iter().filter(|ring| !is_flat(ring)).collect();
+        Polygon::with_holes(&rings).map_err(|error| match polygons.len() {
+            1 => error.to_string(),
+            _ => format!("polygon {i}: {error}"),
+        })
+    };
+    kept.map(read).collect()
+}
+
+/// A box around the polygons of some regions, whose upper sides belong to none of them.
+pub(super) fn around<'a>(regions: impl Iterator<Item = &'a RegionDraft>) -> Option<[f64; 4]> {
+    let rings = regions.flat_map(|region| match &region.shape {
+        ShapeDraft::Polygons(polygons, _) => polygons.iter().flatten().flatten(),
+        _ => [].iter().flatten().flatten(),
+    });
+    let [low, high] = [f64::INFINITY, f64::NEG_INFINITY];
+    let all = rings.fold([low, low, high, high], |[a, b, c, d], &[x, y]| {
+        [a.min(x), b.min(y), c.max(x.next_up()), d.max(y.next_up())]
+    });
+    all.iter().all(|v| v.is_finite()).then_some(all)
+}
+
 /// A region as it was given, not checked. `path` names it in faults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegionDraft {
@@ -171,6 +215,10 @@ impl RegionDraft {
         }
         let area = self.area()?;
         let bounds = area.bounds().filter(|bounds| !bounds.is_empty());
+        // Polygons without area have no points, and are no fault.
+        let flat =
+            || around([self].into_iter()).and_then(|[a, b, c, d]| Region::new([a, b], [c, d]).ok());
+        let bounds = bounds.or_else(flat);
         let bounds = bounds.ok_or_else(|| {
             let detail = "empty: nothing is left of what it includes";
             Faults::from(Fault::new(&self.path, self.echo(), detail, REGION))
@@ -204,6 +252,19 @@ impl RegionDraft {
                 }
             }
             _ => {}
+        }
+    }
+
+    /// The field of the first polygons that state no plane and may be degrees of longitude and latitude.
+    pub(super) fn in_degrees(&self) -> Option<&str> {
+        match &self.shape {
+            ShapeDraft::Polygons(polygons, None) => {
+                let mut all = polygons.iter().flatten().flatten();
+                let is_degrees = |[x, y]: &[f64; 2]| x.abs() <= 180.0 && y.abs() <= 90.0;
+                all.all(is_degrees).then_some(&*self.path)
+            }
+            ShapeDraft::Combined(include, _) => include.iter().flatten().find_map(Self::in_degrees),
+            _ => None,
         }
     }
 
@@ -336,21 +397,10 @@ impl RegionDraft {
             );
             Fault::new(&self.path, value, detail, POLYGON.allowed())
         };
-        let read = |(i, rings): (usize, &Rings)| {
-            Polygon::new(rings)
-                .map(Area::from)
-                .map_err(|error| match polygons.len() {
-                    1 => fault(error.to_string()),
-                    _ => fault(format!("polygon {i}: {error}")),
-                })
-        };
-        let areas: Vec<Area> = (polygons.iter().enumerate())
-            .map(read)
-            .collect::<Result<_, _>>()?;
-        if areas.is_empty() {
-            return Err(fault("there is no polygon".into()));
-        }
-        Ok(Area::any_of(areas))
+        let surfaces = surfaces(polygons).map_err(fault)?.into_iter();
+        Ok(Area::any_of(surfaces.map(|(exterior, holes)| {
+            Area::from(exterior).without(holes.into_iter().map(Area::from))
+        })))
     }
 
     fn chunk(&self, size: f64, at: [i64; 2]) -> Result<Region, Fault> {

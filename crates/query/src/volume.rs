@@ -10,6 +10,7 @@ use strew_error::{Checked, Fault, number};
 use crate::{
     lists::listed,
     parameter::Group,
+    region::{Rings, surfaces},
     space::{BALL, BOX},
     values::Values,
 };
@@ -30,7 +31,7 @@ pub enum VolumeDraft {
     /// A center and a radius.
     Ball([f64; 3], f64),
     /// Polygons with their holes, between two heights.
-    Prism(Vec<Vec<Vec<[f64; 2]>>>, [f64; 2]),
+    Prism(Vec<Rings>, [f64; 2]),
     /// A cube of the world grid of this size; answers are relative to its lower corner.
     Chunk(f64, [i64; 3]),
 }
@@ -98,12 +99,7 @@ impl VolumeDraft {
         }
     }
 
-    fn prism(
-        &self,
-        path: &str,
-        polygons: &[Vec<Vec<[f64; 2]>>],
-        heights: [f64; 2],
-    ) -> Result<Volume, Fault> {
+    fn prism(&self, path: &str, polygons: &[Rings], heights: [f64; 2]) -> Result<Volume, Fault> {
         let [bottom, top] = heights.map(number);
         let fault = |detail: String| {
             let value = format!(
@@ -116,22 +112,16 @@ impl VolumeDraft {
         if heights[0] == heights[1] {
             return Err(fault(format!("empty: bottom and top are both {bottom}")));
         }
-        let read = |(i, rings): (usize, &Vec<Vec<[f64; 2]>>)| {
-            let prism = Polygon::new(rings).and_then(|base| Prism::new(base, heights));
-            prism
-                .map(Volume::from)
-                .map_err(|error| match polygons.len() {
-                    1 => fault(error.to_string()),
-                    _ => fault(format!("polygon {i}: {error}")),
-                })
+        let prism = |base: Polygon| {
+            let prism = Prism::new(base, heights).map(Volume::from);
+            prism.map_err(|error| fault(error.to_string()))
         };
-        let volumes: Vec<Volume> = (polygons.iter().enumerate())
-            .map(read)
-            .collect::<Result<_, _>>()?;
-        if volumes.is_empty() {
-            return Err(fault("there is no polygon".into()));
-        }
-        Ok(Volume::any_of(volumes))
+        let read = |(base, holes): (Polygon, Vec<Polygon>)| {
+            let holes: Vec<_> = holes.into_iter().map(prism).collect::<Result<_, _>>()?;
+            Ok(prism(base)?.without(holes))
+        };
+        let volumes = surfaces(polygons).map_err(fault)?.into_iter().map(read);
+        Ok(Volume::any_of(volumes.collect::<Result<Vec<_>, _>>()?))
     }
 
     /// As answers echo it, and as a query's body has it.

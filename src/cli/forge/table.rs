@@ -30,7 +30,7 @@ pub(super) struct TableArgs {
     #[arg(long, default_value = DEFAULT_PROFILE)]
     profile: String,
     /// The number alpha.
-    #[arg(long, default_value = DEFAULT_ALPHA, allow_hyphen_values = true)]
+    #[arg(long, default_value = DEFAULT_ALPHA)]
     alpha: Alpha,
     /// Make a table of points in space: three dimensions. Its profiles are blue and spaced.
     #[arg(long, conflicts_with = "target")]

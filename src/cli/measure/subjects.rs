@@ -16,12 +16,7 @@ pub(super) struct Subjects {
     #[arg(long, value_name = "SEED", requires = "table")]
     pub(super) window_seed: Vec<u64>,
     /// With --table of points in space: the least corner of the windows, in mean spacings [default: 0,0,0].
-    #[arg(
-        long,
-        value_name = "X,Y,Z",
-        requires = "table",
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "X,Y,Z", requires = "table")]
     pub(super) window_at: Option<Corner>,
     /// With --table of points in space: the seed of the 60 places whose small windows show a local lattice.
     #[arg(long, value_name = "SEED", requires = "table", default_value_t = 12)]

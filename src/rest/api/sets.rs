@@ -3,7 +3,7 @@
 
 use serde_json::{Map, Value, json};
 use strew_query::{
-    Group, MOST_FEATURES, NAME, Parameter, groups, of,
+    Group, MOST_FEATURES, Parameter, TITLE, groups, of,
     parameters::{COUNT, EXCEPT, LOD, ONLY, PERIODIC, SEED, WORLD},
     schema,
 };
@@ -165,7 +165,7 @@ fn layer_of(set: &'static [Group], region: &str) -> Value {
     let mut properties = members(set);
     let others = json!({
         "name": {
-            "type": "string", "pattern": format!("^{NAME}$"),
+            "type": "string", "pattern": TITLE,
             "description": "The layer's name; each layer has another one.",
         },
         "region": reference(region),

@@ -2,6 +2,8 @@
 
 use std::{collections::BTreeMap, fs, path::Path};
 
+use serde_json::{Value, json};
+
 use super::{
     geo::{geo, geotiff, municipalities},
     output, refused,
@@ -62,7 +64,7 @@ fn each_feature_has_its_own_number_of_points() {
             &["--feature-id=name", "--count=1"][..],
             "features[0].properties.name",
         ),
-        (&["--feature-count=key"], "is no number of points"),
+        (&["--feature-count=key"], "features[0].properties.key"),
         (
             &["--feature-count=trees", "--count=1"],
             "--count beside --feature-count trees",
@@ -156,4 +158,148 @@ fn each_class_of_a_raster_has_its_own_number_of_points() {
         message.contains("class 9.count 5: no point is left here"),
         "{message}"
     );
+}
+
+/// RFC 7946, 3.1.6 and 3.1, and RFC 8259, 8.1: what files of countries and of GIS have in them changes no number.
+#[test]
+fn holes_empty_geometries_and_byte_order_marks_are_read_as_their_standards_say() {
+    let square = |x: f64, side: f64| {
+        let end = x + side;
+        json!([[x, x], [end, x], [end, end], [x, end], [x, x]])
+    };
+    let (land, lake, sea) = (square(0.0, 20.0), square(5.0, 8.0), square(30.0, 4.0));
+    let of = |rings: Value| json!({ "type": "Polygon", "coordinates": rings });
+    let count = |text: String| -> u64 {
+        let printed = output(&["count", "--region=-", "--spacing=1"], &text);
+        let printed = String::from_utf8(printed).expect("UTF-8");
+        printed.trim().parse().expect("a number")
+    };
+    let plain = count(of(json!([land])).to_string());
+    let one = count(of(json!([land, lake])).to_string());
+    assert!((330..=340).contains(&one), "{one}");
+    assert_eq!(count(of(json!([land, lake, lake])).to_string()), one);
+    assert_eq!(count(of(json!([land, lake, sea])).to_string()), one);
+    assert_eq!(count(format!("\u{feff}{}", of(json!([land, []])))), plain);
+    let both = json!({ "type": "GeometryCollection", "geometries": [of(json!([])), of(json!([land])), null] });
+    assert_eq!(count(both.to_string()), plain);
+    for (file, words) in [
+        (of(json!([])).to_string(), "contains no polygon"),
+        (String::new(), "it is empty"),
+        ("SQLite format 3\0…".into(), "a GeoPackage"),
+        ("<kml/>".into(), "XML"),
+    ] {
+        let run = crate::support::command::run(&["count", "--region=-", "--spacing=1"], &file);
+        let message = crate::support::command::errors(&run);
+        assert!(message.contains(words), "{message}");
+    }
+}
+
+#[test]
+fn features_have_any_names_and_a_field_of_all() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    // White in the upper half.
+    let half = |_, row| if row < 50 { 255 } else { 0 };
+    let raster = "über my+mask.tif";
+    geotiff(
+        &folder.path().join(raster),
+        [100, 100],
+        25832,
+        [5e5, 5_301_000.0],
+        half,
+    );
+    let mut map = municipalities(Some("EPSG:25832"));
+    map["features"][0]["properties"]["key"] = json!("Bad Tölz, \"alt\"");
+    map["features"][0]["properties"]["trees"] = json!(30.0);
+    map["features"][1]["properties"]["trees"] = Value::Null;
+    fs::write(path("map.json"), map.to_string()).expect("writable");
+    for flag in ["--field", "--raster"] {
+        let csv = output(
+            &[
+                "sample",
+                "-q",
+                "--format=csv",
+                "--features",
+                &path("map.json"),
+                "--feature-id=key",
+                "--feature-count=trees",
+                flag,
+                &path(raster),
+            ],
+            "",
+        );
+        let csv = String::from_utf8(csv).expect("UTF-8");
+        let rows: Vec<&str> = csv.lines().skip(1).collect();
+        assert_eq!(rows.len(), 30);
+        for row in rows {
+            assert!(row.starts_with("\"Bad Tölz, \"\"alt\"\"\","), "{row}");
+            let y: f64 = row
+                .rsplit(',')
+                .next()
+                .and_then(|y| y.parse().ok())
+                .expect("a number");
+            assert!(y >= 5_300_500.0 - 10.0, "{row}");
+        }
+    }
+    // Without area no number of points fits.
+    map["features"][0]["geometry"]["coordinates"] = json!([[
+        [5e5, 5_300_000.0],
+        [5e5, 5_300_100.0],
+        [5e5, 5_300_000.0],
+        [5e5, 5_300_000.0]
+    ]]);
+    fs::write(path("flat.json"), map.to_string()).expect("writable");
+    let flat = [
+        "sample",
+        "-q",
+        "--format=csv",
+        "--features",
+        &path("flat.json"),
+    ];
+    let counted = [&flat[..], &["--feature-count=trees"]].concat();
+    let message = crate::support::command::errors(&crate::support::command::run(&counted, ""));
+    assert!(message.contains("has no area"), "{message}");
+    let thin = output(&[&flat[..], &["--spacing=1000"]].concat(), "");
+    assert!(!by_layer(&thin).contains_key("0"));
+    // Degrees by RFC 7946 over a raster in metres.
+    let degrees = r#"{"type": "Polygon", "coordinates": [[[8.9, 47.8], [9.1, 47.8], [9.1, 47.9], [8.9, 47.8]]]}"#;
+    fs::write(path("degrees.json"), degrees).expect("writable");
+    let over = [
+        "count",
+        "--spacing=10",
+        "--region",
+        &path("degrees.json"),
+        "--raster",
+        &path(raster),
+    ];
+    let message = refused(&over, 2);
+    assert!(
+        message.contains("WGS 84") && message.contains("EPSG:25832"),
+        "{message}"
+    );
+    let said = ["sample", "-q", "--format=geojson", "--crs=EPSG:25832"];
+    output(&[&said[..], &over[1..]].concat(), "");
+    // Each class in each feature.
+    let mut one = municipalities(Some("EPSG:25832"));
+    one["features"]
+        .as_array_mut()
+        .expect("features")
+        .truncate(1);
+    fs::write(path("one.json"), one.to_string()).expect("writable");
+    let csv = output(
+        &[
+            "sample",
+            "-q",
+            "--format=csv",
+            "--features",
+            &path("one.json"),
+            "--feature-id=key",
+            "--strata",
+            &path(raster),
+            "--classes=255=5,0=3",
+        ],
+        "",
+    );
+    let expected = [("09162000/255".into(), 5), ("09162000/0".into(), 3)];
+    assert_eq!(by_layer(&csv), BTreeMap::from(expected));
 }

@@ -172,13 +172,13 @@ fn lists_in_bodies_are_counted_while_they_are_read() {
             "polygons",
             rings("[]"),
             "region.polygon",
-            vec!["coordinates[0] is empty"],
+            vec!["contains no polygon, or empty ones alone"],
         ),
         (
             "rings",
             rings("[[]]"),
             "region.polygon",
-            vec!["coordinates[0][0] has 0 positions"],
+            vec!["contains no polygon, or empty ones alone"],
         ),
         (
             "lines",

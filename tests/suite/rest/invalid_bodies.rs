@@ -176,9 +176,9 @@ fn members() -> Vec<(Value, &'static str, Vec<&'static str>)> {
         ),
         (layers(json!([{ "spacing": 1 }])), "layers[0].name", vec![]),
         (
-            layers(json!([{ "name": "a b", "spacing": 1 }])),
+            layers(json!([{ "name": "a\u{7}b", "spacing": 1 }])),
             "layers[0].name",
-            vec!["a b"],
+            vec!["1 to 64 characters"],
         ),
         (
             layers(json!([{ "name": "a", "spacing": 1 }, { "name": "a", "spacing": 1 }])),

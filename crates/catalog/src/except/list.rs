@@ -7,7 +7,7 @@ use std::{borrow::Cow, collections::BTreeMap, iter, mem::size_of, sync::Arc};
 
 use schemars::JsonSchema;
 use serde::Deserialize;
-use strew_config::{Except as Settings, name::is_name};
+use strew_config::{Except as Settings, name::is_title};
 use strew_core::PointId;
 use strew_error::Fault;
 
@@ -304,7 +304,7 @@ fn check_count(count: usize, most: usize) -> Result<(), Fault> {
 #[must_use]
 pub fn split(item: &str) -> Option<(Option<&str>, PointId)> {
     let (layer, id) = match item.rsplit_once('/') {
-        Some((layer, id)) if is_name(layer) => (Some(layer), id),
+        Some((layer, id)) if is_title(layer) => (Some(layer), id),
         Some(_) => return None,
         None => (None, item),
     };

@@ -115,9 +115,11 @@ impl Fields {
         }
         if let Some(folder) = settings.folder() {
             match files::of_folder(folder) {
-                Ok(paths) => {
-                    open.extend(paths.into_iter().map(|path| Unbuilt::of_file(path, base)))
-                }
+                Ok(paths) => open.extend(
+                    paths
+                        .into_iter()
+                        .map(|path| Unbuilt::of_file(path, base, None)),
+                ),
                 Err(detail) => {
                     let source_name = format!("folder {}", folder.display());
                     refused.push((
@@ -245,11 +247,15 @@ impl Unbuilt {
         }
     }
 
-    fn of_file(path: PathBuf, base: &Path) -> Self {
+    /// The field of a file, named after it, unless another name is there for names that fields cannot have.
+    fn of_file(path: PathBuf, base: &Path, other: Option<&str>) -> Self {
         let part = |part: Option<&std::ffi::OsStr>| {
             part.unwrap_or_default().to_string_lossy().into_owned()
         };
-        let (name, file) = (part(path.file_stem()), part(path.file_name()));
+        let (mut name, file) = (part(path.file_stem()), part(path.file_name()));
+        if let Some(other) = other.filter(|_| !is_name(&name)) {
+            name = other.into();
+        }
         let text = |path: &Path| {
             bounded_file::read_text(path, DOCUMENT_BYTES).map_err(|error| error.to_string())
         };
@@ -347,10 +353,7 @@ fn of_files(
 /// A description of the fault.
 pub fn from_file(path: &Path, fields: &Fields) -> Result<NamedField, FieldError> {
     let base = path.parent().unwrap_or(Path::new(""));
-    let mut field = Unbuilt::of_file(path.into(), base);
-    if field.name.is_empty() {
-        field.name = "field".into();
-    }
+    let field = Unbuilt::of_file(path.into(), base, Some("file"));
     let is_known = |name: &str| fields.get(name).is_some();
     let has_others = (field.document.as_ref()).is_ok_and(|document| !names(document).all(is_known));
     let mut all = fields.clone();

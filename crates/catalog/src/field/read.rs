@@ -16,6 +16,7 @@ pub(super) const FIELD: &str = "the name of a loaded field, or an object with on
 /// # Errors
 /// A fault with the path of the member.
 pub fn read_json(path: &str, text: &str) -> Result<Document, Faults> {
+    let text = text.trim_start_matches('\u{feff}').trim();
     if text.starts_with('"') {
         let name = serde_json::from_str(text);
         let name = name.map_err(|error| fault(path, text, &error.to_string()))?;

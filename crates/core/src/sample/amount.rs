@@ -95,7 +95,7 @@ pub(super) fn exactly(
             if more.as_ref().is_none_or(|more| found < more.total()) {
                 more = Some(plan);
             }
-        } else if guess <= least {
+        } else if guess <= least && (found > 0 || lattice.grade.is_some()) {
             let spacing = number(least);
             let (problem, allowed) = match found {
                 0 if lattice.grade.is_some() => (
@@ -111,6 +111,9 @@ pub(super) fn exactly(
             return Err(error.because(problem).with_limit(least));
         } else {
             (high, ends[1]) = (guess, found as f64);
+            if guess <= least {
+                break;
+            }
         }
         // Counts go as spacing⁻², which leads near; from there the bracket is halved.
         let law = guess * libm::sqrt(found.max(1) as f64 / wanted);
@@ -140,8 +143,14 @@ pub(super) fn exactly(
         guess = next;
     }
     let more = more.ok_or_else(|| {
-        let error = Error::new(ErrorKind::Count, "count", count, "");
-        error.because("no spacing places this number of points here")
+        let (problem, allowed) = match ends[1] == 0.0 && lattice.grade.is_none() {
+            true => (
+                "the region has no area that holds a point",
+                "a region with an area",
+            ),
+            false => ("no spacing places this number of points here", ""),
+        };
+        Error::new(ErrorKind::Count, "count", count, allowed).because(problem)
     })?;
     Ok(more.window(0, Some(count)))
 }

@@ -301,7 +301,7 @@ impl Library {
     /// # Errors
     /// The error that the daemon answers.
     pub fn hold_field(&self, body: &str) -> Result<String, Error> {
-        let document = field::read_json("field", body.trim())?;
+        let document = field::read_json("field", body)?;
         let held = hold_field(
             &self.assets.catalog,
             document,

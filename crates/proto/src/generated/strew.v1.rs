@@ -552,8 +552,8 @@ pub struct Polygons {
 /// The points in a ring, and not in the holes.
 #[derive(Clone, PartialEq, ::prost::Message)]
 pub struct Polygon {
-    /// First the outline, then holes: a point is inside if it lies in an odd number of rings. At least
-    /// one.
+    /// First the exterior, which bounds the polygon, then holes: what lies in any of them is left out (RFC 7946,
+    /// 3.1.6). Each ring by itself is even-odd. Polygons without an exterior are left out.
     #[prost(message, repeated, tag = "1")]
     pub rings: ::prost::alloc::vec::Vec<Ring>,
 }
@@ -787,7 +787,8 @@ pub mod point_set {
 /// One of several sets of points in one answer.
 #[derive(Clone, PartialEq, ::prost::Message)]
 pub struct Layer {
-    /// Its name: 1 to 64 ASCII letters, digits, `_`, `-` and `.`; another one for each layer. Required.
+    /// Its name: 1 to 64 characters, none of them a control character or a line break; another one for each layer.
+    /// Required.
     #[prost(string, tag = "1")]
     pub name: ::prost::alloc::string::String,
     /// Where the layer is: its points lie in this region and in that of the query. Everywhere by

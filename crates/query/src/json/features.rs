@@ -1,13 +1,13 @@
 //! Features as JSON: a collection of GeoJSON, with the properties that hold their names and their numbers of points.
 
 use serde_json::value::RawValue;
-use strew_config::name::is_name;
+use strew_config::name::is_title;
 use strew_encode::Crs;
 use strew_error::{Checked, Fault, Faults, unknown};
 
 use super::{
     super::{Feature, MOST_FEATURES, RegionDraft, Rings, ShapeDraft},
-    geojson::polygons,
+    geojson::polygons_or_none,
     object::{Object, elements, parse, shown},
 };
 
@@ -19,10 +19,11 @@ const FEATURES: &str = r#"{"of": a FeatureCollection of polygons, "id": the prop
 const COLLECTION: &str =
     "GeoJSON: a FeatureCollection of 1 to 1000 features, each a Polygon or MultiPolygon";
 /// The rule for names.
-const NAMES: &str = "a property of 1 to 64 ASCII letters, digits, _, - and ., or an integer, that tells features \
-                     apart; without it features have the names 0, 1, 2, …";
+const NAMES: &str = "a property that is text of 1 to 64 characters in one line, or a number, and tells features apart; \
+                     without it features have the names 0, 1, 2, …";
 /// The rule for numbers of points.
-const COUNTS: &str = "a property that is an integer, 0 or more, of every feature";
+const COUNTS: &str =
+    "a property that is an integer, 0 or more; a feature without it, or with null, has no points";
 
 /// Features of a body.
 pub(super) fn read(json: &RawValue) -> Checked<Vec<Feature>> {
@@ -78,11 +79,20 @@ fn features(json: &RawValue, names: [Option<&str>; 2]) -> Checked<Vec<Feature>> 
     let list = member("features").ok_or_else(|| wrong("has no array `features`".into()))?;
     let list = elements(list, MOST_FEATURES, "features").map_err(wrong)?;
     let mut all: Vec<Feature> = vec![];
+    let mut counted = None;
     for (i, json) in list.into_iter().enumerate() {
-        let feature = feature(i, json, names, crs.as_ref())?;
-        let Some(feature) = feature.filter(|feature| feature.count != Some(0)) else {
+        let Some(mut feature) = feature(i, json, names, crs.as_ref())? else {
             continue;
         };
+        if names[1].is_some() {
+            counted = counted
+                .or(Some(false))
+                .map(|found| found || feature.count.is_some());
+            feature.count = feature.count.or(Some(0));
+        }
+        if feature.count == Some(0) {
+            continue;
+        }
         if all.iter().any(|known| known.name == feature.name) {
             let field = format!("features[{i}]");
             let detail = "an earlier feature has this name";
@@ -90,13 +100,19 @@ fn features(json: &RawValue, names: [Option<&str>; 2]) -> Checked<Vec<Feature>> 
         }
         all.push(feature);
     }
-    match all.is_empty() {
-        true => Err(wrong("has no feature with a polygon and with points".into()).into()),
-        false => Ok(all),
+    match (names[1], counted) {
+        (Some(name), Some(false)) => {
+            let field = format!("features[].properties.{name}");
+            Err(Fault::missing(&field, COUNTS).into())
+        }
+        _ if all.is_empty() => {
+            Err(wrong("has no feature with a polygon and with points".into()).into())
+        }
+        _ => Ok(all),
     }
 }
 
-/// A feature; none without a place.
+/// A feature; none without a place. It has no number of points if the property is absent or null.
 fn feature(
     i: usize,
     json: &RawValue,
@@ -115,42 +131,43 @@ fn feature(
     let is_there = |json: &&RawValue| json.get() != "null";
     let properties = member("properties").filter(is_there).map(Object::read);
     let properties = properties.transpose().map_err(wrong)?;
-    let property = |name: &str, allowed: &str| {
+    let field = |name: &str| format!("{path}.properties.{name}");
+    let property = |name: &str| {
         let mut all = properties.iter().flat_map(Object::members);
-        let found = all
-            .find(|(known, _)| *known == name)
-            .map(|(_, json)| json.get());
-        found.ok_or_else(|| Fault::missing(&format!("{path}.properties.{name}"), allowed))
+        let found = all.find(|(known, _)| *known == name)?;
+        Some(found.1.get()).filter(|text| *text != "null")
     };
     let Some(geometry) = member("geometry").filter(is_there) else {
         return Ok(None);
     };
+    let (polygons, own): (Vec<Rings>, _) = polygons_or_none(geometry).map_err(wrong)?;
+    if polygons.is_empty() {
+        return Ok(None);
+    }
     let name = match id {
         None => i.to_string(),
         Some(id) => {
-            let text = property(id, NAMES)?;
-            let name = serde_json::from_str::<String>(text).unwrap_or_else(|_| text.to_owned());
-            if !is_name(&name) {
-                let detail = format!("property `{id}` is no name of features");
-                return Err(Fault::new(&path, name, detail, NAMES).into());
-            }
-            name
+            let text = property(id).ok_or_else(|| Fault::missing(&field(id), NAMES))?;
+            let name = serde_json::from_str::<String>(text)
+                .ok()
+                .or_else(|| match integer(text) {
+                    Some(whole) => Some(whole.to_string()),
+                    None => text.parse::<f64>().ok().map(|_| text.to_owned()),
+                });
+            let name = name.filter(|name| is_title(name));
+            name.ok_or_else(|| Fault::new(&field(id), text, "no name of a feature", NAMES))?
         }
     };
-    let count = count.map(|count| {
-        let text = property(count, COUNTS)?;
-        let wrong = || {
-            Fault::new(
-                &path,
-                text,
-                format!("property `{count}` is no number of points"),
-                COUNTS,
-            )
-        };
-        text.parse().map_err(|_| wrong())
+    let count = count.and_then(|count| {
+        let text = property(count)?;
+        let wrong = || Fault::new(&field(count), text, "no number of points", COUNTS);
+        Some(
+            integer(text)
+                .and_then(|count| u64::try_from(count).ok())
+                .ok_or_else(wrong),
+        )
     });
     let count = count.transpose()?;
-    let (polygons, own): (Vec<Rings>, _) = polygons(geometry).map_err(wrong)?;
     let shape = ShapeDraft::Polygons(polygons, own.or_else(|| crs.cloned()));
     Ok(Some(Feature {
         name,
@@ -161,6 +178,17 @@ fn feature(
         field: None,
         count,
     }))
+}
+
+/// An integer of JSON, also one that is written as 7.0, as by tools in which every number is a float.
+fn integer(text: &str) -> Option<i64> {
+    const EXACT: f64 = (1u64 << 53) as f64;
+    let whole = || {
+        text.parse()
+            .ok()
+            .filter(|v: &f64| v.fract() == 0.0 && v.abs() <= EXACT)
+    };
+    text.parse().ok().or_else(|| whole().map(|v| v as i64))
 }
 
 #[cfg(test)]
@@ -209,7 +237,8 @@ mod tests {
     fn faults_name_the_feature() {
         for (member, value, expected) in [
             ("id", json!("missing"), "features[0].properties.missing"),
-            ("count", json!("id"), "property `id` is no number of points"),
+            ("count", json!("id"), "features[0].properties.id"),
+            ("count", json!("missing"), "features[].properties.missing"),
             ("count", json!(3), "must be text"),
             ("per", json!(1), "unknown member"),
             (
@@ -235,6 +264,55 @@ mod tests {
             fault.contains("an earlier feature has this name"),
             "{fault}"
         );
+    }
+
+    /// pandas makes floats of columns with gaps, and writes gaps as null.
+    #[test]
+    fn numbers_may_be_floats_and_may_have_gaps() {
+        let with = |n: Value| {
+            let mut of = collection();
+            of["features"][1]["properties"]["n"] = n;
+            names_and_counts(&json!({ "of": of, "id": "id", "count": "n" }))
+        };
+        let both = |n| Ok(vec![("a".into(), Some(30)), ("7".into(), Some(n))]);
+        assert_eq!(with(json!(5.0)), both(5));
+        assert_eq!(with(json!(2e3)), both(2000));
+        for none in [json!(null), json!(0.0)] {
+            assert_eq!(with(none), Ok(vec![("a".into(), Some(30))]));
+        }
+        for wrong in [json!(5.5), json!("5"), json!(-1), json!(true), json!(1e300)] {
+            let fault = with(wrong).expect_err("refused");
+            assert!(fault.contains("features[1].properties.n"), "{fault}");
+        }
+    }
+
+    #[test]
+    fn names_are_kept_as_they_are() {
+        let named = |id: Value| {
+            let mut of = collection();
+            of["features"][0]["properties"]["id"] = id;
+            names_and_counts(&json!({ "of": of, "id": "id" })).map(|all| all[0].0.clone())
+        };
+        for (id, name) in [
+            (json!("Bad Tölz"), "Bad Tölz"),
+            (json!("a \"b\", c"), "a \"b\", c"),
+            (json!(9.0), "9"),
+            (json!(-9), "-9"),
+            (json!(7.5), "7.5"),
+        ] {
+            assert_eq!(named(id), Ok(name.into()));
+        }
+        for wrong in [
+            json!(null),
+            json!(""),
+            json!("a\nb"),
+            json!(["a"]),
+            json!(true),
+        ] {
+            let fault = named(wrong).expect_err("refused");
+            assert!(fault.contains("features[0].properties.id"), "{fault}");
+        }
+        assert!(named(json!(7.0)).is_err_and(|fault| fault.contains("has this name")));
     }
 
     #[test]

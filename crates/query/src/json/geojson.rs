@@ -63,27 +63,72 @@ pub struct Ring(
 
 fn ring<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<[f64; 2]>, D::Error> {
     let positions: Vec<Position> = list(deserializer, 0..=usize::MAX, "positions")?;
-    if let count @ ..3 = positions.len() {
+    if let count @ 1..3 = positions.len() {
         let detail = format!("has {count} positions, and a ring has 3 or more");
         return Err(D::Error::custom(detail));
     }
     Ok(positions.into_iter().map(|position| position.0).collect())
 }
 
-/// Rings, or polygons of rings. Empty lists would take many times the memory of their text.
-#[derive(Deserialize)]
-#[serde(bound = "T: Deserialize<'de>")]
-struct Several<T>(#[serde(deserialize_with = "some")] Vec<T>);
+/// The rings of a polygon; none if its exterior is empty.
+#[derive(Default)]
+struct Outline(Rings);
 
-fn some<'de, D, T>(deserializer: D) -> Result<Vec<T>, D::Error>
-where
-    D: Deserializer<'de>,
-    T: Deserialize<'de>,
-{
-    let all = list(deserializer, 0..=usize::MAX, "rings")?;
-    match all.is_empty() {
-        true => Err(D::Error::custom("is empty")),
-        false => Ok(all),
+/// A list of which empty elements are left out (RFC 7946, 3.1), while it is read: they take many times the memory of
+/// their text.
+trait Parts: Default {
+    type Part: for<'de> Deserialize<'de>;
+    const NAME: &str;
+
+    fn add(&mut self, i: usize, part: Self::Part);
+}
+
+impl Parts for Outline {
+    type Part = Ring;
+    const NAME: &str = "an array of rings";
+
+    fn add(&mut self, i: usize, Ring(ring): Ring) {
+        if !ring.is_empty() && (i == 0 || !self.0.is_empty()) {
+            self.0.push(ring);
+        }
+    }
+}
+
+impl Parts for Vec<Rings> {
+    type Part = Several<Outline>;
+    const NAME: &str = "an array of polygons";
+
+    fn add(&mut self, _: usize, Several(Outline(rings)): Several<Outline>) {
+        if !rings.is_empty() {
+            self.push(rings);
+        }
+    }
+}
+
+struct Several<T>(T);
+
+impl<'de, T: Parts> Deserialize<'de> for Several<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct List<T>(T);
+
+        impl<'de, T: Parts> Visitor<'de> for List<T> {
+            type Value = T;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(T::NAME)
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(mut self, mut parts: A) -> Result<T, A::Error> {
+                let mut i = 0;
+                while let Some(part) = parts.next_element()? {
+                    self.0.add(i, part);
+                    i += 1;
+                }
+                Ok(self.0)
+            }
+        }
+
+        deserializer.deserialize_seq(List(T::default())).map(Self)
     }
 }
 
@@ -95,7 +140,7 @@ struct Object<'a> {
     coordinates: Option<&'a RawValue>,
     geometry: Option<Box<Part>>,
     features: Option<Vec<Part>>,
-    geometries: Option<Vec<Part>>,
+    geometries: Option<Vec<Option<Part>>>,
     crs: Option<Value>,
 }
 
@@ -112,24 +157,35 @@ impl Object<'_> {
         let coordinates = || self.coordinates.ok_or_else(|| missing("coordinates"));
         let parts = match &*self.r#type {
             "Polygon" => {
-                let polygons = vec![plain(read(coordinates()?, "coordinates")?)];
+                let Several(outline) = read(coordinates()?, "coordinates")?;
+                let mut polygons: Vec<Rings> = vec![];
+                polygons.add(0, Several(outline));
                 return Ok(Part {
                     polygons,
                     ..Part::default()
                 });
             }
             "MultiPolygon" => {
-                let Several(all) = read(coordinates()?, "coordinates")?;
-                let polygons = all.into_iter().map(plain).collect();
+                let Several(polygons) = read(coordinates()?, "coordinates")?;
                 return Ok(Part {
                     polygons,
                     ..Part::default()
                 });
             }
+            // Empty ones may be anything: RFC 7946 takes them for null.
+            "Point" | "MultiPoint" | "LineString" | "MultiLineString"
+                if self.coordinates.is_some_and(is_empty) =>
+            {
+                return Ok(Part::default());
+            }
+            "Topology" => return Err("is TopoJSON, not GeoJSON".into()),
             // RFC 7946 has features without a place.
             "Feature" => self.geometry.into_iter().map(|part| *part).collect(),
             "FeatureCollection" => self.features.ok_or_else(|| missing("features"))?,
-            "GeometryCollection" => self.geometries.ok_or_else(|| missing("geometries"))?,
+            "GeometryCollection" => {
+                let all = self.geometries.ok_or_else(|| missing("geometries"))?;
+                all.into_iter().flatten().collect()
+            }
             other => {
                 let other: String = other.chars().take(40).collect();
                 return Err(format!("has the type `{other}`, not a polygon's"));
@@ -185,20 +241,27 @@ impl<'de> Deserialize<'de> for Part {
     }
 }
 
+/// Whether coordinates hold no number.
+fn is_empty(coordinates: &RawValue) -> bool {
+    let mut all = coordinates.get().bytes();
+    all.all(|c| b"[], \t\r\n".contains(&c))
+}
+
 /// The polygons of a GeoJSON object, with their holes, and the plane that it states; what lies in any of them is meant.
 ///
 /// # Errors
 /// Says what is wrong and at which path.
 pub(super) fn polygons(json: &RawValue) -> Result<(Vec<Rings>, Option<Crs>), String> {
-    let Part { polygons, crs, .. } = read(json, "")?;
-    match polygons.is_empty() {
-        true => Err("contains no polygon".into()),
-        false => Ok((polygons, crs)),
+    match polygons_or_none(json)? {
+        (none, _) if none.is_empty() => Err("contains no polygon, or empty ones alone".into()),
+        found => Ok(found),
     }
 }
 
-fn plain(Several(rings): Several<Ring>) -> Rings {
-    rings.into_iter().map(|Ring(ring)| ring).collect()
+/// [`polygons`], or none if all are empty.
+pub(super) fn polygons_or_none(json: &RawValue) -> Result<(Vec<Rings>, Option<Crs>), String> {
+    let Part { polygons, crs, .. } = read(json, "")?;
+    Ok((polygons, crs))
 }
 
 /// A polygon or several as GeoJSON, holes included, bare, in features or in collections.
@@ -237,15 +300,15 @@ macro_rules! objects {
 
 objects! {
     /// A polygon: its outline, then holes.
-    Polygon, PolygonType: coordinates = #[schemars(length(min = 1))] Vec<Ring>;
+    Polygon, PolygonType: coordinates = Vec<Ring>;
     /// Several polygons.
-    MultiPolygon, MultiPolygonType: coordinates = #[schemars(length(min = 1))] Vec<Vec<Ring>>;
+    MultiPolygon, MultiPolygonType: coordinates = Vec<Vec<Ring>>;
     /// A feature with a polygon.
     Feature, FeatureType: geometry = Option<GeoJson>;
     /// Features with polygons.
-    FeatureCollection, FeatureCollectionType: features = #[schemars(length(min = 1))] Vec<Feature>;
+    FeatureCollection, FeatureCollectionType: features = Vec<Feature>;
     /// Several geometries.
-    GeometryCollection, GeometryCollectionType: geometries = #[schemars(length(min = 1))] Vec<GeoJson>;
+    GeometryCollection, GeometryCollectionType: geometries = Vec<GeoJson>;
 }
 
 #[cfg(test)]
@@ -279,6 +342,35 @@ mod tests {
         for (value, count) in [(polygon(), 1), (multi, 2), (features, 3), (nested, 3)] {
             assert_eq!(read(&value).map(|found| found.len()), Ok(count), "{value}");
         }
+    }
+
+    /// RFC 7946, 3.1: geometries without coordinates are as good as null.
+    #[test]
+    fn empty_geometries_are_left_out() {
+        let of =
+            |kind: &str, coordinates: Value| json!({ "type": kind, "coordinates": coordinates });
+        let ring = polygon()["coordinates"][0].clone();
+        let empty = [
+            of("Polygon", json!([])),
+            of("Polygon", json!([[]])),
+            of("Polygon", json!([[], ring])),
+            of("MultiPolygon", json!([])),
+            of("MultiPolygon", json!([[], [[]]])),
+            of("Point", json!([])),
+            of("MultiLineString", json!([[]])),
+            json!({ "type": "GeometryCollection", "geometries": [] }),
+            json!({ "type": "GeometryCollection", "geometries": [null] }),
+        ];
+        for empty in empty {
+            let fault = read(&empty).expect_err("empty");
+            assert_eq!(fault, "contains no polygon, or empty ones alone", "{empty}");
+            let both = json!({ "type": "GeometryCollection", "geometries": [polygon(), empty] });
+            assert_eq!(read(&both).map(|found| found.len()), Ok(1), "{empty}");
+        }
+        let empty_hole = of("Polygon", json!([ring, []]));
+        assert_eq!(read(&empty_hole).map(|found| found[0].len()), Ok(1));
+        let empty_part = of("MultiPolygon", json!([[], [ring, []], [[]]]));
+        assert_eq!(read(&empty_part).map(|found| found.len()), Ok(1));
     }
 
     #[test]
@@ -334,7 +426,11 @@ mod tests {
             ),
             (
                 json!({ "type": "Feature", "geometry": null }),
-                "contains no polygon",
+                "contains no polygon, or empty ones alone",
+            ),
+            (
+                json!({ "type": "Topology", "arcs": [] }),
+                "is TopoJSON, not GeoJSON",
             ),
             (
                 json!({ "type": "FeatureCollection" }),

@@ -12,6 +12,7 @@ use strew_catalog::{
     except::MOST_GIVEN,
     field::{self, Document},
 };
+use strew_config::bounded_file::without_mark;
 use strew_error::{Checked, Fault, all};
 
 /// The most members of an object: more than the largest valid one has.
@@ -219,8 +220,46 @@ pub fn shown(json: &RawValue) -> &str {
 
 /// A text that is JSON.
 pub(super) fn parse(bytes: &[u8]) -> Result<&RawValue, String> {
-    serde_json::from_slice(bytes).map_err(|error| format!("not JSON: {error}"))
+    let wrong = |detail: &str| format!("not JSON: {detail}");
+    let bytes = without_mark(bytes).map_err(wrong)?;
+    serde_json::from_slice(bytes).map_err(|error| {
+        let starts = |start: &[u8]| bytes.trim_ascii_start().starts_with(start);
+        match KINDS.iter().find(|(start, _)| starts(start)) {
+            _ if bytes.trim_ascii().is_empty() => wrong("it is empty"),
+            Some((_, kind)) => wrong(kind),
+            None => wrong(&error.to_string()),
+        }
+    })
 }
+
+/// Files of other kinds that are given in the place of JSON, by their first bytes.
+const KINDS: [(&[u8], &str); 10] = [
+    (
+        &[0, 0, 0x27, 0x0a],
+        "a shapefile; ogr2ogr map.geojson map.shp converts it",
+    ),
+    (
+        b"SQLite format 3",
+        "a GeoPackage or another database of SQLite; ogr2ogr map.geojson map.gpkg converts it",
+    ),
+    (
+        b"fgb",
+        "a file of FlatGeobuf; ogr2ogr map.geojson map.fgb converts it",
+    ),
+    (b"PAR1", "a file of Parquet"),
+    (b"PK\x03\x04", "a zip file"),
+    (&[0x1f, 0x8b], "compressed by gzip"),
+    (
+        b"\x1e",
+        "a text sequence (RFC 8142), and one FeatureCollection is read",
+    ),
+    (
+        b"<",
+        "XML, as KML and GML are; ogr2ogr map.geojson map.kml converts it",
+    ),
+    (b"II*\0", "a TIFF, a raster"),
+    (b"\x89PNG", "a PNG, a picture"),
+];
 
 /// Makes a fault of a whole text, of which the beginning is shown.
 pub(super) fn of_text(field: &str, bytes: &[u8], allowed: &str) -> impl Fn(String) -> Fault {

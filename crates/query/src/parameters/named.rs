@@ -40,7 +40,7 @@ pub(super) const EXCEPT: Parameter = Parameter {
             The list of lists shows what is loaded.",
     group: Group::Except,
     shape: Shape::Names {
-        pattern: "^([A-Za-z0-9_.-]{1,64}/)?-?[0-9]+:-?[0-9]+$|^[A-Za-z0-9_.-]{1,64}$",
+        pattern: "^(.{1,64}/)?-?[0-9]+:-?[0-9]+$|^[A-Za-z0-9_.-]{1,64}$",
     },
     allowed: Some(
         "at most 10000 ids of points (column:row, beside layers layer/column:row) and names of loaded \

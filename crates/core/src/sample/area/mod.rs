@@ -6,10 +6,12 @@
 //! point and lose none.
 //!
 //! For speed an area also answers for whole strips of the plane at once: between which x all points are
-//! inside, all are outside, or each must be tested (`steps`). `outline` estimates what counting costs.
+//! inside, all are outside, or each must be tested (`steps`). `outline` estimates what counting costs. `holes`
+//! are those of polygons from files.
 
 mod circle;
 mod edge;
+mod holes;
 mod outline;
 mod polygon;
 mod region;

@@ -13,7 +13,8 @@ use crate::{
 };
 
 /// A polygon of one or more rings. A point is inside if a ray from it crosses the rings an odd number
-/// of times, so rings within rings are holes.
+/// of times, so rings within rings are holes. [`with_holes`](Self::with_holes) is for rings that may overlap, as
+/// those of files do.
 ///
 /// A point on an edge belongs to its right (greater x), or above it if the edge is horizontal, whatever
 /// the order of the vertices. The side of an edge is decided exactly (Shewchuk 1997). So polygons that
@@ -41,8 +42,8 @@ pub struct Polygon {
     /// The greatest x of the box in focus.
     right: f64,
     vertices: usize,
-    min: [f64; 2],
-    max: [f64; 2],
+    pub(super) min: [f64; 2],
+    pub(super) max: [f64; 2],
     _part: OfPolygons,
 }
 
@@ -68,7 +69,16 @@ impl Polygon {
             let (value, allowed) = ("without a ring", "made of at least one");
             return Err(Error::new(ErrorKind::Area, "polygon", value, allowed));
         }
-        let mut polygon = Self {
+        let mut polygon = Self::empty()?;
+        for (which, ring) in rings.iter().enumerate() {
+            polygon.add(which, ring.as_ref())?;
+        }
+        Ok(polygon)
+    }
+
+    /// A polygon without a ring.
+    pub(super) fn empty() -> Result<Self, Error> {
+        Ok(Self {
             edges: Arc::default(),
             flat: Arc::default(),
             turns: Vec::new(),
@@ -77,14 +87,11 @@ impl Polygon {
             min: [f64::INFINITY; 2],
             max: [f64::NEG_INFINITY; 2],
             _part: OfPolygons::get()?,
-        };
-        for (which, ring) in rings.iter().enumerate() {
-            polygon.add(which, ring.as_ref())?;
-        }
-        Ok(polygon)
+        })
     }
 
-    fn add(&mut self, which: usize, ring: &[[f64; 2]]) -> Result<(), Error> {
+    /// Adds a ring, the number `which` of errors.
+    pub(super) fn add(&mut self, which: usize, ring: &[[f64; 2]]) -> Result<(), Error> {
         for (vertex, p) in ring.iter().enumerate() {
             if let Some(&value) = p.iter().find(|value| !value.is_finite()) {
                 let field = alloc::format!("vertex {vertex} of ring {which}");
@@ -224,7 +231,7 @@ impl Polygon {
     pub(super) fn steps(&self, strip: [f64; 2], stepper: &mut Stepper) {
         let Stepper { steps, edges } = stepper;
         let [y0, _] = strip;
-        edges.clear();
+        let own = edges.len();
         let beyond = self.is_in_beyond(y0);
         let mut inside = beyond;
         for edge in self.edges.iter().chain(self.flat.iter()) {
@@ -239,12 +246,12 @@ impl Polygon {
                 edges.push(reach);
             }
         }
-        edges.sort_unstable_by(|a, b| a.extent[0].total_cmp(&b.extent[0]));
+        edges[own..].sort_unstable_by(|a, b| a.extent[0].total_cmp(&b.extent[0]));
         let state = |inside| if inside { State::In } else { State::Out };
         steps.restart(state(inside));
         // Edges whose extents meet are tested together. The outline beyond them crosses every level of
         // the strip an even number of times, or every level an odd number.
-        let mut next = 0;
+        let mut next = own;
         while let Some(first) = edges.get(next) {
             steps.push(first.extent[0], State::Test);
             let start = next;
