@@ -9,7 +9,7 @@ use anyhow::anyhow;
 use strew_catalog::{
     Catalog,
     field::{
-        Document, Fields, NamedField,
+        self, Document, Fields, NamedField,
         document::{EdgesName, Pixels},
         from_document, from_file,
     },
@@ -38,6 +38,16 @@ pub(super) struct FieldArgs {
         requires = "raster"
     )]
     raster_bbox: Option<String>,
+    /// The number of the raster that is a share of 1, such as 1 of a mask of 0 and 1 [default: 255 or 65535 of integers,
+    /// else 1]
+    #[arg(
+        long,
+        value_name = "NUMBER",
+        help_heading = WHERE,
+        requires = "raster",
+        allow_hyphen_values = true
+    )]
+    white: Option<f64>,
 }
 
 /// The name of a field from the flags.
@@ -51,7 +61,10 @@ impl FieldArgs {
             Some(raster) => Some(self.raster(raster, fields)?),
             None => of_file(&parameters::FIELD, values, fields)?,
         };
-        let mut terrain = of_file(&parameters::TERRAIN, values, fields)?;
+        let mut terrain = match heights(values, fields)? {
+            Some(terrain) => Some(terrain),
+            None => of_file(&parameters::TERRAIN, values, fields)?,
+        };
         if let (Some(field), Some(terrain)) = (&field, &mut terrain)
             && field.name == terrain.name
         {
@@ -106,6 +119,7 @@ impl FieldArgs {
             file: Some(file.to_string_lossy().into_owned()),
             bbox: bbox.transpose()?,
             edges: EdgesName::Zero,
+            white: self.white,
             ..Pixels::default()
         }));
         let field = from_document(OWN, document, fields);
@@ -113,6 +127,34 @@ impl FieldArgs {
             Failure::Usage(anyhow!("--raster {}: {}", file.display(), error.detail))
         })
     }
+}
+
+/// A terrain of a raster's own numbers, whose heights they are: without `--heights` between the least and the greatest.
+fn heights(values: &mut Values, fields: &Fields) -> Result<Option<NamedField>, Failure> {
+    let Some(file) = file(&parameters::TERRAIN, values, fields) else {
+        return Ok(None);
+    };
+    let wrong = |detail: String| Failure::Usage(anyhow!("--terrain {file}: {detail}"));
+    let found = field::heights(Path::new(&file)).map_err(|error| wrong(error.to_string()))?;
+    let Some([least, most]) = found else {
+        return Ok(None);
+    };
+    // What is flat has a share of 0.
+    let all = [least, if most > least { most } else { least + 1.0 }];
+    let given = values.get::<[f64; 2]>(&parameters::HEIGHTS).ok().flatten();
+    if given.is_none() {
+        values.replace(&parameters::HEIGHTS, Some(Value::Numbers(all.into())));
+    }
+    let [black, white] = given.unwrap_or(all);
+    let document = Document::Raster(Box::new(Pixels {
+        file: Some(file.clone()),
+        edges: EdgesName::Clamp,
+        black: Some(black),
+        white: Some(white),
+        ..Pixels::default()
+    }));
+    let made = from_document("terrain", document, fields);
+    made.map(Some).map_err(|error| wrong(error.detail))
 }
 
 /// The field of a parameter whose value is a file instead of a name.

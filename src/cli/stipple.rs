@@ -145,7 +145,11 @@ fn darkness(image: &Image, args: &Args) -> Result<FieldSpec, Failure> {
     let [width, height] = image.size;
     // Rows of fields begin at the bottom.
     let words = image.darkness(args.invert);
-    let shares: Vec<u16> = words.chunks_exact(width).rev().flatten().copied().collect();
+    fn upward<T: Copy>(all: &[T], width: usize) -> Vec<T> {
+        all.chunks_exact(width).rev().flatten().copied().collect()
+    }
+    let shares = upward(&words, width);
+    let missing = image.missing.as_ref().map(|missing| upward(missing, width));
     if shares.iter().all(|share| *share == 0) {
         let (is, other) = match args.invert {
             true => ("black", "without --invert"),
@@ -158,7 +162,12 @@ fn darkness(image: &Image, args: &Args) -> Result<FieldSpec, Failure> {
     }
     let made = || {
         let region = Region::new([0.0, 0.0], [width as f64, height as f64])?;
-        let raster = Raster::of(region, Pixels::from_words(width, shares)?)?;
+        let pixels = Pixels::from_words(width, shares)?;
+        let pixels = match missing {
+            Some(missing) => pixels.without(|at| missing[at]),
+            None => pixels,
+        };
+        let raster = Raster::of(region, pixels)?;
         FieldSpec::raster(raster.edges(Edges::Clamp).tone(0.0, 1.0, args.gamma)?)
     };
     Ok(made().context("the picture cannot be used")?)

@@ -169,7 +169,7 @@ fn field(file: &Path, class: i32, catalog: &Catalog) -> Result<NamedField, Failu
     let of = Document::Raster(Box::new(Pixels {
         file: Some(file.to_string_lossy().into_owned()),
         edges: EdgesName::Zero,
-        filter: FilterName::Nearest,
+        filter: Some(FilterName::Nearest),
         // The class is a half, its neighbors are 0 and 1.
         black: Some(class - 1.0),
         white: Some(class + 1.0),

@@ -138,8 +138,9 @@ fn pixels(pixels: Option<&proto::FieldPixels>) -> Pixels {
             _ => EdgesName::Zero,
         },
         filter: match FieldFilter::try_from(pixels.filter) {
-            Ok(FieldFilter::Nearest) => FilterName::Nearest,
-            _ => FilterName::Linear,
+            Ok(FieldFilter::Linear) => Some(FilterName::Linear),
+            Ok(FieldFilter::Nearest) => Some(FilterName::Nearest),
+            _ => None,
         },
         black: pixels.black,
         white: pixels.white,

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use strew_core::{
     Area, Circle, Field, Map, Placement, PointId, PointSet, Raster, Region, Seed, Settle, Spacing,
     Table, Warp,
-    field::{Edges, FieldSpec, Filter},
+    field::{Edges, FieldSpec, Filter, Pixels},
     table::{Provenance, Ranks},
 };
 use subject::definition;
@@ -69,6 +69,18 @@ fn dunes() -> Raster {
     Raster::new(region, 32, (0..32 * 32).map(pixel).collect()).expect("shares")
 }
 
+/// Pixels of four units of which every third is missing, and all of a corner.
+fn holes() -> FieldSpec {
+    let pixels = Pixels::from_floats(
+        32,
+        (0..32 * 32).map(|i| 0.2 + (i % 7) as f32 * 0.1).collect(),
+    );
+    let is_missing = |i: usize| i % 3 == 0 || i % 32 < 12 && i < 12 * 32;
+    let region = Region::new([-64.0, -64.0], [64.0, 64.0]).expect("ordered");
+    let raster = Raster::of(region, pixels.expect("numbers").without(is_missing));
+    FieldSpec::raster(raster.expect("shares")).expect("a field")
+}
+
 /// Every id near a box, by the definition.
 fn brute(
     find: impl Fn(PointId) -> Option<[f64; 2]>,
@@ -117,6 +129,8 @@ proptest! {
         agrees(&set, hills, region)?;
         agrees(&set, raster(), region)?;
         agrees(&set, dunes(), region)?;
+        agrees(&set, holes(), region)?;
+        agrees(&set, holes().invert().expect("a field"), region)?;
         let ramp = FieldSpec::ramp([0.0; 2], [500.0, 90.0], [0.9, 1.0]).expect("valid");
         let both = FieldSpec::multiply(vec![FieldSpec::raster(dunes()).expect("valid"), ramp]);
         agrees(&set, both.expect("valid"), region)?;

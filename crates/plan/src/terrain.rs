@@ -95,9 +95,20 @@ impl Ground {
     /// The unit vector that is upright on the ground.
     fn normal(&self, [x, y]: [f64; 2]) -> [f64; 3] {
         let reach = self.reach;
-        let run = 2.0 * reach;
-        let slope_x = (self.height([x + reach, y]) - self.height([x - reach, y])) / run;
-        let slope_y = (self.height([x, y + reach]) - self.height([x, y - reach])) / run;
+        // The point itself stands for a place without a height.
+        let from = |at: [f64; 2]| match self.terrain.field.spec.is_missing(at) {
+            true => (self.height([x, y]), 0.0),
+            false => (self.height(at), reach),
+        };
+        let slope = |before: [f64; 2], after: [f64; 2]| {
+            let ((low, back), (high, ahead)) = (from(before), from(after));
+            match back + ahead {
+                0.0 => 0.0,
+                run => (high - low) / run,
+            }
+        };
+        let slope_x = slope([x - reach, y], [x + reach, y]);
+        let slope_y = slope([x, y - reach], [x, y + reach]);
         let length = libm::sqrt(slope_x * slope_x + slope_y * slope_y + 1.0);
         [-slope_x / length, -slope_y / length, 1.0 / length]
     }

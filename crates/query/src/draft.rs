@@ -21,7 +21,7 @@ use crate::{
     },
     region::{REGION, RegionDraft},
     set_check::lod,
-    table,
+    table, terrain,
     text::parse_pairs,
     value::Value,
     values::Values,
@@ -174,6 +174,7 @@ impl Draft {
             (None, Some(period)) => period.region()?,
             (None, None) => return Err(Fault::missing("region", REGION).into()),
         };
+        terrain::hold(&sets, &region)?;
         for set in &*sets {
             table::hold(&set.entry, set.pin.as_deref())?;
         }

@@ -3,7 +3,7 @@
 //! A tile may be far wider than the picture, a pixel may have thousands of channels of which one is read, and all
 //! tiles may be the same bytes: a small file could inflate to terabytes that are thrown away.
 
-use std::io::{BufRead, Seek};
+use std::io::{Read, Seek};
 
 use tiff::{
     decoder::{ChunkType, Decoder},
@@ -38,10 +38,7 @@ pub(super) struct Cut {
 
 impl Cut {
     /// Refuses what takes far more than the pixels.
-    pub(super) fn check(
-        &self,
-        decoder: &mut Decoder<impl BufRead + Seek>,
-    ) -> Result<(), RasterError> {
+    pub(super) fn check(&self, decoder: &mut Decoder<impl Read + Seek>) -> Result<(), RasterError> {
         let [width, height] = self.size.map(|side| side as u128);
         let most_chunks = width + height + width * height / LEAST;
         let chunks = u128::from(self.chunks);

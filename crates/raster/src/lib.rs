@@ -29,7 +29,7 @@ mod wanted;
 use std::io::{BufRead, Cursor, Read, Seek, SeekFrom};
 
 pub use error::RasterError;
-pub use image::Image;
+pub use image::{Image, Place};
 pub use limits::{Limits, MOST_SIDE};
 pub use price::Price;
 pub use samples::Samples;
@@ -114,19 +114,24 @@ impl Image {
         }
     }
 
-    /// How dark each pixel of a picture is, or how light if it is inverted: 65535 for black.
+    /// How dark each pixel of a picture is, or how light if it is inverted: 65535 for black. Missing pixels are neither.
     #[must_use]
     pub fn darkness(&self, is_inverted: bool) -> Vec<u16> {
-        let samples = &self.samples;
-        let full = samples.full();
+        let (samples, full) = (&self.samples, self.full);
         let light = |i: usize| (samples.get(i) / full).clamp(0.0, 1.0);
         let word = |light: f64| (light * 65535.0 + 0.5) as u16;
-        match (samples, is_inverted) {
+        let mut words = match (samples, is_inverted) {
             (Samples::U16(values), true) => values.clone(),
             (Samples::U16(values), false) => values.iter().map(|v| u16::MAX - v).collect(),
             (_, true) => (0..samples.len()).map(|i| word(light(i))).collect(),
             (_, false) => (0..samples.len()).map(|i| word(1.0 - light(i))).collect(),
+        };
+        for (word, is_missing) in words.iter_mut().zip(self.missing.iter().flatten()) {
+            if *is_missing {
+                *word = 0;
+            }
         }
+        words
     }
 
     /// Reads a raster in memory.

@@ -90,8 +90,9 @@ pub(super) fn read(
     let size = limits.check(width, height)?;
     let mut image = numbers(from, size, kind, stop)?;
     // Truth is stored as 0 and 1.
+    image.is_sharp = value(&header, "descr")?.contains("b1");
     if let Samples::U8(values) = &mut image.samples
-        && value(&header, "descr")?.contains("b1")
+        && image.is_sharp
     {
         for part in values.chunks_mut(FEW) {
             look(stop)?;
@@ -135,18 +136,13 @@ fn numbers(
             Samples::U8(values)
         }
         Kind::U16 => Samples::U16(each(from, count, u16::from_le_bytes)?),
-        Kind::F32 => Samples::floats(each(from, count, f32::from_le_bytes)?, size[0], stop)?,
+        Kind::F32 => Samples::F32(each(from, count, f32::from_le_bytes)?),
         Kind::F64 => {
             let narrow = |bytes| f64::from_le_bytes(bytes) as f32;
-            Samples::floats(each(from, count, narrow)?, size[0], stop)?
+            Samples::F32(each(from, count, narrow)?)
         }
     };
-    Ok(Image {
-        size,
-        samples,
-        frame: None,
-        epsg: None,
-    })
+    Image::new(size, samples).without_nan(stop)
 }
 
 fn each<const N: usize, T>(

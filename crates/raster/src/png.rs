@@ -7,7 +7,7 @@ use strew_core::server::Stop;
 
 use super::{
     error::RasterError,
-    image::Image,
+    image::{Image, orientation},
     limits::Limits,
     samples::Samples,
     tone::{self, Channels, Meaning},
@@ -33,11 +33,37 @@ pub(super) fn read(
     );
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);
-    decoder.set_transformations(Transformations::EXPAND);
     let info = decoder.read_header_info().map_err(damaged)?;
     let size = limits.check(info.width.into(), info.height.into())?;
     let is_interlaced = info.interlaced;
+    let is_gray = info.color_type == ColorType::Grayscale;
+    let is_sharp = is_gray && info.bit_depth == BitDepth::One;
+    let has_numbers = is_gray || info.color_type == ColorType::Indexed;
+    let bits = match has_numbers && meaning == Meaning::Numbers {
+        true => info.bit_depth as u8,
+        false => 8,
+    };
+    let is_expanded = !has_numbers || meaning != Meaning::Numbers;
+    decoder.set_transformations(match is_expanded {
+        true => Transformations::EXPAND,
+        false => Transformations::IDENTITY,
+    });
     let mut reader = decoder.read_info().map_err(damaged)?;
+    let orientation = reader
+        .info()
+        .exif_metadata
+        .as_deref()
+        .map_or(1, orientation);
+    // The numbers that are transparent, of those that are not expanded.
+    let clear: Vec<u16> = match reader.info().trns.as_deref() {
+        Some(alpha) if !is_expanded && !is_gray => {
+            let all = (0..).zip(alpha);
+            all.filter_map(|(index, alpha)| (*alpha == 0).then_some(index))
+                .collect()
+        }
+        Some(&[high, low]) if !is_expanded => vec![u16::from_be_bytes([high, low])],
+        _ => vec![],
+    };
     let (color, depth) = reader.output_color_type();
     let channels = Channels {
         has_colors: matches!(color, ColorType::Rgb | ColorType::Rgba),
@@ -46,7 +72,10 @@ pub(super) fn read(
     let mut rows = Rows {
         channels,
         meaning,
+        bits,
+        width: size[0],
         words: vec![],
+        missing: vec![],
         samples: match depth {
             BitDepth::Sixteen => Samples::U16(vec![]),
             _ if channels.are_plain(meaning) => Samples::U8(vec![]),
@@ -54,7 +83,10 @@ pub(super) fn read(
         },
         is_deep: depth == BitDepth::Sixteen,
     };
-    let width = size[0] * channels.count() * if rows.is_deep { 2 } else { 1 };
+    let width = match bits {
+        1 | 2 | 4 => size[0].div_ceil(usize::from(8 / bits)),
+        _ => size[0] * channels.count() * if rows.is_deep { 2 } else { 1 },
+    };
     if is_interlaced {
         let bytes = width * size[1];
         if bytes > INTERLACED_BYTES {
@@ -77,7 +109,7 @@ pub(super) fn read(
             rows.add(row.data());
         }
     }
-    let mut samples = rows.samples;
+    let (mut samples, missing) = (rows.samples, rows.missing);
     match &mut samples {
         Samples::U8(values) => values.shrink_to_fit(),
         Samples::U16(values) => values.shrink_to_fit(),
@@ -86,12 +118,26 @@ pub(super) fn read(
     if samples.len() != size[0] * size[1] {
         return Err(damaged("its rows are not as long as its header says"));
     }
-    Ok(Image {
-        size,
-        samples,
-        frame: None,
-        epsg: None,
-    })
+    let is_clear = |i: usize| {
+        clear
+            .iter()
+            .any(|clear| samples.get(i) == f64::from(*clear))
+    };
+    let missing = match clear.is_empty() {
+        true => missing,
+        false => (0..samples.len()).map(is_clear).collect(),
+    };
+    let image = Image {
+        is_picture: true,
+        is_sharp,
+        full: if bits < 8 {
+            f64::from((1 << bits) - 1)
+        } else {
+            samples.full()
+        },
+        ..Image::new(size, samples)
+    };
+    image.without(missing).upright(orientation, stop)
 }
 
 /// The rows read so far.
@@ -100,6 +146,10 @@ struct Rows {
     meaning: Meaning,
     /// Whether numbers have 16 bits, the upper eight first.
     is_deep: bool,
+    /// The bits of numbers, if they are packed, and how many a row has.
+    bits: u8,
+    width: usize,
+    missing: Vec<bool>,
     /// A row of 16 bits.
     words: Vec<u16>,
     samples: Samples,
@@ -112,8 +162,14 @@ impl Rows {
             let word = |pair: &[u8]| u16::from_be_bytes([pair[0], pair[1]]);
             self.words.clear();
             self.words.extend(row.chunks_exact(2).map(word));
+            tone::clear(&self.words, channels, meaning, &mut self.missing);
+        } else {
+            tone::clear(row, channels, meaning, &mut self.missing);
         }
         match &mut self.samples {
+            Samples::U8(values) if self.bits < 8 => {
+                tone::unpacked(row, self.bits, self.width, values);
+            }
             Samples::U8(values) => tone::plain(row, channels, values),
             Samples::U16(values) if self.is_deep && channels.are_plain(meaning) => {
                 tone::plain(&self.words, channels, values);

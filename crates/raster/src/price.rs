@@ -62,9 +62,11 @@ impl Price {
             1
         };
         let tones = if words == 2 { TONES } else { 0 };
+        // Which pixels are missing, here and in a field, and the pixels before they are turned upright.
+        let further = 2 + words;
         Self {
             pixels,
-            bytes: rows * channels * deep + pixels * words + tones,
+            bytes: rows * channels * deep + pixels * (words + further) + tones,
         }
     }
 

@@ -1,12 +1,5 @@
 //! The numbers of a raster's pixels, as small as the file has them.
 
-use strew_core::server::Stop;
-
-use super::{
-    error::RasterError,
-    wanted::{FEW, look},
-};
-
 /// A number for each pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Samples {
@@ -14,12 +7,12 @@ pub enum Samples {
     U8(Vec<u8>),
     /// Of 16 bits.
     U16(Vec<u16>),
-    /// Floats, all of them finite.
+    /// Finite floats.
     F32(Vec<f32>),
 }
 
 impl Samples {
-    /// The number that stands for a share of 1 by default: the greatest of an integer type, else 1.
+    /// The greatest number of an integer type, else 1.
     #[must_use]
     pub const fn full(&self) -> f64 {
         match self {
@@ -67,20 +60,17 @@ impl Samples {
             Self::F32(values) => values[i].into(),
         }
     }
-
-    /// Floats, the rows of which have this width.
-    pub(super) fn floats(values: Vec<f32>, width: usize, stop: &Stop) -> Result<Self, RasterError> {
-        for (part, start) in values.chunks(FEW).zip((0..).step_by(FEW)) {
-            look(stop)?;
-            if let Some(at) = part.iter().position(|value| !value.is_finite()) {
-                let at = start + at;
-                return Err(RasterError::NotFinite {
-                    x: at % width,
-                    y: at / width,
-                    value: values[at].into(),
-                });
+    /// Makes some numbers 0.
+    pub(super) fn clear(&mut self, which: &[bool]) {
+        fn clear<T: Default>(values: &mut [T], which: &[bool]) {
+            for (value, _) in values.iter_mut().zip(which).filter(|(_, is)| **is) {
+                *value = T::default();
             }
         }
-        Ok(Self::F32(values))
+        match self {
+            Self::U8(values) => clear(values, which),
+            Self::U16(values) => clear(values, which),
+            Self::F32(values) => clear(values, which),
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Rasters from TIFF, with the place that GeoTIFF states.
 
-use std::io::{BufRead, Seek, SeekFrom};
+use std::io::{BufRead, Seek};
 
 use strew_core::server::Stop;
 use tiff::{
@@ -12,12 +12,12 @@ use tiff::{
 use super::{
     chunks::Cut,
     error::RasterError,
-    image::Image,
+    image::{Image, Place},
     limits::Limits,
     samples::Samples,
-    tags,
-    tiff_faults::{askew, broken, damaged, kind, unsupported},
-    tone::{self, Channels, Meaning},
+    tags::{PALETTE, Tagged, WHITE_IS_ZERO},
+    tiff_faults::{broken, damaged, kind, unsupported},
+    tone::{self, Channels, Depth, Meaning},
     wanted::look,
 };
 
@@ -26,8 +26,11 @@ const CHUNK_BYTES: usize = 128 << 20;
 /// A tag may take this much: the places of a million tiles.
 const TAG_BYTES: usize = 16 << 20;
 
+/// A file that is decoded.
+type File<R> = Decoder<Tagged<R>>;
+
 pub(super) fn read(
-    mut from: impl BufRead + Seek,
+    from: impl BufRead + Seek,
     meaning: Meaning,
     limits: Limits,
     stop: &Stop,
@@ -36,15 +39,96 @@ pub(super) fn read(
     bounds.decoding_buffer_size = CHUNK_BYTES;
     bounds.intermediate_buffer_size = CHUNK_BYTES;
     bounds.ifd_value_size = TAG_BYTES;
-    let length = from.seek(SeekFrom::End(0))?;
-    tags::check(&mut from, length)?;
+    let from = Tagged::new(from)?;
+    let directories = from.directories.clone();
+    let photometric = directories[0].photometric;
     let mut decoder = Decoder::new(from).map_err(damaged)?.with_limits(bounds);
     let (width, height) = decoder.dimensions().map_err(damaged)?;
     let size = limits.check(width.into(), height.into())?;
+    let keys = decoder.find_tag_unsigned_vec::<u16>(Tag::GeoKeyDirectoryTag);
+    let keys = keys.map_err(damaged)?.unwrap_or_default();
+    let place = place(&mut decoder, &keys)?;
+    let orientation = decoder.find_tag_unsigned::<u16>(Tag::Orientation);
+    let orientation = orientation.map_err(damaged)?.unwrap_or(1);
+    let palette = match photometric == PALETTE && meaning != Meaning::Numbers {
+        true => Some(palette(&mut decoder)?),
+        false => None,
+    };
+    let mut rows = Pixels {
+        size,
+        layout: layout(&mut decoder)?,
+        meaning,
+        nodata: nodata(&mut decoder),
+        is_inverted: photometric == WHITE_IS_ZERO && meaning != Meaning::Numbers,
+        palette,
+        samples: None,
+        missing: vec![],
+    };
+    rows.read(&mut decoder, stop)?;
+    let Layout { bits, channels } = rows.layout;
+    let has_light = rows.palette.is_some() || !channels.are_plain(meaning);
+    let mut image = rows.image()?;
+    let mask = directories
+        .iter()
+        .enumerate()
+        .skip(1)
+        .filter(|(_, directory)| directory.subfile == 4);
+    for (index, _) in mask {
+        decoder.seek_to_image(index).map_err(damaged)?;
+        let of = decoder.dimensions().map_err(damaged)?;
+        if of == (width, height) {
+            let mut rows = Pixels {
+                size,
+                layout: layout(&mut decoder)?,
+                meaning: Meaning::Numbers,
+                nodata: None,
+                is_inverted: false,
+                palette: None,
+                samples: None,
+                missing: vec![],
+            };
+            rows.read(&mut decoder, stop)?;
+            let mask = rows.image()?.samples;
+            image = image.without((0..mask.len()).map(|i| mask.get(i) == 0.0).collect());
+        }
+    }
+    if bits < 8 && !has_light {
+        image.full = f64::from((1 << bits) - 1);
+    }
+    (image.is_sharp, image.is_picture) = (bits == 1, has_light);
+    let image = image.without_nan(stop)?;
+    let image = match place {
+        // What has a place on earth is not turned as telephones are.
+        Georeference::Transform(transform) => image.at(transform, stop)?,
+        Georeference::Unusable(why) => Image {
+            place: Place::Unusable(why),
+            ..image
+        },
+        Georeference::None => return image.upright(orientation, stop),
+    };
+    Ok(Image {
+        epsg: epsg(&keys),
+        ..image
+    })
+}
+
+/// How a pixel is stored.
+#[derive(Clone, Copy)]
+struct Layout {
+    channels: Channels,
+    /// The bits of each channel.
+    bits: u8,
+}
+
+fn layout(decoder: &mut File<impl BufRead + Seek>) -> Result<Layout, RasterError> {
     let color = decoder.colortype().map_err(damaged)?;
+    let extra = decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples);
+    let is_alpha = extra
+        .map_err(damaged)?
+        .is_some_and(|extra| matches!(*extra, [1 | 2]));
     let (has_colors, has_alpha) = match color {
         ColorType::Gray(_) | ColorType::Multiband { num_samples: 1, .. } => (false, false),
-        ColorType::GrayA(_) => (false, true),
+        ColorType::Multiband { num_samples: 2, .. } if is_alpha => (false, true),
         ColorType::RGB(_) => (true, false),
         ColorType::RGBA(_) => (true, true),
         other => return Err(unsupported(kind(other))),
@@ -57,164 +141,263 @@ pub(super) fn read(
     if channels.count() > 1 && planar.map_err(damaged)?.unwrap_or(1) != 1 {
         return Err(unsupported("channels in planes of their own".into()));
     }
-    let keys = decoder.find_tag_unsigned_vec::<u16>(Tag::GeoKeyDirectoryTag);
-    let keys = keys.map_err(damaged)?.unwrap_or_default();
-    let frame = frame(&mut decoder, size, &keys)?;
-    let missing = missing(&mut decoder);
-    let mut rows = Pixels {
-        size,
-        channels,
-        meaning,
-        missing,
-        samples: None,
-    };
-    let (across, tall) = decoder.chunk_dimensions();
-    if across == 0 || tall == 0 {
-        return Err(broken("its strips or tiles are empty"));
+    let bits = color.bit_depth();
+    if !matches!(bits, 8 | 16 | 32 | 64) && !(matches!(bits, 1 | 2 | 4) && channels.count() == 1) {
+        return Err(unsupported(format!("numbers of {bits} bits")));
     }
-    let columns = width.div_ceil(across);
-    let chunks = match decoder.get_chunk_type() {
-        ChunkType::Strip => decoder.strip_count(),
-        ChunkType::Tile => decoder.tile_count(),
-    };
-    let expected = u64::from(columns) * u64::from(height.div_ceil(tall));
-    if u64::from(chunks.map_err(damaged)?) < expected {
-        return Err(broken("it has too few strips or tiles"));
-    }
-    let cut = Cut {
-        size,
-        channels: channels.count(),
-        across: [across, columns],
-        chunks: expected,
-    };
-    cut.check(&mut decoder)?;
-    for chunk in 0..expected as u32 {
-        look(stop)?;
-        let decoded = decoder.read_chunk(chunk).map_err(damaged)?;
-        let corner = [chunk % columns * across, chunk / columns * tall].map(|v| v as usize);
-        let sides = [across as usize, tall as usize];
-        let sides = [0, 1].map(|axis| sides[axis].min(size[axis] - corner[axis]));
-        rows.put(decoded, corner, sides)?;
-    }
-    let samples = rows.samples.ok_or_else(|| broken("it has no pixels"))?;
-    let samples = match samples {
-        Samples::F32(values) => Samples::floats(values, size[0], stop)?,
-        integers => integers,
-    };
-    Ok(Image {
-        size,
-        samples,
-        epsg: frame.and_then(|_| epsg(&keys)),
-        frame,
-    })
+    Ok(Layout { channels, bits })
 }
 
 /// The pixels read so far.
 struct Pixels {
     size: [usize; 2],
-    channels: Channels,
+    layout: Layout,
     meaning: Meaning,
     /// The number that stands for no data.
-    missing: Option<f64>,
+    nodata: Option<f64>,
+    /// Whether 0 is white.
+    is_inverted: bool,
+    /// The light of each index of a palette.
+    palette: Option<Vec<u16>>,
     samples: Option<Samples>,
-}
-
-/// Copies a strip or tile into its place. Memory grows by whole bands of tiles.
-macro_rules! place {
-    ($self:ident, $variant:ident, $values:expr, $corner:ident, $sides:ident) => {{
-        let samples = $self.samples.get_or_insert(Samples::$variant(vec![]));
-        let Samples::$variant(all) = samples else {
-            return Err(broken("its strips or tiles have different types"));
-        };
-        let width = $self.size[0];
-        let end = ($corner[1] + $sides[1]) * width;
-        if all.len() < end {
-            all.resize(end, Default::default());
-        }
-        let values = $values;
-        if values.len() < $sides[0] * $sides[1] {
-            return Err(broken("a strip or tile is too short"));
-        }
-        for (row, values) in values.chunks_exact($sides[0]).take($sides[1]).enumerate() {
-            let start = ($corner[1] + row) * width + $corner[0];
-            all[start..start + $sides[0]].copy_from_slice(values);
-        }
-    }};
+    missing: Vec<bool>,
 }
 
 impl Pixels {
+    fn read(
+        &mut self,
+        decoder: &mut File<impl BufRead + Seek>,
+        stop: &Stop,
+    ) -> Result<(), RasterError> {
+        let [width, height] = self.size.map(|side| side as u32);
+        let (across, tall) = decoder.chunk_dimensions();
+        if across == 0 || tall == 0 {
+            return Err(broken("its strips or tiles are empty"));
+        }
+        let columns = width.div_ceil(across);
+        let chunks = match decoder.get_chunk_type() {
+            ChunkType::Strip => decoder.strip_count(),
+            ChunkType::Tile => decoder.tile_count(),
+        };
+        let expected = u64::from(columns) * u64::from(height.div_ceil(tall));
+        if u64::from(chunks.map_err(damaged)?) < expected {
+            return Err(broken("it has too few strips or tiles"));
+        }
+        let cut = Cut {
+            size: self.size,
+            channels: self.layout.channels.count(),
+            across: [across, columns],
+            chunks: expected,
+        };
+        cut.check(decoder)?;
+        for chunk in 0..expected as u32 {
+            look(stop)?;
+            let decoded = decoder.read_chunk(chunk).map_err(damaged)?;
+            let corner = [chunk % columns * across, chunk / columns * tall].map(|v| v as usize);
+            let sides = [across as usize, tall as usize];
+            let sides = [0, 1].map(|axis| sides[axis].min(self.size[axis] - corner[axis]));
+            self.put(decoded, corner, sides)?;
+        }
+        Ok(())
+    }
+
+    /// Takes a strip or tile.
     fn put(
         &mut self,
         decoded: DecodingResult,
         corner: [usize; 2],
         sides: [usize; 2],
     ) -> Result<(), RasterError> {
-        let (channels, meaning) = (self.channels, self.meaning);
-        let is_plain = channels.are_plain(meaning);
-        let missing = self.missing;
-        match decoded {
-            DecodingResult::U8(values) if is_plain => {
-                let mut plain = vec![];
-                tone::plain(&values, channels, &mut plain);
-                place!(self, U8, plain, corner, sides);
+        let Layout { channels, bits } = self.layout;
+        let (samples, missing) = match decoded {
+            DecodingResult::U8(values) if bits < 8 => {
+                let mut all = vec![];
+                let rows = values.chunks_exact(sides[0].div_ceil(usize::from(8 / bits)));
+                rows.for_each(|row| tone::unpacked(row, bits, sides[0], &mut all));
+                self.integers(&all, (1 << bits) - 1)
             }
-            DecodingResult::U16(values) if is_plain => {
-                let mut plain = vec![];
-                tone::plain(&values, channels, &mut plain);
-                place!(self, U16, plain, corner, sides);
-            }
-            DecodingResult::U8(values) => {
-                let mut light = vec![];
-                tone::light(&values, channels, meaning, &mut light);
-                place!(self, U16, light, corner, sides);
-            }
-            DecodingResult::U16(values) => {
-                let mut light = vec![];
-                tone::light(&values, channels, meaning, &mut light);
-                place!(self, U16, light, corner, sides);
-            }
-            other if channels.count() == 1 => {
-                place!(self, F32, floats(other, missing)?, corner, sides);
-            }
+            DecodingResult::U8(values) => self.integers(&values, u8::MAX),
+            DecodingResult::U16(values) => self.integers(&values, u16::MAX),
+            other if channels.count() == 1 => self.floats(other)?,
             _ => return Err(unsupported("colors that are not 8 or 16 bits deep".into())),
+        };
+        let cell = Cell {
+            width: self.size[0],
+            corner,
+            sides,
+        };
+        if !self.missing.is_empty() || missing.contains(&true) {
+            let mut missing = missing;
+            missing.resize(samples.len(), false);
+            cell.copy(&missing, &mut self.missing)?;
+        }
+        let all = self.samples.get_or_insert(match samples {
+            Samples::U8(_) => Samples::U8(vec![]),
+            Samples::U16(_) => Samples::U16(vec![]),
+            Samples::F32(_) => Samples::F32(vec![]),
+        });
+        match (all, samples) {
+            (Samples::U8(all), Samples::U8(some)) => cell.copy(&some, all),
+            (Samples::U16(all), Samples::U16(some)) => cell.copy(&some, all),
+            (Samples::F32(all), Samples::F32(some)) => cell.copy(&some, all),
+            _ => Err(broken("its strips or tiles have different types")),
+        }
+    }
+
+    /// Integers as they are or as light, and which of them are missing.
+    fn integers<D: Depth>(&self, values: &[D], full: D) -> (Samples, Vec<bool>) {
+        let (channels, meaning) = (self.layout.channels, self.meaning);
+        let mut missing = vec![];
+        tone::clear(values, channels, meaning, &mut missing);
+        if let Some(nodata) = self.nodata {
+            let colors = channels.count() - usize::from(channels.has_alpha);
+            let is_nodata = |value: &D| Into::<u64>::into(*value) as f64 == nodata;
+            let pixels = values.chunks_exact(channels.count());
+            let all = pixels.map(|pixel| pixel[..colors].iter().all(is_nodata));
+            match missing.is_empty() {
+                true => missing.extend(all),
+                false => missing
+                    .iter_mut()
+                    .zip(all)
+                    .for_each(|(missing, is)| *missing |= is),
+            }
+        }
+        let inverted: Vec<D>;
+        let values = match self.is_inverted {
+            true => {
+                let invert = |value: &D| D::cut(full.into() - Into::<u64>::into(*value));
+                inverted = values.iter().map(invert).collect();
+                &inverted
+            }
+            false => values,
+        };
+        let samples = if let Some(palette) = &self.palette {
+            let light = |value: &D| palette.get(Into::<u64>::into(*value) as usize).copied();
+            Samples::U16(
+                values
+                    .iter()
+                    .map(|value| light(value).unwrap_or(0))
+                    .collect(),
+            )
+        } else if channels.are_plain(meaning) {
+            let mut plain = vec![];
+            tone::plain(values, channels, &mut plain);
+            D::samples(plain)
+        } else {
+            let mut light = vec![];
+            match full.into() {
+                full if full == D::FULL => tone::light(values, channels, meaning, &mut light),
+                full => {
+                    let widened = values
+                        .iter()
+                        .map(|value| (Into::<u64>::into(*value) * 255 / full) as u8);
+                    tone::light(&widened.collect::<Vec<_>>(), channels, meaning, &mut light);
+                }
+            }
+            Samples::U16(light)
+        };
+        (samples, missing)
+    }
+
+    /// Numbers as floats, and which of them are missing. NaN is found later.
+    fn floats(&self, decoded: DecodingResult) -> Result<(Samples, Vec<bool>), RasterError> {
+        fn each<T: Copy + Into<f64>>(
+            values: &[T],
+            nodata: impl Fn(f64) -> bool,
+        ) -> (Samples, Vec<bool>) {
+            let floats = values.iter().map(|value| (*value).into() as f32).collect();
+            let missing = values.iter().map(|value| nodata((*value).into())).collect();
+            (Samples::F32(floats), missing)
+        }
+        let exact = |value: f64| Some(value) == self.nodata;
+        // The tag may have more digits than the number.
+        let narrow = |value: f64| {
+            self.nodata
+                .is_some_and(|nodata| nodata as f32 == value as f32)
+        };
+        Ok(match decoded {
+            DecodingResult::F32(values) => each(&values, narrow),
+            DecodingResult::F64(values) => each(&values, exact),
+            DecodingResult::I8(values) => each(&values, exact),
+            DecodingResult::I16(values) => each(&values, exact),
+            DecodingResult::I32(values) => each(&values, exact),
+            DecodingResult::U32(values) => each(&values, exact),
+            _ => return Err(unsupported("numbers of 64 bits, or floats of 16".into())),
+        })
+    }
+
+    /// All of the picture.
+    fn image(self) -> Result<Image, RasterError> {
+        let samples = self.samples.ok_or_else(|| broken("it has no pixels"))?;
+        let mut missing = self.missing;
+        missing.resize(samples.len(), false);
+        Ok(Image::new(self.size, samples).without(missing))
+    }
+}
+
+/// The place of a strip or tile.
+struct Cell {
+    /// The width of the picture.
+    width: usize,
+    corner: [usize; 2],
+    sides: [usize; 2],
+}
+
+impl Cell {
+    /// Copies its pixels into their place. Memory grows by whole bands of tiles.
+    fn copy<T: Copy + Default>(&self, values: &[T], all: &mut Vec<T>) -> Result<(), RasterError> {
+        let Self {
+            width,
+            corner,
+            sides,
+        } = self;
+        let end = (corner[1] + sides[1]) * width;
+        if all.len() < end {
+            all.resize(end, T::default());
+        }
+        if values.len() < sides[0] * sides[1] {
+            return Err(broken("a strip or tile is too short"));
+        }
+        for (row, values) in values.chunks_exact(sides[0]).take(sides[1]).enumerate() {
+            let start = (corner[1] + row) * width + corner[0];
+            all[start..start + sides[0]].copy_from_slice(values);
         }
         Ok(())
     }
 }
 
-/// Numbers as floats; those that stand for no data are 0.
-fn floats(decoded: DecodingResult, missing: Option<f64>) -> Result<Vec<f32>, RasterError> {
-    fn each<T: Copy + Into<f64>>(values: &[T], missing: Option<f64>) -> Vec<f32> {
-        let is_missing = |value: f64| {
-            missing.is_some_and(|missing| {
-                missing == value
-                    || missing as f32 == value as f32
-                    || missing.is_nan() && value.is_nan()
-            })
-        };
-        let float = |value: &T| {
-            let value = (*value).into();
-            if is_missing(value) { 0.0 } else { value as f32 }
-        };
-        values.iter().map(float).collect()
+/// The light of each index of the palette.
+fn palette(decoder: &mut File<impl BufRead + Seek>) -> Result<Vec<u16>, RasterError> {
+    let colors = decoder.find_tag_unsigned_vec::<u16>(Tag::ColorMap);
+    let colors = colors.map_err(damaged)?.unwrap_or_default();
+    let third = colors.len() / 3;
+    if third == 0 {
+        return Err(broken("its palette is missing"));
     }
-    Ok(match decoded {
-        DecodingResult::F32(values) => each(&values, missing),
-        DecodingResult::F64(values) => each(&values, missing),
-        DecodingResult::I8(values) => each(&values, missing),
-        DecodingResult::I16(values) => each(&values, missing),
-        DecodingResult::I32(values) => each(&values, missing),
-        DecodingResult::U32(values) => each(&values, missing),
-        _ => return Err(unsupported("numbers of 64 bits, or floats of 16".into())),
-    })
+    let color = |i: usize| [colors[i], colors[third + i], colors[2 * third + i]];
+    let pixels: Vec<u16> = (0..third).flat_map(color).collect();
+    let channels = Channels {
+        has_colors: true,
+        has_alpha: false,
+    };
+    let mut light = vec![];
+    tone::light(&pixels, channels, Meaning::Picture, &mut light);
+    Ok(light)
 }
 
-/// The place of the raster, if the file states one.
-fn frame(
-    decoder: &mut Decoder<impl BufRead + Seek>,
-    [width, height]: [usize; 2],
+/// Where a file says that it lies.
+enum Georeference {
+    None,
+    /// From columns and rows to x and y: see [`Image::at`].
+    Transform([f64; 6]),
+    Unusable(&'static str),
+}
+
+/// The place of the raster, as GDAL takes it: the size of a pixel and the first tie point before a matrix.
+fn place(
+    decoder: &mut File<impl BufRead + Seek>,
     keys: &[u16],
-) -> Result<Option<[f64; 4]>, RasterError> {
+) -> Result<Georeference, RasterError> {
     let mut numbers = |tag| {
         let value = decoder.find_tag(tag).map_err(damaged)?;
         value.map(|v| v.into_f64_vec().map_err(damaged)).transpose()
@@ -224,34 +407,38 @@ fn frame(
         numbers(Tag::ModelTiepointTag)?,
         numbers(Tag::ModelTransformationTag)?,
     );
-    // The place of the corner of the first pixel, and the step of a pixel.
-    let (corner, step) = match (scale.as_deref(), tie.as_deref(), matrix.as_deref()) {
+    let scale = scale.filter(|scale| scale.len() >= 2 && scale[0] != 0.0 && scale[1] != 0.0);
+    let [a, b, c, d, e, f] = match (scale.as_deref(), tie.as_deref(), matrix.as_deref()) {
         (Some([sx, sy, ..]), Some([i, j, _, x, y, _, ..]), _) => {
-            ([x - i * sx, y + j * sy], [*sx, *sy])
+            [*sx, 0.0, x - i * sx, 0.0, -sy.abs(), y + j * sy.abs()]
         }
-        (_, _, Some([sx, rx, _, x, ry, sy, _, y, ..])) => {
-            if *rx != 0.0 || *ry != 0.0 {
-                return Err(askew("a raster that is turned"));
-            }
-            ([*x, *y], [*sx, -sy])
+        (_, _, Some([a, b, _, c, d, e, _, f, ..])) => [*a, *b, *c, *d, *e, *f],
+        (_, Some([_, _, _, _, _, _, _, ..]), _) => {
+            return Ok(Georeference::Unusable(
+                "it has control points and no place along the axes",
+            ));
         }
-        _ => return Ok(None),
+        (_, Some(_), _) => {
+            return Ok(Georeference::Unusable(
+                "it has a tie point and no size of a pixel",
+            ));
+        }
+        (Some(_), ..) => {
+            return Ok(Georeference::Unusable(
+                "it has the size of a pixel and no tie point",
+            ));
+        }
+        _ if epsg(keys).is_some() => {
+            return Ok(Georeference::Unusable(
+                "it has a reference system and no place",
+            ));
+        }
+        _ => return Ok(Georeference::None),
     };
     // GTRasterTypeGeoKey 2: places are those of the pixels' centers.
-    let is_point = key(keys, 1025) == Some(2);
-    let shift = if is_point { 0.5 } else { 0.0 };
-    let [x, y] = [corner[0] - shift * step[0], corner[1] + shift * step[1]];
-    let frame = [
-        x,
-        y - height as f64 * step[1],
-        x + width as f64 * step[0],
-        y,
-    ];
-    let is_box = frame[0] < frame[2] && frame[1] < frame[3];
-    if !is_box || frame.iter().any(|v| !v.is_finite()) {
-        return Err(askew("a raster that is mirrored or has no area"));
-    }
-    Ok(Some(frame))
+    let shift = if key(keys, 1025) == Some(2) { 0.5 } else { 0.0 };
+    let corner = [c - shift * (a + b), f - shift * (d + e)];
+    Ok(Georeference::Transform([a, b, corner[0], d, e, corner[1]]))
 }
 
 /// A key of GeoTIFF that is a short number.
@@ -269,8 +456,10 @@ fn epsg(keys: &[u16]) -> Option<u16> {
 }
 
 /// The number that stands for no data, if there is one.
-fn missing(decoder: &mut Decoder<impl BufRead + Seek>) -> Option<f64> {
+fn nodata(decoder: &mut File<impl BufRead + Seek>) -> Option<f64> {
     let value = decoder.find_tag(Tag::GdalNodata).ok()??;
     let text = value.into_string().ok()?;
-    text.trim_matches(['\0', ' ']).parse().ok()
+    text.trim_matches(|c: char| c == '\0' || c.is_whitespace())
+        .parse()
+        .ok()
 }

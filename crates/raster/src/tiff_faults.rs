@@ -5,9 +5,9 @@ use tiff::{ColorType, TiffError, TiffUnsupportedError};
 use super::error::RasterError;
 
 /// The TIFF files that are read.
-const ALLOWED: &str = "one channel of 8, 16 or 32 bits (integers or floats) or of 64-bit floats, or RGB of \
-                       8 or 16 bits, either with alpha; pixels side by side; compression with LZW or \
-                       deflate, or none";
+const ALLOWED: &str = "one channel of 1 to 32 bits (integers or floats) or of 64-bit floats, or a palette, or RGB of \
+                       8 or 16 bits, either with alpha; pixels side by side; compression with LZW, PackBits or \
+                       deflate, or none, such as gdal_translate -co COMPRESS=DEFLATE makes";
 
 pub(super) fn damaged(error: TiffError) -> RasterError {
     match error {
@@ -17,13 +17,44 @@ pub(super) fn damaged(error: TiffError) -> RasterError {
         TiffError::UnsupportedError(error) => unsupported(match error {
             TiffUnsupportedError::UnsupportedColorType(color) => kind(color),
             TiffUnsupportedError::UnsupportedCompressionMethod(method) => {
-                format!("compression by method {}", method.to_u16())
+                format!("compression by {}", compression(method.to_u16()))
             }
-            _ => "a layout of pixels that is rarely used".into(),
+            TiffUnsupportedError::InconsistentBitsPerSample(_) => {
+                "channels of different numbers of bits".into()
+            }
+            TiffUnsupportedError::UnsupportedSampleFormat(_) => {
+                "numbers that are complex, or of different kinds".into()
+            }
+            TiffUnsupportedError::InterpretationWithBits(meaning, bits) => format!(
+                "{meaning:?} pixels of {} channels of {} bits",
+                bits.len(),
+                bits.first().unwrap_or(&0)
+            ),
+            TiffUnsupportedError::UnknownInterpretation => "pixels of an unknown meaning".into(),
+            other => other.to_string(),
         }),
         TiffError::LimitsExceeded => unsupported("strips, tiles or tags of too many bytes".into()),
         error => broken(&error.to_string()),
     }
+}
+
+/// The name of a method of compression.
+fn compression(method: u16) -> String {
+    let names = [
+        (2, "CCITT"),
+        (3, "CCITT fax 3"),
+        (4, "CCITT fax 4"),
+        (6, "JPEG"),
+        (7, "JPEG"),
+        (34712, "JPEG 2000"),
+        (34887, "LERC"),
+        (34925, "LZMA"),
+        (50000, "ZSTD"),
+        (50001, "WebP"),
+        (50002, "JPEG XL"),
+    ];
+    let known = names.into_iter().find(|(code, _)| *code == method);
+    known.map_or_else(|| format!("method {method}"), |(_, name)| name.into())
 }
 
 pub(super) fn broken(detail: &str) -> RasterError {
@@ -45,13 +76,6 @@ pub(super) fn kind(color: ColorType) -> String {
             num_samples,
         } => format!("pixels of {num_samples} channels of {bit_depth} bits"),
         other => format!("pixels of {} bits", other.bit_depth()),
-    }
-}
-
-pub(super) fn askew(found: &str) -> RasterError {
-    RasterError::Unsupported {
-        found: found.into(),
-        allowed: "rows from west to east, the northernmost first",
     }
 }
 

@@ -2,12 +2,16 @@
 
 use std::sync::LazyLock;
 
+use super::samples::Samples;
+
 /// The meaning of the numbers in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meaning {
-    /// A mask or a measurement: a single channel is taken as it is. Colors are taken as light, because
-    /// there is no other sensible number. Transparency lets nothing through: it multiplies.
+    /// A mask or a measurement: a single channel is taken as it is. Colors, also those of a palette, are taken as
+    /// light, because there is no other sensible number. Transparency multiplies; what is wholly transparent is missing.
     Data,
+    /// As data, whose numbers are those of the file: of a palette the indices, of a few bits the bits.
+    Numbers,
     /// A picture: all channels are coded as sRGB and become linear light; what is transparent lies on
     /// white paper.
     Picture,
@@ -29,7 +33,7 @@ impl Channels {
 
     /// Whether numbers are taken as they are.
     pub(super) fn are_plain(self, meaning: Meaning) -> bool {
-        meaning == Meaning::Data && !self.has_colors
+        meaning != Meaning::Picture && !self.has_colors
     }
 }
 
@@ -62,10 +66,16 @@ pub(super) trait Depth: Copy + Into<u64> {
     fn light(self) -> f32;
 
     fn cut(value: u64) -> Self;
+
+    fn samples(values: Vec<Self>) -> Samples;
 }
 
 impl Depth for u8 {
     const FULL: u64 = 255;
+
+    fn samples(values: Vec<Self>) -> Samples {
+        Samples::U8(values)
+    }
 
     fn light(self) -> f32 {
         LIGHT_8[usize::from(self)]
@@ -78,6 +88,10 @@ impl Depth for u8 {
 
 impl Depth for u16 {
     const FULL: u64 = 65535;
+
+    fn samples(values: Vec<Self>) -> Samples {
+        Samples::U16(values)
+    }
 
     fn light(self) -> f32 {
         LIGHT_16[usize::from(self)]
@@ -107,8 +121,8 @@ pub(super) fn light<D: Depth>(
     into: &mut Vec<u16>,
 ) {
     let paper = match meaning {
-        Meaning::Data => 0.0,
         Meaning::Picture => 1.0,
+        Meaning::Data | Meaning::Numbers => 0.0,
     };
     into.extend(row.chunks_exact(channels.count()).map(|pixel| {
         let mut light = if channels.has_colors {
@@ -123,5 +137,27 @@ pub(super) fn light<D: Depth>(
             light = light * alpha + paper * (1.0 - alpha);
         }
         (light * 65535.0 + 0.5) as u16
+    }));
+}
+
+/// Adds whether the pixels of a row are wholly transparent, which a picture's paper shows through.
+pub(super) fn clear<D: Depth>(
+    row: &[D],
+    channels: Channels,
+    meaning: Meaning,
+    into: &mut Vec<bool>,
+) {
+    if channels.has_alpha && meaning != Meaning::Picture {
+        let pixels = row.chunks_exact(channels.count());
+        into.extend(pixels.map(|pixel| pixel[channels.count() - 1].into() == 0));
+    }
+}
+
+/// Adds the numbers of 1, 2 or 4 bits that a row of bytes holds, the uppermost first.
+pub(super) fn unpacked(row: &[u8], bits: u8, width: usize, into: &mut Vec<u8>) {
+    let (each, mask) = (usize::from(8 / bits), (1 << bits) - 1);
+    into.extend((0..width).map(|i| {
+        let shift = 8 - bits as usize * (1 + i % each);
+        row[i / each] >> shift & mask
     }));
 }

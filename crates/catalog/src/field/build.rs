@@ -1,7 +1,7 @@
 //! Fields made of their documents. Later code relies on the checks made here.
 
 use strew_core::{
-    field::{FieldSpec, Marks, Noise, Raster, Terrain},
+    field::{FieldSpec, Filter, Marks, Noise, Raster, Terrain},
     server,
 };
 use strew_error::{Checked, Fault, Faults, Together as _, all};
@@ -114,11 +114,14 @@ fn measured(path: &str, distance: &Distance) -> Checked<FieldSpec> {
 }
 
 fn raster(path: &str, document: &Pixels, sources: &Sources<'_>) -> Checked<FieldSpec> {
-    let (region, pixels) = pixels::shares(path, document, sources)?;
+    let (region, pixels, is_sharp) = pixels::shares(path, document, sources)?;
+    let filter = match document.filter {
+        Some(filter) => filter.into(),
+        None if is_sharp => Filter::Nearest,
+        None => Filter::Linear,
+    };
     let raster = Raster::of(region, pixels).and_then(|raster| {
-        let raster = raster
-            .edges(document.edges.into())
-            .filter(document.filter.into());
+        let raster = raster.edges(document.edges.into()).filter(filter);
         let (low, high) = (document.low.unwrap_or(0.0), document.high.unwrap_or(1.0));
         let gamma = document.gamma.unwrap_or(1.0);
         FieldSpec::raster(server::tone(
@@ -152,7 +155,7 @@ fn terrain(path: &str, document: &Pixels, sources: &Sources<'_>) -> Checked<Terr
         (all(refused), pixels::heights(path, document, sources)).together()?;
     let terrain = Terrain::new(region, pixels).map(|terrain| {
         let terrain = terrain.edges(document.edges.into());
-        terrain.filter(document.filter.into())
+        terrain.filter(document.filter.map_or(Filter::Linear, Into::into))
     });
     terrain.map_err(|error| within(path, &error))
 }

@@ -253,13 +253,16 @@ pub struct Pixels {
     /// The values beyond the pixels: zero (the default), clamp, repeat or mirror.
     #[serde(default)]
     pub edges: EdgesName,
-    /// The values between the centers of pixels: linear (the default) or nearest.
-    #[serde(default)]
-    pub filter: FilterName,
-    /// The number that counts as 0; 0 by default. Not for a terrain, as those below.
+    /// The values between the centers of pixels: linear or nearest. By default linear, and nearest where pixels are
+    /// bits, or 0 and 1 with white = 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub filter: Option<FilterName>,
+    /// The number that counts as 0; 0 by default. Not for a terrain, as those below. With black or white the numbers
+    /// are those of the file: of a palette its indices.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub black: Option<f64>,
-    /// The number that counts as 1, above black; 255 or 65535 where pixels are integers, else 1.
+    /// The number that counts as 1, above black; 255 or 65535 where pixels are integers, else 1. An array and a
+    /// GeoTIFF of integers that reach less than an eighth of that need it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub white: Option<f64>,
     /// The share of black; 0 by default.
@@ -370,12 +373,11 @@ impl From<EdgesName> for Edges {
 }
 
 /// The values between the centers of pixels.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(rename = "FieldFilter")]
 pub enum FilterName {
     /// Linear between the four nearest.
-    #[default]
     Linear,
     /// The nearest pixel.
     Nearest,

@@ -6,6 +6,8 @@ use std::{
 };
 
 use strew_config::bounded_file;
+use strew_core::server::Stop;
+use strew_raster::{Image, RasterError};
 
 use super::Document;
 
@@ -45,6 +47,44 @@ fn all(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
+/// The longest world file: six numbers.
+const WORLD_BYTES: u64 = 4096;
+
+/// The world file of a raster, if there is one: beside `a.tif` that is `a.tfw`, `a.tifw` or `a.wld`.
+fn world_file(path: &Path) -> Option<PathBuf> {
+    let ending = path.extension()?.to_str()?;
+    let (first, last) = (ending.chars().next()?, ending.chars().next_back()?);
+    let short = format!("{first}{last}w");
+    let endings = [short.clone(), format!("{ending}w"), "wld".into()];
+    let endings = endings
+        .into_iter()
+        .flat_map(|ending| [ending.to_uppercase(), ending]);
+    let mut all = endings.map(|ending| path.with_extension(ending));
+    all.find(|file| file.is_file())
+}
+
+/// The image of a file, where its world file places it: six numbers, those of the center of the first pixel last.
+pub(super) fn placed(image: Image, path: &Path) -> Result<Image, RasterError> {
+    let Some(file) = world_file(path) else {
+        return Ok(image);
+    };
+    let text = bounded_file::read_text(&file, WORLD_BYTES).ok();
+    let numbers = text.map(|text| text.split_whitespace().map(str::parse).collect());
+    match numbers
+        .as_ref()
+        .map(|all: &Result<Vec<f64>, _>| all.as_deref())
+    {
+        Some(Ok(&[a, d, b, e, x, y])) => {
+            let corner = [x - 0.5 * (a + b), y - 0.5 * (d + e)];
+            image.at([a, b, corner[0], d, e, corner[1]], &Stop::NEVER)
+        }
+        _ => Err(RasterError::Unsupported {
+            found: format!("its world file {} is not read", file.display()),
+            allowed: "six numbers: a, d, b, e and the center of the first pixel",
+        }),
+    }
+}
+
 /// Visits the files that a document names.
 pub(super) fn of_document(document: &Document, visit: &mut impl FnMut(&str)) {
     document.for_each_pixels(&mut |pixels| {
@@ -64,6 +104,14 @@ impl Stamp {
     pub fn add_to(&self, hasher: &mut blake3::Hasher) {
         for file in &self.0 {
             hasher.update(file.as_bytes());
+        }
+    }
+
+    /// Adds a raster, with its world file.
+    pub(super) fn add_raster(&mut self, path: &Path) {
+        self.add(path);
+        if let Some(world) = world_file(path) {
+            self.add(&world);
         }
     }
 
@@ -115,7 +163,7 @@ pub fn stamp(settings: &strew_config::Fields) -> Stamp {
     let mut stamp = stamp_of(settings.folder());
     for (name, table) in &settings.named {
         if let Ok(document) = super::read_toml(name, table) {
-            of_document(&document, &mut |file| stamp.add(Path::new(file)));
+            of_document(&document, &mut |file| stamp.add_raster(Path::new(file)));
         }
     }
     stamp

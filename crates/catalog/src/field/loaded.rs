@@ -18,7 +18,7 @@ use strew_config::{
     name::{ALLOWED, is_name},
 };
 use strew_core::{field::FieldSpec, server::Stop};
-use strew_raster::{Image, Limits, MOST_SIDE, Meaning, RasterError};
+use strew_raster::{Image, Limits, MOST_SIDE, Meaning, Place, RasterError};
 
 use super::{
     Allowance, Document, Sources, build,
@@ -287,7 +287,9 @@ impl Unbuilt {
     fn stamp(&self) -> Stamp {
         let mut stamp = Stamp::default();
         if let Ok(document) = &self.document {
-            files::of_document(document, &mut |file| stamp.add(&self.base.join(file)));
+            files::of_document(document, &mut |file| {
+                stamp.add_raster(&self.base.join(file))
+            });
         }
         stamp
     }
@@ -321,7 +323,9 @@ fn of_files(
     fields: &Fields,
     room: usize,
 ) -> Result<Built, String> {
-    let read = |file: &str, size: Option<[usize; 2]>| read_file(&base.join(file), size, room);
+    let read = |file: &str, meaning, size: Option<[usize; 2]>| {
+        read_file(&base.join(file), meaning, size, room)
+    };
     let sources = Sources {
         allowance: Allowance::UNLIMITED,
         refused: RefCell::new(None),
@@ -376,6 +380,27 @@ pub fn from_file(path: &Path, fields: &Fields) -> Result<NamedField, FieldError>
     built.map_err(|detail| field.error(detail))
 }
 
+/// The least and the greatest height in a file of numbers: the ground of a command is at the height that it says. None
+/// of a picture, whose light is a share, and of what is no raster.
+///
+/// # Errors
+/// A description of the fault.
+pub fn heights(path: &Path) -> Result<Option<[f64; 2]>, RasterError> {
+    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+    if ["tif", "tiff", "npy"].iter().all(|known| ending != *known) {
+        return Ok(None);
+    }
+    let image = read_file(path, Meaning::Numbers, None, usize::MAX)?;
+    let has_height = |i: &usize| image.missing.as_ref().is_none_or(|missing| !missing[*i]);
+    let all = (0..image.samples.len())
+        .filter(has_height)
+        .map(|i| image.samples.get(i));
+    let [low, high] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
+        [low.min(v), high.max(v)]
+    });
+    Ok((!image.is_picture && low <= high).then_some([low, high]))
+}
+
 /// The field of a document that a command makes.
 ///
 /// # Errors
@@ -391,23 +416,32 @@ pub fn from_document(
     built.map_err(|detail| field.error(detail))
 }
 
-fn read_file(path: &Path, size: Option<[usize; 2]>, room: usize) -> Result<Image, RasterError> {
+pub(super) fn read_file(
+    path: &Path,
+    meaning: Meaning,
+    size: Option<[usize; 2]>,
+    room: usize,
+) -> Result<Image, RasterError> {
     let limits = Limits {
         side: MOST_SIDE,
         pixels: room.min(Limits::FILES.pixels),
     };
     let file = bounded_file::open_regular(path)?;
     let stop = Stop::default();
-    match size {
+    let image = match size {
         Some(size) if path.extension().is_some_and(|e| e == "f32") => {
             Image::read_floats(file, size, limits, &stop)
         }
         _ => Image::read(
             BufReader::with_capacity(1 << 16, file),
-            Meaning::Data,
+            meaning,
             limits,
             &stop,
         ),
+    }?;
+    match image.place {
+        Place::Box(_) => Ok(image),
+        _ => files::placed(image, path),
     }
 }
 

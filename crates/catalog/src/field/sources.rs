@@ -4,12 +4,13 @@ use std::cell::{Cell, RefCell};
 
 use strew_core::{field::FieldSpec, server::Stop};
 use strew_error::{Checked, Error, Fault};
-use strew_raster::{Image, Price, RasterError};
+use strew_raster::{Image, Meaning, Price, RasterError};
 
 use super::read::FIELD;
 
 /// Reads a file by the name that a document has for it; the size is that of bare floats.
-pub type ReadFile<'a> = dyn Fn(&str, Option<[usize; 2]>) -> Result<Image, RasterError> + 'a;
+pub type ReadFile<'a> =
+    dyn Fn(&str, Meaning, Option<[usize; 2]>) -> Result<Image, RasterError> + 'a;
 
 /// The most pixels that a query may include, over all its layers.
 pub const MOST_PIXELS: usize = 1 << 20;

@@ -209,9 +209,9 @@ fn faults_name_the_path() {
             "the array is damaged or truncated: 1 × 1 pixels take 4 bytes, there are 3",
         ),
         (
-            r#"{"raster": {"f32": "AADAfw==", "width": 1, "height": 1}}"#,
+            r#"{"raster": {"f32": "AACAfw==", "width": 1, "height": 1}}"#,
             "field.raster.f32",
-            "the pixel in column 0, row 0 is NaN",
+            "the pixel in column 0, row 0 is inf",
         ),
         (
             r#"{"raster": {"f32": "AAAAQA==", "width": 1, "height": 1}}"#,
@@ -251,6 +251,34 @@ fn white_and_black_say_what_counts() {
     let json =
         r#"{"raster": {"f32": "AAAAQA==", "width": 1, "height": 1, "black": 1, "white": 5}}"#;
     assert_eq!(share(json, [0.5, 0.5]), 0.25);
+}
+
+#[test]
+fn pixels_that_are_missing_are_empty_in_all_that_is_made_of_them() {
+    // NaN and 1.
+    let pixels = r#""f32": "AADAfwAAgD8=", "width": 2, "height": 1"#;
+    let raster = |more: &str| format!(r#"{{"raster": {{{pixels}{more}}}}}"#);
+    let low = raster(r#", "low": 1, "high": 0.5"#);
+    let black = raster(r#", "black": -9, "white": 11"#);
+    let inverted = format!(
+        r#"{{"invert": {}}}"#,
+        raster(r#", "black": 0.5, "white": 2.5"#)
+    );
+    let height = format!(
+        r#"{{"height": {{"terrain": {{{pixels}}}, "heights": [0, 9], "shares": [1, 0]}}}}"#
+    );
+    let slope = format!(r#"{{"slope": {{"terrain": {{{pixels}}}, "slopes": [0, 1]}}}}"#);
+    for (json, expected) in [
+        (raster(""), 1.0),
+        (low, 0.5),
+        (black, 0.5),
+        (inverted, 0.75),
+        (height, 1.0 - 1.0 / 9.0),
+        (slope, 1.0),
+    ] {
+        assert_eq!(share(&json, [0.99, 0.5]), 0.0, "{json}");
+        assert!((share(&json, [1.0, 0.5]) - expected).abs() < 1e-7, "{json}");
+    }
 }
 
 #[test]

@@ -141,10 +141,10 @@ pub struct FieldNoise {
 /// greatest. A request holds at most 1,048,576 pixels.
 #[derive(Clone, PartialEq, ::prost::Message)]
 pub struct FieldPixels {
-    /// A PNG.
+    /// A PNG. What is wholly transparent is missing.
     #[prost(bytes = "bytes", tag = "1")]
     pub png: ::prost::bytes::Bytes,
-    /// Floats of 32 bits, little endian, row by row; with width and height.
+    /// Floats of 32 bits, little endian, row by row; with width and height. NaN is missing.
     #[prost(bytes = "bytes", tag = "2")]
     pub f32: ::prost::bytes::Bytes,
     /// The width of bare floats, in pixels.
@@ -162,7 +162,8 @@ pub struct FieldPixels {
     /// The shares between the centers of pixels.
     #[prost(enumeration = "FieldFilter", tag = "7")]
     pub filter: i32,
-    /// The number that counts as 0; 0 by default. Not for a terrain, as those below.
+    /// The number that counts as 0; 0 by default. Not for a terrain, as those below. With black or white the numbers
+    /// are those of the PNG: of a palette its indices.
     #[prost(double, optional, tag = "8")]
     pub black: ::core::option::Option<f64>,
     /// The number that counts as 1, above black; the greatest of integer pixels, else 1, by default.
@@ -307,10 +308,12 @@ impl FieldEdges {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, ::prost::Enumeration)]
 #[repr(i32)]
 pub enum FieldFilter {
-    /// Linear between the four nearest.
+    /// Linear; nearest where pixels are bits, or 0 and 1 with white = 1.
     Unspecified = 0,
     /// The nearest pixel.
     Nearest = 1,
+    /// Linear between the four nearest.
+    Linear = 2,
 }
 impl FieldFilter {
     /// String value of the enum field names used in the ProtoBuf definition.
@@ -321,6 +324,7 @@ impl FieldFilter {
         match self {
             Self::Unspecified => "FIELD_FILTER_UNSPECIFIED",
             Self::Nearest => "FIELD_FILTER_NEAREST",
+            Self::Linear => "FIELD_FILTER_LINEAR",
         }
     }
     /// Creates an enum from field names used in the ProtoBuf definition.
@@ -328,6 +332,7 @@ impl FieldFilter {
         match value {
             "FIELD_FILTER_UNSPECIFIED" => Some(Self::Unspecified),
             "FIELD_FILTER_NEAREST" => Some(Self::Nearest),
+            "FIELD_FILTER_LINEAR" => Some(Self::Linear),
             _ => None,
         }
     }

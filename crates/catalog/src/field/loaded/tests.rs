@@ -61,6 +61,82 @@ fn rasters_documents_and_sections_are_fields() {
     assert_eq!(fields.get("bare").expect("loaded").bytes, 8);
 }
 
+/// An array of a type, of two pixels.
+fn npy(descr: &str, data: &[u8]) -> Vec<u8> {
+    let header = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': (1, 2), }}");
+    let mut file = b"\x93NUMPY\x01\x00".to_vec();
+    file.extend((header.len() as u16).to_le_bytes());
+    file.extend(header.as_bytes());
+    file.extend(data);
+    file
+}
+
+#[test]
+fn integers_of_arrays_are_shares_of_a_known_number() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path();
+    write(path, "mask.npy", npy("|u1", &[0, 1]));
+    write(path, "words.npy", npy("<u2", &[0, 0, 0xe8, 3]));
+    write(path, "bytes.npy", npy("|u1", &[0, 57]));
+    write(path, "truth.npy", npy("|b1", &[0, 1]));
+    let share = |name: &str, more: &str, at| {
+        let json = format!(r#"{{"raster": {{"file": "{name}"{more}}}}}"#);
+        write(path, "field.json", json);
+        let field = from_file(&path.join("field.json"), &Fields::default());
+        field
+            .map(|field| field.spec.share(at))
+            .map_err(|error| error.detail)
+    };
+    let refused = share("mask.npy", "", [1.5, 0.5]).expect_err("a share of 1/255");
+    assert!(
+        refused.contains("reach to 1 of 255") && refused.contains("a white: 1 if"),
+        "{refused}"
+    );
+    let refused = share("words.npy", "", [1.5, 0.5]).expect_err("a share of 1/65");
+    assert!(refused.contains("reach to 1000 of 65535"), "{refused}");
+    assert_eq!(
+        share("words.npy", r#", "white": 1000"#, [1.5, 0.5]),
+        Ok(1.0)
+    );
+    assert!(share("bytes.npy", "", [1.5, 0.5]).is_ok_and(|share| share < 0.23));
+    // Nothing is between bits, unless it is requested.
+    for (name, white) in [("mask.npy", r#", "white": 1"#), ("truth.npy", "")] {
+        assert_eq!(share(name, white, [0.99, 0.5]), Ok(0.0));
+        assert_eq!(share(name, white, [1.0, 0.5]), Ok(1.0));
+        let linear = format!(r#"{white}, "filter": "linear""#);
+        assert_eq!(share(name, &linear, [1.0, 0.5]), Ok(0.5));
+    }
+    assert_eq!(
+        heights(&path.join("words.npy")).expect("heights"),
+        Some([0.0, 1000.0])
+    );
+    assert_eq!(heights(&path.join("field.json")).expect("no raster"), None);
+}
+
+#[test]
+fn world_files_place_rasters() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path();
+    write(path, "a.png", gray([4, 2], 255));
+    let settings = settings(path);
+    let bbox = |fields: &Fields| fields.get("a").expect("loaded").bbox;
+    let first = Fields::load(&settings).expect("valid");
+    assert_eq!(bbox(&first), Some([0.0, 0.0, 4.0, 2.0]));
+    // The center of the first pixel is at 105, 195.
+    write(path, "a.pgw", "10\n0\n0\n-10\n105\n195\n");
+    let (placed, changes, _) = first.reload(&settings);
+    assert_eq!(bbox(&placed), Some([100.0, 180.0, 140.0, 200.0]));
+    assert_eq!(changes.loaded, ["a"]);
+    for (world, why) in [
+        ("10 1 0 -10 105 195", "it is turned or sheared"),
+        ("10 0 0", "is not read; allowed: six numbers"),
+    ] {
+        write(path, "a.pgw", world);
+        let error = Fields::load(&settings).expect_err(why);
+        assert!(error.detail.contains(why), "{error}");
+    }
+}
+
 #[test]
 fn the_built_in_fields_are_a_forest_and_a_portrait_unless_others_have_their_names() {
     let folder = tempfile::tempdir().expect("a folder");

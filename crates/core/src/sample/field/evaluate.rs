@@ -4,6 +4,7 @@ use core::fmt;
 
 use super::{
     Field,
+    grid::Grid,
     scale::{unit, widened},
     spec::{FieldSpec, Shape},
 };
@@ -66,6 +67,61 @@ impl FieldSpec {
     }
 }
 
+impl FieldSpec {
+    /// Whether a place of a box may be in a missing pixel: there the share is 0, whatever is made of the pixels.
+    ///
+    /// ```
+    /// use strew_core::{Field, Raster, Region, field::{FieldSpec, Pixels}};
+    ///
+    /// let pixels = Pixels::from_bytes(2, vec![0, 0])?.without(|at| at == 1);
+    /// let both = Region::new([0.0, 0.0], [2.0, 1.0])?;
+    /// let field = FieldSpec::raster(Raster::of(both, pixels)?)?.invert()?;
+    /// assert_eq!([0.5, 1.5].map(|x| field.share([x, 0.5])), [1.0, 0.0]);
+    /// let left = Region::new([0.0, 0.0], [0.4, 1.0])?;
+    /// assert_eq!([left, both].map(|within| field.has_missing(&within)), [false, true]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn has_missing(&self, within: &Region) -> bool {
+        self.missing(&|grid| grid.missing(within))[0]
+    }
+
+    /// Whether some place is missing, and whether all are, by that of each raster. A product and the least of fields
+    /// are missing where a part is, the greatest where all parts are.
+    fn missing(&self, of: &dyn Fn(&Grid) -> [bool; 2]) -> [bool; 2] {
+        if !self.is_partial {
+            return [false; 2];
+        }
+        let over = |parts: &[Self], first: bool, join: fn(bool, bool) -> bool| {
+            parts.iter().fold([first; 2], |found, part| {
+                let missing = part.missing(of);
+                [0, 1].map(|i| join(found[i], missing[i]))
+            })
+        };
+        match &*self.shape {
+            Shape::Raster(raster) => of(&raster.grid),
+            Shape::Terrain(terrain, _) => of(&terrain.grid),
+            Shape::Multiply(parts) | Shape::Min(parts) => over(parts, false, |a, b| a | b),
+            Shape::Max(parts) => over(parts, true, |a, b| a & b),
+            Shape::Invert(part) | Shape::Curve(part, _) => part.missing(of),
+            _ => [false; 2],
+        }
+    }
+
+    /// Whether a place is in a missing pixel; see [`has_missing`](Self::has_missing).
+    ///
+    /// ```
+    /// use strew_core::field::FieldSpec;
+    ///
+    /// assert!(!FieldSpec::constant(0.0)?.is_missing([0.0, 0.0]));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn is_missing(&self, at: [f64; 2]) -> bool {
+        self.missing(&|grid| [grid.is_missing(at); 2])[0]
+    }
+}
+
 impl PartialEq for FieldSpec {
     fn eq(&self, other: &Self) -> bool {
         self.digest == other.digest
@@ -91,6 +147,9 @@ impl fmt::Debug for FieldSpec {
 
 impl Field for FieldSpec {
     fn share(&self, at: [f64; 2]) -> f64 {
+        if self.is_partial && self.is_missing(at) {
+            return 0.0;
+        }
         let over = |parts: &[Self], first: f64, join: fn(f64, f64) -> f64| {
             parts
                 .iter()
@@ -146,6 +205,13 @@ impl Field for FieldSpec {
                 }
             }
         }
+        if self.is_partial {
+            for (share, at) in shares.iter_mut().zip(places) {
+                if self.is_missing(*at) {
+                    *share = 0.0;
+                }
+            }
+        }
     }
 
     fn bounds(&self, within: &Region) -> [f64; 2] {
@@ -192,10 +258,18 @@ impl Field for FieldSpec {
                 widened(ends)
             }
         };
-        ends.map(unit)
+        let [low, high] = ends.map(unit);
+        match self.missing(&|grid| grid.missing(within)) {
+            [_, true] => [0.0; 2],
+            [true, _] => [0.0, high],
+            _ => [low, high],
+        }
     }
 
     fn slopes(&self, within: &Region) -> [f64; 2] {
+        if self.has_missing(within) {
+            return [f64::INFINITY; 2];
+        }
         let over = |parts: &[Self], join: fn(f64, f64) -> f64| {
             parts.iter().fold([0.0; 2], |all, part| {
                 let slopes = part.slopes(within);

@@ -72,8 +72,10 @@ pub(super) struct Grid {
     /// Pixels per world unit.
     pub(super) scale: [f64; 2],
     /// In pixels.
-    size: [usize; 2],
+    pub(super) size: [usize; 2],
     pub(super) pixels: Pixels,
+    /// Whether some of them are missing.
+    pub(super) is_partial: bool,
     pub(super) edges: Edges,
     pub(super) filter: Filter,
 }
@@ -93,6 +95,7 @@ impl Grid {
             region,
             scale,
             size,
+            is_partial: pixels.present().is_some(),
             pixels,
             edges: Edges::Clamp,
             filter: Filter::Linear,
@@ -108,7 +111,7 @@ impl Grid {
 
     /// The place of a coordinate along an axis, in pixels from the lower side, within the box.
     #[inline(always)]
-    fn place(&self, axis: usize, v: f64) -> f64 {
+    pub(super) fn place(&self, axis: usize, v: f64) -> f64 {
         let size = self.size[axis] as f64;
         let place = (v - self.region.min()[axis]) * self.scale[axis];
         let place = match self.edges {
@@ -156,7 +159,8 @@ impl Grid {
 
     #[inline(always)]
     fn each(&self, places: &[[f64; 2]], out: &mut [f64], pixel: impl Fn(usize) -> f32) {
-        let is_plain = self.edges == Edges::Clamp && self.filter == Filter::Linear;
+        let is_plain =
+            self.edges == Edges::Clamp && self.filter == Filter::Linear && !self.is_partial;
         if !is_plain {
             for (out, &at) in out.iter_mut().zip(places) {
                 let is_outside = self.edges == Edges::Zero && !self.region.contains(at);
@@ -191,6 +195,11 @@ impl Grid {
         }
         let (left, right, u) = self.pair(0, x);
         let (bottom, top, v) = self.pair(1, y);
+        if self.is_partial
+            && let Some(mean) = self.mean_of_present([left, right], [bottom, top], [u, v], &pixel)
+        {
+            return mean;
+        }
         let along = |row: usize| {
             let a = f64::from(pixel(row * width + left));
             let b = f64::from(pixel(row * width + right));
@@ -226,6 +235,10 @@ impl Grid {
     /// Bounds of the stored numbers that matter within a box; none if none do. The flag is set if
     /// places outside of the pixels lie within.
     pub(super) fn bounds(&self, within: &Region) -> (Option<Ends>, bool) {
+        self.bounds_of(&self.pixels, within)
+    }
+
+    pub(super) fn bounds_of(&self, pixels: &Pixels, within: &Region) -> (Option<Ends>, bool) {
         let (min, max) = (within.min(), within.max());
         let is_outside = self.edges == Edges::Zero
             && (0..2).any(|axis| {
@@ -242,7 +255,7 @@ impl Grid {
         let mut ends: Option<Ends> = None;
         for x in x.iter().flatten() {
             for y in y.iter().flatten() {
-                let [low, high] = self.pixels.bounds(x.clone(), y.clone());
+                let [low, high] = pixels.bounds(x.clone(), y.clone());
                 ends = Some(match ends {
                     Some(ends) => [ends[0].min(low), ends[1].max(high)],
                     None => [low, high],
@@ -262,7 +275,10 @@ impl Grid {
                 ends[axis].map(|v| (v - self.region.min()[axis]) * self.scale[axis]);
             first >= 1.0 && last <= self.size[axis] as f64 - 1.0
         });
-        if self.filter == Filter::Nearest || !(self.edges == Edges::Clamp || is_inside) {
+        if self.filter == Filter::Nearest
+            || !(self.edges == Edges::Clamp || is_inside)
+            || self.missing(within)[0]
+        {
             return unknown;
         }
         let [columns, rows] = [0, 1].map(|axis| {

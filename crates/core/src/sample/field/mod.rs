@@ -5,8 +5,8 @@
 //! the point. Points do not move when others leave.
 //!
 //! `definition` has the trait. `spec` has the descriptions that a program can keep, compare and name by a digest,
-//! `evaluate` their shares; they are made of `raster` and `terrain` (both `pixels` laid over the plane by `grid`),
-//! `marks`, `noise` and the lines of `scale`. `rows` finds the points of a field in some rows, many at a time, where
+//! `evaluate` their shares; they are made of `raster` and `terrain` (both `pixels` laid over the plane by `grid`;
+//! `missing` has those without a number), `marks`, `noise` and the lines of `scale`. `rows` finds the points of a field in some rows, many at a time, where
 //! `tiles` leaves any. `Lattice::place` is the definition, point by point; walks leave out
 //! what bounds of the field rule out and find the same points with the same bits.
 
@@ -16,6 +16,7 @@ mod definition;
 mod evaluate;
 mod grid;
 mod marks;
+mod missing;
 mod noise;
 mod pixels;
 mod raster;

@@ -3,6 +3,7 @@
 use alloc::{format, string::ToString as _, sync::Arc, vec::Vec};
 use core::ops::RangeInclusive;
 
+use super::canon::Canon;
 use crate::{
     error::{Error, ErrorKind, number},
     stop::Stop,
@@ -50,6 +51,9 @@ pub struct Pixels(Arc<Stored>);
 struct Stored {
     size: [usize; 2],
     store: Store,
+    /// 1 where a pixel has a number and 0 where it is missing, if any is. A missing one repeats a number that is there,
+    /// so that bounds are those of the others.
+    present: Option<Pixels>,
     /// The bounds of squares of pixels; each level has squares of twice the width of the one before.
     levels: Vec<Level>,
     digest: Digest,
@@ -131,13 +135,66 @@ impl Pixels {
             let error = Error::new(ErrorKind::Field, "pixels", side, allowed);
             return Err(error.with_limit(Self::MAX_SIDE as f64));
         }
-        let (levels, digest) = (levels(size, &store), store.digest(width));
-        Ok(Self(Arc::new(Stored {
+        Ok(Self::stored(size, store, None))
+    }
+
+    fn stored(size: [usize; 2], store: Store, present: Option<Self>) -> Self {
+        let mut digest = store.digest(size[0]);
+        if let Some(present) = &present {
+            let mut canon = Canon::new("pixels without data");
+            canon.digest(digest);
+            canon.digest(present.digest());
+            digest = canon.finish();
+        }
+        Self(Arc::new(Stored {
             size,
+            levels: levels(size, &store),
             store,
-            levels,
+            present,
             digest,
-        })))
+        }))
+    }
+
+    /// These pixels without some, by their places in the rows: where one is missing a field of them is empty, and its
+    /// neighbors are interpolated among those that are there.
+    ///
+    /// ```
+    /// use strew_core::{Field, Raster, Region, field::Pixels};
+    ///
+    /// let pixels = Pixels::from_bytes(2, vec![255, 9])?.without(|at| at == 1);
+    /// assert_eq!(pixels.ends(), [1.0, 1.0]);
+    /// let raster = Raster::of(Region::new([0.0, 0.0], [2.0, 1.0])?, pixels)?;
+    /// assert_eq!([0.99, 1.0, 1.5].map(|x| raster.share([x, 0.5])), [1.0, 0.0, 0.0]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn without(self, is_missing: impl Fn(usize) -> bool) -> Self {
+        let present: Vec<u8> = (0..self.0.store.len())
+            .map(|at| if is_missing(at) { 0 } else { 255 })
+            .collect();
+        if !present.contains(&0) {
+            return self;
+        }
+        let mut store = self.0.store.clone();
+        match &mut store {
+            Store::Bytes(all) => fill(all, &present),
+            Store::Words(all) => fill(all, &present),
+            Store::Floats(all) => fill(all, &present),
+        }
+        let size = self.0.size;
+        let present = Self::stored(size, Store::Bytes(present), None);
+        Self::stored(size, store, Some(present))
+    }
+
+    /// The pixels that are there as ones, if any is missing.
+    pub(super) fn present(&self) -> Option<&Self> {
+        self.0.present.as_ref()
+    }
+
+    /// Whether a pixel has a number.
+    pub(super) fn has(&self, at: usize) -> bool {
+        let present = self.0.present.as_ref();
+        present.is_none_or(|present| present.0.store.get(at) > 0.0)
     }
 
     /// Pixels made from each of these, unless stopped.
@@ -157,19 +214,8 @@ impl Pixels {
             }
             pixels.extend((pixels.len()..number).take(FEW).map(&of));
         }
-        Ok(self.replaced(pixels))
-    }
-
-    /// Other numbers in rows of the same width.
-    fn replaced(&self, pixels: Vec<f32>) -> Self {
-        let (size, store) = (self.0.size, Store::Floats(pixels));
-        let (levels, digest) = (levels(size, &store), store.digest(size[0]));
-        Self(Arc::new(Stored {
-            size,
-            store,
-            levels,
-            digest,
-        }))
+        let present = self.0.present.clone();
+        Ok(Self::stored(self.0.size, Store::Floats(pixels), present))
     }
 
     /// The numbers of columns and rows.
@@ -196,10 +242,11 @@ impl Pixels {
     #[must_use]
     pub fn bytes(&self) -> usize {
         let bounds: usize = self.0.levels.iter().map(|level| level.ends.len()).sum();
-        self.0.store.bytes() + size_of::<Ends>() * bounds
+        let present = self.present().map_or(0, Self::bytes);
+        self.0.store.bytes() + size_of::<Ends>() * bounds + present
     }
 
-    /// The least and the greatest number.
+    /// The least and the greatest number, of pixels that are not missing.
     ///
     /// ```
     /// use strew_core::field::Pixels;
@@ -329,6 +376,18 @@ impl Store {
             }
         }
         Digest::from_bytes(*hasher.finalize().as_bytes())
+    }
+}
+
+/// Puts a number that is there in the place of each missing one: the one before it in the rows, or the first.
+fn fill<T: Copy + Default>(all: &mut [T], present: &[u8]) {
+    let first = present.iter().position(|is_present| *is_present > 0);
+    let mut last = first.map_or(T::default(), |at| all[at]);
+    for (value, is_present) in all.iter_mut().zip(present) {
+        match is_present {
+            0 => *value = last,
+            _ => last = *value,
+        }
     }
 }
 

@@ -17,7 +17,7 @@ use crate::{
 };
 
 /// Shares of pixels over a box: at the centers of pixels, by default linear between them and constant
-/// beyond the outermost centers.
+/// beyond the outermost centers. The share of a [missing](Pixels::without) pixel is 0 in all of it.
 ///
 /// ```
 /// use strew_core::{Field, Raster, Region};
@@ -30,7 +30,7 @@ use crate::{
 /// ```
 #[derive(Clone, Debug)]
 pub struct Raster {
-    grid: Grid,
+    pub(super) grid: Grid,
     /// The digest of the pixels that were handed in.
     source: Digest,
     tone: [f64; 3],
@@ -224,14 +224,24 @@ impl Raster {
 impl Field for Raster {
     #[inline]
     fn share(&self, at: [f64; 2]) -> f64 {
+        if self.grid.is_missing(at) {
+            return 0.0;
+        }
         // Interpolation rounds.
         self.grid.at(at, self.tones.as_deref()).min(1.0)
     }
 
     fn shares(&self, places: &[[f64; 2]], shares: &mut [f64]) {
         self.grid.all_at(places, self.tones.as_deref(), shares);
-        for share in shares {
+        for share in shares.iter_mut() {
             *share = share.min(1.0);
+        }
+        if self.grid.is_partial {
+            for (share, at) in shares.iter_mut().zip(places) {
+                if self.grid.is_missing(*at) {
+                    *share = 0.0;
+                }
+            }
         }
     }
 
@@ -250,7 +260,11 @@ impl Field for Raster {
             None => ends,
         };
         let [low, high] = widened(ends.map(f64::from));
-        [if is_outside { 0.0 } else { low }, high]
+        match self.grid.missing(within) {
+            [_, true] => [0.0; 2],
+            [true, _] => [0.0, high],
+            _ => [if is_outside { 0.0 } else { low }, high],
+        }
     }
 
     fn slopes(&self, within: &Region) -> [f64; 2] {

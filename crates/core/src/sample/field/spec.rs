@@ -41,6 +41,8 @@ pub struct FieldSpec {
     pub(super) depth: usize,
     pub(super) parts: usize,
     pub(super) vertices: usize,
+    /// Whether pixels of it are missing.
+    pub(super) is_partial: bool,
 }
 
 /// The checked parts of a description.
@@ -83,12 +85,18 @@ impl FieldSpec {
             Shape::Invert(part) | Shape::Curve(part, _) => core::slice::from_ref(part),
             _ => &[],
         };
+        let is_partial = match &shape {
+            Shape::Raster(raster) => raster.grid.is_partial,
+            Shape::Terrain(terrain, _) => terrain.grid.is_partial,
+            _ => parts.iter().any(|part| part.is_partial),
+        };
         let sum = |of: fn(&Self) -> usize| parts.iter().map(of).sum::<usize>();
         let spec = Self {
             digest: canon.finish(),
             depth: 1 + parts.iter().map(|part| part.depth).max().unwrap_or(0),
             parts: 1 + sum(|part| part.parts),
             vertices: vertices + sum(|part| part.vertices),
+            is_partial,
             shape: Arc::new(shape),
         };
         for (name, value, most) in [

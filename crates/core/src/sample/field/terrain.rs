@@ -23,7 +23,7 @@ use crate::{error::Error, sample::area::Region, stop::Stop, table::Digest};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Terrain {
-    grid: Grid,
+    pub(super) grid: Grid,
     /// The digest of the heights.
     source: Digest,
 }
@@ -103,21 +103,31 @@ impl Terrain {
     pub(super) fn steepness(mut self, stop: &Stop) -> Result<Self, Error> {
         let [width, height] = self.grid.pixels.size();
         let (scale, edges) = (self.grid.scale, self.grid.edges);
-        let store = self.grid.pixels.store();
+        let pixels = &self.grid.pixels;
+        let store = pixels.store();
         let rise = |[x, y]: [usize; 2], axis: usize| {
             let (at, size) = ([x, y][axis], [width, height][axis]);
-            let (before, after) = match edges {
-                Edges::Repeat => ((at + size - 1) % size, (at + 1) % size),
-                _ => (at.saturating_sub(1), (at + 1).min(size - 1)),
+            let place = |v: usize| match axis {
+                0 => y * width + v,
+                _ => v * width + x,
             };
-            let run = match edges {
-                Edges::Repeat => 2,
-                _ => after - before,
+            let [before, after] = match edges {
+                Edges::Repeat => [((at + size - 1) % size, 1), ((at + 1) % size, 1)],
+                _ => {
+                    let [before, after] = [at.saturating_sub(1), (at + 1).min(size - 1)];
+                    [(before, at - before), (after, after - at)]
+                }
             };
-            let z = |v: usize| {
-                let [x, y] = if axis == 0 { [v, y] } else { [x, v] };
-                f64::from(store.get(y * width + x))
-            };
+            // The pixel itself stands for a neighbor without a height.
+            let [(before, back), (after, ahead)] = [before, after].map(|(v, step)| {
+                if pixels.has(place(v)) {
+                    (v, step)
+                } else {
+                    (at, 0)
+                }
+            });
+            let run = back + ahead;
+            let z = |v: usize| f64::from(store.get(place(v)));
             match run {
                 0 => 0.0,
                 run => (z(after) - z(before)) * scale[axis] / run as f64,
