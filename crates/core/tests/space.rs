@@ -205,7 +205,10 @@ proptest! {
 fn exactly(step: f64, p: i64, size: f64, column: i64) -> f64 {
     let parts = |v: f64| {
         let bits = v.to_bits();
-        (((bits & ((1 << 52) - 1)) | 1 << 52) as i128, (bits >> 52) as i32 - 1075)
+        (
+            ((bits & ((1 << 52) - 1)) | 1 << 52) as i128,
+            (bits >> 52) as i32 - 1075,
+        )
     };
     let ((a, e), (b, f)) = (parts(step), parts(size));
     let power = e.min(f);
@@ -224,8 +227,13 @@ fn far_windows_and_many_parts_are_found_without_walking_all() {
         assert_eq!((up_to.offset(), up_to.cursor()), (k, Some(cursor)));
     }
     // One alone is the same.
-    assert_eq!(plan.window(numbers[7], None).cursor(), plan.cursors(&numbers)[7]);
-    let ball = set(1.0, 7).within(Ball::new([5.0; 3], 70.0).expect("a ball")).expect("near");
+    assert_eq!(
+        plan.window(numbers[7], None).cursor(),
+        plan.cursors(&numbers)[7]
+    );
+    let ball = set(1.0, 7)
+        .within(Ball::new([5.0; 3], 70.0).expect("a ball"))
+        .expect("near");
     let parts: Vec<Plan> = ball.split(97).collect();
     let ids = parts.iter().flat_map(Plan::iter).map(|point| point.id);
     assert!(ids.eq(ball.iter().map(|point| point.id)));
@@ -233,7 +241,10 @@ fn far_windows_and_many_parts_are_found_without_walking_all() {
 
 #[test]
 fn a_raised_flag_ends_a_search_for_neighbors() {
-    use strew_core::{ErrorKind, server::{Stop, Visits}};
+    use strew_core::{
+        ErrorKind,
+        server::{Stop, Visits},
+    };
     let stop = Stop::new();
     stop.raise();
     let error = set(1.0, 7).nearest_visiting([0.0; 3], 9, None, &Visits::new(usize::MAX, stop));

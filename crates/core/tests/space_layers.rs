@@ -108,11 +108,19 @@ proptest! {
 
 /// The points of layer number `i` of a chain in a box by the definition, recursively: layers are those of `plain`, and
 /// each keeps its distances from some before it.
-fn by_definition(plain: &[SpaceSet], clear: &[Vec<(usize, f64)>], i: usize, region: Region) -> Vec<Point> {
+fn by_definition(
+    plain: &[SpaceSet],
+    clear: &[Vec<(usize, f64)>],
+    i: usize,
+    region: Region,
+) -> Vec<Point> {
     let mut points = plain[i].within(region).expect("near").to_vec();
     for &(other, distance) in &clear[i] {
         let wide = distance + 1e-6;
-        let around = Region::new(region.min().map(|v| v - wide), region.max().map(|v| v + wide));
+        let around = Region::new(
+            region.min().map(|v| v - wide),
+            region.max().map(|v| v + wide),
+        );
         let others = by_definition(plain, clear, other, around.expect("a box"));
         points.retain(|point| !is_near(point, &others, distance));
     }
@@ -164,7 +172,10 @@ proptest! {
 
 #[test]
 fn a_chain_makes_each_layer_once() {
-    use std::sync::{Arc, atomic::{AtomicU32, Ordering}};
+    use std::sync::{
+        Arc,
+        atomic::{AtomicU32, Ordering},
+    };
     use strew_core::server::Stop;
     // The looks at the flag tell how many tiles are made.
     let looks = |depth: u64, all: bool| {
@@ -172,7 +183,9 @@ fn a_chain_makes_each_layer_once() {
         for seed in 1..=depth {
             let first = if all { 0 } else { sets.len().saturating_sub(1) };
             let others = sets[first..].iter();
-            let layer = others.fold(set(1.0, seed), |layer, other| layer.clear_of(other, 0.5).expect("in range"));
+            let layer = others.fold(set(1.0, seed), |layer, other| {
+                layer.clear_of(other, 0.5).expect("in range")
+            });
             sets.push(layer);
         }
         let seen = Arc::new(AtomicU32::new(0));
@@ -181,7 +194,10 @@ fn a_chain_makes_each_layer_once() {
             seeing.fetch_add(1, Ordering::Relaxed);
         });
         let ball = Ball::new([0.0; 3], 2.0).expect("a ball");
-        sets.last().expect("some").within_until(ball, stop).expect("near");
+        sets.last()
+            .expect("some")
+            .within_until(ball, stop)
+            .expect("near");
         seen.load(Ordering::Relaxed)
     };
     for all in [false, true] {

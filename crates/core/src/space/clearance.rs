@@ -148,12 +148,16 @@ impl Edge {
             let mut found = false;
             other.visit(&around, stop, |at_other| {
                 found = is_nearer(at_other, at, distance)
-                    && !other.edges.iter().any(|edge| edge.is_near(earlier, at_other, stop));
+                    && !other
+                        .edges
+                        .iter()
+                        .any(|edge| edge.is_near(earlier, at_other, stop));
                 !found
             });
             return found;
         }
-        let [first, last] = [min, max].map(|p| [0, 1, 2].map(|i| libm::floor(p[i] / other.sides[i]) as i64));
+        let [first, last] =
+            [min, max].map(|p| [0, 1, 2].map(|i| libm::floor(p[i] / other.sides[i]) as i64));
         for z in first[2]..=last[2] {
             for y in first[1]..=last[1] {
                 for x in first[0]..=last[0] {
@@ -161,7 +165,12 @@ impl Edge {
                     let Some(tile) = other.tiles.get_mut(&[x, y, z]).filter(|_| is_known) else {
                         return false;
                     };
-                    let stays = |point| !other.edges.iter().any(|edge| edge.is_near(earlier, point, stop));
+                    let stays = |point| {
+                        !other
+                            .edges
+                            .iter()
+                            .any(|edge| edge.is_near(earlier, point, stop))
+                    };
                     if tile.has_near(at, [min, max], distance, stays) {
                         return true;
                     }
@@ -263,7 +272,9 @@ impl Tile {
             points: vec![[0.0; 3]; unsorted.len()],
             stays: vec![None; unsorted.len()],
         };
-        let own = |tile: &Self, at: [f64; 3]| tile.number([0, 1, 2].map(|axis| tile.cell(axis, at[axis])));
+        let own = |tile: &Self, at: [f64; 3]| {
+            tile.number([0, 1, 2].map(|axis| tile.cell(axis, at[axis])))
+        };
         for &at in unsorted {
             let cell = own(&tile, at);
             tile.starts[cell] += 1;
@@ -305,10 +316,13 @@ impl Tile {
         let [first, last] = [min, max].map(|p| [0, 1, 2].map(|axis| self.cell(axis, p[axis])));
         for k in first[2]..=last[2] {
             for j in first[1]..=last[1] {
-                let [from, to] = [first[0], last[0] + 1].map(|i| self.starts[self.number([i, j, k])] as usize);
+                let [from, to] =
+                    [first[0], last[0] + 1].map(|i| self.starts[self.number([i, j, k])] as usize);
                 let points = self.points[from..to].iter().zip(&mut self.stays[from..to]);
                 for (&point, decided) in points {
-                    if is_nearer(point, at, distance) && *decided.get_or_insert_with(|| stays(point)) {
+                    if is_nearer(point, at, distance)
+                        && *decided.get_or_insert_with(|| stays(point))
+                    {
                         return true;
                     }
                 }

@@ -117,7 +117,9 @@ pub(super) fn locate_all(scope: &Arc<Scope>, numbers: &[u128]) -> Vec<Option<[i6
         if numbers.is_empty() || scope.stop.is_raised() {
             continue;
         }
-        let Some((&(axis, bits), later)) = cuts.split_last().filter(|_| !scope.is_worth_walking(&ranges, numbers.len()))
+        let Some((&(axis, bits), later)) = cuts
+            .split_last()
+            .filter(|_| !scope.is_worth_walking(&ranges, numbers.len()))
         else {
             walk_to(scope, &ranges, before, numbers, &mut found);
             continue;

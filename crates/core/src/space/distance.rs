@@ -174,7 +174,9 @@ fn meetings(map: &Map, shift: u64) -> Vec<(usize, usize)> {
 fn spans(vectors: &[[i16; 3]]) -> [[i64; 2]; 3] {
     [0, 1, 2].map(|axis| {
         let components = vectors.iter().map(|vector| i64::from(vector[axis]));
-        components.fold([i64::MAX, i64::MIN], |[least, most], v| [least.min(v), most.max(v)])
+        components.fold([i64::MAX, i64::MIN], |[least, most], v| {
+            [least.min(v), most.max(v)]
+        })
     })
 }
 
@@ -210,7 +212,10 @@ fn least_squared(table: &Table) -> u64 {
     let bound = |offset: [i64; 3], [a, b]: [&[[i64; 2]; 3]; 2]| -> i64 {
         let apart = |axis: usize| {
             let ([a_least, a_most], [b_least, b_most]) = (a[axis], b[axis]);
-            let [low, high] = [offset[axis] + b_least - a_most, offset[axis] + b_most - a_least];
+            let [low, high] = [
+                offset[axis] + b_least - a_most,
+                offset[axis] + b_most - a_least,
+            ];
             low.max(-high).max(0)
         };
         (0..3).map(|axis| apart(axis) * apart(axis)).sum()

@@ -124,7 +124,10 @@ impl Plan {
             let starts: Vec<u128> = numbers.clone().map(start).collect();
             let cursors = plan.cursors(&starts).into_iter();
             let part = |(i, cursor): (u128, Option<Cursor>)| {
-                let from = cursor.map_or_else(|| plan.window(plan.count(), None), |at| plan.from_cursor(at));
+                let from = cursor.map_or_else(
+                    || plan.window(plan.count(), None),
+                    |at| plan.from_cursor(at),
+                );
                 from.window(0, Some(start(i + 1) - start(i)))
             };
             numbers.zip(cursors).map(part).collect::<Vec<_>>()
