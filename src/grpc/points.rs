@@ -105,7 +105,7 @@ impl Points {
         let (request, query, _) = self.read(request).await?;
         let planned = self.service.count(caller, query).await?;
         let count = u64::try_from(planned.count()).unwrap_or(u64::MAX);
-        let places = self.service.split(planned, parts).await?;
+        let places = self.service.split(caller, planned, parts).await?;
         let part = |place| split::part(&request, place);
         Ok(SplitPointsResponse {
             count,

@@ -93,7 +93,7 @@ pub(super) async fn posted(
     let parts = parts?;
     let planned = service.count(&context.caller, query).await?;
     let count = planned.count();
-    let places = service.split(planned, parts).await?;
+    let places = service.split(&context.caller, planned, parts).await?;
     // Each part repeats the body, in memory and in the answer.
     let bytes = places.len().saturating_mul(size + PART_BYTES);
     let _held = service.hold(bytes.saturating_mul(3))?;

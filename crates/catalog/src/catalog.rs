@@ -13,7 +13,6 @@ use std::{
     sync::Arc,
 };
 
-use bytes::Bytes;
 use strew_core::{
     Alpha,
     field::FieldSpec,
@@ -107,9 +106,7 @@ impl Catalog {
         };
         if embedded {
             let files = LIBRARY.iter().chain(EMBEDDED).copied().chain(joint_files());
-            catalog.add(files.map(|(name, bytes)| {
-                Entry::read(Bytes::from_static(bytes), Source::Embedded(name))
-            }))?;
+            catalog.add(files.map(|(name, bytes)| Entry::embedded(name, bytes)))?;
             catalog.built_in.clone_from(&catalog.entries);
         }
         if let Some(folder) = folder {

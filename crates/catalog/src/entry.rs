@@ -55,8 +55,8 @@ enum Content {
     OnDisk,
     /// Nowhere: all are zero.
     Zero,
-    /// In a table in space, which is small.
-    Space(Box<space::Table>),
+    /// In a table in space, which is small: it is made of these bytes when it is first needed.
+    Space(Bytes, OnceLock<Option<Box<space::Table>>>),
 }
 
 impl PartialEq for Entry {
@@ -79,17 +79,15 @@ impl Entry {
             error,
         };
         let length = bytes.len() as u64;
-        if is_of_space(&bytes) {
+        if head_of(&bytes).is_some_and(|head| head.is_space) {
             let table = space::Table::from_bytes(&bytes).map_err(refused)?;
-            return Ok(Self::of_space(table, source, length));
+            return Ok(Self::of_space(table, source, bytes));
         }
         let table = Table::from_bytes(&bytes).map_err(refused)?;
         Ok(Self::of(&table, source, length, Content::Held(bytes)))
     }
 
-    fn of_space(table: space::Table, source: Source, bytes: u64) -> Self {
-        // Computed once, before the first query.
-        let _ = table.least_distance();
+    fn of_space(table: space::Table, source: Source, bytes: Bytes) -> Self {
         Self {
             key: Key {
                 dimension: Dimension::Space,
@@ -103,9 +101,9 @@ impl Entry {
             intervals: table.map().intervals(),
             digest: table.digest().to_string(),
             provenance: table.provenance().clone(),
-            bytes,
+            bytes: bytes.len() as u64,
             vectors: OnceLock::new(),
-            content: Content::Space(Box::new(table)),
+            content: Content::Space(bytes, Some(Box::new(table)).into()),
         }
     }
 
@@ -113,7 +111,10 @@ impl Entry {
     #[must_use]
     pub fn space(&self) -> Option<&space::Table> {
         match &self.content {
-            Content::Space(table) => Some(table),
+            Content::Space(bytes, table) => {
+                let read = || space::Table::from_bytes(bytes).ok().map(Box::new);
+                table.get_or_init(read).as_deref()
+            }
             _ => None,
         }
     }
@@ -177,9 +178,31 @@ impl Entry {
         if head.has_kinds || head.is_space {
             return Self::from_file(path);
         }
-        Ok(Self {
+        Ok(Self::of_head(head, source, bytes, Content::OnDisk))
+    }
+
+    /// A table that the program is built with, and whose files tests check: only its head is read, unless it has kinds.
+    pub(super) fn embedded(name: &'static str, bytes: &'static [u8]) -> Result<Self, CatalogError> {
+        let (source, held) = (Source::Embedded(name), Bytes::from_static(bytes));
+        match head_of(bytes) {
+            Some(head) if !head.has_kinds => {
+                let content = match head.is_space {
+                    true => Content::Space(held, OnceLock::new()),
+                    false => Content::Held(held),
+                };
+                Ok(Self::of_head(head, source, bytes.len() as u64, content))
+            }
+            _ => Self::read(held, source),
+        }
+    }
+
+    fn of_head(head: Head, source: Source, bytes: u64, content: Content) -> Self {
+        Self {
             key: Key {
-                dimension: Dimension::Plane,
+                dimension: match head.is_space {
+                    true => Dimension::Space,
+                    false => Dimension::Plane,
+                },
                 profile: head.profile.into(),
                 alpha: head.alpha,
                 size: Size::of_radius(head.radius),
@@ -192,8 +215,8 @@ impl Entry {
             provenance: head.provenance,
             bytes,
             vectors: OnceLock::new(),
-            content: Content::OnDisk,
-        })
+            content,
+        }
     }
 
     /// The number of the table's blocks, one vector each.
@@ -221,7 +244,7 @@ impl Entry {
         match (&self.content, &self.source) {
             (Content::Held(bytes), _) => Table::from_bytes(bytes).map_err(damaged),
             (Content::OnDisk, Source::File(path)) => self.table_of(path),
-            (Content::Space(_), _) => {
+            (Content::Space(..), _) => {
                 Err(Error::Internal("a table in space for a set of the plane"))
             }
             _ => {
@@ -276,8 +299,8 @@ fn digest_of_vectors(table: &Table) -> [u8; 32] {
     *blake3::hash(&vectors).as_bytes()
 }
 
-/// Whether a table file, which is checked later, is one of space.
-fn is_of_space(bytes: &[u8]) -> bool {
+/// The head of a table file, if it can be read.
+fn head_of(bytes: &[u8]) -> Option<Head> {
     let part = |at: u64, part: &mut [u8]| {
         let start = usize::try_from(at).unwrap_or(usize::MAX);
         let whole = start
@@ -286,8 +309,7 @@ fn is_of_space(bytes: &[u8]) -> bool {
         part.copy_from_slice(whole.ok_or(io::ErrorKind::UnexpectedEof)?);
         Ok::<_, io::Error>(())
     };
-    let head = Head::read(bytes.len() as u64, part);
-    matches!(head, Ok(Ok(head)) if head.is_space)
+    Head::read(bytes.len() as u64, part).ok()?.ok()
 }
 
 /// The head of a table file, and the size of the file.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use proptest::prelude::*;
 use strew_core::{
-    Backend, F32, F64, Map, Points, Polygon,
+    Backend, F32, F64, Map, Offsets, Points, Polygon,
     space::{Ball, Plan, Point, PointId, Prism, Region, SpaceSet, Table, Volume},
     table::{Provenance, Ranks},
 };
@@ -135,6 +135,11 @@ proptest! {
         let plan = set.chunk(2.0 * size, at).expect("near");
         let split: Vec<Point> = plan.split(pages).flatten().collect();
         prop_assert_eq!(&split, &whole);
+        let numbers: Vec<u128> = (0..u128::from(pages)).map(|i| i * i * 37).collect();
+        let cursors = plan.window(3, None).cursors(&numbers);
+        let ids = cursors.iter().map(|cursor| cursor.map(|cursor| cursor.at));
+        let expected = numbers.iter().map(|&k| whole.get(k as usize + 3).map(|point| point.id));
+        prop_assert!(ids.eq(expected));
         let region = Region::chunk(2.0 * size, at).expect("valid");
         let limit = plan.count() / u128::from(pages) + 1;
         let mut page = plan.window(0, Some(limit));
@@ -162,7 +167,88 @@ proptest! {
         all.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
         let expected: Vec<PointId> = all.into_iter().take(k).map(|(_, id)| id).collect();
         prop_assert_eq!(near.iter().map(|n| n.point.id).collect::<Vec<_>>(), expected);
+        // A reported distance as the radius finds its point.
+        for neighbor in &near {
+            let within = set.nearest_within(at, 100, neighbor.distance).expect("near");
+            prop_assert!(within.contains(neighbor));
+            prop_assert!(within.iter().all(|found| found.distance <= neighbor.distance));
+        }
     }
+
+    #[test]
+    fn offsets_in_chunks_are_exact_and_rounded_once(
+        seed in 0u64..3, spacing in 0.3f64..3.0, size in prop_oneof![0.5..20.0f64, 0.5..20.0f64],
+        at in prop::array::uniform3(prop_oneof![-40i64..40, -10_000_000_000i64..10_000_000_000]),
+    ) {
+        let set = set(spacing, seed);
+        let plan = set.chunk(size, at).expect("near");
+        let mut offsets = vec![[0.0; 3]; plan.count() as usize];
+        plan.blocks::<Offsets>().fill(&mut offsets);
+        let step = spacing * set.table().map().alpha().set_side_f64() / f64::from(1 << 20);
+        for (point, offset) in plan.iter().zip(offsets) {
+            for axis in 0..3 {
+                // Reported coordinates tell the position: they are its rounded multiples of the step.
+                let about = (point.at()[axis] / step).round() as i64;
+                let mut positions = about - (about.abs() >> 50) - 2..about + (about.abs() >> 50) + 3;
+                let is_it = |p: i64| {
+                    let exact = exactly(step, p, size, at[axis]);
+                    offset[axis] == exact.clamp(0.0, size.next_down())
+                };
+                prop_assert!(positions.any(is_it), "{} {:?}", offset[axis], point);
+                prop_assert!((0.0..size).contains(&offset[axis]));
+            }
+        }
+    }
+}
+
+/// p · step − size · column, rounded once.
+fn exactly(step: f64, p: i64, size: f64, column: i64) -> f64 {
+    let parts = |v: f64| {
+        let bits = v.to_bits();
+        (
+            ((bits & ((1 << 52) - 1)) | 1 << 52) as i128,
+            (bits >> 52) as i32 - 1075,
+        )
+    };
+    let ((a, e), (b, f)) = (parts(step), parts(size));
+    let power = e.min(f);
+    let value = ((a * i128::from(p)) << (e - power)) - ((b * i128::from(column)) << (f - power));
+    value as f64 * 2f64.powi(power)
+}
+
+#[test]
+fn far_windows_and_many_parts_are_found_without_walking_all() {
+    let wide = Region::new([-2e5; 3], [2e5; 3]).expect("ordered");
+    let plan = set(1.0, 0).within(wide).expect("near");
+    let numbers: Vec<u128> = (1..40).map(|i| plan.count() / 40 * i).collect();
+    for (cursor, &k) in plan.cursors(&numbers).iter().zip(&numbers) {
+        let cursor = cursor.expect("inside");
+        let up_to = plan.from_cursor(cursor);
+        assert_eq!((up_to.offset(), up_to.cursor()), (k, Some(cursor)));
+    }
+    // One alone is the same.
+    assert_eq!(
+        plan.window(numbers[7], None).cursor(),
+        plan.cursors(&numbers)[7]
+    );
+    let ball = set(1.0, 7)
+        .within(Ball::new([5.0; 3], 70.0).expect("a ball"))
+        .expect("near");
+    let parts: Vec<Plan> = ball.split(97).collect();
+    let ids = parts.iter().flat_map(Plan::iter).map(|point| point.id);
+    assert!(ids.eq(ball.iter().map(|point| point.id)));
+}
+
+#[test]
+fn a_raised_flag_ends_a_search_for_neighbors() {
+    use strew_core::{
+        ErrorKind,
+        server::{Stop, Visits},
+    };
+    let stop = Stop::new();
+    stop.raise();
+    let error = set(1.0, 7).nearest_visiting([0.0; 3], 9, None, &Visits::new(usize::MAX, stop));
+    assert_eq!(error.expect_err("stopped").kind(), ErrorKind::Stopped);
 }
 
 #[test]

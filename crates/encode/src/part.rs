@@ -74,11 +74,18 @@ pub(super) struct Current {
     pub(super) part: Part,
     pub(super) blocks: Box<dyn Walk>,
     near: Option<Near>,
-    offsets: Option<(Blocks<Offsets>, Vec<[f64; 2]>)>,
+    offsets: Option<Exact>,
     /// The values of the part's own columns.
     own: Vec<Values>,
     /// Where each column of the schema comes from.
     sources: Vec<Provider>,
+}
+
+/// The coordinates of a part as exact offsets, rounded once.
+#[derive(Debug)]
+enum Exact {
+    Plane(Blocks<Offsets>, Vec<[f64; 2]>),
+    Space(space::Blocks<Offsets>, Vec<[f64; 3]>),
 }
 
 /// The coordinates of a part as the kernel makes them for `f32`.
@@ -122,12 +129,9 @@ impl Current {
         let is_own = |wanted: Place| wanted == origin(&*part.plan);
         let (near, offsets) = match coordinates {
             Coordinates::World => (None, None),
-            Coordinates::Relative(origin) => {
-                let plan = part.plan.plane().filter(|_| is_own(origin));
-                (None, plan.map(|plan| (plan.blocks(), vec![])))
-            }
+            Coordinates::Relative(origin) if is_own(origin) => (None, Exact::of(&*part.plan)),
             Coordinates::Near(origin) if is_own(origin) => (Near::of(&*part.plan), None),
-            Coordinates::Near(_) => (None, None),
+            Coordinates::Relative(_) | Coordinates::Near(_) => (None, None),
         };
         Self {
             number,
@@ -179,23 +183,30 @@ impl Current {
 
     /// Makes the coordinates of the next points relative to `origin`.
     pub(super) fn move_to(&mut self, origin: Place, points: &mut [Point], heights: &mut [Height]) {
-        let shift = Shift::new(&*self.part.plan, origin);
         match &mut self.offsets {
-            Some((blocks, offsets)) => {
+            Some(Exact::Plane(blocks, offsets)) => {
                 offsets.resize(points.len().max(offsets.len()), [0.0; 2]);
                 blocks.fill(&mut offsets[..points.len()]);
                 for (point, offset) in points.iter_mut().zip(offsets) {
                     [point.x, point.y] = *offset;
                 }
             }
+            Some(Exact::Space(blocks, offsets)) => {
+                offsets.resize(points.len().max(offsets.len()), [0.0; 3]);
+                blocks.fill(&mut offsets[..points.len()]);
+                for ((point, height), offset) in points.iter_mut().zip(heights).zip(offsets) {
+                    [point.x, point.y, height.z] = *offset;
+                }
+            }
             None => {
+                let shift = Shift::new(&*self.part.plan, origin);
                 for point in points {
                     [point.x, point.y] = shift.apply(point);
                 }
+                for height in heights {
+                    height.z = shift.height(height.z);
+                }
             }
-        }
-        for height in heights {
-            height.z = shift.height(height.z);
         }
     }
 
@@ -229,6 +240,13 @@ impl Current {
                 }
             }
         }
+    }
+}
+
+impl Exact {
+    fn of(plan: &dyn Source) -> Option<Self> {
+        let plane = plan.plane().map(|plan| Self::Plane(plan.blocks(), vec![]));
+        plane.or_else(|| Some(Self::Space(plan.space()?.blocks(), vec![])))
     }
 }
 

@@ -210,6 +210,11 @@ impl Source for PeriodicPlan {
 impl Source for space::Plan {
     common!(Bound::Space);
 
+    fn marks(&self, numbers: &[u128]) -> Vec<Option<Mark>> {
+        let cursors = self.cursors(numbers).into_iter();
+        cursors.map(|cursor| cursor.map(Into::into)).collect()
+    }
+
     fn space(&self) -> Option<&space::Plan> {
         Some(self)
     }

@@ -75,6 +75,12 @@ impl PlannedSet {
         self
     }
 
+    /// The set with what counting all of its points takes, in rows, as a part of making each of them.
+    pub(super) fn after(mut self, rows: f64) -> Self {
+        self.nanoseconds += rows * effort::ROW / self.total.max(1) as f64;
+        self
+    }
+
     /// The number of points that are looked at to make one.
     pub(super) fn looks_by_point(&self, set: &Set) -> f64 {
         match set.field {

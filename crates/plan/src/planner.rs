@@ -26,6 +26,7 @@ pub(super) struct Planner<'a> {
     layers: Vec<PointSet>,
     /// The layers in space.
     pub(super) volumes: Vec<SpaceSet>,
+    pub(super) chains: effort::Chains,
     prices: Layers,
     /// The number of points that all sets together may still leave out.
     room: usize,
@@ -46,6 +47,7 @@ impl<'a> Planner<'a> {
             stop,
             layers: vec![],
             volumes: vec![],
+            chains: effort::Chains::default(),
             prices: Layers::default(),
             room: MOST_HOLES,
             kept: 0,

@@ -125,7 +125,7 @@ impl Placed {
                 }
             }
             (PlacedPoints::Space(points), Place::Space(at)) => {
-                for space::Neighbor { point, distance } in in_space(points, at, nearest)? {
+                for space::Neighbor { point, distance } in in_space(points, at, nearest, visits)? {
                     spots.push_in_space(&point, Some(distance));
                 }
             }
@@ -204,21 +204,22 @@ fn in_space(
     points: &SpaceSet,
     at: [f64; 3],
     nearest: Nearest,
+    visits: &Visits,
 ) -> Result<Vec<space::Neighbor>, Error> {
-    let found = match (nearest.k, nearest.radius) {
-        (None, Some(radius)) => {
-            let found = points.nearest_within(at, MOST_WITHIN, radius);
-            if matches!(&found, Ok(found) if found.len() == MOST_WITHIN) {
-                let allowed = format!("a radius with fewer than {MOST_WITHIN} points within");
-                let detail = "too many points lie within";
-                return Err(Fault::new("radius", number(radius), detail, allowed).into());
-            }
-            found
-        }
-        (k, Some(radius)) => points.nearest_within(at, k.unwrap_or(1), radius),
-        (k, None) => points.nearest(at, k.unwrap_or(1)),
+    let (k, radius) = match (nearest.k, nearest.radius) {
+        (None, Some(radius)) => (MOST_WITHIN, Some(radius)),
+        (k, radius) => (k.unwrap_or(1), radius),
     };
-    found.map_err(|error| fault(nearest, &error))
+    let found = points.nearest_visiting(at, k, radius, visits);
+    let found = found.map_err(|error| fault(nearest, &error))?;
+    match (nearest.k, radius) {
+        (None, Some(radius)) if found.len() == MOST_WITHIN => {
+            let allowed = format!("a radius with fewer than {MOST_WITHIN} points within");
+            let detail = "too many points lie within";
+            Err(Fault::new("radius", number(radius), detail, allowed).into())
+        }
+        _ => Ok(found),
+    }
 }
 
 fn fault(nearest: Nearest, error: &strew_core::Error) -> Error {

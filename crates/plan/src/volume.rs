@@ -33,11 +33,10 @@ impl Planner<'_> {
         let (points, density) = placed(set, table)?;
         check_reach(set, region.reach())?;
         let spacing = points.placement().spacing;
-        let others = set.clear_of.iter();
-        let others = others.filter_map(|&(place, distance)| {
-            Some(effort::cleared(&points, self.volumes.get(place)?, distance))
-        });
-        let test: f64 = others.sum();
+        let test = self.chains.test(&points, &set.clear_of, &volume);
+        let rows = effort::rows_of_volume(&points, &volume, test);
+        let own_volume = own.map(|own| &own.volume);
+        self.chains.push(Some(&points), &set.clear_of, own_volume);
         let points = self.keeping_clear_in_space(set, points)?;
         let cursor = self.query.window.cursor;
         let here = cursor.filter(|token| i == usize::from(token.set));
@@ -47,7 +46,7 @@ impl Planner<'_> {
             _ if is_over => points.resume(volume, NOTHING.in_space()),
             Some(token) => points.resume(volume, token.mark.in_space()),
             None => {
-                self.check_volume(&points, &volume, test)?;
+                self.check_rows_in_space(rows)?;
                 points.within_until(volume, self.stop.clone())
             }
         };
@@ -64,7 +63,12 @@ impl Planner<'_> {
         }
         let plan = Arc::new(plan.stopped_by(self.stop.clone()));
         let planned = PlannedSet::new(set.entry.clone(), (density, spacing), least, plan, 0);
-        Ok(planned.priced(set, test, region.bounds))
+        let planned = planned.priced(set, 0.0, region.bounds);
+        // All points of the volume are tested for those that stay.
+        Ok(match test > 0.0 {
+            true => planned.after(rows),
+            false => planned,
+        })
     }
 
     /// The points of a set that keep clear of the layers it names.
@@ -81,19 +85,15 @@ impl Planner<'_> {
     }
 
     /// Checks that counting a volume stays within the limit.
-    fn check_volume(
-        &self,
-        points: &SpaceSet,
-        volume: &space::Volume,
-        test: f64,
-    ) -> Result<(), Error> {
+    fn check_rows_in_space(&self, rows: f64) -> Result<(), Error> {
         let limit = self.limits.max_rows;
-        let rows = effort::rows_of_volume(points, volume, test);
-        if rows > limit as f64 {
-            let rows = rows as u128;
-            return Err(Error::TooManyRows { rows, limit });
+        match rows > limit as f64 {
+            true => Err(Error::TooManyRows {
+                rows: rows as u128,
+                limit,
+            }),
+            false => Ok(()),
         }
-        Ok(())
     }
 }
 

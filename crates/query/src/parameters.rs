@@ -439,7 +439,7 @@ parameters! {
     /// How far neighbors may be.
     RADIUS = Parameter {
         name: "radius",
-        about: "The greatest distance from the place, in world units.",
+        about: "The greatest distance from the place, in world units: points at exactly this distance, as reported, are found.",
         group: Group::Neighbors,
         shape: Shape::Number { min: 0.0, max: f64::MAX },
         default: Some("unlimited"),

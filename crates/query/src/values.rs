@@ -26,6 +26,9 @@ pub struct Values {
     others: Checked<()>,
 }
 
+/// What is wrong with a parameter of the plane in space.
+pub(crate) const NOT_IN_SPACE: &str = "not for points in space";
+
 impl Values {
     /// No values, of a request that takes these groups; `path` is put before names in faults.
     #[must_use]
@@ -56,6 +59,15 @@ impl Values {
     /// The parameters that the request takes.
     pub fn takes(&self) -> impl Iterator<Item = &'static Parameter> + Clone {
         of(self.groups)
+    }
+
+    /// Whether a request about points in space has a parameter of those of the plane.
+    pub(crate) fn is_of_the_plane(&self, name: &str) -> bool {
+        let named = Parameter::named(name);
+        let is_of_query = named.is_some_and(|named| groups::QUERY.contains(&named.group));
+        is_of_query
+            && self.dimension() == Dimension::Space
+            && find(groups::SPACE_QUERY, name).is_none()
     }
 
     /// Adds a value as text, under a name that may not be a parameter's.
@@ -153,6 +165,7 @@ impl Values {
         let named = find(self.groups, name);
         if named.is_none() {
             let detail = match Parameter::named(name) {
+                _ if self.is_of_the_plane(name) => NOT_IN_SPACE.into(),
                 Some(_) => "not allowed here".into(),
                 None => unknown(what, name, self.takes().map(|parameter| parameter.name)),
             };

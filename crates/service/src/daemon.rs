@@ -365,11 +365,17 @@ impl Service {
         Ok(())
     }
 
-    /// The query in parts; see [`Planned::split`].
+    /// The query in parts; see [`Planned::split`]. Charges the rows that are counted for them.
     ///
     /// # Errors
-    /// As [`Planned::split`].
-    pub async fn split(&self, planned: Planned, parts: u32) -> Result<Vec<(Token, u64)>, Error> {
+    /// As [`Planned::split`], and [`Error::Denied`] if the caller's rate does not allow it.
+    pub async fn split(
+        &self,
+        caller: &Caller,
+        planned: Planned,
+        parts: u32,
+    ) -> Result<Vec<(Token, u64)>, Error> {
+        caller.charge(effort::splitting(&planned, parts) as u128, 0)?;
         let split = move |stop: &Stop| planned.stopped_by(stop).split(parts);
         self.workers.take_turn(Lane::Long, split).await?
     }

@@ -36,7 +36,9 @@ mod walk;
 mod warp;
 
 pub(crate) use attribute::hash;
+pub(crate) use kernel::Exactly;
 pub(crate) use lattice::Multiple;
+pub(crate) use near::limits::farthest;
 pub(crate) use seed::split_mix;
 
 /// The parts of the plane that points in space share.

@@ -1,16 +1,17 @@
-//! Counting points, and finding the place of one by its number.
+//! Counting points, and finding their places by their numbers.
 
-use alloc::sync::Arc;
+use alloc::{sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
 use super::{
     batch::Batch,
+    clearance::Clearance,
     closed,
     columns::{COLUMN_BITS, columns},
-    scope::{Scope, State, common},
+    scope::{Scope, State},
     sieve::Sifted,
     volume::Volume,
-    walk::few,
+    walk::{Walk, few},
 };
 use crate::table::FRACTION_BITS;
 
@@ -26,11 +27,17 @@ pub(super) fn count(scope: &Arc<Scope>, ranges: &[Range<i64>; 3]) -> u128 {
     if scope.is_closed() {
         return closed::count(scope, &ranges);
     }
-    divide(scope, ranges, scope.volume.as_ref())
+    let mut clearance = Clearance::new(scope);
+    divide(scope, &mut clearance, ranges, scope.volume.as_ref())
 }
 
 /// Counts by halves, until all points of a part lie inside or outside, or they are few.
-fn divide(scope: &Arc<Scope>, ranges: [Range<i64>; 3], volume: Option<&Volume>) -> u128 {
+fn divide(
+    scope: &Arc<Scope>,
+    clearance: &mut Clearance,
+    ranges: [Range<i64>; 3],
+    volume: Option<&Volume>,
+) -> u128 {
     if scope.stop.is_raised() {
         return 0;
     }
@@ -47,7 +54,7 @@ fn divide(scope: &Arc<Scope>, ranges: [Range<i64>; 3], volume: Option<&Volume>) 
         .into_iter()
         .fold(0, |a, b| if side(b) > side(a) { b } else { a });
     if side(longest) <= LEAF {
-        return walked(scope, &ranges);
+        return walked(scope, clearance, &ranges);
     }
     // Parts that begin at multiples of the side of a leaf.
     let range = &ranges[longest];
@@ -61,72 +68,115 @@ fn divide(scope: &Arc<Scope>, ranges: [Range<i64>; 3], volume: Option<&Volume>) 
     halves[0][longest].end = middle;
     halves[1][longest].start = middle;
     halves
-        .map(|half| divide(scope, half, near.as_ref()))
+        .map(|half| divide(scope, clearance, half, near.as_ref()))
         .iter()
         .sum()
 }
 
 /// Counts point by point.
-fn walked(scope: &Arc<Scope>, ranges: &[Range<i64>; 3]) -> u128 {
-    let mut walk = Sifted::new(scope.clone(), ranges, None, false);
+fn walked(scope: &Arc<Scope>, clearance: &mut Clearance, ranges: &[Range<i64>; 3]) -> u128 {
+    let mut walk = Walk::new(scope.clone(), ranges, None, false);
     let (mut batch, mut count) = (Batch::default(), 0);
     while walk.next(&mut batch) {
+        clearance.sift(scope, &mut batch);
         count += batch.len() as u128;
     }
     count
 }
 
-/// The address of point number `k` of a scope, if there are more than k.
-pub(super) fn locate(scope: &Arc<Scope>, k: u128) -> Option<[i64; 3]> {
-    let mut ranges = scope.all.clone();
-    let mut k = k;
-    // Columns by x, then by y, then planes, then rows: each is the first up to whose end there are more than k.
-    for (axis, bits) in [(0, COLUMN_BITS), (1, COLUMN_BITS), (2, 0), (1, 0)] {
-        if ranges[axis].is_empty() {
-            return None;
+/// A part of the points, one after another in the order: all of a box of the lattice.
+struct Piece<'a> {
+    ranges: [Range<i64>; 3],
+    /// The axes along which it is cut next, the first one last: columns by x, then by y, then planes.
+    cuts: &'static [(usize, u32)],
+    /// The number of points before it.
+    before: u128,
+    /// The numbers that are sought in it.
+    numbers: &'a [u128],
+}
+
+/// The addresses of points of a scope of some numbers, which ascend; `None` from its end on, and once its flag is raised.
+///
+/// Parts that have none of them are counted, halves of halves. What is left is walked once, as soon as that takes no longer
+/// than counting on.
+pub(super) fn locate_all(scope: &Arc<Scope>, numbers: &[u128]) -> Vec<Option<[i64; 3]>> {
+    let mut found = Vec::with_capacity(numbers.len());
+    let mut open = vec![Piece {
+        ranges: scope.all.clone(),
+        cuts: &[(2, 0), (1, COLUMN_BITS), (0, COLUMN_BITS)],
+        before: 0,
+        numbers,
+    }];
+    while let Some(Piece {
+        ranges,
+        cuts,
+        before,
+        numbers,
+    }) = open.pop()
+    {
+        if numbers.is_empty() || scope.stop.is_raised() {
+            continue;
         }
-        let whole = ranges[axis].clone();
+        let Some((&(axis, bits), later)) = cuts
+            .split_last()
+            .filter(|_| !scope.is_worth_walking(&ranges, numbers.len()))
+        else {
+            walk_to(scope, &ranges, before, numbers, &mut found);
+            continue;
+        };
         let parts = match bits {
-            0 => whole.clone(),
-            _ => columns(&whole),
+            0 => ranges[axis].clone(),
+            _ => columns(&ranges[axis]),
         };
-        let up_to = |part: i64| {
-            let mut upper = ranges.clone();
-            upper[axis].end = whole.end.min(part << bits);
-            if upper[axis].is_empty() {
-                0
-            } else {
-                count(scope, &upper)
-            }
-        };
-        // Before the first part none, up to the end of the last one more than k.
-        let (mut low, mut high, mut below) = (parts.start, parts.end, 0);
-        while high - low > 1 {
-            let middle = low + (high - low) / 2;
-            let number = up_to(middle);
-            if scope.stop.is_raised() {
-                return None;
-            }
-            if number > k {
-                high = middle;
-            } else {
-                (low, below) = (middle, number);
-            }
+        if parts.end - parts.start <= 1 {
+            open.push(Piece {
+                ranges,
+                cuts: later,
+                before,
+                numbers,
+            });
+            continue;
         }
-        k -= below;
-        let part = low << bits..(low + 1) << bits;
-        ranges[axis] = common(&part, &whole);
-    }
-    let mut walk = Sifted::new(scope.clone(), &ranges, None, true);
-    let mut batch = Batch::default();
-    while walk.next(&mut batch) {
-        let point = usize::try_from(k).ok();
-        if let Some(at) = point.and_then(|point| batch.address(point)) {
-            return Some(at);
+        let middle = (parts.start + (parts.end - parts.start) / 2) << bits;
+        let [mut lower, mut upper] = [ranges.clone(), ranges];
+        lower[axis].end = middle;
+        upper[axis].start = middle;
+        let end = before + count(scope, &lower);
+        let (below, above) = numbers.split_at(numbers.partition_point(|&k| k < end));
+        for (ranges, before, numbers) in [(upper, end, above), (lower, before, below)] {
+            open.push(Piece {
+                ranges,
+                cuts,
+                before,
+                numbers,
+            });
         }
-        k -= batch.len() as u128;
     }
-    None
+    found.resize(numbers.len(), None);
+    found
+}
+
+/// Walks over a part of the points until those of some numbers are found.
+fn walk_to(
+    scope: &Arc<Scope>,
+    ranges: &[Range<i64>; 3],
+    before: u128,
+    numbers: &[u128],
+    found: &mut Vec<Option<[i64; 3]>>,
+) {
+    let mut walk = Sifted::new(scope.clone(), ranges, None, true);
+    let (mut batch, mut start) = (Batch::default(), before);
+    let mut numbers = numbers.iter().peekable();
+    while numbers.peek().is_some() && walk.next(&mut batch) {
+        let end = start + batch.len() as u128;
+        while let Some(&&k) = numbers.peek().filter(|&&&k| k < end) {
+            found.push(batch.address((k - start) as usize));
+            numbers.next();
+        }
+        start = end;
+    }
+    // There are no more points.
+    found.extend(numbers.map(|_| None));
 }
 
 /// All points of a scope of few, relative to one origin.

@@ -37,8 +37,8 @@ pub struct LeastDistance {
 }
 
 impl Table {
-    /// The least distance between any two points of the table's sets. The first call looks at every pair of blocks that
-    /// can meet near each other: some ten milliseconds for 21 intervals.
+    /// The least distance between any two points of the table's sets. The first call looks at the pairs of blocks that can
+    /// meet near each other.
     ///
     /// ```
     /// use strew_core::space::Table;
@@ -170,6 +170,16 @@ fn meetings(map: &Map, shift: u64) -> Vec<(usize, usize)> {
     found
 }
 
+/// The least and the greatest component of some vectors along each axis.
+fn spans(vectors: &[[i16; 3]]) -> [[i64; 2]; 3] {
+    [0, 1, 2].map(|axis| {
+        let components = vectors.iter().map(|vector| i64::from(vector[axis]));
+        components.fold([i64::MAX, i64::MIN], |[least, most], v| {
+            [least.min(v), most.max(v)]
+        })
+    })
+}
+
 /// The least squared distance between two points, in fixed-point units.
 fn least_squared(table: &Table) -> u64 {
     let map = table.map();
@@ -192,12 +202,35 @@ fn least_squared(table: &Table) -> u64 {
     let row = -far..=far;
     let planes = (0..=far).flat_map(|z| row.clone().map(move |y| (z, y)));
     let offsets = planes.flat_map(|(z, y)| row.clone().map(move |x| [x, y, z]));
-    // One of two opposite offsets.
-    for [x, y, z] in offsets.filter(|&[x, y, z]| (z, y, x) > (0, 0, 0)) {
-        let (along_x, along_y, along_z) = (pairs(x, y + z), pairs(y, x + z), pairs(z, x + y));
+    // One of two opposite offsets, short ones first, where the least distance is.
+    let mut offsets: Vec<[i64; 3]> = offsets.filter(|&[x, y, z]| (z, y, x) > (0, 0, 0)).collect();
+    offsets.sort_by_key(|offset| offset.iter().map(|v| v * v).sum::<i64>());
+    // The least and the greatest component along each axis of the vectors of a row of blocks, and of all.
+    let rows: Vec<[[i64; 2]; 3]> = vectors.chunks(n).map(spans).collect();
+    let whole = spans(vectors);
+    // No two blocks of such spans are nearer, squared.
+    let bound = |offset: [i64; 3], [a, b]: [&[[i64; 2]; 3]; 2]| -> i64 {
+        let apart = |axis: usize| {
+            let ([a_least, a_most], [b_least, b_most]) = (a[axis], b[axis]);
+            let [low, high] = [
+                offset[axis] + b_least - a_most,
+                offset[axis] + b_most - a_least,
+            ];
+            low.max(-high).max(0)
+        };
+        (0..3).map(|axis| apart(axis) * apart(axis)).sum()
+    };
+    for [x, y, z] in offsets {
         let offset = [x, y, z].map(|v| v << VECTOR_BITS);
+        if bound(offset, [&whole, &whole]) >= least {
+            continue;
+        }
+        let (along_x, along_y, along_z) = (pairs(x, y + z), pairs(y, x + z), pairs(z, x + y));
         for &(k, to_k) in along_z {
             for &(j, to_j) in along_y {
+                if bound(offset, [&rows[k * n + j], &rows[to_k * n + to_j]]) >= least {
+                    continue;
+                }
                 for &(i, to_i) in along_x {
                     let [a, b] = [(k, j, i), (to_k, to_j, to_i)]
                         .map(|(k, j, i)| vectors[(k * n + j) * n + i]);

@@ -9,18 +9,18 @@ use super::{
     scope::Scope,
 };
 use crate::{
-    F32, F64, Points,
+    F32, F64, Offsets, Points,
     sample::{
-        Backend,
+        Backend, Exactly,
         space::{PlainLoop, compiled_loop, pick_pairs, pick_triples, write_triples},
     },
     table::FRACTION_BITS,
 };
 
-/// A format of points in space: [`F32`], [`F64`] or [`Points`]. The trait is sealed.
+/// A format of points in space: [`F32`], [`F64`], [`Offsets`] or [`Points`]. The trait is sealed.
 ///
 /// `F::Item` is what a block holds: `[f32; 3]` offsets from the plan's [origin](super::Plan::origin), `[f64; 3]` world
-/// coordinates, or [`Point`].
+/// coordinates, as many offsets, or [`Point`].
 ///
 /// ```
 /// use strew_core::{F32, F64, Points, space::{Format, Plan, SpaceSet, Table}};
@@ -225,11 +225,12 @@ pub struct Single {
 
 impl Single {
     fn new(scope: &Scope, axis: usize, origin: i64) -> Self {
-        let corner = &scope.corner;
+        let (corner, step) = (&scope.corner, scope.lattice.step);
+        let [gap, error] = corner.gap[axis];
         Self {
             base: (fixed(origin) - corner.first[axis]) as f64,
-            lead: corner.lead[axis],
-            step: scope.lattice.step,
+            lead: ((gap + error) / step).max(0.0),
+            step,
             last: below(corner.extent[axis]),
         }
     }
@@ -329,6 +330,33 @@ impl Emit for F64 {
 
     fn pick(backend: Backend, picks: Picks<'_, f64>, out: &mut [[f64; 3]]) {
         pick_pairs(backend, picks.places, picks.blocks, picks.across, out);
+    }
+}
+
+impl Format for Offsets {}
+
+impl Emit for Offsets {
+    type Item = [f64; 3];
+    type Part = f64;
+    /// Beside how offsets are rounded the distance of the origin from the anchor.
+    type Axis = (Exactly, f64);
+    const HAS_IDS: bool = false;
+
+    fn axis(scope: &Scope, axis: usize, origin: i64) -> (Exactly, f64) {
+        let (corner, step) = (&scope.corner, scope.lattice.step);
+        let first = corner.first[axis];
+        let exactly = Exactly::new(step, first.into(), corner.gap[axis], corner.extent[axis]);
+        (exactly, fixed(origin - (first >> FRACTION_BITS)) as f64)
+    }
+
+    #[inline(always)]
+    fn part((exactly, base): (Exactly, f64), offset: i32) -> f64 {
+        exactly.place(base, offset)
+    }
+
+    #[inline(always)]
+    fn item(parts: [f64; 3], _: [i64; 3]) -> [f64; 3] {
+        parts
     }
 }
 

@@ -97,6 +97,16 @@ impl Lattice {
         }
     }
 
+    /// The mean spacing of the points that are kept, in world units.
+    pub(super) fn spacing_kept(&self) -> f64 {
+        self.placement.spacing.get() / libm::cbrt(self.placement.keep.get())
+    }
+
+    /// Whether another lattice has the same points.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        self.placement == other.placement && self.table == other.table
+    }
+
     /// The blocks along the axes of an address, or `None` if the pattern has no point there.
     pub(super) fn block(&self, id: PointId) -> Option<[usize; 3]> {
         let at = id.lattice();

@@ -8,7 +8,7 @@ use super::{
     set::SpaceSet,
     sieve,
 };
-use crate::error::Error;
+use crate::{error::Error, sample::Visits};
 
 impl SpaceSet {
     /// The point of an id, or `None` if the set has none there.
@@ -74,10 +74,11 @@ impl SpaceSet {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn nearest(&self, at: [f64; 3], k: usize) -> Result<Vec<Neighbor>, Error> {
-        nearest::nearest(self.lattice(), self.mask(), at, k, None)
+        self.nearest_visiting(at, k, None, &Visits::any())
     }
 
-    /// The nearest points of a place within a radius, its end included, at most `k`; see [`nearest`](Self::nearest).
+    /// The nearest points of a place whose distances are at most a radius, `k` of them at most; see
+    /// [`nearest`](Self::nearest).
     ///
     /// # Errors
     /// As [`nearest`](Self::nearest), and [`Radius`](crate::ErrorKind::Radius) unless the radius is finite and not
@@ -97,6 +98,31 @@ impl SpaceSet {
         k: usize,
         radius: f64,
     ) -> Result<Vec<Neighbor>, Error> {
-        nearest::nearest(self.lattice(), self.mask(), at, k, Some(radius))
+        self.nearest_visiting(at, k, Some(radius), &Visits::any())
+    }
+
+    /// Runs [`nearest`](Self::nearest), or [`nearest_within`](Self::nearest_within) if there is a radius, until a flag is
+    /// raised, and counts the points that are visited.
+    ///
+    /// # Errors
+    /// As these, and [`Stopped`](crate::ErrorKind::Stopped).
+    ///
+    /// ```
+    /// use strew_core::{server::{Stop, Visits}, space::{SpaceSet, Table}};
+    ///
+    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
+    /// let visits = Visits::new(usize::MAX, Stop::new());
+    /// assert_eq!(set.nearest_visiting([1.0; 3], 5, None, &visits)?.len(), 5);
+    /// assert!(visits.made() >= 5);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn nearest_visiting(
+        &self,
+        at: [f64; 3],
+        k: usize,
+        radius: Option<f64>,
+        visits: &Visits,
+    ) -> Result<Vec<Neighbor>, Error> {
+        nearest::nearest(self.lattice(), self.mask(), at, k, radius, visits)
     }
 }

@@ -2,7 +2,10 @@
 
 use alloc::{sync::Arc, vec::Vec};
 
-use super::{lattice::Lattice, volume::Volume};
+use super::{
+    lattice::Lattice,
+    volume::{Region, Volume},
+};
 use crate::error::{Error, ErrorKind, number};
 
 /// The conditions on the points of a set beside its share.
@@ -64,6 +67,40 @@ impl Mask {
             Some(own) => volume.clone().and((**own).clone()),
             None => volume.clone(),
         }
+    }
+
+    /// Whether this and another mask are made of the same parts.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        let is_within = match (&self.within, &other.within) {
+            (Some(own), Some(other)) => Arc::ptr_eq(own, other),
+            (own, other) => own.is_none() && other.is_none(),
+        };
+        let is_alone = self.clear.is_empty() && other.clear.is_empty();
+        is_within && (is_alone || Arc::ptr_eq(&self.clear, &other.clear))
+    }
+
+    /// The part of the mask that other sets do not decide.
+    pub(super) fn of_itself(&self) -> Self {
+        Self {
+            within: self.within.clone(),
+            clear: Arc::default(),
+        }
+    }
+
+    /// The mask reduced to what matters in a box; `None` if it leaves nothing there.
+    pub(super) fn focused(&self, region: &Region) -> Option<Self> {
+        let Some(own) = self.within.as_ref().filter(|own| own.chunks().is_empty()) else {
+            // Reported coordinates do not decide about chunks.
+            return Some(self.clone());
+        };
+        let near = own.focus(region);
+        let within = match near.is_all_or_nothing() {
+            Some(false) => return None,
+            Some(true) => None,
+            None => Some(Arc::new(near)),
+        };
+        let clear = self.clear.clone();
+        Some(Self { within, clear })
     }
 
     /// Whether it leaves all points.

@@ -15,15 +15,17 @@
 //!
 //! `pattern` and `symmetry` have the pattern, `table` the vectors, `warp` the shears, `lattice` which addresses have
 //! points and where; `volume` the parts of space, `scope` what of a lattice is requested, `mask` what narrows a set.
-//! `walk` makes points row by row or batch by batch from `columns` of planes, `cells` and `template`s; `sieve` leaves out those that are
-//! too near other sets; `closed` and `count` count them. `plan` is a request made ready, whose points `blocks` writes in a
-//! `format`, and `attributes` are their further values; `lookups`, `nearest` and `distance` are about single points and
-//! neighbors. `set` is all of this, `shipped` the table that the crate has.
+//! `walk` makes points row by row or batch by batch from `columns` of planes, `cells` and `template`s; `sieve` leaves out
+//! those that `clearance` finds too near other sets; `closed` and `count` count them. `plan` is a request made ready,
+//! `windows` are its parts, and `blocks` writes its points in a `format`; `attributes` are their further values.
+//! `lookups`, `nearest` and `distance` are about single points and neighbors. `set` is all of this, `shipped` the table
+//! that the crate has.
 
 mod attributes;
 mod batch;
 mod blocks;
 mod cells;
+mod clearance;
 mod closed;
 mod columns;
 mod count;
@@ -48,6 +50,7 @@ mod template;
 mod volume;
 mod walk;
 mod warp;
+mod windows;
 
 pub use attributes::BoundAttributes;
 pub use blocks::{Blocks, Members};

@@ -13,6 +13,7 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorKind, number},
+    sample::{Visits, farthest},
     stop::Stop,
 };
 
@@ -48,6 +49,7 @@ pub(super) fn nearest(
     at: [f64; 3],
     k: usize,
     within: Option<f64>,
+    visits: &Visits,
 ) -> Result<Vec<Neighbor>, Error> {
     for (name, value) in ["x", "y", "z"].into_iter().zip(at) {
         if !value.is_finite() {
@@ -74,7 +76,7 @@ pub(super) fn nearest(
             radius = radius.min(most);
         }
         check(lattice, at, radius)?;
-        let mut found = around(lattice, mask, at, radius)?;
+        let mut found = around(lattice, mask, at, radius, visits)?;
         found.sort_unstable_by(|a, b| {
             let by_distance = a.0.total_cmp(&b.0);
             by_distance.then_with(|| a.1.id.cmp(&b.1.id))
@@ -123,6 +125,7 @@ fn around(
     mask: &Mask,
     at: [f64; 3],
     radius: f64,
+    visits: &Visits,
 ) -> Result<Vec<(f64, Point)>, Error> {
     // Rounded coordinates of the box do not lose points at the radius.
     let wide = radius * (1.0 + 1e-12);
@@ -131,11 +134,14 @@ fn around(
         at.map(|v| (v + wide).next_up().next_up()),
     ];
     let volume = Volume::Region(Region::between(min, max));
-    let scope = Arc::new(Scope::new(lattice, mask, &volume, Stop::default())?);
+    let scope = Arc::new(Scope::new(lattice, mask, &volume, visits.stop().clone())?);
     let mut walk = Sifted::new(scope.clone(), &scope.all, None, true);
     let (mut batch, mut found) = (Batch::default(), Vec::new());
-    let farthest = radius * radius;
+    let farthest = farthest(radius);
     while walk.next(&mut batch) {
+        if visits.row(batch.len()).is_break() {
+            break;
+        }
         for (i, id) in batch.ids.iter().enumerate() {
             let origin = batch.origin;
             let place =
@@ -148,5 +154,9 @@ fn around(
             }
         }
     }
-    Ok(found)
+    // Walks end early, too.
+    match visits.is_stopped() {
+        true => Err(Stop::error()),
+        false => Ok(found),
+    }
 }

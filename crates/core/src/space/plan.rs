@@ -1,17 +1,15 @@
-//! Plans: the points of a request, counted, and windows of them.
+//! Plans: the points of a request, counted.
 
 use alloc::{sync::Arc, vec, vec::Vec};
-use core::ops::Range;
 
 use super::{
     batch::Batch,
     blocks::{Blocks, Members},
     count,
-    cursor::Cursor,
     format::Format,
     lattice::{Lattice, Placement},
     mask::Mask,
-    point::{Point, PointId},
+    point::Point,
     scope::Scope,
     table::Table,
     volume::{Region, Volume},
@@ -33,29 +31,20 @@ use crate::{F32, F64, Points, error::Error, stop::Stop};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Plan {
-    scope: Arc<Scope>,
-    window: Window,
+    pub(super) scope: Arc<Scope>,
+    pub(super) window: Window,
     /// All points of the request, if they are few.
-    kept: Option<Arc<Batch>>,
+    pub(super) kept: Option<Arc<Batch>>,
 }
 
 /// A part of a request's points.
 #[derive(Clone, Copy, Debug)]
-struct Window {
+pub(super) struct Window {
     /// The first point, unless that is the first of the request.
-    start: Option<[i64; 3]>,
-    offset: u128,
-    count: u128,
-    total: u128,
-}
-
-/// Requests with at most this number of candidates are walked once instead of counted.
-const FEW: f64 = 20_000.0;
-
-/// Whether a scope has few points, near each other.
-fn is_small(scope: &Scope) -> bool {
-    let is_short = |range: &Range<i64>| range.end - range.start <= 1024;
-    scope.all.iter().all(is_short) && scope.candidates(&scope.all) <= FEW
+    pub(super) start: Option<[i64; 3]>,
+    pub(super) offset: u128,
+    pub(super) count: u128,
+    pub(super) total: u128,
 }
 
 impl Plan {
@@ -70,7 +59,7 @@ impl Plan {
         let mut kept = None;
         let total = match total {
             Some(total) => total,
-            None if is_small(&scope) => {
+            None if scope.is_small() => {
                 let points = count::keep(&scope);
                 let count = points.len() as u128;
                 kept = Some(Arc::new(points));
@@ -106,178 +95,6 @@ impl Plan {
     #[must_use]
     pub const fn count(&self) -> u128 {
         self.window.count
-    }
-
-    /// The number of points of the whole request, of which the plan may be a window.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
-    /// assert_eq!(plan.window(50, Some(10)).total(), plan.count());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub const fn total(&self) -> u128 {
-        self.window.total
-    }
-
-    /// The number of points of the request that come before the plan's.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
-    /// assert_eq!(plan.window(50, None).window(5, None).offset(), 55);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub const fn offset(&self) -> u128 {
-        self.window.offset
-    }
-
-    /// Whether the plan is less than the whole request.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
-    /// assert!(plan.window(50, None).is_window() && !plan.is_window());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub const fn is_window(&self) -> bool {
-        self.window.count < self.window.total
-    }
-
-    /// The points from number `offset` of this plan on, at most `limit`; none from its end on.
-    ///
-    /// ```
-    /// use strew_core::space::{Region, SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// // 10¹⁸ points, of which two in the middle are made.
-    /// let plan = set.within(Region::new([-5e5; 3], [5e5; 3])?)?;
-    /// assert_eq!(plan.window(plan.count() / 2, Some(2)).to_vec().len(), 2);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn window(&self, offset: u128, limit: Option<u128>) -> Self {
-        let window = self.window;
-        let offset = offset.min(window.count);
-        let count = (window.count - offset).min(limit.unwrap_or(u128::MAX));
-        let mut start = window.start;
-        if offset > 0 && count > 0 {
-            start = self.locate(window.offset + offset);
-        }
-        self.with_window(Window {
-            start,
-            offset: window.offset + offset,
-            count,
-            total: window.total,
-        })
-    }
-
-    /// The points of the request from one of its [cursors](Cursor) on, found without counting.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
-    /// let cursor = plan.window(50, None).cursor().expect("not empty");
-    /// assert_eq!(plan.from_cursor(cursor).to_vec(), plan.to_vec()[50..]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn from_cursor(&self, cursor: Cursor) -> Self {
-        let total = self.window.total;
-        let offset = cursor.offset.min(total);
-        self.with_window(Window {
-            start: (offset > 0).then_some(cursor.at.lattice()),
-            offset,
-            count: total - offset,
-            total,
-        })
-    }
-
-    /// The plan cut into `parts` windows, one after another, whose sizes differ by at most one. 0 parts count as 1.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
-    /// let counts: Vec<u128> = plan.window(0, Some(10)).split(4).map(|part| part.count()).collect();
-    /// assert_eq!(counts, [3, 3, 2, 2]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn split(&self, parts: u32) -> impl Iterator<Item = Self> + use<> {
-        let parts = u128::from(parts.max(1));
-        let (quotient, rest) = (self.count() / parts, self.count() % parts);
-        let start = move |i: u128| i * quotient + i.min(rest);
-        let plan = self.clone();
-        (0..parts).map(move |i| plan.window(start(i), Some(start(i + 1) - start(i))))
-    }
-
-    /// The place of the first point, or `None` if there are no points.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
-    /// let cursor = plan.window(50, None).cursor().expect("not empty");
-    /// assert_eq!((cursor.offset, cursor.at), (50, plan.to_vec()[50].id));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn cursor(&self) -> Option<Cursor> {
-        let Window {
-            start,
-            offset,
-            count,
-            total,
-        } = self.window;
-        if count == 0 {
-            return None;
-        }
-        let at = PointId::of(start.or_else(|| self.locate(offset))?);
-        Some(Cursor { offset, total, at })
-    }
-
-    /// The place of the first point of the request after the plan's last, or `None` at the end.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
-    /// let next = plan.window(0, Some(50)).next_cursor().expect("there are more");
-    /// assert_eq!(plan.from_cursor(next).offset(), 50);
-    /// assert_eq!(plan.next_cursor(), None);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn next_cursor(&self) -> Option<Cursor> {
-        let total = self.window.total;
-        let offset = self.window.offset + self.window.count;
-        let at = PointId::of(self.locate(offset)?);
-        Some(Cursor { offset, total, at })
-    }
-
-    /// The address of point number `k` of the request; `None` from its end on.
-    fn locate(&self, k: u128) -> Option<[i64; 3]> {
-        if k >= self.window.total {
-            return None;
-        }
-        match &self.kept {
-            Some(kept) => kept.address(usize::try_from(k).ok()?),
-            None => count::locate(&self.scope, k),
-        }
-    }
-
-    fn with_window(&self, window: Window) -> Self {
-        Self {
-            window,
-            ..self.clone()
-        }
     }
 
     /// The points in a format, block by block.

@@ -44,8 +44,8 @@ pub(super) struct Corner {
     pub(super) at: [f64; 3],
     /// The first fixed-point coordinates from there on.
     pub(super) first: [i64; 3],
-    /// The distances from the exact place to these, in steps.
-    pub(super) lead: [f64; 3],
+    /// The distances from the exact place to these, in world units: the sums of two numbers.
+    pub(super) gap: [[f64; 2]; 3],
     /// Offsets are below this.
     pub(super) extent: [f64; 3],
 }
@@ -62,18 +62,18 @@ pub(super) enum State {
 impl Corner {
     fn of_box(lattice: &Lattice, region: &Region, first: [i64; 3]) -> Self {
         let (min, max) = (region.min(), region.max());
-        let lead = |axis: usize| {
+        let gap = |axis: usize| {
             let sign = if min[axis] < 0.0 { -1 } else { 1 };
             let corner = Multiple::new(lattice.step, min[axis].abs(), sign);
             // Reported coordinates decide which is first, so it is a little beside the corner far out.
             let [gap, error] = corner.gap;
             let beside = (i128::from(first[axis]) - corner.first) as f64 * lattice.step;
-            ((gap + (error + beside)) / lattice.step).max(0.0)
+            [gap, error + beside]
         };
         Self {
             at: min,
             first,
-            lead: [lead(0), lead(1), lead(2)],
+            gap: [gap(0), gap(1), gap(2)],
             extent: [0, 1, 2].map(|axis| max[axis] - min[axis]),
         }
     }
@@ -83,26 +83,14 @@ impl Corner {
         Self {
             at: at.map(|index| index as f64 * size),
             first: multiples.map(|multiple| multiple.first as i64),
-            lead: multiples.map(|multiple| {
-                let [gap, error] = multiple.gap;
-                ((gap + error) / lattice.step).max(0.0)
-            }),
+            gap: multiples.map(|multiple| multiple.gap),
             extent: [size; 3],
         }
     }
 }
 
-/// The chunks of which a volume is the intersection with [`beside_chunks`]. Membership of a chunk is exact, which
-/// reported coordinates cannot decide, so integers decide these and coordinates the rest.
-fn chunks(volume: &Volume) -> Vec<Chunk> {
-    match volume {
-        Volume::Region(region) => region.as_chunk().into_iter().collect(),
-        Volume::AllOf(volumes) => volumes.iter().flat_map(chunks).collect(),
-        _ => Vec::new(),
-    }
-}
-
-/// The volume without the restriction to its [`chunks`]; `None` if nothing else restricts it.
+/// The volume without the restriction to its [chunks](Volume::chunks), which integers decide; `None` if nothing else
+/// restricts it.
 fn beside_chunks(volume: &Volume) -> Option<Volume> {
     match volume {
         Volume::Region(region) if region.as_chunk().is_some() => None,
@@ -141,7 +129,7 @@ impl Scope {
                 return Err(error.because("too far from the origin").with_limit(limit));
             }
         }
-        let (chunks, rest) = (chunks(volume), beside_chunks(volume));
+        let (chunks, rest) = (volume.chunks(), beside_chunks(volume));
         let bounds = bounds(lattice, &chunks, rest.as_ref());
         let corner = match chunks.last() {
             Some(chunk) => Corner::of_chunk(lattice, *chunk),
@@ -196,11 +184,6 @@ impl Scope {
         }
     }
 
-    /// A box around the points of a box of the lattice, which is not empty.
-    pub(super) fn spread(&self, ranges: &[Range<i64>; 3]) -> Region {
-        self.between(self.places(ranges))
-    }
-
     /// The ends of the fixed-point coordinates of the points of a box of the lattice.
     fn places(&self, ranges: &[Range<i64>; 3]) -> [[i64; 2]; 3] {
         let lattice = &self.lattice;
@@ -229,6 +212,25 @@ impl Scope {
     /// Whether all that is requested lies in a box without warp.
     pub(super) fn is_box(&self) -> bool {
         self.volume.is_none() && self.lattice.shears.is_none()
+    }
+
+    /// Whether it has few points, near each other, which are walked once in place of being counted.
+    pub(super) fn is_small(&self) -> bool {
+        /// The most candidates.
+        const FEW: f64 = 20_000.0;
+        let is_short = |range: &Range<i64>| range.end - range.start <= 1024;
+        self.all.iter().all(is_short) && self.candidates(&self.all) <= FEW
+    }
+
+    /// Whether walking over a box of the lattice to some of its points takes no longer than counting parts of it.
+    pub(super) fn is_worth_walking(&self, ranges: &[Range<i64>; 3], numbers: usize) -> bool {
+        /// Candidates that are walked in the time of a count: in closed form, and along a surface. Points that keep clear
+        /// are walked to be counted, too.
+        const CLOSED: f64 = 65_536.0;
+        const SURFACE: f64 = 2e6;
+        let least = if self.is_closed() { CLOSED } else { SURFACE };
+        let most = least.max(CLOSED * numbers as f64);
+        !self.clear.is_empty() || self.candidates(ranges) <= most
     }
 
     /// The box of the lattice that both have.

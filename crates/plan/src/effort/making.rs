@@ -1,8 +1,9 @@
 //! The price of making the points of a plan, by its blocks.
 
+use strew_core::{Area, Warp, server};
 use strew_query::Set;
 
-use super::point::POINT;
+use super::{ROW, UNITS, point::POINT, volume};
 use crate::{Lane, planned::Planned, planned_set::PlannedSet};
 
 /// The most points of a block.
@@ -61,4 +62,36 @@ pub fn considered(planned: &Planned) -> u128 {
     let sets = planned.query.sets.iter().zip(&planned.sets);
     let all: f64 = sets.map(considered).sum();
     all.round() as u128
+}
+
+/// The rows that are counted to split a plan, or points made, which takes as long: many parts take little more than one.
+#[must_use]
+pub fn splitting(planned: &Planned, parts: u32) -> f64 {
+    /// Those of each part: a row is made to find where it begins.
+    const PART: f64 = 3.0;
+    let query = &planned.query;
+    let parts = f64::from(parts.max(1));
+    let rows = |(set, planned): (&Set, &PlannedSet)| {
+        if let Some(sought) = volume::splitting(query, set, planned, parts) {
+            return sought / ROW;
+        }
+        let Some(placement) = planned.plan.plane().map(strew_core::Plan::placement) else {
+            return 0.0;
+        };
+        if set.field.is_some() || !set.clear_of.is_empty() {
+            return planned.plan.total() as f64 * planned.nanoseconds / ROW;
+        }
+        let area = set.area(&query.region);
+        let is_box = matches!(area, Area::Region(_));
+        let Some(bounds) = area
+            .bounds()
+            .filter(|_| !is_box || placement.warp != Warp::OFF)
+        else {
+            return 0.0;
+        };
+        let along = server::outline(&area, bounds) + bounds.sides()[1];
+        along * UNITS / placement.spacing.get() * (1.0 + 0.5 * parts.log2())
+    };
+    let sets = query.sets.iter().zip(&planned.sets);
+    sets.map(rows).sum::<f64>() + parts * PART
 }

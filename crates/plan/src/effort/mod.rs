@@ -24,12 +24,13 @@ pub(super) use layers::{Everywhere, Layers};
 pub use making::block_bytes;
 pub use making::block_lane;
 pub use making::considered;
+pub use making::splitting;
 pub use neighbors::Neighbors;
 pub use point::point;
 use strew_catalog::Ready;
 use strew_error::Error;
 use strew_query::{Amount, Query, Set};
-pub(super) use volume::cleared;
+pub(super) use volume::Chains;
 
 /// The approximate number of lattice units in a mean spacing.
 const UNITS: f64 = 3.0;
@@ -40,7 +41,7 @@ const SIDE: f64 = 0.5;
 /// Looking at a point of a field takes this many nanoseconds, besides the look at the field itself.
 const CANDIDATE: f64 = 30.0;
 /// Counting a row takes this many nanoseconds, and making a point to test whether it is clear of others this many.
-const ROW: f64 = 1e3;
+pub(super) const ROW: f64 = 1e3;
 const TESTED: f64 = 200.0;
 /// How long the number of points in a field is estimated, how long looking up the bounds of a piece takes beside the
 /// look at its field, and the fewest pieces.
@@ -160,6 +161,10 @@ pub fn planning(query: &Query, tables: &[Ready], limit: u64, stop: &Stop) -> Res
             false => Ok(rows),
         };
     }
+    // With a cursor nothing is counted.
+    if query.window.cursor.is_some() {
+        return Ok(0.0);
+    }
     let mut layers = Layers::default();
     let (mut all, mut weighted) = (0.0, 0.0);
     for (i, (set, ready)) in query.sets.iter().zip(tables).enumerate() {
@@ -200,7 +205,7 @@ pub(super) fn is_counted(query: &Query, i: usize, set: &Set) -> bool {
 /// The rows that counting the points of a set in a volume takes, where testing one against others takes `test`
 /// nanoseconds.
 pub(super) fn rows_of_volume(points: &SpaceSet, volume: &Volume, test: f64) -> f64 {
-    volume::counting_set(points, volume, test) / ROW
+    volume::counting_set(points.placement(), volume, test) / ROW
 }
 
 /// The price of counting a period, in rows: 0 if it has all points.

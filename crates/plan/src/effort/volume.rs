@@ -1,15 +1,16 @@
-//! The price of counting a volume of space.
+//! The price of counting a volume of space, of seeking in it, and of keeping its points clear of other layers.
 //!
-//! Most of a large volume is counted as whole cells; what lies along its surface is counted point by point.
+//! Most of a large volume is counted as whole cells; what lies along its surface is counted point by point. Points that
+//! keep clear of others are all made and tested.
 
 use strew_core::{
     Warp,
-    space::{SpaceSet, Volume},
+    space::{Placement, SpaceSet, Volume},
 };
-use strew_query::Query;
+use strew_query::{Query, Set};
 
 use super::is_counted;
-use crate::amount_in_space::placed;
+use crate::{amount_in_space::placed, planned_set::PlannedSet};
 
 /// The nanoseconds that counting takes for each square of a spacing's side on the surface, without and with warp.
 const SURFACE: f64 = 350.0;
@@ -19,85 +20,313 @@ const MADE: f64 = 100.0;
 /// Those of counting a box without warp, whatever it holds.
 const BOX: f64 = 4e5;
 
-/// Those of a test against the points around a patch, and of each of these.
-const TESTED: f64 = 300.0;
-const LISTED: f64 = 250.0;
-/// With more of them for each point tested, each test makes those near it alone: so long it takes, and for each of them.
-const DENSE: f64 = 1.5;
-const SEARCH: f64 = 8000.0;
-const FOUND: f64 = 100.0;
+/// Those of a point that is walked over to find others by their numbers, and the points that are walked in place of
+/// counting a box.
+const WALKED: f64 = 15.0;
+const WALK: f64 = 65_536.0;
 
-/// The nanoseconds that counting the sets of a query in space takes.
+/// The sides of the tiles in which points of another layer are made, in its spacings.
+const TILE: [f64; 3] = [16.0, 16.0, 2.0];
+const THINNED: f64 = 4.0;
+/// The nanoseconds to make a tile, each of its points before they are thinned, and to test against a tile.
+const MAKING: f64 = 60_000.0;
+const LISTED: f64 = 150.0;
+const TESTED: f64 = 150.0;
+/// Those of a comparison with a point, of which some decide.
+const COMPARED: f64 = 4.0;
+const MANY: f64 = 100.0;
+/// With fewer tests for each tile a test looks around its place alone: so long it takes, and for each point there.
+const WORTH: f64 = 4.0;
+const SEARCH: f64 = 10_000.0;
+const FOUND: f64 = 100.0;
+/// Tests end with the first layer that a place is too near to: of those that may be so, this share is.
+const REMOVED: f64 = 0.25;
+
+/// The layers of a query in space, reduced to the parts that decide the price of keeping clear of them.
+#[derive(Debug, Default)]
+pub struct Chains(Vec<Layer>);
+
+#[derive(Debug)]
+struct Layer {
+    /// The mean spacing before and after points are thinned out.
+    plain: f64,
+    spacing: f64,
+    clear: Vec<(usize, f64)>,
+    /// The sides of the box around its own region.
+    most: [f64; 3],
+}
+
+/// How much is needed of a layer.
+#[derive(Clone, Copy, Debug, Default)]
+struct Need {
+    /// The box in which its points are made.
+    sides: [f64; 3],
+    tests: f64,
+    /// The greatest distance that is kept.
+    distance: f64,
+}
+
+impl Chains {
+    /// Adds the next layer, which may have a region of its own; none if it cannot be planned.
+    pub fn push(
+        &mut self,
+        points: Option<&SpaceSet>,
+        clear: &[(usize, f64)],
+        own: Option<&Volume>,
+    ) {
+        let plain = points.map_or(f64::INFINITY, |points| points.placement().spacing.get());
+        let keep = points.map_or(1.0, |points| points.placement().keep.get());
+        self.0.push(Layer {
+            plain,
+            spacing: plain / keep.cbrt(),
+            clear: clear.into(),
+            most: own.map_or([f64::INFINITY; 3], sides),
+        });
+    }
+
+    /// The nanoseconds that testing each point of a set in a volume takes: against the layers that it keeps clear of, whose
+    /// points are tested against those that these keep clear of, and so on. Each layer is made once, wherever a point
+    /// of one that keeps clear of it is tested.
+    pub fn test(&self, points: &SpaceSet, clear: &[(usize, f64)], volume: &Volume) -> f64 {
+        let placement = points.placement();
+        let spacing = placement.spacing.get() / placement.keep.get().cbrt();
+        let sides = sides(volume);
+        let places = sides.iter().map(|side| side / spacing).product::<f64>();
+        let (mut needs, mut all) = (vec![Need::default(); self.0.len()], 0.0);
+        let mut left = places;
+        for &(place, distance) in clear {
+            let Some(layer) = self.0.get(place) else {
+                continue;
+            };
+            let tiles = layer.tiles(sides, 0.0);
+            if places < WORTH * tiles {
+                let near = layer.near(distance);
+                all += left * (SEARCH + near * FOUND);
+                let sides = sides.map(|side| side + 2.0 * distance);
+                self.tested(&mut needs, layer, sides, left * layer.within(distance));
+            } else {
+                needs[place].add(sides, distance, left);
+            }
+            left *= layer.left(distance);
+        }
+        for (place, layer) in self.0.iter().enumerate().rev() {
+            let need = needs[place];
+            if need.tests == 0.0 {
+                continue;
+            }
+            let touched = layer.tiles([2.0 * need.distance; 3], need.distance);
+            let sides = [0, 1, 2].map(|axis| need.sides[axis].min(layer.most[axis]));
+            let tiles = layer.tiles(sides, need.distance).min(need.tests * touched);
+            let tile: f64 = layer.tile(need.distance).iter().product();
+            let listed = tiles * tile / layer.plain.powi(3);
+            let near = layer.near(need.distance).min(MANY);
+            all += tiles * MAKING
+                + listed * LISTED
+                + need.tests * (touched * TESTED + near * COMPARED);
+            // Each of its points is tested once, if it lies near a tested place.
+            let points = sides
+                .iter()
+                .map(|side| side / layer.spacing + 1.0)
+                .product::<f64>();
+            let within = need.tests * layer.within(need.distance);
+            self.tested(&mut needs, layer, sides, points.min(within));
+        }
+        all / places.max(1.0)
+    }
+
+    /// Adds tests of some points of a layer in a box.
+    fn tested(&self, needs: &mut [Need], layer: &Layer, sides: [f64; 3], points: f64) {
+        let mut left = points;
+        for &(place, distance) in &layer.clear {
+            let (Some(need), Some(other)) = (needs.get_mut(place), self.0.get(place)) else {
+                continue;
+            };
+            need.add(sides, distance, left);
+            left *= other.left(distance);
+        }
+    }
+}
+
+impl Need {
+    fn add(&mut self, sides: [f64; 3], distance: f64, tests: f64) {
+        self.sides = [0, 1, 2].map(|axis| self.sides[axis].max(sides[axis] + 2.0 * distance));
+        self.tests += tests;
+        self.distance = self.distance.max(distance);
+    }
+}
+
+impl Layer {
+    fn tile(&self, distance: f64) -> [f64; 3] {
+        let wide = (self.spacing / self.plain).min(THINNED);
+        TILE.map(|side| (side * self.plain * wide).max(distance))
+    }
+
+    /// About the number of tiles that a box touches.
+    fn tiles(&self, sides: [f64; 3], distance: f64) -> f64 {
+        let tile = self.tile(distance);
+        (0..3).map(|axis| sides[axis] / tile[axis] + 1.0).product()
+    }
+
+    /// The number of points that are nearer to a place than a distance.
+    fn within(&self, distance: f64) -> f64 {
+        4.19 * (distance / self.spacing).powi(3)
+    }
+
+    /// The share of places that are tested against other layers after this one.
+    fn left(&self, distance: f64) -> f64 {
+        1.0 - REMOVED * self.within(distance).min(1.0)
+    }
+
+    /// The number of points in a box around a place.
+    fn near(&self, distance: f64) -> f64 {
+        (2.0 * distance / self.spacing + 1.0).powi(3)
+    }
+}
+
+/// The sides of the box around a volume.
+fn sides(volume: &Volume) -> [f64; 3] {
+    volume.bounds().map_or([0.0; 3], |bounds| {
+        [0, 1, 2].map(|axis| bounds.max()[axis] - bounds.min()[axis])
+    })
+}
+
+/// The nanoseconds that counting the sets of a query in space takes: with a cursor of those after the cursor's. An offset
+/// is sought as well.
 pub(super) fn counting(query: &Query) -> f64 {
     let Some(whole) = &query.region.volume else {
         return 0.0;
     };
-    let mut layers: Vec<Option<SpaceSet>> = vec![];
-    let mut all = 0.0;
+    let window = &query.window;
+    let (mut chains, mut all) = (Chains::default(), 0.0);
     for (i, set) in query.sets.iter().enumerate() {
         // Planning refuses what cannot be planned.
         let placed = set.space().and_then(|table| placed(set, table).ok());
         let points = placed.map(|(points, _)| points);
-        if let Some(points) = &points {
-            let others = set.clear_of.iter();
-            let others = others.filter_map(|&(place, distance)| {
-                Some(cleared(points, layers.get(place)?.as_ref()?, distance))
-            });
-            let own = set.region.as_ref().and_then(|own| own.volume.as_ref());
-            if is_counted(query, i, set) {
-                all += counting_set(points, &whole.and(own), others.sum());
-            }
+        let own = set.region.as_ref().and_then(|own| own.volume.as_ref());
+        if let (Some(points), true) = (&points, is_counted(query, i, set)) {
+            let (volume, placement) = (whole.and(own), points.placement());
+            let test = chains.test(points, &set.clear_of, &volume);
+            let counted = counting_set(placement, &volume, test);
+            let is_sought = window.offset > 0;
+            let sought = is_sought.then(|| seeking(placement, &volume, (counted, test > 0.0), 1.0));
+            all += counted + sought.unwrap_or(0.0);
         }
-        layers.push(points);
+        chains.push(points.as_ref(), &set.clear_of, own.map(|own| &own.volume));
     }
     all
 }
 
-/// The nanoseconds to test whether a point of a set is as far from those of another as a distance.
-pub(crate) fn cleared(points: &SpaceSet, other: &SpaceSet, distance: f64) -> f64 {
-    let spacing = |set: &SpaceSet| {
-        let placement = set.placement();
-        placement.spacing.get() / placement.keep.get().cbrt()
-    };
-    let (own, other) = (spacing(points), spacing(other));
-    let ratio = (own / other).powi(3);
-    TESTED
-        + match ratio <= DENSE {
-            true => ratio * LISTED,
-            false => SEARCH + (2.0 * distance / other + 1.0).powi(3) * FOUND,
-        }
-}
-
 /// The nanoseconds that counting the points of a set in a volume takes, where testing one against others takes `test`.
-pub(super) fn counting_set(points: &SpaceSet, volume: &Volume, test: f64) -> f64 {
-    let spacing = points.placement().spacing.get();
+pub(super) fn counting_set(placement: Placement, volume: &Volume, test: f64) -> f64 {
+    let spacing = placement.spacing.get();
     let is_box = matches!(volume, Volume::Region(_));
-    match (test > 0.0, points.placement().warp) {
-        (true, _) => {
-            let sides = volume.bounds().map_or([0.0; 3], |bounds| {
-                [0, 1, 2].map(|axis| (bounds.max()[axis] - bounds.min()[axis]) / spacing)
-            });
-            let all: f64 = sides.into_iter().product();
-            all * (MADE + test)
-        }
+    match (test > 0.0, placement.warp) {
+        (true, _) => points_in(volume, spacing) * (MADE + test * placement.keep.get()),
         (false, Warp::OFF) if is_box => BOX,
         (false, Warp::OFF) => BOX + surface(volume) / (spacing * spacing) * SURFACE,
         (false, _) => BOX + surface(volume) / (spacing * spacing) * WARPED,
     }
 }
 
+/// The nanoseconds to find points by some numbers in a volume that is counted in `counted`; those that keep clear of
+/// others are tested again. Parts are counted, or all is walked once.
+pub(super) fn seeking(
+    placement: Placement,
+    volume: &Volume,
+    (counted, is_tested): (f64, bool),
+    numbers: f64,
+) -> f64 {
+    if is_tested {
+        return counted;
+    }
+    let all = points_in(volume, placement.spacing.get());
+    let halves = 2.0 * numbers.log2() + 1.0;
+    let parts = match counted <= BOX {
+        true => numbers * (WALK * WALKED + BOX) + all.max(1.0).log2() * BOX,
+        false => counted * halves,
+    };
+    parts.min(all * WALKED)
+}
+
+/// The number of points in the box around a volume.
+fn points_in(volume: &Volume, spacing: f64) -> f64 {
+    sides(volume).iter().map(|side| side / spacing).product()
+}
+
 /// The surface of the parts of a volume together.
 fn surface(volume: &Volume) -> f64 {
     let of_box = |volume: &Volume| {
-        volume.bounds().map_or(0.0, |bounds| {
-            let [a, b, c] = [0, 1, 2].map(|axis| bounds.max()[axis] - bounds.min()[axis]);
-            2.0 * (a * b + b * c + c * a)
-        })
+        let [a, b, c] = sides(volume);
+        2.0 * (a * b + b * c + c * a)
     };
     match volume {
         Volume::AllOf(parts) | Volume::AnyOf(parts) => parts.iter().map(surface).sum(),
         Volume::Outside(part) => surface(part),
         Volume::Prism(prism) => of_box(volume) * (1.0 + prism.vertices() as f64 / 64.0),
         other => of_box(other),
+    }
+}
+
+/// The nanoseconds to split the points of a set, if it is one in space.
+pub(super) fn splitting(query: &Query, set: &Set, planned: &PlannedSet, parts: f64) -> Option<f64> {
+    let placement = planned.plan.space()?.placement();
+    let own = set.region.as_ref().and_then(|own| own.volume.as_ref());
+    let volume = query.region.volume.as_ref()?.and(own);
+    let counted = match set.clear_of.is_empty() {
+        true => counting_set(placement, &volume, 0.0),
+        false => planned.plan.total() as f64 * planned.nanoseconds,
+    };
+    Some(seeking(
+        placement,
+        &volume,
+        (counted, !set.clear_of.is_empty()),
+        parts,
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use strew_core::space::{Ball, Region};
+
+    use super::*;
+
+    /// The price of counting the last of some layers in a volume, each of which keeps clear of the one before it or of all.
+    fn price(sets: &[SpaceSet], is_chain: bool, distance: f64, volume: &Volume) -> f64 {
+        let (mut chains, mut price) = (Chains::default(), 0.0);
+        for (i, set) in sets.iter().enumerate() {
+            let first = if is_chain { i.saturating_sub(1) } else { 0 };
+            let clear: Vec<_> = (first..i).map(|place| (place, distance)).collect();
+            let test = chains.test(set, &clear, volume);
+            price = counting_set(set.placement(), volume, test);
+            chains.push(Some(set), &clear, None);
+        }
+        price
+    }
+
+    fn layers(number: u64) -> Vec<SpaceSet> {
+        (1..=number)
+            .map(|seed| SpaceSet::blue().seed(seed))
+            .collect()
+    }
+
+    #[test]
+    fn chains_cost_the_sum_of_their_layers() {
+        let ball = Volume::from(Ball::new([0.0; 3], 2.0).expect("a ball"));
+        for is_chain in [true, false] {
+            let [two, eight, sixteen] =
+                [2, 8, 16].map(|depth| price(&layers(depth), is_chain, 0.5, &ball));
+            assert!(two < eight && eight < sixteen, "{two} {eight} {sixteen}");
+            assert!(sixteen < 64.0 * two, "{two} {sixteen}");
+        }
+        // Some milliseconds are long work.
+        assert!(price(&layers(16), true, 1.0, &ball) > 3e6);
+    }
+
+    #[test]
+    fn many_parts_cost_no_more_than_a_walk() {
+        let placement = SpaceSet::blue().placement();
+        let cube = Volume::from(Region::new([0.0; 3], [100.0; 3]).expect("a box"));
+        let sought = |numbers| seeking(placement, &cube, (BOX, false), numbers);
+        assert!(sought(1.0) < sought(10_000.0) && sought(10_000.0) <= 1e6 * WALKED);
     }
 }

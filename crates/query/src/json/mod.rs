@@ -16,7 +16,10 @@ use serde_json::value::RawValue;
 use strew_catalog::Dimension;
 use strew_error::{Checked, Fault, all, unknown};
 
-use super::{Draft, LayerDraft, MOST_FEATURES, Values, groups, lookup::names, parameter::Group};
+use super::{
+    Draft, LayerDraft, MOST_FEATURES, Values, groups, lookup::names, parameter::Group,
+    values::NOT_IN_SPACE,
+};
 use object::{Object, of_text, parse, shown};
 
 pub use any::AnyRegionSchema;
@@ -110,9 +113,12 @@ fn add_member(
     if values.takes().any(|parameter| parameter.name == name) {
         return values.add_json(name, json);
     }
-    let known = values.takes().map(|parameter| parameter.name);
-    let known = known.chain(others.iter().copied());
-    let detail = unknown("member", name, known);
+    let detail = if values.is_of_the_plane(name) {
+        NOT_IN_SPACE.into()
+    } else {
+        let known = values.takes().map(|parameter| parameter.name);
+        unknown("member", name, known.chain(others.iter().copied()))
+    };
     let field = format!("{}{name}", values.path());
     values.refuse(Fault::new(
         &field,

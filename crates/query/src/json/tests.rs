@@ -13,7 +13,11 @@ fn read(body: &Json) -> Checked<Draft> {
 
 /// All faults of a body, as `field: detail`.
 fn faults(body: &str) -> Vec<String> {
-    let draft = read_body(body.as_bytes(), groups::QUERY);
+    faults_of(body, groups::QUERY)
+}
+
+fn faults_of(body: &str, groups: &'static [Group]) -> Vec<String> {
+    let draft = read_body(body.as_bytes(), groups);
     let read = draft.and_then(|draft| {
         let mut found = draft.values.read();
         let mut add = |faults: &Faults| {
@@ -159,6 +163,19 @@ fn faults_name_the_member_by_its_path() {
         assert_eq!(faults(body), [expected], "{body}");
     }
     assert!(faults("{")[0].starts_with("body: not JSON: EOF"));
+}
+
+#[test]
+fn parameters_of_the_plane_are_known_in_space() {
+    let body = r#"{"lod": 0.5, "sed": 1, "layers": [{"name": "a", "lod": 0.5, "periodic": 9, "limit": 3}]}"#;
+    let expected = [
+        "lod: not for points in space",
+        "sed: unknown member; did you mean `seed`?",
+        "layers[0].lod: not for points in space",
+        "layers[0].periodic: not for points in space",
+        "layers[0].limit: unknown member",
+    ];
+    assert_eq!(faults_of(body, groups::SPACE_QUERY), expected);
 }
 
 #[test]

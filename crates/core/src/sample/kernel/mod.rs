@@ -53,6 +53,7 @@ pub use format::Format;
 pub(super) use format::{Geometry, Row};
 pub(crate) use groups::{Extents, GROUP, PLANES, SpaceShears, warp_groups};
 pub(crate) use lanes::PlainLoop;
+pub(crate) use offsets::Exactly;
 pub use offsets::Offsets;
 pub(crate) use retain::retain_parts;
 pub(super) use rows::fill_row;

@@ -1,4 +1,4 @@
-//! Pairs of `f64` relative to the corner of a region, rounded once.
+//! `f64` coordinates relative to the corner of a region, rounded once.
 
 use super::{
     Format,
@@ -7,7 +7,7 @@ use super::{
 };
 use crate::table::{FRACTION_BITS, fixed};
 
-/// Pairs of `f64` coordinates relative to the region's lower corner
+/// Pairs of `f64` coordinates, or triples in space, relative to the region's lower corner
 /// ([`Plan::origin`](crate::Plan::origin)).
 ///
 /// The offset of the exact position from the corner is rounded once, so offsets are as precise at any
@@ -33,38 +33,56 @@ use crate::table::{FRACTION_BITS, fixed};
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Offsets {
-    /// The step, and its upper and lower half.
-    step: [f64; 3],
+    axes: [Exactly; 2],
     /// The lattice coordinates at or below the first places inside.
     anchor: [i64; 2],
-    /// The distances from there to the first places.
-    rest: [f64; 2],
-    gap: [[f64; 2]; 2],
-    /// The largest value per axis.
-    last: [f64; 2],
 }
 
-impl Offsets {
-    /// (base + offset)·step + gap, each operation with its rounding error, and the sum rounded once.
+/// How exact offsets along an axis are rounded once.
+#[derive(Clone, Copy, Debug)]
+pub struct Exactly {
+    /// The step, and its upper and lower half.
+    step: [f64; 3],
+    /// The distance from the anchor, a lattice coordinate, to the first place inside, in fixed-point units.
+    rest: f64,
+    /// The distance from the corner to the first place, as a sum.
+    gap: [f64; 2],
+    /// The largest value.
+    last: f64,
+}
+
+impl Exactly {
+    /// Offsets from a corner that lies `gap` before `first`, the first fixed-point coordinate inside; below `extent`.
+    pub(crate) fn new(step: f64, first: i128, gap: [f64; 2], extent: f64) -> Self {
+        let (high, low) = halves(step);
+        Self {
+            step: [step, high, low],
+            rest: (first & ((1 << FRACTION_BITS) - 1)) as f64,
+            gap,
+            last: extent.next_down().max(0.0),
+        }
+    }
+
+    /// (base + offset)·step + gap, each operation with its rounding error, and the sum rounded once. The base is the
+    /// distance from the anchor in fixed-point units.
     ///
     /// The sum and the product are the error-free ones of Knuth and of Dekker and Veltkamp ("A
     /// floating-point technique for extending the available precision", 1971).
     #[inline]
-    fn place(&self, axis: usize, base: f64, offset: i32) -> f64 {
+    pub(crate) fn place(&self, base: f64, offset: i32) -> f64 {
         let [step, high, low] = self.step;
         // Both are exact: integers below 2⁵³.
-        let (units, rest) = sum(base, f64::from(offset) - self.rest[axis]);
+        let (units, rest) = sum(base, f64::from(offset) - self.rest);
         let (units_high, units_low) = halves(units);
         let product = units * step;
         let error =
             ((units_high * high - product) + units_high * low + units_low * high) + units_low * low;
-        let [gap, gap_error] = self.gap[axis];
+        let [gap, gap_error] = self.gap;
         let (place, lost) = sum(product, gap);
         let place = place + (lost + (error + (rest * step + gap_error)));
-        let last = self.last[axis];
         // None is NaN, so this is a clamp.
-        if place > last {
-            last
+        if place > self.last {
+            self.last
         } else if place > 0.0 {
             place
         } else {
@@ -97,15 +115,16 @@ impl Emit for Offsets {
     type Column = f64;
 
     fn new(geometry: &Geometry) -> Self {
-        let (high, low) = halves(geometry.step);
+        let Geometry {
+            step,
+            first,
+            gap,
+            extent,
+            ..
+        } = *geometry;
         Self {
-            step: [geometry.step, high, low],
-            anchor: geometry.first.map(|first| (first >> FRACTION_BITS) as i64),
-            rest: geometry
-                .first
-                .map(|first| (first & ((1 << FRACTION_BITS) - 1)) as f64),
-            gap: geometry.gap,
-            last: geometry.extent.map(|extent| extent.next_down().max(0.0)),
+            axes: [0, 1].map(|axis| Exactly::new(step, first[axis], gap[axis], extent[axis])),
+            anchor: first.map(|first| (first >> FRACTION_BITS) as i64),
         }
     }
 
@@ -115,12 +134,12 @@ impl Emit for Offsets {
 
     #[inline]
     fn column(&self, base: [f64; 2], x: i32, _: i64) -> f64 {
-        self.place(0, base[0], x)
+        self.axes[0].place(base[0], x)
     }
 
     #[inline]
     fn item(&self, base: [f64; 2], x: f64, y: i32, _: i64) -> [f64; 2] {
-        [x, self.place(1, base[1], y)]
+        [x, self.axes[1].place(base[1], y)]
     }
 
     #[inline(always)]

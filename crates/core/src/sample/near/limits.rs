@@ -48,6 +48,19 @@ pub(super) fn check_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> Resul
     Ok(())
 }
 
+/// The greatest squared distance whose square root is at most a radius, as reported distances are: so a point is found with
+/// its own distance as the radius.
+pub(crate) fn farthest(radius: f64) -> f64 {
+    let mut squared = radius * radius;
+    while libm::sqrt(squared) > radius {
+        squared = squared.next_down();
+    }
+    while libm::sqrt(squared.next_up()) <= radius {
+        squared = squared.next_up();
+    }
+    squared
+}
+
 /// Refuses a radius that is negative or not finite.
 pub(super) fn check_radius(radius: f64) -> Result<(), Error> {
     if radius.is_finite() && radius >= 0.0 {

@@ -1,7 +1,7 @@
 //! Searches: the nearest points of a place, and all points within a radius.
 //!
 //! Both are exact for the reported coordinates: distances are those of the `f64` pairs, compared as
-//! dx·dx + dy·dy in plain `f64`. Among equals the smaller id comes first.
+//! dx·dx + dy·dy in plain `f64`, and their square roots with the radius. Among equals the smaller id comes first.
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
@@ -9,7 +9,7 @@ use core::ops::ControlFlow;
 use super::{
     limits::{
         MAX_CANDIDATES, MAX_NEAREST, check_number, check_place, check_radius, check_reach,
-        check_work, too_many,
+        check_work, farthest, too_many,
     },
     mask::Mask,
     scan::{Scratch, scan},
@@ -72,7 +72,7 @@ pub(crate) fn within(
     check_number(lattice, radius, lattice.share(), generous)?;
     check_work(lattice, radius, visits.most())?;
     check_reach(lattice, at, radius)?;
-    let squared = radius * radius;
+    let farthest = farthest(radius);
     let guards = mask.guards();
     let (mut found, mut inside) = (Vec::with_capacity(limit.min(12)), 0usize);
     let mut scratch = Scratch::default();
@@ -83,7 +83,7 @@ pub(crate) fn within(
         radius,
         Some(visits),
         |d, point| {
-            if d <= squared && guards.permit(point.at()) {
+            if d <= farthest && guards.permit(point.at()) {
                 inside += 1;
                 if inside <= limit {
                     found.push((d, point));

@@ -66,6 +66,11 @@ impl Visits {
         self.made.get()
     }
 
+    /// The flag.
+    pub(crate) const fn stop(&self) -> &Stop {
+        &self.stop
+    }
+
     pub(crate) const fn most(&self) -> usize {
         self.most
     }
@@ -86,7 +91,7 @@ impl Visits {
     }
 
     /// Counts the points of a row that are visited together.
-    pub(super) fn row(&self, points: usize) -> ControlFlow<()> {
+    pub(crate) fn row(&self, points: usize) -> ControlFlow<()> {
         self.made.set(self.made.get() + points);
         self.look()
     }

@@ -182,8 +182,8 @@ impl PointSet {
         self.nearest_visiting(at, k, Some(radius), &Visits::any())
     }
 
-    /// All points within `radius` of a place (dx·dx + dy·dy ≤ radius·radius in `f64`), nearest first; of
-    /// equally near ones the smaller id first.
+    /// All points within `radius` of a place, nearest first; of equally near ones the smaller id first. A point lies within
+    /// if its reported [distance](Neighbor::distance), √(dx·dx + dy·dy) in `f64`, is at most the radius.
     ///
     /// # Errors
     /// [`ErrorKind::Radius`](crate::ErrorKind::Radius) unless the radius is a finite number from 0 on,

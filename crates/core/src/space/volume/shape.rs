@@ -2,7 +2,7 @@
 
 use alloc::{boxed::Box, vec::Vec};
 
-use super::{Ball, Prism, Region};
+use super::{Ball, Chunk, Prism, Region};
 
 /// A part of space.
 ///
@@ -176,6 +176,16 @@ impl Volume {
                 })
             }
             Self::Outside(_) => None,
+        }
+    }
+
+    /// The chunks of which this is the intersection with something else. Membership of a chunk is exact, which reported
+    /// coordinates cannot decide.
+    pub(crate) fn chunks(&self) -> Vec<Chunk> {
+        match self {
+            Self::Region(region) => region.as_chunk().into_iter().collect(),
+            Self::AllOf(volumes) => volumes.iter().flat_map(Self::chunks).collect(),
+            _ => Vec::new(),
         }
     }
 

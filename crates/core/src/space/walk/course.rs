@@ -15,9 +15,7 @@ use super::super::{
 };
 
 /// The bits of the height of a patch.
-pub(in crate::space) const PATCH_BITS: u32 = 8;
-/// The bits of the height of a slab.
-pub(in crate::space) const SLAB_BITS: u32 = CELL_BITS;
+pub(super) const PATCH_BITS: u32 = 8;
 /// Up to this side, in lattice units, all points are tested.
 const SMALL: i64 = 96;
 

@@ -13,12 +13,11 @@ mod rows;
 use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
-use self::{course::Course, extents::cover};
-pub(super) use self::{
-    course::{PATCH_BITS, SLAB_BITS},
-    few::few,
-    rows::Rows,
+use self::{
+    course::{Course, PATCH_BITS},
+    extents::cover,
 };
+pub(super) use self::{few::few, rows::Rows};
 use super::{
     batch::Batch,
     cells::{IN, OUT, Run, TEST},
