@@ -375,7 +375,7 @@ impl Service {
         planned: Planned,
         parts: u32,
     ) -> Result<Vec<(Token, u64)>, Error> {
-        caller.charge(effort::splitting(&planned, parts) as u128, 0)?;
+        caller.charge(effort::splitting(&planned, parts) as u128)?;
         let split = move |stop: &Stop| planned.stopped_by(stop).split(parts);
         self.workers.take_turn(Lane::Long, split).await?
     }

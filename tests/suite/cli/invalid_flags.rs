@@ -165,7 +165,7 @@ fn errors_name_the_flag_and_what_is_allowed() {
 
 #[test]
 fn errors_name_the_file_and_the_member() {
-    let line = r#"{"type": "Feature", "geometry": {"type": "LineString", "coordinates": []}}"#;
+    let line = r#"{"type": "Feature", "geometry": {"type": "LineString", "coordinates": [[0, 0], [1, 1]]}}"#;
     for (flag, input, texts) in [
         ("--query=-", "{", &["--query -", "not JSON"][..]),
         ("--query=-", "[]", &["--query -", "must be an object"]),

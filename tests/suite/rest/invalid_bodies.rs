@@ -103,11 +103,6 @@ fn members() -> Vec<(Value, &'static str, Vec<&'static str>)> {
             vec![],
         ),
         (
-            polygon(json!([[[0, 0], [1, 1], [2, 0]], [[0, 0], [0, 0], [0, 0]]])),
-            "region.polygon",
-            vec!["ring 1"],
-        ),
-        (
             region(json!({ "include": [] })),
             "region.include",
             vec!["missing"],

@@ -31,11 +31,6 @@ const PATHS: &[(&str, &str, &[&str])] = &[
         &["inf"],
     ),
     (
-        "points?polygon=0,0,5,0,9,0&spacing=1",
-        "polygon",
-        &["empty"],
-    ),
-    (
         "points?bbox=0,0,1,1&circle=0,0,1&spacing=1",
         "circle",
         &["bbox is given"],
