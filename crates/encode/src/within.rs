@@ -97,7 +97,7 @@ mod tests {
                 1e17,
                 1e17 + 64.0,
                 17,
-                Some([1e17, (1e17 + 64.0).next_down()]),
+                Some([1e17, (1e17_f64 + 64.0).next_down()]),
             ),
         ] {
             assert_eq!(
