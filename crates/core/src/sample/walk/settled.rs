@@ -51,7 +51,7 @@ use crate::sample::{
     area::Area,
     count::count,
     kernel::{Backend, Format},
-    lattice::{BAND_WIDTH, Found, Lattice, PATCH_HEIGHT, PointId, clip_to_band, places_of},
+    lattice::{BAND_WIDTH, Found, PATCH_HEIGHT, PointId, clip_to_band, places_of},
     near::Guard,
     scope::Scope,
     settle::{Box2, Placed, Settled, Settler, add_place, common, joined, widened},
