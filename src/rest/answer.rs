@@ -218,7 +218,8 @@ async fn points(
     is_wanted: bool,
 ) -> Result<Response, Error> {
     let caller = &context.caller;
-    let picture = chosen.encoding.is_picture().then_some(output.size);
+    // An svg is made row by row.
+    let picture = (chosen.encoding == Encoding::Png).then_some(output.size);
     let (permit, planned) = if is_wanted {
         let (permit, planned) = service.open(caller, query, picture).await?;
         (Some(permit), planned)

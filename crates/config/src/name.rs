@@ -12,14 +12,14 @@ pub fn is_name(text: &str) -> bool {
 }
 
 /// The rule for titles, as messages state it.
-pub const TITLES: &str = "1 to 64 characters, none of them a control character or a line break";
+pub const TITLES: &str = "1 to 64 characters, none of them a control character but tabs and line breaks";
 
-/// Whether a text may be the title of a layer: anything that can be shown in a line. Marks that change the direction
+/// Whether a text may be the title of a layer: any text, as properties of features are. Marks that change the direction
 /// of the text around are left out.
 #[must_use]
 pub fn is_title(text: &str) -> bool {
     let is_hidden = |c| matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}');
-    let is_shown = |c: char| !c.is_control() && !is_hidden(c);
+    let is_shown = |c: char| matches!(c, '\t' | '\n' | '\r') || !c.is_control() && !is_hidden(c);
     (1..=64).contains(&text.chars().count()) && text.chars().all(is_shown)
 }
 
@@ -32,6 +32,7 @@ mod tests {
         for title in [
             "Bad Tölz",
             "Île-de-France",
+            "A,\"B\"\n/c",
             "東京 \"23\", a,b/c",
             "🌲",
             ".",
@@ -42,7 +43,7 @@ mod tests {
         }
         for no_title in [
             "",
-            "a\nb",
+            "a\u{2028}b",
             "\u{1b}[31m",
             "a\u{202e}b",
             "a\u{85}b",

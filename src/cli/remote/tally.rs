@@ -5,8 +5,13 @@ use strew_encode::Encoding;
 
 /// Counts the points of an answer.
 pub(super) enum Tally {
-    /// By lines: those so far, and how many of all are no points.
-    Lines { read: u64, others: u64 },
+    /// By lines: those so far, and how many of all are no points. A line break between quotes, where the format has
+    /// such, ends none.
+    Lines {
+        read: u64,
+        others: u64,
+        is_quoted: Option<bool>,
+    },
     /// By bytes: those of a point, and those so far.
     Bytes { each: u64, read: u64 },
     /// The format does not show points without being decoded.
@@ -16,7 +21,11 @@ pub(super) enum Tally {
 impl Tally {
     /// For an answer in a format, which has a summary or not; `columns` is its header with that name.
     pub(super) fn new(encoding: Encoding, has_summary: bool, columns: Option<&str>) -> Self {
-        let lines = |others| Self::Lines { read: 0, others };
+        let lines = |others| Self::Lines {
+            read: 0,
+            others,
+            is_quoted: (encoding == Encoding::Csv).then_some(false),
+        };
         let bytes = |width: u64| {
             let list: Result<Vec<Value>, _> = serde_json::from_str(columns.unwrap_or("[0,0]"));
             match list {
@@ -43,8 +52,16 @@ impl Tally {
     /// Counts a part of the answer.
     pub(super) fn add(&mut self, part: &[u8]) {
         match self {
-            Self::Lines { read, .. } => {
-                *read += part.iter().filter(|byte| **byte == b'\n').count() as u64;
+            Self::Lines {
+                read, is_quoted, ..
+            } => {
+                for byte in part {
+                    match (byte, is_quoted.as_mut()) {
+                        (b'"', Some(is_quoted)) => *is_quoted = !*is_quoted,
+                        (b'\n', None | Some(false)) => *read += 1,
+                        _ => {}
+                    }
+                }
             }
             Self::Bytes { read, .. } => *read += part.len() as u64,
             Self::Unknown => {}
@@ -54,7 +71,7 @@ impl Tally {
     /// Fails with what the parts hold together if it is another number of points.
     pub(super) fn check(self, expected: u64) -> Result<(), String> {
         match self {
-            Self::Lines { read, others } if read.checked_sub(others) != Some(expected) => {
+            Self::Lines { read, others, .. } if read.checked_sub(others) != Some(expected) => {
                 Err(format!("{} points", read.saturating_sub(others)))
             }
             Self::Bytes { each, read }
@@ -79,6 +96,7 @@ mod tests {
             (Encoding::Csv, true, "id,x,y\n1:2,3,4\n5:6,7,8\n", 2),
             (Encoding::Csv, true, "layer,id,x,y\nid,1:2,3,4\n", 1),
             (Encoding::Csv, true, "id,x,y\n", 0),
+            (Encoding::Csv, true, "layer,id\n\"A,\"\"B\"\"\n/c\",1:2\n", 1),
             (Encoding::Ndjson, true, "{}\n{}\n{\"summary\":{}}\n", 2),
             (Encoding::Ndjson, false, "{}\n{}\n", 2),
             (Encoding::Geojsonseq, true, "{}\n{}\n{}\n", 3),
