@@ -88,8 +88,6 @@ impl Entry {
     }
 
     fn of_space(table: space::Table, source: Source, bytes: u64) -> Self {
-        // Computed once, before the first query.
-        let _ = table.least_distance();
         Self {
             key: Key {
                 dimension: Dimension::Space,
