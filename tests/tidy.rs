@@ -120,6 +120,23 @@ fn the_forge_knows_no_wire_and_no_runtime() {
     );
 }
 
+#[test]
+fn what_runs_in_webassembly_reads_no_clock() {
+    // There is none: a call would end the program. The command line alone estimates the time of jobs.
+    let below = "catalog config encode error forge plan query raster".split(' ');
+    let rooms: Vec<_> = below.map(|name| format!("crates/{name}/src/")).collect();
+    for (name, text) in sources() {
+        if rooms.iter().any(|room| name.starts_with(room)) && !name.ends_with("estimate.rs") {
+            for word in ["Instant", "SystemTime", "std::thread"] {
+                assert!(
+                    !code(&text).any(|(_, line)| line.contains(word)),
+                    "{name} names `{word}`"
+                );
+            }
+        }
+    }
+}
+
 /// The names of the crates below the program, and those of their dependencies as their manifests list them.
 fn crates() -> Vec<(String, Vec<String>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates");

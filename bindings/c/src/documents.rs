@@ -32,6 +32,7 @@ pub unsafe extern "C" fn strew_plan_document(
         }
         values.read().map_err(strew_error::Error::from)?;
         let chosen = options(&values).map_err(strew_error::Error::from)?;
+        let chosen = chosen.of_plane(plan.plane.clone())?;
         let library = &plan.library;
         let mut whole = vec![];
         for block in library.document(&plan.planned, chosen, Encoding::Json)? {

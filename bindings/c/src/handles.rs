@@ -11,6 +11,7 @@ use std::{
 };
 
 use ::strew_plan::{Columns, Library, Planned};
+use strew_encode::Crs;
 
 use crate::{
     failure::{Code, Failure, guarded},
@@ -24,6 +25,8 @@ pub struct strew_library(pub(crate) Arc<Library>);
 pub struct strew_plan {
     pub(crate) library: Arc<Library>,
     pub(crate) planned: Planned,
+    /// The plane that it is in, which documents state.
+    pub(crate) plane: Option<Crs>,
     /// All columns, made when ids or a further column are first requested.
     pub(crate) columns: OnceLock<Columns>,
 }

@@ -76,10 +76,11 @@ pub unsafe fn planned(
         let library = borrowed(library, "library")?;
         (library, text(query, "query")?, place(plan, "plan")?)
     };
-    let (planned, _) = library.0.plan_draft(&read(query)?)?;
+    let (planned, options) = library.0.plan_draft(&read(query)?)?;
     out.put(Box::into_raw(Box::new(strew_plan {
         library: library.0.clone(),
         planned,
+        plane: options.plane,
         columns: std::sync::OnceLock::new(),
     })));
     Ok(())

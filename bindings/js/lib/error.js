@@ -15,6 +15,13 @@ export class StrewError extends Error {
     }
 }
 
+/** What is wrong with one value, in the words of REST. */
+export function fault(field, value, detail, allowed) {
+    const shown = value === null ? "" : ` = \`${value}\``;
+    const faults = [{ field, value, detail, allowed }];
+    return new StrewError(`\`${field}\`${shown}: ${detail}; allowed: ${allowed}`, "invalid-query", faults);
+}
+
 /** A daemon that cannot be reached, or whose answers break off again and again. */
 export class Disconnected extends Error {
     name = "Disconnected";

@@ -7,23 +7,39 @@ const MOST = 2n ** 64n - 1n;
 const AMOUNTS = ["spacing", "density", "min_distance"];
 const CELL = 2 ** 52;
 
+/** Why a value is not valid. */
+class Wrong {
+    constructor(detail) {
+        this.detail = detail;
+    }
+}
+
+const OUT_OF_RANGE = new Wrong("out of range");
 const number = (least, most, shown = most) => ({
     allowed: `a number from ${least} to ${shown}`,
-    read: (value) => (typeof value === "number" && value >= least && value <= most ? value : undefined),
+    read: (value) => {
+        if (typeof value !== "number" || Number.isNaN(value)) return new Wrong("must be a number");
+        return value >= least && value <= most ? value : OUT_OF_RANGE;
+    },
 });
 const integer = (least, most) => ({
     allowed: `an integer from ${least} to ${most}`,
     read: (value) => {
-        const whole = typeof value === "bigint" || Number.isInteger(value) ? BigInt(value) : undefined;
-        return whole !== undefined && whole >= BigInt(least) && whole <= BigInt(most) ? whole : undefined;
+        const isText = typeof value === "string" && /^-?\d+$/.test(value);
+        const isWhole = typeof value === "bigint" || Number.isInteger(value) || isText;
+        if (!isWhole) return new Wrong("must be an integer");
+        return BigInt(value) >= BigInt(least) && BigInt(value) <= BigInt(most) ? BigInt(value) : OUT_OF_RANGE;
     },
 });
-const numbers = (allowed, test) => ({
+const numbers = (count, allowed, test = () => true) => ({
     allowed,
     read: (value) => {
-        const list = value && typeof value === "object" && "length" in value ? Array.from(value) : [];
-        const areNumbers = list.every((part) => typeof part === "number" && Number.isFinite(part));
-        return areNumbers && test(list) ? list : undefined;
+        if (!value || typeof value !== "object" || !("length" in value)) return new Wrong(`must be ${count} numbers`);
+        const list = Array.from(value);
+        if (list.length !== count) return new Wrong(`expected ${count} numbers, got ${list.length}`);
+        const odd = list.find((part) => typeof part !== "number" || !Number.isFinite(part));
+        if (odd !== undefined || list.includes(undefined)) return new Wrong(`\`${odd}\` is not a finite number`);
+        return test(list) ? list : OUT_OF_RANGE;
     },
 });
 
@@ -44,36 +60,42 @@ const KNOWN = {
         read: (value) => {
             const list = typeof value === "string" ? value.split(",").map((name) => name.trim()) : value;
             const isKnown = (name) => /^(angle|scale|variant|rank|u([1-9]|1[0-6]))$/.test(name);
-            return Array.isArray(list) && list.every(isKnown) ? list : undefined;
+            if (!Array.isArray(list)) return new Wrong("must be names");
+            const odd = list.find((name) => !isKnown(name));
+            return odd === undefined ? list : new Wrong(`unknown attribute \`${odd}\``);
         },
     },
     scale_range: numbers(
+        2,
         "two numbers min,max with 0 <= min <= max <= 1e9",
-        ([min, max, ...more]) => !more.length && 0 <= min && min <= max && max <= 1e9,
+        ([min, max]) => 0 <= min && min <= max && max <= 1e9,
     ),
     variants: {
         allowed: "names with their weights, numbers from 1e-9 to 1e9",
         read: (value) => {
-            if (!value || typeof value !== "object" || Array.isArray(value)) return undefined;
+            if (!value || typeof value !== "object" || Array.isArray(value)) return new Wrong("must be an object");
             const entries = Object.entries(value).sort(([a], [b]) => (a < b ? -1 : 1));
-            return entries.every(([, weight]) => number(1e-9, 1e9).read(weight) !== undefined) ? entries : undefined;
+            const odd = entries.find(([, weight]) => number(1e-9, 1e9).read(weight) instanceof Wrong);
+            return odd ? new Wrong(`the weight of ${odd[0]} is not valid`) : entries;
         },
     },
 };
 const SEARCH = {
-    at: numbers("two finite numbers x,y", (list) => list.length === 2),
+    at: numbers(2, "two finite numbers x,y"),
     k: integer(1, 10000),
     radius: number(0, Number.MAX_VALUE),
 };
 
 const BBOX = numbers(
+    4,
     "four finite numbers min_x,min_y,max_x,max_y with min_x < max_x and min_y < max_y",
-    ([x0, y0, x1, y1, ...more]) => !more.length && x0 < x1 && y0 < y1,
+    ([x0, y0, x1, y1]) => x0 < x1 && y0 < y1,
 );
-const CIRCLE = numbers("three finite numbers x,y,radius with a radius above 0", ([, , radius]) => radius > 0);
+const CIRCLE = numbers(3, "three finite numbers x,y,radius with a radius above 0", ([, , radius]) => radius > 0);
 const CHUNK = numbers(
+    3,
     `a size above 0 and two integers within ±${CELL}, the chunk's column and row`,
-    ([size, ...cell]) => size > 0 && cell.length === 2 && cell.every((k) => Number.isInteger(k) && Math.abs(k) <= CELL),
+    ([size, ...cell]) => size > 0 && cell.every((k) => Number.isInteger(k) && Math.abs(k) <= CELL),
 );
 
 /** What is wrong with a query: all of it. */
@@ -86,8 +108,9 @@ class Faults {
 
     read(field, value, { allowed, read }) {
         const valid = read(value);
-        if (valid === undefined) this.add(field, value, "is not valid", allowed);
-        return valid;
+        if (!(valid instanceof Wrong)) return valid;
+        this.add(field, value, valid.detail, allowed);
+        return undefined;
     }
 
     check() {

@@ -1,6 +1,6 @@
 // Points of one table, by a small module: the core of Strew without its queries, formats and fields.
 
-import { StrewError } from "./error.js";
+import { StrewError, fault } from "./error.js";
 import { compile, content } from "./files.js";
 import { LiteModule } from "./lite-module.js";
 import { checkReach, read } from "./lite-query.js";
@@ -104,13 +104,6 @@ class Lite {
         return none("fields");
     }
 }
-
-const fault = (field, value, detail, allowed) => {
-    const shown = value === null ? "" : ` = \`${value}\``;
-    return new StrewError(`\`${field}\`${shown}: ${detail}; allowed: ${allowed}`, "invalid-query", [
-        { field, value, detail, allowed },
-    ]);
-};
 
 /** The points of an area. */
 class LitePlan {

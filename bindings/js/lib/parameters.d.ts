@@ -51,7 +51,7 @@ export interface Parameters {
      * The exact number of points in the region: the density follows from it. Allowed: an integer from 1 to
      * 18446744073709551615.
      */
-    count?: number | bigint;
+    count?: number | bigint | `${number}`;
     /**
      * The world that everything is taken from that the query leaves open: layers or a set of points, seed, limit,
      * format. The list of worlds shows what is loaded. Allowed: the name of a loaded world. Default: none.
@@ -88,7 +88,7 @@ export interface Parameters {
      * seed, from which each layer without a seed has one by its name. Allowed: an integer from 0 to
      * 18446744073709551615. Default: 0.
      */
-    seed?: number | bigint;
+    seed?: number | bigint | `${number}`;
     /**
      * The strength of the warp that makes a set isotropic and unlike those of other seeds: 0 (off), 1 (on), or between
      * 0 and 2. Allowed: off, on, or a number from 0 to 2. Default: off for seed 0, else on.
@@ -163,12 +163,12 @@ export interface Parameters {
      * The number of points to leave out, in the fixed order, from the start or after the cursor. Allowed: an integer
      * from 0 to 18446744073709551615. Default: 0.
      */
-    offset?: number | bigint;
+    offset?: number | bigint | `${number}`;
     /**
      * The greatest number of points in the answer. The header strew-next is the cursor of the rest. Allowed: an integer
      * from 1 to 18446744073709551615. Default: all.
      */
-    limit?: number | bigint;
+    limit?: number | bigint | `${number}`;
     /**
      * Where an earlier answer to the same query ended: the value of its header strew-next. Allowed: the cursor of an
      * earlier answer to the same query. Default: the beginning.
@@ -289,7 +289,7 @@ export interface SpaceParameters {
      * seed, from which each layer without a seed has one by its name. Allowed: an integer from 0 to
      * 18446744073709551615. Default: 0.
      */
-    seed?: number | bigint;
+    seed?: number | bigint | `${number}`;
     /**
      * The strength of the warp that makes a set isotropic and unlike those of other seeds: 0 (off), 1 (on), or between
      * 0 and 2. Allowed: off, on, or a number from 0 to 2. Default: off for seed 0, else on.
@@ -317,12 +317,12 @@ export interface SpaceParameters {
      * The number of points to leave out, in the fixed order, from the start or after the cursor. Allowed: an integer
      * from 0 to 18446744073709551615. Default: 0.
      */
-    offset?: number | bigint;
+    offset?: number | bigint | `${number}`;
     /**
      * The greatest number of points in the answer. The header strew-next is the cursor of the rest. Allowed: an integer
      * from 1 to 18446744073709551615. Default: all.
      */
-    limit?: number | bigint;
+    limit?: number | bigint | `${number}`;
     /**
      * Where an earlier answer to the same query ended: the value of its header strew-next. Allowed: the cursor of an
      * earlier answer to the same query. Default: the beginning.

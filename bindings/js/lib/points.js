@@ -1,7 +1,7 @@
 // Sets of points, over any source: this page, or a daemon. A daemon's answers are promises.
 
 import { KINDS, WINDOW } from "./parameters.js";
-import { OF_ANSWERS, PLANE, SPACE, body, isObject, text } from "./query.js";
+import { OF_ANSWERS, PLANE, SPACE, body, checked, isObject, text } from "./query.js";
 import { StrewError } from "./error.js";
 
 /** Rows of coordinates with further columns. */
@@ -77,7 +77,7 @@ class Points {
 
     /** The points of a query, which is checked at once where that takes no request. */
     static of(source, query) {
-        const set = new this(source, query);
+        const set = new this(source, checked(query));
         if (source.isLocal && "region" in query) set.plan();
         return set;
     }

@@ -1,5 +1,6 @@
 // Queries: keywords as the body, and as the address, that REST takes.
 
+import { fault } from "./error.js";
 import { KINDS, OUTPUT, REGIONS, WINDOW } from "./parameters.js";
 
 // Regions that are keywords: of the plane, and of space.
@@ -39,10 +40,16 @@ function region(shape, value) {
     return value;
 }
 
+/** A query, if it is an object. */
+export function checked(query) {
+    if (isObject(query)) return query;
+    throw fault("query", String(query), "not an object", "such as { bbox: [0, 0, 10, 10], spacing: 1 }");
+}
+
 /** Keywords as a body. Those that are undefined are left out, and regions that are null. */
 export function body(keywords) {
     const made = {};
-    for (const [name, value] of Object.entries(keywords)) {
+    for (const [name, value] of Object.entries(checked(keywords))) {
         if (value === undefined || (value === null && KEYWORDS.includes(name))) continue;
         if (KEYWORDS.includes(name)) {
             // Several shapes are refused together, with all their names.

@@ -1,6 +1,6 @@
 // Points that a daemon makes, or one of several, over HTTP. Everything is a promise.
 
-import { StrewError } from "./error.js";
+import { StrewError, fault } from "./error.js";
 import { OUTPUT } from "./parameters.js";
 import { Source } from "./points.js";
 import { PLANE, address, parsed, text } from "./query.js";
@@ -12,9 +12,16 @@ const LATER = [429, 502, 503, 504];
 const HELD_KINDS = ["other-table", "other-world"];
 const HELD = ["cursor", "except", "field", "profile", "table", "terrain", "world"];
 
+/** An address of HTTP, or in a page a path of its own server. */
+function checkedAddress(text) {
+    if (/^https?:\/\/./i.test(text) || (globalThis.location && /^[./]/.test(text))) return text;
+    const detail = /^[^/]*:\d+(\/|$)/.test(text) ? "http:// is missing" : "no address of a daemon";
+    throw fault("url", text, detail, "http://host:port or https://host:port");
+}
+
 function addresses(url) {
     const texts = Array.isArray(url) ? url : String(url).split(",");
-    return [...new Set(texts.map((text) => String(text).trim().replace(/\/+$/, "")))];
+    return [...new Set(texts.map((text) => checkedAddress(String(text).trim()).replace(/\/+$/, "")))];
 }
 
 class Daemon extends Source {

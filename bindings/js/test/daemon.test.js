@@ -23,7 +23,8 @@ before(async () => {
 });
 after(() => remote?.end());
 
-const headers = { "content-type": "application/json" };
+// The module makes kinds for seconds, in which an idle connection may be closed.
+const headers = { "content-type": "application/json", connection: "close" };
 const ask = (body) => fetch(`${remote.url}/v1/points:query`, { method: "POST", body, headers });
 
 function samePoints(plan, points) {

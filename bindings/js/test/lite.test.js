@@ -107,6 +107,23 @@ test("what is wrong has its member, its value and what is allowed", () => {
             return true;
         });
     }
+    const bbox = [0, 0, 9, 9];
+    for (const odd of [
+        { spacing: -1, bbox }, { spacing: 1e101, bbox }, { spacing: 1, seed: 0.5, bbox },
+        { spacing: 1, seed: 2n ** 64n, bbox }, { spacing: 1, settle: 5, bbox }, { spacing: 1, keep: 0, bbox },
+    ]) {
+        const [own, full] = [lite, whole].map((strew) => {
+            try {
+                return strew.points(odd).count();
+            } catch ({ faults }) {
+                return faults[0].detail;
+            }
+        });
+        assert.equal(own, full);
+    }
+    assert.throws(() => lite.points({ spacing: NaN }), /`spacing` = .*: must be a number/);
+    assert.throws(() => lite.points({ spacing: 1, bbox: [0, 0, 1] }), /expected 4 numbers, got 3/);
+    assert.deepEqual(lite.points({ spacing: 1, seed: "9", bbox }).xy(), lite.points({ spacing: 1, seed: 9, bbox }).xy());
     assert.throws(() => lite.points({ spacing: 1 }).nearest([0, NaN]), /`at` = .*two finite numbers/);
     assert.throws(() => lite.points({ spacing: 1 }).point("1:1"), { kind: "no-such-point" });
     assert.throws(() => lite.points({ spacing: 1 }).count(), /one of bbox, chunk, circle/);

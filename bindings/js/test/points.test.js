@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { before, test } from "node:test";
 
-import { StrewError, open, raster } from "../lib/index.js";
+import { StrewError, connect, open, raster } from "../lib/index.js";
 import { Module } from "../lib/module.js";
 import { parsed } from "../lib/query.js";
 
@@ -85,6 +85,25 @@ test("what is wrong has the words of REST", () => {
         });
     }
     assert.throws(() => strew.points({ bbox: [0, 0, 1, NaN], spacing: 1 }), /region.bbox/);
+});
+
+test("what is no query or no address says so", () => {
+    for (const wrong of [null, undefined, 7, [1]]) {
+        for (const call of [() => strew.points(wrong), () => strew.query(wrong), () => strew.space.points(wrong)]) {
+            assert.throws(call, /`query` = .*: not an object; allowed: such as \{ bbox/);
+        }
+    }
+    assert.throws(() => connect("127.0.0.1:8080"), /`url` = `127.0.0.1:8080`: http:\/\/ is missing; allowed: http/);
+    assert.throws(() => connect(["http://localhost:1", "ftp://localhost"]), /`url` = `ftp:.*: no address of a daemon/);
+});
+
+test("kinds that are evenly spread are made, and those of a table that is not loaded name its file", () => {
+    const query = { bbox: [0, 0, 9, 9], spacing: 2, variants: { birch: 1, oak: 3 }, attributes: "variant" };
+    const kinds = strew.points({ ...query, spread: "even" }).column("variant");
+    assert.equal(kinds.filter((name) => name === "oak").length, Math.round(0.75 * kinds.length));
+    assert.throws(() => strew.points({ ...query, spread: "joint" }), /load its file beside the others.*strew-tables/);
+    assert.throws(() => strew.points({ ...query, map: "s" }), /load its file beside the others.*strew-tables/);
+    assert.throws(() => strew.points({ bbox: [0, 0, 9, 9], spacing: 1, profile: "green" }), /load its file/);
 });
 
 test("a module without the default table says what is loaded", async () => {

@@ -23,7 +23,7 @@ const lite = await openLite();
 const few: number = lite.points({ chunk: [64, 0, 0], spacing: 2, variants: { oak: 1 }, attributes: "variant" }).count();
 new Chunks(lite.points({ spacing: 2 }), [], { side: 64 }).update;
 new Chunks(connect("http://localhost:8080").points({ spacing: 2 }), { oak: [] });
-const kept: Query = { spacing: 1, bbox };
+const kept: Query = { spacing: 1, bbox, seed: "9007199254740993" };
 export const used = [more, x, y, remote, few, kept];
 
 // @ts-expect-error: a name that is misspelled
@@ -38,10 +38,10 @@ strew.points({ circle: [0, 0], spacing: 1 });
 strew.points({ chunk: [64, 0], spacing: 1 });
 // @ts-expect-error: a number as text
 strew.points({ bbox, spacing: "1" });
-// @ts-expect-error: a seed as text
-strew.points({ bbox, spacing: 1, seed: "7" });
-// @ts-expect-error: a limit as text
-strew.points({ bbox, spacing: 1, limit: "2" });
+// @ts-expect-error: a seed as a word
+strew.points({ bbox, spacing: 1, seed: "seven" });
+// @ts-expect-error: a limit as a word
+strew.points({ bbox, spacing: 1, limit: "few" });
 // @ts-expect-error: no word of `spread`
 strew.points({ bbox, spacing: 1, spread: 5 });
 // @ts-expect-error: no word of `spread`

@@ -43,8 +43,7 @@ fn planned(py: Python<'_>, body: &str, in_space: bool) -> PyResult<Plan> {
         false => library.plan(body.as_bytes()),
         true => library.plan_in_space(body.as_bytes()),
     });
-    let (planned, _) = made.map_err(|error| raised(py, &error))?;
-    Ok(Plan::new(planned))
+    made.map(Plan::new).map_err(|error| raised(py, &error))
 }
 
 /// The document of `GET /v1/points/{id}`, or of `GET /v1/space/points/{id}`, without its query.

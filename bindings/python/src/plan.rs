@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use pyo3::{prelude::*, types::PyBytes};
-use strew_encode::Encoding;
+use strew_encode::{Crs, Encoding};
 use strew_plan::Planned;
-use strew_query::{Values, groups, options};
+use strew_query::{Options, Values, groups, options};
 
 use crate::{
     array::{Array, Owner},
@@ -14,13 +14,13 @@ use crate::{
     json, library,
 };
 
-/// A planned query.
+/// A planned query, and the plane that it is in.
 #[pyclass(frozen, module = "strew._strew")]
-pub struct Plan(Planned);
+pub struct Plan(Planned, Option<Crs>);
 
 impl Plan {
-    pub const fn new(planned: Planned) -> Self {
-        Self(planned)
+    pub fn new((planned, options): (Planned, Options)) -> Self {
+        Self(planned, options.plane)
     }
 }
 
@@ -88,7 +88,8 @@ impl Plan {
                 values.add_text(name, text);
             }
             values.read()?;
-            let answer = library.document(&self.0, options(&values)?, Encoding::Json)?;
+            let options = options(&values)?.of_plane(self.1.clone())?;
+            let answer = library.document(&self.0, options, Encoding::Json)?;
             let mut whole = vec![];
             for block in answer {
                 whole.extend_from_slice(&block?);

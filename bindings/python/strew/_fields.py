@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from ._crs import joined, named
+from ._crs import Placed, joined, named
 from ._errors import fault
 from ._native import native
-from ._rasters import Pixels, checked, masked, of_classes, opened, placed, where_it_is
+from ._rasters import checked, masked, of_classes, opened, placed, where_it_is
 
 
 def pixels(
@@ -41,7 +41,7 @@ def pixels(
     >>> bool(low.y.mean() > 32)
     True
     """
-    array, read, own = opened(array, band)
+    array, read, own = opened(array, band, transform is not None)
     plain, missing = masked(array, nodata)
     if missing is not None:
         detail = "of the pixels are masked: they have no height"
@@ -50,12 +50,12 @@ def pixels(
     return _pixels(plain, bbox, where_it_is(bbox, transform, read), crs, where)
 
 
-def _pixels(array: np.ndarray[Any, Any], bbox: Any, transform: Any, crs: Any, where: dict[str, Any]) -> Pixels:
+def _pixels(array: np.ndarray[Any, Any], bbox: Any, transform: Any, crs: Any, where: dict[str, Any]) -> Placed:
     if transform is not None and bbox is None:
         array, bbox = placed(array, transform)
     if array.dtype == np.bool_:
         array = array.astype(np.uint8) * np.uint8(255)
-    made = Pixels()
+    made = Placed.of({}, crs)
     if array.dtype in (np.uint8, np.uint16):
         made["png"] = b64encode(_png(array)).decode()
     else:
@@ -64,7 +64,6 @@ def _pixels(array: np.ndarray[Any, Any], bbox: Any, transform: Any, crs: Any, wh
         made.update(f32=b64encode(floats.tobytes()).decode(), width=width, height=height)
     where = {"bbox": bbox, **where}
     made.update((name, _listed(value)) for name, value in where.items() if value is not None)
-    made.crs = crs
     return made
 
 
@@ -81,10 +80,11 @@ def raster(
 ) -> dict[str, Any]:
     """A field of the pixels of an array: the share of the density that is left at each place.
 
-    ``array`` has rows and columns. Floats are shares from 0 to 1, ``bool`` is 0 or 1, and of ``uint8`` and ``uint16``
-    the greatest number of the type (255, 65535) is 1. ``white=`` and ``black=`` name other numbers for 1 and 0. Integers
+    ``array`` has rows and columns. Floats are shares from 0 to 1, ``bool`` is 0 or 1 with sharp edges, and of ``uint8``
+    and ``uint16`` the greatest number of the type (255, 65535) is 1. ``white=`` and ``black=`` name other numbers for 1 and 0. Integers
     that hold 0 and 1 alone are refused as ``uint8``: pass ``array.astype(bool)``. A rasterio dataset, or one of its
     bands (``rasterio.band(dataset, 2)`` or ``band=2``), is read with its transform, its reference system and its mask.
+    So is an array of xarray, by the names and the coordinates of its dimensions.
 
     Masked pixels, and those that equal ``nodata`` (which may be NaN), have the share 0.
 
@@ -104,10 +104,12 @@ def raster(
     >>> bool(points.x.min() >= 4)
     True
     """
-    array, read, own = opened(array, band)
+    array, read, own = opened(array, band, transform is not None)
     plain, missing = masked(array, nodata)
     if shares is not None:
         plain = of_classes(plain, shares)
+    if shares is not None or plain.dtype == np.bool_:
+        # Between classes, and between yes and no, is nothing.
         where.setdefault("filter", "nearest")
     black = where.get("black") or 0
     if missing is not None:
@@ -120,9 +122,7 @@ def raster(
         plain = np.where(missing, np.asarray(empty).astype(plain.dtype), plain)
     checked(plain, where.get("white"))
     crs = joined({"array": named(own), "crs": named(crs)})
-    made = Pixels(raster=_pixels(plain, bbox, where_it_is(bbox, transform, read), crs, where))
-    made.crs = crs
-    return made
+    return Placed.of({"raster": _pixels(plain, bbox, where_it_is(bbox, transform, read), crs, where)}, crs)
 
 
 def _listed(value: Any) -> Any:

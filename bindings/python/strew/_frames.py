@@ -50,7 +50,7 @@ def pandas(points: Points) -> Any:
     return pd.DataFrame(columns)
 
 
-def geopandas(points: PointSet, crs: str | None) -> Any:
+def geopandas(points: Points, crs: str | None) -> Any:
     """A ``geopandas.GeoDataFrame``."""
     import geopandas as gpd
 

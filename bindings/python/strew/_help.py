@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import inspect
+import re
 import textwrap
 from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeVar
@@ -19,7 +21,12 @@ Function = TypeVar("Function", bound="Callable[..., Any]")
 def documented(query: type) -> Callable[[Function], Function]:
     """Documents the keywords of a query at a method that takes them."""
     texts = ABOUT_SPACE if query is SpaceQuery else {**ABOUT, **ABOUT_MORE}
-    names = {name: str(getattr(kind, "__forward_arg__", kind)) for name, kind in query.__annotations__.items()}
+    kinds = {name: str(getattr(kind, "__forward_arg__", kind)) for name, kind in query.__annotations__.items()}
+    # As readers know them: each may be of numpy, and None.
+    plain = {r"\bNumber\b": "float", r"\bInteger\b": "int", r" \| None$": ""}
+    names = {
+        name: functools.reduce(lambda text, old: re.sub(old, plain[old], text), plain, kind) for name, kind in kinds.items()
+    }
 
     def document(function: Function) -> Function:
         keyword = inspect.Parameter.KEYWORD_ONLY

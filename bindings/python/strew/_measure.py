@@ -7,8 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from ._errors import fault
 from ._native import native
 from ._points import PointSet
+from ._space import SpaceSet
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -66,6 +68,8 @@ def measure(
     >>> bool(measured.figures["low_power"] < 1e-3)
     True
     """
+    if isinstance(points, SpaceSet):
+        raise fault("points", points, "points in space", "a set of the plane, or pairs of coordinates with bbox=")
     if isinstance(points, PointSet):
         query = points.query
         is_periodic = "periodic" in points.body

@@ -10,61 +10,63 @@ import numpy as np
 if TYPE_CHECKING:
     from typing_extensions import TypeAlias
 
-Numbers: TypeAlias = "Union[Sequence[float], np.ndarray[Any, Any]]"
+Number: TypeAlias = "Union[float, np.integer[Any], np.floating[Any]]"
+Integer: TypeAlias = "Union[int, np.integer[Any]]"
+Numbers: TypeAlias = "Union[Sequence[Number], np.ndarray[Any, Any]]"
 
 
 class Regions(TypedDict, total=False):
     """Regions that are parameters by themselves: a query has one of them, or a member `region`."""
 
-    bbox: Numbers
-    circle: Numbers | Mapping[str, Any]
-    polygon: Any
+    bbox: Numbers | None
+    circle: Numbers | Mapping[str, Any] | None
+    polygon: Any | None
 
 
 class Parameters(TypedDict, total=False):
     """The parameters of a query: which points, and which part of them."""
 
-    periodic: int
-    density: float
-    spacing: float
-    min_distance: float
-    count: int
-    world: str
-    world_digest: str
-    profile: str
-    alpha: str | float
-    map: str
-    table: str
-    seed: int
-    warp: str | float
-    keep: float
-    settle: int
-    lod: float
-    field: str | Mapping[str, Any]
-    except_: str | Sequence[str]
-    attributes: str | Sequence[str]
-    scale_range: Numbers
-    scale_ranges: Mapping[str, Numbers]
-    variants: Mapping[str, float]
-    spread: str
-    variant_fields: Mapping[str, str | Mapping[str, Any]]
-    only: str
-    offset: int
-    limit: int
-    cursor: str
-    terrain: str | Mapping[str, Any]
-    heights: Numbers
-    normals: bool
-    align: float
+    periodic: Integer | None
+    density: Number | None
+    spacing: Number | None
+    min_distance: Number | None
+    count: Integer | None
+    world: str | None
+    world_digest: str | None
+    profile: str | None
+    alpha: str | Number | None
+    map: str | None
+    table: str | None
+    seed: Integer | None
+    warp: str | Number | None
+    keep: Number | None
+    settle: Integer | None
+    lod: Number | None
+    field: str | Mapping[str, Any] | None
+    except_: str | Sequence[str] | None
+    attributes: str | Sequence[str] | None
+    scale_range: Numbers | None
+    scale_ranges: Mapping[str, Numbers] | None
+    variants: Mapping[str, Number] | None
+    spread: str | None
+    variant_fields: Mapping[str, str | Mapping[str, Any]] | None
+    only: str | None
+    offset: Integer | None
+    limit: Integer | None
+    cursor: str | None
+    terrain: str | Mapping[str, Any] | None
+    heights: Numbers | None
+    normals: bool | None
+    align: Number | None
 
 
 class Output(TypedDict, total=False):
     """The options of a document, beside its format."""
 
-    decimals: int
-    size: int
-    summary: bool
-    crs: str
+    decimals: Integer | None
+    size: Integer | None
+    summary: bool | None
+    crs: Any | None
 
 
 #: Regions that are parameters by themselves.
@@ -73,6 +75,8 @@ REGIONS = ("bbox", "circle", "polygon")
 WINDOW = ("offset", "limit", "cursor")
 #: The form of an answer.
 OUTPUT = ("format", "decimals", "size", "summary", "crs")
+#: The formats that state the reference system of the plane.
+PLACED = ("geojson", "parquet",)
 #: The kinds of values by their parameters.
 KINDS = {
     "bbox": "numbers",

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, overload
 
 import numpy as np
 
-from . import _crs, _frames
-from ._parameters import KINDS, WINDOW
+from . import _frames
+from ._crs import Placed, is_name, joined, named
 from ._errors import fault
-from ._query import OF_ANSWERS, PLANE, Body, Dimension, Placed, address, body, text
+from ._parameters import KINDS, PLACED, WINDOW
+from ._query import OF_ANSWERS, PLANE, Body, Dimension, address, body, text
 
 if TYPE_CHECKING:
     from typing_extensions import Self, Unpack
@@ -28,6 +29,8 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 #: The most points that a row by its number makes, and keeps.
 FEW = 1_000_000
+#: The formats of files that geopandas writes.
+FILES = ("parquet", "feather")
 
 # Endings of files that are not the names of formats.
 _ENDINGS = {"jsonl": "ndjson", "geojsons": "geojsonseq", "geojsonl": "geojsonseq", "arrow": "feather", "arrows": "arrow"}
@@ -58,7 +61,7 @@ class Points:
 
     _dimension: ClassVar[Dimension] = PLANE
 
-    def __init__(self, source: Source, query: Body) -> None:
+    def __init__(self, source: Source, query: Placed) -> None:
         self._source = source
         self._body = query
         self._plan: Plan | None = None
@@ -70,10 +73,12 @@ class Points:
         """The points of a query, which is checked at once where that costs no request."""
         if not isinstance(query, Mapping):
             text(query)
-        made = cls(source, query if isinstance(query, Placed) else dict(query))
-        if source.checks_at_once and "region" in query:
-            made.plan()
-        return made
+        return cls(source, Placed.query(query))._checked()
+
+    def _checked(self) -> Self:
+        if self._source.checks_at_once and "region" in self._body:
+            self.plan()
+        return self
 
     @property
     def source(self) -> Source:
@@ -83,7 +88,7 @@ class Points:
     @property
     def body(self) -> Body:
         """The query in JSON: the body of ``POST /v1/points:query``, in space of ``POST /v1/space/points``."""
-        return dict(self._body)
+        return Placed.of(self._body, self.crs)
 
     def plan(self) -> Plan:
         """The plan: what the points are made from. Raises :class:`StrewError` for a query that is not valid."""
@@ -127,7 +132,9 @@ class Points:
     def _with(self, **members: Any) -> Self:
         kept = {name: value for name, value in self._body.items() if name not in members}
         more = {name: value for name, value in members.items() if value is not None}
-        return self.of(self._source, Placed.of({**kept, **more}, self.crs))
+        query = Placed.of({**kept, **more}, self.crs)
+        # Nothing but a region has a place.
+        return type(self)(self._source, Placed.query(query) if "region" in more else query)._checked()
 
     def within(self, region: Any = None, **shape: Any) -> Self:
         """The same set of points in another region: ``bbox``, ``circle``, ``polygon``, ``chunk`` or ``region``; in
@@ -137,9 +144,7 @@ class Points:
         unknown = set(shape) - set(self._dimension.shapes) - {"region"}
         if unknown or not shape:
             raise TypeError(f"within takes one of region, {', '.join(self._dimension.shapes)}")
-        made = body(shape)
-        _crs.joined({"points": self.crs, "region": made.crs})
-        return self._with(region=made["region"], **dict.fromkeys(WINDOW))
+        return self._with(region=body(shape)["region"], **dict.fromkeys(WINDOW))
 
     def split(self, parts: int) -> list[Self]:
         """The points in at most ``parts`` sets of the same size, give or take one, in their order.
@@ -312,20 +317,32 @@ class Points:
         """A ``pandas.DataFrame`` of all columns: ids as text, names as categories."""
         return _frames.pandas(self)
 
+    def to_geopandas(self, crs: Any = None) -> Any:
+        """A ``geopandas.GeoDataFrame``: ids, attributes, and points as geometry, with their height if they have one.
+
+        ``crs`` is the reference system, by default :attr:`crs`. Coordinates do not
+        change; points of chunks get those from the world's origin.
+        """
+        return _frames.geopandas(self, self._crs_or(crs))
+
     @property
     def crs(self) -> str | None:
-        """The reference system that the region or a field brought along, such as ``EPSG:32633``; else ``None``."""
-        return self._body.crs if isinstance(self._body, Placed) else None
+        """The reference system of the points, such as ``EPSG:32633``: that of the keyword ``crs``, or of any region,
+        field, terrain or feature of the query; else ``None``."""
+        return self._body.crs
 
     def _crs_or(self, crs: Any) -> str | None:
-        return _crs.joined({"points": self.crs, "crs": _crs.named(crs)})
+        stated = named(crs)
+        own = joined({"points": self.crs, "crs": stated})
+        return stated or own
 
     # -- documents ---------------------------------------------------------------------------------------------
 
     def document(self, format: str, **options: Unpack[Output]) -> bytes:
         """The points in a format of REST: ``json``, ``csv``, ``geojson``, ``ply``, ``npy``, ``svg``, ``png``, …
 
-        The options are the members of ``Output``, such as ``decimals`` for texts and ``size`` for pictures.
+        The options are the members of ``Output``, such as ``decimals`` for texts and ``size`` for pictures. Formats
+        that state a reference system, such as ``geojson``, have that of the points.
 
         >>> import strew
         >>> print(strew.points(bbox=(0, 0, 2, 1), spacing=1, seed=1).document("csv", decimals=2).decode())
@@ -336,17 +353,33 @@ class Points:
         <BLANKLINE>
         """
         given = {"format": format, **options}
+        crs = self._crs_or(options.get("crs"))
+        if crs is not None and (format in PLACED or "crs" in options):
+            if not is_name(crs):
+                way_out = "one with an authority and a code, or points.to_geopandas().to_file(path)"
+                raise fault("crs", crs, f"has no name that {format} could state", way_out)
+            given["crs"] = crs
         texts = [(name, "on" if value is True else "off" if value is False else str(value)) for name, value in given.items()]
         return self.plan().document(texts)
 
     def write(self, path: str | Path, format: str | None = None, **options: Unpack[Output]) -> None:
-        """Writes a document; the ending of the path is the format, as of ``strew sample -o``, also with ``.gz``."""
+        """Writes a document; the ending of the path is the format, as of ``strew sample -o``, also with ``.gz``.
+
+        ``.parquet`` is GeoParquet, and ``.arrow`` an Arrow file with the same columns: both by geopandas, of which
+        ``options`` has those of its own.
+        """
         inner = Path(path)
         is_packed = inner.suffix.lower() == ".gz"
         if is_packed:
             inner = inner.with_suffix("")
         ending = inner.suffix.lstrip(".").lower()
-        content = self.document(format or _ENDINGS.get(ending, ending), **options)
+        format = format or _ENDINGS.get(ending, ending)
+        if format in FILES and not is_packed:
+            more: dict[str, Any] = dict(options)
+            frame = self.to_geopandas(more.pop("crs", None))
+            getattr(frame, f"to_{format}")(path, **more)
+            return
+        content = self.document(format, **options)
         Path(path).write_bytes(gzip.compress(content, mtime=0) if is_packed else content)
 
     def _repr_svg_(self) -> str | None:
@@ -360,7 +393,8 @@ class Points:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Points) or self._dimension is not other._dimension:
             return NotImplemented
-        return repr(self._source) == repr(other._source) and text(self._body) == text(other._body)
+        ours, theirs = ((repr(points._source), points.crs, text(points._body)) for points in (self, other))
+        return ours == theirs
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -400,14 +434,6 @@ class PointSet(Points):
     def point(self, id: Any) -> Point:
         """The point of an id: a text, or a pair of integers as in :attr:`ids`. Raises :class:`NoSuchPoint`."""
         return Point._of(self._point(id))
-
-    def to_geopandas(self, crs: Any = None) -> Any:
-        """A ``geopandas.GeoDataFrame``: ids, attributes, and points as geometry, with their height if they have one.
-
-        ``crs`` is the reference system, by default that of the region or of a raster (:attr:`crs`). Coordinates do not
-        change; points of chunks get those from the world's origin.
-        """
-        return _frames.geopandas(self, self._crs_or(crs))
 
     def plot(self, ax: Any = None, *, by: str | None = None, **style: Any) -> Any:
         """Draws the points by matplotlib, on ``ax`` or the current axes, which are returned.

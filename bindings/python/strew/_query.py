@@ -13,9 +13,9 @@ from urllib.parse import quote
 
 import numpy as np
 
-from . import _crs
+from ._crs import Placed, named
 from ._errors import fault
-from ._parameters import KINDS, OUTPUT, REGIONS, WINDOW, Numbers, Parameters, Regions
+from ._parameters import KINDS, OUTPUT, REGIONS, WINDOW, Integer, Number, Numbers, Parameters, Regions
 
 if TYPE_CHECKING:
     from typing_extensions import TypeAlias
@@ -28,18 +28,6 @@ SHAPES = (*REGIONS, "chunk")
 VOLUMES = ("bbox", "ball", "prism", "chunk")
 #: Members of a query that are not about its set of points.
 OF_ANSWERS = ("region", *WINDOW, *OUTPUT)
-
-
-class Placed(dict[str, Any]):
-    """A body, with the reference system of what it was made from."""
-
-    crs: str | None = None
-
-    @classmethod
-    def of(cls, body: Body, crs: str | None) -> Placed:
-        made = cls(body)
-        made.crs = crs
-        return made
 
 
 @dataclass(frozen=True)
@@ -61,7 +49,7 @@ SPACE = Dimension("xyz", VOLUMES, "/v1/space", "/v1/space/points")
 class Shapes(Regions, total=False):
     """The regions that are keywords."""
 
-    chunk: Numbers | Mapping[str, Any]
+    chunk: Numbers | Mapping[str, Any] | None
 
 
 class Query(Shapes, Parameters, total=False):
@@ -70,42 +58,44 @@ class Query(Shapes, Parameters, total=False):
     ``except`` is a word of Python: its keyword is ``except_``.
     """
 
-    region: Mapping[str, Any]
-    features: Mapping[str, Any]
-    layers: Sequence[Mapping[str, Any]]
+    region: Mapping[str, Any] | None
+    features: Mapping[str, Any] | None
+    layers: Sequence[Mapping[str, Any]] | None
+    crs: Any
 
 
 class Volumes(TypedDict, total=False):
     """The regions of space that are keywords."""
 
-    bbox: Numbers
-    ball: Numbers | Mapping[str, Any]
-    prism: tuple[Any, float, float] | Mapping[str, Any]
-    chunk: Numbers | Mapping[str, Any]
-    region: Mapping[str, Any]
+    bbox: Numbers | None
+    ball: Numbers | Mapping[str, Any] | None
+    prism: tuple[Any, Number, Number] | Mapping[str, Any] | None
+    chunk: Numbers | Mapping[str, Any] | None
+    region: Mapping[str, Any] | None
 
 
 class SpaceQuery(Volumes, total=False):
     """The keywords of a query in space; those that the plane has, too, mean the same: see :class:`Query`."""
 
-    layers: Sequence[Mapping[str, Any]]
-    density: float
-    spacing: float
-    min_distance: float
-    profile: str
-    alpha: str | float
-    map: str
-    table: str
-    seed: int
-    warp: str | float
-    keep: float
-    attributes: str | Sequence[str]
-    scale_range: Numbers
-    scale_ranges: Mapping[str, Numbers]
-    variants: Mapping[str, float]
-    offset: int
-    limit: int
-    cursor: str
+    layers: Sequence[Mapping[str, Any]] | None
+    density: Number | None
+    spacing: Number | None
+    min_distance: Number | None
+    profile: str | None
+    alpha: str | Number | None
+    map: str | None
+    table: str | None
+    seed: Integer | None
+    warp: str | Number | None
+    keep: Number | None
+    attributes: str | Sequence[str] | None
+    scale_range: Numbers | None
+    scale_ranges: Mapping[str, Numbers] | None
+    variants: Mapping[str, Number] | None
+    offset: Integer | None
+    limit: Integer | None
+    cursor: str | None
+    crs: Any
 
 
 #: The meanings of the keywords that are no parameters of addresses.
@@ -117,6 +107,11 @@ ABOUT_MORE = {
         '"count": "TREES"} with the properties that hold names and numbers of points.'
     ),
     "layers": "Several sets at once: a list of dicts with a ``name`` each.",
+    "crs": (
+        "The reference system of all coordinates: a code of EPSG, a text such as ``EPSG:32633``, or an object of pyproj. "
+        "By default that of regions, features, fields and terrain; another one is refused, since coordinates do not "
+        "change."
+    ),
 }
 #: The meanings of the keywords in space.
 ABOUT_SPACE = {
@@ -149,12 +144,13 @@ ABOUT_SPACE = {
     "offset": "The number of points to leave out.",
     "limit": "The greatest number of points.",
     "cursor": "Where an earlier answer to the same query ended.",
+    "crs": ABOUT_MORE["crs"],
 }
 
 
 def _region(shape: str, value: Any) -> dict[str, Any]:
     if hasattr(value, "__geo_interface__"):
-        value = value.__geo_interface__
+        value = Placed.of(value.__geo_interface__, named(getattr(value, "crs", None), shape))
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if isinstance(value, range):
@@ -183,17 +179,14 @@ def _region(shape: str, value: Any) -> dict[str, Any]:
     return {shape: value}
 
 
-def body(keywords: Mapping[str, Any]) -> Placed:
+def body(keywords: Mapping[str, Any]) -> Body:
     """Keywords as a body. Those that are ``None`` are left out."""
     made: Body = {}
-    places: dict[str, str | None] = {}
     for name, value in keywords.items():
         if value is None:
             continue
         if iskeyword(name[:-1]) and name.endswith("_"):
             name = name[:-1]
-        if name in SHAPES or name in VOLUMES or name == "region" or KINDS.get(name) == "field":
-            places[name] = _crs.of(value)
         if name in SHAPES or name in VOLUMES:
             # Several shapes are refused together, with all their names.
             made.setdefault("region", {})
@@ -202,13 +195,15 @@ def body(keywords: Mapping[str, Any]) -> Placed:
             made[name] = [word.strip() for word in value.split(",")]
         else:
             made[name] = value
-    return Placed.of(made, _crs.joined(places))
+    return made
 
 
 def text(body: Mapping[str, Any]) -> str:
     """A body as JSON. Raises :class:`StrewError` with the member that has no form in JSON."""
     if not isinstance(body, Mapping):
         raise fault("query", body, "not a body of REST", "a dict such as {'region': {'bbox': [0, 0, 9, 9]}, 'spacing': 1}")
+    if "features" in body:
+        body = {**body, "features": _features(body["features"])}
     for name, value in body.items():
         _check(name, value)
     try:
@@ -217,6 +212,23 @@ def text(body: Mapping[str, Any]) -> str:
         for name, value in body.items():
             _written(name, value)
         raise
+
+
+def _features(features: Any) -> Any:
+    """Features without the properties that are not read: columns of a frame may have values that JSON lacks."""
+    of = features.get("of") if isinstance(features, Mapping) else None
+    of = getattr(of, "__geo_interface__", of)
+    if not isinstance(of, Mapping) or not isinstance(of.get("features"), (list, tuple)):
+        return features
+    names = (features.get("id"), features.get("count"))
+
+    def read(feature: Any) -> Any:
+        properties = feature.get("properties") if isinstance(feature, Mapping) else None
+        if not isinstance(properties, Mapping):
+            return feature
+        return {**feature, "properties": {name: properties[name] for name in properties if name in names}}
+
+    return {**features, "of": {**of, "features": [read(feature) for feature in of["features"]]}}
 
 
 def _check(name: str, value: Any) -> None:

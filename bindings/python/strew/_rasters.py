@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,16 +12,17 @@ from ._errors import fault
 
 Array = np.ndarray[Any, Any]
 
-
-class Pixels(dict[str, Any]):
-    """Pixels or a raster as JSON has them, with the reference system that their place is in."""
-
-    #: The name of the reference system, such as ``EPSG:32633``; ``None`` if it is not known.
-    crs: str | None = None
+#: Names of the dimensions of xarray that rows and columns are.
+ROWS, COLUMNS = ("y", "lat", "latitude", "northing"), ("x", "lon", "longitude", "easting")
 
 
-def opened(source: Any, band: int | None) -> tuple[Any, Any, Any]:
-    """An array, its transform and its reference system: those of a rasterio dataset or band are read."""
+def opened(source: Any, band: int | None, has_transform: bool = False) -> tuple[Any, Any, Any]:
+    """An array, its transform and its reference system: those of a rasterio dataset or band are read, and those of an
+    array of xarray, unless it has a transform of the caller's."""
+    if isinstance(source, (str, bytes, os.PathLike)):
+        raise fault("array", source, "not an array", "rasterio.open(path), or np.asarray(PIL.Image.open(path))")
+    if all(hasattr(source, name) for name in ("dims", "coords", "transpose", "values")):
+        return _of_xarray(source, band, has_transform)
     if all(hasattr(source, name) for name in ("ds", "bidx")):
         # rasterio.band(dataset, number)
         source, band = source.ds, source.bidx
@@ -37,12 +39,51 @@ def opened(source: Any, band: int | None) -> tuple[Any, Any, Any]:
     return source.read(1 if band is None else int(band), masked=True), transform, source.crs
 
 
+def _of_xarray(source: Any, band: int | None, has_transform: bool) -> tuple[Any, Any, Any]:
+    """The rows and columns of an array of xarray by the names of its dimensions, from the top and from the left by
+    their coordinates, with the place that these say."""
+    row, column = (next((dim for dim in source.dims if str(dim).lower() in names), None) for names in (ROWS, COLUMNS))
+    if row is None or column is None:
+        known = f"dimensions named {' or '.join(ROWS)} and {' or '.join(COLUMNS)}, or the array's values"
+        raise fault("array", source.dims, "dimensions of which rows and columns are not known", known)
+    for dim in set(source.dims) - {row, column}:
+        bands = source.sizes[dim]
+        if band is None and bands != 1:
+            raise fault("band", band, f"the array has {bands} of {dim}", f"band=1 to band={bands}")
+        source = source.isel({dim: 0 if band is None else int(band) - 1})
+    missing = source.attrs.get("_FillValue", source.attrs.get("missing_value"))
+    stated = [source.coords[name].attrs for name in ("spatial_ref", "crs") if name in source.coords]
+    crs = next((attrs[name] for attrs in stated for name in ("crs_wkt", "spatial_ref") if name in attrs), None)
+    source = source.transpose(row, column)
+    transform = None
+    if not has_transform and row in source.coords and column in source.coords:
+        source = source.sortby(column).sortby(row, ascending=False)
+        (x, width), (y, height) = (_step(source.coords[dim].values, str(dim)) for dim in (column, row))
+        transform = (width, 0.0, x - width / 2, 0.0, height, y - height / 2)
+    values = np.ma.masked_invalid(source.values) if source.dtype.kind == "f" else source.values
+    return (values if missing is None else np.ma.masked_equal(values, missing)), transform, crs
+
+
+def _step(centers: Array, dim: str) -> tuple[float, float]:
+    """The first of some centers of pixels, and the distance from each to the next."""
+    steps = np.diff(centers.astype(np.float64))
+    if not len(steps):
+        raise fault("array", dim, "one coordinate, which has no width", "transform=, beside the array's values")
+    step = float(steps.mean())
+    if not np.allclose(steps, step, rtol=1e-3, atol=0):
+        raise fault("array", dim, "coordinates at uneven distances", "an array on a regular grid: interpolate it first")
+    return float(centers[0]), step
+
+
 def masked(array: Any, nodata: float | None) -> tuple[Array, Array | None]:
     """An array of two dimensions, and which pixels lack data, if any do."""
     missing = np.ma.getmaskarray(array).copy() if np.ma.isMaskedArray(array) else None
     plain = np.asarray(np.ma.getdata(array) if np.ma.isMaskedArray(array) else array)
+    # One order of bytes, so that types are known.
+    plain = plain.astype(plain.dtype.newbyteorder("="), copy=False)
     if plain.ndim != 2:
-        raise ValueError(f"pixels have 2 dimensions, not {plain.ndim}: rows and columns")
+        way_out = "array[0]" if plain.ndim == 3 and plain.shape[0] == 1 else "one band, array[k] or array[:, :, k]"
+        raise fault("array", plain.shape, f"pixels have 2 dimensions, not {plain.ndim}", f"rows and columns: {way_out}")
     if plain.dtype.kind not in "buif":
         raise fault("array", plain.dtype, "not numbers", "an array of numbers or of bool")
     if nodata is not None:

@@ -21,7 +21,14 @@ def random_query(seed: int) -> dict[str, Any]:
         if chance.random() < 0.5:
             layers[-1]["clear_of"] = {"layer0": chance.uniform(0.1, 1)}
         query = {"layers": layers}
+    elif query.get("spread") and chance.random() < 0.3:
+        query["only"] = "birch"
     query["region"] = region
+    if chance.random() < 0.1 and "layers" not in query:
+        query["terrain"] = {"noise": {"wavelength": 30}}
+        query["align"] = chance.random()
+    if chance.random() < 0.1:
+        query["lod"] = chance.uniform(0.1, 1)
     if chance.random() < 0.1:
         query["offset"] = chance.randint(0, 20)
     if chance.random() < 0.1:
@@ -62,16 +69,21 @@ def _set(chance: random.Random) -> dict[str, Any]:
         query["warp"] = chance.choice(["off", "on", 0.5])
     if chance.random() < 0.2:
         query["keep"] = chance.uniform(0.1, 1)
+        query["settle"] = chance.randint(0, 4)
     if chance.random() < 0.4:
         query["attributes"] = chance.sample(["angle", "scale", "rank", "u1", "u16", "variant"], chance.randint(1, 4))
         if "variant" in query["attributes"]:
             query["variants"] = {name: chance.uniform(0.5, 3) for name in chance.sample(NAMES, chance.randint(1, 3))}
+            if "profile" not in query and chance.random() < 0.5:
+                query["spread"] = chance.choice(["even", "joint"])
+                query["variants"] = {"oak": 3, "birch": 1}
     if chance.random() < 0.15 and kind != 2:
         query["field"] = chance.choice(
             [
                 {"noise": {"wavelength": chance.uniform(5, 20), "seed": chance.randrange(9)}},
                 {"radial": {"center": [0, 0], "radii": [5, 50]}},
                 {"invert": {"ramp": {"from": [0, 0], "to": [9, 9]}}},
+                {"multiply": [{"constant": 0.7}, {"distance": {"points": [[0, 0], [5, 5]], "distances": [1, 40]}}]},
             ]
         )
     return query

@@ -176,7 +176,7 @@ def test_endings_are_those_of_the_command(tmp_path: Path) -> None:
     points.write(tmp_path / "a.csv.gz")
     assert gzip.decompress((tmp_path / "a.csv.gz").read_bytes()) == points.document("csv")
     with pytest.raises(ValueError, match="only `strew sample` writes it"):
-        points.write(tmp_path / "a.parquet")
+        points.document("parquet")
 
 
 def test_large_masks_are_taken_in_process() -> None:

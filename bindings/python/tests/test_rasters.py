@@ -51,8 +51,64 @@ def test_integers_that_are_no_shares_are_refused_with_the_way_out() -> None:
     with pytest.raises(strew.StrewError, match="holds 7: numbers of this type are shares"):
         strew.raster(np.full((4, 4), 7, np.int32), bbox=BOX)
     assert len(points(strew.raster(np.ones((4, 4), np.int64), bbox=BOX))) > 300
-    with pytest.raises(ValueError, match="2 dimensions"):
-        strew.raster(np.ma.zeros(3))
+    for shape, way_out in (((3,), "rows and columns"), ((1, 4, 4), r"array\[0\]"), ((3, 4, 4), "one band")):
+        with pytest.raises(strew.StrewError, match=f"2 dimensions, not {len(shape)}; allowed: .*{way_out}"):
+            strew.raster(np.ma.zeros(shape))
+    for path in ("cover.tif", Path("cover.tif")):
+        with pytest.raises(strew.StrewError, match=r"cover.tif.*: not an array; allowed: rasterio.open\(path\)"):
+            strew.raster(path)
+
+
+def test_the_order_of_bytes_means_nothing() -> None:
+    numbers = np.arange(12).reshape(3, 4)
+    for kind in ("u2", "i2", "i4", "i8", "f4", "f8"):
+        native = (numbers * 5000).astype(kind)
+        white: Any = {} if kind == "u2" else {"white": 60000}
+        there, here = (strew.raster(native.astype(order + kind), bbox=BOX, **white) for order in ("<", ">"))
+        assert there == here
+        assert points(here).ids.tolist() == points(there).ids.tolist()
+    for order in ("<u2", ">u2"):
+        with pytest.raises(strew.StrewError, match=r"holds 0 and 1 alone.*array.astype\(bool\)"):
+            strew.raster(np.ones((4, 4), order), bbox=BOX)
+
+
+def test_a_mask_is_sharp() -> None:
+    mask = np.indices((10, 10)).sum(axis=0) % 2 == 0
+    found = points(strew.raster(mask, bbox=BOX), settle=0)
+    assert len(found) > 100 and mask[(9 - found.y.astype(int)), found.x.astype(int)].all()
+    assert strew.raster(mask, bbox=BOX, filter="linear") == strew.raster(mask.astype(np.uint8) * 255, bbox=BOX, filter="linear")
+
+
+def test_arrays_of_xarray_lie_where_their_coordinates_say() -> None:
+    xarray = pytest.importorskip("xarray")
+    numbers = np.arange(12.0).reshape(3, 4) / 12
+    wanted = strew.raster(numbers, bbox=(100, 200, 108, 206))
+    x, y = 101 + 2.0 * np.arange(4), 205 - 2.0 * np.arange(3)
+    plain = xarray.DataArray(numbers, {"y": y, "x": x}, ("y", "x"))
+    for array in (
+        plain, plain[::-1], plain[:, ::-1], plain.T, plain.T[::-1, ::-1], plain.expand_dims("band"),
+        plain.rename(y="lat", x="lon"), xarray.concat([plain, 1 - plain], "band").isel(band=[0]),
+    ):
+        assert strew.raster(array) == wanted
+        assert strew.raster(array, bbox=(100, 200, 108, 206)) == wanted
+    assert strew.raster(xarray.concat([1 - plain, plain], "band"), band=2) == wanted
+    # A transform is that of the rows as they are stored.
+    assert strew.raster(plain[::-1], transform=(2, 0, 100, 0, 2, 200)) == wanted
+    assert strew.raster(xarray.DataArray(numbers, dims=("y", "x")), bbox=(100, 200, 108, 206)) == wanted
+    named = plain.assign_coords(spatial_ref=((), 0, {"crs_wkt": "EPSG:32633"}))
+    assert strew.points(bbox=BOX, spacing=1, field=strew.raster(named)).crs == "EPSG:32633"
+    for wrong, words in (
+        (plain.rename(y="a"), "rows and columns are not known"),
+        (plain.assign_coords(x=[1, 2, 4, 8]), "coordinates at uneven distances"),
+        (plain[:1], "one coordinate, which has no width"),
+        (xarray.concat([plain, plain], "band"), "the array has 2 of band; allowed: band=1 to band=2"),
+    ):
+        with pytest.raises(strew.StrewError, match=words):
+            strew.raster(wrong)
+    gaps = xarray.DataArray(np.array([[7, 255], [255, 0]], np.uint8), {"y": [1.5, 0.5], "x": [0.5, 1.5]}, ("y", "x"))
+    gaps.attrs["_FillValue"] = 7
+    masked = np.ma.masked_equal(gaps.values, 7)
+    assert strew.raster(gaps) == strew.raster(masked, bbox=(0, 0, 2, 2))
 
 
 def test_classes_have_shares() -> None:
@@ -90,7 +146,7 @@ def test_reference_systems_that_contradict_are_refused() -> None:
         named = {**polygon, "crs": {"type": "name", "properties": {"name": crs}}}
         assert strew.points(polygon=named, spacing=1, field=field).crs == "EPSG:32633"
     degrees = {**polygon, "crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}}
-    with pytest.raises(strew.StrewError, match="`field` = `'EPSG:32633'`: contradicts the OGC:CRS84 of `polygon`"):
+    with pytest.raises(strew.StrewError, match="`field` = `'EPSG:32633'`: contradicts the OGC:CRS84 of `region.polygon.crs`"):
         strew.points(polygon=degrees, spacing=1, field=field)
     with pytest.raises(strew.StrewError, match="contradicts"):
         points(field).within(polygon=degrees)

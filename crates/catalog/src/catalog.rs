@@ -122,7 +122,11 @@ impl Catalog {
     /// # Errors
     /// [`CatalogError`] with the number of a file that is no table or has the key of another one.
     pub fn of_files(files: impl IntoIterator<Item = Vec<u8>>) -> Result<Self, CatalogError> {
-        let mut catalog = Self::default();
+        let offer = Offer {
+            of_files: true,
+            ..Offer::default()
+        };
+        let mut catalog = Self::default().offering(offer);
         let files = files.into_iter().enumerate();
         catalog.add(files.map(|(i, file)| Entry::read(file.into(), Source::Memory(i))))?;
         Ok(catalog)

@@ -65,7 +65,6 @@ pub fn make(table: &Table, what: &Made, stop: &Stop) -> Result<Table, Error> {
     if let Some(built_in) = what.built_in(table) {
         return Ok(built_in);
     }
-    let began = std::time::Instant::now();
     let watch = Until(stop);
     let made = match what {
         Made::Labels(shares) => strew_forge::labels(table, shares, &watch),
@@ -77,7 +76,7 @@ pub fn make(table: &Table, what: &Made, stop: &Stop) -> Result<Table, Error> {
             "weights nearer to each other, fewer variants, a larger map, or spread chance";
         Fault::new("variants", what, error.to_string(), allowed)
     })?;
-    tracing::info!(%what, seconds = began.elapsed().as_secs_f32(), "made a mix");
+    tracing::info!(%what, "made a mix");
     made.ok_or(Error::Internal(
         "a mix was stopped before its request ended",
     ))

@@ -8,6 +8,8 @@ use strew_forge::{Job, Profile};
 pub struct Offer {
     /// The largest half-width R of maps that are forged on demand; `None` if nothing is.
     pub max_radius: Option<u32>,
+    /// Whether a program hands the files of its tables over.
+    pub of_files: bool,
 }
 
 impl Offer {
@@ -43,6 +45,7 @@ impl Offer {
         };
         match self.max_radius {
             Some(most) if size.radius() <= most => self.of_any(&of(&size.to_string())),
+            _ if self.of_files => self.of_file().into(),
             _ => format!(
                 "; it can be made: strew forge --profile {profile} --alpha '{alpha}' --radius {} \
                  --out-dir, into the folder of tables",
@@ -54,7 +57,19 @@ impl Offer {
     fn of_any(self, request: &str) -> String {
         match self.max_radius {
             Some(_) => format!("; it can be made: POST /v1/tables (or ForgeTable) with {request}"),
+            None if self.of_files => self.of_file().into(),
             None => "; the operator can have it made with strew forge".into(),
+        }
+    }
+
+    /// A remedy for a table that is shipped as a file; empty if tables are not handed over.
+    #[must_use]
+    pub const fn of_file(self) -> &'static str {
+        match self.of_files {
+            true => {
+                "; load its file beside the others: those of the package strew-tables, or of share/strew/tables"
+            }
+            false => "",
         }
     }
 }

@@ -1,9 +1,7 @@
 //! The way for a caller to follow the work and stop it.
 //!
 //! The caller implements [`Watch`]. The optimizer and the judge count their steps with a [`Meter`],
-//! which reports [`Progress`] to it.
-
-use std::time::{Duration, Instant};
+//! which reports [`Progress`] to it. None of them reads a clock, which WebAssembly lacks.
 
 use crate::Checkpoint;
 
@@ -29,10 +27,6 @@ pub struct Progress {
     /// phase of the optimization and jumps from one phase to the next, because their energies
     /// differ.
     pub energy: Option<f64>,
-    /// Time since the stage began or was resumed.
-    pub elapsed: Duration,
-    /// Time until the stage ends, at the average speed so far.
-    pub left: Duration,
 }
 
 /// Follows the work and may stop it. Nothing else it does affects the result. Work that was stopped
@@ -68,11 +62,8 @@ impl Watch for () {
 pub struct Meter<'a> {
     watch: &'a dyn Watch,
     stage: Stage,
-    /// The steps done before the work was resumed.
-    first: u32,
     step: u32,
     steps: u32,
-    began: Instant,
 }
 
 impl<'a> Meter<'a> {
@@ -88,10 +79,8 @@ impl<'a> Meter<'a> {
         let meter = Self {
             watch,
             stage,
-            first,
             step: first,
             steps,
-            began: Instant::now(),
         };
         meter.report(None);
         meter
@@ -116,15 +105,11 @@ impl<'a> Meter<'a> {
     }
 
     fn report(&self, energy: Option<f64>) {
-        let elapsed = self.began.elapsed();
         self.watch.progress(&Progress {
             stage: self.stage,
             step: self.step,
             steps: self.steps,
             energy,
-            elapsed,
-            left: elapsed * self.steps.saturating_sub(self.step)
-                / self.step.saturating_sub(self.first).max(1),
         });
     }
 }

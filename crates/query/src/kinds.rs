@@ -186,8 +186,9 @@ impl Kinds {
                 ),
             };
             let detail = format!(
-                "no table with joint kinds of the shares {} is loaded",
-                self.shares()
+                "no table with joint kinds of the shares {} is loaded{}",
+                self.shares(),
+                catalog.offer().of_file()
             );
             let field = format!("{}{}", values.path(), SPREAD.name);
             Fault::new(&field, self.spread.name(), detail, allowed).into()

@@ -1,7 +1,7 @@
 //! The options of an answer: checked against the format once it is settled.
 
 use strew_encode::{Crs, DEFAULT_SIZE, Encoding, Output};
-use strew_error::{Error, Together as _};
+use strew_error::{Error, Fault, Together as _};
 
 use crate::{parameters, rules};
 
@@ -23,6 +23,21 @@ pub struct Options {
 }
 
 impl Options {
+    /// These options for points in a plane.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if they name another one.
+    pub fn of_plane(self, plane: Option<Crs>) -> Result<Self, Error> {
+        match (&self.crs, &plane) {
+            (Some(stated), Some(plane)) if !plane.is_plane_of(stated) => {
+                let detail =
+                    "another plane than that of the points, and coordinates are not converted";
+                Err(Fault::new(parameters::CRS.name, stated, detail, plane.to_string()).into())
+            }
+            _ => Ok(Self { plane, ..self }),
+        }
+    }
+
     /// The output in `encoding`: the format that the query names, or another if it names none.
     ///
     /// # Errors

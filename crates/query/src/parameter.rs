@@ -216,6 +216,7 @@ pub mod groups {
         Choices,
         Window,
         Output,
+        Reference,
     ];
     /// `GET /v1/space/chunks/…`, whose region is in the path, and bodies, in which it is a member.
     pub const SPACE_QUERY: &[Group] = &[
@@ -227,6 +228,7 @@ pub mod groups {
         Choices,
         Window,
         Output,
+        Reference,
     ];
     /// `GET /v1/space/count`.
     pub const SPACE_COUNT: &[Group] = &[

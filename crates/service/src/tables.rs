@@ -27,6 +27,7 @@ impl Service {
         let assets = self.assets.clone();
         let offer = Offer {
             max_radius: settings.is_on().then_some(settings.max_radius),
+            ..Offer::default()
         };
         assets.rcu(|now| Assets {
             catalog: now.catalog.clone().offering(offer),

@@ -116,7 +116,7 @@ mod tests {
         for (form, expected) in [
             (Form::Dts, "     */\n    added?: number;\n"),
             (Form::Js, "    added: \"integer\",\n"),
-            (Form::Py, "    added: int\n"),
+            (Form::Py, "    added: Integer | None\n"),
             (Form::Py, "    \"added\": \"integer\",\n"),
             (
                 Form::Md,

@@ -1,6 +1,10 @@
 //! Parameters for Python (_parameters.py): their types, and their names by what they are about.
 
-use strew_query::{Group, Parameter, Shape, groups, parameters::BBOX};
+use strew_encode::Encoding;
+use strew_query::{
+    Group, Parameter, Shape, groups,
+    parameters::{BBOX, CRS},
+};
 
 use super::{
     section::{MEMBERS, OUTPUT, REGIONS, Section, quoted, within},
@@ -20,7 +24,9 @@ import numpy as np
 if TYPE_CHECKING:
     from typing_extensions import TypeAlias
 
-Numbers: TypeAlias = \"Union[Sequence[float], np.ndarray[Any, Any]]\"
+Number: TypeAlias = \"Union[float, np.integer[Any], np.floating[Any]]\"
+Integer: TypeAlias = \"Union[int, np.integer[Any]]\"
+Numbers: TypeAlias = \"Union[Sequence[Number], np.ndarray[Any, Any]]\"
 ";
 
 /// Words of the language, which cannot be keywords of calls.
@@ -41,6 +47,10 @@ pub(super) fn module(table: &[&Parameter]) -> String {
     let kinds: String = (within(table, groups::POINTS).into_iter())
         .map(|of| format!("    \"{}\": \"{}\",\n", of.name, words::kind(of.shape)))
         .collect();
+    let placed = Encoding::ALL.iter().chain(&Encoding::FILES);
+    let placed: String = (placed.filter(|encoding| encoding.has_crs()))
+        .map(|encoding| format!("\"{}\", ", encoding.name()))
+        .collect();
     let about: String = ([REGIONS, MEMBERS, OUTPUT].iter())
         .flat_map(|section| section.of(table))
         .map(about)
@@ -54,13 +64,16 @@ REGIONS = ({regions})
 WINDOW = ({window})
 #: The form of an answer.
 OUTPUT = ({output})
+#: The formats that state the reference system of the plane.
+PLACED = ({})
 #: The kinds of values by their parameters.
 KINDS = {{
 {kinds}}}
 #: The meaning, the allowed values and the default of each parameter, which docstrings show.
 ABOUT = {{
 {about}}}
-"
+",
+        placed.trim_end()
     )
 }
 
@@ -70,7 +83,7 @@ fn class(section: &Section, table: &[&Parameter]) -> String {
         format!("\n\nclass {name}(TypedDict, total=False):\n    \"\"\"{about}\"\"\"\n\n");
     for parameter in section.of(table) {
         let name = keyword(parameter);
-        text += &format!("    {name}: {}\n", type_of(parameter));
+        text += &format!("    {name}: {} | None\n", type_of(parameter));
     }
     text
 }
@@ -100,14 +113,16 @@ fn type_of(parameter: &Parameter) -> &'static str {
         Shape::Numbers(_) if parameter.group == Group::Region => "Numbers | Mapping[str, Any]",
         // Vertices, GeoJSON, or an object with `__geo_interface__`.
         Shape::Vertices => "Any",
-        Shape::Number { .. } => "float",
-        Shape::Integer { .. } | Shape::Signed { .. } => "int",
+        // A code, a name, or an object of pyproj.
+        _ if *parameter == CRS => "Any",
+        Shape::Number { .. } => "Number",
+        Shape::Integer { .. } | Shape::Signed { .. } => "Integer",
         Shape::Switch => "bool",
-        Shape::Strength { .. } | Shape::Quadratic => "str | float",
+        Shape::Strength { .. } | Shape::Quadratic => "str | Number",
         Shape::Numbers(_) | Shape::Integers { .. } => "Numbers",
         Shape::Offsets { .. } => "Sequence[Numbers]",
         Shape::Names { .. } => "str | Sequence[str]",
-        Shape::Weights => "Mapping[str, float]",
+        Shape::Weights => "Mapping[str, Number]",
         Shape::Ranges => "Mapping[str, Numbers]",
         Shape::Field => "str | Mapping[str, Any]",
         Shape::Fields => "Mapping[str, str | Mapping[str, Any]]",

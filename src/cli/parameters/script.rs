@@ -65,7 +65,8 @@ fn type_of(parameter: &Parameter) -> String {
         }
         Shape::Vertices => "ArrayLike<Numbers> | object | null",
         Shape::Number { .. } | Shape::Signed { .. } => "number",
-        Shape::Integer { max, .. } if max > SAFE => "number | bigint",
+        // As text, too: so JSON has integers that a number does not hold.
+        Shape::Integer { max, .. } if max > SAFE => "number | bigint | `${number}`",
         Shape::Integer { .. } => "number",
         Shape::Switch => "boolean",
         Shape::Strength { .. } => "\"on\" | \"off\" | number",

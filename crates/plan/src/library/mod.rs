@@ -223,7 +223,8 @@ impl Library {
         })
     }
 
-    /// The points of a planned query as a document: the bytes that the daemon answers with.
+    /// The points of a planned query as a document: the bytes that the daemon answers with. The options are
+    /// [of the plane](Options::of_plane) that the query is in.
     ///
     /// # Errors
     /// [`Error::Invalid`] if an option has no effect in the format or the format is not written here;

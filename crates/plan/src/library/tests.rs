@@ -237,6 +237,34 @@ fn single_points_fields_and_faults() {
 }
 
 #[test]
+fn a_document_states_the_plane_of_its_query() {
+    let library = library();
+    let polygon = r#"{"type": "Polygon", "coordinates": [[[0, 0], [9, 0], [9, 9], [0, 0]]],
+        "crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::2154"}}}"#;
+    let body = format!(r#"{{"region": {{"polygon": {polygon}}}, "spacing": 2}}"#);
+    let (planned, options) = library.plan(body.as_bytes()).expect("valid");
+    let written = |stated: Option<&str>| {
+        let stated = stated.map(|crs| crs.parse().expect("a system"));
+        let wanted = Options {
+            crs: stated,
+            ..Options::default()
+        };
+        let wanted = wanted.of_plane(options.plane.clone())?;
+        let blocks = library.document(&planned, wanted, Encoding::Geojson)?;
+        let blocks = blocks.collect::<Result<Vec<_>, _>>().expect("written");
+        Ok::<_, Error>(String::from_utf8(blocks.concat()).expect("UTF-8"))
+    };
+    let own = written(None).expect("valid");
+    assert!(own.contains("urn:ogc:def:crs:EPSG::2154"), "{own}");
+    assert_eq!(written(Some("epsg:2154")), Ok(own));
+    let refused = written(Some("EPSG:4326")).expect_err("another plane");
+    assert_eq!(
+        (&*refused.faults()[0].field, &*refused.faults()[0].allowed),
+        ("crs", "EPSG:2154")
+    );
+}
+
+#[test]
 fn points_of_a_square_are_measured() {
     let library = library();
     let (planned, _) = library

@@ -1,8 +1,11 @@
 //! A job of the forge, and how it stands.
 
-use std::sync::{
-    Arc,
-    atomic::{AtomicBool, Ordering},
+use std::{
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Instant,
 };
 
 use schemars::JsonSchema;
@@ -186,6 +189,8 @@ pub struct Job {
     by: String,
     number: u64,
     is_cancelled: AtomicBool,
+    /// The stage that runs, with its first step and when that was.
+    began: Mutex<Option<(Stage, u32, Instant)>>,
     status: watch::Sender<JobStatus>,
 }
 
@@ -213,6 +218,7 @@ impl Job {
             by,
             number,
             is_cancelled: AtomicBool::new(false),
+            began: Mutex::default(),
             status: watch::Sender::new(status),
         }
     }
@@ -289,8 +295,19 @@ impl Job {
             status.stage = Some(stage.into());
             (status.step, status.steps) = (now.step, now.steps);
             status.energy = now.energy.or(status.energy);
-            status.seconds_left = Some((now.left.as_secs_f64() * 10.0).round() / 10.0);
+            status.seconds_left = Some((self.seconds_left(now) * 10.0).round() / 10.0);
         });
+    }
+
+    /// The time until a stage ends, at its average speed so far.
+    fn seconds_left(&self, now: &Progress) -> f64 {
+        let mut began = self.began.lock().unwrap_or_else(PoisonError::into_inner);
+        let stage = began.filter(|(stage, ..)| *stage == now.stage);
+        let (_, first, since) =
+            *began.insert(stage.unwrap_or((now.stage, now.step, Instant::now())));
+        let left = now.steps.saturating_sub(now.step);
+        since.elapsed().as_secs_f64() * f64::from(left)
+            / f64::from(now.step.saturating_sub(first).max(1))
     }
 }
 
