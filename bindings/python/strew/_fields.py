@@ -30,9 +30,8 @@ def pixels(
 ) -> dict[str, Any]:
     """Pixels, the terrain of ``height`` and ``slope`` fields: rows from the top, where y is greatest.
 
-    ``array``, ``bbox``, ``transform``, ``crs`` and ``band`` are those of :func:`raster`. Pixels that are masked or
-    ``nodata`` are refused, because they have no height: fill them (``array.filled(0)``). ``where`` has the members of
-    JSON's pixels: ``edges``, ``filter``, … Integers of 8 and 16 bits are sent as PNG, all other numbers as ``f32``.
+    ``array``, ``bbox``, ``transform``, ``crs`` and ``band`` are those of :func:`raster`. Where they
+    are masked or ``nodata``, a field of them has the share 0. ``where`` has the members of JSON's pixels: ``edges``, ``filter``, … Integers of 8 and 16 bits are sent as PNG, all other numbers as ``f32``.
 
     >>> import numpy as np, strew
     >>> terrain = strew.pixels(np.linspace(0, 90, 64 * 64).reshape(64, 64), bbox=(0, 0, 64, 64))
@@ -44,8 +43,7 @@ def pixels(
     array, read, own = opened(array, band, transform is not None)
     plain, missing = masked(array, nodata)
     if missing is not None:
-        detail = "of the pixels are masked: they have no height"
-        raise fault("array", int(missing.sum()), detail, "array.filled(height)")
+        plain = np.where(missing, np.nan, plain.astype(np.float64))
     crs = joined({"array": named(own), "crs": named(crs)})
     return _pixels(plain, bbox, where_it_is(bbox, transform, read), crs, where)
 
@@ -86,7 +84,8 @@ def raster(
     bands (``rasterio.band(dataset, 2)`` or ``band=2``), is read with its transform, its reference system and its mask.
     So is an array of xarray, by the names and the coordinates of its dimensions.
 
-    Masked pixels, and those that equal ``nodata`` (which may be NaN), have the share 0.
+    Masked pixels, and those that equal ``nodata`` (which may be NaN), have the share 0 up to their edges, whatever is
+    made of the field.
 
     ``bbox`` is the place of the whole array: its first row is at the top, where y is greatest. ``transform`` is an
     Affine in its place, or its six numbers a, b, c, d, e, f as rasterio has them; rows may run in any direction along
@@ -111,16 +110,12 @@ def raster(
     if shares is not None or plain.dtype == np.bool_:
         # Between classes, and between yes and no, is nothing.
         where.setdefault("filter", "nearest")
-    black = where.get("black") or 0
+    checked(plain if missing is None else plain[~missing], where.get("white"))
     if missing is not None:
-        low, high = where.get("low") or 0, where.get("high", 1)
-        if low != 0 and high != 0:
-            detail = "leaves a share where pixels are masked"
-            raise fault("low", low, detail, "low=0, or an array without a mask: array.filled(value)")
-        # The number whose share is 0.
-        empty = black if low == 0 else where.get("white", 1 if plain.dtype.kind == "f" else np.iinfo(plain.dtype).max)
-        plain = np.where(missing, np.asarray(empty).astype(plain.dtype), plain)
-    checked(plain, where.get("white"))
+        if plain.dtype in (np.uint8, np.uint16):
+            where.setdefault("white", int(np.iinfo(plain.dtype).max))
+        # What JSON's floats have for a pixel without data.
+        plain = np.where(missing, np.nan, plain.astype(np.float64))
     crs = joined({"array": named(own), "crs": named(crs)})
     return Placed.of({"raster": _pixels(plain, bbox, where_it_is(bbox, transform, read), crs, where)}, crs)
 

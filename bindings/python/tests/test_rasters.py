@@ -29,10 +29,12 @@ def test_masked_pixels_have_the_share_0() -> None:
     shifted = np.ma.array(np.full((4, 4), 9.0), mask=mask)
     found = points(strew.raster(shifted, bbox=BOX, filter="nearest", black=5, white=9))
     assert len(found) == len(points(strew.raster(~mask, bbox=BOX, filter="nearest")))
-    with pytest.raises(strew.StrewError, match="`low` = `0.5`: leaves a share where pixels are masked"):
-        strew.raster(shifted, low=0.5)
-    with pytest.raises(strew.StrewError, match="they have no height; allowed: array.filled"):
-        strew.pixels(shifted)
+    # No neighbor is spread into them, and nothing that is made of the field brings them back.
+    wide = np.ma.array(np.ones((4, 4)), mask=mask)
+    field, hill = strew.raster(wide, bbox=BOX, low=0.5), {"terrain": strew.pixels(wide, bbox=BOX), "heights": [0, 2]}
+    for sharp in (field, {"invert": strew.raster(np.ma.array(np.zeros((4, 4)), mask=mask), bbox=BOX)}, {"height": hill}):
+        found = points(sharp, settle=0)
+        assert len(found) and not mask[3 - (found.y * 0.4).astype(int), (found.x * 0.4).astype(int)].any()
 
 
 def test_nodata_is_masked() -> None:
