@@ -229,7 +229,8 @@ export interface Neighbors {
      */
     k?: number;
     /**
-     * The greatest distance from the place, in world units: points at exactly this distance, as reported, are found. Allowed: a finite number of at least 0. Default: unlimited.
+     * The greatest distance from the place, in world units: points at exactly this distance, as reported, are found.
+     * Allowed: a finite number of at least 0. Default: unlimited.
      */
     radius?: number;
 }

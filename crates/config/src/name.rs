@@ -12,7 +12,8 @@ pub fn is_name(text: &str) -> bool {
 }
 
 /// The rule for titles, as messages state it.
-pub const TITLES: &str = "1 to 64 characters, none of them a control character but tabs and line breaks";
+pub const TITLES: &str =
+    "1 to 64 characters, none of them a control character but tabs and line breaks";
 
 /// Whether a text may be the title of a layer: any text, as properties of features are. Marks that change the direction
 /// of the text around are left out.

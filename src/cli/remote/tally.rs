@@ -96,7 +96,12 @@ mod tests {
             (Encoding::Csv, true, "id,x,y\n1:2,3,4\n5:6,7,8\n", 2),
             (Encoding::Csv, true, "layer,id,x,y\nid,1:2,3,4\n", 1),
             (Encoding::Csv, true, "id,x,y\n", 0),
-            (Encoding::Csv, true, "layer,id\n\"A,\"\"B\"\"\n/c\",1:2\n", 1),
+            (
+                Encoding::Csv,
+                true,
+                "layer,id\n\"A,\"\"B\"\"\n/c\",1:2\n",
+                1,
+            ),
             (Encoding::Ndjson, true, "{}\n{}\n{\"summary\":{}}\n", 2),
             (Encoding::Ndjson, false, "{}\n{}\n", 2),
             (Encoding::Geojsonseq, true, "{}\n{}\n{}\n", 3),
