@@ -18,8 +18,8 @@ use tonic_web::GrpcWebLayer;
 use tower_layer::Layer as _;
 
 use super::{
-    dialect::Dialect,
-    exchange::{Intake, Visit, grpc_code},
+    dialect::{Dialect, grpc_code},
+    exchange::{Intake, Visit},
     gate,
 };
 use crate::{

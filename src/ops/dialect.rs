@@ -6,10 +6,7 @@ use http_body::Frame;
 use strew_error::{Error, Fault};
 use strew_service::Interrupted;
 
-use super::{
-    exchange::grpc_code,
-    metrics::{Broken, Protocol},
-};
+use super::metrics::{Broken, Protocol};
 use crate::{
     body::{BoxError, Response},
     grpc,
@@ -59,6 +56,11 @@ impl Ending {
             Self::Deadline(_) => Broken::Client,
         }
     }
+}
+
+/// The code of a call that has ended.
+pub(super) fn grpc_code(headers: &HeaderMap) -> Option<u32> {
+    headers.get(grpc::GRPC_STATUS)?.to_str().ok()?.parse().ok()
 }
 
 impl Dialect {

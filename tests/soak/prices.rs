@@ -115,7 +115,7 @@ fn star(random: &mut SplitMix, center: [f64; 2], radius: f64) -> Value {
     let inner = one_of(random, &[0.3, 0.9, -0.5]);
     let corner = |i: u32| {
         let (sin, cos) = (TAU * f64::from(i % corners) / f64::from(corners)).sin_cos();
-        let radius = radius * if i % 2 == 0 { 1.0 } else { inner };
+        let radius = radius * if i.is_multiple_of(2) { 1.0 } else { inner };
         [center[0] + radius * cos, center[1] + radius * sin]
     };
     let ring: Vec<[f64; 2]> = (0..=corners).map(corner).collect();

@@ -75,7 +75,7 @@ fn holes() -> FieldSpec {
         32,
         (0..32 * 32).map(|i| 0.2 + (i % 7) as f32 * 0.1).collect(),
     );
-    let is_missing = |i: usize| i % 3 == 0 || i % 32 < 12 && i < 12 * 32;
+    let is_missing = |i: usize| i.is_multiple_of(3) || i % 32 < 12 && i < 12 * 32;
     let region = Region::new([-64.0, -64.0], [64.0, 64.0]).expect("ordered");
     let raster = Raster::of(region, pixels.expect("numbers").without(is_missing));
     FieldSpec::raster(raster.expect("shares")).expect("a field")

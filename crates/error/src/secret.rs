@@ -54,7 +54,7 @@ pub(crate) fn names_a_key(name: &str) -> bool {
         let last = start.and_then(|start| name.get(start..));
         last.is_some_and(|last| last.eq_ignore_ascii_case(end))
     };
-    ENDS.iter().any(|end| ends(&end))
+    ENDS.iter().any(ends)
 }
 
 /// Whether a value begins as keys do.

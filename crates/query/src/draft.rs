@@ -21,7 +21,7 @@ use crate::{
     },
     region::{REGION, RegionDraft},
     set_check::lod,
-    table, terrain,
+    table,
     text::parse_pairs,
     value::Value,
     values::Values,
@@ -174,7 +174,7 @@ impl Draft {
             (None, Some(period)) => period.region()?,
             (None, None) => return Err(Fault::missing("region", REGION).into()),
         };
-        terrain::hold(&sets, &region)?;
+        hold_heights(&sets, &region)?;
         for set in &*sets {
             table::hold(&set.entry, set.pin.as_deref())?;
         }
@@ -409,4 +409,24 @@ pub fn entry(values: &Values, profile: &str, catalog: &Catalog) -> Result<Arc<En
 pub fn parts(values: &Values) -> Checked<u32> {
     let ((), parts) = (values.read(), values.require::<u64>(&PARTS)).together()?;
     Ok(u32::try_from(parts).unwrap_or(u32::MAX))
+}
+
+/// Refuses terrains without a height somewhere in the box of a region: no number stands for it.
+fn hold_heights(sets: &[Set], region: &QueryRegion) -> Checked<()> {
+    let partial = sets.iter().find(|set| {
+        let within = set.region.as_ref().unwrap_or(region).bounds;
+        let terrain = set.terrain.as_ref();
+        terrain.is_some_and(|terrain| terrain.field.spec.has_missing(&within))
+    });
+    let Some(set) = partial else {
+        return Ok(());
+    };
+    let name = set
+        .terrain
+        .iter()
+        .find_map(|terrain| terrain.field.name.clone());
+    let detail = "it has pixels without a height in the box of the region";
+    let allowed = "a region in which all pixels have heights, or a terrain whose gaps are filled";
+    let path = format!("{}{}", set.path, crate::parameters::TERRAIN.name);
+    Err(Fault::new(&path, name.unwrap_or_default(), detail, allowed).into())
 }

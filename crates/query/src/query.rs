@@ -68,6 +68,22 @@ impl Query {
         self.sets.iter().flat_map(Set::digests)
     }
 
+    /// Whether planning counts the points of set number `i`. Those before a cursor and in its own set are not counted
+    /// again, and those of layers that are not requested are not, unless their spacing follows from their number.
+    #[must_use]
+    pub fn is_counted(&self, i: usize) -> bool {
+        let is_requested = self.only.is_none_or(|only| only == i);
+        let cursor = self.window.cursor;
+        let passed = cursor.filter(|token| i <= usize::from(token.set));
+        if is_requested && passed.is_none() {
+            return true;
+        }
+        let here = passed.filter(|token| is_requested && i == usize::from(token.set));
+        let is_known = here.is_some_and(|token| token.spacing.is_some());
+        let amount = self.sets.get(i).map(|set| set.amount);
+        matches!(amount, Some(Amount::Count(_))) && !is_known
+    }
+
     /// Whether planning it and making its points takes no longer than handing it to another
     /// thread: a single set in a box of about 2,000 spacings' area at most, and not long and thin.
     #[must_use]

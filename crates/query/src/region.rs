@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde_json::{Value as Json, json};
 use strew_catalog::Dimension;
-use strew_core::{Area, Circle, ErrorKind, Polygon, Region, Spacing, space::Volume};
+use strew_core::{Area, Circle, ErrorKind, Region, Spacing, space::Volume};
 use strew_encode::{Crs, Place};
 use strew_error::{Checked, Error, Fault, Faults, Together as _, faults::all, number};
 
@@ -13,6 +13,7 @@ use super::{
     lists::listed,
     parameter::Group,
     parameters::{BBOX, CIRCLE, POLYGON},
+    rings::{Rings, surfaces},
     volume::{QueryVolume, VOLUME, VolumeDraft},
 };
 
@@ -22,40 +23,6 @@ const CHUNK: &str =
 /// The forms of a region.
 pub(super) const REGION: &str =
     "one of bbox, circle, polygon (GeoJSON), chunk, or include with exclude";
-
-/// The rings of a polygon: the outer one, then holes.
-pub type Rings = Vec<Vec<[f64; 2]>>;
-
-/// Polygons, each with the polygons of its holes. Those that are empty or lie on one line have no points and are left
-/// out.
-///
-/// # Errors
-/// Says what is wrong: there is none that is not empty, or a ring cannot be one.
-pub(super) fn surfaces(polygons: &[Rings]) -> Result<Vec<(Polygon, Vec<Polygon>)>, String> {
-    // Two different positions in all.
-    let is_flat = |ring: &[[f64; 2]]| match ring {
-        [] => true,
-        [first, .., _] if ring.len() > 2 => {
-            let second = ring.iter().find(|p| *p != first).unwrap_or(first);
-            ring.iter().all(|p| p == first || p == second)
-        }
-        _ => false,
-    };
-    let is_empty = |rings: &Rings| rings.first().is_none_or(Vec::is_empty);
-    if polygons.iter().all(is_empty) {
-        return Err("there is no polygon, or empty ones alone".into());
-    }
-    let kept = polygons.iter().enumerate();
-    let kept = kept.filter(|(_, rings)| rings.first().is_some_and(|ring| !is_flat(ring)));
-    let read = |(i, rings): (usize, &Rings)| {
-        let rings: Vec<_> = rings.iter().filter(|ring| !is_flat(ring)).collect();
-        Polygon::with_holes(&rings).map_err(|error| match polygons.len() {
-            1 => error.to_string(),
-            _ => format!("polygon {i}: {error}"),
-        })
-    };
-    kept.map(read).collect()
-}
 
 /// A box around the polygons of some regions, whose upper sides belong to none of them.
 pub(super) fn around<'a>(regions: impl Iterator<Item = &'a RegionDraft>) -> Option<[f64; 4]> {

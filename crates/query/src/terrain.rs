@@ -3,14 +3,12 @@
 use std::sync::Arc;
 
 use strew_catalog::field::Document;
-use strew_error::{Checked, Fault, Together as _};
+use strew_error::{Checked, Together as _};
 
 use crate::{
     field::{Loaded, SetField},
     parameters::{ALIGN, HEIGHTS, NORMALS, TERRAIN},
-    region::QueryRegion,
     rules,
-    set::Set,
     values::Values,
 };
 
@@ -50,26 +48,6 @@ pub(super) fn check(values: &Values, loaded: &Loaded<'_>) -> Checked<Option<Terr
         has_normals: normals.unwrap_or(false),
         align,
     }))
-}
-
-/// Refuses terrains without a height somewhere in the box of a region: no number stands for it.
-pub(super) fn hold(sets: &[Set], region: &QueryRegion) -> Checked<()> {
-    let partial = sets.iter().find(|set| {
-        let within = set.region.as_ref().unwrap_or(region).bounds;
-        let terrain = set.terrain.as_ref();
-        terrain.is_some_and(|terrain| terrain.field.spec.has_missing(&within))
-    });
-    let Some(set) = partial else {
-        return Ok(());
-    };
-    let name = set
-        .terrain
-        .iter()
-        .find_map(|terrain| terrain.field.name.clone());
-    let detail = "it has pixels without a height in the box of the region";
-    let allowed = "a region in which all pixels have heights, or a terrain whose gaps are filled";
-    let path = format!("{}{}", set.path, TERRAIN.name);
-    Err(Fault::new(&path, name.unwrap_or_default(), detail, allowed).into())
 }
 
 fn heights(values: &Values) -> Checked<[f64; 2]> {

@@ -10,7 +10,7 @@ use strew_error::{Checked, Fault, number};
 use crate::{
     lists::listed,
     parameter::Group,
-    region::{Rings, surfaces},
+    rings::{Rings, surfaces},
     space::{BALL, BOX},
     values::Values,
 };

@@ -142,7 +142,8 @@ fn layout(decoder: &mut File<impl BufRead + Seek>) -> Result<Layout, RasterError
         return Err(unsupported("channels in planes of their own".into()));
     }
     let bits = color.bit_depth();
-    if !matches!(bits, 8 | 16 | 32 | 64) && !(matches!(bits, 1 | 2 | 4) && channels.count() == 1) {
+    let is_packed = matches!(bits, 1 | 2 | 4) && channels.count() == 1;
+    if !is_packed && !matches!(bits, 8 | 16 | 32 | 64) {
         return Err(unsupported(format!("numbers of {bits} bits")));
     }
     Ok(Layout { channels, bits })

@@ -30,12 +30,15 @@ pub(super) struct Received<T> {
     pub(super) effort: usize,
 }
 
+/// Decodes a message.
+type Decode<T> = fn(Bytes) -> Result<T, DecodeError>;
+
 /// Reads the message of a request: decoded, as long as this many bytes of text it takes to check, and what is held of
 /// the byte budget for it.
 pub(super) async fn read<T: Send + 'static>(
     service: &Arc<Service>,
     caller: &Caller,
-    (shape, decode): (usize, fn(Bytes) -> Result<T, DecodeError>),
+    (shape, decode): (usize, Decode<T>),
     request: Request,
 ) -> Result<(T, usize, Held), Status> {
     let coding = compression::sent(request.headers())?;

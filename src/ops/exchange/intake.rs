@@ -263,7 +263,7 @@ impl HttpBody for Received {
         };
         match fault {
             Some(fault) => Poll::Ready(Some(Err(self.dialect.broken(fault)))),
-            None => polled.map_err(|error| self.dialect.unreadable(error.into())),
+            None => polled.map_err(|error| self.dialect.unreadable(error)),
         }
     }
 

@@ -26,7 +26,6 @@ pub(super) use open::Fate;
 use open::OpenExchanges;
 use progress::Terms;
 use reply::{Exchange, Places};
-pub(super) use report::code as grpc_code;
 use report::{Asked, Report};
 use strew_access::{Gate, Usage};
 use strew_config::{Server, seconds};

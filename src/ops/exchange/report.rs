@@ -6,7 +6,7 @@
 use std::{borrow::Cow, net::SocketAddr, sync::Arc};
 
 use bytes::Bytes;
-use http::{HeaderMap, Method, StatusCode, header, uri::PathAndQuery};
+use http::{Method, StatusCode, header, uri::PathAndQuery};
 use http_body::{Body as _, Frame};
 use strew_error::{Kind, without_keys};
 use strew_service::{Budget, Record};
@@ -16,7 +16,7 @@ use crate::{
     body::{Request, Response},
     grpc,
     ops::{
-        dialect::Ending,
+        dialect::{Ending, grpc_code},
         identity::{Identity, Trace},
         metrics::{Broken, Metrics, NO_FORMAT, NO_ROUTE, Protocol},
         peer::Peer,
@@ -136,7 +136,7 @@ impl Report {
 
     /// The last frame of a call leaves, with its status.
     pub(super) fn trailers(&mut self, frame: &Frame<Bytes>) {
-        if let Some(code) = frame.trailers_ref().and_then(code) {
+        if let Some(code) = frame.trailers_ref().and_then(grpc_code) {
             self.record.ended(code);
         }
         self.stand = Stand::Whole;
@@ -146,7 +146,7 @@ impl Report {
     pub(super) fn head(&mut self, response: &Response) {
         self.status = Some(response.status());
         if self.protocol == Protocol::Grpc
-            && let Some(code) = code(response.headers())
+            && let Some(code) = grpc_code(response.headers())
         {
             self.record.ended(code);
         }
@@ -336,9 +336,4 @@ fn method_name(method: &Method) -> &'static str {
         Method::OPTIONS => "OPTIONS",
         _ => "other",
     }
-}
-
-/// The code of a call that has ended.
-pub(in crate::ops) fn code(headers: &HeaderMap) -> Option<u32> {
-    headers.get(grpc::GRPC_STATUS)?.to_str().ok()?.parse().ok()
 }

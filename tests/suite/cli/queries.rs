@@ -81,6 +81,7 @@ fn the_flags_are_the_parameters_of_rest() {
         "set",
         "raster",
         "raster-bbox",
+        "white",
         "space",
     ];
     // Where the query comes from, and a server that answers.

@@ -197,7 +197,7 @@ fn regions() -> Vec<Case> {
         (boxed([0.0; 4]), "region.bbox", "empty"),
         (circle(0.0), "region.circle", "radius"),
         (circle(f64::NAN), "region.circle", "NaN"),
-        (polygons(&[]), "region.polygons", "ring"),
+        (polygons(&[]), "region.polygons", "no polygon"),
         (polygons(&[&[[0.0; 2], [1.0; 2]]]), "region.polygons", "3"),
         (
             shaped(Shape::Polygons(Polygons::default())),

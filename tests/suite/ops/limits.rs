@@ -45,11 +45,9 @@ async fn too_many_points_are_refused_with_the_exact_count_and_the_limit() {
         let answer = daemon.get(&path);
         assert_eq!(answer.status, 413, "{}", answer.text());
         assert_eq!(answer.header("content-type"), "application/problem+json");
-        assert!(
-            answer.text().contains(&format!("\"count\":{count},")),
-            "{}",
-            answer.text()
-        );
+        let shown = &answer.json()["count"];
+        let shown = shown.as_str().map_or_else(|| shown.to_string(), Into::into);
+        assert_eq!(shown, count);
         assert!(answer.text().contains("\"limit\":1000"));
 
         let request = StreamPointsRequest {
@@ -194,7 +192,7 @@ fn queries_with_too_many_rows_are_refused_at_once() {
         &daemon.post("/v1/count", &line),
         "a line",
         "count",
-        &["10 points"],
+        &["no area"],
     );
 }
 

@@ -127,6 +127,14 @@ fn a_rate_is_charged_for_the_time_that_points_take() {
     let answer = daemon.get("/v1/points?bbox=0,0,2,2&spacing=1&profile=test&format=png&size=4096");
     assert_eq!(answer.status, 200);
     assert!(charged(&answer) >= 4096 * 4096 / 500);
+    // The last of a picture is charged a moment after it is sent.
+    let _ = charged(
+        &until("all is charged", || {
+            let answers = [(); 2].map(|()| daemon.get("/v1/except"));
+            let [first, second] = answers.each_ref().map(left);
+            (first == second + 1).then_some(answers)
+        })[1],
+    );
     let noise = json!({ "noise": { "wavelength": 50, "octaves": 8 } });
     let answer = daemon.post("/v1/fields", &noise);
     assert!(charged(&answer) <= 1);

@@ -68,7 +68,12 @@ fn a_client_above_its_rate_gets_429_and_a_time_to_retry() {
     let seconds: f64 = refused.header("retry-after").parse().expect("a number");
     assert_eq!(seconds, wait.ceil());
     // A smaller query still fits; probes are free.
-    assert_eq!(daemon.get("/v1/points?bbox=0,0,5,5&density=1").status, 200);
+    assert_eq!(
+        daemon
+            .get("/v1/points?bbox=0,0,5,5&density=1&profile=test")
+            .status,
+        200
+    );
     assert_eq!(daemon.get("/livez").header("ratelimit"), "");
 }
 

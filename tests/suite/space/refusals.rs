@@ -47,12 +47,12 @@ fn addresses_with_faults_name_the_field_and_what_is_allowed() {
         (
             "points?bbox=0,0,0,1,1,1&count=5",
             "count",
-            &["not allowed here"],
+            &["not for points in space"],
         ),
         (
             "points?bbox=0,0,0,1,1,1&spacing=1&field=forest",
             "field",
-            &["not allowed here"],
+            &["not for points in space"],
         ),
         (
             "points?bbox=0,0,0,1,1,1&spacing=1&profile=pink",

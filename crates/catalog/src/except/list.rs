@@ -358,7 +358,7 @@ mod tests {
         for (text, expected) in [
             ("[a]\nids = ['x']", "`ids[0]` = `x`: not an id"),
             (
-                "[a]\nids = ['1:2', 'a b/1:2']",
+                "[a]\nids = ['1:2', \"a\\u0000b/1:2\"]",
                 "[except.a] of the configuration: `ids[1]`",
             ),
             ("[a]\nids = 3", "invalid type"),

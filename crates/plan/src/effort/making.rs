@@ -72,7 +72,9 @@ pub fn splitting(planned: &Planned, parts: u32) -> f64 {
     let query = &planned.query;
     let parts = f64::from(parts.max(1));
     let rows = |(set, planned): (&Set, &PlannedSet)| {
-        if let Some(sought) = volume::splitting(query, set, planned, parts) {
+        if let Some(sought) =
+            volume::splitting(query, set, (&*planned.plan, planned.nanoseconds), parts)
+        {
             return sought / ROW;
         }
         let Some(placement) = planned.plan.plane().map(strew_core::Plan::placement) else {

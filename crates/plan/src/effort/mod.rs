@@ -172,7 +172,7 @@ pub fn planning(query: &Query, tables: &[Ready], limit: u64, stop: &Stop) -> Res
             return Err(Error::Internal("a price was not wanted any more"));
         }
         let (rows, price) = counted(query, set, ready, limit as f64 - all, &mut layers);
-        if !is_counted(query, i, set) {
+        if !query.is_counted(i) {
             // Those of later layers may look at its points.
             continue;
         }
@@ -184,22 +184,6 @@ pub fn planning(query: &Query, tables: &[Ready], limit: u64, stop: &Stop) -> Res
         }
     }
     Ok(weighted)
-}
-
-/// Whether planning counts the points of set number `i`. Those before a cursor and in its own set are not counted
-/// again, and those of layers that are not requested are not, unless their spacing follows from their number.
-pub(super) fn is_counted(query: &Query, i: usize, set: &Set) -> bool {
-    let is_requested = query.only.is_none_or(|only| only == i);
-    let passed = query
-        .window
-        .cursor
-        .filter(|token| i <= usize::from(token.set));
-    if is_requested && passed.is_none() {
-        return true;
-    }
-    let here = passed.filter(|token| is_requested && i == usize::from(token.set));
-    let is_known = here.is_some_and(|token| token.spacing.is_some());
-    matches!(set.amount, Amount::Count(_)) && !is_known
 }
 
 /// The rows that counting the points of a set in a volume takes, where testing one against others takes `test`

@@ -7,10 +7,10 @@ use strew_core::{
     Warp,
     space::{Placement, SpaceSet, Volume},
 };
+use strew_encode::Source;
 use strew_query::{Query, Set};
 
-use super::is_counted;
-use crate::{amount_in_space::placed, planned_set::PlannedSet};
+use crate::amount_in_space::placed;
 
 /// The nanoseconds that counting takes for each square of a spacing's side on the surface, without and with warp.
 const SURFACE: f64 = 350.0;
@@ -203,7 +203,7 @@ pub(super) fn counting(query: &Query) -> f64 {
         let placed = set.space().and_then(|table| placed(set, table).ok());
         let points = placed.map(|(points, _)| points);
         let own = set.region.as_ref().and_then(|own| own.volume.as_ref());
-        if let (Some(points), true) = (&points, is_counted(query, i, set)) {
+        if let (Some(points), true) = (&points, query.is_counted(i)) {
             let (volume, placement) = (whole.and(own), points.placement());
             let test = chains.test(points, &set.clear_of, &volume);
             let counted = counting_set(placement, &volume, test);
@@ -268,13 +268,18 @@ fn surface(volume: &Volume) -> f64 {
 }
 
 /// The nanoseconds to split the points of a set, if it is one in space.
-pub(super) fn splitting(query: &Query, set: &Set, planned: &PlannedSet, parts: f64) -> Option<f64> {
-    let placement = planned.plan.space()?.placement();
+pub(super) fn splitting(
+    query: &Query,
+    set: &Set,
+    (plan, nanoseconds): (&dyn Source, f64),
+    parts: f64,
+) -> Option<f64> {
+    let placement = plan.space()?.placement();
     let own = set.region.as_ref().and_then(|own| own.volume.as_ref());
     let volume = query.region.volume.as_ref()?.and(own);
     let counted = match set.clear_of.is_empty() {
         true => counting_set(placement, &volume, 0.0),
-        false => planned.plan.total() as f64 * planned.nanoseconds,
+        false => plan.total() as f64 * nanoseconds,
     };
     Some(seeking(
         placement,

@@ -11,7 +11,7 @@ use std::{
     thread,
 };
 
-use super::shift::Shift;
+use super::shift::{Shift, lower_priority};
 
 /// The threads. Cheap to clone.
 #[derive(Clone)]
@@ -33,8 +33,6 @@ struct Task {
     crew: Crew,
 }
 
-/// The niceness of threads of lower priority.
-const NICENESS: i32 = 10;
 /// The fewest threads that are kept for further work.
 const LEAST_IDLE: usize = 4;
 
@@ -105,14 +103,6 @@ fn start(is_long: bool) -> std::io::Result<Sender<Task>> {
         }
     })?;
     Ok(sender)
-}
-
-/// Lowers the priority of the calling thread for good. (On Linux a thread has a priority of its own.)
-pub(super) fn lower_priority() {
-    #[cfg(any(target_os = "android", target_os = "linux"))]
-    let _ = rustix::process::setpriority_process(None, NICENESS);
-    #[cfg(not(any(target_os = "android", target_os = "linux")))]
-    let _ = NICENESS;
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {

@@ -21,7 +21,6 @@ use strew_core::server::Stop;
 use strew_plan::Lane;
 
 use super::{
-    crew::lower_priority,
     owner::Owner,
     turns::{Turn, Turns, Waiter},
 };
@@ -32,6 +31,9 @@ const SHORT: Duration = Duration::from_millis(50);
 const LONG: Duration = Duration::from_millis(200);
 /// Work that may give way looks as often as this whether others wait, and is charged for its time.
 const AGAIN: Duration = Duration::from_millis(5);
+
+/// The niceness of threads of lower priority.
+const NICENESS: i32 = 10;
 
 thread_local! {
     /// The work of this thread.
@@ -252,6 +254,14 @@ impl Waiter for Paused {
     fn begin(self: Box<Self>, turn: Turn) {
         self.0.take(turn);
     }
+}
+
+/// Lowers the priority of the calling thread for good. (On Linux a thread has a priority of its own.)
+pub(super) fn lower_priority() {
+    #[cfg(any(target_os = "android", target_os = "linux"))]
+    let _ = rustix::process::setpriority_process(None, NICENESS);
+    #[cfg(not(any(target_os = "android", target_os = "linux")))]
+    let _ = NICENESS;
 }
 
 /// Nanoseconds on the clock of this process.

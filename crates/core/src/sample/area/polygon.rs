@@ -231,7 +231,7 @@ impl Polygon {
     pub(super) fn steps(&self, strip: [f64; 2], stepper: &mut Stepper) {
         let Stepper { steps, edges } = stepper;
         let [y0, _] = strip;
-        let own = edges.len();
+        edges.clear();
         let beyond = self.is_in_beyond(y0);
         let mut inside = beyond;
         for edge in self.edges.iter().chain(self.flat.iter()) {
@@ -246,12 +246,12 @@ impl Polygon {
                 edges.push(reach);
             }
         }
-        edges[own..].sort_unstable_by(|a, b| a.extent[0].total_cmp(&b.extent[0]));
+        edges.sort_unstable_by(|a, b| a.extent[0].total_cmp(&b.extent[0]));
         let state = |inside| if inside { State::In } else { State::Out };
         steps.restart(state(inside));
         // Edges whose extents meet are tested together. The outline beyond them crosses every level of
         // the strip an even number of times, or every level an odd number.
-        let mut next = own;
+        let mut next = 0;
         while let Some(first) = edges.get(next) {
             steps.push(first.extent[0], State::Test);
             let start = next;

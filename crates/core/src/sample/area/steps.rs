@@ -56,7 +56,7 @@ pub(crate) struct Steps(Vec<Step>);
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stepper {
     pub(crate) steps: Steps,
-    /// The edges of all polygons that touch the strip, those of each from left to right.
+    /// The edges of the last polygon that touch the strip, from left to right.
     pub(super) edges: Vec<Reach>,
 }
 
@@ -99,13 +99,6 @@ impl Steps {
         }
     }
 
-    /// Adds a step whose edges are known, if any.
-    fn push_near(&mut self, from: f64, state: State, near: Option<Near>) {
-        if (self.0.last()).is_none_or(|last| (last.state, last.near) != (state, near)) {
-            self.0.push(Step { from, state, near });
-        }
-    }
-
     /// Records, after a step to [`State::Test`], the edges that decide there, and whether points right of
     /// them are inside.
     pub(super) fn note(&mut self, edges: Range<usize>, inside: bool) {
@@ -130,32 +123,25 @@ impl Steps {
         self.push(max[0], State::Out);
     }
 
-    /// The states of two areas combined by `join`. Where one of them decides, so do its edges.
+    /// The states of two areas combined by `join`.
     pub(super) fn join(&self, other: &Self, join: fn(State, State) -> State) -> Self {
         let (mut a, mut b) = (self.0.as_slice(), other.0.as_slice());
-        let mut now = [(State::Out, None); 2];
+        let mut state = [State::Out; 2];
         let mut joined = Self(Vec::with_capacity(a.len() + b.len()));
         while let Some(from) = match (a.first(), b.first()) {
             (Some(a), Some(b)) => Some(a.from.min(b.from)),
             (Some(step), None) | (None, Some(step)) => Some(step.from),
             (None, None) => None,
         } {
-            for (steps, now) in [&mut a, &mut b].into_iter().zip(&mut now) {
+            for (steps, state) in [&mut a, &mut b].into_iter().zip(&mut state) {
                 while let Some((first, rest)) = steps.split_first()
                     && first.from <= from
                 {
-                    *now = (first.state, first.near);
+                    *state = first.state;
                     *steps = rest;
                 }
             }
-            let [(a, near_a), (b, near_b)] = now;
-            let state = join(a, b);
-            let near = match (state, a, b) {
-                (State::Test, State::Test, State::Test) => None,
-                (State::Test, ..) => near_a.or(near_b),
-                _ => None,
-            };
-            joined.push_near(from, state, near);
+            joined.push(from, join(state[0], state[1]));
         }
         joined
     }

@@ -1,0 +1,162 @@
+//! Pixels without data: empty, whatever is made of them, while their neighbors are means of those that are there.
+
+use proptest::prelude::*;
+use strew_core::{
+    Field, Raster, Region,
+    field::{Edges, FieldSpec, Filter, Pixels, Terrain},
+};
+
+/// Three by two pixels of ten units: 200, missing, 100 below, and 50, 0, missing above.
+fn partial(edges: Edges, filter: Filter) -> FieldSpec {
+    let pixels = Pixels::from_floats(3, vec![1.0, 9.0, 0.5, 0.25, 0.0, 9.0]);
+    let pixels = pixels.expect("numbers").without(|at| at == 1 || at == 5);
+    let region = Region::new([0.0, 0.0], [30.0, 20.0]).expect("ordered");
+    let raster = Raster::of(region, pixels).expect("shares");
+    FieldSpec::raster(raster.edges(edges).filter(filter)).expect("a field")
+}
+
+#[test]
+fn missing_pixels_are_empty_and_their_neighbors_are_means_of_those_that_are_there() {
+    let field = partial(Edges::Clamp, Filter::Linear);
+    for (at, share) in [
+        // In missing pixels, up to their sides.
+        ([10.0, 5.0], 0.0),
+        ([19.9, 9.9], 0.0),
+        ([25.0, 15.0], 0.0),
+        ([99.0, 15.0], 0.0),
+        // At centers, and beside a missing pixel: of 1, 0.25 and 0 with the weights 0.49, 0.21 and 0.09.
+        ([5.0, 5.0], 1.0),
+        ([8.0, 8.0], (0.49 + 0.21 * 0.25) / (0.49 + 0.21 + 0.09)),
+        ([9.9, 5.0], 1.0),
+        ([20.0, 5.0], 0.5),
+    ] {
+        assert!(
+            (field.share(at) - share).abs() < 1e-12,
+            "{at:?}: {}",
+            field.share(at)
+        );
+    }
+    let nearest = partial(Edges::Zero, Filter::Nearest);
+    assert_eq!(
+        [9.9, 10.0, 20.0, 30.0].map(|x| nearest.share([x, 5.0])),
+        [1.0, 0.0, 0.5, 0.0]
+    );
+    let whole = Pixels::from_bytes(2, vec![1, 2]).expect("rows");
+    assert_eq!(whole.clone().without(|_| false).digest(), whole.digest());
+    assert_ne!(whole.clone().without(|at| at == 0).digest(), whole.digest());
+}
+
+#[test]
+fn missing_stays_missing_in_all_that_is_made_of_it() {
+    let one = || FieldSpec::constant(1.0).expect("a share");
+    let holes = || partial(Edges::Clamp, Filter::Linear);
+    let (hole, full) = ([15.0, 5.0], [5.0, 5.0]);
+    let inverted = holes().invert().expect("a field");
+    for (field, at_hole, at_full) in [
+        (inverted.clone(), 0.0, 0.0),
+        (inverted.clone().invert().expect("a field"), 0.0, 1.0),
+        (
+            holes()
+                .curve(vec![[0.0, 1.0], [1.0, 0.5]])
+                .expect("a curve"),
+            0.0,
+            0.5,
+        ),
+        (
+            FieldSpec::multiply(vec![one(), holes()]).expect("parts"),
+            0.0,
+            1.0,
+        ),
+        (
+            FieldSpec::min(vec![one(), holes()]).expect("parts"),
+            0.0,
+            1.0,
+        ),
+        // The greatest of those that are there.
+        (
+            FieldSpec::max(vec![one(), holes()]).expect("parts"),
+            1.0,
+            1.0,
+        ),
+        (
+            FieldSpec::max(vec![inverted, holes()]).expect("parts"),
+            0.0,
+            1.0,
+        ),
+        (
+            FieldSpec::max(vec![holes(), holes()])
+                .expect("parts")
+                .invert()
+                .expect("a field"),
+            0.0,
+            0.0,
+        ),
+    ] {
+        assert_eq!([field.share(hole), field.share(full)], [at_hole, at_full]);
+        let mut shares = [7.0; 2];
+        field.shares(&[hole, full], &mut shares);
+        assert_eq!(shares, [at_hole, at_full]);
+    }
+    // Tones are those of numbers alone.
+    let pixels = Pixels::from_bytes(2, vec![0, 0])
+        .expect("rows")
+        .without(|at| at == 0);
+    let region = Region::new([0.0, 0.0], [2.0, 1.0]).expect("ordered");
+    let raster = Raster::of(region, pixels)
+        .expect("shares")
+        .tone(1.0, 0.0, 1.0)
+        .expect("once");
+    assert_eq!([0.5, 1.5].map(|x| raster.share([x, 0.5])), [0.0, 1.0]);
+}
+
+#[test]
+fn heights_that_are_missing_are_no_heights_and_no_cliffs() {
+    let terrain = || {
+        let heights = Pixels::from_floats(4, vec![0.0, 10.0, -9999.0, 30.0]).expect("numbers");
+        let region = Region::new([0.0, 0.0], [40.0, 10.0]).expect("ordered");
+        Terrain::new(region, heights.without(|at| at == 2)).expect("a terrain")
+    };
+    let low = FieldSpec::height(terrain(), [10.0, 30.0], [1.0, 0.0]).expect("a field");
+    assert_eq!(
+        [5.0, 19.0, 25.0, 31.0].map(|x| low.share([x, 5.0])),
+        [1.0, 1.0, 0.0, 0.0]
+    );
+    // A slope of 1 where two neighbors have heights, and none beside a hole where there is one.
+    let steep = FieldSpec::slope(terrain(), [0.0, 2.0], [0.0, 1.0]).expect("a field");
+    assert_eq!(
+        [5.0, 15.0, 25.0, 35.0].map(|x| steep.share([x, 5.0])),
+        [0.5, 0.5, 0.0, 0.0]
+    );
+}
+
+proptest! {
+    #[test]
+    fn bounds_and_slopes_hold_where_pixels_are_missing(
+        values in prop::collection::vec(0.0..1.0f32, 30 * 20), missing in prop::collection::vec(any::<bool>(), 30 * 20),
+        corner in 0usize..30, edge in 0usize..4, nearest: bool, tones in prop::array::uniform2(0.0..1.0f64),
+        from in prop::array::uniform2(-0.3..1.3f64), size in prop::array::uniform2(0.0..0.5f64),
+        parts in prop::array::uniform4(0.0..1.0f64),
+    ) {
+        let edges = [Edges::Clamp, Edges::Zero, Edges::Repeat, Edges::Mirror][edge];
+        let filter = if nearest { Filter::Nearest } else { Filter::Linear };
+        let is_missing = |at: usize| missing[at] && at % 30 >= corner || at % 30 < corner && at < 300;
+        let pixels = Pixels::from_floats(30, values.clone()).expect("numbers").without(is_missing);
+        let region = Region::new([0.0, 0.0], [30.0, 20.0]).expect("ordered");
+        let raster = Raster::of(region, pixels).expect("shares").tone(tones[0], tones[1], 1.0).expect("once");
+        let raster = FieldSpec::raster(raster.edges(edges).filter(filter)).expect("a field");
+        let inverted = raster.clone().invert().expect("a field");
+        let both = FieldSpec::max(vec![raster.clone(), inverted.clone()]).expect("parts");
+        let min = [from[0] * 30.0, from[1] * 20.0];
+        let max = [min[0] + size[0] * 30.0, min[1] + size[1] * 20.0];
+        let within = Region::new(min, max).expect("ordered");
+        let place = |u: f64, v: f64| [min[0] + u * (max[0] - min[0]), min[1] + v * (max[1] - min[1])];
+        let (a, b) = (place(parts[0], parts[1]), place(parts[2], parts[3]));
+        for field in [raster, inverted, both] {
+            let ([low, high], slopes) = (field.bounds(&within), field.slopes(&within));
+            let [first, second] = [a, b].map(|at| field.share(at));
+            prop_assert!(low <= first && first <= high, "{low} {first} {high}");
+            let way: f64 = [0, 1].map(|i| if a[i] == b[i] { 0.0 } else { (a[i] - b[i]).abs() * slopes[i] }).iter().sum();
+            prop_assert!((first - second).abs() <= way + 1e-9, "{first} {second} {way}");
+        }
+    }
+}
