@@ -38,7 +38,18 @@ pub struct Offsets {
     anchor: [i64; 2],
 }
 
-/// How exact offsets along an axis are rounded once.
+/// How exact offsets along an axis are rounded once: those of [`Offsets`], in the plane and in space.
+///
+/// ```
+/// use strew_core::{Offsets, space::SpaceSet};
+///
+/// let plan = SpaceSet::blue().chunk(4.0, [0, 0, 0])?;
+/// let mut offsets = vec![[0.0; 3]; plan.count() as usize];
+/// plan.blocks::<Offsets>().fill(&mut offsets);
+/// // In the first cube offsets are coordinates.
+/// assert_eq!(offsets[0], plan.iter().next().map(|point| point.at()).unwrap_or_default());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Exactly {
     /// The step, and its upper and lower half.
