@@ -11,14 +11,14 @@ export async function countIn(layers, box, keep, signal) {
   const world = worldIn(layers);
   if (world) {
     const query = joined([["bbox", box.join(",")], ...worldPairs(world, keep)]);
-    return (await askJson(`/v1/count?${query}`, { signal })).count;
+    return Number((await askJson(`/v1/count?${query}`, { signal })).count);
   }
   if (layers.length === 1) {
     const query = joined([["bbox", box.join(",")], ...setOf(layers[0], keep)]);
-    return (await askJson(`/v1/count?${query}`, { signal })).count;
+    return Number((await askJson(`/v1/count?${query}`, { signal })).count);
   }
   const region = { bbox: box.map((side) => new Digits(side)) };
-  return (await askJson("/v1/count", { body: json(bodyOf(layers, region, keep)), signal })).count;
+  return Number((await askJson("/v1/count", { body: json(bodyOf(layers, region, keep)), signal })).count);
 }
 
 export class Status {

@@ -42,7 +42,7 @@ export class Period {
     const { least_distance: least = 0 } = query;
     const measured = await measure(Float64Array.from(points), side);
     const apart = least >= 0.005 ? `, no two closer than ${least.toFixed(2)}, even across the seam` : "";
-    return { points, side, measured, words: `${counted(count)} on a square of ${side} × ${side} mean spacings${apart}.` };
+    return { points, side, measured, words: `${counted(Number(count))} on a square of ${side} × ${side} mean spacings${apart}.` };
   }
 
   take({ points, side, measured }) {
