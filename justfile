@@ -20,6 +20,10 @@ lint:
     cargo fmt --all
     cargo clippy --workspace --all-targets -- -D warnings
 
+# The lines of each part, beside the most that it may have.
+lines:
+    cargo test --workspace -q --test tidy -- --nocapture no_part_outgrows_its_ceiling
+
 # The benches of the library: filling boxes, beside the published row scanner and a plain fill; regions; lookups.
 bench:
     cargo bench -p strew-core

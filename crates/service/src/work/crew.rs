@@ -37,10 +37,12 @@ struct Task {
 const LEAST_IDLE: usize = 4;
 
 impl Crew {
-    /// Without threads yet. Keeps about this number of them.
+    /// With this number of threads for short work, which also is about the number of them that is kept.
     pub(super) fn new(threads: usize) -> Self {
+        // What cannot be started now is started when it is needed.
+        let short = (0..threads).map_while(|_| start(false).ok()).collect();
         Self(Arc::new(Threads {
-            idle: Default::default(),
+            idle: [Mutex::new(short), Mutex::default()],
             most_idle: threads.max(LEAST_IDLE),
         }))
     }
