@@ -70,7 +70,14 @@ fn files(folder: &Path, endings: &[&str]) -> Vec<(String, String)> {
 }
 
 /// Folders beside the sources that nobody writes.
-const BUILT: [&str; 6] = ["target", "generated", "node_modules", "dist", "embedded", ".venv"];
+const BUILT: [&str; 6] = [
+    "target",
+    "generated",
+    "node_modules",
+    "dist",
+    "embedded",
+    ".venv",
+];
 
 /// Code without its comments.
 fn code(text: &str) -> impl Iterator<Item = (usize, &str)> {

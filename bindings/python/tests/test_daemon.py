@@ -73,7 +73,7 @@ WRONG: list[dict[str, Any]] = [
     {"circle": (0, 0, -1), "spacing": 1},
     {"circle": (0, 0), "spacing": 1},
     {"chunk": (64, 0.5, 0), "spacing": 1},
-    {"polygon": [(0, 0), (1, 1)], "spacing": 1},
+    {"polygon": [(0, 0)], "spacing": 1},
     {"polygon": {"type": "Point"}, "spacing": 1},
     {"bbox": (0, 0, 1e300, 1), "spacing": 1},
     {"bbox": (0, 0, 1, 1), "spacing": -1},

@@ -23,8 +23,8 @@ def channel(urls: list[str]) -> Any:
     addresses = ",".join(url.removeprefix("http://") for url in urls)
     names: dict[str, Any] = {"grpc": grpc, "json": json}
     code = code.replace("dns:///strew-headless:8080", f"ipv4:{addresses}")
-    # A list of addresses is no authority, which a name would be.
-    exec(code.replace("options=[", 'options=[("grpc.default_authority", "strew"), '), names)
+    # A list of addresses is no authority, which a name would be. On loopback the daemon answers for this one.
+    exec(code.replace("options=[", 'options=[("grpc.default_authority", "localhost"), '), names)
     return names["channel"]
 
 
