@@ -99,7 +99,7 @@ fn start(is_long: bool) -> std::io::Result<Sender<Task>> {
         if is_long {
             lower_priority();
         }
-        // Ends once nobody can send any more.
+        // Ends once all senders are gone.
         while let Ok(task) = tasks.recv() {
             task.run();
         }

@@ -149,7 +149,7 @@ impl Shift {
             state.charged = state.begun;
         }
         CURRENT.set(Some(self.clone()));
-        // Whoever waits for the result notices that there is none; the thread goes on.
+        // The caller that waits for the result sees that there is none; the thread goes on.
         if catch_unwind(AssertUnwindSafe(job)).is_err() {
             tracing::error!("a worker panicked");
         }
