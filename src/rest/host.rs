@@ -1,7 +1,8 @@
 //! The hosts that requests may be for, against DNS rebinding: a page whose name leads to another address a moment later
 //! is of the same origin as a daemon on its reader's machine, and could use and read it.
 //!
-//! Such a page has a name. So a daemon on loopback takes requests for addresses, `localhost` and the host of
+//! Such a page has a name, with a dot: no public server of names knows others. So a daemon on loopback takes requests for
+//! addresses, `localhost`, names without a dot (what a proxy on the same machine calls it) and the host of
 //! `http.public_url` alone. Elsewhere it does not know its names: proxies, containers and clusters choose them.
 
 use std::net::{Ipv4Addr, Ipv6Addr};
@@ -90,7 +91,7 @@ impl Hosts {
         }
         let host = host.strip_suffix('.').unwrap_or(host).to_ascii_lowercase();
         let public = self.public.as_ref();
-        host == "localhost"
+        !host.contains(['.', ':'])
             || host.ends_with(".localhost")
             || host.parse::<Ipv4Addr>().is_ok()
             || public.is_some_and(|public| public.host().eq_ignore_ascii_case(&host))
@@ -125,12 +126,14 @@ mod tests {
             ("strew.localhost:1", true),
             ("Points.Example:8443", true),
             ("", true),
+            ("strew", true),
+            ("points_1:8080", true),
             ("evil.example", false),
             ("evil.example:8080", false),
             ("points.example.evil.example", false),
             ("127.0.0.1.evil.example:8080", false),
             ("localhost.evil.example", false),
-            ("notlocalhost", false),
+            ("not.localhost.evil", false),
             ("127.0.0.1@evil.example", false),
             ("[evil.example]", false),
             ("a b", false),

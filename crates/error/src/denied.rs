@@ -13,8 +13,8 @@ pub enum Denied {
     WrongKey,
     /// The request is for a host that is not this daemon's: a page may have turned its name to this machine.
     #[error(
-        "the request is for the host `{host}`, and a daemon on loopback answers for addresses, localhost and the \
-         host of http.public_url alone"
+        "the request is for the host `{host}`, and a daemon on loopback answers for addresses, names without a \
+         dot and the host of http.public_url alone"
     )]
     ForeignHost {
         /// The host, as the client names it.

@@ -92,6 +92,9 @@ fn query(
     if takes(&PERIODIC) {
         of_set.insert(PERIODIC.name.into(), nothing());
     }
+    if has_features {
+        of_set.insert("features".into(), nothing());
+    }
     let world = takes(&WORLD).then(|| json!({ "required": [WORLD.name] }));
     let rules_of_all = vec![json!({ "oneOf": [
         { "required": ["layers"], "properties": of_set },

@@ -10,6 +10,8 @@ import schemathesis
 # Members that name what a server may lack.
 NAMED = ["alpha", "map", "table", "cursor", "world", "world_digest", "field", "variant_fields", "except"]
 PROFILES = ["blue", "spaced", "step", "pink"]
+SQUARE = {"type": "Polygon", "coordinates": [[[0, 0], [9, 0], [9, 9], [0, 9], [0, 0]]]}
+FEATURES = {"of": {"type": "FeatureCollection", "features": [{"type": "Feature", "geometry": SQUARE}]}}
 NAMES = ["angle", "scale", "variant", "rank", "u1", "u16"]
 
 
@@ -194,7 +196,7 @@ def tidy_body(schema, body, in_space):
     if is_layered:
         either = schema["allOf"][0]["oneOf"]
         excluded = next(one["properties"] for one in either if "layers" in one.get("required", []))
-        drop(body, [*excluded, *NAMED, "seed", "keep", "only"])
+        drop(body, [*excluded, *NAMED, "seed", "keep", "only", "features"])
         tidy = []
         for i, layer in enumerate(layers[:4]):
             layer = dict(layer) if isinstance(layer, dict) else {}
@@ -216,8 +218,11 @@ def tidy_body(schema, body, in_space):
         others = not_with(rules, "periodic") if is_periodic else []
         tidy_set(body, False, rules, [name for name in amounts if name not in others], in_space)
         if is_periodic:
-            drop(body, [*others, "region"])
+            drop(body, [*others, "region", "features"])
             body["periodic"] = 900
+        elif "features" in body:
+            drop(body, ["region"])
+            body["features"] = FEATURES
     tidy_output(body, rules)
     return body
 
