@@ -295,8 +295,11 @@ impl Entry {
 
 fn digest_of_vectors(table: &Table) -> [u8; 32] {
     let vectors = table.displacements().as_flattened();
-    let vectors: Vec<u8> = vectors.iter().flat_map(|v| v.to_le_bytes()).collect();
-    *blake3::hash(&vectors).as_bytes()
+    let mut bytes = vec![0; size_of_val(vectors)];
+    for (place, vector) in bytes.chunks_exact_mut(size_of::<f32>()).zip(vectors) {
+        place.copy_from_slice(&vector.to_le_bytes());
+    }
+    *blake3::hash(&bytes).as_bytes()
 }
 
 /// The head of a table file, if it can be read.

@@ -424,7 +424,6 @@ impl Planned {
             let PlannedSet {
                 density,
                 spacing,
-                least_distance,
                 ref kinds,
                 ref kind_distances,
                 ..
@@ -433,7 +432,7 @@ impl Planned {
                 all,
                 density,
                 spacing,
-                least_distance,
+                planned.least_distance(set),
                 (kinds, kind_distances),
             )
         };

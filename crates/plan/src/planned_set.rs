@@ -3,11 +3,20 @@
 use std::sync::Arc;
 
 use strew_catalog::Entry;
-use strew_core::{Region, Spacing};
+use strew_core::{Region, Spacing, space::SpaceSet};
 use strew_encode::Source;
 use strew_query::{KindDistance, Set};
 
-use crate::effort;
+use crate::{amount_in_space, effort};
+
+/// The distance that the points of a set keep.
+#[derive(Clone, Debug)]
+pub(super) enum Least {
+    Known(f64),
+    /// Of points in space within ±`reach`: the first time it takes looks at all pairs of a table's blocks, so it is
+    /// worked out when it is told.
+    InSpace(Box<SpaceSet>, f64),
+}
 
 /// A planned set of points.
 #[derive(Clone, Debug)]
@@ -19,7 +28,7 @@ pub struct PlannedSet {
     /// The mean spacing, from the amount.
     pub spacing: Spacing,
     /// No two points are nearer than this.
-    pub least_distance: f64,
+    least_distance: Least,
     /// The points.
     pub plan: Arc<dyn Source>,
     /// The points that counting all of them looks at one by one; none without a field.
@@ -40,7 +49,7 @@ impl PlannedSet {
     pub(super) fn new(
         entry: Arc<Entry>,
         (density, spacing): (f64, Spacing),
-        least_distance: f64,
+        least_distance: Least,
         plan: Arc<dyn Source>,
         candidates: u128,
     ) -> Self {
@@ -56,6 +65,14 @@ impl PlannedSet {
             kinds: vec![],
             kind_distances: vec![],
             before: 0,
+        }
+    }
+
+    /// No two of the points of a set are nearer than this.
+    pub(super) fn least_distance(&self, set: &Set) -> f64 {
+        match &self.least_distance {
+            Least::Known(least) => *least,
+            Least::InSpace(points, reach) => amount_in_space::least_distance(set, points, *reach),
         }
     }
 

@@ -15,6 +15,7 @@ use strew_query::{Amount, Kinds, Period, Query, Set, Token, Window, parameters};
 use crate::{
     PlannedSet,
     effort::{self, Everywhere, Layers, Selection},
+    planned_set::Least,
     resolve::{Resolved, check_reach, kind_distances, least_distance, no_period, resolve, unit},
 };
 
@@ -158,7 +159,7 @@ impl<'a> Planner<'a> {
                 Resolved::Known(_, density) => (density, spacing),
                 Resolved::Count(_) => (spacing.density(), spacing),
             },
-            least_distance(set, ready, spacing, region.reach()),
+            Least::Known(least_distance(set, ready, spacing, region.reach())),
             Arc::new(plan),
             candidates,
         )
@@ -235,7 +236,7 @@ impl<'a> Planner<'a> {
             None => 0,
         };
         let unit = unit(set, ready, spacing);
-        let least = least_distance(set, ready, unit, period.side);
+        let least = Least::Known(least_distance(set, ready, unit, period.side));
         let distances = kind_distances(set, ready, unit, period.side);
         let plan = Arc::new(plan);
         let planned = PlannedSet::new(

@@ -11,10 +11,7 @@ use strew_error::{Error, number};
 use strew_query::{QueryVolume, Set};
 
 use crate::{
-    PlannedSet,
-    amount_in_space::{least_distance, placed},
-    effort,
-    planner::Planner,
+    PlannedSet, amount_in_space::placed, effort, planned_set::Least, planner::Planner,
     resolve::check_reach,
 };
 
@@ -54,7 +51,7 @@ impl Planner<'_> {
             ErrorKind::Stopped => Error::Internal("a plan was stopped before its request ended"),
             _ => region.too_far(spacing, &error),
         })?;
-        let least = least_distance(set, &points, region.reach());
+        let least = Least::InSpace(Box::new(points.clone()), region.reach());
         if i + 1 < self.query.sets.len() {
             self.volumes.push(match own {
                 Some(own) => points.limited_to(own.volume.clone()),

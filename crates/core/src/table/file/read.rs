@@ -26,7 +26,9 @@ pub(crate) fn read(bytes: &[u8]) -> Result<(Parts, Digest), Error> {
 /// The sections of a file, and its digest.
 pub(super) fn sections(bytes: &[u8]) -> Result<(Sections<'_>, Digest), Error> {
     check_size(bytes.len() as u64)?;
-    let sections = check_frame(bytes)?;
+    // The digest of this very file. With optional sections that are skipped it is not the digest of the parts when they
+    // are written again.
+    let (sections, digest) = check_frame(bytes)?;
     let body = &bytes[..bytes.len() - DIGEST_BYTES];
 
     let mut found = Sections::default();
@@ -38,13 +40,11 @@ pub(super) fn sections(bytes: &[u8]) -> Result<(Sections<'_>, Digest), Error> {
         let problem = format!("{} bytes are left after the last section", body.len() - at);
         return Err(wrong(b"none", at, problem));
     }
-    // The digest of this very file. With optional sections that were skipped it is not the digest of
-    // the parts when they are written again.
-    Ok((found, Digest::of(body)))
+    Ok((found, digest))
 }
 
-/// Checks magic, version, size and digest. Returns the number of sections.
-fn check_frame(bytes: &[u8]) -> Result<u32, Error> {
+/// Checks magic, version, size and digest. Returns the number of sections, and the digest.
+fn check_frame(bytes: &[u8]) -> Result<(u32, Digest), Error> {
     const FILE: &str = "the table file";
     let have = bytes.len() as u64;
     let least = (HEADER_BYTES + DIGEST_BYTES) as u64;
@@ -107,7 +107,7 @@ fn check_frame(bytes: &[u8]) -> Result<u32, Error> {
         let field = "the number of sections of the table file";
         return Err(Error::new(ErrorKind::Table, field, sections, allowed));
     }
-    Ok(sections)
+    Ok((sections, computed))
 }
 
 /// A section's payload and where it starts.
