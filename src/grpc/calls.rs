@@ -1,15 +1,15 @@
 //! The services of gRPC on the common port, and where a path leads.
 
-use std::{convert::Infallible, fmt, future::ready, sync::Arc};
+use std::{convert::Infallible, fmt, sync::Arc};
 
+use axum::{Extension, Router, routing::any};
 use strew_access::Caller;
 use strew_service::Service;
 use tonic::{body::Body as TonicBody, codegen};
+use tower::ServiceBuilder;
 
 use super::methods::{METHODS, Method, unimplemented};
-use crate::body::{Answering, Body, Request};
-
-type Answers = Arc<dyn Fn(Request) -> Answering + Send + Sync>;
+use crate::body::{Body, Request};
 
 /// The name of the service of the contract.
 pub(super) const NAME: &str = "strew.v1.PointService";
@@ -34,37 +34,19 @@ const SERVICES: [(&str, &str); 4] = [
     ),
 ];
 
-/// Where the path of a call leads.
-#[derive(Clone, Copy, Debug)]
-pub struct Route {
-    /// As metrics and logs name it: a method of the contract, or any of a service.
-    pub name: &'static str,
-    to: To,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum To {
-    Method(&'static Method),
-    /// A method that the contract does not have.
-    Unknown,
-    /// Another service, by its place.
-    Other(usize),
-}
-
-/// The route of a path, if it belongs to a service.
+/// The route of a path, as metrics and logs name it: a method of the contract, or any of a service.
 #[must_use]
-pub fn route(path: &str) -> Option<Route> {
-    let is_of = |(prefix, _): &(&str, &str)| path.len() > prefix.len() && path.starts_with(prefix);
-    let service = SERVICES.iter().position(is_of)?;
-    let any = SERVICES[service].1;
-    let method = || METHODS.iter().find(|method| method.path == path);
-    let (name, to) = match service.checked_sub(1) {
-        Some(other) => (any, To::Other(other)),
-        None => method().map_or((any, To::Unknown), |method| {
-            (method.path, To::Method(method))
-        }),
-    };
-    Some(Route { name, to })
+pub fn route(path: &str) -> Option<&'static str> {
+    let is_of = |(prefix, _): &&(&str, &str)| path.len() > prefix.len() && path.starts_with(prefix);
+    let (prefix, any) = SERVICES.iter().find(is_of)?;
+    match *prefix == SERVICES[0].0 {
+        true => Some(method(path).map_or(any, |method| method.path)),
+        false => Some(any),
+    }
+}
+
+fn method(path: &str) -> Option<&'static Method> {
+    METHODS.iter().find(|method| method.path == path)
 }
 
 /// The services of gRPC. Cheap to clone.
@@ -72,7 +54,7 @@ pub fn route(path: &str) -> Option<Route> {
 pub struct Calls {
     pub(super) service: Arc<Service>,
     /// All but that of the contract.
-    pub(super) others: Arc<[Answers; SERVICES.len() - 1]>,
+    pub(super) others: [Router; SERVICES.len() - 1],
 }
 
 impl fmt::Debug for Calls {
@@ -82,19 +64,27 @@ impl fmt::Debug for Calls {
 }
 
 impl Calls {
-    /// Answers a request of a caller.
-    #[must_use]
-    pub fn answer(&self, route: Route, caller: Caller, request: Request) -> Answering {
-        match route.to {
-            To::Method(method) => Box::pin(method.answer(self.service.clone(), caller, request)),
-            To::Unknown => Box::pin(ready(unimplemented())),
-            To::Other(service) => self.others[service](request),
-        }
+    /// A router with the calls of the contract.
+    pub fn contract(&self, router: Router) -> Router {
+        let service = self.service.clone();
+        let answer =
+            async move |Extension(caller): Extension<Caller>, request: Request| match method(
+                request.uri().path(),
+            ) {
+                Some(method) => method.answer(service, caller, request).await,
+                None => unimplemented(),
+            };
+        router.route(SERVICES[0].1, any(answer))
+    }
+
+    /// A router with health and reflection.
+    pub fn others(self, router: Router) -> Router {
+        self.others.into_iter().fold(router, Router::merge)
     }
 }
 
-/// A service that the library generates, as it is called here.
-pub(super) fn answering<S>(service: S) -> Answers
+/// A service that the library generates, at its path.
+pub(super) fn routed<S>(place: usize, service: S) -> Router
 where
     S: codegen::Service<
             http::Request<TonicBody>,
@@ -102,16 +92,11 @@ where
             Error = Infallible,
         >,
     S: Clone + Send + Sync + 'static,
-    S::Future: Send,
+    S::Future: Send + 'static,
 {
-    Arc::new(move |request: Request| {
-        // Generated services are always ready.
-        let mut service = service.clone();
-        Box::pin(async move {
-            let answered = service.call(request.map(TonicBody::new)).await;
-            answered
-                .unwrap_or_else(|never| match never {})
-                .map(Body::new)
-        })
-    })
+    let service = ServiceBuilder::new()
+        .map_request(|request: Request| request.map(TonicBody::new))
+        .map_response(|response: http::Response<TonicBody>| response.map(Body::new))
+        .service(service);
+    Router::new().route_service(SERVICES[place].1, service)
 }

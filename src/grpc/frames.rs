@@ -69,7 +69,7 @@ impl Frames {
 
     /// The answer of these messages, compressed if there is a coding.
     pub(super) fn response(self, coding: Option<Coding>) -> Response {
-        let mut response = Response::new(Body::frames(Framed {
+        let mut response = Response::new(Body::new(Framed {
             frames: Some(self),
             coding,
         }));

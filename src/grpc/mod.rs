@@ -30,8 +30,8 @@ use http::{HeaderMap, HeaderName, HeaderValue};
 use tonic::Status;
 use tonic_health::server::HealthReporter;
 
-pub use calls::{Calls, Route, route};
-use calls::{NAME, answering};
+pub use calls::{Calls, route};
+use calls::{NAME, routed};
 pub use deadline::Deadline;
 pub use methods::unimplemented;
 use strew_error::Error;
@@ -86,19 +86,16 @@ pub async fn calls(service: Arc<Service>) -> Result<(Calls, Health), BuildError>
             .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
     };
     let others = [
-        answering(health.max_decoding_message_size(NAMES)),
-        answering(reflection().build_v1()?.max_decoding_message_size(NAMES)),
-        answering(
+        routed(1, health.max_decoding_message_size(NAMES)),
+        routed(2, reflection().build_v1()?.max_decoding_message_size(NAMES)),
+        routed(
+            3,
             reflection()
                 .build_v1alpha()?
                 .max_decoding_message_size(NAMES),
         ),
     ];
-    let calls = Calls {
-        service,
-        others: Arc::new(others),
-    };
-    Ok((calls, Health { reporter }))
+    Ok((Calls { service, others }, Health { reporter }))
 }
 
 /// Sets what the standard health service reports.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use axum::extract::State;
 use http::Method;
 use strew_error::Kind;
 
@@ -29,7 +30,10 @@ pub(super) fn endpoint(reloader: Arc<Reloader>) -> Endpoint {
     Endpoint::only("/v1/tables:reload", reloader, operation, reload)
 }
 
-async fn reload(reloader: Arc<Reloader>, context: Context) -> Result<Response, Refused> {
+async fn reload(
+    State(reloader): State<Arc<Reloader>>,
+    context: Context,
+) -> Result<Response, Refused> {
     context.caller.must_be_admin()?;
     let reload = reloader.reload(Cause::Request).await?;
     Ok(json(&reload)?)

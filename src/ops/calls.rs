@@ -11,112 +11,103 @@ use std::{
 use http::Version;
 use http_body_util::BodyExt as _;
 use parking_lot::Mutex;
-use strew_access::Gate;
 use strew_service::Record;
-use tonic::codegen::Service;
 use tonic_web::GrpcWebLayer;
-use tower_layer::Layer as _;
+use tower::{Layer as _, Service};
 
 use super::{
     dialect::{Dialect, grpc_code},
-    exchange::{Intake, Visit},
-    gate,
+    exchange::Inbound,
+    step::{Next, Step},
 };
 use crate::{
     body::{Body, Response},
-    grpc::{self, Deadline, Route},
+    grpc::{self, Deadline},
     rest,
 };
 
-/// The calls of gRPC, behind the gate. Cheap to clone.
-#[derive(Clone, Debug)]
-pub(super) struct Calls {
-    pub(super) calls: grpc::Calls,
-    pub(super) gate: Arc<Gate>,
-    pub(super) intake: Intake,
-}
+/// Makes calls of web pages calls like others, and ends calls in the time that they allow; if calls are served here.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Calls(pub(super) bool);
 
-impl Calls {
+impl Step for Calls {
     /// Answers a request to the path of a call. What is no call gets a problem document instead of a gRPC status.
-    pub(super) async fn answer(&self, route: Route, mut visit: Box<Visit>) -> Response {
-        let request = &mut visit.request;
-        match visit.dialect {
+    async fn answer(&self, mut inbound: Box<Inbound>, next: impl Next) -> Response {
+        let request = &mut inbound.request;
+        let route = match self.0 {
+            true => grpc::route(request.uri().path()),
+            false => None,
+        };
+        let Some(route) = route else {
+            return next.answer(inbound).await;
+        };
+        Record::at(route);
+        match inbound.client.dialect {
             Dialect::Rest => rest::not_a_call(request),
             Dialect::Grpc if request.version() < Version::HTTP_2 => rest::needs_http2(request),
-            Dialect::Grpc => self.in_time(route, visit).await,
+            Dialect::Grpc => in_time(inbound, next).await,
             Dialect::GrpcWeb | Dialect::GrpcWebText => {
                 let request = std::mem::take(request);
                 let inner = OfPage {
-                    calls: self.clone(),
-                    route,
-                    visit: Arc::new(Mutex::new(Some(visit))),
+                    next,
+                    inbound: Arc::new(Mutex::new(Some(inbound))),
                 };
                 let answer = GrpcWebLayer::new().layer(inner).call(request).await;
                 answer.unwrap_or_else(|never| match never {}).map(Body::new)
             }
         }
     }
+}
 
-    /// Answers a call in the time that it allows.
-    async fn in_time(&self, route: Route, visit: Box<Visit>) -> Response {
-        let is_of_page = visit.dialect != Dialect::Grpc;
-        let mut response = match Deadline::of(visit.request.headers()) {
-            Err(refusal) => refusal.into_http(),
-            Ok(None) => self.admitted(route, visit).await,
-            Ok(Some(deadline)) => {
-                let answer = pin!(self.admitted(route, visit));
-                let mut response = match deadline.answer(answer).await {
-                    Ok(response) => response,
-                    Err(late) => late.into_http(),
-                };
-                // The exchange ends with it, also after the head.
-                response.extensions_mut().insert(deadline);
-                response
+/// Answers a call in the time that it allows.
+async fn in_time(inbound: Box<Inbound>, next: impl Next) -> Response {
+    let is_of_page = inbound.client.dialect != Dialect::Grpc;
+    let mut response = match Deadline::of(inbound.request.headers()) {
+        Err(refusal) => refusal.into_http(),
+        Ok(None) => next.answer(inbound).await,
+        Ok(Some(deadline)) => {
+            let answer = pin!(next.answer(inbound));
+            let mut response = match deadline.answer(answer).await {
+                Ok(response) => response,
+                Err(late) => late.into_http(),
+            };
+            // The exchange ends with it, also after the head.
+            response.extensions_mut().insert(deadline);
+            response
+        }
+    };
+    grpc::improve(response.headers_mut());
+    let Some(record) = Record::current() else {
+        return response;
+    };
+    if let Some(code) = grpc_code(response.headers()) {
+        record.ended(code);
+        return response;
+    }
+    if !is_of_page {
+        // The exchange sees the trailers.
+        return response;
+    }
+    // Noted here, because the body of a web page's call has its trailers in data.
+    response.map(|body| {
+        Body::new(body.map_frame(move |frame| {
+            if let Some(code) = frame.trailers_ref().and_then(grpc_code) {
+                record.ended(code);
             }
-        };
-        grpc::improve(response.headers_mut());
-        let Some(record) = Record::current() else {
-            return response;
-        };
-        if let Some(code) = grpc_code(response.headers()) {
-            record.ended(code);
-            return response;
-        }
-        if !is_of_page {
-            // The exchange sees the trailers.
-            return response;
-        }
-        // Noted here, because the body of a web page's call has its trailers in data.
-        response.map(|body| {
-            Body::new(body.map_frame(move |frame| {
-                if let Some(code) = frame.trailers_ref().and_then(grpc_code) {
-                    record.ended(code);
-                }
-                frame
-            }))
-        })
-    }
-
-    async fn admitted(&self, route: Route, visit: Box<Visit>) -> Response {
-        let caller = match gate::of_calls(&self.gate, &visit) {
-            Ok(caller) => caller,
-            Err(denied) => return grpc::refusal(&denied.into()),
-        };
-        let answer = |request| self.calls.answer(route, caller, request);
-        self.intake.answer(visit, answer).await
-    }
+            frame
+        }))
+    })
 }
 
 /// The inside of a call of a web page, once it reads like any other.
 #[derive(Clone)]
-struct OfPage {
-    calls: Calls,
-    route: Route,
+struct OfPage<N> {
+    next: N,
     /// All of the request but itself: there is one.
-    visit: Arc<Mutex<Option<Box<Visit>>>>,
+    inbound: Arc<Mutex<Option<Box<Inbound>>>>,
 }
 
-impl Service<http::Request<tonic::body::Body>> for OfPage {
+impl<N: Next> Service<http::Request<tonic::body::Body>> for OfPage<N> {
     type Response = Response;
     type Error = Infallible;
     type Future = Pin<Box<dyn Future<Output = Result<Response, Infallible>> + Send>>;
@@ -126,17 +117,13 @@ impl Service<http::Request<tonic::body::Body>> for OfPage {
     }
 
     fn call(&mut self, request: http::Request<tonic::body::Body>) -> Self::Future {
-        let Self {
-            calls,
-            route,
-            visit,
-        } = self.clone();
+        let Self { next, inbound } = self.clone();
         Box::pin(async move {
-            let Some(mut visit) = visit.lock().take() else {
+            let Some(mut inbound) = inbound.lock().take() else {
                 return Ok(grpc::unimplemented());
             };
-            visit.request = request.map(Body::new);
-            Ok(calls.in_time(route, visit).await)
+            inbound.request = request.map(Body::new);
+            Ok(in_time(inbound, next).await)
         })
     }
 }

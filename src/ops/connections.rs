@@ -4,7 +4,7 @@
 //! Each connection is a task that runs the HTTP library over a guarded socket. Beyond the limit a
 //! client is refused. A connection frees its place when the client leaves, is idle, or takes nothing.
 
-use std::{io, net::SocketAddr, pin::Pin, sync::Arc, time::Duration};
+use std::{io, net::SocketAddr, sync::Arc, time::Duration};
 
 use http::{Request, Response};
 use hyper::{body::Incoming, service::Service as HyperService};
@@ -22,10 +22,11 @@ use tokio::{
     sync::Semaphore,
 };
 use tokio_util::{sync::CancellationToken, task::TaskTracker};
+use tower::Service;
 
 use super::{
-    exchange::{Fate, From},
-    front::Front,
+    app::Steps,
+    exchange::{Exchanges, Fate, From, Inbound},
     guarded::{FirstWords, WriteTimeout},
     peer::Peer,
     throttle::LogThrottle,
@@ -291,6 +292,12 @@ fn http(settings: &Server) -> Builder<TokioExecutor> {
     builder
 }
 
+/// What answers the requests of all connections.
+pub(super) struct Front {
+    pub(super) exchanges: Exchanges,
+    pub(super) steps: Steps,
+}
+
 /// Answers the requests of one connection.
 struct Answers {
     front: Arc<Front>,
@@ -300,12 +307,12 @@ struct Answers {
 impl HyperService<Request<Incoming>> for Answers {
     type Response = Response<Body>;
     type Error = std::convert::Infallible;
-    type Future = Pin<Box<dyn Future<Output = Result<Response<Body>, Self::Error>> + Send>>;
+    type Future = <Steps as Service<Box<Inbound>>>::Future;
 
     fn call(&self, request: Request<Incoming>) -> Self::Future {
-        let (front, from) = (self.front.clone(), self.from.clone());
-        let visit = front.exchanges.visit(&from, request.map(Body::incoming));
-        Box::pin(async move { Ok(front.answer(&from, visit).await) })
+        let Front { exchanges, steps } = &*self.front;
+        let inbound = exchanges.inbound(self.from.clone(), request.map(Body::new));
+        steps.clone().call(inbound)
     }
 }
 

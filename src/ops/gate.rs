@@ -4,57 +4,122 @@
 //! other. Open to all are `/livez`, `/readyz`, the pages with the description of the API, and of gRPC
 //! health and reflection: probes have no keys, and what the API looks like is no secret.
 
+use std::{
+    convert::Infallible,
+    future::ready,
+    pin::Pin,
+    sync::Arc,
+    task::{Context, Poll},
+};
+
 use http::{HeaderMap, HeaderName, HeaderValue, header};
 use strew_access::{Caller, Gate};
-use strew_error::{Denied, Level};
+use strew_error::{Denied, Error, Level};
 use strew_service::Record;
+use tower::{Layer, Service};
 
-use super::exchange::Visit;
-use crate::{body::Response, rest::Refused};
+use super::exchange::Client;
+use crate::{
+    body::{Request, Response},
+    rest::Refused,
+};
 
 const API_KEY: HeaderName = HeaderName::from_static("x-api-key");
 const RATE_LIMIT: HeaderName = HeaderName::from_static("ratelimit");
 const RATE_LIMIT_POLICY: HeaderName = HeaderName::from_static("ratelimit-policy");
 
-/// The services of gRPC that are open to all.
-const OPEN: [&str; 2] = ["/grpc.health.", "/grpc.reflection."];
-
-/// The caller of a request of REST, if it is let in.
-pub(super) fn of_rest(gate: &Gate, visit: &Visit) -> Result<Caller, Denied> {
-    let key = visit.heard.key.then(|| shown(visit.request.headers()));
-    let client = &visit.client;
-    let caller = gate.admit(key.flatten(), client.address, client.usage.clone())?;
-    Record::of(&caller);
-    Ok(caller)
+/// Who is let in.
+#[derive(Clone, Debug)]
+pub(super) enum Admission {
+    /// As keys and addresses say.
+    Gate(Arc<Gate>),
+    /// Everyone, as an administrator.
+    Admins,
 }
 
-/// The answer to a request that is not let in, and the level of its rate.
-pub(super) fn refused(denied: Denied) -> (Response, Option<Level>) {
-    let level = match &denied {
-        Denied::TooFast { short, .. } => Some(short.level),
-        _ => None,
-    };
-    (Refused::from(denied).response(), level)
-}
-
-/// The caller of a call, if it is let in; of what is open to all, anyone.
-pub(super) fn of_calls(gate: &Gate, visit: &Visit) -> Result<Caller, Denied> {
-    let path = visit.request.uri().path();
-    if OPEN.iter().any(|open| path.starts_with(open)) {
-        return Ok(Caller::default());
+impl Admission {
+    /// The caller of a request, if it is let in.
+    fn caller(&self, client: &Client, headers: &HeaderMap) -> Result<Caller, Denied> {
+        match self {
+            Self::Gate(gate) => {
+                let usage = client.usage.clone();
+                let caller = gate.admit(shown(headers), client.address, usage)?;
+                Record::of(&caller);
+                Ok(caller)
+            }
+            // Except web pages, which can reach what their reader's browser can.
+            Self::Admins if headers.contains_key(header::ORIGIN) => Err(Denied::NotAdmin {
+                name: Some("of a web page".into()),
+            }),
+            Self::Admins => Ok(Caller::admin()),
+        }
     }
-    of_rest(gate, visit)
 }
 
-/// The gate of the administrators' own address: every client there is an administrator, except web
-/// pages, which can reach what their reader's browser can.
-pub(super) fn of_admins(headers: &HeaderMap) -> Result<Caller, Denied> {
-    if headers.contains_key(header::ORIGIN) {
-        return Err(Denied::NotAdmin {
-            name: Some("of a web page".into()),
-        });
+/// The layer of the routes that are not open to everyone. What is inside finds the [`Caller`] among the extensions.
+#[derive(Clone, Debug)]
+pub(super) struct GateLayer(pub(super) Admission);
+
+impl<S> Layer<S> for GateLayer {
+    type Service = Gated<S>;
+
+    fn layer(&self, inner: S) -> Gated<S> {
+        Gated {
+            admission: self.0.clone(),
+            inner,
+        }
     }
-    Ok(Caller::admin())
+}
+
+/// What is behind the gate.
+#[derive(Clone, Debug)]
+pub(super) struct Gated<S> {
+    admission: Admission,
+    inner: S,
+}
+
+impl<S> Service<Request> for Gated<S>
+where
+    S: Service<Request, Response = Response, Error = Infallible>,
+    S::Future: Send + 'static,
+{
+    type Response = Response;
+    type Error = Infallible;
+    type Future = Pin<Box<dyn Future<Output = Result<Response, Infallible>> + Send>>;
+
+    fn poll_ready(&mut self, context: &mut Context<'_>) -> Poll<Result<(), Infallible>> {
+        self.inner.poll_ready(context)
+    }
+
+    fn call(&mut self, mut request: Request) -> Self::Future {
+        let Some(client) = request.extensions().get::<Client>() else {
+            let error = Error::Internal("a request without a client");
+            return Box::pin(ready(Ok(Refused(error).response())));
+        };
+        let dialect = client.dialect;
+        match self.admission.caller(client, request.headers()) {
+            Ok(caller) => {
+                request.extensions_mut().insert(caller.clone());
+                let answered = self.inner.call(request);
+                Box::pin(async move {
+                    let mut response = answered.await?;
+                    if !dialect.is_call() {
+                        tell(caller.level(), response.headers_mut());
+                    }
+                    Ok(response)
+                })
+            }
+            Err(denied) => {
+                let level = match &denied {
+                    Denied::TooFast { short, .. } if !dialect.is_call() => Some(short.level),
+                    _ => None,
+                };
+                let mut response = dialect.refusal(&denied.into());
+                tell(level, response.headers_mut());
+                Box::pin(ready(Ok(response)))
+            }
+        }
+    }
 }
 
 /// The key of a request: `x-api-key`, or else `Authorization` of the scheme Bearer.
@@ -69,7 +134,7 @@ fn shown(headers: &HeaderMap) -> Option<&[u8]> {
 }
 
 /// Adds the headers that describe a rate (draft-ietf-httpapi-ratelimit-headers), if there is one.
-pub(super) fn tell(level: Option<Level>, headers: &mut HeaderMap) {
+fn tell(level: Option<Level>, headers: &mut HeaderMap) {
     let Some(level) = level else {
         return;
     };

@@ -8,6 +8,7 @@ use std::{
     time::Duration,
 };
 
+use axum::extract::State;
 use http::StatusCode;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -140,12 +141,12 @@ struct Ready {
 /// [`Alive`] as a document.
 const ALIVE: &str = "{\"alive\":true}\n";
 
-async fn live((): (), _: Context) -> Result<Response, Refused> {
+async fn live(_: Context) -> Result<Response, Refused> {
     Ok(rest::momentary(rest::file(ALIVE, rest::JSON)))
 }
 
 async fn ready(
-    (readiness, service): (Readiness, Arc<Service>),
+    State((readiness, service)): State<(Readiness, Arc<Service>)>,
     _: Context,
 ) -> Result<Response, Refused> {
     let ready = readiness.is_ready();

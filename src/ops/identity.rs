@@ -44,8 +44,8 @@ pub(super) struct Trace {
 
 impl Identity {
     /// That of a request, by its headers if they name it; `begins_one` says whether one without a trace begins one.
-    pub(super) fn of(named: Option<&HeaderMap>, begins_one: impl FnOnce() -> bool) -> Self {
-        let text = |name| named?.get(name)?.to_str().ok();
+    pub(super) fn of(headers: &HeaderMap, begins_one: impl FnOnce() -> bool) -> Self {
+        let text = |name| headers.get(name)?.to_str().ok();
         let id = text(REQUEST_ID).filter(|id| is_sane(id));
         Self {
             id: id.map_or_else(|| digits(next()), Into::into),
@@ -131,7 +131,7 @@ mod tests {
         let of = |text: &str| {
             let mut headers = HeaderMap::new();
             headers.insert(REQUEST_ID, HeaderValue::from_str(text).expect("a header"));
-            Identity::of(Some(&headers), || false).id
+            Identity::of(&headers, || false).id
         };
         for kept in ["a", "3f1c-77", "Root=1-67891233-abcdef", &"x".repeat(128)] {
             assert_eq!(of(kept), kept);

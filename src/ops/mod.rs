@@ -2,17 +2,16 @@
 //! a bounded stop, the log, tables read again.
 
 mod admin;
+mod app;
 mod calls;
 pub mod connections;
 mod dialect;
 mod exchange;
 pub mod exposure;
 pub mod files;
-mod front;
 mod gate;
 mod guarded;
 pub mod health;
-mod heard;
 mod identity;
 pub mod memory;
 mod metrics;
@@ -22,6 +21,7 @@ pub mod reload;
 pub mod serve;
 pub mod shutdown;
 pub mod spans;
+mod step;
 pub mod telemetry;
 mod throttle;
 pub mod tls;

@@ -1,27 +1,33 @@
 //! A panic is a bug, and stays one request's: it is logged, answered as an internal error in the
 //! client's own language, and the connection goes on.
 
-use std::{any::Any, panic::AssertUnwindSafe, pin::Pin};
+use std::{any::Any, panic::AssertUnwindSafe, sync::Arc};
 
 use futures_util::FutureExt as _;
 use strew_error::Error;
 
-use super::{dialect::Dialect, metrics::Metrics};
+use super::{
+    exchange::Inbound,
+    metrics::Metrics,
+    step::{Next, Step},
+};
 use crate::body::Response;
 
 /// Answers what panics.
-pub(super) async fn answered(
-    metrics: &Metrics,
-    dialect: Dialect,
-    answer: Pin<&mut (impl Future<Output = Response> + Send)>,
-) -> Response {
-    let answer = AssertUnwindSafe(answer).catch_unwind().await;
-    answer.unwrap_or_else(|panic| {
-        metrics.panics.inc();
-        tracing::error!(panic = said(&*panic), "a handler panicked");
-        let error = Error::Internal("the request could not be answered");
-        dialect.refusal(&error)
-    })
+#[derive(Debug)]
+pub(super) struct Panics(pub(super) Arc<Metrics>);
+
+impl Step for Panics {
+    async fn answer(&self, inbound: Box<Inbound>, next: impl Next) -> Response {
+        let dialect = inbound.client.dialect;
+        let answer = AssertUnwindSafe(next.answer(inbound)).catch_unwind().await;
+        answer.unwrap_or_else(|panic| {
+            self.0.panics.inc();
+            tracing::error!(panic = said(&*panic), "a handler panicked");
+            let error = Error::Internal("the request could not be answered");
+            dialect.refusal(&error)
+        })
+    }
 }
 
 /// The message of a panic, if it is text.

@@ -17,10 +17,9 @@ use tokio_util::task::AbortOnDropHandle;
 
 use super::{
     admin,
-    calls::Calls,
-    connections::Connections,
+    app::Stack,
+    connections::{Connections, Front},
     exchange::{self, Exchanges, Intake},
-    front::{Admission, Front},
     health::{self, Readiness},
     metrics::{self, Metrics},
     reload::{Reloader, Watched},
@@ -302,17 +301,20 @@ impl App {
         if self.config.metrics.enabled {
             endpoints.push(self.metrics_endpoint());
         }
-        let routes = Routes::new(endpoints, &self.pages, &self.config.http.public_url);
         let intake = Intake::new(&self.config, self.service.budget().clone());
-        let calls = Calls {
-            calls,
-            gate: self.gate.clone(),
-            intake: intake.clone(),
+        let gate = self.gate.clone();
+        let steps = |exchanges, finish, routes| Stack {
+            exchanges,
+            finish,
+            routes,
+            calls: Some(calls),
+            intake: Some(intake),
+            gate: Some(gate),
         };
-        let admission = Admission::Gate(self.gate.clone(), intake);
-        let routes = routes.with(self.more.clone());
-        let front = self.answering(routes, Some(calls), admission, is_on_loopback);
-        Ok((front, health))
+        Ok((
+            self.answering(endpoints, &self.more, is_on_loopback, steps),
+            health,
+        ))
     }
 
     /// What the address for administrators answers.
@@ -323,17 +325,25 @@ impl App {
         if self.config.metrics.enabled {
             endpoints.push(self.metrics_endpoint());
         }
-        let routes = Routes::new(endpoints, &self.pages, &self.config.http.public_url);
-        self.answering(routes, None, Admission::Admins, is_on_loopback)
+        let steps = |exchanges, finish, routes| Stack {
+            exchanges,
+            finish,
+            routes,
+            calls: None,
+            intake: None,
+            gate: None,
+        };
+        self.answering(endpoints, &[], is_on_loopback, steps)
     }
 
     fn answering(
         &self,
-        routes: Routes,
-        calls: Option<Calls>,
-        admission: Admission,
+        endpoints: Vec<Endpoint>,
+        more: &[Endpoint],
         is_on_loopback: bool,
+        app: impl FnOnce(Exchanges, rest::Finish, Routes) -> Stack,
     ) -> Front {
+        let routes = Routes::new(endpoints, more, &self.pages, &self.config.http.public_url);
         let finish = rest::Finish::new(
             &self.config,
             self.gate.settings().needs_key(),
@@ -348,10 +358,7 @@ impl App {
             terms: exchange::terms(&self.config.server),
         };
         Front {
-            routes,
-            calls,
-            admission,
-            finish,
+            steps: app(exchanges.clone(), finish, routes).steps(),
             exchanges,
         }
     }

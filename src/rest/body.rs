@@ -15,10 +15,6 @@ use strew_service::{Service, segments::Segments, unpack::Coding};
 
 use crate::body::Body;
 
-/// A whole body.
-#[derive(Debug)]
-pub struct Whole(pub(super) Bytes);
-
 /// Reads a whole body.
 pub(super) async fn whole(
     service: &Arc<Service>,
@@ -33,10 +29,10 @@ pub(super) async fn whole(
     if length.is_some_and(|length| usize::try_from(length).is_ok_and(|length| length > limit)) {
         return Err(Error::BodyTooLarge { limit });
     }
-    let mut pieces = body.pieces();
+    let mut pieces = body.into_data_stream();
     let mut segments = Segments::default();
     while let Some(piece) = pieces.next().await {
-        let piece = piece.map_err(|error| why(&*error))?;
+        let piece = piece.map_err(|error| why(&error))?;
         if segments.len() + piece.len() > limit {
             return Err(Error::BodyTooLarge { limit });
         }

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use axum::extract::State;
 use strew_core::server::Stop;
 use strew_error::{Checked, Together as _};
 use strew_query::{Draft, Parameter, RegionDraft, Shape, ShapeDraft, groups};
@@ -64,7 +65,7 @@ pub(super) const ROW: Parameter = Parameter {
     ..Parameter::PLAIN
 };
 
-async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let [size, x, y] = context.path();
     let draft = Draft::new(context.values(groups::CHUNK)).within(region([size, x, y]));
     let (query, options) = service.check(&draft, &Stop::NEVER)?;

@@ -1,20 +1,26 @@
 //! Requests as handlers take them: the caller, and all that decides how the answer is sent; for some, the body.
 
 use std::{
+    mem::take,
     pin::{Pin, pin},
     sync::Arc,
 };
 
+use axum::extract::{FromRequest, FromRequestParts, MatchedPath, RawPathParams};
 use bytes::Bytes;
-use http::{HeaderMap, Method, Uri};
+use http::{HeaderMap, Method, StatusCode, Uri, request::Parts};
 use serde::Serialize;
 use strew_access::Caller;
 use strew_error::{Error, Fault};
 use strew_query::{Group, Values, parse_pairs};
-use strew_service::{Service, charge_reading};
+use strew_service::{Record, Service, charge_reading};
 
-use super::{body, document, freshness::Freshness, problem::Refused};
-use crate::body::{Body, Response};
+use super::{
+    body, document,
+    freshness::Freshness,
+    problem::{Problem, Refused},
+};
+use crate::body::{Request, Response};
 
 /// A request without its body.
 #[derive(Debug)]
@@ -72,36 +78,75 @@ impl Context {
         let path = self.uri.path().into();
         Error::NoSuchPath { path, available }
     }
+}
 
-    /// Refuses parameters where the query is in the body.
-    fn no_parameters(&self) -> Result<(), Error> {
-        match self.uri.query().filter(|text| !text.is_empty()) {
-            Some(text) => {
-                let detail = "not allowed here: the query is in the body";
-                Err(Fault::new("query", text, detail, "no parameters").into())
-            }
-            None => Ok(()),
+/// Takes all that the head of a request has: handlers have no other extractor after it.
+impl<S: Send + Sync> FromRequestParts<S> for Context {
+    type Rejection = Response;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Response> {
+        if let Some(route) = parts.extensions.get::<MatchedPath>() {
+            Record::at(route.as_str());
         }
+        let path = RawPathParams::from_request_parts(parts, state).await;
+        let path = path.map_err(|rejection| {
+            Problem::of_status(StatusCode::BAD_REQUEST, rejection.body_text())
+        })?;
+        Ok(Self {
+            caller: parts.extensions.remove().unwrap_or_default(),
+            method: take(&mut parts.method),
+            uri: take(&mut parts.uri),
+            headers: take(&mut parts.headers),
+            path: path.iter().map(|(_, text)| text.to_owned()).collect(),
+        })
     }
 }
 
-/// A request whose query is its body.
+/// A request with its body.
+#[derive(Debug)]
+pub struct Posted {
+    pub(super) context: Context,
+    pub(super) body: Bytes,
+}
+
+impl FromRequest<Arc<Service>> for Posted {
+    type Rejection = Response;
+
+    async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, Response> {
+        let (mut parts, body) = request.into_parts();
+        let context = Context::from_request_parts(&mut parts, service).await?;
+        let body = body::whole(service, &context.headers, body).await;
+        let body = body.map_err(|error| Refused(error).response())?;
+        Ok(Self { context, body })
+    }
+}
+
+/// A request whose query is its body, and which has no parameters beside it.
 #[derive(Debug)]
 pub struct Sent {
     pub(super) context: Context,
     pub(super) body: Bytes,
 }
 
-impl Sent {
-    /// Reads the body of a request, which has no parameters beside it.
-    pub(super) async fn read(
-        service: &Arc<Service>,
-        context: Context,
-        body: Body,
-    ) -> Result<Self, Refused> {
-        context.no_parameters()?;
-        let body = body::whole(service, &context.headers, body).await?;
-        charge_reading(&context.caller, body.len())?;
+impl FromRequest<Arc<Service>> for Sent {
+    type Rejection = Response;
+
+    async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, Response> {
+        let refused = |error| Refused(error).response();
+        no_parameters(request.uri()).map_err(refused)?;
+        let Posted { context, body } = Posted::from_request(request, service).await?;
+        charge_reading(&context.caller, body.len()).map_err(refused)?;
         Ok(Self { context, body })
+    }
+}
+
+/// Refuses parameters where the query is in the body.
+fn no_parameters(uri: &Uri) -> Result<(), Error> {
+    match uri.query().filter(|text| !text.is_empty()) {
+        Some(text) => {
+            let detail = "not allowed here: the query is in the body";
+            Err(Fault::new("query", text, detail, "no parameters").into())
+        }
+        None => Ok(()),
     }
 }

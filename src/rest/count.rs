@@ -2,6 +2,7 @@
 
 use std::{pin::pin, sync::Arc};
 
+use axum::extract::State;
 use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -14,7 +15,7 @@ use strew_service::Service;
 use super::{
     answer,
     api::{
-        self, Endpoint, Operation, Tag, handler,
+        self, Endpoint, Operation, Tag,
         schemas::{self, CountQuery},
     },
     body,
@@ -51,11 +52,9 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
             .into(),
         ..Operation::new(Tag::Points, vec![answers()])
     };
-    let operations = vec![
-        (given, handler(&service, get)),
-        (posted, handler(&service, post)),
-    ];
-    Endpoint::new("/v1/count", operations)
+    Endpoint::new("/v1/count")
+        .with(service.clone(), given, get)
+        .with(service, posted, post)
 }
 
 /// The problems of counting.
@@ -78,11 +77,11 @@ pub(super) struct Count {
     query: Resolved,
 }
 
-async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     given(&service, &context, groups::COUNT).await
 }
 
-async fn post(service: Arc<Service>, sent: Sent) -> Result<Response, Refused> {
+async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
     posted(&service, sent, groups::COUNTED).await
 }
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use axum::extract::State;
 use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -13,7 +14,7 @@ use strew_query::groups;
 use strew_service::Service;
 
 use super::{
-    api::{self, Endpoint, Operation, Tag, handler, schemas},
+    api::{self, Endpoint, Operation, Tag, schemas},
     context::{Context, Sent},
     document, query,
 };
@@ -46,18 +47,16 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         example: format!("/v1/except -d '{}'", example()),
         ..listed.clone()
     };
-    let operations = vec![
-        (listed, handler(&service, all)),
-        (sent, handler(&service, post)),
-    ];
-    Endpoint::new("/v1/except", operations)
+    Endpoint::new("/v1/except")
+        .with(service.clone(), listed, all)
+        .with(service, sent, post)
 }
 
 fn example() -> serde_json::Value {
     json!({ "ids": ["trees/18:-17", "trees/23:-15"] })
 }
 
-async fn post(service: Arc<Service>, sent: Sent) -> Result<Response, Refused> {
+async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
     let Sent { body, .. } = sent;
     let bytes = body.len();
     let hold = move |service: &Service, _: &Stop| service.hold_list(&body);
@@ -98,7 +97,7 @@ impl<'a> List<'a> {
     }
 }
 
-async fn all(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let lists = Lists {

@@ -2,6 +2,7 @@
 
 use std::{pin::pin, sync::Arc};
 
+use axum::extract::State;
 use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -13,7 +14,7 @@ use strew_query::{Parameter, groups};
 use strew_service::Service;
 
 use super::{
-    api::{self, Endpoint, Operation, Tag, handler, schemas},
+    api::{self, Endpoint, Operation, Tag, schemas},
     body,
     chunks::{COLUMN, ROW, SIZE},
     context::{Context, Sent},
@@ -62,18 +63,16 @@ pub(super) fn list(service: Arc<Service>) -> Endpoint {
             )],
         )
     };
-    let operations = vec![
-        (listed, handler(&service, all)),
-        (sent, handler(&service, post)),
-    ];
-    Endpoint::new("/v1/fields", operations)
+    Endpoint::new("/v1/fields")
+        .with(service.clone(), listed, all)
+        .with(service, sent, post)
 }
 
 fn example() -> serde_json::Value {
     json!({ "radial": { "center": [10, 10], "radii": [5, 20] } })
 }
 
-async fn post(service: Arc<Service>, sent: Sent) -> Result<Response, Refused> {
+async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
     let Sent { body, .. } = sent;
     let (bytes, budget) = (body.len(), service.own_budget());
     let read = move || {
@@ -174,7 +173,7 @@ impl<'a> Summary<'a> {
     }
 }
 
-async fn all(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let fields = || catalog.fields().iter();
@@ -187,7 +186,7 @@ async fn all(service: Arc<Service>, context: Context) -> Result<Response, Refuse
     Ok(context.answer(document::JSON, &made_of, pin!(make)).await?)
 }
 
-async fn one(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn one(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let [name] = context.path();
     context.values(groups::NONE).read()?;
     let field = named(&service, name, &context)?;
@@ -198,7 +197,7 @@ async fn one(service: Arc<Service>, context: Context) -> Result<Response, Refuse
     Ok(context.document(&described).await?)
 }
 
-async fn chunk(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn chunk(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let [name, size, x, y] = context.path();
     context.values(groups::NONE).read()?;
     let field = named(&service, name, &context)?;

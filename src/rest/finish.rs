@@ -30,22 +30,21 @@ pub struct Finish {
 
 /// What the last step must know of a request.
 #[derive(Debug)]
-pub struct Wishes {
+pub struct Preferences {
     is_head: bool,
     origin: Option<HeaderValue>,
     accept: HeaderMap,
 }
 
-impl Wishes {
-    /// Those of a request, which may have `Origin` and `Accept-Encoding` among its headers or not.
+impl Preferences {
+    /// Those of a request.
     #[must_use]
-    pub fn of(request: &Request, may_have_any: bool) -> Self {
-        let headers = Some(request.headers()).filter(|_| may_have_any);
-        let accept = headers.map(|headers| picked(headers, &header::ACCEPT_ENCODING));
+    pub fn of(request: &Request) -> Self {
+        let headers = request.headers();
         Self {
             is_head: *request.method() == Method::HEAD,
-            origin: headers.and_then(|headers| headers.get(header::ORIGIN).cloned()),
-            accept: accept.unwrap_or_default(),
+            origin: headers.get(header::ORIGIN).cloned(),
+            accept: picked(headers, &header::ACCEPT_ENCODING),
         }
     }
 }
@@ -95,8 +94,8 @@ impl Finish {
     }
 
     /// Puts onto an answer what all have.
-    pub async fn answer(&self, wishes: &Wishes, response: &mut Response) {
-        let origin = wishes.origin.as_ref();
+    pub async fn finish(&self, preferences: &Preferences, response: &mut Response) {
+        let origin = preferences.origin.as_ref();
         cors::allow(&self.origins, origin, response.headers_mut());
         if is_grpc(response.headers()) {
             return;
@@ -106,10 +105,10 @@ impl Finish {
         }
         self.keeping.set(response);
         harden::guard(response.headers_mut(), self.origins == Origins::All);
-        if let Some(chosen) = coding::choose(&wishes.accept, response) {
+        if let Some(chosen) = coding::choose(&preferences.accept, response) {
             let plain = take(response);
             // On the heap, lest plain answers have room for it.
-            let coded = Box::pin(chosen.apply(wishes.is_head, &self.service, plain)).await;
+            let coded = Box::pin(chosen.apply(preferences.is_head, &self.service, plain)).await;
             *response = coded.unwrap_or_else(|error| Problem::response(&error));
         }
     }

@@ -2,6 +2,7 @@
 
 use std::{convert::Infallible, sync::Arc};
 
+use axum::extract::State;
 use bytes::Bytes;
 use futures_util::{StreamExt as _, stream};
 use http::{HeaderMap, Method, header};
@@ -12,7 +13,7 @@ use strew_query::{Parameter, groups};
 use strew_service::{Record, Service, forging::JobStatus};
 
 use super::{
-    api::{self, Endpoint, Operation, Tag, handler, schemas},
+    api::{self, Endpoint, Operation, Tag, schemas},
     context::Context,
     document,
 };
@@ -70,11 +71,9 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
             "The job, which ends with its current step.",
         ))
     };
-    let operations = vec![
-        (get, handler(&service, one)),
-        (cancel, handler(&service, delete)),
-    ];
-    Endpoint::new("/v1/jobs/{id}", operations)
+    Endpoint::new("/v1/jobs/{id}")
+        .with(service.clone(), get, one)
+        .with(service, cancel, delete)
 }
 
 /// The parts that the operations share.
@@ -94,13 +93,13 @@ struct Jobs {
     jobs: Vec<JobStatus>,
 }
 
-async fn all(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let jobs = service.jobs(&context.caller)?;
     Ok(document::momentary(document::json(&Jobs { jobs })?))
 }
 
-async fn one(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn one(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let [id] = context.path();
     context.values(groups::NONE).read()?;
     let job = service.job(&context.caller, id)?;
@@ -119,7 +118,10 @@ async fn one(service: Arc<Service>, context: Context) -> Result<Response, Refuse
     Ok(document::momentary(document::file(events, EVENTS)))
 }
 
-async fn delete(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn delete(
+    State(service): State<Arc<Service>>,
+    context: Context,
+) -> Result<Response, Refused> {
     let [id] = context.path();
     context.values(groups::NONE).read()?;
     Ok(document::json(

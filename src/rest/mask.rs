@@ -2,6 +2,7 @@
 
 use std::{pin::pin, sync::Arc};
 
+use axum::extract::State;
 use strew_error::{Error, Kind};
 use strew_query::groups;
 use strew_service::{
@@ -58,7 +59,7 @@ fn drawn(
     let (content_type, parameters) = (format.content_type(), operation.parameters);
     operation.answers = api::Answer::file(operation.summary, content_type, schema).or_unchanged();
     operation.problems.push(Kind::OtherTable);
-    let handler = move |service: Arc<Service>, context: Context| async move {
+    let handler = move |State(service): State<Arc<Service>>, context: Context| async move {
         let query = MaskQuery::check(&context.values(parameters), &service.catalog())?;
         let freshness = context.freshness(content_type, &query.entry.digest);
         let freshness = freshness.pinned(query.is_pinned);

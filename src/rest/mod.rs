@@ -44,14 +44,14 @@ use std::sync::Arc;
 use http::StatusCode;
 
 use api::Endpoint;
-pub use body::Whole;
-pub use context::{Context, Sent};
+
+pub use context::{Context, Posted, Sent};
 pub use document::{JSON, file, json, momentary};
-pub use finish::{Finish, Wishes};
+pub use finish::{Finish, Preferences};
 pub use page::{Page, Pages, Part};
 use problem::Problem;
 pub use problem::Refused;
-pub use routes::{Found, Routes};
+pub use routes::{Paths, Routes};
 use strew_error::Error;
 use strew_service::Service;
 

@@ -1,5 +1,6 @@
 //! `GET /openapi.json`: the description of the REST API, for programs.
 
+use axum::extract::State;
 use bytes::Bytes;
 
 use super::{
@@ -23,7 +24,7 @@ pub(super) fn endpoint(endpoints: &[Endpoint]) -> Endpoint {
     with(Fixed::new(JSON, text.into()))
 }
 
-async fn answer(document: Fixed, context: Context) -> Result<Response, Refused> {
+async fn answer(State(document): State<Fixed>, context: Context) -> Result<Response, Refused> {
     Ok(document.answer(&context.uri, &context.headers))
 }
 

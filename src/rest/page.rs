@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use axum::extract::State;
 use bytes::Bytes;
 use http::{HeaderName, HeaderValue, header};
 use strew_error::{Error, Kind};
@@ -219,17 +220,17 @@ fn operation(
 /// The parts by their names, ready to send.
 type Parts = Arc<Vec<(&'static str, Fixed)>>;
 
-async fn one(parts: Parts, context: Context) -> Result<Response, Refused> {
+async fn one(State(parts): State<Parts>, context: Context) -> Result<Response, Refused> {
     let name = context.uri.path().trim_start_matches("/page/");
     let found = parts.iter().find(|(part, _)| *part == name);
     let (_, document) = found.ok_or_else(|| Error::NoSuchPath {
         path: context.uri.path().into(),
         available: "the pages and the parts that they name".into(),
     })?;
-    fixed(document.clone(), context).await
+    fixed(State(document.clone()), context).await
 }
 
-async fn fixed(document: Fixed, context: Context) -> Result<Response, Refused> {
+async fn fixed(State(document): State<Fixed>, context: Context) -> Result<Response, Refused> {
     let mut response = document.answer(&context.uri, &context.headers);
     for (name, value) in [
         (header::CONTENT_SECURITY_POLICY, POLICY),

@@ -2,6 +2,7 @@
 
 use std::{pin::pin, sync::Arc};
 
+use axum::extract::State;
 use strew_error::Kind;
 use strew_query::{Periods, groups};
 use strew_service::Service;
@@ -30,7 +31,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     Endpoint::only("/v1/periods", service, operation, get)
 }
 
-async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let periods = Periods::of(&context.values(groups::PERIODS), &service.catalog())?;
     let made_of = (&periods.alpha, periods.radius);
     let make = async { document::json(&periods) };

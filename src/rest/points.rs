@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use axum::extract::State;
 use strew_core::server::Stop;
 use strew_query::{Draft, groups};
 use strew_service::Service;
@@ -29,7 +30,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
 }
 
 /// Answers a query.
-async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let draft = Draft::of(context.values(groups::POINTS));
     let (query, options) = service.check(&draft, &Stop::NEVER)?;
     Ok(answer::stream(&service, &context, query, options).await?)

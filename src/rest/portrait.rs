@@ -2,6 +2,7 @@
 
 use std::{pin::pin, sync::Arc};
 
+use axum::extract::State;
 use schemars::JsonSchema;
 use serde::Serialize;
 use strew_catalog::{Dimension, Entry};
@@ -81,7 +82,7 @@ fn operation(
 }
 
 /// The table of a profile with its measured curves.
-async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let [name] = context.path();
     let (entry, freshness) = chosen(&service, name, &context, document::JSON)?;
     let make = async {
@@ -107,7 +108,7 @@ async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refuse
 }
 
 /// The picture.
-async fn svg(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn svg(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let [name] = context.path();
     let (entry, freshness) = chosen(&service, name, &context, SVG)?;
     let make = async {

@@ -1,5 +1,6 @@
 //! Errors as problem documents (RFC 9457).
 
+use axum::{body::to_bytes, response::IntoResponse};
 use http::{HeaderValue, StatusCode, header};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -202,7 +203,7 @@ pub(super) fn is_bare(response: &Response) -> bool {
 pub(super) async fn instead(response: Response) -> Response {
     let status = response.status();
     let (parts, body) = response.into_parts();
-    let text = body.whole(MOST_TEXT).await.unwrap_or_default();
+    let text = to_bytes(body, MOST_TEXT).await.unwrap_or_default();
     let detail = match String::from_utf8_lossy(&text) {
         text if text.trim().is_empty() => "the request cannot be answered".into(),
         text => text.trim().to_owned(),
@@ -237,6 +238,12 @@ macro_rules! refused {
             }
         })+
     };
+}
+
+impl IntoResponse for Refused {
+    fn into_response(self) -> Response {
+        self.response()
+    }
 }
 
 refused!(Error, Fault, strew_error::Faults, strew_error::Denied);

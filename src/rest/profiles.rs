@@ -2,6 +2,7 @@
 
 use std::{collections::BTreeMap, pin::pin, sync::Arc};
 
+use axum::extract::State;
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer, ser::SerializeMap as _};
 use strew_catalog::{Catalog, Entry};
@@ -34,7 +35,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
 }
 
 /// Lists the tables.
-async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     list(&context, &catalog, &catalog.entries().collect::<Vec<_>>()).await

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use axum::extract::State;
 use http::Method;
 use serde_json::json;
 use strew_error::Kind;
@@ -55,7 +56,7 @@ fn example() -> serde_json::Value {
     })
 }
 
-async fn post(service: Arc<Service>, sent: Sent) -> Result<Response, Refused> {
+async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
     let Sent { context, body } = sent;
     let (_, query, options) = body::query(&service, body, groups::QUERY).await?;
     Ok(answer::stream(&service, &context, query, options).await?)

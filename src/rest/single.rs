@@ -2,6 +2,7 @@
 
 use std::{pin::pin, sync::Arc};
 
+use axum::extract::State;
 use schemars::JsonSchema;
 use serde::Serialize;
 use strew_error::Kind;
@@ -83,11 +84,11 @@ pub(super) struct Several {
     query: ResolvedSet,
 }
 
-async fn point(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn point(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     by_id_in(&service, &context, groups::SINGLE).await
 }
 
-async fn near(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn near(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     near_in(&service, &context, groups::NEAREST).await
 }
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use axum::extract::State;
 use http::Method;
 use serde_json::{Value, json};
 use strew_core::server::Stop;
@@ -12,12 +13,12 @@ use strew_service::Service;
 use super::{
     answer,
     api::{
-        self, Endpoint, Operation, Tag, handler,
+        self, Endpoint, Operation, Tag,
         schemas::{self, SpaceQuery},
     },
-    body::{self, Whole},
+    body,
     chunks::{COLUMN, ROW, SIZE},
-    context::{Context, Sent},
+    context::{Context, Posted, Sent},
     count::{self, Count},
     profiles, query, single,
     split::{self, Split},
@@ -64,20 +65,21 @@ fn points(service: &Arc<Service>) -> Endpoint {
         example: format!("/v1/space/points -d '{}'", example()),
         ..Operation::new(Tag::Space, vec![answer::described()])
     };
-    let operations = vec![
-        (given, handler(service, get_points)),
-        (posted, handler(service, post_points)),
-    ];
-    Endpoint::new("/v1/space/points", operations)
+    Endpoint::new("/v1/space/points")
+        .with(service.clone(), given, get_points)
+        .with(service.clone(), posted, post_points)
 }
 
-async fn get_points(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn get_points(
+    State(service): State<Arc<Service>>,
+    context: Context,
+) -> Result<Response, Refused> {
     let draft = Draft::of(context.values(groups::SPACE_POINTS));
     let (query, options) = service.check(&draft, &Stop::NEVER)?;
     Ok(answer::stream(&service, &context, query, options).await?)
 }
 
-async fn post_points(service: Arc<Service>, sent: Sent) -> Result<Response, Refused> {
+async fn post_points(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
     let Sent { context, body } = sent;
     let (_, query, options) = body::query(&service, body, groups::SPACE_QUERY).await?;
     Ok(answer::stream(&service, &context, query, options).await?)
@@ -108,7 +110,10 @@ fn chunks(service: &Arc<Service>) -> Endpoint {
     Endpoint::only(path, service.clone(), operation, get_chunk)
 }
 
-async fn get_chunk(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn get_chunk(
+    State(service): State<Arc<Service>>,
+    context: Context,
+) -> Result<Response, Refused> {
     let draft = Draft::new(context.values(groups::SPACE_QUERY)).within(chunk(context.path()));
     let (query, options) = service.check(&draft, &Stop::NEVER)?;
     Ok(answer::stream(&service, &context, query, options).await?)
@@ -148,18 +153,19 @@ fn counts(service: &Arc<Service>) -> Endpoint {
         problems: [count::problems(), vec![Kind::BodyTooLarge]].concat(),
         ..Operation::new(Tag::Space, vec![answers()])
     };
-    let operations = vec![
-        (given, handler(service, get_count)),
-        (posted, handler(service, post_count)),
-    ];
-    Endpoint::new("/v1/space/count", operations)
+    Endpoint::new("/v1/space/count")
+        .with(service.clone(), given, get_count)
+        .with(service.clone(), posted, post_count)
 }
 
-async fn get_count(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn get_count(
+    State(service): State<Arc<Service>>,
+    context: Context,
+) -> Result<Response, Refused> {
     count::given(&service, &context, groups::SPACE_COUNT).await
 }
 
-async fn post_count(service: Arc<Service>, sent: Sent) -> Result<Response, Refused> {
+async fn post_count(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
     count::posted(&service, sent, groups::SPACE_QUERY).await
 }
 
@@ -187,9 +193,8 @@ fn parts(service: &Arc<Service>) -> Endpoint {
 }
 
 async fn post_parts(
-    service: Arc<Service>,
-    context: Context,
-    Whole(body): Whole,
+    State(service): State<Arc<Service>>,
+    Posted { context, body }: Posted,
 ) -> Result<Response, Refused> {
     split::posted(service, context, body, groups::SPACE_QUERY).await
 }
@@ -226,7 +231,10 @@ fn by_id(service: &Arc<Service>) -> Endpoint {
     )
 }
 
-async fn get_point(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn get_point(
+    State(service): State<Arc<Service>>,
+    context: Context,
+) -> Result<Response, Refused> {
     single::by_id_in(&service, &context, groups::SPACE_SET).await
 }
 
@@ -264,13 +272,19 @@ fn listed(service: &Arc<Service>) -> Endpoint {
     )
 }
 
-async fn get_profiles(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn get_profiles(
+    State(service): State<Arc<Service>>,
+    context: Context,
+) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let entries: Vec<_> = catalog.in_space().collect();
     profiles::list(&context, &catalog, &entries).await
 }
 
-async fn get_nearest(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn get_nearest(
+    State(service): State<Arc<Service>>,
+    context: Context,
+) -> Result<Response, Refused> {
     single::near_in(&service, &context, groups::SPACE_NEAREST).await
 }

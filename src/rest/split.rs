@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use axum::extract::State;
 use bytes::Bytes;
 use http::Method;
 use schemars::JsonSchema;
@@ -17,8 +18,8 @@ use super::{
         self, Endpoint, Operation, Tag,
         schemas::{self, AnyQuery, PointsQuery},
     },
-    body::{self, Whole},
-    context::Context,
+    body,
+    context::{Context, Posted},
     document, query,
 };
 use crate::{body::Response, rest::Refused};
@@ -73,9 +74,8 @@ struct Part {
 }
 
 async fn post(
-    service: Arc<Service>,
-    context: Context,
-    Whole(body): Whole,
+    State(service): State<Arc<Service>>,
+    Posted { context, body }: Posted,
 ) -> Result<Response, Refused> {
     posted(service, context, body, groups::QUERY).await
 }

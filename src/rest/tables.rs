@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use axum::extract::State;
 use http::{HeaderValue, Method, StatusCode, header};
 use serde_json::json;
 use strew_core::server::Stop;
@@ -57,7 +58,7 @@ fn example() -> serde_json::Value {
     json!({ "profile": "blue", "alpha": "sqrt(2)", "map": "s" })
 }
 
-async fn post(service: Arc<Service>, sent: Sent) -> Result<Response, Refused> {
+async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
     let Sent { context, body } = sent;
     service.forging().admit(&context.caller)?;
     let length = body.len();

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use axum::extract::State;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::value::RawValue;
@@ -127,7 +128,7 @@ impl<'a> Summary<'a> {
     }
 }
 
-async fn all(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let worlds = List {
@@ -138,7 +139,7 @@ async fn all(service: Arc<Service>, context: Context) -> Result<Response, Refuse
     Ok(context.document(&worlds).await?)
 }
 
-async fn one(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn one(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let [name] = context.path();
     context.values(groups::NONE).read()?;
     let world = named(&service, name, &context)?;
@@ -164,7 +165,7 @@ pub fn world_document(world: &World) -> Result<Vec<u8>, Error> {
     document::written(&Described::new(world)?)
 }
 
-async fn chunk(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn chunk(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let [name, size, x, y] = context.path();
     named(&service, name, &context)?;
     let mut values = context.values(groups::WORLD_CHUNK);

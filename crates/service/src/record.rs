@@ -31,6 +31,7 @@ pub struct Record {
     id: Box<str>,
     trace: Option<Box<str>>,
     budget: Budget,
+    route: OnceLock<Box<str>>,
     format: OnceLock<&'static str>,
     refused: OnceLock<Kind>,
     points: AtomicU64,
@@ -69,6 +70,7 @@ impl Record {
             id: id.into(),
             trace: trace.map(Into::into),
             budget,
+            route: OnceLock::new(),
             format: OnceLock::new(),
             refused: OnceLock::new(),
             points: AtomicU64::new(0),
@@ -118,6 +120,17 @@ impl Record {
                 Ok(())
             }
         }
+    }
+
+    /// Notes the route of the request that is being answered.
+    pub fn at(route: &str) {
+        let _ = CURRENT.try_with(|record| record.route.set(route.into()));
+    }
+
+    /// The route, if the path of the request leads to one.
+    #[must_use]
+    pub fn route(&self) -> Option<&str> {
+        self.route.get().map(|route| &**route)
     }
 
     /// Notes why the request that is being answered was refused.

@@ -77,7 +77,7 @@ async fn whole(mut body: Body, most: usize) -> Result<(bool, Bytes), Status> {
     let mut known = 0;
     let length = |head: [u8; PREFIX]| u32::from_be_bytes([head[1], head[2], head[3], head[4]]);
     while let Some(frame) = body.frame().await {
-        let frame = frame.map_err(Status::from_error)?;
+        let frame = frame.map_err(|error| Status::from_error(error.into_inner()))?;
         let Ok(piece) = frame.into_data() else {
             continue;
         };

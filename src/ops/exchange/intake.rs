@@ -8,6 +8,7 @@
 
 use std::{
     future::ready,
+    mem::take,
     pin::Pin,
     sync::Arc,
     task::{Context, Poll},
@@ -26,9 +27,15 @@ use tokio::{
     time::{Instant, Sleep, sleep, sleep_until},
 };
 
-use super::Visit;
-use crate::body::{Answering, Body, BoxError, Request, Response};
-use crate::ops::{dialect::Dialect, throttle::LogThrottle};
+use super::Inbound;
+use crate::{
+    body::{Body, BoxError, Response, Whole},
+    ops::{
+        dialect::Dialect,
+        step::{Next, Step},
+        throttle::LogThrottle,
+    },
+};
 
 /// The bounds that all requests share. Cheap to clone.
 #[derive(Clone, Debug)]
@@ -58,17 +65,15 @@ impl Intake {
             }),
         }
     }
+}
 
+impl Step for Intake {
     /// Answers a request within the bounds, or refuses it.
-    pub(in crate::ops) async fn answer(
-        &self,
-        mut visit: Box<Visit>,
-        answer: impl FnOnce(Request) -> Answering,
-    ) -> Response {
-        let (shared, dialect) = (&*self.shared, visit.dialect);
-        let answered = match visit.refused.take() {
+    async fn answer(&self, mut inbound: Box<Inbound>, next: impl Next) -> Response {
+        let (shared, dialect) = (&*self.shared, inbound.client.dialect);
+        let answered = match inbound.refused.take() {
             Some(error) => Err(error),
-            None => shared.answer(visit, answer).await,
+            None => shared.answer(inbound, next).await,
         };
         answered.unwrap_or_else(|error| {
             if let Some(times) = shared.refused.record() {
@@ -80,14 +85,10 @@ impl Intake {
 }
 
 impl Shared {
-    async fn answer(
-        &self,
-        visit: Box<Visit>,
-        answer: impl FnOnce(Request) -> Answering,
-    ) -> Result<Response, Error> {
-        let (client, dialect) = (&visit.client, visit.dialect);
-        let is_probe = client.is_probe;
-        let places = (!is_probe).then(|| Places {
+    async fn answer(&self, mut inbound: Box<Inbound>, next: impl Next) -> Result<Response, Error> {
+        let client = &inbound.client;
+        let (dialect, is_probe) = (client.dialect, client.is_probe);
+        let permits = (!is_probe).then(|| Permits {
             all: self.places.clone(),
             address: client.usage.clone(),
         });
@@ -95,19 +96,19 @@ impl Shared {
         let budget = record
             .as_ref()
             .map_or(&self.budget, |record| record.budget());
-        let mut response = if visit.request.body().is_end_stream() {
-            let _place = places.as_ref().map(Places::take).transpose()?;
-            self.in_time(record.as_deref(), ready(()), answer(visit.request))
+        let mut response = if inbound.request.body().is_end_stream() {
+            let _permit = permits.as_ref().map(Permits::take).transpose()?;
+            self.in_time(record.as_deref(), ready(()), next.answer(inbound))
                 .await?
         } else {
             let received = Arc::new(Receiving {
                 held: Mutex::new(budget.hold_anyway(0)),
-                place: Mutex::new(None),
-                places,
+                permit: Mutex::new(None),
+                permits,
                 done: Notify::new(),
             });
-            let request = visit.request.map(|body| {
-                Body::new(Received {
+            inbound.request = take(&mut inbound.request).map(|body| {
+                Body::new(LimitedBody {
                     body,
                     deadline: Box::pin(sleep(self.body)),
                     patience: self.body,
@@ -118,7 +119,7 @@ impl Shared {
                 })
             });
             let is_received = received.done.notified();
-            self.in_time(record.as_deref(), is_received, answer(request))
+            self.in_time(record.as_deref(), is_received, next.answer(inbound))
                 .await?
         };
         let whole = response.body().size_hint().exact();
@@ -128,7 +129,7 @@ impl Shared {
                 true => budget.hold_anyway(bytes),
                 false => budget.hold(bytes)?,
             };
-            response = response.map(|body| body.holding(held));
+            Whole::hold(&mut response, held);
         }
         Ok(response)
     }
@@ -139,7 +140,7 @@ impl Shared {
         &self,
         record: Option<&Record>,
         is_received: impl Future<Output = ()>,
-        answer: Answering,
+        answer: impl Future<Output = Response>,
     ) -> Result<Response, Error> {
         let too_long = async {
             is_received.await;
@@ -171,25 +172,25 @@ struct Receiving {
     /// The memory of the body so far, held until there is an answer.
     held: Mutex<Held>,
     /// The place of the request, once all of it has come.
-    place: Mutex<Option<Place>>,
+    permit: Mutex<Option<Permit>>,
     /// Where it takes its place; health checks need none.
-    places: Option<Places>,
+    permits: Option<Permits>,
     /// Notified when the last of it has come, or is not wanted any more.
     done: Notify,
 }
 
 /// The places for requests.
 #[derive(Debug)]
-struct Places {
+struct Permits {
     all: Arc<Quota>,
     address: Arc<Usage>,
 }
 
 /// A place among all requests, and one among those of the address.
-type Place = (OneOf, InUse);
+type Permit = (OneOf, InUse);
 
-impl Places {
-    fn take(&self) -> Result<Place, Error> {
+impl Permits {
+    fn take(&self) -> Result<Permit, Error> {
         let limit = self.all.limit();
         let of_address = self.address.place(&self.all)?;
         let one = self.all.clone().one();
@@ -199,13 +200,13 @@ impl Places {
 
 impl Receiving {
     /// Takes a place for the request, unless it has one.
-    fn take_place(&self) -> Result<(), Error> {
-        let Some(places) = &self.places else {
+    fn take_permit(&self) -> Result<(), Error> {
+        let Some(permits) = &self.permits else {
             return Ok(());
         };
-        let mut place = self.place.lock();
-        if place.is_none() {
-            *place = Some(places.take()?);
+        let mut permit = self.permit.lock();
+        if permit.is_none() {
+            *permit = Some(permits.take()?);
         }
         Ok(())
     }
@@ -218,7 +219,7 @@ const AT_ONCE: usize = 64 << 10;
 const PROBE_BODY: usize = 1 << 10;
 
 /// The body of a request: in time, and within the budget.
-struct Received {
+struct LimitedBody {
     body: Body,
     deadline: Pin<Box<Sleep>>,
     patience: Duration,
@@ -230,7 +231,7 @@ struct Received {
     free: usize,
 }
 
-impl HttpBody for Received {
+impl HttpBody for LimitedBody {
     type Data = Bytes;
     type Error = BoxError;
 
@@ -252,7 +253,7 @@ impl HttpBody for Received {
                 self.free -= bytes - counted;
                 self.receiving.held.lock().grow(counted).err()
             }
-            Poll::Ready(None) => self.receiving.take_place().err(),
+            Poll::Ready(None) => self.receiving.take_permit().err(),
             Poll::Ready(_) => None,
             Poll::Pending => {
                 self.at_once = 0;
@@ -263,7 +264,7 @@ impl HttpBody for Received {
         };
         match fault {
             Some(fault) => Poll::Ready(Some(Err(self.dialect.broken(fault)))),
-            None => polled.map_err(|error| self.dialect.unreadable(error)),
+            None => polled.map_err(|error| self.dialect.unreadable(error.into_inner())),
         }
     }
 
@@ -276,10 +277,10 @@ impl HttpBody for Received {
     }
 }
 
-impl Drop for Received {
+impl Drop for LimitedBody {
     fn drop(&mut self) {
         // A body that is not read to its end counts as well, where there is a place.
-        let _ = self.receiving.take_place();
+        let _ = self.receiving.take_permit();
         self.receiving.done.notify_one();
     }
 }

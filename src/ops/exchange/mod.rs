@@ -14,18 +14,23 @@ mod report;
 
 use std::{net::IpAddr, pin::pin, sync::Arc};
 
-use http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
+use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
+use http_body::Body as _;
 
 use super::{
-    dialect::Dialect, heard::Heard, identity::REQUEST_ID, metrics::Metrics, peer::Peer,
+    dialect::Dialect,
+    identity::REQUEST_ID,
+    metrics::Metrics,
+    peer::Peer,
     spans::Spans,
+    step::{Next, Step},
 };
 use crate::body::{Body, Request, Response};
 pub(super) use intake::Intake;
 pub(super) use open::Fate;
 use open::OpenExchanges;
 use progress::Terms;
-use reply::{Exchange, Places};
+use reply::{Exchange, Permits};
 use report::{Asked, Report};
 use strew_access::{Gate, Usage};
 use strew_config::{Server, seconds};
@@ -54,6 +59,8 @@ pub(super) struct Client {
     pub(super) usage: Arc<Usage>,
     /// A health check is answered whatever else is in progress.
     pub(super) is_probe: bool,
+    /// The protocol that it speaks.
+    pub(super) dialect: Dialect,
 }
 
 /// Where the requests of a connection come from, and the exchanges that are open on it. Cheap to clone.
@@ -66,13 +73,12 @@ pub(super) struct From {
     pub(super) open: Arc<OpenExchanges>,
 }
 
-/// A request on its way to its answer. On the heap: what waits for an answer then moves it as a pointer.
+/// A request on its way through the steps. On the heap: what waits for an answer then moves it as a pointer.
 #[derive(Debug)]
-pub(super) struct Visit {
+pub(super) struct Inbound {
     pub(super) request: Request,
-    pub(super) dialect: Dialect,
-    pub(super) heard: Heard,
     pub(super) client: Client,
+    from: From,
     /// Why the intake should refuse it.
     pub(super) refused: Option<Error>,
 }
@@ -108,59 +114,68 @@ impl Exchanges {
         }
     }
 
-    /// A request that begins its way. From here on it travels as a pointer.
-    pub(super) fn visit(&self, from: &From, request: Request) -> Box<Visit> {
-        let heard = Heard::of(request.headers());
-        let dialect = match heard.content_type {
-            true => Dialect::of(request.headers()),
-            false => Dialect::Rest,
-        };
-        let forwarded = heard.forwarded.then(|| request.headers());
-        Box::new(Visit {
-            dialect,
-            client: self.client(from, forwarded),
-            heard,
+    /// A request that begins its way.
+    pub(super) fn inbound(&self, from: From, request: Request) -> Box<Inbound> {
+        Box::new(Inbound {
+            client: self.client(&from, request.headers()),
+            from,
             request,
             refused: None,
         })
     }
 
-    /// Answers a request to a route; the answer leaves through its exchange.
-    pub(super) async fn answer<A: Future<Output = Response>>(
-        &self,
-        from: &From,
-        route: &'static str,
-        mut visit: Box<Visit>,
-        answer: impl FnOnce(Box<Visit>) -> A,
-    ) -> Response {
-        let (dialect, now) = (visit.dialect, Instant::now());
-        let usage = visit.client.usage.clone();
+    /// The client of a request, of which the headers name another than the peer or do not.
+    fn client(&self, from: &From, headers: &HeaderMap) -> Client {
+        let address = match headers.contains_key(FORWARDED_FOR) {
+            false => from.address,
+            true => {
+                let lines = headers.get_all(FORWARDED_FOR).iter();
+                let lines = lines.map(HeaderValue::as_bytes);
+                self.gate.client(from.address, lines)
+            }
+        };
+        Client {
+            usage: match address == from.address {
+                true => from.usage.clone(),
+                false => self.gate.usage(address),
+            },
+            address,
+            is_probe: false,
+            dialect: Dialect::of(headers),
+        }
+    }
+}
+
+impl Step for Exchanges {
+    /// Answers a request; the answer leaves through its exchange.
+    async fn answer(&self, mut inbound: Box<Inbound>, next: impl Next) -> Response {
+        let (dialect, now) = (inbound.client.dialect, Instant::now());
+        let is_head = *inbound.request.method() == Method::HEAD;
+        let usage = inbound.client.usage.clone();
         let budget = self.budget.of_address(usage.clone());
         let report = {
             let asked = Asked {
-                request: &visit.request,
-                has_identity: visit.heard.identity,
+                request: &inbound.request,
                 protocol: dialect.protocol(),
-                route,
-                peer: from.peer,
+                peer: inbound.from.peer,
                 start: now,
             };
             Report::start(&self.metrics, self.spans.as_ref(), budget.clone(), &asked)
         };
         let record = report.record().clone();
 
-        let is_probe = PROBES.contains(&visit.request.uri().path());
+        let is_probe = PROBES.contains(&inbound.request.uri().path());
         let probe = is_probe.then(|| usage.probe()).flatten();
         // Refusals are answers, too: those beyond the limits are small, and beyond twice the limits they
         // have no body that a client could leave untouched.
         let is_probe = probe.is_some();
-        visit.client.is_probe = is_probe;
+        inbound.client.is_probe = is_probe;
         let (used, limit) = (usage.requests.used(), usage.requests.limit());
         let base = match is_probe {
             true => Ok(budget.hold_anyway(BASE)),
             false => budget.hold(BASE),
         };
-        let refused = match base.as_ref().err() {
+        inbound.refused = match base.as_ref().err() {
             Some(error) => Some(error.clone()),
             None if is_probe || used < limit => None,
             None => {
@@ -169,19 +184,20 @@ impl Exchanges {
             }
         };
         let is_bare = base.is_err() || !is_probe && used >= limit.saturating_mul(2);
-        let places = Places {
+        let permits = Permits {
             _request: usage.request(),
             _probe: probe,
             _base: base.unwrap_or_else(|_| budget.hold_anyway(BASE)),
         };
-        let exchange = Exchange::new(report, dialect, self.terms, places, from.open.begin(), now);
+        let entry = inbound.from.open.begin();
+        let exchange = Exchange::new(report, dialect, self.terms, permits, entry, now);
 
         let answered = pin!(async {
-            match refused {
+            match inbound.refused.take() {
                 Some(error) if is_bare => bare(dialect, &error),
                 refused => {
-                    visit.refused = refused;
-                    answer(visit).await
+                    inbound.refused = refused;
+                    next.answer(inbound).await
                 }
             }
         });
@@ -191,25 +207,22 @@ impl Exchanges {
             id.set_sensitive(true);
             response.headers_mut().insert(REQUEST_ID, id);
         }
+        announce_length(&mut response, is_head);
         exchange.answer(&mut response);
         response
     }
+}
 
-    /// The client of a request, of which the headers name another than the peer or do not.
-    fn client(&self, from: &From, forwarded: Option<&HeaderMap>) -> Client {
-        let address = forwarded.map_or(from.address, |headers| {
-            let lines = headers.get_all(FORWARDED_FOR).iter();
-            let lines = lines.map(HeaderValue::as_bytes);
-            self.gate.client(from.address, lines)
-        });
-        Client {
-            usage: match address == from.address {
-                true => from.usage.clone(),
-                false => self.gate.usage(address),
-            },
-            address,
-            is_probe: false,
-        }
+/// States the length of an answer that has no body to show it. Of other answers the HTTP library does.
+fn announce_length(response: &mut Response, is_head: bool) {
+    if let Some(length) = response.body().size_hint().exact()
+        && (is_head || length == 0)
+    {
+        let slot = response.headers_mut().entry(header::CONTENT_LENGTH);
+        slot.or_insert_with(|| length.into());
+    }
+    if is_head {
+        *response.body_mut() = Body::empty();
     }
 }
 

@@ -30,7 +30,7 @@ use super::{
     report::Report,
 };
 use crate::{
-    body::{Body, BoxError, Response},
+    body::{Body, BoxError, Response, Whole},
     grpc,
     ops::dialect::{Dialect, Ending},
 };
@@ -47,12 +47,12 @@ pub(super) struct Exchange {
     end: Mutex<End>,
     /// Its place among the exchanges of the connection.
     entry: Entry,
-    _places: Places,
+    _permits: Permits,
 }
 
 /// The places that are free again when an exchange is over.
 #[derive(Debug)]
-pub(super) struct Places {
+pub(super) struct Permits {
     pub(super) _request: InUse,
     pub(super) _probe: Option<InUse>,
     pub(super) _base: Held,
@@ -94,7 +94,7 @@ impl Exchange {
         report: Report,
         dialect: Dialect,
         terms: Terms,
-        places: Places,
+        permits: Permits,
         entry: Entry,
         now: Instant,
     ) -> Arc<Self> {
@@ -120,7 +120,7 @@ impl Exchange {
             dialect,
             end: Mutex::new(end),
             entry,
-            _places: places,
+            _permits: permits,
         });
         let timed = Arc::downgrade(&exchange);
         exchange.entry.begin(timed, now);
@@ -145,16 +145,18 @@ impl Exchange {
         };
         let mut state = self.state.lock();
         state.report.head(response);
-        let (held, body) = take(response.body_mut()).release();
+        let held = response.extensions_mut().remove::<Whole>();
+        let body = take(response.body_mut());
         let whole = body.size_hint().exact();
         let whole = whole.and_then(|bytes| usize::try_from(bytes).ok());
-        state.whole = whole
-            .filter(|&bytes| bytes > 0)
-            .map(|bytes| held.unwrap_or_else(|| Arc::new(self.budget.hold_anyway(bytes))));
+        state.whole = whole.filter(|&bytes| bytes > 0).map(|bytes| match held {
+            Some(Whole(held)) => held,
+            None => Arc::new(self.budget.hold_anyway(bytes)),
+        });
         state.body = Some(body);
         state.progress.resume(Instant::now());
         drop(state);
-        *response.body_mut() = Body::frames(Reply {
+        *response.body_mut() = Body::new(Reply {
             exchange: self,
             end,
             sleep: None,
@@ -304,7 +306,7 @@ impl HttpBody for Reply {
             }
             Poll::Ready(Some(Err(error))) => {
                 state.report.broken_off();
-                Poll::Ready(Some(Err(error)))
+                Poll::Ready(Some(Err(error.into_inner())))
             }
             Poll::Ready(Some(Ok(frame))) => Poll::Ready(Some(Ok(match frame.into_data() {
                 Ok(bytes) => state.leave(&exchange, bytes, now),

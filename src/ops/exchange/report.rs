@@ -43,7 +43,6 @@ pub(super) struct Report {
     /// When its head was there.
     start: Instant,
     protocol: Protocol,
-    route: &'static str,
     method: Method,
     address: Option<PathAndQuery>,
     client: SocketAddr,
@@ -60,10 +59,7 @@ pub(super) struct Report {
 /// What a report begins with.
 pub(super) struct Asked<'a> {
     pub(super) request: &'a Request,
-    /// Whether its headers name it.
-    pub(super) has_identity: bool,
     pub(super) protocol: Protocol,
-    pub(super) route: &'static str,
     pub(super) peer: Peer,
     pub(super) start: Instant,
 }
@@ -78,16 +74,13 @@ impl Report {
         budget: Budget,
         &Asked {
             request,
-            has_identity,
             protocol,
-            route,
             peer,
             start,
         }: &Asked<'_>,
     ) -> Self {
         let begins_one = || spans.is_some_and(Spans::begins_one);
-        let named = has_identity.then(|| request.headers());
-        let identity = Identity::of(named, begins_one);
+        let identity = Identity::of(request.headers(), begins_one);
         metrics.in_flight(protocol).inc();
         let Identity { id, trace } = identity;
         let of = trace.as_ref().map(|trace| &*trace.trace);
@@ -95,7 +88,6 @@ impl Report {
             record: Record::new(id, of, budget),
             trace,
             start,
-            route,
             method: request.method().clone(),
             address: request.uri().path_and_query().cloned(),
             client: peer.0,
@@ -250,6 +242,7 @@ impl Drop for Report {
         let broken = self.broken();
         let outcome = self.outcome();
         let (metrics, protocol) = (&self.metrics, self.protocol);
+        let route = self.record.route().unwrap_or(NO_ROUTE);
         metrics.in_flight(protocol).dec();
         if self.is_refused() {
             metrics.rejected(protocol, self.record.refused()).inc();
@@ -260,7 +253,7 @@ impl Drop for Report {
         let format = self.record.format();
         metrics.took(protocol, format.unwrap_or(NO_FORMAT), [first, total]);
         let method = method_name(&self.method);
-        let requests = metrics.requests(protocol, self.route, method, outcome);
+        let requests = metrics.requests(protocol, route, method, outcome);
         requests.inc();
 
         let (trace, address) = (self.trace.as_ref(), self.address());
@@ -278,7 +271,7 @@ impl Drop for Report {
                     protocol = self.protocol.name(),
                     method = self.method.as_str(),
                     address = &*address,
-                    route = self.route,
+                    route,
                     status = self.status.map(|status| status.as_u16()),
                     outcome,
                     reason,
@@ -293,18 +286,18 @@ impl Drop for Report {
             };
         }
         // Probes and scrapes come every few seconds and say nothing.
-        if let "/livez" | "/readyz" | "/metrics" = self.route {
+        if let "/livez" | "/readyz" | "/metrics" = route {
             line!(debug);
             return;
         }
         line!(info);
         if let (Some(spans), Some(trace)) = (&self.spans, trace) {
-            let is_call = self.protocol == Protocol::Grpc && self.route != NO_ROUTE;
+            let is_call = self.protocol == Protocol::Grpc && route != NO_ROUTE;
             spans.take(&Answered {
                 trace,
                 request_id: self.record.id(),
-                call: is_call.then_some(self.route),
-                route: Some(self.route).filter(|route| *route != NO_ROUTE),
+                call: is_call.then_some(route),
+                route: Some(route).filter(|route| *route != NO_ROUTE),
                 method,
                 address: &address,
                 client: Some(self.client),

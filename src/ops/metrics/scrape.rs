@@ -2,6 +2,7 @@
 
 use std::{sync::Arc, time::UNIX_EPOCH};
 
+use axum::extract::State;
 use prometheus::{Counter, Gauge, Opts, Registry, TextEncoder, core::Collector};
 use strew_service::{Service, forging};
 
@@ -37,7 +38,10 @@ pub(in crate::ops) fn endpoint(metrics: Metrics, service: Arc<Service>) -> Endpo
     Endpoint::only("/metrics", state, operation, get)
 }
 
-async fn get((metrics, service): (Metrics, Arc<Service>), _: Context) -> Result<Response, Refused> {
+async fn get(
+    State((metrics, service)): State<(Metrics, Arc<Service>)>,
+    _: Context,
+) -> Result<Response, Refused> {
     let text = metrics.scrape(&service).await;
     Ok(rest::momentary(rest::file(text, CONTENT_TYPE)))
 }

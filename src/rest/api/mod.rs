@@ -6,13 +6,16 @@
 
 mod document;
 mod examples;
-mod handler;
 mod rules;
 pub mod schemas;
 mod sets;
 mod shape;
 
-use http::Method;
+use axum::{
+    handler::Handler,
+    routing::{MethodFilter, MethodRouter, on},
+};
+use http::{Method, Uri};
 use schemars::JsonSchema;
 use serde_json::Value;
 use strew_error::Kind;
@@ -20,10 +23,9 @@ use strew_query::{Group, Parameter};
 
 use schemas::Content;
 
-use super::problem::Problem;
+use super::{problem::Problem, unknown::wrong_method};
 
 pub(super) use document::document;
-pub use handler::{Handle, Handler, handler};
 
 /// A path that answers, and what it answers.
 #[derive(Clone, Debug)]
@@ -31,8 +33,8 @@ pub struct Endpoint {
     path: &'static str,
     operations: Vec<Operation>,
     is_open: bool,
-    /// The handler of each operation.
-    handlers: Vec<Handler>,
+    /// What answers its methods.
+    answers: MethodRouter,
 }
 
 /// One method of a path.
@@ -186,24 +188,40 @@ impl Endpoint {
         path: &'static str,
         state: S,
         operation: Operation,
-        handle: impl Handle<S, T>,
+        handle: impl Handler<T, S>,
     ) -> Self
     where
         S: Clone + Send + Sync + 'static,
+        T: 'static,
     {
-        Self::new(path, vec![(operation, handler(&state, handle))])
+        Self::new(path).with(state, operation, handle)
     }
 
-    /// A path with a handler for each of its operations. Other methods are answered with a problem.
+    /// A path without operations yet.
     #[must_use]
-    pub fn new(path: &'static str, operations: Vec<(Operation, Handler)>) -> Self {
-        let (operations, handlers) = operations.into_iter().unzip();
+    pub fn new(path: &'static str) -> Self {
         Self {
             path,
-            operations,
-            handlers,
+            operations: vec![],
             is_open: false,
+            answers: MethodRouter::new(),
         }
+    }
+
+    /// With one more operation, and the handler that answers it.
+    ///
+    /// # Panics
+    /// For a method that HTTP does not define, or that the path has already.
+    #[must_use]
+    pub fn with<S, T>(mut self, state: S, operation: Operation, handle: impl Handler<T, S>) -> Self
+    where
+        S: Clone + Send + Sync + 'static,
+        T: 'static,
+    {
+        let method = MethodFilter::try_from(operation.method.clone()).expect("a usual method");
+        self.answers = self.answers.merge(on(method, handle).with_state(state));
+        self.operations.push(operation);
+        self
     }
 
     /// Lets everyone in, with a key or without.
@@ -231,19 +249,15 @@ impl Endpoint {
         &self.operations
     }
 
-    /// The handler of a method; that of GET answers HEAD, too.
-    pub(super) fn handler(&self, method: &Method) -> Option<&Handler> {
-        let method = match *method {
-            Method::HEAD => &Method::GET,
-            _ => method,
-        };
-        let mut operations = self.operations.iter();
-        let place = operations.position(|operation| operation.method == method)?;
-        self.handlers.get(place)
+    /// What answers requests to the path. Methods that it does not take are answered with a problem.
+    pub(super) fn answers(&self) -> MethodRouter {
+        let allowed = self.allowed();
+        let refuse = async move |method: Method, uri: Uri| wrong_method(&method, &uri, &allowed);
+        self.answers.clone().fallback(refuse)
     }
 
     /// The methods that it takes, with commas.
-    pub(super) fn allowed(&self) -> String {
+    fn allowed(&self) -> String {
         let methods = self
             .operations
             .iter()

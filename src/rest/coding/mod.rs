@@ -8,12 +8,13 @@
 mod choice;
 mod encoder;
 
+use axum::body::{BodyDataStream, to_bytes};
 use bytes::Bytes;
 use futures_util::{StreamExt as _, stream};
 use http::{HeaderMap, HeaderValue, header};
 
 use super::vary;
-use crate::body::{Body, BoxError, Pieces, Response};
+use crate::body::{Body, BoxError, Response, Whole};
 pub(super) use choice::Coding;
 pub(super) use encoder::Encoder;
 use strew_error::Error;
@@ -75,14 +76,15 @@ impl Choice {
             }
         }
         let (mut parts, body) = response.into_parts();
-        let (_held, body) = body.release();
+        let _held = parts.extensions.remove::<Whole>();
+        let mut held = None;
         let body = match whole {
             // The length is not known, which an empty body would not say.
             _ if is_head => unknown_length(),
             Some(length) => {
                 let encoded = whole_document(body, length, coding, service).await?;
-                let held = service.hold(encoded.len())?;
-                Body::from(encoded).holding(held)
+                held = Some(service.hold(encoded.len())?);
+                Body::from(encoded)
             }
             None => {
                 let held = service.hold(coding.memory())?;
@@ -92,7 +94,11 @@ impl Choice {
         let name = HeaderValue::from_static(coding.name());
         parts.headers.insert(header::CONTENT_ENCODING, name);
         parts.headers.remove(header::CONTENT_LENGTH);
-        Ok(Response::from_parts(parts, body))
+        let mut response = Response::from_parts(parts, body);
+        if let Some(held) = held {
+            Whole::hold(&mut response, held);
+        }
+        Ok(response)
     }
 }
 
@@ -118,7 +124,7 @@ async fn whole_document(
     let failed = |_| Error::Internal("an answer cannot be compressed");
     let _held = service.hold(coding.memory())?;
     let most = usize::try_from(length).unwrap_or(usize::MAX);
-    let plain = body.whole(most).await.map_err(failed)?;
+    let plain = to_bytes(body, most).await.map_err(failed)?;
     let lane = if length <= MUCH {
         Lane::Short
     } else {
@@ -132,7 +138,7 @@ async fn whole_document(
 /// A body compressed block by block, each sent on when it is done. The work is done where points
 /// are made; meanwhile the next block is being made.
 fn compressed(body: Body, coding: Coding, workers: Workers, held: Held) -> Body {
-    let state = Encoder::new(coding).map(|encoder| (body.pieces(), encoder));
+    let state = Encoder::new(coding).map(|encoder| (body.into_data_stream(), encoder));
     let start = stream::once(std::future::ready(state));
     // The body is polled outside of its request.
     let threads = (workers, Owner::current());
@@ -152,7 +158,7 @@ fn compressed(body: Body, coding: Coding, workers: Workers, held: Held) -> Body 
     }))
 }
 
-type State = Option<(Pieces, Encoder)>;
+type State = Option<(BodyDataStream, Encoder)>;
 
 async fn next_block(
     state: State,

@@ -2,6 +2,7 @@
 
 use std::{pin::pin, sync::Arc};
 
+use axum::extract::State;
 use futures_util::StreamExt as _;
 use http::{HeaderName, HeaderValue, Method};
 use schemars::JsonSchema;
@@ -16,7 +17,7 @@ use strew_service::{
 
 use super::{
     api::{
-        self, Endpoint, Operation, Tag, handler,
+        self, Endpoint, Operation, Tag,
         schemas::{self, ArrangementQuery as ArrangementBody},
     },
     context::{Context, Sent},
@@ -67,11 +68,9 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         example: format!("/v1/pattern/arrangements -d '{body}'"),
         ..given.clone()
     };
-    let operations = vec![
-        (given, handler(&service, get)),
-        (posted, handler(&service, post)),
-    ];
-    Endpoint::new("/v1/pattern/arrangements", operations)
+    Endpoint::new("/v1/pattern/arrangements")
+        .with(service.clone(), given, get)
+        .with(service, posted, post)
 }
 
 /// The answer, with a list or without.
@@ -136,7 +135,7 @@ struct Occurrence {
     places: Option<Vec<[f64; 2]>>,
 }
 
-async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let query = ArrangementQuery::check(&context.values(groups::ARRANGEMENT), &service.catalog())?;
     let content_type = query
         .list
@@ -148,7 +147,7 @@ async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refuse
     Ok(freshness.answer(&context.headers, pin!(make)).await?)
 }
 
-async fn post(service: Arc<Service>, sent: Sent) -> Result<Response, Refused> {
+async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
     let Sent { context, body } = sent;
     let bytes = body.len();
     let read = move |service: &Service, _: &Stop| {

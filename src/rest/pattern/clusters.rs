@@ -2,6 +2,7 @@
 
 use std::{pin::pin, sync::Arc};
 
+use axum::extract::State;
 use strew_query::groups;
 use strew_service::{
     Service,
@@ -34,7 +35,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     Endpoint::only("/v1/pattern/clusters", service, operation, get)
 }
 
-async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let query = ClustersQuery::check(&context.values(groups::CLUSTERS))?;
     let make = service.clusters(&context.caller, query, move |found| {
         document::json(&query.document(found))

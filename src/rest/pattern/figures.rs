@@ -2,6 +2,7 @@
 
 use std::{pin::pin, sync::Arc};
 
+use axum::extract::State;
 use strew_error::Error;
 use strew_service::{
     Service,
@@ -90,7 +91,7 @@ fn endpoint(service: Arc<Service>, described: Described, format: Format) -> Endp
             api::Answer::file("The figure.", format.content_type(), content).or_unchanged(),
         )
     };
-    let handler = move |service: Arc<Service>, context: Context| async move {
+    let handler = move |State(service): State<Arc<Service>>, context: Context| async move {
         Ok::<_, Refused>(draw(&service, &context, figure, format).await?)
     };
     Endpoint::only(paths[number], service, operation, handler)

@@ -2,6 +2,7 @@
 
 use std::{pin::pin, sync::Arc};
 
+use axum::extract::State;
 use strew_query::groups;
 use strew_service::{
     Service,
@@ -33,7 +34,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     Endpoint::only("/v1/pattern/map", service, operation, get)
 }
 
-async fn get(service: Arc<Service>, context: Context) -> Result<Response, Refused> {
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let query = MapQuery::check(&context.values(groups::MAP))?;
     let make = service.map(&context.caller, query, |map| document::json(&map));
     Ok(context.answer(document::JSON, &(), pin!(make)).await?)

@@ -8,7 +8,7 @@ use strew::{
     ops::App,
     rest::{
         Context, Refused,
-        api::{Endpoint, Operation, Tag, handler},
+        api::{Endpoint, Operation, Tag},
     },
 };
 use strew_config::Layers;
@@ -20,16 +20,17 @@ async fn a_panic_fails_one_request_only() {
     for setting in ["server.listen=127.0.0.1:0", "shutdown.drain_seconds=1"] {
         layers = layers.assignment(setting).expect("a setting");
     }
-    async fn panics((): (), _: Context) -> Result<Response, Refused> {
+    async fn panics(_: Context) -> Result<Response, Refused> {
         panic!("a secret of the source")
     }
     let operation = |method| Operation {
         method,
         ..Operation::new(Tag::Operations, vec![])
     };
-    let methods = [Method::GET, Method::POST].map(operation);
-    let operations = methods.map(|operation| (operation, handler(&(), panics)));
-    let endpoint = Endpoint::new("/panics", operations.into()).open();
+    let endpoint = Endpoint::new("/panics")
+        .with((), operation(Method::GET), panics)
+        .with((), operation(Method::POST), panics)
+        .open();
     let app = App::new(layers.finish().expect("settings"))
         .expect("tables")
         .with_endpoints(vec![endpoint]);

@@ -1,0 +1,102 @@
+//! The app: every step of a request, in their order.
+//!
+//! A connection hands each request to the outermost step. A step does its part, has the next one answer, and may change
+//! the answer on its way back. The last one is axum's router of all paths, of REST and of gRPC.
+
+use std::sync::Arc;
+
+use axum::Router;
+use strew_access::Gate;
+use tower::ServiceBuilder;
+
+use super::{
+    calls::Calls,
+    exchange::{Client, Exchanges, Inbound, Intake},
+    gate::{Admission, GateLayer},
+    panics::Panics,
+    step::{Layered, Next, Routed, Step},
+};
+use crate::{
+    body::{Request, Response},
+    grpc,
+    rest::{Finish, Preferences, Routes},
+};
+
+/// The steps around the router.
+pub(super) type Steps =
+    Layered<Exchanges, Layered<Finish, Layered<Panics, Layered<Calls, Layered<Bounds, Routed>>>>>;
+
+/// The bounds on requests that are taken on; none for administrators.
+type Bounds = Option<Intake>;
+
+/// What the steps are made of.
+pub(super) struct Stack {
+    pub(super) exchanges: Exchanges,
+    pub(super) finish: Finish,
+    pub(super) routes: Routes,
+    /// Calls of gRPC; none at the address of administrators.
+    pub(super) calls: Option<grpc::Calls>,
+    pub(super) intake: Option<Intake>,
+    /// The keys that are required; at the address of administrators everyone is one.
+    pub(super) gate: Option<Arc<Gate>>,
+}
+
+impl Stack {
+    /// All steps, from the head of a request to its answer.
+    pub(super) fn steps(self) -> Steps {
+        let panics = Panics(self.exchanges.metrics.clone());
+        let calls = Calls(self.calls.is_some());
+        let router = router(self.routes, self.calls, self.gate);
+        ServiceBuilder::new()
+            // Names the request and counts it against its client's address. The answer leaves through it, so that each
+            // byte is counted until the socket has it, and there is one report of all: it is outermost.
+            .layer(self.exchanges.layer())
+            // Requests for foreign hosts, of foreign pages and with heads too long go no further. All answers, also
+            // refusals of the steps below, get what browsers and caches need, and are compressed.
+            .layer(self.finish.layer())
+            // A panic below is one request's, and is answered.
+            .layer(panics.layer())
+            // Calls of web pages become calls as all others, and the deadline of a call begins.
+            .layer(calls.layer())
+            // The number of requests at once, the bytes of their bodies, and the time to the head of an answer.
+            .layer(self.intake.layer())
+            .service(Routed(router))
+    }
+}
+
+/// All paths. What is not open to everyone is behind the gate; unknown paths are open.
+fn router(routes: Routes, calls: Option<grpc::Calls>, gate: Option<Arc<Gate>>) -> Router {
+    let Routes { gated, open, paths } = routes;
+    let nothing = async move |request: Request| -> Response {
+        let client = request.extensions().get::<Client>();
+        match client.is_some_and(|client| client.dialect.is_call()) {
+            true => grpc::unimplemented(),
+            false => paths.nothing(request.uri().path()),
+        }
+    };
+    let (mut gated, mut open) = (gated, open.fallback(nothing));
+    if let Some(calls) = calls {
+        gated = calls.contract(gated);
+        open = calls.others(open);
+    }
+    let admission = gate.map_or(Admission::Admins, Admission::Gate);
+    open.merge(gated.route_layer(GateLayer(admission)))
+}
+
+impl Step for Finish {
+    async fn answer(&self, inbound: Box<Inbound>, next: impl Next) -> Response {
+        let (request, dialect) = (&inbound.request, inbound.client.dialect);
+        let misdirected = self.misdirected(request);
+        if let (None, Some(allowed)) = (&misdirected, self.preflight(request)) {
+            return allowed;
+        }
+        let preferences = Preferences::of(request);
+        let refusal = misdirected.map(|error| dialect.refusal(&error));
+        let mut response = match refusal.or_else(|| self.refusal(request)) {
+            Some(refusal) => refusal,
+            None => next.answer(inbound).await,
+        };
+        self.finish(&preferences, &mut response).await;
+        response
+    }
+}
