@@ -70,12 +70,13 @@ fn files(folder: &Path, endings: &[&str]) -> Vec<(String, String)> {
 }
 
 /// Folders beside the sources that nobody writes.
-const BUILT: [&str; 6] = [
+const BUILT: [&str; 7] = [
     "target",
     "generated",
     "node_modules",
     "dist",
     "embedded",
+    "tables/files",
     ".venv",
 ];
 

@@ -46,8 +46,7 @@ addEventListener("resize", resize);
 resize();
 
 const url = parameters.get("url") ?? "http://127.0.0.1:8080";
-// Chunks are requested again by `strew/three`.
-const points = connect(url, { retries: 0, patience: 0 }).points({
+const points = connect(url).points({
     spacing: 2.2, seed: 7, attributes: "angle, scale, variant, rank", scale_range: [0.7, 1.3],
     variants: { oak: 4, pine: 2, rock: 1 }, spread: "even",
 });

@@ -22,7 +22,7 @@ export function fault(field, value, detail, allowed) {
     return new StrewError(`\`${field}\`${shown}: ${detail}; allowed: ${allowed}`, "invalid-query", faults);
 }
 
-/** A daemon that cannot be reached, or whose answers break off again and again. */
+/** A daemon that cannot be reached, or whose answer broke off. */
 export class Disconnected extends Error {
     name = "Disconnected";
 }

@@ -213,24 +213,21 @@ export function open(options?: {
     wasm?: string | URL | ArrayBuffer | ArrayBufferView | WebAssembly.Module;
 }): Promise<Source<"here">>;
 
-/** A daemon that cannot be reached, or whose answers break off again and again. */
+/** A daemon that cannot be reached, or whose answer broke off. */
 export class Disconnected extends Error {}
 
 /**
- * A daemon, with the functions of what `open` returns; its answers are promises. Several replicas are a list, or one
- * text with commas. A request goes to the one with the fewest requests of this client; an address that fails is left
- * out for a while, and an answer that breaks off continues at any of them, each point once.
+ * A daemon, with the functions of what `open` returns; its answers are promises.
+ *
+ * Several replicas are a list of addresses, or one text with commas. A request goes to the address that answered last.
+ * If the connection fails, or the answer is 503 with `Retry-After`, it is sent once more after that time, at most
+ * 5 seconds: to the next address, or to the only one. Then an error names every address tried and why. All other
+ * refusals are thrown at once.
+ *
+ * An answer that breaks off throws `Disconnected`; a set is never shorter than it should be. To continue where long
+ * reading ended, read the parts of `split` one by one: each has its own cursor.
  */
-export function connect(
-    url: string | URL | (string | URL)[],
-    options?: {
-        key?: string;
-        /** How often each address may fail again in a row before a request ends: 3. */
-        retries?: number;
-        /** For how many seconds after the first failure a request is repeated: 30. */
-        patience?: number;
-    },
-): Source<"there">;
+export function connect(url: string | URL | (string | URL)[], options?: { key?: string }): Source<"there">;
 
 /** Pixels as JSON has them: rows from the top, where y is greatest. */
 export function pixels(values: Numbers, width: number, height: number, where?: object): object;

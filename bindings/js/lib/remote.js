@@ -1,16 +1,15 @@
 // Points that a daemon makes, or one of several, over HTTP. Everything is a promise.
+//
+// A request goes to the address that answered last, and is sent once more to the next one. Nothing else is kept of
+// addresses: balancing, health and longer retries are what proxies are for.
 
-import { StrewError, fault } from "./error.js";
+import { Disconnected, StrewError, fault } from "./error.js";
 import { OUTPUT } from "./parameters.js";
 import { Source } from "./points.js";
 import { PLANE, address, parsed, text } from "./query.js";
-import { Elsewhere, Later, Replicas, broken, retryAfter } from "./replicas.js";
 
-// The statuses of refusals that pass: the same request may succeed later.
-const LATER = [429, 502, 503, 504];
-// Refusals that depend on the tables, fields and worlds of a daemon: their kinds, or the members at fault.
-const HELD_KINDS = ["other-table", "other-world"];
-const HELD = ["cursor", "except", "field", "profile", "table", "terrain", "world"];
+// The longest wait for `Retry-After`, in seconds.
+const PATIENCE = 5;
 
 /** An address of HTTP, or in a page a path of its own server. */
 function checkedAddress(text) {
@@ -20,57 +19,56 @@ function checkedAddress(text) {
 }
 
 function addresses(url) {
-    const texts = Array.isArray(url) ? url : String(url).split(",");
-    return [...new Set(texts.map((text) => checkedAddress(String(text).trim()).replace(/\/+$/, "")))];
+    const texts = String(url).split(",");
+    return [...new Set(texts.map((text) => checkedAddress(text.trim()).replace(/\/+$/, "")))];
 }
+
+const why = ({ cause, message }) => cause?.message || cause?.code || message;
 
 class Daemon extends Source {
     #headers;
-    #replicas;
+    #urls;
+    // Which address the next request goes to.
+    #place = 0;
 
-    constructor(url, { key, retries = 3, patience = 30 }) {
+    constructor(url, { key }) {
         super();
         this.#headers = key ? { authorization: `Bearer ${key}` } : {};
-        this.#replicas = new Replicas(addresses(url), retries, patience);
+        this.#urls = addresses(url);
     }
 
-    /** The response of a replica, if it succeeded. */
-    async #call(replica, path, body) {
+    /** A good response with its whole content, `text` or `arrayBuffer`. A request without an answer is sent once more. */
+    async request(path, body, form = "text") {
         const post = { method: "POST", body, headers: { ...this.#headers, "content-type": "application/json" } };
         const options = body === undefined ? { headers: this.#headers } : post;
-        const lost = (error) => Promise.reject(broken(replica, error));
-        const response = await fetch(replica.url + path, options).catch(lost);
-        if (response.ok) {
-            replica.answered();
-            return response;
+        const tried = [];
+        for (;;) {
+            const place = this.#place;
+            const url = this.#urls[place];
+            const response = await fetch(url + path, options).catch((error) => new Disconnected(why(error)));
+            if (response.ok) {
+                const lost = (error) => Promise.reject(brokenOff(url, why(error)));
+                return { url, headers: response.headers, content: await response[form]().catch(lost) };
+            }
+            let [error, wait] = [response, "0"];
+            if (response instanceof Response) {
+                error = refusal(response.status, await response.text().catch(String));
+                wait = response.headers.get("retry-after");
+                if (response.status !== 503 || wait === null) throw error;
+            }
+            this.#place = (place + 1) % this.#urls.length;
+            tried.push(`${url}: ${error.message}`);
+            if (tried.length === 2) {
+                error.message = [...new Set(tried)].join("; ");
+                throw error;
+            }
+            const seconds = /^\d+$/.test(wait) ? Math.min(wait, PATIENCE) : PATIENCE;
+            await new Promise((ready) => setTimeout(ready, 1000 * seconds));
         }
-        const error = refusal(response.status, await response.text().catch(lost));
-        if (LATER.includes(response.status)) throw new Later(error, retryAfter(response.headers.get("retry-after")));
-        replica.answered();
-        throw isAboutHeld(error) ? new Elsewhere(error) : error;
-    }
-
-    /** Calls `work(call, progress)` at one replica after another. For a broken body it throws `call.broken(error)`. */
-    attempts(work, limits) {
-        const attempt = (replica, progress) => {
-            const call = (path, body) => this.#call(replica, path, body);
-            call.broken = (error) => broken(replica, error);
-            return work(call, progress);
-        };
-        return this.#replicas.attempts(attempt, limits);
-    }
-
-    /** The response to a request, with its whole content. */
-    request(path, body, limits) {
-        return this.attempts(async (call) => {
-            const response = await call(path, body);
-            const content = await response.arrayBuffer().catch((error) => Promise.reject(call.broken(error)));
-            return new Response(content, { headers: response.headers });
-        }, limits);
     }
 
     async json(path, body) {
-        return (await this.request(path, body)).json();
+        return JSON.parse((await this.request(path, body)).content);
     }
 
     plan(_, query, dimension = PLANE) {
@@ -85,20 +83,12 @@ class Daemon extends Source {
         return (await this.json(`${root}/points/${encodeURIComponent(id)}?${address(values)}`)).point;
     }
 
-    /** Sends a field to all daemons that can be reached: its name is a digest, and any may be called next. */
     async holdField(body) {
-        const up = this.#replicas.all.length > 1 ? this.#replicas.up() : [];
-        const one = (replica) => this.request("/v1/fields", body, { only: [replica], retries: 0 });
-        const sent = await Promise.allSettled(up.map(one));
-        const held = sent.find(({ status }) => status === "fulfilled")?.value;
-        return (await (held ?? (await this.request("/v1/fields", body))).json()).name;
+        return (await this.json("/v1/fields", body)).name;
     }
 }
 
-const isAboutHeld = ({ kind, faults }) => {
-    const members = faults.map(({ field }) => String(field).split(".").at(-1));
-    return HELD_KINDS.includes(kind) || (members.length > 0 && members.every((member) => HELD.includes(member)));
-};
+const brokenOff = (url, why) => new Disconnected(`${url}: the answer broke off: ${why}`);
 
 /** The error that a problem document states. Proxies answer with other content. */
 function refusal(status, content) {
@@ -114,6 +104,9 @@ function refusal(status, content) {
     const kind = typeof problem.type === "string" ? problem.type.split(":").at(-1) : `http-${status}`;
     return new StrewError(problem.detail, kind, Array.isArray(problem.errors) ? problem.errors : []);
 }
+
+/** The header `strew-columns`. */
+const columnsOf = (response) => JSON.parse(response.headers.get("strew-columns"));
 
 /** The header `strew-origin`. */
 const originOf = (response, axes) => response.headers.get("strew-origin")?.split(",").map(Number) ?? axes.map(() => 0);
@@ -139,12 +132,12 @@ class RemotePlan {
         this.#known = undefined;
     }
 
-    #points(more) {
-        return this.#daemon.request(this.#dimension.queries, text({ ...this.#query, ...more }));
+    #points(more, form) {
+        return this.#daemon.request(this.#dimension.queries, text({ ...this.#query, ...more }), form);
     }
 
     async #json(path, more = {}) {
-        return parsed(await (await this.#daemon.request(path, text({ ...this.#query, ...more }))).text());
+        return parsed((await this.#daemon.request(path, text({ ...this.#query, ...more }))).content);
     }
 
     async count() {
@@ -162,9 +155,8 @@ class RemotePlan {
 
     /** The columns and the origin, from the headers of an answer with one point at most. */
     async #requestHead() {
-        const response = await this.#points({ format: "f64", limit: 1 });
-        await response.arrayBuffer();
-        return { columns: JSON.parse(response.headers.get("strew-columns")), origin: originOf(response, this.#axes) };
+        const response = await this.#points({ format: "f64", limit: 1 }, "arrayBuffer");
+        return { columns: columnsOf(response), origin: originOf(response, this.#axes) };
     }
 
     #head() {
@@ -184,14 +176,10 @@ class RemotePlan {
 
     /** The rows of an answer, all of them numbers. */
     async #rows(format, kind) {
-        const columns = ({ headers }) => JSON.parse(headers.get("strew-columns"));
-        const whole = (bytes, response) => {
-            const each = columns(response).length * kind.BYTES_PER_ELEMENT;
-            const rows = Math.floor(bytes.length / each);
-            return { rows, length: rows * each };
-        };
-        const { bytes, first } = await new Answer(this.#daemon, this.#dimension, this.#query, { format }, whole).read();
-        return { columns: columns(first), values: new kind(bytes.buffer), origin: originOf(first, this.#axes) };
+        const response = await this.#points({ format }, "arrayBuffer");
+        const columns = columnsOf(response);
+        checkWhole(response, response.content.byteLength / (columns.length * kind.BYTES_PER_ELEMENT));
+        return { columns, values: new kind(response.content), origin: originOf(response, this.#axes) };
     }
 
     async #places(format, kind) {
@@ -219,9 +207,10 @@ class RemotePlan {
     async columns() {
         // The numbers of JSON read back to the same bits.
         const form = { format: "ndjson", summary: false };
-        const lines = new Answer(this.#daemon, this.#dimension, this.#query, form, wholeLines);
-        const [{ columns }, { bytes }] = await Promise.all([this.#head(), lines.read()]);
-        const points = JSON.parse(`[${new TextDecoder().decode(bytes).trimEnd().replaceAll("\n", ",")}]`);
+        const [{ columns }, response] = await Promise.all([this.#head(), this.#points(form)]);
+        const lines = response.content.split("\n").slice(0, -1);
+        checkWhole(response, lines.length);
+        const points = JSON.parse(`[${lines.join()}]`);
         const ids = BigInt64Array.from(points.flatMap(({ id }) => id.split(":").map(BigInt)));
         const at = Float64Array.from(points.flatMap((point) => this.#axes.map((axis) => point[axis])));
         const further = columns.slice(this.#axes.length).map((column) => [column.name, valuesOf(column, points)]);
@@ -234,104 +223,14 @@ class RemotePlan {
     }
 
     async document(options) {
-        return new Uint8Array(await (await this.#points(options)).arrayBuffer());
+        return new Uint8Array((await this.#points(options, "arrayBuffer")).content);
     }
 }
 
-/** The whole lines among the first bytes of an answer of lines. */
-function wholeLines(bytes) {
-    const newline = 10;
-    let rows = 0;
-    for (const byte of bytes) rows += byte === newline;
-    return { rows, length: bytes.lastIndexOf(newline) + 1 };
-}
-
-/** The bytes of a body, until it ends or breaks off, and the error if it broke off. */
-async function received(response) {
-    const chunks = [];
-    let error;
-    try {
-        const reader = response.body.getReader();
-        for (let part; !(part = await reader.read()).done; ) chunks.push(part.value);
-    } catch (reason) {
-        error = reason;
-    }
-    return { bytes: joined(chunks), error };
-}
-
-function joined(chunks) {
-    const bytes = new Uint8Array(chunks.reduce((length, chunk) => length + chunk.length, 0));
-    let at = 0;
-    for (const chunk of chunks) {
-        bytes.set(chunk, at);
-        at += chunk.length;
-    }
-    return bytes;
-}
-
-/** The bytes of an answer of rows. After a break it resumes behind the last whole row, at any replica. */
-class Answer {
-    #daemon;
-    #path;
-    #query;
-    #whole;
-    #parts = [];
-    #rows = 0;
-    #count;
-    #cursor = null;
-    #first;
-
-    /** `whole(bytes, response)` returns the number of whole `rows` at the start of some bytes, and their `length`. */
-    constructor(daemon, dimension, query, form, whole) {
-        this.#daemon = daemon;
-        this.#path = dimension.queries;
-        this.#query = { ...query, ...form };
-        this.#whole = whole;
-    }
-
-    /** All bytes, and the first response for its headers. */
-    async read() {
-        try {
-            await this.#daemon.attempts((call, progress) => this.#attempt(call, progress));
-        } catch (error) {
-            if (!this.#rows || !(error instanceof StrewError)) throw error;
-            const came = `${this.#rows} of ${this.#count} points came, and no other daemon continues`;
-            throw new StrewError(`${came}: ${error.message}`, error.kind, error.faults);
-        }
-        return { bytes: joined(this.#parts), first: this.#first };
-    }
-
-    async #attempt(call, progress) {
-        if (this.#cursor === null) {
-            // Short answers have no cursor: they begin again.
-            this.#parts = [];
-            this.#rows = 0;
-        }
-        const response = await call(this.#path, text(this.#rest()));
-        const count = Number(response.headers.get("strew-count"));
-        if (!this.#rows) {
-            this.#count = count;
-            this.#cursor = response.headers.get("strew-cursor");
-            this.#first = response;
-        } else if (this.#rows + count !== this.#count) {
-            throw new StrewError(`the answer goes on with ${count} points`, "other-answer");
-        }
-        const { bytes, error } = await received(response);
-        const { rows, length } = this.#whole(bytes, response);
-        this.#parts.push(bytes.subarray(0, length));
-        this.#rows += rows;
-        if (rows && this.#cursor !== null) progress();
-        if (this.#rows === this.#count) return;
-        throw call.broken(error ?? new Error(`${this.#rows} of ${this.#count} points came`));
-    }
-
-    /** The query of the remaining rows. The order of points is fixed, so an offset finds them. */
-    #rest() {
-        if (!this.#rows) return this.#query;
-        const rest = { ...this.#query, cursor: this.#cursor, offset: this.#rows };
-        if ("limit" in rest) rest.limit = Number(rest.limit) - this.#rows;
-        return rest;
-    }
+/** Refuses an answer of fewer or more points than its header states. */
+function checkWhole({ url, headers }, rows) {
+    const count = headers.get("strew-count");
+    if (rows !== Number(count)) throw brokenOff(url, `${Math.floor(rows)} of ${count} points came`);
 }
 
 /** The values of a column: numbers, or indices of names. */

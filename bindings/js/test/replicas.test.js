@@ -1,102 +1,118 @@
-// One client of several daemons: they are killed, busy or wrong, and every point comes once.
+// A daemon or several: one request more where an address fails, errors that say so, and never a shorter set.
 import assert from "node:assert/strict";
 import { createServer } from "node:http";
 import { test } from "node:test";
 
 import { Disconnected, connect } from "../lib/index.js";
-import { retryAfter } from "../lib/replicas.js";
-import { daemon, whole } from "./support.js";
+import { daemon } from "./support.js";
 
-const [READERS, KILLS] = [32, 2];
-const bytes = (array) => Buffer.from(array.buffer, array.byteOffset, array.byteLength);
+// No server listens there.
+const NOWHERE = "http://127.0.0.1:9";
+const COUNTED = JSON.stringify({ count: 7 });
 
-test("readers of killed replicas get every point once", async (t) => {
-    const running = await Promise.all([daemon(), daemon(), daemon()]);
-    if (!running[0]) return t.skip("the daemon is not built");
-    const continued = [];
-    const { fetch } = globalThis;
-    t.mock.method(globalThis, "fetch", (url, options) => {
-        const { cursor, offset } = JSON.parse(options.body);
-        if (cursor) continued.push(offset);
-        return fetch(url, options);
-    });
-    const query = { bbox: [0, 0, 120, 120], spacing: 1, seed: 3, attributes: ["angle"] };
-    const here = (await whole()).points(query);
-    const there = connect(running.map(({ url }) => url));
-    let [answers, isOver] = [0, false];
-    t.after(() => {
-        isOver = true;
-        for (const { end } of running) end();
-    });
-    const read = async (number) => {
-        do {
-            const points = there.points(query);
-            if (number % 4) assert.ok(bytes(await points.xy()).equals(bytes(here.xy())));
-            else assert.ok(bytes(await points.ids()).equals(bytes(here.ids())));
-            answers += 1;
-        } while (!isOver);
-    };
-    const readers = Promise.all(Array.from({ length: READERS }, (_, number) => read(number)));
-    for (let kill = 0; kill < KILLS; kill++) {
-        const before = answers;
-        while (answers < before + 2) await Promise.race([readers, new Promise((next) => setImmediate(next))]);
-        const [victim] = running.splice(0, 1);
-        await victim.kill();
-        running.push(await daemon(victim.url.replace("http://", "")));
-    }
-    isOver = true;
-    await readers;
-    assert.ok(continued.length && Math.min(...continued) > 0);
-});
-
-/** A server of one answer, and how often it was called. */
-async function server(answer) {
-    const calls = { number: 0 };
-    const made = createServer((request, response) => {
-        calls.number += 1;
-        request.resume().on("end", () => answer(response));
+/** A server that answers as the test wants, and the paths of its requests. */
+async function server(t, answer) {
+    const requests = [];
+    const made = createServer(async (request, response) => {
+        requests.push(request.url);
+        let body = "";
+        for await (const piece of request) body += piece;
+        await answer(response, request, body);
     });
     await new Promise((ready) => made.listen(0, "127.0.0.1", ready));
-    return { url: `http://127.0.0.1:${made.address().port}`, calls, end: () => made.close() };
+    t.after(() => (made.close(), made.closeAllConnections()));
+    return { url: `http://127.0.0.1:${made.address().port}`, requests };
 }
 
-const COUNTED = JSON.stringify({ count: 7 });
-const refusing = (status, content, headers) => server((response) => response.writeHead(status, headers).end(content));
-const count = (urls, options) => connect(urls, options).points({ bbox: [0, 0, 1, 1], spacing: 1 }).count();
+const refusing = (t, status, content = "busy", headers = {}) =>
+    server(t, (response) => response.writeHead(status, headers).end(content));
 
-test("what may succeed elsewhere is tried there, and a busy daemon rests", async () => {
-    const good = await server((response) => response.end(COUNTED));
-    const busy = await refusing(503, "busy", { "retry-after": "600" });
-    const there = connect(`${busy.url},${good.url}`).points({ bbox: [0, 0, 1, 1], spacing: 1 });
-    for (let i = 0; i < 5; i++) assert.equal(await there.count(), 7);
-    assert.equal(busy.calls.number, 1);
-    await assert.rejects(count(busy.url), { kind: "http-503" });
-    for (const problem of [
-        { type: "urn:strew:problem:other-world", detail: "other" },
-        { type: "urn:strew:problem:invalid-query", detail: "other", errors: [{ field: "layers[0].field" }] },
-    ]) {
-        const other = await refusing(409, JSON.stringify(problem));
-        assert.equal(await count([other.url, good.url]), 7);
-        await assert.rejects(count([other.url, `${other.url}/x`]), { message: "other" });
-        assert.equal(other.calls.number, 3);
-        other.end();
-    }
-    good.end();
-    busy.end();
+const count = (there) => there.points({ bbox: [0, 0, 1, 1], spacing: 1 }).count();
+
+/** The waits between attempts, which take no time. */
+function waits(t) {
+    const found = [];
+    const { setTimeout } = globalThis;
+    t.mock.method(globalThis, "setTimeout", (work, time, ...more) => {
+        // Node's own requests have timers too.
+        if (!new Error().stack.includes("/lib/remote.js")) return setTimeout(work, time, ...more);
+        found.push(time);
+        return setTimeout(work, 0);
+    });
+    return found;
+}
+
+test("requests go on at the next address and stay there", async (t) => {
+    const waited = waits(t);
+    const good = await refusing(t, 200, COUNTED);
+    const busy = await refusing(t, 503, "busy", { "retry-after": "2" });
+    const there = connect([busy.url, NOWHERE, good.url]);
+    const words = (error) => assert.match(error.message, RegExp(`^${busy.url}: HTTP 503: busy; ${NOWHERE}: [^;]+$`)) ?? true;
+    await assert.rejects(count(there), (error) => error instanceof Disconnected && words(error));
+    for (let i = 0; i < 5; i++) assert.equal(await count(there), 7);
+    assert.deepEqual([busy.requests.length, waited], [1, [2000]]);
+    assert.equal(await count(connect(`${NOWHERE},${good.url}`)), 7);
 });
 
-test("refusals of a query are not repeated, and attempts are bounded", async () => {
-    const problem = { type: "urn:strew:problem:invalid-query", detail: "no", errors: [{ field: "spacing" }] };
-    const wrong = await refusing(400, JSON.stringify(problem));
-    await assert.rejects(count([wrong.url, `${wrong.url}/x`]), { message: "no" });
-    assert.equal(wrong.calls.number, 1);
-    const down = await refusing(502, "");
-    await assert.rejects(count([down.url, `${down.url}/x`], { retries: 2 }), { kind: "http-502" });
-    assert.equal(down.calls.number, 6);
-    await assert.rejects(count(down.url, { retries: 1000, patience: 0.2 }), { kind: "http-502" });
-    wrong.end();
-    down.end();
-    await assert.rejects(count("http://127.0.0.1:9", { retries: 0 }), Disconnected);
-    assert.deepEqual([retryAfter("2"), retryAfter(null), retryAfter("soon")], [2000, 0, 0]);
-    assert.ok(retryAfter(new Date(Date.now() + 60_000).toUTCString()) > 50_000);
+test("one address is tried twice", async (t) => {
+    const waited = waits(t);
+    const problem = JSON.stringify({ type: "urn:strew:problem:busy", detail: "later" });
+    for (const [stated, wait] of [["0", 0], ["3", 3000], ["600", 5000], ["Sun, 06 Nov 2094 08:49:37 GMT", 5000]]) {
+        const { url, requests } = await refusing(t, 503, problem, { "retry-after": stated });
+        await assert.rejects(count(connect(url)), { name: "StrewError", kind: "busy", message: `${url}: later` });
+        assert.deepEqual([requests.length, waited.pop()], [2, wait]);
+    }
+    await assert.rejects(count(connect(NOWHERE)), (error) => /^http:\/\/127.0.0.1:9: [^;]+$/.test(error.message));
+});
+
+test("refusals are not repeated", async (t) => {
+    for (const status of [400, 401, 404, 409, 413, 429, 500, 502, 503, 504]) {
+        const one = await refusing(t, status, "no", status === 503 ? {} : { "retry-after": "1" });
+        const other = await refusing(t, 200, COUNTED);
+        const error = { kind: `http-${status}`, message: `HTTP ${status}: no` };
+        await assert.rejects(count(connect([one.url, other.url])), error);
+        assert.deepEqual([one.requests.length, other.requests.length], [1, 0]);
+    }
+});
+
+test("an answer that breaks off is an error", async (t) => {
+    const running = await daemon();
+    if (!running) return t.skip("the daemon is not built");
+    t.after(running.end);
+    const query = { bbox: [0, 0, 60, 60], spacing: 1, seed: 4, attributes: ["angle"] };
+    for (const [share, more] of [[0, 0], [0.1, 0], [2 / 3, 0], [0.9999, 0], [1, 1], [1, -1]]) {
+        const { url, requests } = await server(t, async (response, { url, method }, body) => {
+            const headers = { "content-type": "application/json" };
+            const whole = await fetch(running.url + url, method === "POST" ? { method, body, headers } : {});
+            const content = Buffer.from(await whole.arrayBuffer());
+            // The heads of answers come as they are: what they state is needed before rows are counted.
+            const isHead = body.includes('"limit"');
+            for (const name of ["strew-columns", "strew-count"]) response.setHeader(name, whole.headers.get(name) ?? "");
+            if (!isHead) response.setHeader("strew-count", Number(whole.headers.get("strew-count")) + more);
+            response.writeHead(200, { "content-length": content.length });
+            const sent = isHead ? content.length : Math.floor(content.length * share);
+            response.write(content.subarray(0, sent), () => (sent < content.length ? response.destroy() : response.end()));
+        });
+        const points = () => connect([url, running.url]).points(query);
+        const readings = [() => points().xy(), () => points().rowsF32(), () => points().ids()];
+        const further = [() => points().count(), () => points().document("csv"), () => points().nearest([3, 4])];
+        for (const reading of more ? readings : [...readings, ...further]) {
+            const words = (error) => error instanceof Disconnected && error.message.startsWith(`${url}: the answer broke off: `);
+            const before = requests.length;
+            await assert.rejects(reading(), (error) => words(error) || assert.fail(error));
+            // No answer is begun again; `ids` needs a head beside it.
+            assert.equal(requests.length - before, reading === readings[2] ? 2 : 1);
+        }
+    }
+});
+
+test("a killed daemon is left for the next address", async (t) => {
+    const running = await Promise.all([daemon(), daemon()]);
+    if (!running[0]) return t.skip("the daemon is not built");
+    t.after(() => running[1].end());
+    const there = connect(running.map(({ url }) => url));
+    const xy = () => there.points({ bbox: [0, 0, 50, 50], spacing: 1, seed: 2 }).xy();
+    const before = await xy();
+    await running[0].kill();
+    assert.deepEqual([await xy(), await xy()], [before, before]);
 });

@@ -40,7 +40,7 @@ class NoSuchPoint(StrewError, LookupError):
 
 
 class Disconnected(ConnectionError):
-    """A daemon that cannot be reached, or whose answers break off again and again."""
+    """A daemon that cannot be reached, or whose answer broke off."""
 
     __module__ = "strew"
 

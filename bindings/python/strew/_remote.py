@@ -1,4 +1,8 @@
-"""Points that a daemon makes, or one of several, over HTTP."""
+"""Points that a daemon makes, or one of several, over HTTP.
+
+A request goes to the address that answered last, and is sent once more to the next one. Nothing else is kept of
+addresses: balancing, health and longer retries are what proxies are for.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +10,9 @@ import functools
 import http.client
 import json
 import ssl
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from time import sleep
 from typing import Any
 from urllib.parse import SplitResult, quote, urlsplit
 
@@ -14,18 +20,14 @@ import numpy as np
 
 from ._columns import Columns, Further, Received
 from ._errors import Disconnected, StrewError, refusal
-from ._ipc import Batch, Column, Stream
+from ._ipc import Stream
 from ._query import PLANE, Body, Dimension, path, text
-from ._replicas import Attempts, Elsewhere, Later, Replica, Replicas, retry_after
 from ._source import Plan, Source
 
-#: The statuses after which a daemon wants to be called again.
-LATER = (429, 502, 503, 504)
-#: The seconds that a connection may take, where there is another address.
-CONNECTING = 5.0
-#: Refusals that depend on what a daemon holds: by their kind, or by the only members that are wrong.
-HELD_KINDS = ("other-table", "other-world")
-HELD = {"cursor", "except", "field", "profile", "table", "terrain", "world"}
+#: What breaks a connection or an answer.
+BROKEN = (OSError, http.client.HTTPException, EOFError)
+#: The seconds that a connection may take, and the longest wait for ``Retry-After``.
+PATIENCE = 5
 
 
 def _parts(url: str) -> SplitResult:
@@ -47,27 +49,19 @@ def _addresses(url: str | Sequence[str]) -> list[str]:
 class Daemon(Source):
     """A daemon, or several with the same points; see :func:`connect`."""
 
-    def __init__(
-        self,
-        url: str | Sequence[str],
-        key: str | None,
-        timeout: float,
-        retries: int,
-        verify: str | bool,
-        patience: float = 30.0,
-    ) -> None:
-        urls = _addresses(url)
+    def __init__(self, url: str | Sequence[str], key: str | None, timeout: float, verify: str | bool) -> None:
+        self._urls = _addresses(url)
         #: The address, or several with commas between them.
-        self.url = ",".join(urls)
+        self.url = ",".join(self._urls)
         self._key, self._timeout, self._verify = key, timeout, verify
-        self._replicas = Replicas([Replica(url) for url in urls], retries, patience)
+        #: Which address the next request goes to.
+        self._place = 0
 
     def __repr__(self) -> str:
         return self.url
 
     def __reduce__(self) -> tuple[Any, ...]:
-        replicas = self._replicas
-        return Daemon, (self.url, self._key, self._timeout, replicas.retries, self._verify, replicas.patience)
+        return Daemon, (self.url, self._key, self._timeout, self._verify)
 
     @functools.cached_property
     def _context(self) -> ssl.SSLContext:
@@ -77,8 +71,7 @@ class Daemon(Source):
         return context
 
     def _connection(self, parts: SplitResult) -> http.client.HTTPConnection:
-        is_alone = len(self._replicas.all) == 1
-        wait = self._timeout if is_alone else min(self._timeout, CONNECTING)
+        wait = min(self._timeout, PATIENCE)
         host = parts.hostname or ""
         made: http.client.HTTPConnection
         if parts.scheme == "http":
@@ -89,9 +82,9 @@ class Daemon(Source):
         made.sock.settimeout(self._timeout)
         return made
 
-    def open(self, replica: Replica, method: str, path: str, body: str | None = None) -> http.client.HTTPResponse:
-        """The response of a replica, once it is a good one. The connection closes with it."""
-        parts = urlsplit(replica.url)
+    def _response(self, url: str, method: str, path: str, body: str | None) -> http.client.HTTPResponse:
+        """The response of an address. The connection closes with it."""
+        parts = urlsplit(url)
         headers = {"connection": "close"}
         if body is not None:
             headers["content-type"] = "application/json"
@@ -104,45 +97,53 @@ class Daemon(Source):
             # A body that is too large is refused before it was read: the refusal says so, and is not tried again.
             if body is None:
                 raise
-        response = connection.getresponse()
-        if response.status == 200:
-            self._replicas.answered(replica)
-            return response
-        with response:
-            refusal = _refusal(response, response.read())
-        if response.status in LATER:
-            raise Later(retry_after(response.headers.get("retry-after")), refusal)
-        self._replicas.answered(replica)
-        raise Elsewhere(refusal) if _is_about_held(refusal) else refusal
+        return connection.getresponse()
+
+    def open(
+        self, method: str, path: str, body: str | None = None
+    ) -> AbstractContextManager[http.client.HTTPResponse]:
+        """A good response, for a ``with`` statement. A request without an answer is sent once more."""
+        tried: list[str] = []
+        while True:
+            place, error = self._place, None
+            url = self._urls[place]
+            try:
+                response = self._response(url, method, path, body)
+                if response.status == 200:
+                    return _whole(url, response)
+                with response:
+                    error = _refusal(response, response.read())
+                wait = response.headers.get("retry-after")
+                if response.status != 503 or wait is None:
+                    raise error
+                why = str(error)
+            except BROKEN as broken:
+                wait, why = "0", _why(broken)
+            self._place = (place + 1) % len(self._urls)
+            tried.append(f"{url}: {why}")
+            if len(tried) == 2:
+                words = "; ".join(dict.fromkeys(tried))
+                raise StrewError(words, error.kind) if error else Disconnected(words)
+            sleep(min(int(wait), PATIENCE) if wait.isdecimal() else PATIENCE)
 
     def open_points(
-        self, replica: Replica, query: Body, dimension: Dimension = PLANE
-    ) -> http.client.HTTPResponse:
+        self, query: Body, dimension: Dimension = PLANE
+    ) -> AbstractContextManager[http.client.HTTPResponse]:
         """The points of a query: by GET if its address is short, because caches keep no answers to POST."""
         short = path(query, dimension)
         if short is not None:
             try:
-                return self.open(replica, "GET", short)
-            except (StrewError, Elsewhere) as refusal:
-                error = refusal.error if isinstance(refusal, Elsewhere) else refusal
+                return self.open("GET", short)
+            except StrewError as error:
                 # An invalid query is sent again as a body, to be refused in the words of bodies.
                 if error.kind != "invalid-query":
                     raise
-        return self.open(replica, "POST", dimension.queries, text(query))
+        return self.open("POST", dimension.queries, text(query))
 
     def read(self, method: str, path: str, body: str | None = None) -> bytes:
         """The content of a response."""
-        return self._read(self.attempts(), method, path, body)
-
-    def _read(self, attempts: Attempts, method: str, path: str, body: str | None) -> bytes:
-        for attempt in attempts:
-            with attempt as replica, self.open(replica, method, path, body) as response:
-                return response.read()
-        raise AssertionError("the last attempt raises")
-
-    def attempts(self) -> Attempts:
-        """Attempts with pauses between them; the last one raises what is wrong."""
-        return self._replicas.attempts()
+        with self.open(method, path, body) as response:
+            return response.read()
 
     def json(self, method: str, path: str, body: str | None = None) -> Any:
         return json.loads(self.read(method, path, body))
@@ -159,21 +160,7 @@ class Daemon(Source):
         return found
 
     def hold_field(self, field: Any) -> str:
-        """Sends a field to all daemons that can be reached, because any may be called next. Its name is a digest."""
-        body, name, error = text(field), "", None
-        if len(self._replicas.all) == 1:
-            return str(self.json("POST", "/v1/fields", body)["name"])
-        for replica in self._replicas.up():
-            try:
-                only = Attempts(self._replicas, [replica], retries=0)
-                name = json.loads(self._read(only, "POST", "/v1/fields", body))["name"]
-            except (Disconnected, StrewError) as refusal:
-                error = refusal
-        if name:
-            return name
-        if error is not None:
-            raise error
-        return str(self.json("POST", "/v1/fields", body)["name"])
+        return str(self.json("POST", "/v1/fields", text(field))["name"])
 
 
 def connect(
@@ -181,9 +168,7 @@ def connect(
     *,
     key: str | None = None,
     timeout: float = 60.0,
-    retries: int = 3,
     verify: str | bool = True,
-    patience: float = 30.0,
 ) -> Daemon:
     """A daemon, with the functions of this module: ``points``, ``query``, ``stipple``.
 
@@ -198,22 +183,28 @@ def connect(
     The daemon is called when an answer is needed: :class:`StrewError` is raised then.
 
     Several replicas are a list of addresses, or one text with commas: ``"http://a:7777,http://b:7777"``. A request goes
-    to the one with the fewest requests of this client. An address that refuses connections, breaks off or answers 429,
-    502, 503 or 504 is left out, for as long as its ``Retry-After`` says, else for 0.1 to 5 seconds, more with each
-    failure; afterwards one request tries it again.
+    to the address that answered last. If the connection fails, or the answer is 503 with ``Retry-After``, it is sent
+    once more after that time, at most 5 seconds: to the next address, or to the only one. Then an error names every
+    address tried and why. All other refusals are raised at once. A connection may take 5 seconds.
 
-    An answer that breaks off continues where it ended, at any address, by its cursor: every point comes once. Only a
-    daemon with the same tables and fields takes that cursor. A request that fails is repeated until each address has
-    failed ``retries`` + 1 times in a row, but for at most ``patience`` seconds after the first failure. Refusals of a
-    query are raised at once. Those of what a daemon holds (a pinned table, a world, a named field) are raised once all
-    addresses refuse.
+    An answer that breaks off raises :class:`Disconnected`; a set is never shorter than it should be. To continue where
+    long reading ended, read pages (``limit=``), each with ``cursor=`` the :attr:`PointSet.next` of the one before.
     """
-    return Daemon(url, key, timeout, retries, verify, patience)
+    return Daemon(url, key, timeout, verify)
 
 
-def _is_about_held(error: StrewError) -> bool:
-    members = {str(fault.get("field", "")).rsplit(".", 1)[-1] for fault in error.faults}
-    return error.kind in HELD_KINDS or (bool(members) and members <= HELD)
+@contextmanager
+def _whole(url: str, response: http.client.HTTPResponse) -> Iterator[http.client.HTTPResponse]:
+    """A response while it is read. What breaks it off is an error that says so."""
+    try:
+        with response:
+            yield response
+    except BROKEN as broken:
+        raise Disconnected(f"{url}: the answer broke off: {_why(broken)}") from broken
+
+
+def _why(error: Exception) -> str:
+    return str(error) or type(error).__name__
 
 
 def _refusal(response: http.client.HTTPResponse, content: bytes) -> StrewError:
@@ -237,8 +228,8 @@ class _Asked:
     def _split(self, parts: int) -> str:
         return f"{self._dimension.root}/points:split?parts={quote(str(parts))}"
 
-    def _open(self, replica: Replica, **more: Any) -> http.client.HTTPResponse:
-        return self._daemon.open_points(replica, {**self._query, **more}, self._dimension)
+    def _open(self, **more: Any) -> AbstractContextManager[http.client.HTTPResponse]:
+        return self._daemon.open_points({**self._query, **more}, self._dimension)
 
     def _body(self, **more: Any) -> str:
         return text({**self._query, **more})
@@ -269,11 +260,9 @@ class _Asked:
 
     def _first(self) -> tuple[str | None, list[str]]:
         if self._begun is None:
-            for attempt in self._daemon.attempts():
-                with attempt as replica, self._open(replica, format="f32") as response:
-                    self._begun = response.headers.get("strew-next"), _tables(response)
-                    break
-        assert self._begun is not None
+            with self._open(format="f32") as response:
+                tables = (response.headers.get("strew-table") or "").split(", ")
+                self._begun = response.headers.get("strew-next"), tables
         return self._begun
 
     def tables(self) -> list[str]:
@@ -291,98 +280,31 @@ class _Asked:
         for name in ("decimals", "size"):
             if given.get(name, "").isdigit():
                 given[name] = int(given[name])
-        for attempt in self._daemon.attempts():
-            with attempt as replica, self._open(replica, **given) as response:
-                return response.read()
-        raise AssertionError("the last attempt raises")
+        with self._open(**given) as response:
+            return response.read()
 
     def coordinates(self) -> np.ndarray[Any, np.dtype[np.float64]]:
         return np.asarray(self.columns().at())
 
     def columns(self) -> Columns:
-        answer = _Answer(self._daemon, self._query, self._dimension)
-        batches, columns = answer.batches, answer.columns
+        with self._open(format="arrow") as response:
+            stream = Stream(_exactly(response), self._dimension.axes)
+            batches, columns = list(stream), stream.columns
+            came, expected = sum(len(batch.at) for batch in batches), int(response.headers["strew-count"])
+            if came != expected:
+                raise EOFError(f"{came} of {expected} points came")
         ids, at = (_joined([getattr(batch, name) for batch in batches]) for name in ("ids", "at"))
         further = [
             Further(column.name, column.is_optional, _joined([batch.further[i] for batch in batches]), column.names)
             for i, column in enumerate(columns)
         ]
-        return Received(len(self._dimension.axes), ids, at, further, answer.origin)
-
-
-def _tables(response: http.client.HTTPResponse) -> list[str]:
-    return (response.headers.get("strew-table") or "").split(", ")
+        return Received(len(self._dimension.axes), ids, at, further, _origin(response))
 
 
 def _joined(arrays: list[np.ndarray[Any, Any]]) -> np.ndarray[Any, Any]:
     made = np.concatenate(arrays)
     made.flags.writeable = False
     return made
-
-
-class _Answer:
-    """The batches of an answer. One that breaks off goes on after the rows that came."""
-
-    def __init__(self, daemon: Daemon, query: Body, dimension: Dimension) -> None:
-        self._daemon, self._query, self._dimension = daemon, query, dimension
-        self.columns: list[Column] = []
-        self.origin: tuple[float, ...] | None = None
-        self.batches: list[Batch] = []
-        self._rows = 0
-        #: How many rows the answer has, and the cursor of its first point.
-        self._expected: int | None = None
-        self._cursor: str | None = None
-        self._read()
-
-    def _read(self) -> None:
-        attempts = self._daemon.attempts()
-        try:
-            for attempt in attempts:
-                with attempt as replica:
-                    self._attempt(replica, attempts)
-                    return
-        except StrewError as error:
-            if not self._rows:
-                raise
-            came = f"{self._rows} of {self._expected} points came"
-            raise StrewError(f"{came}, and no other daemon continues: {error}", error.kind, error.faults) from None
-
-    def _attempt(self, replica: Replica, attempts: Attempts) -> None:
-        if self._cursor is None or not self._rows:
-            # Short answers have no cursor: they begin again. So does one of which nothing came.
-            self._rows, self._expected, self._cursor, self.batches = 0, None, None, []
-        with self._daemon.open_points(replica, self._rest(), self._dimension) as response:
-            count = int(response.headers["strew-count"])
-            if self._expected is None:
-                self._expected, self._cursor = count, response.headers.get("strew-cursor")
-                self.origin = _origin(response)
-            stream = Stream(_exactly(response), self._dimension.axes)
-            if self._rows:
-                self._check(count, stream.columns)
-            self.columns = stream.columns
-            for batch in stream:
-                self.batches.append(batch)
-                self._rows += len(batch.at)
-                if self._cursor is not None:
-                    attempts.progress()
-        if self._rows > self._expected:
-            raise StrewError(f"{self._rows} points came, {self._expected} were announced", "other-answer")
-        if self._rows < self._expected:
-            raise EOFError(f"{self._rows} of {self._expected} points came")
-
-    def _rest(self) -> Body:
-        """The query of the rows that are left. The order is fixed, so they are known by their place."""
-        rest = {**self._query, "format": "arrow"}
-        if self._rows:
-            rest["cursor"], rest["offset"] = self._cursor, self._rows
-            if "limit" in self._query:
-                rest["limit"] = self._query["limit"] - self._rows
-        return rest
-
-    def _check(self, count: int, columns: list[Column]) -> None:
-        same = [column.name for column in columns] == [column.name for column in self.columns]
-        if self._rows + count != self._expected or not same:
-            raise StrewError(f"the answer has {count} points in other columns or of another number", "other-answer")
 
 
 def _origin(response: http.client.HTTPResponse) -> tuple[float, ...] | None:
@@ -394,7 +316,7 @@ def _exactly(response: http.client.HTTPResponse) -> Any:
     def read(count: int) -> bytes:
         data = response.read(count) if count else b""
         if len(data) != count:
-            raise EOFError("the answer broke off")
+            raise EOFError(f"{len(data)} of {count} bytes came")
         return data
 
     return read

@@ -6,15 +6,15 @@ import re
 import shutil
 import socket
 import subprocess
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, daemon
+from conftest import ROOT
 from queries import random_query
 from test_daemon import asked, same
-from test_replicas import end, read_while_killed, until
 
 import strew
 
@@ -43,7 +43,11 @@ def cache(folder: Path, urls: list[str]) -> Iterator[str]:
     process = subprocess.Popen([NGINX, "-p", folder, "-c", folder / "nginx.conf"])
     try:
         host, port = address.split(":")
-        until(lambda: socket.socket().connect_ex((host, int(port))) == 0)
+        for _ in range(6000):
+            with socket.socket() as there:
+                if there.connect_ex((host, int(port))) == 0:
+                    break
+            time.sleep(0.01)
         yield f"http://{address}"
     finally:
         process.kill()
@@ -85,12 +89,3 @@ def test_the_points_of_queries_pass_and_what_is_requested_again_is_kept(tmp_path
             one, other = [found.nearest((3, 4), k=5) for found in points]
             assert one == other
         assert answered(url, "/v1/nearest") == before + 1
-
-
-def test_readers_behind_a_cache_get_every_point_once_while_daemons_are_killed(tmp_path: Path) -> None:
-    running = [daemon() for _ in range(2)]
-    try:
-        with cache(tmp_path, [url for _, url in running]) as address:
-            read_while_killed(strew.connect(address), running, 8, 2)
-    finally:
-        end(running)

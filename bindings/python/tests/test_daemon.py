@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import json
-import threading
 import urllib.error
 import urllib.request
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
-from urllib.parse import parse_qsl, urlsplit
 
 import numpy as np
 import pytest
@@ -176,51 +173,3 @@ def test_empty_answers_have_columns_and_names(remote: strew.Daemon) -> None:
     here, there = strew.points(**query), remote.points(**query)
     same(here, there)
     assert len(here) == 0 and here.names == ["angle", "variant"] and there.codes("variant")[1] == ["oak"]
-
-
-class Breaking(BaseHTTPRequestHandler):
-    """A proxy that breaks every second answer off in its middle."""
-
-    protocol_version = "HTTP/1.1"
-    upstream = ""
-    requests: list[dict[str, Any]] = []
-
-    def log_message(self, *_: object) -> None:
-        pass
-
-    def do_GET(self) -> None:
-        pairs = parse_qsl(urlsplit(self.path).query)
-        self.requests.append({name: int(value) if name == "offset" else value for name, value in pairs})
-        with urllib.request.urlopen(self.upstream + self.path) as response:
-            content = response.read()
-            self.send_response(200)
-            for name in ("strew-count", "strew-cursor", "strew-next", "strew-table"):
-                if response.headers[name]:
-                    self.send_header(name, response.headers[name])
-        self.send_header("content-length", str(len(content)))
-        self.end_headers()
-        is_broken = len(self.requests) % 2 == 1
-        self.wfile.write(content[: len(content) * 2 // 3] if is_broken else content)
-        self.close_connection = True
-
-
-def test_an_answer_that_breaks_off_is_taken_up(url: str) -> None:
-    Breaking.upstream, Breaking.requests = url, []
-    server = ThreadingHTTPServer(("127.0.0.1", 0), Breaking)
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    query: Any = {"bbox": (0, 0, 300, 300), "spacing": 1, "seed": 4, "attributes": ["angle"]}
-    broken = strew.connect(f"http://127.0.0.1:{server.server_port}").points(**query)
-    whole = strew.points(**query)
-    same(whole, broken)
-    server.shutdown()
-    server.server_close()
-    offsets = [request["offset"] for request in Breaking.requests if "cursor" in request]
-    assert len(offsets) == 1 and 0 < offsets[0] < len(whole)
-
-
-def test_a_daemon_that_is_not_there_is_said_so() -> None:
-    nobody = strew.connect("http://127.0.0.1:9", retries=1)
-    with pytest.raises(strew.Disconnected, match="127.0.0.1:9"):
-        nobody.points(bbox=(0, 0, 1, 1), spacing=1).count()
-    with pytest.raises(ValueError, match="no address"):
-        strew.connect("ftp://localhost")
