@@ -213,10 +213,11 @@ impl Step for Exchanges {
     }
 }
 
-/// States the length of an answer that has no body to show it. Of other answers the HTTP library does.
+/// States the length of an answer that has no body to show it. Of other answers the HTTP library does, and of answers to
+/// HEAD the router, which leaves no body.
 fn announce_length(response: &mut Response, is_head: bool) {
     if let Some(length) = response.body().size_hint().exact()
-        && (is_head || length == 0)
+        && is_head != (length == 0)
     {
         let slot = response.headers_mut().entry(header::CONTENT_LENGTH);
         slot.or_insert_with(|| length.into());
