@@ -14,7 +14,7 @@ use super::{
     exchange::{Client, Exchanges, Inbound, Intake},
     gate::{Admission, GateLayer},
     panics::Panics,
-    step::{Layered, Next, Routed, Step},
+    step::{Layered, Next, Step},
 };
 use crate::{
     body::{Request, Response},
@@ -24,7 +24,7 @@ use crate::{
 
 /// The steps around the router.
 pub(super) type Steps =
-    Layered<Exchanges, Layered<Finish, Layered<Panics, Layered<Calls, Layered<Bounds, Routed>>>>>;
+    Layered<Exchanges, Layered<Finish, Layered<Panics, Layered<Calls, Layered<Bounds, Router>>>>>;
 
 /// The bounds on requests that are taken on; none for administrators.
 type Bounds = Option<Intake>;
@@ -60,7 +60,7 @@ impl Stack {
             .layer(calls.layer())
             // The number of requests at once, the bytes of their bodies, and the time to the head of an answer.
             .layer(self.intake.layer())
-            .service(Routed(router))
+            .service(router)
     }
 }
 
@@ -84,7 +84,7 @@ fn router(routes: Routes, calls: Option<grpc::Calls>, gate: Option<Arc<Gate>>) -
 }
 
 impl Step for Finish {
-    async fn answer(&self, inbound: Box<Inbound>, next: impl Next) -> Response {
+    async fn answer(&self, inbound: Box<Inbound>, next: &impl Next) -> Response {
         let (request, dialect) = (&inbound.request, inbound.client.dialect);
         let misdirected = self.misdirected(request);
         if let (None, Some(allowed)) = (&misdirected, self.preflight(request)) {

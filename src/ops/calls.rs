@@ -4,13 +4,11 @@
 use std::{
     convert::Infallible,
     pin::{Pin, pin},
-    sync::Arc,
     task::{Context, Poll},
 };
 
 use http::Version;
 use http_body_util::BodyExt as _;
-use parking_lot::Mutex;
 use strew_service::Record;
 use tonic_web::GrpcWebLayer;
 use tower::{Layer as _, Service};
@@ -32,7 +30,7 @@ pub(super) struct Calls(pub(super) bool);
 
 impl Step for Calls {
     /// Answers a request to the path of a call. What is no call gets a problem document instead of a gRPC status.
-    async fn answer(&self, mut inbound: Box<Inbound>, next: impl Next) -> Response {
+    async fn answer(&self, mut inbound: Box<Inbound>, next: &impl Next) -> Response {
         let request = &mut inbound.request;
         let route = match self.0 {
             true => grpc::route(request.uri().path()),
@@ -50,7 +48,7 @@ impl Step for Calls {
                 let request = std::mem::take(request);
                 let inner = OfPage {
                     next,
-                    inbound: Arc::new(Mutex::new(Some(inbound))),
+                    inbound: Some(inbound),
                 };
                 let answer = GrpcWebLayer::new().layer(inner).call(request).await;
                 answer.unwrap_or_else(|never| match never {}).map(Body::new)
@@ -60,7 +58,7 @@ impl Step for Calls {
 }
 
 /// Answers a call in the time that it allows.
-async fn in_time(inbound: Box<Inbound>, next: impl Next) -> Response {
+async fn in_time(inbound: Box<Inbound>, next: &impl Next) -> Response {
     let is_of_page = inbound.client.dialect != Dialect::Grpc;
     let mut response = match Deadline::of(inbound.request.headers()) {
         Err(refusal) => refusal.into_http(),
@@ -100,26 +98,25 @@ async fn in_time(inbound: Box<Inbound>, next: impl Next) -> Response {
 }
 
 /// The inside of a call of a web page, once it reads like any other.
-#[derive(Clone)]
-struct OfPage<N> {
-    next: N,
+struct OfPage<'a, N> {
+    next: &'a N,
     /// All of the request but itself: there is one.
-    inbound: Arc<Mutex<Option<Box<Inbound>>>>,
+    inbound: Option<Box<Inbound>>,
 }
 
-impl<N: Next> Service<http::Request<tonic::body::Body>> for OfPage<N> {
+impl<'a, N: Next> Service<http::Request<tonic::body::Body>> for OfPage<'a, N> {
     type Response = Response;
     type Error = Infallible;
-    type Future = Pin<Box<dyn Future<Output = Result<Response, Infallible>> + Send>>;
+    type Future = Pin<Box<dyn Future<Output = Result<Response, Infallible>> + Send + 'a>>;
 
     fn poll_ready(&mut self, _: &mut Context<'_>) -> Poll<Result<(), Infallible>> {
         Poll::Ready(Ok(()))
     }
 
     fn call(&mut self, request: http::Request<tonic::body::Body>) -> Self::Future {
-        let Self { next, inbound } = self.clone();
+        let (next, inbound) = (self.next, self.inbound.take());
         Box::pin(async move {
-            let Some(mut inbound) = inbound.lock().take() else {
+            let Some(mut inbound) = inbound else {
                 return Ok(grpc::unimplemented());
             };
             inbound.request = request.map(Body::new);

@@ -4,7 +4,7 @@
 //! Each connection is a task that runs the HTTP library over a guarded socket. Beyond the limit a
 //! client is refused. A connection frees its place when the client leaves, is idle, or takes nothing.
 
-use std::{io, net::SocketAddr, sync::Arc, time::Duration};
+use std::{io, net::SocketAddr, pin::Pin, sync::Arc, time::Duration};
 
 use http::{Request, Response};
 use hyper::{body::Incoming, service::Service as HyperService};
@@ -22,13 +22,13 @@ use tokio::{
     sync::Semaphore,
 };
 use tokio_util::{sync::CancellationToken, task::TaskTracker};
-use tower::Service;
 
 use super::{
     app::Steps,
-    exchange::{Exchanges, Fate, From, Inbound},
+    exchange::{Exchanges, Fate, From},
     guarded::{FirstWords, WriteTimeout},
     peer::Peer,
+    step::Next as _,
     throttle::LogThrottle,
     tls::Tls,
 };
@@ -307,12 +307,12 @@ struct Answers {
 impl HyperService<Request<Incoming>> for Answers {
     type Response = Response<Body>;
     type Error = std::convert::Infallible;
-    type Future = <Steps as Service<Box<Inbound>>>::Future;
+    type Future = Pin<Box<dyn Future<Output = Result<Response<Body>, Self::Error>> + Send>>;
 
     fn call(&self, request: Request<Incoming>) -> Self::Future {
-        let Front { exchanges, steps } = &*self.front;
-        let inbound = exchanges.inbound(self.from.clone(), request.map(Body::new));
-        steps.clone().call(inbound)
+        let (front, from) = (self.front.clone(), self.from.clone());
+        let inbound = front.exchanges.inbound(from, request.map(Body::new));
+        Box::pin(async move { Ok(front.steps.answer(inbound).await) })
     }
 }
 

@@ -14,11 +14,11 @@ use super::{
 use crate::body::Response;
 
 /// Answers what panics.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Panics(pub(super) Arc<Metrics>);
 
 impl Step for Panics {
-    async fn answer(&self, inbound: Box<Inbound>, next: impl Next) -> Response {
+    async fn answer(&self, inbound: Box<Inbound>, next: &impl Next) -> Response {
         let dialect = inbound.client.dialect;
         let answer = AssertUnwindSafe(next.answer(inbound)).catch_unwind().await;
         answer.unwrap_or_else(|panic| {
