@@ -58,7 +58,8 @@ pub fn compare(tables: &Path, tally: &Tally, seed: u64, end: Instant) {
         let spent = until("the work is over", || {
             std::thread::park_timeout(std::time::Duration::from_millis(30));
             let now = milliseconds();
-            (std::mem::replace(&mut ended, now) >= now).then_some(now)
+            let is_over = std::mem::replace(&mut ended, now) >= now && !daemon.is_at_work();
+            is_over.then_some(now)
         }) - spent;
         let now = left();
         let charged = before - now - 1.0;

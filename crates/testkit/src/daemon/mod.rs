@@ -266,6 +266,18 @@ impl Daemon {
             .sum()
     }
 
+    /// Whether a thread runs, or waits for a processor.
+    pub fn is_at_work(&self) -> bool {
+        let threads = std::fs::read_dir(format!("/proc/{}/task", self.pid())).expect("Linux");
+        let mut stats = threads
+            .filter_map(|thread| std::fs::read_to_string(thread.ok()?.path().join("stat")).ok());
+        // The state follows the name, which is in parentheses.
+        stats.any(|stat| {
+            stat.rsplit_once(") ")
+                .is_some_and(|(_, rest)| rest.starts_with('R'))
+        })
+    }
+
     /// The number of files and sockets it has open.
     pub fn open_files(&self) -> usize {
         let folder = format!("/proc/{}/fd", self.pid());
