@@ -22,8 +22,7 @@ Examples:
   strew stipple portrait.jpg --points 50000 -o portrait.svg";
 pub(super) const COUNT: &str = "\
 Examples:
-  strew count --bbox 0,0,1000,1000 --spacing 2
-  strew count --bbox 0,0,1000,1000 --world forest --url http://127.0.0.1:8080";
+  strew count --bbox 0,0,1000,1000 --spacing 2";
 pub(super) const POINT: &str = "\
 Examples:
   strew point -31:52 --spacing 2 --seed 7";

@@ -81,28 +81,6 @@ impl FieldArgs {
         Ok(catalog.with_fields(fields))
     }
 
-    /// Refuses files: a server has its own fields.
-    pub(super) fn must_be_named(&self, values: &Values) -> Result<(), Failure> {
-        let raster = self
-            .raster
-            .as_ref()
-            .map(|file| ("--raster", file.display().to_string()));
-        let flags = [
-            ("--field", &parameters::FIELD),
-            ("--terrain", &parameters::TERRAIN),
-        ];
-        let file = flags.into_iter().find_map(|(flag, parameter)| {
-            Some((flag, file(parameter, values, &Fields::default())?))
-        });
-        match raster.or(file) {
-            None => Ok(()),
-            Some((flag, file)) => Err(Failure::Usage(anyhow!(
-                "{flag} {file}: a file of this machine, which --url does not send; allowed: the name of a field of \
-                 the server, or --query with the field in it"
-            ))),
-        }
-    }
-
     fn raster(&self, file: &Path, fields: &Fields) -> Result<NamedField, Failure> {
         const BOX: Shape = parameters::BBOX.shape;
         let wrong = |text: &str, detail: &str| {

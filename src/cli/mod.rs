@@ -2,7 +2,6 @@
 
 mod arrangement;
 mod candidates;
-mod client;
 mod completions;
 mod compression;
 mod config;
@@ -27,7 +26,6 @@ mod profiles;
 mod progress;
 mod query;
 mod refusal;
-mod remote;
 mod sample;
 mod serve;
 mod signals;

@@ -95,25 +95,6 @@ impl<T: Takes> QueryArgs<T> {
         })
     }
 
-    /// The path of a server's API in the plane, or the one in space.
-    pub(super) const fn path(&self, plane: &'static str, space: &'static str) -> &'static str {
-        if self.space { space } else { plane }
-    }
-
-    /// The query for a server, whose tables and names this program does not know.
-    pub(super) fn for_server(&self) -> Result<Draft, Failure> {
-        let (draft, source) = self.read(self.defined()?.as_ref())?;
-        self.field.must_be_named(&draft.values)?;
-        self.strata.must_be_absent()?;
-        let draft = match self.features()? {
-            Some(features) => draft.in_features(Ok(features)),
-            None => draft,
-        };
-        let refused = |faults: Faults| source.refused(faults.into());
-        draft.read().map_err(refused)?;
-        Ok(draft)
-    }
-
     /// The parameters of a query in a file.
     fn in_file(&self) -> &'static [Group] {
         if self.space {

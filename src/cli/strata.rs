@@ -109,17 +109,6 @@ impl StrataArgs {
         }
         Ok((draft.in_features(Ok(parts)), catalog.with_fields(fields)))
     }
-
-    /// Refuses classes: a server has its own fields.
-    pub(super) fn must_be_absent(&self) -> Result<(), Failure> {
-        if let Some(file) = &self.strata {
-            refuse!(
-                "--strata {}: a file of this machine, which --url does not send; allowed: --query with layers in fields",
-                file.display()
-            );
-        }
-        Ok(())
-    }
 }
 
 /// Classes with their numbers of points; those of no points are left out.
