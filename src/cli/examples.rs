@@ -15,7 +15,7 @@ Examples:
 pub(super) const EXPORT: &str = "\
 Examples:
   strew export --world forest --config strew.toml --bbox 0,0,4096,4096 --chunk 64 --format f32 -o world
-  strew export --spacing 2 --seed 7 --bbox 0,0,4096,4096 --chunk 64 --levels 4 --archive world.zip
+  strew export --spacing 2 --seed 7 --bbox 0,0,4096,4096 --chunk 64 --levels 4 -o world
   strew export --check world --config strew.toml";
 pub(super) const STIPPLE: &str = "\
 Examples:

@@ -61,7 +61,7 @@ enum Command {
     /// Write the points of a region to a file or standard output, without a server.
     #[command(after_long_help = examples::SAMPLE)]
     Sample(sample::Args),
-    /// Write a world as files of chunks, which any static server can serve, or as one archive.
+    /// Write a world as a folder of chunks, which any static server can serve.
     #[command(after_long_help = examples::EXPORT)]
     Export(export::Args),
     /// Turn a picture into dots.
