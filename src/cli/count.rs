@@ -1,14 +1,22 @@
-//! `strew count`: the number of points of a query, exactly, without making them.
+//! `strew count`: the number of points of a query, exactly, without making them; and `strew split`: its parts with about
+//! equal numbers, each a query for `strew sample --query -`.
 
 use serde::Serialize;
+use serde_json::{Map, Value};
 use strew_error::integer::Long;
-use strew_query::Resolved;
+use strew_query::{Resolved, Token, groups, parts};
 
-use super::{Failure, config, flags::Counted, output, query::QueryArgs};
+use super::{
+    Failure, config,
+    failure::Source,
+    flags::{Counted, Parted},
+    output,
+    query::QueryArgs,
+};
 
 /// Flags of `strew count`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Args {
+pub(super) struct CountArgs {
     /// Print the document of GET /v1/count instead: the count, and the query with everything filled in.
     #[arg(long)]
     json: bool,
@@ -23,7 +31,7 @@ struct Document {
 }
 
 /// Counts.
-pub(super) fn run(args: &Args) -> Result<(), Failure> {
+pub(super) fn count(args: &CountArgs) -> Result<(), Failure> {
     let config = args.query.settings.merged(config::Uses::QUERIES)?;
     let planned = args.query.plan(&config)?.planned;
     let count = planned.count();
@@ -35,4 +43,46 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         }]);
     }
     output::print(&format!("{count}\n"))
+}
+
+/// Flags of `strew split`: those of `strew sample`, and the number of parts.
+#[derive(Debug, clap::Args)]
+pub(super) struct SplitArgs {
+    /// Print the document of POST /v1/points:split instead: the parts with their counts.
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    query: QueryArgs<Parted>,
+}
+
+#[derive(Serialize)]
+struct Parts {
+    count: u128,
+    parts: Vec<Part>,
+}
+
+#[derive(Serialize)]
+struct Part {
+    count: u64,
+    query: Map<String, Value>,
+}
+
+/// Prints the parts, a query a line.
+pub(super) fn split(args: &SplitArgs) -> Result<(), Failure> {
+    let config = args.query.settings.merged(config::Uses::QUERIES)?;
+    let parts = parts(&args.query.flags.values_of(groups::SPLIT));
+    let parts = parts.map_err(|faults| Source::Flags.refused(faults.into()))?;
+    let ask = args.query.plan(&config)?;
+    let part = |(token, count): (Token, u64)| Part {
+        count,
+        query: ask.draft.part(&token, count).to_body(),
+    };
+    let count = ask.planned.count();
+    let split = ask.planned.split(parts);
+    let split = split.map_err(|error| ask.source.refused(error))?;
+    let parts: Vec<Part> = split.into_iter().map(part).collect();
+    if args.json {
+        return output::print_json([Parts { count, parts }]);
+    }
+    output::print_json(parts.into_iter().map(|part| part.query))
 }

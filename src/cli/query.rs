@@ -17,13 +17,13 @@ use strew_query::{
 
 use super::{
     Failure, config,
+    failure::Source,
     fields::FieldArgs,
+    fields::StrataArgs,
     flags::{Flags, Takes, WHERE, flag},
-    refusal::Source,
     refuse,
-    strata::StrataArgs,
 };
-use crate::cli::load::Load as _;
+use crate::cli::config::Load as _;
 
 /// A query with a region: by flags, or whole in a file.
 #[derive(Debug, clap::Args)]

@@ -14,12 +14,12 @@ use strew_plan::Planned;
 use super::{
     Failure,
     compression::Compression,
-    config::Uses,
+    config::{self, Uses},
     flags::Answered,
     output::{Output as Target, must_not_be_terminal},
     progress::Progress,
     query::{QueryArgs, described},
-    refuse, threads,
+    refuse,
 };
 
 /// Flags of `strew sample`: a query, and where to write.
@@ -145,7 +145,7 @@ pub(super) fn write(
         announce(planned, looks, &answer);
     }
     let failed = |error: anyhow::Error| Ok(Failure::from(error));
-    let pool = threads::pool(config.workers.threads).map_err(failed)?;
+    let pool = config::pool(config.workers.threads).map_err(failed)?;
     let mut progress = Progress::new(what, count, quiet);
     let written = pool.install(|| match answer.plain().cloned() {
         Some(plain) => packed(&plain, &mut output, &mut progress),

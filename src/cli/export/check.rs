@@ -19,7 +19,7 @@ use super::{
 use crate::cli::{
     Failure,
     compression::{Compression, names},
-    load::Load as _,
+    config::Load as _,
     progress::Progress,
     refuse,
 };

@@ -39,9 +39,8 @@ use super::{
     progress::Progress,
     refuse,
     signals::stop_flag,
-    threads,
 };
-use crate::cli::load::Load as _;
+use crate::cli::config::Load as _;
 
 /// Flags of `strew export`: a query, its chunks, and the output.
 #[derive(Debug, clap::Args)]
@@ -94,7 +93,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let threads = args
         .threads
         .map_or(config.workers.threads, |threads| threads as usize);
-    threads::pool(threads)?.install(|| match &args.check {
+    config::pool(threads)?.install(|| match &args.check {
         Some(path) => check::run(path, args.all, args.quiet, &config),
         None => export(args, &config),
     })
