@@ -1,5 +1,5 @@
-//! Completion of lines in shells (`strew completions`; the words of parameters, and the names of loaded things), and manual
-//! pages (`strew man`).
+//! Completion of lines in shells (`strew completions`; the words of parameters, and the names of loaded things), and
+//! manual pages (`strew man`).
 
 use std::{
     collections::BTreeSet,

@@ -1,5 +1,5 @@
-//! `strew config`, the flags that change settings, and the loading of what settings name, which are wrong usage if it
-//! cannot be loaded.
+//! `strew config`, the flags that change settings, and the loading of what settings name. Settings that cannot be
+//! loaded are wrong usage.
 
 use std::path::PathBuf;
 

@@ -1,5 +1,5 @@
-//! `strew count`: the number of points of a query, exactly, without making them; and `strew split`: its parts with about
-//! equal numbers, each a query for `strew sample --query -`.
+//! `strew count`: the number of points of a query, exactly, without making them; and `strew split`: its parts, each a
+//! query for `strew sample --query -`.
 
 use serde::Serialize;
 use serde_json::{Map, Value};

@@ -1,5 +1,5 @@
-//! Why a command failed, and errors of the service in the words of a command line: flags instead of parameters, settings
-//! instead of a server.
+//! Why a command failed, and errors of the service in the words of a command line: flags instead of parameters,
+//! settings instead of a server.
 
 use anyhow::anyhow;
 use strew_encode::Encoding;

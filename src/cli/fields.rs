@@ -1,5 +1,5 @@
-//! The field of a command (a loaded one, a file, or a raster with its place), and the classes of a raster, each with its own
-//! points: layers in fields that are 1 in one class and 0 elsewhere.
+//! The field of a command (a loaded one, a file, or a raster with its place), and the classes of a raster, each with
+//! its own points: layers in fields that are 1 in one class and 0 elsewhere.
 
 use std::{
     path::{Path, PathBuf},

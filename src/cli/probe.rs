@@ -251,8 +251,8 @@ fn of(flag: &str, path: &Path, problem: &str) -> anyhow::Error {
     anyhow!("{flag} {}: {problem}", path.display())
 }
 
-/// Encrypts a connection, if there are settings and a name that the daemon's certificate must have. ureq's own TLS takes
-/// no verifier of ours, and no name other than that of the URL.
+/// Encrypts a connection, if there are settings and a name that the daemon's certificate must have. ureq's own TLS
+/// takes no verifier of ours, and no name other than that of the URL.
 #[derive(Debug)]
 struct Tls(Option<(Arc<ClientConfig>, ServerName<'static>)>);
 
@@ -320,8 +320,8 @@ impl Transport for Encrypted {
     }
 }
 
-/// Decides which certificates are accepted: with named ones those and the ones that they issued, else any. In either case
-/// the daemon must have the certificate's key.
+/// Decides which certificates are accepted: with named ones those and the ones that they issued, else any. In either
+/// case the daemon must have the certificate's key.
 #[derive(Debug)]
 struct Verifier {
     algorithms: WebPkiSupportedAlgorithms,

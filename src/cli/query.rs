@@ -35,7 +35,7 @@ pub(super) struct QueryArgs<T: Takes> {
     /// Points in space: --bbox takes six numbers, --chunk SIZE/CX/CY/CZ, and --query is the body of POST
     /// /v1/space/points.
     #[arg(long, help_heading = WHERE)]
-    pub(super) space: bool,
+    space: bool,
     /// The region: a chunk of the world grid. Coordinates are relative to its corner,
     /// SIZE·CX,SIZE·CY.
     #[arg(long, value_name = "SIZE/CX/CY[/CZ]", help_heading = WHERE)]

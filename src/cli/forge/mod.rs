@@ -1,5 +1,5 @@
-//! `strew forge`: makes a table, judges it, writes it; kinds for a table. Here is what all work of the forge has in common:
-//! threads, the written file, checkpoints, and what watches it.
+//! `strew forge`: makes a table, judges it, writes it; kinds for a table. This file has what all work of the forge
+//! shares: threads, the written file, checkpoints, and the watcher of progress and interrupts.
 
 mod mix;
 mod table;

@@ -1,5 +1,5 @@
-//! Parameters for JavaScript, their types (parameters.d.ts) and their names by what they are about (parameters.js), and both
-//! for Python (_parameters.py).
+//! Parameters for programs: their types (parameters.d.ts) and their names by what they are about (parameters.js) for
+//! JavaScript, both for Python (_parameters.py).
 
 use strew_encode::Encoding;
 use strew_query::{
