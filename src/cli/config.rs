@@ -1,9 +1,14 @@
-//! `strew config`, and the flags that change settings.
+//! `strew config`, the flags that change settings, and the loading of what settings name. Settings that cannot be
+//! loaded are wrong usage.
 
 use std::path::PathBuf;
 
 use anyhow::{Context as _, anyhow};
+use strew_catalog::{Catalog, except::Lists, field::Fields};
 use strew_config::{Config, ConfigError, Layers};
+use strew_error::Error;
+use strew_plan::Planned;
+use strew_query::{Assets, Draft, Options, Worlds};
 
 use super::{Failure, output};
 
@@ -120,4 +125,58 @@ pub(super) fn run(args: &Served) -> Result<(), Failure> {
         .to_toml()
         .context("cannot write the settings")?;
     output::print(&text)
+}
+
+/// The loading of what settings name.
+pub(super) trait Load {
+    /// The tables.
+    fn catalog(&self) -> Result<Catalog, Failure>;
+
+    /// The tables, fields and lists.
+    fn tables(&self) -> Result<Catalog, Failure>;
+
+    /// The fields.
+    fn loaded_fields(&self) -> Result<Fields, Failure>;
+
+    /// Adds the worlds.
+    fn with_worlds(&self, catalog: Catalog) -> Result<Assets, Failure>;
+
+    /// Checks and plans a query.
+    fn planned(&self, draft: &Draft, assets: &Assets) -> Result<(Planned, Options), Error>;
+}
+
+impl Load for Config {
+    fn catalog(&self) -> Result<Catalog, Failure> {
+        let tables = &self.tables;
+        Catalog::preloading(tables.preload_bytes, tables.embedded, tables.folder())
+            .map_err(Failure::usage)
+    }
+
+    fn tables(&self) -> Result<Catalog, Failure> {
+        let catalog = self.catalog()?;
+        let lists = Lists::load(&self.except).map_err(Failure::usage)?;
+        Ok(catalog
+            .with_fields(self.loaded_fields()?)
+            .with_except(lists))
+    }
+
+    fn loaded_fields(&self) -> Result<Fields, Failure> {
+        Fields::load(&self.fields).map_err(Failure::usage)
+    }
+
+    fn with_worlds(&self, catalog: Catalog) -> Result<Assets, Failure> {
+        let worlds = Worlds::load(&self.worlds, &catalog, self.limits.max_vertices);
+        Ok(Assets::from(catalog).with_worlds(worlds.map_err(Failure::usage)?))
+    }
+
+    fn planned(&self, draft: &Draft, assets: &Assets) -> Result<(Planned, Options), Error> {
+        let (query, options) = draft.check(assets, self.limits.max_vertices)?;
+        Ok((Planned::at_once(query, &self.limits)?, options))
+    }
+}
+
+/// A pool of this number of threads; 0 for one per core.
+pub(super) fn pool(threads: usize) -> anyhow::Result<rayon::ThreadPool> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    pool.build().context("cannot start threads")
 }

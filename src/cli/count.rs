@@ -1,33 +1,27 @@
-//! `strew count`: the number of points of a query, exactly, without making them.
+//! `strew count`: the number of points of a query, exactly, without making them; and `strew split`: its parts, each a
+//! query for `strew sample --query -`.
 
-use anyhow::{Context as _, anyhow};
-use serde::{Deserialize, Serialize};
-use serde_json::value::RawValue;
-use strew_error::integer::{Long, integer};
-use strew_query::Resolved;
+use serde::Serialize;
+use serde_json::{Map, Value};
+use strew_error::integer::Long;
+use strew_query::{Resolved, Token, groups, parts};
 
-use super::{Failure, config, flags::Counted, output, query::QueryArgs, remote::RemoteArgs};
-
-/// No answer is longer, even with the longest query in it.
-const MOST_BYTES: usize = 16 << 20;
+use super::{
+    Failure, config,
+    failure::Source,
+    flags::{Counted, Parted},
+    output,
+    query::QueryArgs,
+};
 
 /// Flags of `strew count`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Args {
+pub(super) struct CountArgs {
     /// Print the document of GET /v1/count instead: the count, and the query with everything filled in.
     #[arg(long)]
     json: bool,
     #[command(flatten)]
     query: QueryArgs<Counted>,
-    #[command(flatten)]
-    remote: RemoteArgs,
-}
-
-/// The answer of a server.
-#[derive(Deserialize)]
-struct FromServer {
-    /// A number, or text if it is long.
-    count: Box<RawValue>,
 }
 
 #[derive(Serialize)]
@@ -37,10 +31,7 @@ struct Document {
 }
 
 /// Counts.
-pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    if args.remote.is_given()? {
-        return from_server(args);
-    }
+pub(super) fn count(args: &CountArgs) -> Result<(), Failure> {
     let config = args.query.settings.merged(config::Uses::QUERIES)?;
     let planned = args.query.plan(&config)?.planned;
     let count = planned.count();
@@ -54,20 +45,44 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     output::print(&format!("{count}\n"))
 }
 
-/// Prints the count that a server returns.
-fn from_server(args: &Args) -> Result<(), Failure> {
-    let body = args.query.for_server()?.to_body();
-    let mut answer = args
-        .remote
-        .request(args.query.path("/v1/count", "/v1/space/count"), &body)?;
-    let text = answer.rest(MOST_BYTES).context("the answer broke off")?;
+/// Flags of `strew split`: those of `strew sample`, and the number of parts.
+#[derive(Debug, clap::Args)]
+pub(super) struct SplitArgs {
+    /// Print the document of POST /v1/points:split instead: the parts with their counts.
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    query: QueryArgs<Parted>,
+}
+
+#[derive(Serialize)]
+struct Parts {
+    count: u128,
+    parts: Vec<Part>,
+}
+
+#[derive(Serialize)]
+struct Part {
+    count: u64,
+    query: Map<String, Value>,
+}
+
+/// Prints the parts, a query a line.
+pub(super) fn split(args: &SplitArgs) -> Result<(), Failure> {
+    let config = args.query.settings.merged(config::Uses::QUERIES)?;
+    let parts = parts(&args.query.flags.values_of(groups::SPLIT));
+    let parts = parts.map_err(|faults| Source::Flags.refused(faults.into()))?;
+    let ask = args.query.plan(&config)?;
+    let part = |(token, count): (Token, u64)| Part {
+        count,
+        query: ask.draft.part(&token, count).to_body(),
+    };
+    let count = ask.planned.count();
+    let split = ask.planned.split(parts);
+    let split = split.map_err(|error| ask.source.refused(error))?;
+    let parts: Vec<Part> = split.into_iter().map(part).collect();
     if args.json {
-        let document: Box<RawValue> =
-            serde_json::from_slice(&text).context("the answer is not JSON")?;
-        return output::print(&format!("{document}\n"));
+        return output::print_json([Parts { count, parts }]);
     }
-    let counted: FromServer = serde_json::from_slice(&text).context("the answer holds no count")?;
-    let count = counted.count.get().trim_matches('"');
-    let count: u128 = integer(count).map_err(|detail| anyhow!("the count {detail}"))?;
-    output::print(&format!("{count}\n"))
+    output::print_json(parts.into_iter().map(|part| part.query))
 }

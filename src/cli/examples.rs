@@ -15,15 +15,14 @@ Examples:
 pub(super) const EXPORT: &str = "\
 Examples:
   strew export --world forest --config strew.toml --bbox 0,0,4096,4096 --chunk 64 --format f32 -o world
-  strew export --spacing 2 --seed 7 --bbox 0,0,4096,4096 --chunk 64 --levels 4 --archive world.zip
+  strew export --spacing 2 --seed 7 --bbox 0,0,4096,4096 --chunk 64 --levels 4 -o world
   strew export --check world --config strew.toml";
 pub(super) const STIPPLE: &str = "\
 Examples:
   strew stipple portrait.jpg --points 50000 -o portrait.svg";
 pub(super) const COUNT: &str = "\
 Examples:
-  strew count --bbox 0,0,1000,1000 --spacing 2
-  strew count --bbox 0,0,1000,1000 --world forest --url http://127.0.0.1:8080";
+  strew count --bbox 0,0,1000,1000 --spacing 2";
 pub(super) const POINT: &str = "\
 Examples:
   strew point -31:52 --spacing 2 --seed 7";

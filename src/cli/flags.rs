@@ -11,7 +11,7 @@ use strew_query::{
     patterns::PATTERN_PARAMETERS,
 };
 
-use super::candidates;
+use super::completions;
 
 /// Which parameters a command takes.
 pub(super) trait Takes: fmt::Debug + Send + Sync + 'static {
@@ -279,7 +279,7 @@ fn argument(parameter: &'static Parameter, default: Option<&'static str>) -> Arg
         .long_help(long)
         .hide_short_help(parameter.is_rare)
         .action(ArgAction::Set)
-        .add(candidates::completer(parameter))
+        .add(completions::completer(parameter))
         .allow_hyphen_values(parameter.group == Group::Arrangement)
 }
 

@@ -12,13 +12,13 @@ use strew_query::chosen;
 
 use super::{
     Failure, config,
-    figure::encoded,
+    failure::Source,
     flags::{Flags, Tabled},
     output::{self, Output, must_not_be_terminal},
-    refusal::Source,
+    pattern::encoded,
     refuse,
 };
-use crate::cli::load::Load as _;
+use crate::cli::config::Load as _;
 
 /// Flags of `strew mask`.
 #[derive(Debug, clap::Args)]

@@ -1,8 +1,5 @@
 //! The command line.
 
-mod arrangement;
-mod candidates;
-mod client;
 mod completions;
 mod compression;
 mod config;
@@ -11,33 +8,24 @@ mod examples;
 mod export;
 mod failure;
 mod fields;
-mod figure;
 mod flags;
 mod forge;
 mod key;
-mod load;
+mod lists;
 mod mask;
 mod measure;
 mod output;
 mod parameters;
-mod periods;
+mod pattern;
 mod point;
 mod probe;
-mod profiles;
 mod progress;
 mod query;
-mod refusal;
-mod remote;
 mod sample;
 mod serve;
 mod signals;
-mod split;
 mod stipple;
-mod strata;
 mod table;
-mod threads;
-mod watcher;
-mod worlds;
 
 use std::{ffi::OsString, process::ExitCode};
 
@@ -63,7 +51,7 @@ enum Command {
     /// Write the points of a region to a file or standard output, without a server.
     #[command(after_long_help = examples::SAMPLE)]
     Sample(sample::Args),
-    /// Write a world as files of chunks, which any static server can serve, or as one archive.
+    /// Write a world as a folder of chunks, which any static server can serve.
     #[command(after_long_help = examples::EXPORT)]
     Export(export::Args),
     /// Turn a picture into dots.
@@ -71,25 +59,25 @@ enum Command {
     Stipple(stipple::Args),
     /// Count the points of a query, exactly, without making them.
     #[command(after_long_help = examples::COUNT)]
-    Count(count::Args),
+    Count(count::CountArgs),
     /// Find a point by its id.
     #[command(after_long_help = examples::POINT)]
     Point(point::PointArgs),
     /// List the sizes of periodic sets.
     #[command(after_long_help = examples::PERIODS)]
-    Periods(periods::Args),
+    Periods(lists::PeriodsArgs),
     /// Find the points nearest to a place.
     #[command(after_long_help = examples::NEAREST)]
     Nearest(point::NearestArgs),
     /// Split a query into parts for parallel readers.
     #[command(after_long_help = examples::SPLIT)]
-    Split(split::Args),
+    Split(count::SplitArgs),
     /// Find out whether an arrangement of points occurs in a pattern, how often, and where.
     #[command(after_long_help = examples::ARRANGEMENT)]
-    Arrangement(arrangement::Args),
+    Arrangement(pattern::ArrangementArgs),
     /// Draw a figure of an AA pattern: its index space, an arrangement, clusters, a neighborhood map.
     #[command(subcommand, after_long_help = examples::FIGURE)]
-    Figure(figure::Command),
+    Figure(pattern::Figure),
     /// Make a tileable threshold mask for dithering.
     #[command(after_long_help = examples::MASK)]
     Mask(mask::Args),
@@ -116,7 +104,7 @@ enum Command {
     Profiles(config::Args),
     /// List and check worlds: queries that the settings describe by name.
     #[command(subcommand, after_long_help = examples::WORLDS)]
-    Worlds(worlds::Command),
+    Worlds(lists::Worlds),
     /// Print the table of parameters as types for programs, or as documentation.
     #[command(after_long_help = examples::PARAMETERS)]
     Parameters(parameters::Args),
@@ -144,13 +132,13 @@ pub fn main(pages: fn() -> Pages) -> ExitCode {
         Command::Sample(args) => sample::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Stipple(args) => stipple::run(&args),
-        Command::Count(args) => count::run(&args),
+        Command::Count(args) => count::count(&args),
         Command::Point(args) => point::point(&args),
-        Command::Periods(args) => periods::run(&args),
+        Command::Periods(args) => lists::periods(&args),
         Command::Nearest(args) => point::nearest(&args),
-        Command::Split(args) => split::run(&args),
-        Command::Arrangement(args) => arrangement::run(&args),
-        Command::Figure(command) => figure::run(&command),
+        Command::Split(args) => count::split(&args),
+        Command::Arrangement(args) => pattern::arrangement(&args),
+        Command::Figure(command) => pattern::draw(&command),
         Command::Mask(args) => mask::run(&args),
         Command::Forge(args) => forge::run(&args),
         Command::Measure(args) => measure::run(&args),
@@ -158,8 +146,8 @@ pub fn main(pages: fn() -> Pages) -> ExitCode {
         Command::Key(command) => key::run(&command),
         Command::Probe(args) => probe::run(&args),
         Command::Config(args) => config::run(&args),
-        Command::Profiles(args) => profiles::run(&args),
-        Command::Worlds(command) => worlds::run(&command),
+        Command::Profiles(args) => lists::profiles(&args),
+        Command::Worlds(command) => lists::worlds(&command),
         Command::Parameters(args) => parameters::run(&args),
         Command::Completions(args) => completions::completions(&args),
         Command::Man(args) => completions::man(&args, Cli::command()),

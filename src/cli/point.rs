@@ -7,12 +7,12 @@ use strew_query::{Nearest, ResolvedSet, Set, Values};
 
 use super::{
     Failure, config,
+    failure::Source,
     fields::FieldArgs,
     flags::{Flags, Near, Single, Takes},
     output,
-    refusal::Source,
 };
-use crate::cli::load::Load as _;
+use crate::cli::config::Load as _;
 
 /// A set without a region.
 #[derive(Debug, clap::Args)]

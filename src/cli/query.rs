@@ -17,13 +17,13 @@ use strew_query::{
 
 use super::{
     Failure, config,
+    failure::Source,
     fields::FieldArgs,
+    fields::StrataArgs,
     flags::{Flags, Takes, WHERE, flag},
-    refusal::Source,
     refuse,
-    strata::StrataArgs,
 };
-use crate::cli::load::Load as _;
+use crate::cli::config::Load as _;
 
 /// A query with a region: by flags, or whole in a file.
 #[derive(Debug, clap::Args)]
@@ -35,7 +35,7 @@ pub(super) struct QueryArgs<T: Takes> {
     /// Points in space: --bbox takes six numbers, --chunk SIZE/CX/CY/CZ, and --query is the body of POST
     /// /v1/space/points.
     #[arg(long, help_heading = WHERE)]
-    pub(super) space: bool,
+    space: bool,
     /// The region: a chunk of the world grid. Coordinates are relative to its corner,
     /// SIZE·CX,SIZE·CY.
     #[arg(long, value_name = "SIZE/CX/CY[/CZ]", help_heading = WHERE)]
@@ -93,25 +93,6 @@ impl<T: Takes> QueryArgs<T> {
             source,
             crs,
         })
-    }
-
-    /// The path of a server's API in the plane, or the one in space.
-    pub(super) const fn path(&self, plane: &'static str, space: &'static str) -> &'static str {
-        if self.space { space } else { plane }
-    }
-
-    /// The query for a server, whose tables and names this program does not know.
-    pub(super) fn for_server(&self) -> Result<Draft, Failure> {
-        let (draft, source) = self.read(self.defined()?.as_ref())?;
-        self.field.must_be_named(&draft.values)?;
-        self.strata.must_be_absent()?;
-        let draft = match self.features()? {
-            Some(features) => draft.in_features(Ok(features)),
-            None => draft,
-        };
-        let refused = |faults: Faults| source.refused(faults.into());
-        draft.read().map_err(refused)?;
-        Ok(draft)
     }
 
     /// The parameters of a query in a file.

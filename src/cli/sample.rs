@@ -1,4 +1,4 @@
-//! `strew sample`: the answers of `GET /v1/points`, to a file or standard output, without a server or from one.
+//! `strew sample`: the answers of `GET /v1/points`, to a file or standard output, without a server.
 
 use std::path::{Path, PathBuf};
 
@@ -10,23 +10,16 @@ use strew_core::{F32, F64, Plan, Tile};
 use strew_encode::{Answer, Encoding, Output, Plain, Scalars, write_number};
 use strew_error::Error;
 use strew_plan::Planned;
-use strew_query::{
-    options,
-    parameters::{FORMAT, SUMMARY},
-};
 
 use super::{
     Failure,
     compression::Compression,
-    config::Uses,
+    config::{self, Uses},
     flags::Answered,
     output::{Output as Target, must_not_be_terminal},
     progress::Progress,
     query::{QueryArgs, described},
-    refusal::Source,
     refuse,
-    remote::{self, RemoteArgs},
-    threads,
 };
 
 /// Flags of `strew sample`: a query, and where to write.
@@ -43,8 +36,6 @@ pub(super) struct Args {
     zstd: Option<u8>,
     #[command(flatten)]
     query: QueryArgs<Answered>,
-    #[command(flatten)]
-    remote: RemoteArgs,
 }
 
 /// The format of an output by the ending of its name; JSON without one.
@@ -74,9 +65,6 @@ pub(super) fn encoding_of(output: Option<&Path>) -> Result<Encoding, Failure> {
 
 /// Writes the points.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    if args.remote.is_given()? {
-        return from_server(args);
-    }
     let config = args.query.settings.merged(Uses::POINTS)?;
     let output = Target::open(args.output.as_deref())?;
     let ask = args.query.plan(&config)?;
@@ -134,42 +122,6 @@ fn check_terminal(args: &Args, encoding: Encoding) -> Result<(), Failure> {
     }
 }
 
-/// Writes the answer of a server.
-fn from_server(args: &Args) -> Result<(), Failure> {
-    let output = Target::open(args.output.as_deref())?;
-    let draft = args.query.for_server()?;
-    let named = options(&draft.values).map_err(|faults| Source::Flags.refused(faults.into()))?;
-    let encoding = match named.encoding {
-        Some(encoding) => encoding,
-        None => encoding_of(args.output.as_deref())?,
-    };
-    if !encoding.is_streamed() {
-        let formats = Encoding::ALL.map(Encoding::name).join(", ");
-        refuse!(
-            "{}: no server writes it; allowed with --url: {formats}",
-            encoding.name()
-        );
-    }
-    check_packing(args, encoding)?;
-    check_terminal(args, encoding)?;
-    let mut body = draft.to_body();
-    body.insert(FORMAT.name.into(), encoding.name().into());
-    let has_summary = named.summary.unwrap_or(true);
-    if encoding.has_summary() {
-        // Its lines are counted.
-        body.insert(SUMMARY.name.into(), has_summary.into());
-    }
-    let answer = {
-        let path = args.query.path("/v1/points:query", "/v1/space/points");
-        args.remote.request(path, &body)?
-    };
-    let count = remote::promised(&answer)?;
-    if !args.quiet {
-        remote::announce(&answer, encoding.name());
-    }
-    remote::write(answer, count, (encoding, has_summary), output)
-}
-
 /// Writes an answer. Errors of the service are returned as they are, because the caller knows the names of its
 /// flags.
 pub(super) fn write(
@@ -193,7 +145,7 @@ pub(super) fn write(
         announce(planned, looks, &answer);
     }
     let failed = |error: anyhow::Error| Ok(Failure::from(error));
-    let pool = threads::pool(config.workers.threads).map_err(failed)?;
+    let pool = config::pool(config.workers.threads).map_err(failed)?;
     let mut progress = Progress::new(what, count, quiet);
     let written = pool.install(|| match answer.plain().cloned() {
         Some(plain) => packed(&plain, &mut output, &mut progress),

@@ -18,14 +18,14 @@ use strew_raster::{Image, Limits};
 
 use super::{
     Failure, config,
+    failure::Source,
     flags::{Flags, Stippled},
     must_be_within,
     output::Output as Target,
-    refusal::Source,
     refuse,
     sample::{encoding_of, write},
 };
-use crate::cli::load::Load as _;
+use crate::cli::config::Load as _;
 
 /// Flags of `strew stipple`.
 #[derive(Debug, clap::Args)]

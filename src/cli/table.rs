@@ -15,7 +15,7 @@ use strew_core::{
 use strew_forge::ForgeError;
 
 use super::{Failure, config, output, refuse};
-use crate::cli::load::Load as _;
+use crate::cli::config::Load as _;
 
 /// Commands about tables.
 #[derive(Debug, Subcommand)]

@@ -107,19 +107,6 @@ impl Draft {
         }
     }
 
-    /// Whether all of it could be read. What it means is not checked.
-    ///
-    /// # Errors
-    /// Every fault.
-    pub fn read(&self) -> Checked<()> {
-        let region = self.region.as_ref().map(drop).map_err(Clone::clone);
-        let layers = match &self.layers {
-            Ok(layers) => all(layers.iter().map(LayerDraft::read)).map(drop),
-            Err(faults) => Err(faults.clone()),
-        };
-        (self.values.read(), region, layers).together().map(drop)
-    }
-
     /// Checks a part of a query, with a region and an amount of its own in place of those that it lacks.
     ///
     /// # Errors

@@ -59,23 +59,6 @@ impl LayerDraft {
         Cow::Owned(layer)
     }
 
-    /// Whether all of it could be read.
-    pub(super) fn read(&self) -> Checked<()> {
-        let Self {
-            name,
-            region,
-            values,
-            clear_of,
-        } = self;
-        let parts = (
-            name.clone(),
-            region.clone(),
-            values.read(),
-            clear_of.clone(),
-        );
-        parts.together().map(drop)
-    }
-
     /// Checks the layer after some others.
     pub(super) fn check(&self, before: &[Self], loaded: &Loaded<'_>) -> Checked<Set> {
         let names: Vec<Option<&str>> = before.iter().map(Self::known_name).collect();

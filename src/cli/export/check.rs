@@ -4,8 +4,7 @@
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
-    path::{Path, PathBuf},
-    sync::{Mutex, MutexGuard, PoisonError},
+    path::Path,
 };
 
 use anyhow::{Context as _, anyhow};
@@ -13,7 +12,6 @@ use rayon::prelude::*;
 use strew_config::Config;
 
 use super::{
-    archive::Reader,
     chunks::Maker,
     folder::WORK,
     record::{DIGESTS, MANIFEST, Manifest},
@@ -21,8 +19,9 @@ use super::{
 use crate::cli::{
     Failure,
     compression::{Compression, names},
-    load::Load as _,
+    config::Load as _,
     progress::Progress,
+    refuse,
 };
 
 /// The number of chunks that are made again, unless all are.
@@ -32,20 +31,22 @@ const NAMED: usize = 20;
 /// The number of files between two lines of progress.
 const BATCH: usize = 256;
 
-/// The export to check.
-enum Tree {
-    Folder(PathBuf),
-    /// The lock is for the file, which has one reading position.
-    Archive(Mutex<Reader>),
-}
+/// The folder of the export to check.
+struct Tree<'a>(&'a Path);
 
 /// The faults, by the names of files.
 #[derive(Default)]
 struct Faults(BTreeMap<String, &'static str>);
 
-/// Checks a folder or an archive; `all` makes every chunk again.
+/// Checks a folder; `all` makes every chunk again.
 pub(super) fn run(path: &Path, all: bool, quiet: bool, config: &Config) -> Result<(), Failure> {
-    let tree = Tree::open(path)?;
+    if !path.is_dir() {
+        refuse!(
+            "--check {}: not a folder; allowed: the folder of an export (unpack a zip file of one first)",
+            path.display()
+        );
+    }
+    let tree = Tree(path);
     let manifest = tree.read(MANIFEST).with_context(|| {
         format!(
             "{} has no {MANIFEST}: it is no export, or incomplete",
@@ -88,7 +89,7 @@ pub(super) fn run(path: &Path, all: bool, quiet: bool, config: &Config) -> Resul
 
 /// Makes chunks again and compares all their files; returns the number of chunks.
 fn made_again(
-    tree: &Tree,
+    tree: &Tree<'_>,
     manifest: &Manifest,
     all: bool,
     quiet: bool,
@@ -133,22 +134,10 @@ fn unpacked(bytes: Vec<u8>, packed: Option<Compression>) -> Option<Vec<u8>> {
     }
 }
 
-impl Tree {
-    fn open(path: &Path) -> Result<Self, Failure> {
-        if path.is_dir() {
-            return Ok(Self::Folder(path.into()));
-        }
-        Ok(Self::Archive(Mutex::new(Reader::open(path)?)))
-    }
-
+impl Tree<'_> {
     fn read(&self, name: &str) -> anyhow::Result<Vec<u8>> {
-        match self {
-            Self::Folder(root) => {
-                let path = root.join(name);
-                fs::read(&path).with_context(|| format!("cannot read {}", path.display()))
-            }
-            Self::Archive(archive) => open(archive).read(name),
-        }
+        let path = self.0.join(name);
+        fs::read(&path).with_context(|| format!("cannot read {}", path.display()))
     }
 
     /// The digests of all files but the list of them and the manifest.
@@ -174,10 +163,7 @@ impl Tree {
         digests: &BTreeMap<String, blake3::Hash>,
         faults: &mut Faults,
     ) -> anyhow::Result<()> {
-        let names: BTreeSet<String> = match self {
-            Self::Folder(root) => below(root)?,
-            Self::Archive(archive) => open(archive).names().map(Into::into).collect(),
-        };
+        let names = below(self.0)?;
         let is_known = |name: &String| {
             digests.contains_key(name) || [MANIFEST, DIGESTS].contains(&name.as_str())
         };
@@ -195,10 +181,6 @@ impl Tree {
         };
         names.par_iter().map(hash).collect()
     }
-}
-
-fn open(archive: &Mutex<Reader>) -> MutexGuard<'_, Reader> {
-    archive.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The names of all files below a folder.

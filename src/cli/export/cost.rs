@@ -2,6 +2,8 @@
 //! the disk has room.
 
 use std::{
+    fs::{self, File},
+    io::{self, Write as _},
     path::Path,
     time::{Duration, Instant},
 };
@@ -12,10 +14,9 @@ use rayon::prelude::*;
 
 use super::{
     chunks::{Maker, variants},
-    disk::Speed,
-    spec::{DEFLATE, Spec},
+    spec::Spec,
 };
-use crate::cli::{Failure, compression::Compression};
+use crate::cli::{Failure, compression::Compression, signals::Incomplete};
 
 /// The most chunks of a trial, evenly spread over all of them.
 const TRIED: usize = 32;
@@ -56,14 +57,9 @@ struct Tried {
 }
 
 impl Cost {
-    /// Tries some chunks, and counts points where that is quick. `done` chunks exist; in an archive
-    /// files lie side by side.
+    /// Tries some chunks, and counts points where that is quick. `done` chunks exist.
     pub(super) fn of(maker: &Maker, spec: &Spec, done: usize) -> Result<Self, Failure> {
-        let is_archive = spec.archive.is_some();
-        let compressions = match spec.archive.as_deref() {
-            Some(DEFLATE) => vec![Compression::Gzip],
-            _ => spec.compressions(),
-        };
+        let compressions = spec.compressions();
         let chunks = maker.grid.chunks();
         let began = Instant::now();
         let number = chunks.div_ceil(SHARE).min(TRIED);
@@ -73,7 +69,7 @@ impl Cost {
             }
             // The middle chunk of each of `number` parts.
             let i = (2 * k + 1) * chunks / (2 * number);
-            try_out(maker, &compressions, i, is_archive).map(Some)
+            try_out(maker, &compressions, i).map(Some)
         });
         let tried: Vec<Option<Tried>> = tried.collect::<Result<_, Failure>>()?;
         let tried: Vec<Tried> = tried.into_iter().flatten().collect();
@@ -131,7 +127,7 @@ impl Cost {
     }
 
     /// Refuses an export that does not fit the disk of a folder.
-    pub(super) fn check(&self, folder: &Path, is_archive: bool) -> Result<(), Failure> {
+    pub(super) fn check(&self, folder: &Path) -> Result<(), Failure> {
         let Some((bytes, files)) = free(folder) else {
             return Ok(());
         };
@@ -151,11 +147,11 @@ impl Cost {
             )));
         }
         // Some file systems do not count files.
-        if !is_archive && files > 0 && self.files > files as f64 {
+        if files > 0 && self.files > files as f64 {
             return Err(Failure::Other(anyhow!(
                 "the export takes {:.0} files{more}, and the disk of {place} has room for {files}{}",
                 self.files,
-                advise("choose larger chunks, or --archive")
+                advise("choose larger chunks")
             )));
         }
         Ok(())
@@ -167,32 +163,16 @@ pub(super) fn go_on(done: usize, chunks: usize) -> String {
     format!("{done} of {chunks} chunks exist: make room, and the same command resumes there")
 }
 
-fn try_out(
-    maker: &Maker,
-    compressions: &[Compression],
-    i: usize,
-    is_archive: bool,
-) -> Result<Tried, Failure> {
+fn try_out(maker: &Maker, compressions: &[Compression], i: usize) -> Result<Tried, Failure> {
     let began = Instant::now();
     let chunk = maker.make(i)?;
     let points = chunk.points as f64;
     let files = variants(chunk.bytes, compressions)?;
-    let sizes: Vec<u64> = files.iter().map(|(_, bytes)| bytes.len() as u64).collect();
-    let (bytes, disk) = match is_archive {
-        // One file is stored; the rest is heads and indices.
-        true => {
-            let stored = sizes.last().copied().unwrap_or(0);
-            (stored, stored + 512)
-        }
-        false => {
-            let on_disk = sizes.iter().map(|size| size.next_multiple_of(BLOCK));
-            (sizes.iter().sum(), on_disk.sum())
-        }
-    };
+    let sizes = files.iter().map(|(_, bytes)| bytes.len() as u64);
     Ok(Tried {
         points,
-        bytes: bytes as f64,
-        disk: disk as f64,
+        bytes: sizes.clone().sum::<u64>() as f64,
+        disk: sizes.map(|size| size.next_multiple_of(BLOCK)).sum::<u64>() as f64,
         seconds: began.elapsed().as_secs_f64(),
     })
 }
@@ -207,4 +187,80 @@ fn free(folder: &Path) -> Option<(u64, u64)> {
 #[cfg(not(unix))]
 fn free(_: &Path) -> Option<(u64, u64)> {
     None
+}
+
+/// The most bytes of a trial of the disk.
+const TRIED_BYTES: u64 = 32 << 20;
+/// It writes nothing more after this time.
+const WRITING: Duration = Duration::from_millis(300);
+/// The number of its files.
+const TRIED_FILES: u32 = 32;
+
+/// The seconds that a disk takes, by a short trial: in the end an export waits for the disk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Speed {
+    per_byte: f64,
+    per_file: f64,
+}
+
+impl Speed {
+    /// Tries the disk of a folder. `None` if it cannot be written, which the export itself reports.
+    fn of(folder: &Path) -> Option<Self> {
+        let path = folder.join(format!(".strew-trial-{}", std::process::id()));
+        let (mut file, trial) = Incomplete::make(&path, |path| File::create(path)).ok()?;
+        let speed = written(&mut file).and_then(|per_byte| {
+            let per_file = named(&path)?;
+            Ok(Self { per_byte, per_file })
+        });
+        drop(trial);
+        speed.ok()
+    }
+
+    /// The time that some files of some bytes take.
+    fn time(self, files: f64, bytes: f64) -> f64 {
+        files * self.per_file + bytes * self.per_byte
+    }
+}
+
+/// Seconds per byte, until the bytes are on the disk.
+fn written(file: &mut File) -> io::Result<f64> {
+    // File systems that compress must not see zeros.
+    let mut block = vec![0; 1 << 20];
+    blake3::Hasher::new().finalize_xof().fill(&mut block);
+    let (began, mut bytes) = (Instant::now(), 0);
+    while bytes < TRIED_BYTES && began.elapsed() < WRITING {
+        file.write_all(&block)?;
+        bytes += block.len() as u64;
+    }
+    file.sync_all()?;
+    Ok(began.elapsed().as_secs_f64() / bytes as f64)
+}
+
+/// Seconds for each file that is made and renamed.
+fn named(path: &Path) -> io::Result<f64> {
+    let fresh = path.with_extension("new");
+    let began = Instant::now();
+    for _ in 0..TRIED_FILES {
+        fs::write(&fresh, b"x").and_then(|()| fs::rename(&fresh, path))?;
+    }
+    Ok(began.elapsed().as_secs_f64() / f64::from(TRIED_FILES))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_trial_takes_time_and_leaves_nothing() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let speed = Speed::of(folder.path()).expect("writable");
+        assert!(speed.per_byte > 0.0 && speed.per_file > 0.0, "{speed:?}");
+        assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0);
+        assert_eq!(Speed::of(&folder.path().join("none")), None);
+        let known = Speed {
+            per_byte: 2.0,
+            per_file: 10.0,
+        };
+        assert_eq!(known.time(3.0, 4.0), 38.0);
+    }
 }

@@ -1,24 +1,20 @@
-//! `strew export`: writes a world as files of chunks, under the daemon's paths, in a folder or one archive.
+//! `strew export`: writes a world as files of chunks, under the daemon's paths, in a folder.
 
-mod archive;
 mod check;
 mod chunks;
 mod cost;
-mod disk;
 mod folder;
 mod grid;
-mod lock;
 mod record;
 mod servers;
 mod spec;
-mod zip;
 
 use std::{
-    fs, io,
+    io,
     path::{Path, PathBuf},
     sync::{
         Mutex, PoisonError,
-        atomic::{AtomicBool, AtomicUsize, Ordering},
+        atomic::{AtomicUsize, Ordering},
     },
 };
 
@@ -29,7 +25,6 @@ use strew_config::Config;
 use strew_query::Assets;
 
 use self::{
-    archive::Archive,
     chunks::Maker,
     cost::Cost,
     folder::Folder,
@@ -44,9 +39,8 @@ use super::{
     progress::Progress,
     refuse,
     signals::stop_flag,
-    threads,
 };
-use crate::cli::load::Load as _;
+use crate::cli::config::Load as _;
 
 /// Flags of `strew export`: a query, its chunks, and the output.
 #[derive(Debug, clap::Args)]
@@ -54,11 +48,8 @@ pub(super) struct Args {
     /// The folder to write: a new one, or that of an interrupted export.
     #[arg(long, short, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// A zip file to write instead of a folder; readers take ranges of it.
-    #[arg(long, value_name = "FILE", conflicts_with = "output")]
-    archive: Option<PathBuf>,
     /// Check an export instead: its digests, its names, and points of chunks made again.
-    #[arg(long, value_name = "DIR|FILE", conflicts_with_all = ["output", "archive", "chunk", "levels", "compress"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["output", "chunk", "levels", "compress"])]
     check: Option<PathBuf>,
     /// With --check: make all chunks again instead of 100.
     #[arg(long, requires = "check")]
@@ -88,10 +79,6 @@ pub(super) struct Args {
     settings: config::Args,
 }
 
-/// The approximate bytes of an archive's chunks that wait to be written in order, if all are as large as the largest so
-/// far; but at least one chunk for each thread.
-const BATCH: u64 = 64 << 20;
-
 /// The parts of an export.
 struct Job<'a> {
     spec: Spec,
@@ -106,7 +93,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let threads = args
         .threads
         .map_or(config.workers.threads, |threads| threads as usize);
-    threads::pool(threads)?.install(|| match &args.check {
+    config::pool(threads)?.install(|| match &args.check {
         Some(path) => check::run(path, args.all, args.quiet, &config),
         None => export(args, &config),
     })
@@ -119,15 +106,25 @@ fn export(args: &Args, config: &Config) -> Result<(), Failure> {
     if !(size.is_finite() && size > 0.0) {
         refuse!("--chunk {size}: out of range; allowed: a finite number above 0");
     }
-    if args.output.is_none() && args.archive.is_none() && !args.dry_run {
-        refuse!("a place to write is missing: use --output DIR or --archive FILE, or --dry-run");
+    match &args.output {
+        None if !args.dry_run => {
+            refuse!("a place to write is missing: use --output DIR, or --dry-run")
+        }
+        Some(root) if is_zip(root) => {
+            let (zip, folder) = (root.display(), root.with_extension(""));
+            let folder = folder.display();
+            refuse!(
+                "--output {zip}: an export is a folder, not a zip file; allowed: --output {folder}, and after it \
+                 `zip -r {zip} {folder}`"
+            );
+        }
+        _ => {}
     }
     let catalog = config.with_worlds(config.tables()?)?;
     let shape = Shape {
         size,
         levels: args.levels,
         compressed: args.compress.as_deref().map(compressions).transpose()?,
-        is_archive: args.archive.is_some(),
     };
     let spec = Spec::new(&args.flags, &shape, &catalog, config)?;
     let job = Job {
@@ -136,18 +133,21 @@ fn export(args: &Args, config: &Config) -> Result<(), Failure> {
         catalog,
         args,
     };
-    match (&args.output, &args.archive) {
-        _ if args.dry_run => job.cost(0, None),
-        (Some(root), _) => job.to_folder(root),
-        (_, Some(path)) => job.to_archive(path),
-        (None, None) => Ok(()),
+    match &args.output {
+        Some(root) if !args.dry_run => job.to_folder(root),
+        _ => job.cost(0, None),
     }
+}
+
+/// Whether a name is that of a zip file.
+fn is_zip(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("zip"))
 }
 
 impl Job<'_> {
     /// Reports the cost. Fails if the disk has no room for it.
     fn cost(&self, done: usize, place: Option<&Path>) -> Result<(), Failure> {
-        let is_archive = self.args.archive.is_some();
         let mut cost = Cost::of(&self.maker, &self.spec, done)?;
         if let Some(place) = place {
             cost = cost.written_to(place);
@@ -158,7 +158,7 @@ impl Job<'_> {
                 eprintln!("{done} chunks exist already");
             }
         }
-        place.map_or(Ok(()), |place| cost.check(place, is_archive))
+        place.map_or(Ok(()), |place| cost.check(place))
     }
 
     fn progress(&self, done: usize) -> Progress {
@@ -212,84 +212,10 @@ impl Job<'_> {
         let mut records: Vec<(usize, Record)> = done.into_iter().collect();
         records.sort_unstable_by_key(|(i, _)| *i);
         let records: Vec<Record> = records.into_iter().map(|(_, record)| record).collect();
-        let documents = documents(&self.spec, &self.maker, &self.catalog, &records, vec![])?;
+        let documents = documents(&self.spec, &self.maker, &self.catalog, &records)?;
         let finished = folder.finish(&documents);
         finished.map_err(|failure| no_room(failure.into(), count, chunks))?;
         self.report(root, &records);
-        Ok(())
-    }
-
-    fn to_archive(&self, path: &Path) -> Result<(), Failure> {
-        let (mut archive, mut records) =
-            match Archive::open(path, &self.spec, &self.maker).map_err(no_room_to_open)? {
-                archive::Found::Complete => return self.nothing_to_do(path),
-                archive::Found::Open(archive, records) => (archive, records),
-            };
-        let folder = path
-            .parent()
-            .filter(|folder| !folder.as_os_str().is_empty());
-        if let Err(failure) = self.cost(records.len(), Some(folder.unwrap_or(Path::new(".")))) {
-            if records.is_empty() {
-                archive.abandon();
-            }
-            return Err(failure);
-        }
-        let mut progress = self.progress(records.len());
-        let written = self.in_order(&mut archive, &mut records, &mut progress, &stop_flag());
-        progress.finish();
-        let (count, chunks) = (records.len(), self.maker.grid.chunks());
-        let no_room = |failure| no_room(failure, count, chunks);
-        // Also a run that ends early writes the chunks that it made.
-        let flushed = archive.flush().map_err(Failure::from);
-        written.and(flushed).map_err(no_room)?;
-        let extra = archive.extra(&self.spec, &self.maker)?;
-        let documents = documents(&self.spec, &self.maker, &self.catalog, &records, extra)?;
-        let finished = archive.finish(documents, &self.maker);
-        finished.map_err(|failure| no_room(failure.into()))?;
-        self.report(path, &records);
-        Ok(())
-    }
-
-    /// Writes the missing chunks in order: a batch while the next one is being made.
-    fn in_order(
-        &self,
-        archive: &mut Archive,
-        records: &mut Vec<Record>,
-        progress: &mut Progress,
-        stop: &AtomicBool,
-    ) -> Result<(), Failure> {
-        let (chunks, threads) = (self.maker.grid.chunks(), rayon::current_num_threads());
-        let is_deflated = archive.is_deflated();
-        let make = |first: usize, size: usize| {
-            let batch = (first..chunks.min(first + size)).into_par_iter();
-            let packed = batch.map(|i| Ok(Archive::pack(self.maker.make(i)?, is_deflated)?));
-            packed.collect::<Result<Vec<_>, Failure>>()
-        };
-        let mut largest = 1;
-        let mut ready = make(records.len(), threads)?;
-        while !ready.is_empty() {
-            let first = records.len();
-            let lengths = ready.iter().map(|(record, _)| record.files[0].1);
-            largest = lengths.max().unwrap_or(0).max(largest);
-            let few = usize::try_from(BATCH / largest).unwrap_or(usize::MAX);
-            let size = few.clamp(threads, 32 * threads);
-            let (written, next) = rayon::join(
-                || {
-                    for (k, (_, content)) in ready.iter().enumerate() {
-                        archive.put(&self.name(first + k), content)?;
-                    }
-                    archive.flush()
-                },
-                || make(first + ready.len(), size),
-            );
-            written?;
-            records.extend(ready.into_iter().map(|(record, _)| record));
-            progress.reach(records.len() as u64, "");
-            if stop.load(Ordering::Relaxed) {
-                return Err(stopped(records.len(), chunks));
-            }
-            ready = next?;
-        }
         Ok(())
     }
 
@@ -310,17 +236,8 @@ impl Job<'_> {
             .flat_map(|record| &record.files)
             .map(|(_, length)| length)
             .sum();
-        // The forecast of an archive is about its own size.
-        let archive = self
-            .args
-            .archive
-            .as_ref()
-            .and_then(|file| fs::metadata(file).ok());
-        let packed = archive.map_or_else(String::new, |file| {
-            format!(" in an archive of {} bytes", file.len())
-        });
         eprintln!(
-            "{}: {} chunks, {points} points, {bytes} bytes{packed}",
+            "{}: {} chunks, {points} points, {bytes} bytes",
             place.display(),
             records.len()
         );

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use strew_query::{Assets, World};
 
 use super::{
-    chunks::{Chunk, Maker},
+    chunks::Maker,
     grid::{Level, MOST_LEVELS},
     servers,
     spec::Spec,
@@ -31,14 +31,6 @@ pub(super) struct Record {
 }
 
 impl Record {
-    /// A chunk whose plain file has these bytes.
-    pub(super) fn of(chunk: &Chunk) -> Self {
-        Self {
-            points: chunk.points,
-            files: vec![(blake3::hash(&chunk.bytes), chunk.bytes.len() as u64)],
-        }
-    }
-
     /// A line of a journal.
     pub(super) fn line(&self, i: usize) -> String {
         let mut line = format!("{i} {}", self.points);
@@ -96,16 +88,15 @@ impl Total {
     }
 }
 
-/// The documents beside the chunks, in the order in which they are written; `extra` are files of the kind of export.
+/// The documents beside the chunks, in the order in which they are written.
 pub(super) fn documents(
     spec: &Spec,
     maker: &Maker,
     catalog: &Assets,
     records: &[Record],
-    extra: Vec<(String, Vec<u8>)>,
 ) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let legend = maker.legend()?;
-    let mut files = extra;
+    let mut files = vec![];
     let world = spec
         .world
         .as_ref()
@@ -209,7 +200,7 @@ mod tests {
         let level = r#"{"size": 16, "lod": 1, "query": "", "columns": [0, 2], "rows": [0, 2]}"#;
         let manifest = format!(
             r#"{{"export": {{"strew": "1", "algorithm": 3, "world": null, "digests": [], "query": "", "format": "f32",
-            "content_type": "", "bbox": [0, 0, 1, 1], "compressed": [], "archive": null, "levels": [{level}]}},
+            "content_type": "", "bbox": [0, 0, 1, 1], "compressed": [], "levels": [{level}]}},
             "path": "", "columns": null, "levels": [], "total": {{"chunks": 4, "points": 0, "bytes": 0}}, "files": ""}}"#
         );
         let read = |text: &str| Manifest::read(text.as_bytes()).map_err(|error| error.to_string());

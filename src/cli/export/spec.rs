@@ -1,6 +1,5 @@
 //! The options that decide the bytes of an export. Two exports of the same spec are equal, bit for bit.
 
-use anyhow::anyhow;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde::{Deserialize, Serialize};
 use strew_catalog::Ready;
@@ -16,7 +15,7 @@ use strew_query::{
 };
 
 use super::grid::{Grid, Level};
-use crate::cli::{Failure, compression::Compression, flags::Flags, refusal::Source, refuse};
+use crate::cli::{Failure, compression::Compression, failure::Source, flags::Flags, refuse};
 
 /// The characters that need no escaping in addresses or in the settings of servers.
 const PLAIN: &AsciiSet = &NON_ALPHANUMERIC
@@ -28,7 +27,6 @@ const PLAIN: &AsciiSet = &NON_ALPHANUMERIC
 
 /// The options of an export.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub(super) struct Spec {
     /// The versions of the program and of the algorithm, on which the bytes depend.
     pub(super) strew: String,
@@ -46,8 +44,6 @@ pub(super) struct Spec {
     pub(super) bbox: [f64; 4],
     /// The endings of compressed files beside the plain ones.
     pub(super) compressed: Vec<String>,
-    /// The packing of members of an archive; `None` for a folder.
-    pub(super) archive: Option<String>,
     /// The setting `limits.block_bytes`, in formats whose bytes depend on it; else none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) block_bytes: Option<usize>,
@@ -79,36 +75,7 @@ pub(super) struct Shape {
     pub(super) levels: u32,
     /// The compressions, if flags name them.
     pub(super) compressed: Option<Vec<Compression>>,
-    pub(super) is_archive: bool,
 }
-
-impl Shape {
-    /// The endings of compressed files beside the plain ones, and the packing of members of an archive.
-    fn packing(&self, encoding: Encoding) -> Result<(Vec<String>, Option<String>), Failure> {
-        let otherwise = || {
-            if encoding.is_text() {
-                vec![Compression::Gzip]
-            } else {
-                vec![]
-            }
-        };
-        let wanted = self.compressed.clone().unwrap_or_else(otherwise);
-        if !self.is_archive {
-            return Ok((wanted.iter().map(|one| one.ending().into()).collect(), None));
-        }
-        match wanted.as_slice() {
-            [] => Ok((vec![], Some(STORED.into()))),
-            [Compression::Gzip] => Ok((vec![], Some(DEFLATE.into()))),
-            _ => Err(Failure::Usage(anyhow!(
-                "--compress zst: most readers of zip files do not know it; allowed with --archive: none, gz"
-            ))),
-        }
-    }
-}
-
-/// The packings of members of an archive.
-pub(super) const STORED: &str = "stored";
-pub(super) const DEFLATE: &str = "deflate";
 
 impl Spec {
     /// The spec of some flags.
@@ -160,7 +127,13 @@ impl Spec {
                 encoding.name()
             );
         }
-        let (compressed, archive) = shape.packing(encoding)?;
+        let usual = if encoding.is_text() {
+            vec![Compression::Gzip]
+        } else {
+            vec![]
+        };
+        let compressed = shape.compressed.as_ref().unwrap_or(&usual);
+        let compressed = compressed.iter().map(|one| one.ending().into()).collect();
         let share = first.lod;
         let mut levels = vec![Level {
             lod: share,
@@ -197,7 +170,6 @@ impl Spec {
             content_type: encoding.content_type().into(),
             bbox,
             compressed,
-            archive,
             block_bytes: blocks(encoding, config),
             levels,
         })

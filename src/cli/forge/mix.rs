@@ -8,8 +8,8 @@ use strew_core::{Alpha, Table, map::Size, table::Shares};
 use strew_forge::{MixJob, mix, mix_file_name, read_table};
 use strew_query::{DEFAULT_ALPHA, DEFAULT_PROFILE};
 
-use super::work::Work;
-use crate::cli::{Failure, refuse, watcher::Watcher};
+use super::{Watcher, Work};
+use crate::cli::{Failure, refuse};
 
 /// Flags of `strew forge mix`. Equal flags make equal tables, bit by bit, on every machine.
 #[derive(Debug, clap::Args)]

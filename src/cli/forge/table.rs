@@ -1,4 +1,4 @@
-//! `strew forge` itself: makes a table, judges it, writes it.
+//! `strew forge` itself: makes a table of the plane or, with `--space`, of points in space, judges it, writes it.
 
 use std::path::{Path, PathBuf};
 
@@ -6,15 +6,14 @@ use anyhow::{Context as _, anyhow};
 use strew_config::bounded_file;
 use strew_core::Alpha;
 use strew_forge::{
-    Checkpoint, DEFAULT_SEED, Estimate, Job, Prospect, Target, file_name, forge, resume,
+    Checkpoint, DEFAULT_SEED, Estimate, ForgeError, Job, Prospect, Target, file_name, forge,
+    resume,
+    space::{self, SpaceEstimate, SpaceJob, SpaceProfile, table_file_name},
 };
 use strew_query::{DEFAULT_ALPHA, DEFAULT_PROFILE};
 
-use super::{
-    space,
-    work::{Checkpoints, Work},
-};
-use crate::cli::Failure;
+use super::{Checkpoints, Made, Work};
+use crate::cli::{Failure, refuse};
 
 /// The most bytes of a file with a curve.
 const MAX_TARGET_BYTES: u64 = 1 << 20;
@@ -84,8 +83,8 @@ pub(super) fn run(
     checkpoints: &Checkpoints,
 ) -> Result<(), Failure> {
     if args.space {
-        let job = space::job(&args.profile, args.alpha, args.radius, args.seed, steps)?;
-        return space::run(&job, work, checkpoints);
+        let job = job_in_space(&args.profile, args.alpha, args.radius, args.seed, steps)?;
+        return run_in_space(&job, work, checkpoints);
     }
     let job = args.job(steps)?;
     let path = work.path(&file_name(&job.profile, job.alpha, job.radius))?;
@@ -152,4 +151,87 @@ fn announce(path: &Path, prospect: &Prospect, estimate: &Estimate) {
             least.g, least.r
         );
     }
+}
+
+/// The job of a table of points in space. What the flags leave open is as in the shipped tables.
+fn job_in_space(
+    profile: &str,
+    alpha: Alpha,
+    radius: Option<u32>,
+    seed: Option<u64>,
+    steps: Option<u32>,
+) -> Result<SpaceJob, Failure> {
+    let Some(profile) = SpaceProfile::named(profile) else {
+        let names = SpaceProfile::ALL.map(SpaceProfile::name).join(", ");
+        refuse!(
+            "--profile {profile}: no profile of points in space; allowed with --space: {names}"
+        );
+    };
+    let default = SpaceJob::new(profile);
+    Ok(SpaceJob {
+        alpha,
+        radius: radius.unwrap_or(default.radius),
+        seed: seed.unwrap_or(default.seed),
+        steps,
+        ..default
+    })
+}
+
+/// Makes a table.
+fn run_in_space(job: &SpaceJob, work: &Work, checkpoints: &Checkpoints) -> Result<(), Failure> {
+    let usual = table_file_name(job.profile.name(), job.alpha, job.radius);
+    let path = work.path(&usual)?;
+    let pool = work.pool()?;
+    let estimate = pool.install(|| job.estimate()).map_err(Failure::usage)?;
+    let kept = Checkpoints::path(&path);
+    let is_of = |found: &Checkpoint| found.is_of_space(job);
+    let found = checkpoints.found(&kept, work.quiet, is_of)?;
+    if !work.quiet {
+        announce_in_space(&path, &estimate, work.threads());
+        if let Some(found) = &found {
+            let (steps, of, from) = (found.steps(), estimate.steps, kept.display());
+            eprintln!("resuming at step {steps} of {of}, from {from}");
+        }
+    }
+    let watcher = checkpoints.watcher(&kept, work);
+    let outcome = pool.install(|| match found {
+        None => space::forge(job, &watcher),
+        Some(found) => space::resume(job, found, &watcher),
+    });
+    let outcome = outcome.map_err(Failure::usage)?;
+    watcher.finish();
+    if outcome.interrupted {
+        let text = work.interrupted(&path, &outcome.table, &watcher)?;
+        return Err(Failure::Interrupted(anyhow!(text)));
+    }
+    let (is_accepted, complaints) = (outcome.accepted, &outcome.complaints);
+    work.conclude(
+        &path,
+        "table",
+        &outcome.table,
+        is_accepted,
+        None,
+        complaints,
+    )?;
+    work.show(&outcome.table.provenance().figures);
+    Checkpoints::remove(&kept)
+}
+
+impl Made for strew_core::space::Table {
+    fn write(&self, path: &Path) -> Result<String, ForgeError> {
+        space::write_table(path, self)?;
+        Ok(self.digest().to_string())
+    }
+}
+
+/// Announces the work.
+fn announce_in_space(path: &Path, estimate: &SpaceEstimate, threads: usize) {
+    eprintln!(
+        "forging {}: {} blocks, {} steps, judged on {} points; about {:.0} s on {threads} threads",
+        path.display(),
+        estimate.blocks,
+        estimate.steps,
+        estimate.measured_points,
+        estimate.time.as_secs_f64().max(1.0),
+    );
 }

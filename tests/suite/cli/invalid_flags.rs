@@ -3,7 +3,7 @@
 use crate::support::command::run;
 
 /// (arguments, texts in the message).
-const WRONG: [(&str, &[&str]); 38] = [
+const WRONG: [(&str, &[&str]); 37] = [
     (
         "sample --bbox 0,0,9,9 --spacing 1 -o trees.shp",
         &["--output", ".shp", "--format", "parquet"],
@@ -19,10 +19,6 @@ const WRONG: [(&str, &[&str]); 38] = [
     (
         "sample --bbox 0,0,9,9 --spacing 1 --tables /a --set tables.folder=/b",
         &["`tables.folder`", "--set tables.folder=/b and by --tables"],
-    ),
-    (
-        "count --bbox 0,0,9,9 --spacing 1 --url http://127.0.0.1:1 --config a.toml",
-        &["--url <URL>", "--config <FILE>"],
     ),
     (
         "probe --url http://127.0.0.1:1 --listen 127.0.0.1:2",

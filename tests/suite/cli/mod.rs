@@ -16,7 +16,6 @@ mod outputs;
 mod patterns;
 mod probe;
 mod queries;
-mod remote;
 mod space_tables;
 mod worlds;
 

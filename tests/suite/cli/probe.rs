@@ -27,6 +27,12 @@ fn a_daemon_that_serves_is_ready_and_one_that_stops_is_not() {
     let url = daemon.url("");
     assert_eq!(probe(&["--url", &url]), (Some(0), String::new()));
     assert_eq!(probe(&["--url", &url, "--live"]), (Some(0), String::new()));
+    // Proxies are for other machines.
+    let beside = strew()
+        .args(["probe", "--url", &url])
+        .envs(["http_proxy", "HTTP_PROXY", "ALL_PROXY"].map(|name| (name, "http://127.0.0.1:1")))
+        .output();
+    assert!(beside.expect("the program runs").status.success());
     // Without a URL it uses the address of the settings.
     assert_eq!(
         probe(&["--listen", &daemon.address().to_string()]).0,
@@ -49,11 +55,15 @@ fn an_address_without_a_daemon_is_reported_in_time() {
     let (code, message) = probe(&["--url", &url, "--timeout", "0.2"]);
     assert_eq!(code, Some(1));
     assert!(message.contains("no answer within 200ms"), "{message}");
+    let encrypted = url.replace("http", "https");
+    let (code, message) = probe(&["--url", &encrypted, "--insecure", "--timeout", "0.2"]);
+    assert_eq!(code, Some(1));
+    assert!(message.contains("no answer within 200ms"), "{message}");
     assert!(start.elapsed() < Duration::from_secs(10));
 
     // A server that never ends its first line.
     let dripping = std::thread::spawn(move || {
-        for _ in 0..2 {
+        for _ in 0..3 {
             let Ok((mut stream, _)) = silent.accept() else {
                 return;
             };

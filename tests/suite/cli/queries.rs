@@ -84,7 +84,7 @@ fn the_flags_are_the_parameters_of_rest() {
         "white",
         "space",
     ];
-    // Where the query comes from, and a server that answers.
+    // Where the query comes from.
     let query = [
         "query",
         "region",
@@ -95,13 +95,6 @@ fn the_flags_are_the_parameters_of_rest() {
         "classes",
         "chunk",
         "ball",
-        "url",
-        "key-file",
-        "ca",
-        "server-name",
-        "insecure",
-        "certificate",
-        "key",
     ];
     for (command, path, more) in [
         ("sample", "/v1/points", &["output", "quiet", "zstd"][..]),

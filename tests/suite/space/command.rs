@@ -36,10 +36,6 @@ fn flags_have_the_points_of_addresses() {
             assert!(output.status.success(), "{}", errors(&output));
             let answer = daemon.get(&format!("/v1/space/points?{query}&format={format}"));
             assert_eq!(output.stdout, answer.body, "{query} {format}");
-            let url = format!("--url={}", daemon.url(""));
-            let remote = run(&[&arguments[..], &[&url]].concat(), "");
-            assert!(remote.status.success(), "{}", errors(&remote));
-            assert_eq!(remote.stdout, answer.body, "{query} {format} by --url");
         }
     }
 }

@@ -1,8 +1,6 @@
 //! `strew export`: a world as files. A static server answers with the daemon's bytes, a killed export resumes, and
-//! `--check` finds every difference.
+//! `--check` finds every difference. Without room it is refused before it begins, or ends with the way to resume.
 
-mod levels;
-mod room;
 mod served;
 
 use std::{
@@ -14,13 +12,14 @@ use std::{
     time::SystemTime,
 };
 
-use strew_testkit::{http1, process::Running, wait::until};
+use strew_testkit::{process::Running, wait::until};
 
 use super::{printed, settings};
 use crate::support::{
     clients,
     command::{errors, run},
     daemon::strew,
+    disk::SmallDisk,
     proxy::{Proxy, nginx},
 };
 
@@ -216,138 +215,6 @@ fn a_folder_that_was_killed_after_its_manifest_is_mended() {
 }
 
 #[test]
-fn an_archive_that_was_killed_in_its_first_member_begins_anew() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = |name: &str| folder.path().join(name).display().to_string();
-    let (whole, torn) = (path("whole.zip"), path("torn.zip"));
-    exported(&[&SMALL[..], &["--archive", &whole]].concat());
-    exported(&["--check", &whole, "--all"]);
-    let bytes = fs::read(&whole).expect("written");
-    // The options are longer than the last of these.
-    for length in [0, 3, 60, 400] {
-        fs::write(path("torn.zip.partial"), &bytes[..length]).expect("writable");
-        exported(&[&SMALL[..], &["--archive", &torn]].concat());
-        assert!(fs::read(&torn).expect("written") == bytes, "{length}");
-        fs::remove_file(&torn).expect("there");
-    }
-    // A file that is no export stays untouched.
-    fs::write(path("torn.zip.partial"), "mine").expect("writable");
-    let output = export(&[&SMALL[..], &["--archive", &torn]].concat());
-    assert_eq!(output.status.code(), Some(2), "{}", errors(&output));
-    assert_eq!(fs::read(path("torn.zip.partial")).expect("there"), b"mine");
-}
-
-/// A little-endian number of some bytes.
-fn number(bytes: &[u8]) -> u64 {
-    bytes
-        .iter()
-        .rev()
-        .fold(0, |all, byte| all << 8 | u64::from(*byte))
-}
-
-/// Reads a range, as browsers do.
-fn range(address: SocketAddr, first: u64, length: u64) -> Vec<u8> {
-    let range = format!("bytes={first}-{}", first + length - 1);
-    let answer = http1::get(address, "/world.zip", &[("range", &range)]);
-    assert_eq!(answer.status, 206);
-    answer.body
-}
-
-/// The place and the length of the content of the first members of the central directory.
-fn first_members(address: SocketAddr, length: u64) -> Vec<(String, u64, u64)> {
-    let end = range(address, length - 22, 22);
-    assert!(end.starts_with(b"PK\x05\x06"));
-    let directory = range(
-        address,
-        number(&end[16..20]),
-        number(&end[12..16]).min(4096),
-    );
-    let (mut at, mut members) = (0, vec![]);
-    for _ in 0..2 {
-        let head = &directory[at..];
-        let (name, extra) = (number(&head[28..30]), number(&head[30..32]));
-        let text = String::from_utf8(head[46..46 + name as usize].to_vec()).expect("UTF-8");
-        members.push((
-            text,
-            number(&head[42..46]) + 30 + name + 8,
-            number(&head[20..24]),
-        ));
-        at += 46 + (name + extra) as usize;
-    }
-    members
-}
-
-#[test]
-fn an_archive_is_read_by_ranges_and_goes_on_after_a_kill() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = |name: &str| folder.path().join(name).display().to_string();
-    let (whole, broken) = (path("world.zip"), path("broken.zip"));
-    exported(&[&LARGE[..], &["--archive", &whole]].concat());
-    let partial = path("broken.zip.partial");
-    kill_when(
-        &[&LARGE[..], &["--archive", &broken]].concat(),
-        "some chunks are there",
-        || fs::metadata(&partial).is_ok_and(|file| file.len() > 1 << 20),
-    );
-    assert!(
-        fs::metadata(&broken).is_err(),
-        "it was quicker than the kill"
-    );
-    exported(&[&LARGE[..], &["--archive", &broken]].concat());
-    let bytes = fs::read(&whole).expect("written");
-    assert!(fs::read(&broken).expect("written") == bytes);
-    exported(&["--check", &whole]);
-
-    if let Some(nginx) = serve(folder.path()) {
-        let members = first_members(nginx.address, bytes.len() as u64);
-        let names: Vec<&str> = members.iter().map(|(name, ..)| name.as_str()).collect();
-        assert_eq!(names, ["manifest.json", "index.bin"]);
-        let manifest = range(nginx.address, members[0].1, members[0].2);
-        let manifest: serde_json::Value = serde_json::from_slice(&manifest).expect("JSON");
-        let level = &manifest["export"]["levels"][0];
-        assert_eq!(
-            (&level["columns"], &level["rows"]),
-            (&serde_json::json!([0, 32]), &serde_json::json!([0, 32]))
-        );
-        // The chunk in column 3 and row 5.
-        let entry = range(nginx.address, members[1].1 + 16 * (3 * 32 + 5), 16);
-        let chunk = range(nginx.address, number(&entry[..8]), number(&entry[8..12]));
-        let sample = run(
-            &[
-                &["sample", "-q", "--chunk=32/3/5"],
-                &LARGE[..2],
-                &LARGE[4..],
-            ]
-            .concat(),
-            "",
-        );
-        assert!(chunk == sample.stdout);
-        assert_eq!(number(&entry[12..]), chunk.len() as u64 / 8);
-    }
-    if let Some(mut python) = clients::python("the standard library") {
-        let read = "import sys, zipfile; z = zipfile.ZipFile(sys.argv[1]); assert z.testzip() is None; print(len(z.namelist()))";
-        let output = python.args(["-c", read, &whole]).output().expect("it runs");
-        let said = String::from_utf8_lossy(&output.stdout).into_owned();
-        assert!(
-            output.status.success() && said.trim().parse::<u32>().is_ok_and(|n| n > 1024),
-            "{said}"
-        );
-    }
-
-    let mut bytes = bytes;
-    let middle = bytes.len() / 2;
-    bytes[middle] ^= 1;
-    fs::write(&broken, bytes).expect("writable");
-    let check = export(&["--check", &broken]);
-    assert_eq!(check.status.code(), Some(1));
-    assert!(
-        errors(&check).contains("missing or unreadable"),
-        "{}",
-        errors(&check)
-    );
-}
-
-#[test]
 fn an_interrupt_ends_it_in_good_order() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let out = folder.path().join("world");
@@ -385,7 +252,7 @@ fn wrong_flags_are_refused() {
     for (flags, said) in [
         (&["-o", "w"][..], "use --chunk"),
         (&["--chunk=0", "-o", "w"], "--chunk 0: out of range"),
-        (&["--chunk=16"], "use --output DIR or --archive FILE"),
+        (&["--chunk=16"], "use --output DIR, or --dry-run"),
         (&["--chunk=16", "-o", &full], "the folder is not empty"),
         (
             &["--chunk=16", "--format=parquet", "-o", "w"],
@@ -396,8 +263,8 @@ fn wrong_flags_are_refused() {
             "--compress none stands alone",
         ),
         (
-            &["--chunk=16", "--compress=zst", "--archive", "w"],
-            "--compress zst",
+            &["--chunk=16", "-o", "w/W.ZIP"],
+            "an export is a folder, not a zip file; allowed: --output w/W, and after it `zip -r w/W.ZIP w/W`",
         ),
         (&["--chunk=1e-9", "-o", "w"], "chunks; allowed"),
         (
@@ -424,4 +291,80 @@ fn wrong_flags_are_refused() {
         );
     }
     assert!(!Path::new("w").exists());
+    // A device has zeros without end.
+    let output = export(&["--check", "/dev/full"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        errors(&output).contains("not a folder"),
+        "{}",
+        errors(&output)
+    );
+}
+
+/// Whether an error names the cause, how far it came, and what to do.
+fn assert_no_room(output: &Output, cause: &str) {
+    let said = errors(output);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    for words in [
+        cause,
+        "of 1024 chunks exist",
+        "the same command resumes there",
+    ] {
+        assert!(said.contains(words), "no `{words}`: {said}");
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_refused_before_it_begins() {
+    let Some(disk) = SmallDisk::mount("1m") else {
+        return;
+    };
+    let out = disk.path().join("world").display().to_string();
+    let refused = export(&[&LARGE[..], &["-o", &out]].concat());
+    let said = errors(&refused);
+    assert_eq!(refused.status.code(), Some(1), "{said}");
+    assert!(said.contains("the export takes about 3"), "{said}");
+    assert!(said.contains("free: choose a smaller box"), "{said}");
+    // Nothing is left that would keep a smaller export out.
+    exported(&[&SMALL[..], &["-o", &out]].concat());
+    exported(&["--check", &out]);
+}
+
+#[test]
+fn a_folder_goes_on_once_there_is_room() {
+    let Some(disk) = SmallDisk::mount("64m") else {
+        return;
+    };
+    let out = disk.path().join("world");
+    let text = out.display().to_string();
+    let journal = out.join(".partial/journal");
+    let flags = [&LARGE[..], &["-o", &text]].concat();
+    let mut command = strew();
+    command.args(["export", "-q", "--threads=1"]).args(&flags);
+    let child = Running::start(command.stderr(Stdio::piped()));
+    until("some chunks are there", || {
+        // 33 chunks of 32 KiB.
+        (fs::metadata(&journal).ok()?.len() > 3000).then_some(())
+    });
+    // It must not write on while its disk shrinks.
+    child.signal("STOP");
+    disk.leave_free(1 << 20);
+    child.signal("CONT");
+    let output = child.end();
+    assert_no_room(&output, "No space left on device");
+    assert!(!out.join("manifest.json").exists());
+    let before = tree(&out).len();
+    assert!(before > 35, "{before}");
+    // There is still none, whether it is known before the first byte or not.
+    let again = export(&flags);
+    let said = errors(&again);
+    assert_eq!(again.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("make room, and the same command resumes there"),
+        "{said}"
+    );
+    assert!(!said.contains("choose"), "{said}");
+    disk.resize("64m");
+    exported(&flags);
+    exported(&["--check", &text]);
 }

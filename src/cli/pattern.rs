@@ -1,18 +1,68 @@
-//! `strew figure`: pictures of AA patterns, for any α.
+//! `strew arrangement` and `strew figure`: what an AA pattern has, for any α, as documents and as pictures.
+//!
+//! The flags of the former are the parameters of GET /v1/pattern/arrangements, and so are the answers.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use clap::Subcommand;
 use strew_core::Alpha;
+use strew_error::Error;
 use strew_forge::figure::{self, Drawing, FigureError};
+use strew_plan::Placed;
 use strew_query::{Value, patterns::OFFSETS};
+use strew_service::pattern::{ArrangementQuery, Listing};
 
-use super::{Failure, output, refuse};
+use super::{
+    Failure,
+    config::{self, Load as _},
+    failure::Source,
+    flags::{Arranged, Flags},
+    output::{self, Output},
+    refuse,
+};
+
+/// Flags of `strew arrangement`.
+#[derive(Debug, clap::Args)]
+pub(super) struct ArrangementArgs {
+    #[command(flatten)]
+    flags: Flags<Arranged>,
+    #[command(flatten)]
+    settings: config::Args,
+}
+
+/// Prints the facts, or the occurrences.
+pub(super) fn arrangement(args: &ArrangementArgs) -> Result<(), Failure> {
+    let refused = |error: Error| Source::Flags.refused(error);
+    let config = args.settings.merged(config::Uses::LISTS)?;
+    let query =
+        ArrangementQuery::check(&args.flags.values(), &config.tables()?).map_err(refused)?;
+    let facts = query.facts();
+    let Some(list) = query.list else {
+        return output::print_json([facts]);
+    };
+    let places = query
+        .set
+        .clone()
+        .map(Placed::at_once)
+        .transpose()
+        .map_err(refused)?;
+    let listing = Listing::new(&query, places, config.limits.max_points).map_err(refused)?;
+    let cursor = listing.cursor();
+    let mut output = Output::open(None)?;
+    for block in listing.text(list, &facts) {
+        output.write(&block.map_err(refused)?)?;
+    }
+    output.finish()?;
+    if let Some(cursor) = cursor {
+        eprintln!("the rest: --cursor {cursor}");
+    }
+    Ok(())
+}
 
 /// The figures.
 #[derive(Debug, Subcommand)]
-pub(super) enum Command {
+pub(super) enum Figure {
     /// The pattern, the index of every grid point, and the set region.
     Index {
         #[command(flatten)]
@@ -102,10 +152,10 @@ pub(super) struct Common {
 }
 
 /// Draws a figure.
-pub(super) fn run(command: &Command) -> Result<(), Failure> {
+pub(super) fn draw(command: &Figure) -> Result<(), Failure> {
     let (common, drawing) = match command {
-        Command::Index { common, window } => (common, figure::index(common.alpha, *window)),
-        Command::Arrangement {
+        Figure::Index { common, window } => (common, figure::index(common.alpha, *window)),
+        Figure::Arrangement {
             common,
             window,
             offsets,
@@ -113,7 +163,7 @@ pub(super) fn run(command: &Command) -> Result<(), Failure> {
             let drawing = figure::arrangement(common.alpha, offsets, *window);
             (common, drawing)
         }
-        Command::Clusters {
+        Figure::Clusters {
             common,
             window,
             distance,
@@ -122,7 +172,7 @@ pub(super) fn run(command: &Command) -> Result<(), Failure> {
             let drawing = figure::clusters(common.alpha, *distance, *most, *window);
             (common, drawing)
         }
-        Command::Map {
+        Figure::Map {
             common,
             radius,
             block,
