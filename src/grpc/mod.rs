@@ -4,7 +4,6 @@ mod calls;
 mod compression;
 mod deadline;
 mod field;
-mod forging;
 mod frames;
 mod mask;
 mod message;

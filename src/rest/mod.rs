@@ -16,7 +16,6 @@ mod fixed;
 mod freshness;
 mod harden;
 mod host;
-mod jobs;
 mod mask;
 mod negotiate;
 mod openapi;
@@ -34,7 +33,6 @@ mod routes;
 mod single;
 mod space;
 mod split;
-mod tables;
 mod unknown;
 mod vary;
 mod worlds;
@@ -84,17 +82,7 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
     ];
     all.extend(space::endpoints(service));
     all.extend(pattern::endpoints(service));
-    all.extend(forge_endpoints(service));
     all
-}
-
-/// The endpoints of the forge, which the address of administrators has, too.
-pub fn forge_endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
-    vec![
-        tables::endpoint(service.clone()),
-        jobs::list(service.clone()),
-        jobs::endpoint(service.clone()),
-    ]
 }
 
 /// The whole HTTP/1.1 response to a client whose connection is refused.

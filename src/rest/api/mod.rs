@@ -93,7 +93,6 @@ tags! {
     Profiles: "profiles", "The noise profiles that are loaded.";
     Fields: "fields", "The fields that are loaded.";
     Worlds: "worlds", "The worlds that are loaded: queries that are described once.";
-    Tables: "tables", "Tables made on demand, and the jobs that make them.";
     Patterns: "patterns", "The AA pattern of any α: arrangements, clusters, maps, figures.";
     About: "about", "Pages for people and this document.";
     Operations: "operations", "Health, metrics and administration.";
