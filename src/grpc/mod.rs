@@ -9,7 +9,6 @@ mod mask;
 mod message;
 mod messages;
 mod methods;
-mod pattern;
 mod periods;
 mod points;
 mod profile;

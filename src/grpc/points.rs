@@ -17,13 +17,12 @@ use super::{
     mask,
     message::Received,
     messages::Messages,
-    pattern, periods, profile,
+    periods, profile,
     proto::{
-        Arrangement, ArrangementRequest, ClustersRequest, ClustersResponse, CountPointsRequest,
-        CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse, GetMaskRequest,
-        GetMaskResponse, GetPointRequest, GetPointResponse, ListFieldsRequest, ListFieldsResponse,
-        ListPeriodsRequest, ListPeriodsResponse, ListProfilesRequest, ListProfilesResponse,
-        ListWorldsRequest, ListWorldsResponse, LoadedWorld, MapRequest, MapResponse,
+        CountPointsRequest, CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse,
+        GetMaskRequest, GetMaskResponse, GetPointRequest, GetPointResponse, ListFieldsRequest,
+        ListFieldsResponse, ListPeriodsRequest, ListPeriodsResponse, ListProfilesRequest,
+        ListProfilesResponse, ListWorldsRequest, ListWorldsResponse, LoadedWorld,
         SplitPointsRequest, SplitPointsResponse, StreamPointsRequest,
     },
     query, resolved, set, single, split, status,
@@ -269,38 +268,6 @@ impl Points {
         request: Received<GetMaskRequest>,
     ) -> Result<GetMaskResponse, Status> {
         plainly(mask::mask(&self.service, &caller, *request.message).await)
-    }
-
-    pub(super) async fn get_arrangement(
-        self,
-        _: Caller,
-        request: Received<ArrangementRequest>,
-    ) -> Result<Arrangement, Status> {
-        answered(pattern::arrangement(&self.service, request).await)
-    }
-
-    pub(super) async fn list_occurrences(
-        self,
-        caller: Caller,
-        request: Received<ArrangementRequest>,
-    ) -> Result<FrameStream, Status> {
-        answered(pattern::occurrences(&self.service, &caller, request).await)
-    }
-
-    pub(super) async fn get_clusters(
-        self,
-        caller: Caller,
-        request: Received<ClustersRequest>,
-    ) -> Result<ClustersResponse, Status> {
-        plainly(pattern::clusters(&self.service, &caller, &request.message).await)
-    }
-
-    pub(super) async fn get_map(
-        self,
-        caller: Caller,
-        request: Received<MapRequest>,
-    ) -> Result<MapResponse, Status> {
-        plainly(pattern::map(&self.service, &caller, &request.message).await)
     }
 
     pub(super) async fn list_fields(
