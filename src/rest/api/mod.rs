@@ -15,6 +15,7 @@ mod shape;
 use http::Method;
 use schemars::JsonSchema;
 use serde_json::Value;
+use strew_catalog::Dimension;
 use strew_error::Kind;
 use strew_query::{Group, Parameter};
 
@@ -98,6 +99,16 @@ tags! {
     Operations: "operations", "Health, metrics and administration.";
 }
 
+impl Tag {
+    /// The subject of the points of a dimension.
+    pub(super) const fn of(dimension: Dimension) -> Self {
+        match dimension {
+            Dimension::Plane => Self::Points,
+            Dimension::Space => Self::Space,
+        }
+    }
+}
+
 /// The body of a request.
 #[derive(Clone, Debug)]
 pub struct Body {
@@ -107,6 +118,17 @@ pub struct Body {
     pub schema: Content,
     /// A body that is in order on the built-in tables.
     pub example: Value,
+}
+
+impl Body {
+    /// A document in JSON.
+    pub(super) const fn json(schema: Content, example: Value) -> Self {
+        Self {
+            media_type: "application/json",
+            schema,
+            example,
+        }
+    }
 }
 
 /// An answer that is not a problem.

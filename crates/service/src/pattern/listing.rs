@@ -1,4 +1,4 @@
-//! The occurrences of an arrangement, one after another: as numbers, and as text.
+//! The occurrences of an arrangement, one after another, as text.
 //!
 //! They are counted before the first is made, and a list that ends at its limit knows the place of the next one
 //! without making those before it.
