@@ -45,7 +45,7 @@ class Daemon:
         self.key = self.container = None
         with socket.create_server(("127.0.0.1", 0)) as free:
             self.port = free.getsockname()[1]
-        settings = [f"server.listen=127.0.0.1:{self.port}", "log.filter=error", "forge.allow=anyone"]
+        settings = [f"server.listen=127.0.0.1:{self.port}", "log.filter=error"]
         self.folder = tempfile.TemporaryDirectory()
         folder = "/attacks" if container else self.folder.name
         os.chmod(self.folder.name, 0o777)
@@ -358,19 +358,6 @@ def health(daemon):
     calls(daemon, "Watch", bytes(5), 60)
 
 
-def forges(daemon):
-    """A table is made, as many at once as the default settings allow, while others ask for points."""
-    victims = [SMALL, "/v1/points?bbox=0,0,200,200&spacing=1&seed=7&format=csv", "/v1/chunks/64/3/4?spacing=1&format=f32"]
-    alone = [daemon.victim(path, 4) for path in victims]
-    table = {"profile": "spaced", "alpha": "1.57079", "map": "m"}
-    job = daemon.json("POST", "/v1/tables", table)["id"]
-    while daemon.json("GET", f"/v1/jobs/{job}")["state"] != "running":
-        time.sleep(0.1)
-    for path, before in zip(victims, alone):
-        print(f"{path}\n    alone:         {before}\n    beside a forge: {daemon.victim(path, 4)}", flush=True)
-    print(f"    {daemon.memory('VmHWM')} MiB at most; the job: {daemon.json('GET', f'/v1/jobs/{job}')['state']}", flush=True)
-
-
 VICTIMS = [
     SMALL,
     "/v1/chunks/64/3/4?spacing=1&format=f32",
@@ -605,7 +592,6 @@ ATTACKS = [
     readers,
     documents,
     health,
-    forges,
     messages,
     includes,
     fields_posts,

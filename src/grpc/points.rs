@@ -2,29 +2,28 @@
 
 use std::sync::Arc;
 
-use futures_util::{StreamExt as _, TryStreamExt as _, stream};
+use futures_util::TryStreamExt as _;
 use strew_access::Caller;
 use strew_core::{ALGORITHM_VERSION, server::Stop};
 use strew_error::{Error, Fault};
 use strew_plan::{Found, Placed, effort::block_bytes};
 use strew_query::{Draft, Nearest, Query, Set, Values, groups};
-use strew_service::{Record, Service, allowance, forging::Submitted};
+use strew_service::{Record, Service, allowance};
 use tonic::Status;
 
 use super::{
-    field, forging,
-    frames::{FrameStream, framed},
+    field,
+    frames::FrameStream,
     mask,
     message::Received,
     messages::Messages,
-    pattern, periods, profile,
+    periods, profile,
     proto::{
-        Arrangement, ArrangementRequest, ClustersRequest, ClustersResponse, CountPointsRequest,
-        CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse, ForgeTableRequest,
+        CountPointsRequest, CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse,
         GetMaskRequest, GetMaskResponse, GetPointRequest, GetPointResponse, ListFieldsRequest,
         ListFieldsResponse, ListPeriodsRequest, ListPeriodsResponse, ListProfilesRequest,
-        ListProfilesResponse, ListWorldsRequest, ListWorldsResponse, LoadedWorld, MapRequest,
-        MapResponse, SplitPointsRequest, SplitPointsResponse, StreamPointsRequest,
+        ListProfilesResponse, ListWorldsRequest, ListWorldsResponse, LoadedWorld,
+        SplitPointsRequest, SplitPointsResponse, StreamPointsRequest,
     },
     query, resolved, set, single, split, status,
 };
@@ -142,21 +141,6 @@ impl Points {
         })
     }
 
-    async fn forge(
-        &self,
-        caller: &Caller,
-        request: ForgeTableRequest,
-    ) -> Result<FrameStream, Error> {
-        self.service.forging().admit(caller)?;
-        let spec = forging::request(request).spec()?;
-        let states = match self.service.forge(caller, spec).await? {
-            Submitted::Loaded(state) => stream::once(async { *state }).boxed(),
-            Submitted::Job(job) => self.service.follow_job(caller, &job)?.boxed(),
-        };
-        let frames = states.map(|state| Ok(framed(&forging::response(state))));
-        Ok(frames.boxed())
-    }
-
     async fn nearest(
         &self,
         caller: &Caller,
@@ -204,14 +188,6 @@ fn plainly<T>(answer: Result<T, Error>) -> Result<T, Status> {
 
 /// The calls, by the names of the contract.
 impl Points {
-    pub(super) async fn forge_table(
-        self,
-        caller: Caller,
-        request: Received<ForgeTableRequest>,
-    ) -> Result<FrameStream, Status> {
-        plainly(self.forge(&caller, *request.message).await)
-    }
-
     pub(super) async fn stream_points(
         self,
         caller: Caller,
@@ -292,38 +268,6 @@ impl Points {
         request: Received<GetMaskRequest>,
     ) -> Result<GetMaskResponse, Status> {
         plainly(mask::mask(&self.service, &caller, *request.message).await)
-    }
-
-    pub(super) async fn get_arrangement(
-        self,
-        _: Caller,
-        request: Received<ArrangementRequest>,
-    ) -> Result<Arrangement, Status> {
-        answered(pattern::arrangement(&self.service, request).await)
-    }
-
-    pub(super) async fn list_occurrences(
-        self,
-        caller: Caller,
-        request: Received<ArrangementRequest>,
-    ) -> Result<FrameStream, Status> {
-        answered(pattern::occurrences(&self.service, &caller, request).await)
-    }
-
-    pub(super) async fn get_clusters(
-        self,
-        caller: Caller,
-        request: Received<ClustersRequest>,
-    ) -> Result<ClustersResponse, Status> {
-        plainly(pattern::clusters(&self.service, &caller, &request.message).await)
-    }
-
-    pub(super) async fn get_map(
-        self,
-        caller: Caller,
-        request: Received<MapRequest>,
-    ) -> Result<MapResponse, Status> {
-        plainly(pattern::map(&self.service, &caller, &request.message).await)
     }
 
     pub(super) async fn list_fields(

@@ -66,9 +66,6 @@ pub enum ServeError {
 /// The time that streams have at a stop to send their last message to their readers.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// The time that the forge may take to keep its checkpoints at a stop.
-const FORGE_GRACE: Duration = Duration::from_secs(5);
-
 /// A daemon that is ready to serve.
 #[derive(Debug)]
 pub struct App {
@@ -118,7 +115,6 @@ impl App {
         let service = Service::new(assets, config.limits.clone(), workers);
         let mixes = config.tables.folder().map(|folder| folder.join("mixes"));
         let service = service.with_mixes(mixes);
-        let service = service.with_forge(config.forge.clone(), folder.map(Into::into));
         let service = Arc::new(service);
         let gate = Arc::new(Gate::new(
             config.access.clone(),
@@ -214,9 +210,6 @@ impl App {
         shutdown: impl Future<Output = ()>,
     ) -> Result<usize, ServeError> {
         let _watch = self.watch();
-        let forging = self.service.forging().clone();
-        let begin = forging.clone();
-        let _ = tokio::task::spawn_blocking(move || begin.resume()).await;
         let readiness = Readiness::within(config::seconds(self.config.server.ready_within_seconds));
         let (front, grpc_health) = self
             .front(readiness.clone(), is_on_loopback(&listener))
@@ -245,8 +238,6 @@ impl App {
         });
         shutdown.await;
         readiness.close();
-        // Jobs keep a checkpoint while connections drain.
-        let stopped = tokio::task::spawn_blocking(move || forging.stop(FORGE_GRACE));
         grpc_health.set(false).await;
         tokio::time::sleep(config::seconds(self.config.shutdown.notice_seconds)).await;
         connections.close();
@@ -260,7 +251,6 @@ impl App {
             .await
             .is_ok()
         {
-            let _ = stopped.await;
             return Ok(0);
         }
         let broken = self.service.streams().open();
@@ -272,7 +262,6 @@ impl App {
             connections.end();
             connections.closed().await;
         }
-        let _ = stopped.await;
         Ok(broken)
     }
 
@@ -321,7 +310,6 @@ impl App {
     fn admin_front(&self, readiness: Readiness, is_on_loopback: bool) -> Front {
         let mut endpoints = health::endpoints(readiness, self.service.clone());
         endpoints.push(admin::endpoint(self.reloader.clone()));
-        endpoints.extend(rest::forge_endpoints(&self.service));
         if self.config.metrics.enabled {
             endpoints.push(self.metrics_endpoint());
         }

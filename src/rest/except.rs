@@ -16,7 +16,7 @@ use strew_service::Service;
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
     context::{Context, Sent},
-    document, query,
+    document,
 };
 use crate::{body::Response, rest::Refused};
 
@@ -39,7 +39,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         about: "Queries name it by its digest: except=DIGEST. The body is an object, or text with an id a line, where \
                 what follows # is a comment. The list is held while there is room; a query that names one that is \
                 gone is refused, and the client sends the list again.",
-        body: Some(query::body(schemas::of::<Section<'_>>, example())),
+        body: Some(api::Body::json(schemas::of::<Section<'_>>, example())),
         answers: vec![api::Answer::json::<List<'_>>(
             "The list that is held; its name is its digest.",
         )],

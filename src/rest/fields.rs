@@ -16,9 +16,9 @@ use strew_service::Service;
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
     body,
-    chunks::{COLUMN, ROW, SIZE},
     context::{Context, Sent},
-    document, query,
+    document,
+    points::{COLUMN, ROW, SIZE},
 };
 use crate::{body::Response, rest::Refused};
 
@@ -53,7 +53,7 @@ pub(super) fn list(service: Arc<Service>) -> Endpoint {
         about: "Queries name it by its digest: field=DIGEST. So a mask is sent once, and used chunk by chunk. \
                 It is held while there is room; a query that names one that is gone is refused, \
                 and the client sends the field again.",
-        body: Some(query::body(schemas::of::<Document>, example())),
+        body: Some(api::Body::json(schemas::of::<Document>, example())),
         problems: vec![Kind::Invalid, Kind::BodyTooLarge],
         example: format!("/v1/fields -d '{}'", example()),
         ..Operation::new(

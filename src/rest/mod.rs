@@ -3,7 +3,6 @@
 mod answer;
 pub mod api;
 mod body;
-mod chunks;
 mod coding;
 mod context;
 mod cors;
@@ -16,7 +15,6 @@ mod fixed;
 mod freshness;
 mod harden;
 mod host;
-mod jobs;
 mod mask;
 mod negotiate;
 mod openapi;
@@ -28,13 +26,9 @@ mod portrait;
 mod problem;
 mod profiles;
 mod quality;
-mod query;
 mod range;
 mod routes;
 mod single;
-mod space;
-mod split;
-mod tables;
 mod unknown;
 mod vary;
 mod worlds;
@@ -44,7 +38,6 @@ use std::sync::Arc;
 use http::StatusCode;
 
 use api::Endpoint;
-
 pub use context::{Context, Posted, Sent};
 pub use document::{JSON, file, json, momentary};
 pub use finish::{Finish, Preferences};
@@ -52,6 +45,7 @@ pub use page::{Page, Pages, Part};
 use problem::Problem;
 pub use problem::Refused;
 pub use routes::{Paths, Routes};
+use strew_catalog::Dimension;
 use strew_error::Error;
 use strew_service::Service;
 
@@ -60,15 +54,19 @@ pub use worlds::world_document;
 
 /// The endpoints of REST, without their description.
 pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
-    let mut all = vec![
-        points::endpoint(service.clone()),
-        query::endpoint(service.clone()),
-        chunks::endpoint(service.clone()),
-        count::endpoint(service.clone()),
-        split::endpoint(service.clone()),
-        single::by_id(service.clone()),
-        single::nearest(service.clone()),
-        profiles::endpoint(service.clone()),
+    let of = |dimension| {
+        let mut all = points::endpoints(service, dimension);
+        all.extend([
+            count::counts(service, dimension),
+            count::parts_of(service, dimension),
+            single::by_id(service, dimension),
+            single::nearest(service, dimension),
+            profiles::endpoint(service, dimension),
+        ]);
+        all
+    };
+    let mut all = of(Dimension::Plane);
+    all.extend([
         periods::endpoint(service.clone()),
         mask::endpoint(service.clone()),
         mask::spectrum(service.clone()),
@@ -81,20 +79,10 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
         fields::list(service.clone()),
         fields::endpoint(service.clone()),
         fields::picture(service.clone()),
-    ];
-    all.extend(space::endpoints(service));
+    ]);
+    all.extend(of(Dimension::Space));
     all.extend(pattern::endpoints(service));
-    all.extend(forge_endpoints(service));
     all
-}
-
-/// The endpoints of the forge, which the address of administrators has, too.
-pub fn forge_endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
-    vec![
-        tables::endpoint(service.clone()),
-        jobs::list(service.clone()),
-        jobs::endpoint(service.clone()),
-    ]
 }
 
 /// The whole HTTP/1.1 response to a client whose connection is refused.

@@ -1,11 +1,11 @@
-//! `GET /v1/profiles`: the profiles that are loaded.
+//! The tables that are loaded, in the plane and in space, by their profiles.
 
 use std::{collections::BTreeMap, pin::pin, sync::Arc};
 
 use axum::extract::State;
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer, ser::SerializeMap as _};
-use strew_catalog::{Catalog, Entry};
+use strew_catalog::{Catalog, Dimension, Entry};
 use strew_core::{ALGORITHM_VERSION, table};
 use strew_error::integer::Long;
 use strew_query::groups;
@@ -18,42 +18,59 @@ use super::{
 };
 use crate::{body::Response, rest::Refused};
 
-/// The path.
-pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
-    let operation = Operation {
-        id: "listProfiles",
-        summary: "The noise profiles that are loaded",
-        about: "Every table with its provenance and its measured figures.",
-        example: "/v1/profiles".into(),
-        ..Operation::new(
-            Tag::Profiles,
-            api::Answer::json::<Profiles<'_>>("The list, sorted by profile, then alpha.")
-                .or_unchanged(),
-        )
+/// The path of a dimension.
+pub(super) fn endpoint(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
+    let (path, operation) = match dimension {
+        Dimension::Plane => {
+            let about = "The list, sorted by profile, then alpha.";
+            let operation = Operation {
+                id: "listProfiles",
+                summary: "The noise profiles that are loaded",
+                about: "Every table with its provenance and its measured figures.",
+                ..Operation::new(Tag::Profiles, answers(about))
+            };
+            ("/v1/profiles", operation)
+        }
+        Dimension::Space => {
+            let operation = Operation {
+                id: "listSpaceProfiles",
+                summary: "The tables of points in space",
+                about: "The tables that are loaded, as GET /v1/profiles lists those of the plane.",
+                ..Operation::new(Tag::Space, answers("The tables."))
+            };
+            ("/v1/space/profiles", operation)
+        }
     };
-    Endpoint::only("/v1/profiles", service, operation, get)
+    let operation = Operation {
+        example: path.into(),
+        ..operation
+    };
+    let get = move |State(service): State<Arc<Service>>, context: Context| async move {
+        context.values(groups::NONE).read()?;
+        let catalog = service.catalog();
+        match dimension {
+            Dimension::Plane => list(&context, &catalog, catalog.entries()).await,
+            Dimension::Space => list(&context, &catalog, catalog.in_space()).await,
+        }
+    };
+    Endpoint::only(path, service.clone(), operation, get)
 }
 
-/// Lists the tables.
-async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
-    context.values(groups::NONE).read()?;
-    let catalog = service.catalog();
-    list(&context, &catalog, &catalog.entries().collect::<Vec<_>>()).await
+fn answers(about: &'static str) -> Vec<api::Answer> {
+    api::Answer::json::<Profiles<'_>>(about).or_unchanged()
 }
 
 /// Lists some tables of a catalog.
-pub(super) async fn list(
+async fn list<'a>(
     context: &Context,
-    catalog: &Catalog,
-    entries: &[&Arc<Entry>],
+    catalog: &'a Catalog,
+    entries: impl Iterator<Item = &'a Arc<Entry>> + Send,
 ) -> Result<Response, Refused> {
     let made_of: Vec<&str> = catalog.digests().collect();
     let make = async {
         document::json(&Profiles {
             algorithm: ALGORITHM_VERSION,
-            profiles: (entries.iter())
-                .map(|entry| Profile::new(entry, catalog))
-                .collect(),
+            profiles: entries.map(|entry| Profile::new(entry, catalog)).collect(),
         })
     };
     Ok(context.answer(document::JSON, &made_of, pin!(make)).await?)
@@ -62,7 +79,7 @@ pub(super) async fn list(
 /// The tables that are loaded.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "Profiles")]
-pub(super) struct Profiles<'a> {
+struct Profiles<'a> {
     /// The version of the algorithm that answers.
     algorithm: u32,
     /// Sorted by profile, then alpha.

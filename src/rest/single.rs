@@ -1,13 +1,14 @@
-//! `GET /v1/points/{id}` and `GET /v1/nearest`: single points.
+//! Single points: one by its id, and those nearest to a place; in the plane and in space.
 
 use std::{pin::pin, sync::Arc};
 
 use axum::extract::State;
 use schemars::JsonSchema;
 use serde::Serialize;
+use strew_catalog::Dimension;
 use strew_error::Kind;
 use strew_plan::{Found, Placed};
-use strew_query::{Group, Nearest, Parameter, ResolvedSet, Set, Shape, groups};
+use strew_query::{Nearest, Parameter, ResolvedSet, Set, Shape, groups};
 use strew_service::Service;
 
 use super::{
@@ -16,7 +17,7 @@ use super::{
     document,
     freshness::Freshness,
 };
-use crate::{body::Response, rest::Refused};
+use crate::rest::Refused;
 
 const ID: Parameter = Parameter {
     name: "id",
@@ -27,47 +28,114 @@ const ID: Parameter = Parameter {
     is_required: true,
     ..Parameter::PLAIN
 };
+const SPACE_ID: Parameter = Parameter {
+    shape: Shape::Pattern("^-?[0-9]+:-?[0-9]+:-?[0-9]+$"),
+    allowed: Some("three integers joined by colons, such as -31:52:7"),
+    example: "0:0:0",
+    ..ID
+};
 
 /// The path of points by id.
-pub(super) fn by_id(service: Arc<Service>) -> Endpoint {
+pub(super) fn by_id(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
+    let answers = api::Answer::json::<One>("The point.").or_unchanged();
     let operation = Operation {
-        id: "getPoint",
-        summary: "A point by its id",
         about: "The parameters of the query that returned the id find the point again.",
-        path_parameters: &[&ID],
-        parameters: groups::SINGLE,
         problems: vec![Kind::Invalid, Kind::OtherTable, Kind::NoSuchPoint],
-        example: "'/v1/points/0:0?spacing=1&attributes=angle'".into(),
-        ..Operation::new(
-            Tag::Points,
-            api::Answer::json::<One>("The point.").or_unchanged(),
-        )
+        ..Operation::new(Tag::of(dimension), answers)
     };
-    Endpoint::only("/v1/points/{id}", service, operation, point)
+    let (path, operation) = match dimension {
+        Dimension::Plane => (
+            "/v1/points/{id}",
+            Operation {
+                id: "getPoint",
+                summary: "A point by its id",
+                path_parameters: &[&ID],
+                parameters: groups::SINGLE,
+                example: "'/v1/points/0:0?spacing=1&attributes=angle'".into(),
+                ..operation
+            },
+        ),
+        Dimension::Space => (
+            "/v1/space/points/{id}",
+            Operation {
+                id: "getSpacePoint",
+                summary: "A point in space by its id",
+                path_parameters: &[&SPACE_ID],
+                parameters: groups::SPACE_SET,
+                example: "'/v1/space/points/0:0:0?spacing=1&attributes=rotation'".into(),
+                ..operation
+            },
+        ),
+    };
+    let parameters = operation.parameters;
+    let get = move |State(service): State<Arc<Service>>, context: Context| async move {
+        let [id] = context.path();
+        let set = Set::single(&context.values(parameters), &service.catalog())?;
+        let freshness = freshness(&context, &set);
+        let make = async {
+            let placed = service.place(&context.caller, set).await?;
+            document::json(&One {
+                point: placed.point(id)?,
+                query: placed.resolved,
+            })
+        };
+        Ok::<_, Refused>(freshness.answer(&context.headers, pin!(make)).await?)
+    };
+    Endpoint::only(path, service.clone(), operation, get)
 }
 
 /// The path of the points near a place.
-pub(super) fn nearest(service: Arc<Service>) -> Endpoint {
+pub(super) fn nearest(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
+    let answers = api::Answer::json::<Several>("The points.").or_unchanged();
     let operation = Operation {
-        id: "getNearest",
-        summary: "The points nearest to a place",
-        about: "Exact, nearest first; of equally near ones the smaller id first. With k and radius \
-                both must hold; at most 10000 points.",
-        parameters: groups::NEAREST,
+        about: "Exact, nearest first; of equally near ones the smaller id first. With k and radius both must hold; at \
+                most 10000 points.",
         problems: vec![Kind::Invalid, Kind::OtherTable],
-        example: "'/v1/nearest?at=100.5,-3&k=2&spacing=1'".into(),
-        ..Operation::new(
-            Tag::Points,
-            api::Answer::json::<Several>("The points.").or_unchanged(),
-        )
+        ..Operation::new(Tag::of(dimension), answers)
     };
-    Endpoint::only("/v1/nearest", service, operation, near)
+    let (path, operation) = match dimension {
+        Dimension::Plane => (
+            "/v1/nearest",
+            Operation {
+                id: "getNearest",
+                summary: "The points nearest to a place",
+                parameters: groups::NEAREST,
+                example: "'/v1/nearest?at=100.5,-3&k=2&spacing=1'".into(),
+                ..operation
+            },
+        ),
+        Dimension::Space => (
+            "/v1/space/nearest",
+            Operation {
+                id: "getSpaceNearest",
+                summary: "The points in space nearest to a place",
+                parameters: groups::SPACE_NEAREST,
+                example: "'/v1/space/nearest?at=100.5,-3,12&k=2&spacing=1'".into(),
+                ..operation
+            },
+        ),
+    };
+    let parameters = operation.parameters;
+    let get = move |State(service): State<Arc<Service>>, context: Context| async move {
+        let values = context.values(parameters);
+        let (set, nearest) = Nearest::of_set(&values, &service.catalog())?;
+        let freshness = freshness(&context, &set);
+        let write = |placed: &Placed, neighbors| {
+            document::json(&Several {
+                neighbors,
+                query: placed.resolved.clone(),
+            })
+        };
+        let make = service.nearest(&context.caller, set, nearest, write);
+        Ok::<_, Refused>(freshness.answer(&context.headers, pin!(make)).await?)
+    };
+    Endpoint::only(path, service.clone(), operation, get)
 }
 
 /// A point by its id.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "PointById")]
-pub(super) struct One {
+struct One {
     /// The point.
     point: Found,
     /// The set of points with everything filled in.
@@ -77,58 +145,11 @@ pub(super) struct One {
 /// The points nearest to a place.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "Neighbors")]
-pub(super) struct Several {
+struct Several {
     /// The points, nearest first.
     neighbors: Vec<Found>,
     /// The set of points with everything filled in.
     query: ResolvedSet,
-}
-
-async fn point(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
-    by_id_in(&service, &context, groups::SINGLE).await
-}
-
-async fn near(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
-    near_in(&service, &context, groups::NEAREST).await
-}
-
-/// The point of a path, of a set of some parameters.
-pub(super) async fn by_id_in(
-    service: &Service,
-    context: &Context,
-    groups: &'static [Group],
-) -> Result<Response, Refused> {
-    let [id] = context.path();
-    let values = context.values(groups);
-    let set = Set::single(&values, &service.catalog())?;
-    let freshness = freshness(context, &set);
-    let make = async {
-        let placed = service.place(&context.caller, set).await?;
-        document::json(&One {
-            point: placed.point(id)?,
-            query: placed.resolved,
-        })
-    };
-    Ok(freshness.answer(&context.headers, pin!(make)).await?)
-}
-
-/// The neighbors of the place among some parameters.
-pub(super) async fn near_in(
-    service: &Service,
-    context: &Context,
-    groups: &'static [Group],
-) -> Result<Response, Refused> {
-    let values = context.values(groups);
-    let (set, nearest) = Nearest::of_set(&values, &service.catalog())?;
-    let freshness = freshness(context, &set);
-    let write = |placed: &Placed, neighbors| {
-        document::json(&Several {
-            neighbors,
-            query: placed.resolved.clone(),
-        })
-    };
-    let make = service.nearest(&context.caller, set, nearest, write);
-    Ok(freshness.answer(&context.headers, pin!(make)).await?)
 }
 
 /// The freshness of a document about single points of a set.

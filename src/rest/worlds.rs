@@ -6,7 +6,6 @@ use axum::extract::State;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::value::RawValue;
-use strew_core::server::Stop;
 use strew_error::{Error, Kind};
 use strew_query::{Draft, Parameter, Value, World, groups, parameters::WORLD};
 use strew_service::Service;
@@ -14,9 +13,9 @@ use strew_service::Service;
 use super::{
     answer,
     api::{self, Endpoint, Operation, Tag},
-    chunks::{self, COLUMN, ROW, SIZE},
     context::Context,
     document,
+    points::{self, COLUMN, ROW, SIZE},
 };
 use crate::{body::Response, rest::Refused};
 
@@ -170,9 +169,8 @@ async fn chunk(State(service): State<Arc<Service>>, context: Context) -> Result<
     named(&service, name, &context)?;
     let mut values = context.values(groups::WORLD_CHUNK);
     values.replace(&WORLD, Some(Value::Text(name.into())));
-    let draft = Draft::new(values).within(chunks::region([size, x, y]));
-    let (query, options) = service.check(&draft, &Stop::NEVER)?;
-    Ok(answer::stream(&service, &context, query, options).await?)
+    let draft = Draft::new(values).within(points::square([size, x, y]));
+    points::stream(&service, &context, &draft).await
 }
 
 /// The world of a path.

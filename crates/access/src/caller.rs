@@ -1,7 +1,6 @@
 //! The client of a request, as far as it affects the answer.
 
 use std::{
-    net::IpAddr,
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicUsize, Ordering},
@@ -26,9 +25,6 @@ pub struct Caller {
     pub(super) name: Option<Arc<str>>,
     pub(super) is_admin: bool,
     pub(super) max_points: Option<u64>,
-    pub(super) max_jobs: Option<usize>,
-    /// Its address, if it has no key.
-    pub(super) address: Option<IpAddr>,
     pub(super) places: Option<Arc<Places>>,
     pub(super) bucket: Option<Arc<Bucket>>,
     /// The expenses of its request; those of a key are not kept.
@@ -101,26 +97,6 @@ impl Caller {
     #[must_use]
     pub fn max_points(&self, limit: u64) -> u64 {
         self.max_points.map_or(limit, |own| own.min(limit))
-    }
-
-    /// The most tables that are made for the caller at once, where the server allows `limit`.
-    #[must_use]
-    pub fn max_jobs(&self, limit: usize) -> usize {
-        self.max_jobs.unwrap_or(limit)
-    }
-
-    /// A name for the client that stays the same: its key, or its address (with IPv6 its /64).
-    #[must_use]
-    pub fn client(&self) -> String {
-        match (&self.name, self.address) {
-            (Some(name), _) => format!("key {name}"),
-            (None, Some(IpAddr::V6(address))) => {
-                let [a, b, c, d, ..] = address.segments();
-                format!("address {a:x}:{b:x}:{c:x}:{d:x}::/64")
-            }
-            (None, Some(address)) => format!("address {address}"),
-            (None, None) => "the address of administrators".into(),
-        }
     }
 
     /// A place for one more stream among `all`.

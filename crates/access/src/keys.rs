@@ -7,7 +7,6 @@
 //! admin = false
 //! max_points = 1000000
 //! max_streams = 4
-//! max_jobs = 2
 //! points_per_second = 1e6
 //! burst_points = 5e6
 //! ```
@@ -99,7 +98,6 @@ struct Written {
     admin: bool,
     max_points: Option<u64>,
     max_streams: Option<usize>,
-    max_jobs: Option<usize>,
     points_per_second: Option<f64>,
     burst_points: Option<f64>,
 }
@@ -234,8 +232,6 @@ impl Keys {
             name: Some(name),
             is_admin: written.admin,
             max_points: written.max_points,
-            max_jobs: written.max_jobs,
-            address: None,
             places: written.max_streams.map(|limit| {
                 let open = open.clone();
                 Arc::new(Places { limit, open })

@@ -134,7 +134,6 @@ impl Gate {
             },
         };
         caller.usage = Some(usage);
-        caller.address = Some(address);
         caller.begin()?;
         Ok(caller)
     }

@@ -122,11 +122,10 @@ impl Catalog {
     /// # Errors
     /// [`CatalogError`] with the number of a file that is no table or has the key of another one.
     pub fn of_files(files: impl IntoIterator<Item = Vec<u8>>) -> Result<Self, CatalogError> {
-        let offer = Offer {
-            of_files: true,
-            ..Offer::default()
+        let mut catalog = Self {
+            offer: Offer::Files,
+            ..Self::default()
         };
-        let mut catalog = Self::default().offering(offer);
         let files = files.into_iter().enumerate();
         catalog.add(files.map(|(i, file)| Entry::read(file.into(), Source::Memory(i))))?;
         Ok(catalog)
@@ -150,13 +149,6 @@ impl Catalog {
     #[must_use]
     pub fn except(&self) -> &Lists {
         &self.except
-    }
-
-    /// The catalog with tables that are forged on demand.
-    #[must_use]
-    pub const fn offering(mut self, offer: Offer) -> Self {
-        self.offer = offer;
-        self
     }
 
     /// How tables can be had that are not loaded.
@@ -267,26 +259,6 @@ impl Catalog {
     #[must_use]
     pub fn pattern(&self, alpha: Alpha, size: Size) -> Option<Arc<Entry>> {
         self.patterns.get(alpha, size)
-    }
-
-    /// The catalog with one more table, which replaces one of the same key.
-    #[must_use]
-    pub fn with(&self, entry: Arc<Entry>) -> Self {
-        let mut more = self.clone();
-        more.entries.insert(entry.key.clone(), entry);
-        more
-    }
-
-    /// The catalog and the tables that `now` has and `base` lacks: those that arrived while this one was being read.
-    #[must_use]
-    pub fn with_later(mut self, base: &Self, now: &Self) -> Self {
-        for (key, entry) in &now.entries {
-            if !base.entries.contains_key(key) {
-                let slot = self.entries.entry(key.clone());
-                slot.or_insert_with(|| entry.clone());
-            }
-        }
-        self
     }
 
     /// All tables of the plane without kinds, by profile, then α.

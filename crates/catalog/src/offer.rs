@@ -1,75 +1,152 @@
 //! How a table that is not loaded can be had: in words, for the errors of queries that name one.
 
 use strew_core::{Alpha, map::Size};
-use strew_forge::{Job, Profile};
+use strew_forge::{
+    Job, MAX_RADIUS, Profile,
+    space::{SpaceJob, SpaceProfile},
+};
 
-/// Whether tables are forged on demand, and which.
+use crate::Dimension;
+
+/// How a table that is not loaded can be had.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Offer {
-    /// The largest half-width R of maps that are forged on demand; `None` if nothing is.
-    pub max_radius: Option<u32>,
-    /// Whether a program hands the files of its tables over.
-    pub of_files: bool,
+pub enum Offer {
+    /// The operator makes it, into the folder of tables.
+    #[default]
+    Forge,
+    /// The program hands its file over.
+    Files,
 }
 
 impl Offer {
     /// A remedy for a profile that is not loaded; empty if there is none.
-    pub fn of_profile(self, profile: &str) -> String {
-        match Profile::named(profile) {
-            Ok(_) => self.of_any(&format!("{{\"profile\": \"{profile}\"}}")),
-            Err(_) => String::new(),
+    #[must_use]
+    pub fn of_profile(self, dimension: Dimension, profile: &str) -> String {
+        let is_known = match dimension {
+            Dimension::Plane => Profile::named(profile).is_ok(),
+            Dimension::Space => SpaceProfile::named(profile).is_some(),
+        };
+        match is_known {
+            true => self.made(dimension, &format!("--profile {profile}")),
+            false => String::new(),
         }
     }
 
     /// A remedy for a table that is not loaded; empty if there is none.
-    pub fn of_table(self, profile: &str, alpha: Alpha, map: Option<&str>) -> String {
-        if Profile::named(profile).is_err() {
+    #[must_use]
+    pub fn of_table(
+        self,
+        dimension: Dimension,
+        profile: &str,
+        alpha: Alpha,
+        map: Option<&str>,
+    ) -> String {
+        let size = map.map(str::parse::<Size>).transpose();
+        let Ok(radius) = size.map(|size| size.map(|size| size.radius())) else {
             return String::new();
-        }
-        let size = map.map_or(Some(Size::S), |text| text.parse().ok());
-        let Some(size) = size.filter(|size| (1..=strew_forge::MAX_RADIUS).contains(&size.radius()))
-        else {
-            return String::new();
         };
-        let job = Job {
-            radius: size.radius(),
-            profile: profile.into(),
-            ..Job::new(alpha)
+        let radius = match dimension {
+            Dimension::Plane => {
+                let radius = radius.unwrap_or(Size::S.radius());
+                if Profile::named(profile).is_err() || !(1..=MAX_RADIUS).contains(&radius) {
+                    return String::new();
+                }
+                let job = Job {
+                    radius,
+                    profile: profile.into(),
+                    ..Job::new(alpha)
+                };
+                // Said before any work is done.
+                if let Some(hopeless) = job.prospect().hopeless() {
+                    return format!(", and no table of it can be good there: {hopeless}");
+                }
+                radius
+            }
+            Dimension::Space => {
+                let Some(profile) = SpaceProfile::named(profile) else {
+                    return String::new();
+                };
+                let usual = SpaceJob::new(profile);
+                let radius = radius.unwrap_or(usual.radius);
+                let job = SpaceJob {
+                    alpha,
+                    radius,
+                    ..usual
+                };
+                if job.check().is_err() {
+                    return String::new();
+                }
+                radius
+            }
         };
-        // Said before any work is done.
-        if let Some(hopeless) = job.prospect().hopeless() {
-            return format!(", and no table of it can be good there: {hopeless}");
-        }
-        let of = |map: &str| {
-            format!("{{\"profile\": \"{profile}\", \"alpha\": \"{alpha}\", \"map\": \"{map}\"}}")
-        };
-        match self.max_radius {
-            Some(most) if size.radius() <= most => self.of_any(&of(&size.to_string())),
-            _ if self.of_files => self.of_file().into(),
-            _ => format!(
-                "; it can be made: strew forge --profile {profile} --alpha '{alpha}' --radius {} \
-                 --out-dir, into the folder of tables",
-                size.radius()
-            ),
-        }
+        let flags = format!("--profile {profile} --alpha '{alpha}' --radius {radius}");
+        self.made(dimension, &flags)
     }
 
-    fn of_any(self, request: &str) -> String {
-        match self.max_radius {
-            Some(_) => format!("; it can be made: POST /v1/tables (or ForgeTable) with {request}"),
-            None if self.of_files => self.of_file().into(),
-            None => "; the operator can have it made with strew forge".into(),
+    fn made(self, dimension: Dimension, flags: &str) -> String {
+        let space = match dimension {
+            Dimension::Plane => "",
+            Dimension::Space => "--space ",
+        };
+        match self {
+            Self::Forge => format!(
+                "; it can be made with strew forge {space}{flags}, and its file put into the folder of tables \
+                 (tables.folder)"
+            ),
+            Self::Files => self.of_file().into(),
         }
     }
 
     /// A remedy for a table that is shipped as a file; empty if tables are not handed over.
     #[must_use]
     pub const fn of_file(self) -> &'static str {
-        match self.of_files {
-            true => {
+        match self {
+            Self::Files => {
                 "; load its file beside the others: those of the package strew-tables, or of share/strew/tables"
             }
-            false => "",
+            Self::Forge => "",
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_missing_table_comes_with_the_command_that_makes_it() {
+        let alpha: Alpha = "1.7123".parse().expect("valid");
+        let plane = |map| Offer::Forge.of_table(Dimension::Plane, "blue", alpha, map);
+        let space = |map| Offer::Forge.of_table(Dimension::Space, "spaced", alpha, map);
+        for (text, command) in [
+            (
+                plane(None),
+                "strew forge --profile blue --alpha '1.7123' --radius 49,",
+            ),
+            (
+                plane(Some("m")),
+                "strew forge --profile blue --alpha '1.7123' --radius 100,",
+            ),
+            (
+                space(None),
+                "strew forge --space --profile spaced --alpha '1.7123' --radius 16,",
+            ),
+            (
+                Offer::Forge.of_profile(Dimension::Space, "blue"),
+                "strew forge --space --profile blue,",
+            ),
+        ] {
+            assert!(
+                text.contains(command) && text.contains("tables.folder"),
+                "{text}"
+            );
+        }
+        // Beyond the maps of the forge, and of a profile that it does not know.
+        for none in [plane(Some("r257")), plane(Some("huge")), space(Some("s"))] {
+            assert_eq!(none, "");
+        }
+        assert_eq!(Offer::Forge.of_profile(Dimension::Space, "pink"), "");
+        let file = Offer::Files.of_table(Dimension::Plane, "blue", alpha, None);
+        assert_eq!(file, Offer::Files.of_file());
     }
 }

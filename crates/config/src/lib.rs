@@ -11,7 +11,6 @@
 mod access;
 pub mod bounded_file;
 mod error;
-mod forge;
 mod layers;
 mod limits;
 mod lines;
@@ -30,7 +29,6 @@ use std::{path::PathBuf, time::Duration};
 use serde::{Deserialize, Serialize};
 
 pub use access::{Access, AddressLimits, Rate};
-pub use forge::{Allow, Forge, MOST_RADIUS};
 pub use limits::{Limits, Reload, Workers};
 pub use loaded::{Except, Fields, Tables, Worlds};
 pub use memory::Lowered;
@@ -62,8 +60,6 @@ pub struct Config {
     pub http: Http,
     /// The tables to load.
     pub tables: Tables,
-    /// The tables to make on demand.
-    pub forge: Forge,
     /// The fields to load.
     pub fields: Fields,
     /// The limits of queries and of memory.

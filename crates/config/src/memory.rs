@@ -10,8 +10,6 @@ use super::Config;
 const BASE: u64 = 24 << 20;
 /// The memory of an open connection, in bytes.
 const CONNECTION: u64 = 32 << 10;
-/// The memory of a job that makes a table, in bytes for each of its R² blocks.
-const JOB: u64 = 10_000;
 /// The allocator's share on top of what requests and caches hold, in percent.
 const OVERHEAD: u64 = 15;
 /// Less memory for tables than this would have every query make its table.
@@ -34,7 +32,7 @@ impl Config {
     pub fn memory_bound(&self) -> u64 {
         let held = self.limits.max_bytes_in_flight as u64 + self.kept();
         let connections = self.server.max_connections as u64 * CONNECTION;
-        self.fixed() + with_overhead(held) + connections
+        BASE + with_overhead(held) + connections
     }
 
     /// Lowers the limits that bound memory, all by one share of what they have above the least useful values, so that
@@ -74,18 +72,6 @@ impl Config {
     fn kept(&self) -> u64 {
         let sent = self.fields.max_sent_bytes + self.except.max_sent_bytes;
         self.limits.cache_bytes + sent as u64
-    }
-
-    /// The memory that no limit of requests changes, in bytes.
-    fn fixed(&self) -> u64 {
-        let radius = u64::from(self.forge.max_radius);
-        let job = JOB * radius * radius;
-        let jobs = if self.forge.is_on() {
-            self.forge.max_running as u64
-        } else {
-            0
-        };
-        BASE + jobs * job
     }
 
     fn lowered_from(&self, before: &Self) -> Vec<Lowered> {
@@ -128,7 +114,7 @@ const fn with_overhead(bytes: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Allow, Layers};
+    use crate::Layers;
 
     const MIB: u64 = 1 << 20;
 
@@ -193,16 +179,5 @@ mod tests {
             config.memory_bound()
         );
         crate::validate::validate(&config).expect("valid");
-    }
-
-    #[test]
-    fn tables_on_demand_take_their_room() {
-        let mut config = defaults();
-        config.forge.allow = Allow::Anyone;
-        let without = defaults().memory_bound();
-        // R = 100: 100 MB.
-        assert_eq!(config.memory_bound() - without, 100_000_000);
-        config.fit(256 * MIB);
-        assert!(config.memory_bound() <= 256 * MIB);
     }
 }

@@ -19,8 +19,7 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         metrics: _,
         telemetry,
         reload,
-        tables,
-        forge,
+        tables: _,
         fields: _,
         // Checked with the tables at hand.
         except,
@@ -41,7 +40,6 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         log.faults(),
         telemetry.faults(),
         reload.faults(),
-        forge.faults(tables),
         except.faults(),
     ]
     .concat();

@@ -38,14 +38,6 @@ pub enum Denied {
         /// The limit.
         limit: usize,
     },
-    /// The caller has reached its limit of tables that are being made.
-    #[error(
-        "{limit} tables are being made for this client, the limit: try again when one is finished"
-    )]
-    TooManyJobs {
-        /// The limit.
-        limit: usize,
-    },
     /// The client's address has reached the limit of one address.
     #[error("{limit} {what} of this address are in use, the limit: try again later")]
     Address {
@@ -98,7 +90,6 @@ impl Denied {
     pub const fn limit(&self) -> Option<usize> {
         match self {
             Self::TooManyStreams { limit }
-            | Self::TooManyJobs { limit }
             | Self::Address { limit, .. }
             | Self::Share { limit, .. } => Some(*limit),
             _ => None,

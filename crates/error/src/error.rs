@@ -108,26 +108,6 @@ pub enum Error {
         /// The methods that the path takes.
         allowed: String,
     },
-    /// There is no such job.
-    #[error(
-        "there is no job `{}`: it was never begun here, or has been forgotten",
-        without_keys(id)
-    )]
-    NoSuchJob {
-        /// The id.
-        id: String,
-    },
-    /// No tables are made on demand.
-    #[error(
-        "this server makes no tables on demand: its operator can set forge.allow, or make them with strew forge"
-    )]
-    ForgeOff,
-    /// The queue of tables to make is full.
-    #[error("{limit} tables wait to be made, the limit of this server: try again later")]
-    TooManyJobs {
-        /// The limit.
-        limit: usize,
-    },
     /// The caller is refused, for good or for now.
     #[error(transparent)]
     Denied(#[from] Denied),
@@ -172,16 +152,6 @@ pub enum Error {
         limit: usize,
         /// The setting of the limit.
         setting: &'static str,
-    },
-    /// The folder of tables has reached the limit of the forge.
-    #[error(
-        "the folder of tables is full: {setting} = {limit} on this server, which its operator can raise"
-    )]
-    FolderFull {
-        /// The setting of the limit.
-        setting: &'static str,
-        /// The limit.
-        limit: u64,
     },
     /// The body has a coding that is not read.
     #[error("`Content-Encoding: {coding}` is not read; allowed: gzip, or none")]
@@ -297,14 +267,12 @@ kinds! {
     TableUnreadable: "table-unreadable", "The table cannot be read", 503, UNAVAILABLE, Some(5);
     NotAcceptable: "not-acceptable", "No acceptable format", 406, INVALID_ARGUMENT, None;
     NoSuchPoint: "no-such-point", "There is no such point", 404, NOT_FOUND, None;
-    NoSuchJob: "no-such-job", "There is no such job", 404, NOT_FOUND, None;
     NoSuchPath: "no-such-path", "Nothing is here", 404, UNIMPLEMENTED, None;
     NoSuchMethod: "no-such-method", "The path does not take this method", 405, UNIMPLEMENTED, None;
     Unauthenticated: "unauthenticated", "A key is needed", 401, UNAUTHENTICATED, None;
     NotAllowed: "not-allowed", "The caller may not do this", 403, PERMISSION_DENIED, None;
     Misdirected: "misdirected", "The request is for another host", 421, PERMISSION_DENIED, None;
     TooManyStreams: "too-many-streams", "Too many current streams", 429, RESOURCE_EXHAUSTED, Some(1);
-    TooManyJobs: "too-many-jobs", "Too many tables are being made for the client", 429, RESOURCE_EXHAUSTED, Some(1);
     TooManyForAddress: "too-many-for-address", "The client's address uses as much as one address may", 429, RESOURCE_EXHAUSTED, Some(1);
     TooFast: "too-fast", "Points are taken too fast", 429, RESOURCE_EXHAUSTED, None;
     Busy: "busy", "The server is busy", 503, RESOURCE_EXHAUSTED, Some(1);
@@ -329,16 +297,13 @@ impl Error {
             Self::TableUnreadable { .. } => Kind::TableUnreadable,
             Self::NotAcceptable { .. } => Kind::NotAcceptable,
             Self::NoSuchPoint { .. } => Kind::NoSuchPoint,
-            Self::NoSuchJob { .. } => Kind::NoSuchJob,
             Self::NoSuchPath { .. } => Kind::NoSuchPath,
             Self::NoSuchMethod { .. } => Kind::NoSuchMethod,
-            Self::ForgeOff => Kind::NotAllowed,
             Self::Denied(denied) => match denied {
                 Denied::NoKey | Denied::WrongKey => Kind::Unauthenticated,
                 Denied::NotAdmin { .. } => Kind::NotAllowed,
                 Denied::ForeignHost { .. } => Kind::Misdirected,
                 Denied::TooManyStreams { .. } => Kind::TooManyStreams,
-                Denied::TooManyJobs { .. } => Kind::TooManyJobs,
                 Denied::Address { .. } | Denied::Share { .. } => Kind::TooManyForAddress,
                 Denied::TooFast { .. } => Kind::TooFast,
             },
@@ -346,8 +311,6 @@ impl Error {
             | Self::TooManyConnections { .. }
             | Self::TooManyRequests { .. }
             | Self::TooManyMixes { .. }
-            | Self::FolderFull { .. }
-            | Self::TooManyJobs { .. }
             | Self::TooManyBytes { .. }
             | Self::NeedsMoreBytes { .. } => Kind::Busy,
             Self::UnknownCoding { .. } => Kind::UnknownCoding,
@@ -362,8 +325,8 @@ impl Error {
     #[must_use]
     pub fn retry_seconds(&self) -> Option<u64> {
         match self {
-            // These settings never allow it.
-            Self::NeedsMoreBytes { .. } | Self::FolderFull { .. } => None,
+            // The setting never allows it.
+            Self::NeedsMoreBytes { .. } => None,
             Self::Denied(denied) => denied.wait_seconds().or(self.kind().wire().retry),
             _ => self.kind().wire().retry,
         }
@@ -382,8 +345,7 @@ impl Error {
             | Self::TooManyRequests { limit }
             | Self::TooManyMixes { limit }
             | Self::TooManyBytes { limit }
-            | Self::NeedsMoreBytes { limit, .. }
-            | Self::TooManyJobs { limit } => *limit,
+            | Self::NeedsMoreBytes { limit, .. } => *limit,
             Self::Denied(denied) => denied.limit()?,
             _ => return None,
         };

@@ -2,7 +2,7 @@
 
 use std::{ops::Deref, path::Path, sync::Arc};
 
-use strew_catalog::{Catalog, Entry, Reload};
+use strew_catalog::{Catalog, Reload};
 use strew_config::Config;
 
 use crate::world::Worlds;
@@ -46,19 +46,6 @@ impl Assets {
     pub fn over(&self, catalog: Catalog) -> Self {
         let worlds = Arc::new(self.worlds.over(&catalog));
         Self { catalog, worlds }
-    }
-
-    /// These assets with one more table, which replaces one of the same key.
-    #[must_use]
-    pub fn with_entry(&self, entry: Arc<Entry>) -> Self {
-        self.over(self.catalog.with(entry))
-    }
-
-    /// These assets and the tables that `now` has and `base` lacks: those that arrived while these were being read.
-    #[must_use]
-    pub fn with_later(self, base: &Self, now: &Self) -> Self {
-        let catalog = self.catalog.clone().with_later(&base.catalog, &now.catalog);
-        self.over(catalog)
     }
 
     /// The assets after reading the folders of tables, fields, lists and worlds again, and the changes.

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use strew_catalog::{Catalog, Dimension, Entry, Key, MAX_PATTERN_RADIUS, Offer, PATTERN};
+use strew_catalog::{Catalog, Dimension, Entry, Key, MAX_PATTERN_RADIUS, PATTERN};
 use strew_core::{Alpha, map::Size};
 use strew_error::{Checked, Error, Fault, Faults, Together as _};
 
@@ -32,11 +32,6 @@ pub(super) fn check(
     };
     let dimension = values.dimension();
     let is_pattern = profile == PATTERN && dimension == Dimension::Plane;
-    // Tables in space are not made on demand.
-    let offer = |of: &dyn Fn(Offer) -> String| match dimension {
-        Dimension::Plane => of(catalog.offer()),
-        Dimension::Space => String::new(),
-    };
     let is_known = is_pattern || catalog.has_profile(dimension, profile);
     let alpha = parse(alpha_text).map_err(|error| {
         let allowed = match is_known {
@@ -54,8 +49,8 @@ pub(super) fn check(
     let known = match is_known {
         true => Ok(()),
         false => {
-            let detail =
-                "no such profile is loaded".to_owned() + &offer(&|offer| offer.of_profile(profile));
+            let offer = catalog.offer().of_profile(dimension, profile);
+            let detail = format!("no such profile is loaded{offer}");
             Err(fault(&PROFILE, profile, detail, loaded(catalog, dimension)))
         }
     };
@@ -77,7 +72,7 @@ pub(super) fn check(
     let sizes = catalog.sizes(dimension, profile, alpha);
     let size = size.filter(|_| is_pattern || !sizes.is_empty());
     let Some((text, size)) = size else {
-        let offer = offer(&|offer| offer.of_table(profile, alpha, map.as_deref()));
+        let offer = (catalog.offer()).of_table(dimension, profile, alpha, map.as_deref());
         let detail = format!("the profile `{profile}` is not loaded for this alpha{offer}");
         let allowed = some(
             catalog
@@ -88,7 +83,7 @@ pub(super) fn check(
         return Err(fault(&ALPHA, alpha_text, detail, allowed));
     };
     let offer = size.map_or(String::new(), |_| {
-        offer(&|offer| offer.of_table(profile, alpha, Some(text)))
+        (catalog.offer()).of_table(dimension, profile, alpha, Some(text))
     });
     let detail = format!("the profile `{profile}` is not loaded with this map size{offer}");
     let allowed = match is_pattern {

@@ -30,7 +30,6 @@ use crate::{
     BlockStream, Budget, Held, Interrupted, Permit, PointsInFlight, Portrait, Record, Streams,
     Workers,
     cache::{CacheState, Samplers},
-    forging::Forging,
     mixes::Mixes,
     portrait::Portraits,
     record::{Recorded, allowance},
@@ -39,8 +38,7 @@ use crate::{
 /// Everything a front end needs. Cheap to share behind an [`Arc`].
 #[derive(Debug)]
 pub struct Service {
-    pub(super) assets: Arc<ArcSwap<Assets>>,
-    pub(super) forging: Forging,
+    assets: ArcSwap<Assets>,
     limits: Limits,
     samplers: Samplers,
     mixes: Mixes,
@@ -64,8 +62,7 @@ impl Service {
             streams: Arc::new(Streams::new(limits.max_streams)),
             points_in_flight: PointsInFlight::default(),
             budget,
-            assets: Arc::new(ArcSwap::from_pointee(assets.into())),
-            forging: Forging::default(),
+            assets: ArcSwap::from_pointee(assets.into()),
             limits,
             workers,
         }
@@ -89,20 +86,13 @@ impl Service {
     /// Reads the folders and the names of the configuration again. Invalid documents are refused, and their earlier
     /// versions stay.
     #[must_use]
-    pub fn read_tables(&self, config: &Config) -> (Arc<Assets>, Assets, Reload) {
-        let before = self.catalog();
-        let (after, reload) = before.reload(config);
-        (before, after, reload)
+    pub fn read_tables(&self, config: &Config) -> (Assets, Reload) {
+        self.catalog().reload(config)
     }
 
     /// Serves the tables that were read, all at once. Reloads come one after another.
-    pub async fn serve_tables(
-        &self,
-        (before, after, reload): (Arc<Assets>, Assets, Reload),
-    ) -> Reload {
-        // A table may have been forged meanwhile.
-        self.assets
-            .rcu(|now| after.clone().with_later(&before, now));
+    pub async fn serve_tables(&self, (after, reload): (Assets, Reload)) -> Reload {
+        self.assets.store(Arc::new(after));
         for digest in reload.gone() {
             self.samplers.forget(digest).await;
         }
@@ -337,12 +327,6 @@ impl Service {
         let place = caller.place(self.streams.places())?;
         let permit = self.streams.admit()?;
         Ok(permit.with(place, self.hold(held)?))
-    }
-
-    /// A place for an answer of events, which holds next to nothing.
-    pub(super) fn place_for_events(&self, caller: &Caller) -> Result<Permit, Error> {
-        let place = caller.place(self.streams.places())?;
-        Ok(self.streams.admit()?.with(place, self.hold(64 << 10)?))
     }
 
     /// Plans a query that is to be answered with its points.

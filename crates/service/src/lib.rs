@@ -2,15 +2,14 @@
 //!
 //! A [`Service`] answers checked queries: it takes tables from a cache, plans on its workers, in turns by address, and
 //! hands out a stream of blocks that an encoder makes one at a time, on demand. [`Budget`] bounds the memory of all
-//! requests and answers, [`Streams`] the streams, and every work has an owner and an end. It makes tables on demand
-//! ([`forging`]), draws figures of patterns, masks and portraits.
+//! requests and answers, [`Streams`] the streams, and every work has an owner and an end. It draws
+//! figures of patterns, masks and portraits.
 //!
 //! Depends on plans and all below them, and on access. The only library with an async runtime; knows no protocol.
 
 pub mod budget;
 pub mod cache;
 mod daemon;
-pub mod forging;
 pub mod mask;
 mod mixes;
 pub mod pattern;
@@ -20,7 +19,6 @@ mod reading;
 pub mod record;
 pub mod segments;
 pub mod stream;
-mod tables;
 pub mod unpack;
 pub mod work;
 

@@ -111,13 +111,6 @@ impl Permit {
     }
 }
 
-impl Permit {
-    /// Waits until [`Streams::stop`] ends all streams.
-    pub(super) async fn stopped(&self) {
-        self.streams.stop.cancelled().await;
-    }
-}
-
 /// A maker of blocks with its permit, which goes wherever the maker goes.
 struct Maker<I> {
     items: I,

@@ -51,29 +51,4 @@ pub(super) static METHODS: &[Method] = &[
         shape: 9,
         read: |bytes| once(bytes, Points::list_worlds),
     },
-    Method {
-        path: "/strew.v1.PointService/ForgeTable",
-        shape: 10,
-        read: |bytes| streamed(bytes, Points::forge_table),
-    },
-    Method {
-        path: "/strew.v1.PointService/GetArrangement",
-        shape: 11,
-        read: |bytes| once(bytes, Points::get_arrangement),
-    },
-    Method {
-        path: "/strew.v1.PointService/ListOccurrences",
-        shape: 11,
-        read: |bytes| streamed(bytes, Points::list_occurrences),
-    },
-    Method {
-        path: "/strew.v1.PointService/GetClusters",
-        shape: 12,
-        read: |bytes| once(bytes, Points::get_clusters),
-    },
-    Method {
-        path: "/strew.v1.PointService/GetMap",
-        shape: 13,
-        read: |bytes| once(bytes, Points::get_map),
-    },
 ];

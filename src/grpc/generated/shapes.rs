@@ -3,8 +3,8 @@
 const MOST_FIELDS: usize = 27;
 /// The number of shapes that are requests: the first ones.
 #[cfg(test)]
-pub(super) const REQUESTS: usize = 14;
-pub(super) static SHAPES: [Shape; 51] = [
+pub(super) const REQUESTS: usize = 10;
+pub(super) static SHAPES: [Shape; 44] = [
     Shape {
         bytes: size_of::<proto::StreamPointsRequest>(),
         is_field: false,
@@ -12,19 +12,19 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "region",
-                kind: Kind::Message(14),
+                kind: Kind::Message(10),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "set",
-                kind: Kind::Message(15),
+                kind: Kind::Message(11),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "layers",
-                kind: Kind::Message(16),
+                kind: Kind::Message(12),
                 most: most::STREAM_POINTS_REQUEST_LAYERS,
             },
             Field {
@@ -84,7 +84,7 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 2,
                 name: "set",
-                kind: Kind::Message(15),
+                kind: Kind::Message(11),
                 most: most::ONCE,
             },
         ],
@@ -96,13 +96,13 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "at",
-                kind: Kind::Message(17),
+                kind: Kind::Message(13),
                 most: most::ONCE,
             },
             Field {
                 number: 4,
                 name: "set",
-                kind: Kind::Message(15),
+                kind: Kind::Message(11),
                 most: most::ONCE,
             },
         ],
@@ -177,151 +177,61 @@ pub(super) static SHAPES: [Shape; 51] = [
         fields: &[],
     },
     Shape {
-        bytes: size_of::<proto::ForgeTableRequest>(),
-        is_field: false,
-        fields: &[
-            Field {
-                number: 1,
-                name: "profile",
-                kind: Kind::Text,
-                most: most::ONCE,
-            },
-            Field {
-                number: 2,
-                name: "alpha",
-                kind: Kind::Text,
-                most: most::ONCE,
-            },
-            Field {
-                number: 3,
-                name: "map",
-                kind: Kind::Text,
-                most: most::ONCE,
-            },
-            Field {
-                number: 4,
-                name: "target",
-                kind: Kind::Text,
-                most: most::ONCE,
-            },
-        ],
-    },
-    Shape {
-        bytes: size_of::<proto::ArrangementRequest>(),
-        is_field: false,
-        fields: &[
-            Field {
-                number: 1,
-                name: "set",
-                kind: Kind::Message(15),
-                most: most::ONCE,
-            },
-            Field {
-                number: 2,
-                name: "offsets",
-                kind: Kind::Message(18),
-                most: most::ARRANGEMENT_REQUEST_OFFSETS,
-            },
-            Field {
-                number: 3,
-                name: "grid",
-                kind: Kind::Message(19),
-                most: most::ONCE,
-            },
-            Field {
-                number: 5,
-                name: "cursor",
-                kind: Kind::Text,
-                most: most::ONCE,
-            },
-        ],
-    },
-    Shape {
-        bytes: size_of::<proto::ClustersRequest>(),
-        is_field: false,
-        fields: &[
-            Field {
-                number: 1,
-                name: "alpha",
-                kind: Kind::Text,
-                most: most::ONCE,
-            },
-        ],
-    },
-    Shape {
-        bytes: size_of::<proto::MapRequest>(),
-        is_field: false,
-        fields: &[
-            Field {
-                number: 1,
-                name: "alpha",
-                kind: Kind::Text,
-                most: most::ONCE,
-            },
-            Field {
-                number: 4,
-                name: "block",
-                kind: Kind::Message(20),
-                most: most::ONCE,
-            },
-        ],
-    },
-    Shape {
         bytes: size_of::<proto::Region>(),
         is_field: false,
         fields: &[
             Field {
                 number: 1,
                 name: "bbox",
-                kind: Kind::Message(21),
+                kind: Kind::Message(14),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "circle",
-                kind: Kind::Message(22),
+                kind: Kind::Message(15),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "polygons",
-                kind: Kind::Message(23),
+                kind: Kind::Message(16),
                 most: most::ONCE,
             },
             Field {
                 number: 4,
                 name: "chunk",
-                kind: Kind::Message(24),
+                kind: Kind::Message(17),
                 most: most::ONCE,
             },
             Field {
                 number: 5,
                 name: "combined",
-                kind: Kind::Message(25),
+                kind: Kind::Message(18),
                 most: most::ONCE,
             },
             Field {
                 number: 6,
                 name: "cuboid",
-                kind: Kind::Message(26),
+                kind: Kind::Message(19),
                 most: most::ONCE,
             },
             Field {
                 number: 7,
                 name: "ball",
-                kind: Kind::Message(27),
+                kind: Kind::Message(20),
                 most: most::ONCE,
             },
             Field {
                 number: 8,
                 name: "prism",
-                kind: Kind::Message(28),
+                kind: Kind::Message(21),
                 most: most::ONCE,
             },
             Field {
                 number: 9,
                 name: "cube",
-                kind: Kind::Message(29),
+                kind: Kind::Message(22),
                 most: most::ONCE,
             },
         ],
@@ -363,19 +273,19 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 13,
                 name: "scale_range",
-                kind: Kind::Message(30),
+                kind: Kind::Message(23),
                 most: most::ONCE,
             },
             Field {
                 number: 14,
                 name: "variants",
-                kind: Kind::Message(31),
+                kind: Kind::Message(24),
                 most: most::POINT_SET_VARIANTS,
             },
             Field {
                 number: 15,
                 name: "field",
-                kind: Kind::Message(32),
+                kind: Kind::Message(25),
                 most: most::ONCE,
             },
             Field {
@@ -393,25 +303,25 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 18,
                 name: "scale_ranges",
-                kind: Kind::Message(33),
+                kind: Kind::Message(26),
                 most: most::POINT_SET_SCALE_RANGES,
             },
             Field {
                 number: 20,
                 name: "variant_fields",
-                kind: Kind::Message(34),
+                kind: Kind::Message(27),
                 most: most::POINT_SET_VARIANT_FIELDS,
             },
             Field {
                 number: 21,
                 name: "terrain",
-                kind: Kind::Message(32),
+                kind: Kind::Message(25),
                 most: most::ONCE,
             },
             Field {
                 number: 22,
                 name: "heights",
-                kind: Kind::Message(35),
+                kind: Kind::Message(28),
                 most: most::ONCE,
             },
             Field {
@@ -435,40 +345,25 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 2,
                 name: "region",
-                kind: Kind::Message(14),
+                kind: Kind::Message(10),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "clear_of",
-                kind: Kind::Message(36),
+                kind: Kind::Message(29),
                 most: most::LAYER_CLEAR_OF,
             },
             Field {
                 number: 4,
                 name: "set",
-                kind: Kind::Message(15),
+                kind: Kind::Message(11),
                 most: most::ONCE,
             },
         ],
     },
     Shape {
         bytes: size_of::<proto::Position>(),
-        is_field: false,
-        fields: &[],
-    },
-    Shape {
-        bytes: size_of::<proto::GridOffset>(),
-        is_field: false,
-        fields: &[],
-    },
-    Shape {
-        bytes: size_of::<proto::GridBox>(),
-        is_field: false,
-        fields: &[],
-    },
-    Shape {
-        bytes: size_of::<proto::Block>(),
         is_field: false,
         fields: &[],
     },
@@ -484,7 +379,7 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "center",
-                kind: Kind::Message(17),
+                kind: Kind::Message(13),
                 most: most::ONCE,
             },
         ],
@@ -496,7 +391,7 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "polygons",
-                kind: Kind::Message(37),
+                kind: Kind::Message(30),
                 most: most::POLYGONS_POLYGONS,
             },
         ],
@@ -513,13 +408,13 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "include",
-                kind: Kind::Message(14),
+                kind: Kind::Message(10),
                 most: most::COMBINED_INCLUDE,
             },
             Field {
                 number: 2,
                 name: "exclude",
-                kind: Kind::Message(14),
+                kind: Kind::Message(10),
                 most: most::COMBINED_EXCLUDE,
             },
         ],
@@ -536,7 +431,7 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "center",
-                kind: Kind::Message(17),
+                kind: Kind::Message(13),
                 most: most::ONCE,
             },
         ],
@@ -548,7 +443,7 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "base",
-                kind: Kind::Message(23),
+                kind: Kind::Message(16),
                 most: most::ONCE,
             },
         ],
@@ -588,73 +483,73 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 3,
                 name: "ramp",
-                kind: Kind::Message(38),
+                kind: Kind::Message(31),
                 most: most::ONCE,
             },
             Field {
                 number: 4,
                 name: "radial",
-                kind: Kind::Message(39),
+                kind: Kind::Message(32),
                 most: most::ONCE,
             },
             Field {
                 number: 5,
                 name: "distance",
-                kind: Kind::Message(40),
+                kind: Kind::Message(33),
                 most: most::ONCE,
             },
             Field {
                 number: 6,
                 name: "noise",
-                kind: Kind::Message(41),
+                kind: Kind::Message(34),
                 most: most::ONCE,
             },
             Field {
                 number: 7,
                 name: "raster",
-                kind: Kind::Message(42),
+                kind: Kind::Message(35),
                 most: most::ONCE,
             },
             Field {
                 number: 8,
                 name: "height",
-                kind: Kind::Message(43),
+                kind: Kind::Message(36),
                 most: most::ONCE,
             },
             Field {
                 number: 9,
                 name: "slope",
-                kind: Kind::Message(44),
+                kind: Kind::Message(37),
                 most: most::ONCE,
             },
             Field {
                 number: 10,
                 name: "multiply",
-                kind: Kind::Message(45),
+                kind: Kind::Message(38),
                 most: most::ONCE,
             },
             Field {
                 number: 11,
                 name: "min",
-                kind: Kind::Message(45),
+                kind: Kind::Message(38),
                 most: most::ONCE,
             },
             Field {
                 number: 12,
                 name: "max",
-                kind: Kind::Message(45),
+                kind: Kind::Message(38),
                 most: most::ONCE,
             },
             Field {
                 number: 13,
                 name: "invert",
-                kind: Kind::Message(32),
+                kind: Kind::Message(25),
                 most: most::ONCE,
             },
             Field {
                 number: 14,
                 name: "curve",
-                kind: Kind::Message(46),
+                kind: Kind::Message(39),
                 most: most::ONCE,
             },
         ],
@@ -672,7 +567,7 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 2,
                 name: "value",
-                kind: Kind::Message(30),
+                kind: Kind::Message(23),
                 most: most::ONCE,
             },
         ],
@@ -690,7 +585,7 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 2,
                 name: "value",
-                kind: Kind::Message(32),
+                kind: Kind::Message(25),
                 most: most::ONCE,
             },
         ],
@@ -719,7 +614,7 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "rings",
-                kind: Kind::Message(47),
+                kind: Kind::Message(40),
                 most: most::POLYGON_RINGS,
             },
         ],
@@ -731,19 +626,19 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "from",
-                kind: Kind::Message(48),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "to",
-                kind: Kind::Message(48),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "shares",
-                kind: Kind::Message(48),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
         ],
@@ -755,19 +650,19 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "center",
-                kind: Kind::Message(48),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "radii",
-                kind: Kind::Message(48),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "shares",
-                kind: Kind::Message(48),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
         ],
@@ -779,31 +674,31 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "points",
-                kind: Kind::Message(48),
+                kind: Kind::Message(41),
                 most: most::FIELD_DISTANCE_POINTS,
             },
             Field {
                 number: 2,
                 name: "lines",
-                kind: Kind::Message(49),
+                kind: Kind::Message(42),
                 most: most::FIELD_DISTANCE_LINES,
             },
             Field {
                 number: 3,
                 name: "polygons",
-                kind: Kind::Message(49),
+                kind: Kind::Message(42),
                 most: most::FIELD_DISTANCE_POLYGONS,
             },
             Field {
                 number: 4,
                 name: "distances",
-                kind: Kind::Message(48),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
             Field {
                 number: 5,
                 name: "shares",
-                kind: Kind::Message(48),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
         ],
@@ -815,7 +710,7 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 4,
                 name: "range",
-                kind: Kind::Message(48),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
         ],
@@ -839,7 +734,7 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 5,
                 name: "bbox",
-                kind: Kind::Message(50),
+                kind: Kind::Message(43),
                 most: most::ONCE,
             },
         ],
@@ -851,19 +746,19 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "terrain",
-                kind: Kind::Message(42),
+                kind: Kind::Message(35),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "heights",
-                kind: Kind::Message(48),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "shares",
-                kind: Kind::Message(48),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
         ],
@@ -875,19 +770,19 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "terrain",
-                kind: Kind::Message(42),
+                kind: Kind::Message(35),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "slopes",
-                kind: Kind::Message(48),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "shares",
-                kind: Kind::Message(48),
+                kind: Kind::Message(41),
                 most: most::ONCE,
             },
         ],
@@ -899,7 +794,7 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "fields",
-                kind: Kind::Message(32),
+                kind: Kind::Message(25),
                 most: most::FIELD_PARTS_FIELDS,
             },
         ],
@@ -911,13 +806,13 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "of",
-                kind: Kind::Message(32),
+                kind: Kind::Message(25),
                 most: most::ONCE,
             },
             Field {
                 number: 2,
                 name: "points",
-                kind: Kind::Message(48),
+                kind: Kind::Message(41),
                 most: most::FIELD_CURVE_POINTS,
             },
         ],
@@ -929,7 +824,7 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "positions",
-                kind: Kind::Message(17),
+                kind: Kind::Message(13),
                 most: most::RING_POSITIONS,
             },
         ],
@@ -946,7 +841,7 @@ pub(super) static SHAPES: [Shape; 51] = [
             Field {
                 number: 1,
                 name: "vertices",
-                kind: Kind::Message(48),
+                kind: Kind::Message(41),
                 most: most::FIELD_LINE_VERTICES,
             },
         ],

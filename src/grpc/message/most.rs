@@ -6,7 +6,7 @@
 
 use strew_catalog::except::MOST_GIVEN;
 use strew_config::Limits;
-use strew_core::{Variants, field::FieldSpec, pattern::Arrangement, table::Shares};
+use strew_core::{Variants, field::FieldSpec, table::Shares};
 use strew_query::{MOST_LAYERS, MOST_NAMES, MOST_REGIONS};
 
 /// The bound on a field, and the name of its values.
@@ -112,5 +112,3 @@ pub(super) const FIELD_DISTANCE_POINTS: Most = MARKS;
 pub(super) const FIELD_LINE_VERTICES: Most = MARKS;
 pub(super) const FIELD_DISTANCE_LINES: Most = each(FieldSpec::MAX_VERTICES, "lines");
 pub(super) const FIELD_DISTANCE_POLYGONS: Most = each(FieldSpec::MAX_VERTICES, "polygons");
-
-pub(super) const ARRANGEMENT_REQUEST_OFFSETS: Most = each(Arrangement::MAX_OFFSETS, "offsets");

@@ -4,7 +4,7 @@ use std::{sync::Arc, time::UNIX_EPOCH};
 
 use axum::extract::State;
 use prometheus::{Counter, Gauge, Opts, Registry, TextEncoder, core::Collector};
-use strew_service::{Service, forging};
+use strew_service::Service;
 
 use super::{Metrics, process::Process};
 use crate::body::Response;
@@ -71,7 +71,6 @@ impl Metrics {
         };
 
         let cache = service.cache().await;
-        let forge = service.forge_state();
         for (name, help, value) in [
             (
                 "strew_sampler_cache_hits_total",
@@ -97,22 +96,6 @@ impl Metrics {
             &[],
             service.workers().moved() as f64,
         );
-        for (state, ended) in forging::State::ENDED.into_iter().zip(forge.ended) {
-            counter(
-                "strew_forge_jobs_ended_total",
-                "Jobs of the forge that ended, by outcome",
-                &[("outcome", state.name())],
-                ended as f64,
-            );
-        }
-        for (state, jobs) in [("queued", forge.queued), ("running", forge.running)] {
-            gauge(
-                "strew_forge_jobs",
-                "Jobs of the forge that wait or run",
-                &[("state", state)],
-                jobs as f64,
-            );
-        }
         let process = Process::now();
         if let Some(seconds) = process.cpu {
             counter(

@@ -18,6 +18,7 @@ use axum::{
 use http::{Method, Uri};
 use schemars::JsonSchema;
 use serde_json::Value;
+use strew_catalog::Dimension;
 use strew_error::Kind;
 use strew_query::{Group, Parameter};
 
@@ -95,10 +96,19 @@ tags! {
     Profiles: "profiles", "The noise profiles that are loaded.";
     Fields: "fields", "The fields that are loaded.";
     Worlds: "worlds", "The worlds that are loaded: queries that are described once.";
-    Tables: "tables", "Tables made on demand, and the jobs that make them.";
     Patterns: "patterns", "The AA pattern of any α: arrangements, clusters, maps, figures.";
     About: "about", "Pages for people and this document.";
     Operations: "operations", "Health, metrics and administration.";
+}
+
+impl Tag {
+    /// The subject of the points of a dimension.
+    pub(super) const fn of(dimension: Dimension) -> Self {
+        match dimension {
+            Dimension::Plane => Self::Points,
+            Dimension::Space => Self::Space,
+        }
+    }
 }
 
 /// The body of a request.
@@ -110,6 +120,17 @@ pub struct Body {
     pub schema: Content,
     /// A body that is in order on the built-in tables.
     pub example: Value,
+}
+
+impl Body {
+    /// A document in JSON.
+    pub(super) const fn json(schema: Content, example: Value) -> Self {
+        Self {
+            media_type: "application/json",
+            schema,
+            example,
+        }
+    }
 }
 
 /// An answer that is not a problem.

@@ -94,9 +94,7 @@ fn accepted_coding(element: &str) -> Option<(&str, u16)> {
 fn is_text(content_type: &str) -> bool {
     let media_type = content_type.split(';').next().unwrap_or_default().trim();
     let (_, sub) = media_type.split_once('/').unwrap_or_default();
-    // Events must not wait in a compressor for more.
-    let is_events = sub == "event-stream";
-    media_type.starts_with("text/") && !is_events
+    media_type.starts_with("text/")
         || ["json", "x-ndjson", "ndjson", "jsonl", "javascript"].contains(&sub)
         || ["+json", "+json-seq", "+xml"]
             .iter()

@@ -21,7 +21,7 @@ use super::{
         schemas::{self, ArrangementQuery as ArrangementBody},
     },
     context::{Context, Sent},
-    document, query,
+    document,
 };
 use crate::{
     body::{Body, Response},
@@ -62,7 +62,10 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         method: Method::POST,
         id: "findArrangement",
         parameters: groups::NONE,
-        body: Some(query::body(schemas::of::<ArrangementBody>, body.clone())),
+        body: Some(api::Body::json(
+            schemas::of::<ArrangementBody>,
+            body.clone(),
+        )),
         answers: vec![described()],
         problems: [problems(), vec![Kind::BodyTooLarge]].concat(),
         example: format!("/v1/pattern/arrangements -d '{body}'"),

@@ -11,7 +11,7 @@ use strew_service::Service;
 
 use super::{
     api::{self, Endpoint},
-    context, document, query,
+    context, document,
 };
 
 /// The paths.

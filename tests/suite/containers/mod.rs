@@ -6,7 +6,6 @@
 
 mod attacks;
 mod compose;
-mod crashes;
 mod docker;
 mod image;
 mod load;

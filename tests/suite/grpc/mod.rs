@@ -1,6 +1,6 @@
-//! The gRPC API: the points, counts and echoes of REST as messages (queries, single points, encodings), what is known
-//! of patterns, what a call carries besides its message (deadlines, compression, cancellation), gRPC-Web, discovery
-//! (profiles, health, reflection), the statuses of invalid requests, and the Python client.
+//! The gRPC API: the points, counts and echoes of REST as messages (queries, single points, encodings), what a call
+//! carries besides its message (deadlines, compression, cancellation), gRPC-Web, discovery (profiles, health,
+//! reflection), the statuses of invalid requests, and the Python client.
 
 mod calls;
 mod discovery;
@@ -8,7 +8,6 @@ mod encodings;
 mod fields;
 mod invalid_queries;
 mod invalid_requests;
-mod patterns;
 mod python;
 mod queries;
 mod single_points;

@@ -9,7 +9,6 @@ mod caches;
 mod connections;
 mod fairness;
 mod files;
-mod forging;
 mod hostile_clients;
 mod keys;
 mod limits;

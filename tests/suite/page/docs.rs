@@ -29,7 +29,7 @@ fn an_operation_has_an_address_is_found_and_can_be_tried() {
     let hit = browser.text("[data-id=getPoints] .hit");
     assert!(hit.contains("heights"), "{hit}");
     assert_eq!(
-        browser.value("document.querySelector('[data-id=getFigure], [data-id=listJobs]').hidden"),
+        browser.value("document.querySelector('[data-id=getMetrics]').hidden"),
         true
     );
     browser.click("[data-id=getPoints] a");

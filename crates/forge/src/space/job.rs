@@ -69,6 +69,14 @@ impl SpaceJob {
         }
     }
 
+    /// Checks every part of the job.
+    ///
+    /// # Errors
+    /// [`ForgeError::Field`] or [`ForgeError::Table`] for a part that is not allowed.
+    pub fn check(&self) -> Result<(), ForgeError> {
+        self.maps().map(drop)
+    }
+
     /// The maps of the coarse phase and of all others. Fails for a part of the job that is not allowed.
     pub(super) fn maps(&self) -> Result<[Map; 2], ForgeError> {
         let refused = |field, value: String, allowed: String| {

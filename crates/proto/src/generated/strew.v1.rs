@@ -337,130 +337,110 @@ impl FieldFilter {
         }
     }
 }
-/// Asks for a table that is not loaded.
-#[derive(Clone, PartialEq, Eq, Hash, ::prost::Message)]
-pub struct ForgeTableRequest {
-    /// The noise profile, `blue` by default; with a target another name of 1 to 32 characters of a-z, 0-9 and -.
-    #[prost(string, optional, tag = "1")]
-    pub profile: ::core::option::Option<::prost::alloc::string::String>,
-    /// The number alpha of the pattern, between 1.1 and 2; the default one by default.
-    #[prost(string, optional, tag = "2")]
-    pub alpha: ::core::option::Option<::prost::alloc::string::String>,
-    /// The size of the map: `s` (by default), `m`, `l`, or `r` and the half-width.
-    #[prost(string, optional, tag = "3")]
-    pub map: ::core::option::Option<::prost::alloc::string::String>,
-    /// A radial power curve to follow, as text: lines of a frequency and a power, or TOML with `\[[piece]\]`. None by
-    /// default.
-    #[prost(string, optional, tag = "4")]
-    pub target: ::core::option::Option<::prost::alloc::string::String>,
-}
-/// How the job stands.
+/// Asks for everything that is loaded.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, ::prost::Message)]
+pub struct ListProfilesRequest {}
+/// The loaded tables.
 #[derive(Clone, PartialEq, ::prost::Message)]
-pub struct ForgeTableResponse {
-    /// The job.
-    #[prost(message, optional, tag = "1")]
-    pub job: ::core::option::Option<Job>,
+pub struct ListProfilesResponse {
+    /// The tables of the plane, sorted by profile, then alpha.
+    #[prost(message, repeated, tag = "1")]
+    pub profiles: ::prost::alloc::vec::Vec<Profile>,
+    /// The version of the algorithm that answers.
+    #[prost(uint32, tag = "2")]
+    pub algorithm: u32,
+    /// The tables of points in space, sorted alike.
+    #[prost(message, repeated, tag = "3")]
+    pub in_space: ::prost::alloc::vec::Vec<Profile>,
 }
-/// How a job of the forge stands.
+/// A displacement table.
 #[derive(Clone, PartialEq, ::prost::Message)]
-pub struct Job {
-    /// Its id; the same for the same table.
+pub struct Profile {
+    /// The name of the noise profile.
     #[prost(string, tag = "1")]
-    pub id: ::prost::alloc::string::String,
-    /// Where it is.
-    #[prost(enumeration = "JobState", tag = "2")]
-    pub state: i32,
-    /// The noise profile of the table.
-    #[prost(string, tag = "3")]
     pub profile: ::prost::alloc::string::String,
     /// The number alpha of its pattern, in its canonical form.
-    #[prost(string, tag = "4")]
+    #[prost(string, tag = "2")]
     pub alpha: ::prost::alloc::string::String,
-    /// The size of its map.
-    #[prost(string, tag = "5")]
-    pub map: ::prost::alloc::string::String,
-    /// The blocks of its map: how many vectors are to be found.
+    /// The half-width R of its neighborhood map, in grid units.
+    #[prost(uint32, tag = "3")]
+    pub radius: u32,
+    /// The intervals per axis, n.
+    #[prost(uint32, tag = "4")]
+    pub intervals: u32,
+    /// The blocks, n squared, of a table in space n cubed: how many vectors the table has.
+    #[prost(uint32, tag = "5")]
+    pub blocks: u32,
+    /// The size of the table file.
     #[prost(uint64, tag = "6")]
-    pub blocks: u64,
-    /// The period of the pattern in grid units; absent if alpha is no fraction.
-    #[prost(uint64, optional, tag = "7")]
-    pub period: ::core::option::Option<u64>,
-    /// Why the table will probably be rejected; empty if it will not.
-    #[prost(string, tag = "8")]
-    pub warning: ::prost::alloc::string::String,
-    /// The stage of the work: `optimizing` or `measuring`; empty unless the job runs.
-    #[prost(string, tag = "9")]
-    pub stage: ::prost::alloc::string::String,
-    /// The number of finished steps of the stage.
-    #[prost(uint32, tag = "10")]
-    pub step: u32,
-    /// The number of steps of the stage.
-    #[prost(uint32, tag = "11")]
-    pub steps: u32,
-    /// The energy per point after the last step of the optimizer; absent before the first one.
-    #[prost(double, optional, tag = "12")]
-    pub energy: ::core::option::Option<f64>,
-    /// The time until the stage ends, in seconds, at the speed so far; absent unless the job runs.
-    #[prost(double, optional, tag = "13")]
-    pub seconds_left: ::core::option::Option<f64>,
-    /// The digest of the finished table; empty before.
-    #[prost(string, tag = "14")]
+    pub bytes: u64,
+    /// The table's digest, in hexadecimal.
+    #[prost(string, tag = "7")]
     pub digest: ::prost::alloc::string::String,
-    /// The bounds that a rejected table missed, with figures.
-    #[prost(string, repeated, tag = "15")]
-    pub complaints: ::prost::alloc::vec::Vec<::prost::alloc::string::String>,
-    /// Why a job failed; empty if it did not.
-    #[prost(string, tag = "16")]
-    pub detail: ::prost::alloc::string::String,
+    /// How it was made.
+    #[prost(message, optional, tag = "8")]
+    pub provenance: ::core::option::Option<Provenance>,
+    /// The size of its map: `s`, `m`, `l`, or `r` and the half-width.
+    #[prost(string, tag = "9")]
+    pub map: ::prost::alloc::string::String,
+    /// The shares for which there is a table with joint kinds (`spread` `joint`).
+    #[prost(string, repeated, tag = "10")]
+    pub joint_kinds: ::prost::alloc::vec::Vec<::prost::alloc::string::String>,
 }
-/// Where a job is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, ::prost::Enumeration)]
-#[repr(i32)]
-pub enum JobState {
-    /// Never sent.
-    Unspecified = 0,
-    /// It waits for others.
-    Queued = 1,
-    /// It is being made.
-    Running = 2,
-    /// The table is accepted and served.
-    Finished = 3,
-    /// The table missed a bound of its profile. It is not kept.
-    Rejected = 4,
-    /// A client cancelled it.
-    Cancelled = 5,
-    /// It could not be made.
-    Failed = 6,
+/// How a table was made and what was measured on it.
+#[derive(Clone, PartialEq, ::prost::Message)]
+pub struct Provenance {
+    /// The name of the optimizer.
+    #[prost(string, tag = "1")]
+    pub optimizer: ::prost::alloc::string::String,
+    /// Its parameters.
+    #[prost(message, repeated, tag = "2")]
+    pub parameters: ::prost::alloc::vec::Vec<Parameter>,
+    /// The seed of its random start.
+    #[prost(uint64, tag = "3")]
+    pub seed: u64,
+    /// The periodic twins it was optimized on, as fractions p/q.
+    #[prost(string, repeated, tag = "4")]
+    pub twins: ::prost::alloc::vec::Vec<::prost::alloc::string::String>,
+    /// The measured figures, a set of points each.
+    #[prost(message, repeated, tag = "5")]
+    pub figures: ::prost::alloc::vec::Vec<Figures>,
 }
-impl JobState {
-    /// String value of the enum field names used in the ProtoBuf definition.
-    ///
-    /// The values are not transformed in any way and thus are considered stable
-    /// (if the ProtoBuf definition does not change) and safe for programmatic use.
-    pub fn as_str_name(&self) -> &'static str {
-        match self {
-            Self::Unspecified => "JOB_STATE_UNSPECIFIED",
-            Self::Queued => "JOB_STATE_QUEUED",
-            Self::Running => "JOB_STATE_RUNNING",
-            Self::Finished => "JOB_STATE_FINISHED",
-            Self::Rejected => "JOB_STATE_REJECTED",
-            Self::Cancelled => "JOB_STATE_CANCELLED",
-            Self::Failed => "JOB_STATE_FAILED",
-        }
-    }
-    /// Creates an enum from field names used in the ProtoBuf definition.
-    pub fn from_str_name(value: &str) -> ::core::option::Option<Self> {
-        match value {
-            "JOB_STATE_UNSPECIFIED" => Some(Self::Unspecified),
-            "JOB_STATE_QUEUED" => Some(Self::Queued),
-            "JOB_STATE_RUNNING" => Some(Self::Running),
-            "JOB_STATE_FINISHED" => Some(Self::Finished),
-            "JOB_STATE_REJECTED" => Some(Self::Rejected),
-            "JOB_STATE_CANCELLED" => Some(Self::Cancelled),
-            "JOB_STATE_FAILED" => Some(Self::Failed),
-            _ => None,
-        }
-    }
+/// A parameter of an optimizer.
+#[derive(Clone, PartialEq, Eq, Hash, ::prost::Message)]
+pub struct Parameter {
+    /// Its name.
+    #[prost(string, tag = "1")]
+    pub name: ::prost::alloc::string::String,
+    /// Its value.
+    #[prost(string, tag = "2")]
+    pub value: ::prost::alloc::string::String,
+}
+/// Figures measured on one point set.
+#[derive(Clone, PartialEq, ::prost::Message)]
+pub struct Figures {
+    /// The set of points that was measured.
+    #[prost(string, tag = "1")]
+    pub subject: ::prost::alloc::string::String,
+    /// Whether the table was optimized on it.
+    #[prost(bool, tag = "2")]
+    pub seen: bool,
+    /// The number of its points.
+    #[prost(uint64, tag = "3")]
+    pub points: u64,
+    /// The figures.
+    #[prost(message, repeated, tag = "4")]
+    pub values: ::prost::alloc::vec::Vec<Figure>,
+}
+/// A measured figure.
+#[derive(Clone, PartialEq, ::prost::Message)]
+pub struct Figure {
+    /// Its name.
+    #[prost(string, tag = "1")]
+    pub name: ::prost::alloc::string::String,
+    /// Its value.
+    #[prost(double, tag = "2")]
+    pub value: f64,
 }
 /// A place in the plane or in space.
 #[derive(Clone, Copy, PartialEq, ::prost::Message)]
@@ -926,357 +906,6 @@ pub struct Block {
     /// The interval of dY, from 0.
     #[prost(uint32, tag = "2")]
     pub row: u32,
-}
-/// An arrangement, and where its occurrences are wanted.
-#[derive(Clone, PartialEq, ::prost::Message)]
-pub struct ArrangementRequest {
-    /// The number α and the seed; with an amount also the set whose displaced places are listed. Of the set only
-    /// alpha, seed, profile, map, warp, density, spacing and min_distance are taken; α may be any number between 1
-    /// and 2, unless places are listed. Seed 0 of the default α by default.
-    #[prost(message, optional, tag = "1")]
-    pub set: ::core::option::Option<PointSet>,
-    /// The offsets of the other points from the first: 1 to 65536. Required.
-    #[prost(message, repeated, tag = "2")]
-    pub offsets: ::prost::alloc::vec::Vec<GridOffset>,
-    /// The box of the grid in which occurrences are counted; none by default. Required for a list.
-    #[prost(message, optional, tag = "3")]
-    pub grid: ::core::option::Option<GridBox>,
-    /// The greatest number of occurrences of a list, from 1; all by default.
-    #[prost(uint64, optional, tag = "4")]
-    pub limit: ::core::option::Option<u64>,
-    /// Where an earlier list ended: the next_cursor of its header. Empty by default: from the beginning.
-    #[prost(string, tag = "5")]
-    pub cursor: ::prost::alloc::string::String,
-}
-/// A place of the grid, or a difference of two.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, ::prost::Message)]
-pub struct GridOffset {
-    /// Columns.
-    #[prost(sint64, tag = "1")]
-    pub x: i64,
-    /// Rows.
-    #[prost(sint64, tag = "2")]
-    pub y: i64,
-}
-/// A box of the grid: columns and rows from min up to, but not including, max.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, ::prost::Message)]
-pub struct GridBox {
-    /// The first column.
-    #[prost(sint64, tag = "1")]
-    pub min_x: i64,
-    /// The first row.
-    #[prost(sint64, tag = "2")]
-    pub min_y: i64,
-    /// The column after the last.
-    #[prost(sint64, tag = "3")]
-    pub max_x: i64,
-    /// The row after the last.
-    #[prost(sint64, tag = "4")]
-    pub max_y: i64,
-}
-/// An arrangement and its figures. Lengths are in turns of the index torus.
-#[derive(Clone, PartialEq, ::prost::Message)]
-pub struct Arrangement {
-    /// The number α.
-    #[prost(string, tag = "1")]
-    pub alpha: ::prost::alloc::string::String,
-    /// Whether it occurs anywhere: iff its image fits the set region.
-    #[prost(bool, tag = "2")]
-    pub exists: bool,
-    /// The side t of the set region.
-    #[prost(double, tag = "3")]
-    pub side: f64,
-    /// The extent of its image along dX.
-    #[prost(message, optional, tag = "4")]
-    pub image_x: ::core::option::Option<IndexRange>,
-    /// The extent of its image along dY.
-    #[prost(message, optional, tag = "5")]
-    pub image_y: ::core::option::Option<IndexRange>,
-    /// The range of dX that is left to the index of the first point, if it exists.
-    #[prost(message, optional, tag = "6")]
-    pub margin_x: ::core::option::Option<IndexRange>,
-    /// The range of dY that is left, if it exists.
-    #[prost(message, optional, tag = "7")]
-    pub margin_y: ::core::option::Option<IndexRange>,
-    /// The area of the margin, exactly, times 2^128, in decimal digits.
-    #[prost(string, tag = "8")]
-    pub area: ::prost::alloc::string::String,
-    /// Occurrences for each grid point: the area of the margin.
-    #[prost(double, tag = "9")]
-    pub density: f64,
-    /// The share of the pattern's points at which it occurs.
-    #[prost(double, tag = "10")]
-    pub frequency: f64,
-    /// The number of occurrences in the box, exactly, in decimal digits; empty without a box.
-    #[prost(string, tag = "11")]
-    pub count: ::prost::alloc::string::String,
-}
-/// A range of the index torus, in turns.
-#[derive(Clone, Copy, PartialEq, ::prost::Message)]
-pub struct IndexRange {
-    /// Its start.
-    #[prost(double, tag = "1")]
-    pub start: f64,
-    /// Its end.
-    #[prost(double, tag = "2")]
-    pub end: f64,
-}
-/// One message of a list of occurrences.
-#[derive(Clone, PartialEq, ::prost::Message)]
-pub struct ListOccurrencesResponse {
-    /// Exactly one is set. A list without its summary is not complete.
-    #[prost(oneof = "list_occurrences_response::Message", tags = "1, 2, 3")]
-    pub message: ::core::option::Option<list_occurrences_response::Message>,
-}
-/// Nested message and enum types in `ListOccurrencesResponse`.
-pub mod list_occurrences_response {
-    /// Exactly one is set. A list without its summary is not complete.
-    #[derive(Clone, PartialEq, ::prost::Oneof)]
-    pub enum Message {
-        /// The first message.
-        #[prost(message, tag = "1")]
-        Header(super::OccurrencesHeader),
-        /// Some occurrences; any number of these.
-        #[prost(message, tag = "2")]
-        Block(super::OccurrenceBlock),
-        /// The last message.
-        #[prost(message, tag = "3")]
-        Summary(super::OccurrencesSummary),
-    }
-}
-/// The first message of a list: its content.
-#[derive(Clone, PartialEq, ::prost::Message)]
-pub struct OccurrencesHeader {
-    /// The arrangement.
-    #[prost(message, optional, tag = "1")]
-    pub arrangement: ::core::option::Option<Arrangement>,
-    /// The exact number of occurrences that follow.
-    #[prost(uint64, tag = "2")]
-    pub listed: u64,
-    /// The cursor of those after them; empty if there are none.
-    #[prost(string, tag = "3")]
-    pub next_cursor: ::prost::alloc::string::String,
-}
-/// Some occurrences.
-#[derive(Clone, PartialEq, ::prost::Message)]
-pub struct OccurrenceBlock {
-    /// In the order of points.
-    #[prost(message, repeated, tag = "1")]
-    pub occurrences: ::prost::alloc::vec::Vec<Occurrence>,
-}
-/// An occurrence of an arrangement.
-#[derive(Clone, PartialEq, ::prost::Message)]
-pub struct Occurrence {
-    /// The column and row of its first point, which are the point's id.
-    #[prost(message, optional, tag = "1")]
-    pub at: ::core::option::Option<GridOffset>,
-    /// With an amount: the places of its points, the first one and those at the offsets, x and y by turns.
-    #[prost(double, repeated, tag = "2")]
-    pub places: ::prost::alloc::vec::Vec<f64>,
-}
-/// The end of a list.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, ::prost::Message)]
-pub struct OccurrencesSummary {
-    /// The number of occurrences that were listed.
-    #[prost(uint64, tag = "1")]
-    pub listed: u64,
-}
-/// A search for clusters.
-#[derive(Clone, PartialEq, ::prost::Message)]
-pub struct ClustersRequest {
-    /// The number α between 1 and 2; (5-sqrt(3))/2 by default.
-    #[prost(string, tag = "1")]
-    pub alpha: ::prost::alloc::string::String,
-    /// The largest distance of neighbors, 1 to 16 grid units; 2.24 by default.
-    #[prost(double, optional, tag = "2")]
-    pub distance: ::core::option::Option<f64>,
-    /// The number of points up to which clusters are searched, 1 to 64; 64 by default.
-    #[prost(uint64, optional, tag = "3")]
-    pub most: ::core::option::Option<u64>,
-    /// Whether shapes that are symmetric to each other are one.
-    #[prost(bool, tag = "4")]
-    pub up_to_symmetry: bool,
-}
-/// The clusters of a pattern.
-#[derive(Clone, PartialEq, ::prost::Message)]
-pub struct ClustersResponse {
-    /// The half-width of the map that tells the shapes apart, in grid units.
-    #[prost(uint32, tag = "1")]
-    pub radius: u32,
-    /// The intervals per axis of this map.
-    #[prost(uint32, tag = "2")]
-    pub intervals: u32,
-    /// The number of shapes up to the symmetries of the square.
-    #[prost(uint32, tag = "3")]
-    pub classes: u32,
-    /// The shapes, by the number of points and then by density, densest first.
-    #[prost(message, repeated, tag = "4")]
-    pub shapes: ::prost::alloc::vec::Vec<ClusterShape>,
-    /// The share of the pattern's points in larger clusters.
-    #[prost(double, tag = "5")]
-    pub larger_share: f64,
-}
-/// A shape of clusters.
-#[derive(Clone, PartialEq, ::prost::Message)]
-pub struct ClusterShape {
-    /// The column and row of each point from the first, row by row.
-    #[prost(message, repeated, tag = "1")]
-    pub points: ::prost::alloc::vec::Vec<GridOffset>,
-    /// The number of the shape's class under the symmetries of the square, from 0.
-    #[prost(uint32, tag = "2")]
-    pub class: u32,
-    /// Clusters of this shape for each grid point.
-    #[prost(double, tag = "3")]
-    pub density: f64,
-    /// The share of the pattern's points in clusters of this shape.
-    #[prost(double, tag = "4")]
-    pub share_of_points: f64,
-    /// The number of its images under these symmetries that differ, if they count as one shape.
-    #[prost(uint32, optional, tag = "5")]
-    pub images: ::core::option::Option<u32>,
-}
-/// A neighborhood map.
-#[derive(Clone, PartialEq, Eq, Hash, ::prost::Message)]
-pub struct MapRequest {
-    /// The number α between 1 and 2; (5-sqrt(3))/2 by default.
-    #[prost(string, tag = "1")]
-    pub alpha: ::prost::alloc::string::String,
-    /// The half-width R, 0 to 1024 grid units; 20 by default.
-    #[prost(uint64, optional, tag = "2")]
-    pub radius: ::core::option::Option<u64>,
-    /// The half-width of a finer map; none by default.
-    #[prost(uint64, optional, tag = "3")]
-    pub refined: ::core::option::Option<u64>,
-    /// The block whose neighbors are wanted; none by default.
-    #[prost(message, optional, tag = "4")]
-    pub block: ::core::option::Option<Block>,
-}
-/// A map: points whose index is in one of its n × n blocks have the same neighbors up to R.
-#[derive(Clone, PartialEq, ::prost::Message)]
-pub struct MapResponse {
-    /// The side t of the set region, in turns of the index torus.
-    #[prost(double, tag = "1")]
-    pub side: f64,
-    /// Where the n intervals begin; the last one ends at the side.
-    #[prost(double, repeated, tag = "2")]
-    pub starts: ::prost::alloc::vec::Vec<f64>,
-    /// The number of intervals of the maps of half-width 0, 1, … R.
-    #[prost(uint32, repeated, tag = "3")]
-    pub interval_counts: ::prost::alloc::vec::Vec<u32>,
-    /// Where the intervals of the finer map begin.
-    #[prost(double, repeated, tag = "4")]
-    pub refined_starts: ::prost::alloc::vec::Vec<f64>,
-    /// For each interval of the finer map the one that holds it.
-    #[prost(uint32, repeated, tag = "5")]
-    pub parents: ::prost::alloc::vec::Vec<u32>,
-    /// The neighbors of the block, itself included.
-    #[prost(message, repeated, tag = "6")]
-    pub neighbors: ::prost::alloc::vec::Vec<GridOffset>,
-}
-/// Asks for everything that is loaded.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, ::prost::Message)]
-pub struct ListProfilesRequest {}
-/// The loaded tables.
-#[derive(Clone, PartialEq, ::prost::Message)]
-pub struct ListProfilesResponse {
-    /// The tables of the plane, sorted by profile, then alpha.
-    #[prost(message, repeated, tag = "1")]
-    pub profiles: ::prost::alloc::vec::Vec<Profile>,
-    /// The version of the algorithm that answers.
-    #[prost(uint32, tag = "2")]
-    pub algorithm: u32,
-    /// The tables of points in space, sorted alike.
-    #[prost(message, repeated, tag = "3")]
-    pub in_space: ::prost::alloc::vec::Vec<Profile>,
-}
-/// A displacement table.
-#[derive(Clone, PartialEq, ::prost::Message)]
-pub struct Profile {
-    /// The name of the noise profile.
-    #[prost(string, tag = "1")]
-    pub profile: ::prost::alloc::string::String,
-    /// The number alpha of its pattern, in its canonical form.
-    #[prost(string, tag = "2")]
-    pub alpha: ::prost::alloc::string::String,
-    /// The half-width R of its neighborhood map, in grid units.
-    #[prost(uint32, tag = "3")]
-    pub radius: u32,
-    /// The intervals per axis, n.
-    #[prost(uint32, tag = "4")]
-    pub intervals: u32,
-    /// The blocks, n squared, of a table in space n cubed: how many vectors the table has.
-    #[prost(uint32, tag = "5")]
-    pub blocks: u32,
-    /// The size of the table file.
-    #[prost(uint64, tag = "6")]
-    pub bytes: u64,
-    /// The table's digest, in hexadecimal.
-    #[prost(string, tag = "7")]
-    pub digest: ::prost::alloc::string::String,
-    /// How it was made.
-    #[prost(message, optional, tag = "8")]
-    pub provenance: ::core::option::Option<Provenance>,
-    /// The size of its map: `s`, `m`, `l`, or `r` and the half-width.
-    #[prost(string, tag = "9")]
-    pub map: ::prost::alloc::string::String,
-    /// The shares for which there is a table with joint kinds (`spread` `joint`).
-    #[prost(string, repeated, tag = "10")]
-    pub joint_kinds: ::prost::alloc::vec::Vec<::prost::alloc::string::String>,
-}
-/// How a table was made and what was measured on it.
-#[derive(Clone, PartialEq, ::prost::Message)]
-pub struct Provenance {
-    /// The name of the optimizer.
-    #[prost(string, tag = "1")]
-    pub optimizer: ::prost::alloc::string::String,
-    /// Its parameters.
-    #[prost(message, repeated, tag = "2")]
-    pub parameters: ::prost::alloc::vec::Vec<Parameter>,
-    /// The seed of its random start.
-    #[prost(uint64, tag = "3")]
-    pub seed: u64,
-    /// The periodic twins it was optimized on, as fractions p/q.
-    #[prost(string, repeated, tag = "4")]
-    pub twins: ::prost::alloc::vec::Vec<::prost::alloc::string::String>,
-    /// The measured figures, a set of points each.
-    #[prost(message, repeated, tag = "5")]
-    pub figures: ::prost::alloc::vec::Vec<Figures>,
-}
-/// A parameter of an optimizer.
-#[derive(Clone, PartialEq, Eq, Hash, ::prost::Message)]
-pub struct Parameter {
-    /// Its name.
-    #[prost(string, tag = "1")]
-    pub name: ::prost::alloc::string::String,
-    /// Its value.
-    #[prost(string, tag = "2")]
-    pub value: ::prost::alloc::string::String,
-}
-/// Figures measured on one point set.
-#[derive(Clone, PartialEq, ::prost::Message)]
-pub struct Figures {
-    /// The set of points that was measured.
-    #[prost(string, tag = "1")]
-    pub subject: ::prost::alloc::string::String,
-    /// Whether the table was optimized on it.
-    #[prost(bool, tag = "2")]
-    pub seen: bool,
-    /// The number of its points.
-    #[prost(uint64, tag = "3")]
-    pub points: u64,
-    /// The figures.
-    #[prost(message, repeated, tag = "4")]
-    pub values: ::prost::alloc::vec::Vec<Figure>,
-}
-/// A measured figure.
-#[derive(Clone, PartialEq, ::prost::Message)]
-pub struct Figure {
-    /// Its name.
-    #[prost(string, tag = "1")]
-    pub name: ::prost::alloc::string::String,
-    /// Its value.
-    #[prost(double, tag = "2")]
-    pub value: f64,
 }
 /// Which points to stream: a set of points, or several in layers, in a region.
 #[derive(Clone, PartialEq, ::prost::Message)]
@@ -2078,131 +1707,6 @@ pub mod point_service_client {
             let mut req = request.into_request();
             req.extensions_mut()
                 .insert(GrpcMethod::new("strew.v1.PointService", "ListWorlds"));
-            self.inner.unary(req, path, codec).await
-        }
-        /// Has a table made that is not loaded, and streams how the job stands until it is over. There is one job for a
-        /// table, for all clients; the first message comes at once. Cancelling the call leaves the job, which others may wait
-        /// for: the same call follows it again, and DELETE /v1/jobs/{id} cancels it.
-        ///
-        /// PERMISSION_DENIED: the server makes no tables, or only for administrators.
-        /// RESOURCE_EXHAUSTED: too many jobs wait, or the client has as many as it may have.
-        pub async fn forge_table(
-            &mut self,
-            request: impl tonic::IntoRequest<super::ForgeTableRequest>,
-        ) -> std::result::Result<
-            tonic::Response<tonic::codec::Streaming<super::ForgeTableResponse>>,
-            tonic::Status,
-        > {
-            self.inner
-                .ready()
-                .await
-                .map_err(|e| {
-                    tonic::Status::unknown(
-                        format!("Service was not ready: {}", e.into()),
-                    )
-                })?;
-            let codec = tonic_prost::ProstCodec::default();
-            let path = http::uri::PathAndQuery::from_static(
-                "/strew.v1.PointService/ForgeTable",
-            );
-            let mut req = request.into_request();
-            req.extensions_mut()
-                .insert(GrpcMethod::new("strew.v1.PointService", "ForgeTable"));
-            self.inner.server_streaming(req, path, codec).await
-        }
-        /// Says whether an arrangement of pattern points exists, how often it occurs, and with a box how many
-        /// occurrences are in it, in closed form.
-        pub async fn get_arrangement(
-            &mut self,
-            request: impl tonic::IntoRequest<super::ArrangementRequest>,
-        ) -> std::result::Result<tonic::Response<super::Arrangement>, tonic::Status> {
-            self.inner
-                .ready()
-                .await
-                .map_err(|e| {
-                    tonic::Status::unknown(
-                        format!("Service was not ready: {}", e.into()),
-                    )
-                })?;
-            let codec = tonic_prost::ProstCodec::default();
-            let path = http::uri::PathAndQuery::from_static(
-                "/strew.v1.PointService/GetArrangement",
-            );
-            let mut req = request.into_request();
-            req.extensions_mut()
-                .insert(GrpcMethod::new("strew.v1.PointService", "GetArrangement"));
-            self.inner.unary(req, path, codec).await
-        }
-        /// Streams the occurrences of an arrangement in a box: one header, blocks, one summary.
-        pub async fn list_occurrences(
-            &mut self,
-            request: impl tonic::IntoRequest<super::ArrangementRequest>,
-        ) -> std::result::Result<
-            tonic::Response<tonic::codec::Streaming<super::ListOccurrencesResponse>>,
-            tonic::Status,
-        > {
-            self.inner
-                .ready()
-                .await
-                .map_err(|e| {
-                    tonic::Status::unknown(
-                        format!("Service was not ready: {}", e.into()),
-                    )
-                })?;
-            let codec = tonic_prost::ProstCodec::default();
-            let path = http::uri::PathAndQuery::from_static(
-                "/strew.v1.PointService/ListOccurrences",
-            );
-            let mut req = request.into_request();
-            req.extensions_mut()
-                .insert(GrpcMethod::new("strew.v1.PointService", "ListOccurrences"));
-            self.inner.server_streaming(req, path, codec).await
-        }
-        /// Searches for the shapes of clusters. The search ends with the call.
-        pub async fn get_clusters(
-            &mut self,
-            request: impl tonic::IntoRequest<super::ClustersRequest>,
-        ) -> std::result::Result<
-            tonic::Response<super::ClustersResponse>,
-            tonic::Status,
-        > {
-            self.inner
-                .ready()
-                .await
-                .map_err(|e| {
-                    tonic::Status::unknown(
-                        format!("Service was not ready: {}", e.into()),
-                    )
-                })?;
-            let codec = tonic_prost::ProstCodec::default();
-            let path = http::uri::PathAndQuery::from_static(
-                "/strew.v1.PointService/GetClusters",
-            );
-            let mut req = request.into_request();
-            req.extensions_mut()
-                .insert(GrpcMethod::new("strew.v1.PointService", "GetClusters"));
-            self.inner.unary(req, path, codec).await
-        }
-        /// Makes a neighborhood map.
-        pub async fn get_map(
-            &mut self,
-            request: impl tonic::IntoRequest<super::MapRequest>,
-        ) -> std::result::Result<tonic::Response<super::MapResponse>, tonic::Status> {
-            self.inner
-                .ready()
-                .await
-                .map_err(|e| {
-                    tonic::Status::unknown(
-                        format!("Service was not ready: {}", e.into()),
-                    )
-                })?;
-            let codec = tonic_prost::ProstCodec::default();
-            let path = http::uri::PathAndQuery::from_static(
-                "/strew.v1.PointService/GetMap",
-            );
-            let mut req = request.into_request();
-            req.extensions_mut()
-                .insert(GrpcMethod::new("strew.v1.PointService", "GetMap"));
             self.inner.unary(req, path, codec).await
         }
     }

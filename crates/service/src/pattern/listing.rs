@@ -1,4 +1,4 @@
-//! The occurrences of an arrangement, one after another: as numbers, and as text.
+//! The occurrences of an arrangement, one after another, as text.
 //!
 //! They are counted before the first is made, and a list that ends at its limit knows the place of the next one
 //! without making those before it.
@@ -29,12 +29,11 @@ pub struct Listing {
 }
 
 /// An occurrence of an arrangement.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Occurrence {
+struct Occurrence {
     /// The column and the row of its first point.
-    pub at: (i64, i64),
+    at: (i64, i64),
     /// The displaced places of its points, the first one first; none if they are not wanted.
-    pub places: Vec<[f64; 2]>,
+    places: Vec<[f64; 2]>,
 }
 
 impl Listing {
@@ -82,8 +81,7 @@ impl Listing {
     }
 
     /// The occurrences, some at a time.
-    #[must_use]
-    pub fn occurrences(self) -> Occurrences {
+    fn occurrences(self) -> Occurrences {
         /// The points of a batch.
         const POINTS: usize = 4096;
         let batch = (POINTS / self.each()).max(1);
@@ -135,7 +133,7 @@ impl Listing {
 }
 
 /// The occurrences of a list in batches, made when they are taken.
-pub struct Occurrences {
+struct Occurrences {
     rest: Box<dyn Iterator<Item = (i64, i64)> + Send>,
     offsets: Vec<(i64, i64)>,
     placed: Option<Arc<Placed>>,

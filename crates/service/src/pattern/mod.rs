@@ -16,7 +16,7 @@ pub use arrangement::{ArrangementQuery, Facts};
 pub use clusters::{ClustersDocument, ClustersQuery};
 pub use figure::{Figure, FigureQuery, Format};
 pub use list::List;
-pub use listing::{Listing, Occurrence, Occurrences, Text};
+pub use listing::{Listing, Text};
 pub use map::{MapDocument, MapQuery};
 
 use strew_error::{Checked, Error, Fault};
