@@ -8,10 +8,10 @@ use strew_query::{Resolved, Token, groups, parts};
 
 use super::{
     Failure, config,
-    failure::Source,
     flags::{Counted, Parted},
     output,
     query::QueryArgs,
+    refusal::Source,
 };
 
 /// Flags of `strew count`.

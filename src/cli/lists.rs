@@ -14,9 +14,9 @@ use strew_query::{
 use super::{
     Failure,
     config::{self, Load as _},
-    failure::Source,
     flags::{Flags, Listed},
     output,
+    refusal::Source,
 };
 
 /// The titles of the columns.

@@ -12,10 +12,10 @@ use strew_query::chosen;
 
 use super::{
     Failure, config,
-    failure::Source,
     flags::{Flags, Tabled},
     output::{self, Output, must_not_be_terminal},
     pattern::encoded,
+    refusal::Source,
     refuse,
 };
 use crate::cli::config::Load as _;

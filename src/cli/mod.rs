@@ -21,6 +21,7 @@ mod point;
 mod probe;
 mod progress;
 mod query;
+mod refusal;
 mod sample;
 mod serve;
 mod signals;

@@ -16,9 +16,9 @@ use strew_service::pattern::{ArrangementQuery, Listing};
 use super::{
     Failure,
     config::{self, Load as _},
-    failure::Source,
     flags::{Arranged, Flags},
     output::{self, Output},
+    refusal::Source,
     refuse,
 };
 

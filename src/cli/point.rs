@@ -7,10 +7,10 @@ use strew_query::{Nearest, ResolvedSet, Set, Values};
 
 use super::{
     Failure, config,
-    failure::Source,
     fields::FieldArgs,
     flags::{Flags, Near, Single, Takes},
     output,
+    refusal::Source,
 };
 use crate::cli::config::Load as _;
 

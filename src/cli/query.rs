@@ -17,10 +17,10 @@ use strew_query::{
 
 use super::{
     Failure, config,
-    failure::Source,
     fields::FieldArgs,
     fields::StrataArgs,
     flags::{Flags, Takes, WHERE, flag},
+    refusal::Source,
     refuse,
 };
 use crate::cli::config::Load as _;

@@ -18,10 +18,10 @@ use strew_raster::{Image, Limits};
 
 use super::{
     Failure, config,
-    failure::Source,
     flags::{Flags, Stippled},
     must_be_within,
     output::Output as Target,
+    refusal::Source,
     refuse,
     sample::{encoding_of, write},
 };

@@ -13,7 +13,7 @@ use super::{
     grid::{Grid, Place},
     spec::{Checked, Spec, chunk},
 };
-use crate::cli::{Failure, compression::Compression, failure::Source, refuse};
+use crate::cli::{Failure, compression::Compression, refusal::Source, refuse};
 
 /// Makes chunks.
 #[derive(Debug)]

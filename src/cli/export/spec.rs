@@ -15,7 +15,7 @@ use strew_query::{
 };
 
 use super::grid::{Grid, Level};
-use crate::cli::{Failure, compression::Compression, failure::Source, flags::Flags, refuse};
+use crate::cli::{Failure, compression::Compression, flags::Flags, refusal::Source, refuse};
 
 /// The characters that need no escaping in addresses or in the settings of servers.
 const PLAIN: &AsciiSet = &NON_ALPHANUMERIC

@@ -1,24 +1,26 @@
-//! `strew forge`: makes a table, judges it, writes it; kinds for a table. This file has what all work of the forge
-//! shares: threads, the written file, checkpoints, and the watcher of progress and interrupts.
+//! `strew forge`: makes a table of the plane or of points in space, judges it, writes it; `strew forge mix`: makes kinds
+//! for a table.
 
-mod mix;
-mod table;
+mod work;
 
 use std::{
-    fs, io,
     path::{Path, PathBuf},
-    sync::{
-        Arc, Mutex, PoisonError,
-        atomic::{AtomicBool, Ordering},
-    },
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use anyhow::{Context as _, anyhow};
-use strew_core::{Table, table::Figures};
-use strew_forge::{Checkpoint, Complaint, ForgeError, Stage, Watch, gravest, write_table};
+use strew_catalog::{Catalog, Dimension, Key};
+use strew_config::bounded_file;
+use strew_core::{Alpha, Table, map::Size, table::Shares};
+use strew_forge::{
+    Checkpoint, DEFAULT_SEED, Estimate, ForgeError, Job, MixJob, Prospect, Target, file_name,
+    forge, mix, mix_file_name, read_table, resume,
+    space::{self, SpaceEstimate, SpaceJob, SpaceProfile, table_file_name},
+};
+use strew_query::{DEFAULT_ALPHA, DEFAULT_PROFILE};
 
-use super::{Failure, config, output, progress::Progress, refuse, signals};
+use self::work::{Checkpoints, Made, Watcher, Work};
+use super::{Failure, refuse};
 
 /// Flags of `strew forge`. Equal jobs make equal tables, bit by bit, on every machine.
 ///
@@ -31,7 +33,7 @@ pub(super) struct Args {
     #[command(subcommand)]
     task: Option<Task>,
     #[command(flatten)]
-    table: table::TableArgs,
+    table: TableArgs,
     /// Steps of the optimizer [default: the profile's].
     #[arg(long)]
     steps: Option<u32>,
@@ -45,307 +47,317 @@ pub(super) struct Args {
 #[derive(Debug, clap::Subcommand)]
 enum Task {
     /// Make kinds for a table: each of its points is of one kind, and each kind is evenly spread.
-    Mix(mix::Args),
+    Mix(MixArgs),
 }
 
 /// Makes the table or kinds.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let Args { work, steps, .. } = args;
     match &args.task {
-        Some(Task::Mix(args)) => mix::run(args),
-        None => table::run(&args.table, *steps, work, &args.checkpoints),
+        Some(Task::Mix(args)) => make_mix(args),
+        None => table(&args.table, *steps, work, &args.checkpoints),
     }
 }
 
-/// Flags of the threads and of the file.
+/// The most bytes of a file with a curve.
+const MAX_TARGET_BYTES: u64 = 1 << 20;
+
+/// The half-width R of the map of a table of the plane.
+const DEFAULT_RADIUS: u32 = 49;
+
+/// Flags of a new table.
 #[derive(Debug, clap::Args)]
 #[group(skip)]
-struct Work {
-    /// Threads to use; 0 for one per core. The table is the same with any number.
-    #[arg(long, default_value_t = 0)]
-    threads: usize,
-    /// The file to write.
-    #[arg(long, short, value_name = "FILE", conflicts_with = "out_dir")]
-    output: Option<PathBuf>,
-    /// A folder to write to, under the table's usual name [default: the current one].
-    #[arg(long, value_name = "DIR")]
-    out_dir: Option<PathBuf>,
-    /// Replace an existing file.
+struct TableArgs {
+    /// The noise profile.
+    #[arg(long, default_value = DEFAULT_PROFILE)]
+    profile: String,
+    /// The number alpha.
+    #[arg(long, default_value = DEFAULT_ALPHA)]
+    alpha: Alpha,
+    /// Make a table of points in space: three dimensions. Its profiles are blue and spaced.
+    #[arg(long, conflicts_with = "target")]
+    space: bool,
+    /// The half-width R of the map in grid units [default: 49; in space 16]. In the plane 49 is S, 100 M,
+    /// 200 L; in space 16 has 21 intervals and 20 has 27 at the default alpha, and 22 is the largest.
+    #[arg(long, value_name = "R")]
+    radius: Option<u32>,
+    /// The seed of the random start [default: 17; in space 1].
     #[arg(long)]
-    force: bool,
-    /// Write the table even if it misses a bound. If a new table is interrupted, write the best one so far, which is
-    /// not judged.
-    #[arg(long)]
-    keep_rejected: bool,
-    /// Print nothing but errors on standard error.
-    #[arg(long, short)]
-    quiet: bool,
+    seed: Option<u64>,
+    /// A radial power curve to follow. Either lines of two columns, frequency and power, joined by
+    /// straight pieces; or TOML: `[[piece]]` with `from` and `to`, each piece beginning at the end of the
+    /// one before, and `power = P` (level), `power = [P0, P1]` (straight) or
+    /// `law = { power = P, at = N, exponent = E }`, which is P (nu/N)^E. Beyond the end the power is 1.
+    /// --profile then names the new profile.
+    #[arg(long, value_name = "FILE", requires = "profile")]
+    target: Option<PathBuf>,
 }
 
-impl Work {
-    /// The file to write, in the folder under its usual name. Fails if it exists or cannot be written.
-    fn path(&self, usual: &str) -> Result<PathBuf, Failure> {
-        let in_folder = || self.out_dir.clone().unwrap_or_default().join(usual);
-        let path = self.output.clone().unwrap_or_else(in_folder);
-        output::must_be_new(&path, self.force)?;
-        output::check(&path)?;
-        Ok(path)
+impl TableArgs {
+    fn job(&self, steps: Option<u32>) -> Result<Job, Failure> {
+        Ok(Job {
+            alpha: self.alpha,
+            radius: self.radius.unwrap_or(DEFAULT_RADIUS),
+            profile: self.profile.clone(),
+            seed: self.seed.unwrap_or(DEFAULT_SEED),
+            target: self.target()?,
+            steps,
+        })
     }
 
-    /// The threads to work on.
-    fn pool(&self) -> anyhow::Result<rayon::ThreadPool> {
-        config::pool(self.threads)
-    }
-
-    /// The number of threads.
-    fn threads(&self) -> usize {
-        match self.threads {
-            0 => std::thread::available_parallelism().map_or(1, usize::from),
-            threads => threads,
-        }
-    }
-
-    /// Writes a table and reports it; `what` names the part that was made. Fails if that was rejected and is not to be
-    /// kept, with `why` and the missed bounds.
-    fn conclude(
-        &self,
-        path: &Path,
-        what: &str,
-        table: &impl Made,
-        is_accepted: bool,
-        why: Option<String>,
-        complaints: &[Complaint],
-    ) -> Result<(), Failure> {
-        let complaints = gravest(complaints);
-        if !is_accepted && !self.keep_rejected {
-            let why: Vec<String> = why.into_iter().chain(complaints).collect();
-            return Err(Failure::Other(anyhow!(
-                "the {what} is rejected and not written (the same command with --keep-rejected writes it): {}",
-                why.join("; ")
-            )));
-        }
-        write(path, table)?;
-        if let Some(why) = why.filter(|_| !self.quiet) {
-            eprintln!("{why}");
-        }
-        for complaint in complaints {
-            eprintln!("kept although rejected: {complaint}");
-        }
-        Ok(())
-    }
-
-    /// The message of interrupted work, which says where it resumes. Writes the best table so far if it is to be kept.
-    fn interrupted(
-        &self,
-        path: &Path,
-        table: &impl Made,
-        watcher: &Watcher,
-    ) -> Result<String, Failure> {
-        let mut text = String::from("interrupted");
-        if self.keep_rejected {
-            write(path, table)?;
-            text += &format!("; {} holds the best so far, not judged", path.display());
-        }
-        if watcher.has_kept() {
-            let force = match self.keep_rejected {
-                true => " with --force",
-                false => "",
-            };
-            let kept = Checkpoints::path(path);
-            text += &format!("; the same command{force} resumes from {}", kept.display());
-        }
-        Ok(text)
-    }
-
-    /// Shows the measurements of each point set.
-    fn show(&self, figures: &[Figures]) {
-        for figures in figures.iter().filter(|_| !self.quiet) {
-            let values = figures.values.iter();
-            let values = values.map(|(name, value)| format!("{name} {value:.3e}"));
-            let values = values.collect::<Vec<_>>().join(", ");
-            eprintln!("{}: {values}", figures.subject);
-        }
+    fn target(&self) -> Result<Option<Target>, Failure> {
+        let Some(file) = &self.target else {
+            return Ok(None);
+        };
+        let text = bounded_file::read_text(file, MAX_TARGET_BYTES);
+        let text = text.with_context(|| format!("cannot read {}", file.display()))?;
+        let target = text
+            .parse()
+            .with_context(|| format!("{} is not a power curve", file.display()));
+        target.map(Some).map_err(Failure::Usage)
     }
 }
 
-/// A table that was made.
-trait Made {
-    /// Writes its file. Returns its digest.
-    fn write(&self, path: &Path) -> Result<String, ForgeError>;
+/// Makes a table of the plane, or of points in space.
+fn table(
+    args: &TableArgs,
+    steps: Option<u32>,
+    work: &Work,
+    checkpoints: &Checkpoints,
+) -> Result<(), Failure> {
+    if args.space {
+        let job = job_in_space(&args.profile, args.alpha, args.radius, args.seed, steps)?;
+        return run_in_space(&job, work, checkpoints);
+    }
+    let job = args.job(steps)?;
+    let path = work.path(&file_name(&job.profile, job.alpha, job.radius))?;
+    let pool = work.pool()?;
+    let estimate = pool.install(|| job.estimate()).map_err(Failure::usage)?;
+    let kept = Checkpoints::path(&path);
+    let is_of = |found: &Checkpoint| found.is_of(&job);
+    let found = pool.install(|| checkpoints.found(&kept, work.quiet, is_of))?;
+    if !work.quiet {
+        announce(&path, &job.prospect(), &estimate);
+        if let Some(found) = &found {
+            let (steps, from) = (found.steps(), kept.display());
+            eprintln!(
+                "resuming at step {steps} of {}, from {from}",
+                estimate.steps
+            );
+        }
+    }
+    let watcher = checkpoints.watcher(&kept, work);
+    let outcome = pool.install(|| match found {
+        None => forge(&job, &watcher),
+        Some(found) => resume(&job, found, &watcher),
+    });
+    let outcome = outcome.map_err(Failure::usage)?;
+    watcher.finish();
+    if outcome.interrupted {
+        let text = work.interrupted(&path, &outcome.table, &watcher)?;
+        return Err(Failure::Interrupted(anyhow!(text)));
+    }
+    let nearness = outcome.nearness.as_ref().map(|near| {
+        let met = if outcome.accepted { "met" } else { "missed" };
+        format!("the target is {met}: {near}")
+    });
+    let (table, complaints) = (&outcome.table, &outcome.complaints);
+    work.conclude(
+        &path,
+        "table",
+        table,
+        outcome.accepted,
+        nearness,
+        complaints,
+    )?;
+    Checkpoints::remove(&kept)
 }
 
-impl Made for Table {
+/// Announces the work, and whether it can succeed.
+fn announce(path: &Path, prospect: &Prospect, estimate: &Estimate) {
+    eprintln!(
+        "forging {}: {} blocks, {} steps over {} pairs, judged on {} points; about {:.0} s",
+        path.display(),
+        prospect.blocks(),
+        estimate.steps,
+        estimate.pairs,
+        estimate.measured_points,
+        estimate.time.as_secs_f64().max(1.0)
+    );
+    if let Some(doubt) = prospect.doubt() {
+        eprintln!("warning: the table will probably be rejected: {doubt}");
+    }
+    if let Some(least) = estimate.correlation.filter(|least| least.is_impossible()) {
+        eprintln!(
+            "warning: no point set has exactly this power curve: its pair correlation would be \
+             {:.2} at distance {:.2} (in mean spacings); the forge looks for the nearest one",
+            least.g, least.r
+        );
+    }
+}
+
+/// The job of a table of points in space. What the flags leave open is as in the shipped tables.
+fn job_in_space(
+    profile: &str,
+    alpha: Alpha,
+    radius: Option<u32>,
+    seed: Option<u64>,
+    steps: Option<u32>,
+) -> Result<SpaceJob, Failure> {
+    let Some(profile) = SpaceProfile::named(profile) else {
+        let names = SpaceProfile::ALL.map(SpaceProfile::name).join(", ");
+        refuse!(
+            "--profile {profile}: no profile of points in space; allowed with --space: {names}"
+        );
+    };
+    let default = SpaceJob::new(profile);
+    Ok(SpaceJob {
+        alpha,
+        radius: radius.unwrap_or(default.radius),
+        seed: seed.unwrap_or(default.seed),
+        steps,
+        ..default
+    })
+}
+
+/// Makes a table.
+fn run_in_space(job: &SpaceJob, work: &Work, checkpoints: &Checkpoints) -> Result<(), Failure> {
+    let usual = table_file_name(job.profile.name(), job.alpha, job.radius);
+    let path = work.path(&usual)?;
+    let pool = work.pool()?;
+    let estimate = pool.install(|| job.estimate()).map_err(Failure::usage)?;
+    let kept = Checkpoints::path(&path);
+    let is_of = |found: &Checkpoint| found.is_of_space(job);
+    let found = checkpoints.found(&kept, work.quiet, is_of)?;
+    if !work.quiet {
+        announce_in_space(&path, &estimate, work.threads());
+        if let Some(found) = &found {
+            let (steps, of, from) = (found.steps(), estimate.steps, kept.display());
+            eprintln!("resuming at step {steps} of {of}, from {from}");
+        }
+    }
+    let watcher = checkpoints.watcher(&kept, work);
+    let outcome = pool.install(|| match found {
+        None => space::forge(job, &watcher),
+        Some(found) => space::resume(job, found, &watcher),
+    });
+    let outcome = outcome.map_err(Failure::usage)?;
+    watcher.finish();
+    if outcome.interrupted {
+        let text = work.interrupted(&path, &outcome.table, &watcher)?;
+        return Err(Failure::Interrupted(anyhow!(text)));
+    }
+    let (is_accepted, complaints) = (outcome.accepted, &outcome.complaints);
+    work.conclude(
+        &path,
+        "table",
+        &outcome.table,
+        is_accepted,
+        None,
+        complaints,
+    )?;
+    work.show(&outcome.table.provenance().figures);
+    Checkpoints::remove(&kept)
+}
+
+impl Made for strew_core::space::Table {
     fn write(&self, path: &Path) -> Result<String, ForgeError> {
-        write_table(path, self)?;
+        space::write_table(path, self)?;
         Ok(self.digest().to_string())
     }
 }
 
-/// Writes a table, and prints its digest and its path.
-fn write(path: &Path, table: &impl Made) -> Result<(), Failure> {
-    let digest = table.write(path).map_err(Failure::other)?;
-    output::print(&format!("{digest}  {}\n", path.display()))
+/// Announces the work.
+fn announce_in_space(path: &Path, estimate: &SpaceEstimate, threads: usize) {
+    eprintln!(
+        "forging {}: {} blocks, {} steps, judged on {} points; about {:.0} s on {threads} threads",
+        path.display(),
+        estimate.blocks,
+        estimate.steps,
+        estimate.measured_points,
+        estimate.time.as_secs_f64().max(1.0),
+    );
 }
 
-/// Flags of work that takes long.
+/// Flags of `strew forge mix`. Equal flags make equal tables, bit by bit, on every machine.
 #[derive(Debug, clap::Args)]
-#[group(skip)]
-struct Checkpoints {
-    /// Ignore an existing checkpoint and begin anew.
+struct MixArgs {
+    /// The shares of the kinds, joined by colons, such as 1:3, in any order.
+    #[arg(long, value_name = "N:N:…")]
+    shares: Shares,
+    /// Also move the points, so that each kind is as blue as a set of its own.
     #[arg(long)]
-    restart: bool,
-    /// Seconds between checkpoints; 0 writes one after every step.
-    #[arg(long, value_name = "SECONDS", default_value_t = 10)]
-    checkpoint_every: u64,
+    joint: bool,
+    /// The table to make kinds for: the profile of a built-in table, or a file.
+    #[arg(long, value_name = "PROFILE|FILE", default_value = DEFAULT_PROFILE)]
+    table: String,
+    /// The map of the built-in table: s, m or l.
+    #[arg(long, default_value = "m")]
+    map: Size,
+    /// Steps of the descent that moves points [default: 240].
+    #[arg(long, requires = "joint")]
+    steps: Option<u32>,
+    #[command(flatten)]
+    work: Work,
 }
 
-impl Checkpoints {
-    /// The checkpoint of a table, beside it.
-    fn path(table: &Path) -> PathBuf {
-        let mut name = table.as_os_str().to_owned();
-        name.push(".checkpoint");
-        name.into()
-    }
-
-    /// The checkpoint to resume from, if there is one of the job, which `is_of` decides.
-    fn found(
-        &self,
-        path: &Path,
-        quiet: bool,
-        is_of: impl Fn(&Checkpoint) -> Result<(), ForgeError>,
-    ) -> Result<Option<Checkpoint>, Failure> {
-        if self.restart {
-            return Ok(None);
-        }
-        let advice = "--restart begins anew and replaces it";
-        let found = Checkpoint::read_file(path)
-            .map_err(|error| Failure::Usage(anyhow!("{error}; {advice}")))?;
-        let Some(found) = found else {
-            return Ok(None);
+impl MixArgs {
+    fn job(&self) -> MixJob {
+        let shares = self.shares.clone();
+        let mut job = match self.joint {
+            true => MixJob::joint(shares),
+            false => MixJob::labels(shares),
         };
-        match is_of(&found) {
-            Ok(()) => Ok(Some(found)),
-            Err(error) if found.is_optimized() => {
-                // It is that of a rejected table, and spares only the steps of that job.
-                if !quiet {
-                    eprintln!("beginning anew: {}: {error}", path.display());
-                }
-                Ok(None)
-            }
-            Err(error) => refuse!("{}: {error}; finish that job, or {advice}", path.display()),
-        }
+        job.steps = self.steps.unwrap_or(job.steps);
+        job
     }
 
-    /// Watches the work, and writes checkpoints.
-    fn watcher(&self, checkpoint: &Path, work: &Work) -> Watcher {
-        let every = Duration::from_secs(self.checkpoint_every);
-        Watcher::new(checkpoint, every, work.quiet)
-    }
-
-    /// Removes the checkpoint of a table that is written.
-    fn remove(checkpoint: &Path) -> Result<(), Failure> {
-        match fs::remove_file(checkpoint) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => {
-                let unremovable = || format!("cannot remove {}", checkpoint.display());
-                Ok(Err(error).with_context(unremovable)?)
-            }
-            _ => Ok(()),
+    /// The table to make kinds for.
+    fn of(&self) -> Result<Table, Failure> {
+        let path = Path::new(&self.table);
+        let is_file = path.exists() || path.components().count() > 1 || path.extension().is_some();
+        if is_file {
+            return read_table(path).map_err(Failure::usage);
         }
+        let catalog = Catalog::load(true, None).map_err(Failure::other)?;
+        let alpha: Alpha = DEFAULT_ALPHA.parse().map_err(Failure::other)?;
+        let key = Key {
+            dimension: Dimension::Plane,
+            profile: self.table.as_str().into(),
+            alpha,
+            size: self.map,
+            mix: None,
+        };
+        let Some(entry) = catalog.entry(&key) else {
+            let built_in = { catalog.entries() }
+                .filter(|entry| entry.key.alpha == alpha)
+                .map(|entry| format!("{} {}", entry.key.profile, entry.key.size))
+                .collect::<Vec<_>>();
+            refuse!(
+                "--table {} --map {}: no built-in table and no file; there are {}",
+                self.table,
+                self.map,
+                built_in.join(", ")
+            );
+        };
+        entry.table().map_err(Failure::other)
     }
 }
 
-/// Shows progress on standard error, passes on interrupts, and keeps the latest checkpoint in a file.
-struct Watcher {
-    interrupted: Arc<AtomicBool>,
-    quiet: bool,
-    path: PathBuf,
-    every: Duration,
-    shown: Mutex<Option<(Stage, Progress)>>,
-    kept: Mutex<Kept>,
-}
-
-/// The state of the checkpoint's file.
-struct Kept {
-    /// When it was written, or the work began.
-    at: Instant,
-    /// Whether it holds the latest checkpoint.
-    good: bool,
-    /// Whether the user was warned that it cannot be written.
-    warned: bool,
-}
-
-impl Watcher {
-    /// Checkpoints go to `path`, at least `every` apart.
-    fn new(path: &Path, every: Duration, quiet: bool) -> Self {
-        Self {
-            // The first signal ends the work in good order, the second at once.
-            interrupted: signals::stop_flag(),
-            quiet,
-            path: path.to_owned(),
-            every,
-            shown: Mutex::new(None),
-            kept: Mutex::new(Kept {
-                at: Instant::now(),
-                good: false,
-                warned: false,
-            }),
-        }
-    }
-
-    /// Removes the bar at the end of the work.
-    fn finish(&self) {
-        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, progress)) = shown.take() {
-            progress.finish();
-        }
-    }
-
-    /// Whether the file holds the latest checkpoint.
-    fn has_kept(&self) -> bool {
-        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.good
-    }
-}
-
-impl Watch for Watcher {
-    fn progress(&self, now: &strew_forge::Progress) {
-        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
-        if shown.as_ref().is_none_or(|(stage, _)| *stage != now.stage) {
-            if let Some((_, last)) = shown.take() {
-                last.finish();
-            }
-            let what = match now.stage {
-                Stage::Optimizing => "steps",
-                Stage::Measuring => "point sets measured",
-            };
-            let progress = Progress::new(what, now.steps.into(), self.quiet);
-            *shown = Some((now.stage, progress.going_on_at(now.step.into())));
-        }
-        if let Some((_, progress)) = shown.as_mut() {
-            let note = now
-                .energy
-                .map_or(String::new(), |energy| format!("energy {energy:.9}"));
-            progress.reach(now.step.into(), &note);
-        }
-    }
-
-    fn stop(&self) -> bool {
-        self.interrupted.load(Ordering::Relaxed)
-    }
-
-    fn wants_checkpoint(&self) -> bool {
-        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.at.elapsed() >= self.every
-    }
-
-    fn checkpoint(&self, checkpoint: &Checkpoint) {
-        let written = checkpoint.write(&self.path);
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.good = written.is_ok();
-        kept.at = Instant::now();
-        if let (Err(error), false) = (written, kept.warned) {
-            kept.warned = true;
-            eprintln!("warning: no checkpoint is kept: {error}");
-        }
-    }
+/// Makes the mix.
+fn make_mix(args: &MixArgs) -> Result<(), Failure> {
+    let (table, job, work) = (args.of()?, args.job(), &args.work);
+    let path = work.path(&mix_file_name(&table, &job))?;
+    // It takes seconds, so there are no checkpoints.
+    let watcher = Watcher::new(&path, Duration::MAX, work.quiet);
+    let outcome = work.pool()?.install(|| mix(&table, &job, &watcher));
+    watcher.finish();
+    let Some(outcome) = outcome.map_err(Failure::usage)? else {
+        return Err(Failure::Interrupted(anyhow!("interrupted")));
+    };
+    let (table, complaints) = (&outcome.table, &outcome.complaints);
+    work.conclude(&path, "mix", table, outcome.accepted, None, complaints)?;
+    work.show(&outcome.figures);
+    Ok(())
 }

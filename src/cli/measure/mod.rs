@@ -1,6 +1,7 @@
 //! `strew measure`: the figures and curves of a table, of a region, or of a file of points.
 
 mod space;
+mod subjects;
 
 use std::path::{Path, PathBuf};
 
@@ -17,13 +18,14 @@ use strew_forge::{
 use strew_plan::library::measured::document;
 use strew_query::{Draft, parameters::BBOX};
 
+use self::subjects::Subjects;
 use super::{
     Failure, config,
-    failure::Source,
     flags::{Flags, Measured},
     must_be_within,
     output::Output,
     query::described,
+    refusal::Source,
     refuse,
 };
 use crate::cli::config::Load as _;
@@ -67,49 +69,6 @@ pub(super) struct Args {
     flags: Flags<Measured>,
     #[command(flatten)]
     settings: config::Args,
-}
-
-/// Flags of the sets of a table.
-#[derive(Debug, clap::Args)]
-#[group(skip)]
-struct Subjects {
-    /// With --table: a twin p/q; may be repeated [default: the first unseen ones with 70,225 points
-    /// or more].
-    #[arg(long, value_name = "P/Q", requires = "table")]
-    twin: Vec<String>,
-    /// With --table: the approximate number of points of a window [default: 80000; in space 314432].
-    #[arg(long, value_name = "N", requires = "table")]
-    window_points: Option<u64>,
-    /// With --table: the seed of a window; may be repeated. In the plane it chooses a place, by default 1 and
-    /// 2; in space it is that of the set, by default 0, which is the plain set, 1 and 2.
-    #[arg(long, value_name = "SEED", requires = "table")]
-    window_seed: Vec<u64>,
-    /// With --table of points in space: the least corner of the windows, in mean spacings [default: 0,0,0].
-    #[arg(long, value_name = "X,Y,Z", requires = "table")]
-    window_at: Option<Corner>,
-    /// With --table of points in space: the seed of the 60 places whose small windows show a local lattice.
-    #[arg(long, value_name = "SEED", requires = "table", default_value_t = 12)]
-    places_seed: u64,
-}
-
-/// A place in space: three numbers joined by commas.
-#[derive(Clone, Copy, Debug)]
-struct Corner([f64; 3]);
-
-impl std::str::FromStr for Corner {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Vec<f64> = text
-            .split(',')
-            .map_while(|v| v.trim().parse().ok())
-            .filter(|v: &f64| v.abs() <= 1e6)
-            .collect();
-        match <[f64; 3]>::try_from(numbers) {
-            Ok(at) if text.split(',').count() == 3 => Ok(Self(at)),
-            _ => Err("allowed: three numbers X,Y,Z from -1000000 to 1000000".into()),
-        }
-    }
 }
 
 /// The largest set that is measured: its spectrum takes some gigabytes at ν = 4.

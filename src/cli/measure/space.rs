@@ -11,7 +11,7 @@ use strew_forge::space::{
     unseen_twins,
 };
 
-use super::{Corner, Subjects};
+use super::subjects::{Corner, Subjects};
 use crate::cli::{Failure, refuse};
 
 /// The least and the greatest number of points of a set. The spectrum of the largest takes 400 MB.

@@ -7,7 +7,7 @@ use strew_query::{
     parameters::{BBOX, CRS},
 };
 
-use super::{
+use super::words::{
     MEMBERS, NEIGHBORS, OUTPUT, REGIONS, SPACE, Section, VOLUMES, kind, paragraph, quoted, within,
     wrapped,
 };

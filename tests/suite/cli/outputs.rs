@@ -31,7 +31,7 @@ fn signals_leave_no_file() {
         command.args([
             "sample",
             "-q",
-            "--bbox=0,0,1e5,1e5",
+            "--bbox=0,0,4e4,4e4",
             "--spacing=1",
             "-o=x.csv",
         ]);

@@ -1,0 +1,311 @@
+//! The common parts of all work of the forge: threads, the written file, its checkpoint, and the watcher of progress and
+//! interrupts.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+use anyhow::{Context as _, anyhow};
+use strew_core::{Table, table::Figures};
+use strew_forge::{Checkpoint, Complaint, ForgeError, Stage, Watch, gravest, write_table};
+
+use crate::cli::{Failure, config, output, progress::Progress, refuse, signals};
+
+/// Flags of the threads and of the file.
+#[derive(Debug, clap::Args)]
+#[group(skip)]
+pub(super) struct Work {
+    /// Threads to use; 0 for one per core. The table is the same with any number.
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// The file to write.
+    #[arg(long, short, value_name = "FILE", conflicts_with = "out_dir")]
+    output: Option<PathBuf>,
+    /// A folder to write to, under the table's usual name [default: the current one].
+    #[arg(long, value_name = "DIR")]
+    out_dir: Option<PathBuf>,
+    /// Replace an existing file.
+    #[arg(long)]
+    force: bool,
+    /// Write the table even if it misses a bound. If a new table is interrupted, write the best one so far, which is
+    /// not judged.
+    #[arg(long)]
+    pub(super) keep_rejected: bool,
+    /// Print nothing but errors on standard error.
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+impl Work {
+    /// The file to write, in the folder under its usual name. Fails if it exists or cannot be written.
+    pub(super) fn path(&self, usual: &str) -> Result<PathBuf, Failure> {
+        let in_folder = || self.out_dir.clone().unwrap_or_default().join(usual);
+        let path = self.output.clone().unwrap_or_else(in_folder);
+        output::must_be_new(&path, self.force)?;
+        output::check(&path)?;
+        Ok(path)
+    }
+
+    /// The threads to work on.
+    pub(super) fn pool(&self) -> anyhow::Result<rayon::ThreadPool> {
+        config::pool(self.threads)
+    }
+
+    /// The number of threads.
+    pub(super) fn threads(&self) -> usize {
+        match self.threads {
+            0 => std::thread::available_parallelism().map_or(1, usize::from),
+            threads => threads,
+        }
+    }
+
+    /// Writes a table and reports it; `what` names the part that was made. Fails if that was rejected and is not to be
+    /// kept, with `why` and the missed bounds.
+    pub(super) fn conclude(
+        &self,
+        path: &Path,
+        what: &str,
+        table: &impl Made,
+        is_accepted: bool,
+        why: Option<String>,
+        complaints: &[Complaint],
+    ) -> Result<(), Failure> {
+        let complaints = gravest(complaints);
+        if !is_accepted && !self.keep_rejected {
+            let why: Vec<String> = why.into_iter().chain(complaints).collect();
+            return Err(Failure::Other(anyhow!(
+                "the {what} is rejected and not written (the same command with --keep-rejected writes it): {}",
+                why.join("; ")
+            )));
+        }
+        write(path, table)?;
+        if let Some(why) = why.filter(|_| !self.quiet) {
+            eprintln!("{why}");
+        }
+        for complaint in complaints {
+            eprintln!("kept although rejected: {complaint}");
+        }
+        Ok(())
+    }
+
+    /// The message of interrupted work, which says where it resumes. Writes the best table so far if it is to be kept.
+    pub(super) fn interrupted(
+        &self,
+        path: &Path,
+        table: &impl Made,
+        watcher: &Watcher,
+    ) -> Result<String, Failure> {
+        let mut text = String::from("interrupted");
+        if self.keep_rejected {
+            write(path, table)?;
+            text += &format!("; {} holds the best so far, not judged", path.display());
+        }
+        if watcher.has_kept() {
+            let force = match self.keep_rejected {
+                true => " with --force",
+                false => "",
+            };
+            let kept = Checkpoints::path(path);
+            text += &format!("; the same command{force} resumes from {}", kept.display());
+        }
+        Ok(text)
+    }
+
+    /// Shows the measurements of each point set.
+    pub(super) fn show(&self, figures: &[Figures]) {
+        for figures in figures.iter().filter(|_| !self.quiet) {
+            let values = figures.values.iter();
+            let values = values.map(|(name, value)| format!("{name} {value:.3e}"));
+            let values = values.collect::<Vec<_>>().join(", ");
+            eprintln!("{}: {values}", figures.subject);
+        }
+    }
+}
+
+/// A table that was made.
+pub(super) trait Made {
+    /// Writes its file. Returns its digest.
+    fn write(&self, path: &Path) -> Result<String, ForgeError>;
+}
+
+impl Made for Table {
+    fn write(&self, path: &Path) -> Result<String, ForgeError> {
+        write_table(path, self)?;
+        Ok(self.digest().to_string())
+    }
+}
+
+/// Writes a table, and prints its digest and its path.
+fn write(path: &Path, table: &impl Made) -> Result<(), Failure> {
+    let digest = table.write(path).map_err(Failure::other)?;
+    output::print(&format!("{digest}  {}\n", path.display()))
+}
+
+/// Flags of work that takes long.
+#[derive(Debug, clap::Args)]
+#[group(skip)]
+pub(super) struct Checkpoints {
+    /// Ignore an existing checkpoint and begin anew.
+    #[arg(long)]
+    restart: bool,
+    /// Seconds between checkpoints; 0 writes one after every step.
+    #[arg(long, value_name = "SECONDS", default_value_t = 10)]
+    checkpoint_every: u64,
+}
+
+impl Checkpoints {
+    /// The checkpoint of a table, beside it.
+    pub(super) fn path(table: &Path) -> PathBuf {
+        let mut name = table.as_os_str().to_owned();
+        name.push(".checkpoint");
+        name.into()
+    }
+
+    /// The checkpoint to resume from, if there is one of the job, which `is_of` decides.
+    pub(super) fn found(
+        &self,
+        path: &Path,
+        quiet: bool,
+        is_of: impl Fn(&Checkpoint) -> Result<(), ForgeError>,
+    ) -> Result<Option<Checkpoint>, Failure> {
+        if self.restart {
+            return Ok(None);
+        }
+        let advice = "--restart begins anew and replaces it";
+        let found = Checkpoint::read_file(path)
+            .map_err(|error| Failure::Usage(anyhow!("{error}; {advice}")))?;
+        let Some(found) = found else {
+            return Ok(None);
+        };
+        match is_of(&found) {
+            Ok(()) => Ok(Some(found)),
+            Err(error) if found.is_optimized() => {
+                // It is that of a rejected table, and spares only the steps of that job.
+                if !quiet {
+                    eprintln!("beginning anew: {}: {error}", path.display());
+                }
+                Ok(None)
+            }
+            Err(error) => refuse!("{}: {error}; finish that job, or {advice}", path.display()),
+        }
+    }
+
+    /// Watches the work, and writes checkpoints.
+    pub(super) fn watcher(&self, checkpoint: &Path, work: &Work) -> Watcher {
+        let every = Duration::from_secs(self.checkpoint_every);
+        Watcher::new(checkpoint, every, work.quiet)
+    }
+
+    /// Removes the checkpoint of a table that is written.
+    pub(super) fn remove(checkpoint: &Path) -> Result<(), Failure> {
+        match fs::remove_file(checkpoint) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                let unremovable = || format!("cannot remove {}", checkpoint.display());
+                Ok(Err(error).with_context(unremovable)?)
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Shows progress on standard error and keeps the latest checkpoint in a file.
+pub(super) struct Watcher {
+    interrupted: Arc<AtomicBool>,
+    quiet: bool,
+    path: PathBuf,
+    every: Duration,
+    shown: Mutex<Option<(Stage, Progress)>>,
+    kept: Mutex<Kept>,
+}
+
+/// The state of the checkpoint's file.
+struct Kept {
+    /// When it was written, or the work began.
+    at: Instant,
+    /// Whether it holds the latest checkpoint.
+    good: bool,
+    /// Whether the user was warned that it cannot be written.
+    warned: bool,
+}
+
+impl Watcher {
+    /// Checkpoints go to `path`, at least `every` apart.
+    pub(super) fn new(path: &Path, every: Duration, quiet: bool) -> Self {
+        Self {
+            // The first signal ends the work in good order, the second at once.
+            interrupted: signals::stop_flag(),
+            quiet,
+            path: path.to_owned(),
+            every,
+            shown: Mutex::new(None),
+            kept: Mutex::new(Kept {
+                at: Instant::now(),
+                good: false,
+                warned: false,
+            }),
+        }
+    }
+
+    /// Removes the bar at the end of the work.
+    pub(super) fn finish(&self) {
+        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, progress)) = shown.take() {
+            progress.finish();
+        }
+    }
+
+    /// Whether the file holds the latest checkpoint.
+    pub(super) fn has_kept(&self) -> bool {
+        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.good
+    }
+}
+
+impl Watch for Watcher {
+    fn progress(&self, now: &strew_forge::Progress) {
+        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
+        if shown.as_ref().is_none_or(|(stage, _)| *stage != now.stage) {
+            if let Some((_, last)) = shown.take() {
+                last.finish();
+            }
+            let what = match now.stage {
+                Stage::Optimizing => "steps",
+                Stage::Measuring => "point sets measured",
+            };
+            let progress = Progress::new(what, now.steps.into(), self.quiet);
+            *shown = Some((now.stage, progress.going_on_at(now.step.into())));
+        }
+        if let Some((_, progress)) = shown.as_mut() {
+            let note = now
+                .energy
+                .map_or(String::new(), |energy| format!("energy {energy:.9}"));
+            progress.reach(now.step.into(), &note);
+        }
+    }
+
+    fn stop(&self) -> bool {
+        self.interrupted.load(Ordering::Relaxed)
+    }
+
+    fn wants_checkpoint(&self) -> bool {
+        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.at.elapsed() >= self.every
+    }
+
+    fn checkpoint(&self, checkpoint: &Checkpoint) {
+        let written = checkpoint.write(&self.path);
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.good = written.is_ok();
+        kept.at = Instant::now();
+        if let (Err(error), false) = (written, kept.warned) {
+            kept.warned = true;
+            eprintln!("warning: no checkpoint is kept: {error}");
+        }
+    }
+}
