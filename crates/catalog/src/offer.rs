@@ -115,21 +115,21 @@ mod tests {
 
     #[test]
     fn a_missing_table_comes_with_the_command_that_makes_it() {
-        let alpha: Alpha = "1.7123".parse().expect("valid");
+        let alpha: Alpha = "sqrt(3)".parse().expect("valid");
         let plane = |map| Offer::Forge.of_table(Dimension::Plane, "blue", alpha, map);
         let space = |map| Offer::Forge.of_table(Dimension::Space, "spaced", alpha, map);
         for (text, command) in [
             (
                 plane(None),
-                "strew forge --profile blue --alpha '1.7123' --radius 49,",
+                "strew forge --profile blue --alpha 'sqrt(3)' --radius 49,",
             ),
             (
                 plane(Some("m")),
-                "strew forge --profile blue --alpha '1.7123' --radius 100,",
+                "strew forge --profile blue --alpha 'sqrt(3)' --radius 100,",
             ),
             (
                 space(None),
-                "strew forge --space --profile spaced --alpha '1.7123' --radius 16,",
+                "strew forge --space --profile spaced --alpha 'sqrt(3)' --radius 16,",
             ),
             (
                 Offer::Forge.of_profile(Dimension::Space, "blue"),
