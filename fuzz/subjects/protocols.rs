@@ -2,11 +2,11 @@
 
 use std::sync::{Arc, LazyLock};
 
-use bytes::Bytes;
-use http::{StatusCode, header};
-use http_body::Body as _;
+use axum::{Router, body::to_bytes};
+use http::{StatusCode, Uri, header};
+use http_body_util::BodyExt as _;
 use strew::{
-    body::{Body, BoxError, Request},
+    body::{Body, Request, Response},
     grpc, rest,
 };
 use strew_access::Caller;
@@ -14,6 +14,7 @@ use strew_catalog::Catalog;
 use strew_config::{Layers, Limits};
 use strew_service::{Service, Workers};
 use tokio::runtime::Runtime;
+use tower::ServiceExt as _;
 
 /// The most points of an answer here: what is fuzzed is asking.
 pub const MOST_POINTS: u64 = 3000;
@@ -24,8 +25,8 @@ const MOST_BYTES: usize = 256 << 20;
 
 struct Protocols {
     runtime: Runtime,
-    rest: rest::Routes,
-    grpc: grpc::Calls,
+    /// All paths of both. There is no gate: everyone is let in.
+    router: Router,
 }
 
 static PROTOCOLS: LazyLock<Protocols> = LazyLock::new(|| {
@@ -45,12 +46,20 @@ static PROTOCOLS: LazyLock<Protocols> = LazyLock::new(|| {
         .block_on(grpc::calls(service.clone()))
         .expect("built rightly");
     let pages = rest::Pages::default();
-    Protocols {
-        rest: rest::Routes::new(rest::endpoints(&service), &pages, ""),
-        grpc,
-        runtime,
-    }
+    let routes = rest::Routes::new(rest::endpoints(&service), &[], &pages, "");
+    let rest::Routes { gated, open, paths } = routes;
+    let nothing = async move |uri: Uri| paths.nothing(uri.path());
+    let router = grpc.contract(gated.merge(open)).fallback(nothing);
+    Protocols { runtime, router }
 });
+
+impl Protocols {
+    async fn answer(&self, mut request: Request) -> Response {
+        request.extensions_mut().insert(Caller::default());
+        let answered = self.router.clone().oneshot(request).await;
+        answered.unwrap_or_else(|never| match never {})
+    }
+}
 
 /// An answer, read to its end.
 pub struct Answered {
@@ -68,14 +77,8 @@ impl Answered {
 pub fn ask(request: Request) -> Answered {
     let protocols = &*PROTOCOLS;
     let answered = protocols.runtime.block_on(async {
-        let path = request.uri().path().to_owned();
-        let response = match protocols.rest.find(&path) {
-            // There is no gate: everyone is let in.
-            Some(found) => found.answer(request, Caller::default()).await,
-            None => protocols.rest.nothing(&path),
-        };
-        let (head, body) = response.into_parts();
-        let body = body.whole(MOST_BYTES).await;
+        let (head, body) = protocols.answer(request).await.into_parts();
+        let body = to_bytes(body, MOST_BYTES).await;
         let body = body.expect("an answer ends as it should").to_vec();
         Answered { head, body }
     });
@@ -125,12 +128,9 @@ pub fn call(method: &str, message: &[u8]) -> (u32, String) {
         .body(Body::from(frame))
         .expect("a request");
     protocols.runtime.block_on(async {
-        let route = grpc::route(request.uri().path()).expect("a method");
-        let caller = Caller::default();
-        let response = protocols.grpc.answer(route, caller, request).await;
-        let (head, mut body) = response.into_parts();
+        let (head, mut body) = protocols.answer(request).await.into_parts();
         let mut trailers = head.headers;
-        while let Some(frame) = next(&mut body).await {
+        while let Some(frame) = body.frame().await {
             if let Ok(more) = frame.expect("an answer ends as it should").into_trailers() {
                 trailers.extend(more);
             }
@@ -140,8 +140,4 @@ pub fn call(method: &str, message: &[u8]) -> (u32, String) {
         let message = text("grpc-message").unwrap_or("").to_owned();
         (status.expect("every call ends with a status"), message)
     })
-}
-
-async fn next(body: &mut Body) -> Option<Result<http_body::Frame<Bytes>, BoxError>> {
-    std::future::poll_fn(|context| std::pin::Pin::new(&mut *body).poll_frame(context)).await
 }
