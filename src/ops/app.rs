@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use axum::Router;
 use strew_access::Gate;
-use tower::ServiceBuilder;
+use tower::{Service as _, ServiceBuilder};
 
 use super::{
     calls::Calls,
@@ -83,8 +83,8 @@ fn router(routes: Routes, calls: Option<grpc::Calls>, gate: Option<Arc<Gate>>) -
     open.merge(gated.route_layer(GateLayer(admission)))
 }
 
-impl Step for Finish {
-    async fn answer(&self, inbound: Box<Inbound>, next: &impl Next) -> Response {
+impl Step<Inbound> for Finish {
+    async fn answer(&self, inbound: Box<Inbound>, next: &impl Next<Inbound>) -> Response {
         let (request, dialect) = (&inbound.request, inbound.client.dialect);
         let misdirected = self.misdirected(request);
         if let (None, Some(allowed)) = (&misdirected, self.preflight(request)) {
@@ -98,5 +98,19 @@ impl Step for Finish {
         };
         self.finish(&preferences, &mut response).await;
         response
+    }
+}
+
+/// The router is the last step: from here on the client is among the extensions of the request.
+impl Next<Inbound> for Router {
+    async fn answer(&self, inbound: Box<Inbound>) -> Response {
+        let Inbound {
+            mut request,
+            client,
+            ..
+        } = *inbound;
+        request.extensions_mut().insert(client);
+        let answered = self.clone().call(request).await;
+        answered.unwrap_or_else(|never| match never {})
     }
 }

@@ -28,9 +28,9 @@ use crate::{
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Calls(pub(super) bool);
 
-impl Step for Calls {
+impl Step<Inbound> for Calls {
     /// Answers a request to the path of a call. What is no call gets a problem document instead of a gRPC status.
-    async fn answer(&self, mut inbound: Box<Inbound>, next: &impl Next) -> Response {
+    async fn answer(&self, mut inbound: Box<Inbound>, next: &impl Next<Inbound>) -> Response {
         let request = &mut inbound.request;
         let route = match self.0 {
             true => grpc::route(request.uri().path()),
@@ -58,7 +58,7 @@ impl Step for Calls {
 }
 
 /// Answers a call in the time that it allows.
-async fn in_time(inbound: Box<Inbound>, next: &impl Next) -> Response {
+async fn in_time(inbound: Box<Inbound>, next: &impl Next<Inbound>) -> Response {
     let is_of_page = inbound.client.dialect != Dialect::Grpc;
     let mut response = match Deadline::of(inbound.request.headers()) {
         Err(refusal) => refusal.into_http(),
@@ -104,7 +104,7 @@ struct OfPage<'a, N> {
     inbound: Option<Box<Inbound>>,
 }
 
-impl<'a, N: Next> Service<http::Request<tonic::body::Body>> for OfPage<'a, N> {
+impl<'a, N: Next<Inbound>> Service<http::Request<tonic::body::Body>> for OfPage<'a, N> {
     type Response = Response;
     type Error = Infallible;
     type Future = Pin<Box<dyn Future<Output = Result<Response, Infallible>> + Send + 'a>>;

@@ -17,8 +17,8 @@ use crate::body::Response;
 #[derive(Clone, Debug)]
 pub(super) struct Panics(pub(super) Arc<Metrics>);
 
-impl Step for Panics {
-    async fn answer(&self, inbound: Box<Inbound>, next: &impl Next) -> Response {
+impl Step<Inbound> for Panics {
+    async fn answer(&self, inbound: Box<Inbound>, next: &impl Next<Inbound>) -> Response {
         let dialect = inbound.client.dialect;
         let answer = AssertUnwindSafe(next.answer(inbound)).catch_unwind().await;
         answer.unwrap_or_else(|panic| {

@@ -1,26 +1,21 @@
 //! Steps of the [app](super::app): layers of tower, each an async function of a request and of what is inside. Nothing is
 //! boxed on the way: the steps of a request are one future.
 
-use axum::Router;
-use tower::{Layer, Service as _, layer::layer_fn};
+use tower::{Layer, layer::layer_fn};
 
-use super::exchange::Inbound;
 use crate::body::Response;
 
-/// What is inside of a step.
-pub(super) trait Next: Send + Sync {
+/// What is inside of a step, for requests as the steps pass them on.
+pub(super) trait Next<R>: Send + Sync {
     /// The answer to a request.
-    fn answer(&self, inbound: Box<Inbound>) -> impl Future<Output = Response> + Send;
+    fn answer(&self, inbound: Box<R>) -> impl Future<Output = Response> + Send;
 }
 
 /// A step.
-pub(super) trait Step: Sized + Send + Sync {
+pub(super) trait Step<R>: Sized + Send + Sync {
     /// The answer to a request, of which the next step answers what this one does not.
-    fn answer(
-        &self,
-        inbound: Box<Inbound>,
-        next: &impl Next,
-    ) -> impl Future<Output = Response> + Send;
+    fn answer(&self, inbound: Box<R>, next: &impl Next<R>)
+    -> impl Future<Output = Response> + Send;
 
     /// The step as a layer around others.
     fn layer<S>(self) -> impl Layer<S, Service = Layered<Self, S>>
@@ -35,8 +30,8 @@ pub(super) trait Step: Sized + Send + Sync {
 }
 
 /// A step that may be left out.
-impl<T: Step> Step for Option<T> {
-    async fn answer(&self, inbound: Box<Inbound>, next: &impl Next) -> Response {
+impl<R: Send, T: Step<R>> Step<R> for Option<T> {
+    async fn answer(&self, inbound: Box<R>, next: &impl Next<R>) -> Response {
         match self {
             Some(step) => step.answer(inbound, next).await,
             None => next.answer(inbound).await,
@@ -51,22 +46,8 @@ pub(super) struct Layered<T, S> {
     inner: S,
 }
 
-impl<T: Step, S: Next> Next for Layered<T, S> {
-    fn answer(&self, inbound: Box<Inbound>) -> impl Future<Output = Response> + Send {
+impl<R: Send, T: Step<R>, S: Next<R>> Next<R> for Layered<T, S> {
+    fn answer(&self, inbound: Box<R>) -> impl Future<Output = Response> + Send {
         self.step.answer(inbound, &self.inner)
-    }
-}
-
-/// The router is the last step: from here on the client is among the extensions of the request.
-impl Next for Router {
-    async fn answer(&self, inbound: Box<Inbound>) -> Response {
-        let Inbound {
-            mut request,
-            client,
-            ..
-        } = *inbound;
-        request.extensions_mut().insert(client);
-        let answered = self.clone().call(request).await;
-        answered.unwrap_or_else(|never| match never {})
     }
 }

@@ -67,9 +67,9 @@ impl Intake {
     }
 }
 
-impl Step for Intake {
+impl Step<Inbound> for Intake {
     /// Answers a request within the bounds, or refuses it.
-    async fn answer(&self, mut inbound: Box<Inbound>, next: &impl Next) -> Response {
+    async fn answer(&self, mut inbound: Box<Inbound>, next: &impl Next<Inbound>) -> Response {
         let (shared, dialect) = (&*self.shared, inbound.client.dialect);
         let answered = match inbound.refused.take() {
             Some(error) => Err(error),
@@ -85,7 +85,11 @@ impl Step for Intake {
 }
 
 impl Shared {
-    async fn answer(&self, mut inbound: Box<Inbound>, next: &impl Next) -> Result<Response, Error> {
+    async fn answer(
+        &self,
+        mut inbound: Box<Inbound>,
+        next: &impl Next<Inbound>,
+    ) -> Result<Response, Error> {
         let client = &inbound.client;
         let (dialect, is_probe) = (client.dialect, client.is_probe);
         let permits = (!is_probe).then(|| Permits {

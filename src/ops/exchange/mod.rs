@@ -146,9 +146,9 @@ impl Exchanges {
     }
 }
 
-impl Step for Exchanges {
+impl Step<Inbound> for Exchanges {
     /// Answers a request; the answer leaves through its exchange.
-    async fn answer(&self, mut inbound: Box<Inbound>, next: &impl Next) -> Response {
+    async fn answer(&self, mut inbound: Box<Inbound>, next: &impl Next<Inbound>) -> Response {
         let (dialect, now) = (inbound.client.dialect, Instant::now());
         let is_head = *inbound.request.method() == Method::HEAD;
         let usage = inbound.client.usage.clone();
