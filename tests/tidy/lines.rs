@@ -9,7 +9,7 @@ use super::files;
 
 /// A part, the endings of its files, and the most lines that it may have.
 const CEILINGS: &[(&str, &[&str], usize)] = &[
-    ("src", &["rs"], 24_530),
+    ("src", &["rs"], 24_529),
     ("crates/access", &["rs"], 1501),
     ("crates/bevy", &["rs"], 1423),
     ("crates/catalog", &["rs"], 5310),
@@ -25,7 +25,7 @@ const CEILINGS: &[(&str, &[&str], usize)] = &[
     ("crates/raster", &["rs"], 3206),
     ("crates/service", &["rs"], 4945),
     ("crates/testkit", &["rs"], 1236),
-    ("tests", &["rs", "py"], 32_159),
+    ("tests", &["rs", "py"], 32_181),
     ("fuzz", &["rs"], 747),
     ("benches", &["rs", "py"], 2950),
     ("page", &["js", "css", "html", "rs", "glsl"], 16_872),
