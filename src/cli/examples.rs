@@ -10,7 +10,6 @@ Examples:
   strew sample --chunk 64/3/-2 --spacing 4 --seed 7 -o chunk.parquet
   strew sample --circle 0,0,50 --min-distance 1.5 --attributes angle,scale -o trees.csv.gz
   strew sample --chunk 64/3/-2 --world forest --config strew.toml -o chunk.arrow
-  strew sample --bbox 0,0,100,100 --spacing 2 --url http://127.0.0.1:8080 -o trees.arrows
   strew sample --bbox 0,0,512,512 --spacing 3 --raster forest.png --raster-bbox 0,0,512,512 -o forest.svg";
 pub(super) const EXPORT: &str = "\
 Examples:

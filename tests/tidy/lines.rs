@@ -9,7 +9,7 @@ use super::files;
 
 /// A part, the endings of its files, and the most lines that it may have.
 const CEILINGS: &[(&str, &[&str], usize)] = &[
-    ("src", &["rs"], 24_529),
+    ("src", &["rs"], 24_528),
     ("crates/access", &["rs"], 1501),
     ("crates/bevy", &["rs"], 1423),
     ("crates/catalog", &["rs"], 5310),
@@ -21,7 +21,7 @@ const CEILINGS: &[(&str, &[&str], usize)] = &[
     ("crates/pages", &["rs"], 728),
     ("crates/plan", &["rs"], 4372),
     ("crates/proto", &["rs"], 343),
-    ("crates/query", &["rs"], 9736),
+    ("crates/query", &["rs"], 9737),
     ("crates/raster", &["rs"], 3206),
     ("crates/service", &["rs"], 4945),
     ("crates/testkit", &["rs"], 1236),

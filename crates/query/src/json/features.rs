@@ -299,13 +299,14 @@ mod tests {
             (json!(9.0), "9"),
             (json!(-9), "-9"),
             (json!(7.5), "7.5"),
+            (json!("a\nb"), "a\nb"),
         ] {
             assert_eq!(named(id), Ok(name.into()));
         }
         for wrong in [
             json!(null),
             json!(""),
-            json!("a\nb"),
+            json!("a\u{7}b"),
             json!(["a"]),
             json!(true),
         ] {

@@ -142,7 +142,7 @@ fn faults_name_the_member_by_its_path() {
         ),
         (
             r#"{"region": {"chunk": {"size": 1, "x": 0.5, "y": 0}}}"#,
-            "region.chunk: x: invalid type: floating point `0.5`, expected i64",
+            "region.chunk: x: invalid type: floating point `0.5`, expected an integer",
         ),
         (r#"{"layers": 3}"#, "layers: must be an array"),
         (r#"{"layers": []}"#, "layers: empty"),
