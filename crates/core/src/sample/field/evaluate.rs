@@ -68,15 +68,16 @@ impl FieldSpec {
 }
 
 impl FieldSpec {
-    /// Whether a place of a box may be in a missing pixel: there the share is 0, whatever is made of the pixels.
+    /// Whether a place of a box may be in a missing pixel: there the share is 0, whatever is made of the pixels. A box
+    /// less than a pixel beside one may be told to have it.
     ///
     /// ```
     /// use strew_core::{Field, Raster, Region, field::{FieldSpec, Pixels}};
     ///
-    /// let pixels = Pixels::from_bytes(2, vec![0, 0])?.without(|at| at == 1);
-    /// let both = Region::new([0.0, 0.0], [2.0, 1.0])?;
+    /// let pixels = Pixels::from_bytes(3, vec![0; 3])?.without(|at| at == 2);
+    /// let both = Region::new([0.0, 0.0], [3.0, 1.0])?;
     /// let field = FieldSpec::raster(Raster::of(both, pixels)?)?.invert()?;
-    /// assert_eq!([0.5, 1.5].map(|x| field.share([x, 0.5])), [1.0, 0.0]);
+    /// assert_eq!([0.5, 2.5].map(|x| field.share([x, 0.5])), [1.0, 0.0]);
     /// let left = Region::new([0.0, 0.0], [0.4, 1.0])?;
     /// assert_eq!([left, both].map(|within| field.has_missing(&within)), [false, true]);
     /// # Ok::<(), strew_core::Error>(())
