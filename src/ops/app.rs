@@ -29,7 +29,7 @@ pub(super) type Steps =
 /// The bounds on requests that are taken on; none for administrators.
 type Bounds = Option<Intake>;
 
-/// What the steps are made of.
+/// The parts of the steps.
 pub(super) struct Stack {
     pub(super) exchanges: Exchanges,
     pub(super) finish: Finish,

@@ -292,7 +292,7 @@ fn http(settings: &Server) -> Builder<TokioExecutor> {
     builder
 }
 
-/// What answers the requests of all connections.
+/// The service that all connections share.
 pub(super) struct Front {
     pub(super) exchanges: Exchanges,
     pub(super) steps: Steps,

@@ -12,6 +12,7 @@ use std::{
     task::{Context, Poll},
 };
 
+use axum::extract::MatchedPath;
 use http::{HeaderMap, HeaderName, HeaderValue, header};
 use strew_access::{Caller, Gate};
 use strew_error::{Denied, Error, Level};
@@ -71,7 +72,7 @@ impl<S> Layer<S> for GateLayer {
     }
 }
 
-/// What is behind the gate.
+/// A service behind the gate.
 #[derive(Clone, Debug)]
 pub(super) struct Gated<S> {
     admission: Admission,
@@ -92,6 +93,10 @@ where
     }
 
     fn call(&mut self, mut request: Request) -> Self::Future {
+        // Those that are refused here have a route, too.
+        if let Some(route) = request.extensions().get::<MatchedPath>() {
+            Record::at(route.as_str());
+        }
         let Some(client) = request.extensions().get::<Client>() else {
             let error = Error::Internal("a request without a client");
             return Box::pin(ready(Ok(Refused(error).response())));

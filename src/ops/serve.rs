@@ -291,17 +291,9 @@ impl App {
             endpoints.push(self.metrics_endpoint());
         }
         let intake = Intake::new(&self.config, self.service.budget().clone());
-        let gate = self.gate.clone();
-        let steps = |exchanges, finish, routes| Stack {
-            exchanges,
-            finish,
-            routes,
-            calls: Some(calls),
-            intake: Some(intake),
-            gate: Some(gate),
-        };
+        let bounds = (Some(calls), Some(intake), Some(self.gate.clone()));
         Ok((
-            self.answering(endpoints, &self.more, is_on_loopback, steps),
+            self.answering(endpoints, &self.more, is_on_loopback, bounds),
             health,
         ))
     }
@@ -313,15 +305,7 @@ impl App {
         if self.config.metrics.enabled {
             endpoints.push(self.metrics_endpoint());
         }
-        let steps = |exchanges, finish, routes| Stack {
-            exchanges,
-            finish,
-            routes,
-            calls: None,
-            intake: None,
-            gate: None,
-        };
-        self.answering(endpoints, &[], is_on_loopback, steps)
+        self.answering(endpoints, &[], is_on_loopback, (None, None, None))
     }
 
     fn answering(
@@ -329,7 +313,7 @@ impl App {
         endpoints: Vec<Endpoint>,
         more: &[Endpoint],
         is_on_loopback: bool,
-        app: impl FnOnce(Exchanges, rest::Finish, Routes) -> Stack,
+        (calls, intake, gate): (Option<grpc::Calls>, Option<Intake>, Option<Arc<Gate>>),
     ) -> Front {
         let routes = Routes::new(endpoints, more, &self.pages, &self.config.http.public_url);
         let finish = rest::Finish::new(
@@ -345,8 +329,16 @@ impl App {
             budget: self.service.budget().clone(),
             terms: exchange::terms(&self.config.server),
         };
+        let stack = Stack {
+            exchanges: exchanges.clone(),
+            finish,
+            routes,
+            calls,
+            intake,
+            gate,
+        };
         Front {
-            steps: app(exchanges.clone(), finish, routes).steps(),
+            steps: stack.steps(),
             exchanges,
         }
     }

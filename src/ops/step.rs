@@ -5,7 +5,7 @@ use tower::{Layer, layer::layer_fn};
 
 use crate::body::Response;
 
-/// What is inside of a step, for requests as the steps pass them on.
+/// The next step inward.
 pub(super) trait Next<R>: Send + Sync {
     /// The answer to a request.
     fn answer(&self, inbound: Box<R>) -> impl Future<Output = Response> + Send;

@@ -133,20 +133,17 @@ impl FromRequest<Arc<Service>> for Sent {
 
     async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, Response> {
         let refused = |error| Refused(error).response();
-        no_parameters(request.uri()).map_err(refused)?;
-        let Posted { context, body } = Posted::from_request(request, service).await?;
+        let (mut parts, body) = request.into_parts();
+        let context = Context::from_request_parts(&mut parts, service).await?;
+        if let Some(text) = context.uri.query().filter(|text| !text.is_empty()) {
+            let detail = "not allowed here: the query is in the body";
+            return Err(refused(
+                Fault::new("query", text, detail, "no parameters").into(),
+            ));
+        }
+        let body = body::whole(service, &context.headers, body).await;
+        let body = body.map_err(refused)?;
         charge_reading(&context.caller, body.len()).map_err(refused)?;
         Ok(Self { context, body })
-    }
-}
-
-/// Refuses parameters where the query is in the body.
-fn no_parameters(uri: &Uri) -> Result<(), Error> {
-    match uri.query().filter(|text| !text.is_empty()) {
-        Some(text) => {
-            let detail = "not allowed here: the query is in the body";
-            Err(Fault::new("query", text, detail, "no parameters").into())
-        }
-        None => Ok(()),
     }
 }

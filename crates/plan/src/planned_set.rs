@@ -13,8 +13,8 @@ use crate::{amount_in_space, effort};
 #[derive(Clone, Debug)]
 pub(super) enum Least {
     Known(f64),
-    /// Of points in space within ±`reach`: the first time it takes looks at all pairs of a table's blocks, so it is
-    /// worked out when it is told.
+    /// Of points in space within ±`reach`: the first query of a table looks at all pairs of its blocks, so it is
+    /// computed only when an answer states it.
     InSpace(Box<SpaceSet>, f64),
 }
 

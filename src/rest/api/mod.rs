@@ -21,6 +21,7 @@ use serde_json::Value;
 use strew_catalog::Dimension;
 use strew_error::Kind;
 use strew_query::{Group, Parameter};
+use strew_service::Record;
 
 use schemas::Content;
 
@@ -273,7 +274,11 @@ impl Endpoint {
     /// What answers requests to the path. Methods that it does not take are answered with a problem.
     pub(super) fn answers(&self) -> MethodRouter {
         let allowed = self.allowed();
-        let refuse = async move |method: Method, uri: Uri| wrong_method(&method, &uri, &allowed);
+        let path = self.path;
+        let refuse = async move |method: Method, uri: Uri| {
+            Record::at(path);
+            wrong_method(&method, &uri, &allowed)
+        };
         self.answers.clone().fallback(refuse)
     }
 

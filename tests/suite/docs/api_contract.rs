@@ -97,7 +97,6 @@ fn without_fields(mut document: Value) -> Value {
     let parts: Vec<&str> = parts.chain(["settle", "lod"]).collect();
     without_some_members(&mut document, &parts);
     let schemas = &mut document["components"]["schemas"];
-    // Whole numbers as text besides are too many cases for the generator.
     if let Value::Object(members) = &mut schemas["PointsQuery"]["properties"] {
         for member in members.values_mut() {
             let first = member["anyOf"][0].clone();

@@ -191,8 +191,7 @@ fn whatever_the_daemon_takes_passes(program: &str) {
             assert_eq!(counted.header("x-cache-status"), expected);
         }
     }
-    // A body almost as long as the daemon takes, and an answer whose head would have more than the 4 kB that proxies
-    // take.
+    // A body almost as long as the daemon takes, and an answer whose head stays within 4 kB.
     let json = [("content-type", "application/json")];
     let layer = |k: i32| {
         let kinds = (0..16).map(|j| format!(r#""a-kind-of-plant-{k}-{j}": 1"#));

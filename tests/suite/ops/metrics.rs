@@ -24,6 +24,7 @@ fn requests_points_and_bytes_are_counted_by_protocol_and_format() {
     for _ in 0..2 {
         assert_eq!(daemon.get("/v1/points?bbox=0,0,0,0").status, 400);
     }
+    assert_eq!(daemon.post("/v1/points", &().into()).status, 405);
     daemon.get("/nothing/1");
     daemon.get("/nothing/2");
     let samples = until("the last answer is counted", || {
@@ -41,11 +42,12 @@ fn requests_points_and_bytes_are_counted_by_protocol_and_format() {
     assert_eq!(of(bytes, &["format=\"f32\""]), packed.body.len() as f64);
     let requests = "strew_requests_total";
     let route = "route=\"/v1/points\"";
+    assert_eq!(of(requests, &[route, "method=\"POST\""]), 1.0);
     assert_eq!(
         of(requests, &[route, "method=\"GET\"", "status=\"2xx\""]),
         3.0
     );
-    assert_eq!(of(requests, &[route, "status=\"4xx\""]), 2.0);
+    assert_eq!(of(requests, &[route, "status=\"4xx\""]), 3.0);
     assert_eq!(
         of(
             "strew_rejected_total",

@@ -68,8 +68,8 @@ impl FieldSpec {
 }
 
 impl FieldSpec {
-    /// Whether a place of a box may be in a missing pixel: there the share is 0, whatever is made of the pixels. A box
-    /// less than a pixel beside one may be told to have it.
+    /// Whether a place of a box may be in a missing pixel: there the share is 0, whatever is made of the pixels. True
+    /// also for a box less than a pixel beside one.
     ///
     /// ```
     /// use strew_core::{Field, Raster, Region, field::{FieldSpec, Pixels}};
