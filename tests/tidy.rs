@@ -13,6 +13,8 @@ mod imports;
 mod lines;
 #[path = "tidy/page.rs"]
 mod page;
+#[path = "tidy/recipes.rs"]
+mod recipes;
 #[path = "tidy/releasing.rs"]
 mod releasing;
 

@@ -118,7 +118,7 @@ fn words(parameter: &Parameter) -> Vec<String> {
         Shape::Strength { .. } => owned(&["off", "on"]),
         Shape::Choice(words) => owned(words),
         Shape::Format => {
-            let all = Encoding::ALL.into_iter().chain(Encoding::FILES);
+            let all = Encoding::every();
             all.map(|encoding| encoding.name().into()).collect()
         }
         _ if *parameter == ATTRIBUTES => attributes(),

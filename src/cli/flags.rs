@@ -198,7 +198,7 @@ pub(super) const WHERE: &str = "Where";
 fn own_words(parameter: &Parameter) -> Option<(String, &'static str)> {
     let (about, default) = match (parameter.name, parameter.group) {
         ("format", _) => {
-            let formats = Encoding::ALL.map(Encoding::name).join(", ");
+            let formats = Encoding::names(Encoding::ALL);
             let parquet = Encoding::Parquet.name();
             let about = format!("The format of the output: {formats} or {parquet}.");
             return Some((about, "the ending of the output's name, else json"));

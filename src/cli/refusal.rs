@@ -84,7 +84,7 @@ impl Source {
             }
             (None, _) => format!("{name} is missing; allowed: {allowed}"),
             (Some(value), "format") if Encoding::from_name(value).is_none() => {
-                let files = Encoding::FILES.map(Encoding::name).join(", ");
+                let files = Encoding::names(Encoding::FILES);
                 format!("{name} {value}: {detail}; allowed: {allowed}, {files}")
             }
             (Some(value), _) => format!("{name} {value}: {detail}; allowed: {allowed}"),

@@ -46,19 +46,12 @@ pub(super) fn encoding_of(output: Option<&Path>) -> Result<Encoding, Failure> {
         return Ok(Encoding::Json);
     };
     let ending = ending.to_string_lossy();
-    let encoding = match &*ending {
-        "arrow" => Some(Encoding::Feather),
-        "arrows" => Some(Encoding::Arrow),
-        "geojsons" | "geojsonl" => Some(Encoding::Geojsonseq),
-        "jsonl" => Some(Encoding::Ndjson),
-        name => Encoding::from_name(name),
-    };
-    encoding.ok_or_else(|| {
+    Encoding::of_ending(&ending).ok_or_else(|| {
         Failure::Usage(anyhow!(
             "--output ends with .{ending}, which is no format: use --format, or one of the endings \
              {}, arrows, {}",
-            Encoding::ALL.map(Encoding::name).join(", "),
-            Encoding::FILES.map(Encoding::name).join(", ")
+            Encoding::names(Encoding::ALL),
+            Encoding::names(Encoding::FILES)
         ))
     })
 }

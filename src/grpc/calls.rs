@@ -2,14 +2,17 @@
 
 use std::{convert::Infallible, fmt, sync::Arc};
 
-use axum::{Extension, Router, routing::any};
-use strew_access::Caller;
+use axum::Router;
 use strew_service::Service;
-use tonic::{body::Body as TonicBody, codegen};
-use tower::ServiceBuilder;
+use tonic::{Status, body::Body as TonicBody, codec::CompressionEncoding, codegen};
+use tower::{Service as _, ServiceBuilder, service_fn};
 
-use super::methods::{METHODS, Method, unimplemented};
-use crate::body::{Body, Request};
+use super::{
+    points::Points,
+    server::{METHODS, point_service_server::PointServiceServer},
+    unpacked::unpacked,
+};
+use crate::body::{Body, Request, Response};
 
 /// The name of the service of the contract.
 pub(super) const NAME: &str = "strew.v1.PointService";
@@ -40,13 +43,20 @@ pub fn route(path: &str) -> Option<&'static str> {
     let is_of = |(prefix, _): &&(&str, &str)| path.len() > prefix.len() && path.starts_with(prefix);
     let (prefix, any) = SERVICES.iter().find(is_of)?;
     match *prefix == SERVICES[0].0 {
-        true => Some(method(path).map_or(any, |method| method.path)),
+        true => Some(
+            METHODS
+                .into_iter()
+                .find(|known| *known == path)
+                .unwrap_or(any),
+        ),
         false => Some(any),
     }
 }
 
-fn method(path: &str) -> Option<&'static Method> {
-    METHODS.iter().find(|method| method.path == path)
+/// The answer to a method that does not exist.
+pub fn unimplemented() -> Response {
+    let methods = METHODS.join(", ");
+    Status::unimplemented(format!("unknown method; available: {methods}")).into_http()
 }
 
 /// The services of gRPC. Cheap to clone.
@@ -67,14 +77,24 @@ impl Calls {
     /// A router with the calls of the contract.
     pub fn contract(&self, router: Router) -> Router {
         let service = self.service.clone();
-        let answer =
-            async move |Extension(caller): Extension<Caller>, request: Request| match method(
-                request.uri().path(),
-            ) {
-                Some(method) => method.answer(service, caller, request).await,
-                None => unimplemented(),
-            };
-        router.route(SERVICES[0].1, any(answer))
+        // A message that comes to it is not longer than its limit, and is not packed.
+        let server = PointServiceServer::new(Points::new(service.clone()))
+            .max_decoding_message_size(usize::MAX)
+            .send_compressed(CompressionEncoding::Gzip)
+            .send_compressed(CompressionEncoding::Zstd);
+        let answer = move |request: Request| {
+            let (service, mut server) = (service.clone(), server.clone());
+            async move {
+                match unpacked(&service, request).await {
+                    Ok(request) => server
+                        .call(request)
+                        .await
+                        .map(|answer| answer.map(Body::new)),
+                    Err(status) => Ok(status.into_http()),
+                }
+            }
+        };
+        router.route_service(SERVICES[0].1, service_fn(answer))
     }
 
     /// A router with health and reflection.

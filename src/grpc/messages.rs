@@ -2,12 +2,7 @@
 
 use std::sync::Arc;
 
-use bytes::Bytes;
-use prost::{
-    Message as _,
-    encoding::{WireType, encode_key, encode_varint},
-};
-use strew_core::{ALGORITHM_VERSION, Cursor, F32, F64};
+use strew_core::{ALGORITHM_VERSION, F32, F64};
 use strew_encode as encode;
 use strew_encode::{
     Batch, Coordinates, Encoding as Format, Mark, Output, Packed, Rows, Values, id_text,
@@ -18,7 +13,6 @@ use strew_plan::Planned;
 use strew_service::Record;
 
 use super::{
-    frames,
     proto::{
         Column, ColumnHead, Encoding, PointBlock, StreamHeader, StreamPointsRequest,
         StreamPointsResponse, StreamSummary, stream_points_response::Message,
@@ -77,12 +71,8 @@ impl Messages {
             origin: coordinates.origin().map(region::position),
         };
         let blocks = match (encoding, rows.plain_plan()) {
-            (Encoding::F32Le, Some(plan)) => {
-                Blocks::F32(Packed::with_room(plan, block_bytes, ROOM))
-            }
-            (Encoding::F64Le, Some(plan)) => {
-                Blocks::F64(Packed::with_room(plan, block_bytes, ROOM))
-            }
+            (Encoding::F32Le, Some(plan)) => Blocks::F32(Packed::new(plan, block_bytes)),
+            (Encoding::F64Le, Some(plan)) => Blocks::F64(Packed::new(plan, block_bytes)),
             _ => Blocks::Rows(Box::new(Table::new(rows, heads, encoding, block_bytes))),
         };
         Ok(Self {
@@ -95,7 +85,37 @@ impl Messages {
         })
     }
 
-    fn message(&mut self) -> Option<StreamPointsResponse> {
+    fn block(&mut self) -> Option<PointBlock> {
+        let of_data = |(points, data)| {
+            let block = PointBlock {
+                data,
+                ..PointBlock::default()
+            };
+            (points, block)
+        };
+        let ((points, mut block), set, mark) = match &mut self.blocks {
+            Blocks::F32(blocks) => (of_data(blocks.block()?), 0, blocks.cursor().map(Mark::from)),
+            Blocks::F64(blocks) => (of_data(blocks.block()?), 0, blocks.cursor().map(Mark::from)),
+            Blocks::Rows(table) => {
+                let block = table.next()?;
+                let (set, mark) = table.rows.mark().unzip();
+                (block, set.unwrap_or_default(), mark)
+            }
+        };
+        if let Some(record) = &self.record {
+            record.made(points as u64);
+        }
+        let next = mark.and_then(|mark| self.planned.token(set, mark));
+        block.layer = u32::try_from(set).unwrap_or(u32::MAX);
+        block.cursor = next.map(|token| token.to_string()).unwrap_or_default();
+        Some(block)
+    }
+}
+
+impl Iterator for Messages {
+    type Item = StreamPointsResponse;
+
+    fn next(&mut self) -> Option<StreamPointsResponse> {
         if self.over {
             return None;
         }
@@ -114,107 +134,6 @@ impl Messages {
         Some(StreamPointsResponse {
             message: Some(message),
         })
-    }
-
-    /// The next block of packed coordinates, between what `around` makes of its size and its other fields.
-    fn packed(
-        &mut self,
-        mut around: impl FnMut(usize, PointBlock) -> [Vec<u8>; 2],
-    ) -> Option<Bytes> {
-        let (planned, made) = (&self.planned, noting(&self.record));
-        let mut noted = |bytes, point, cursor: Option<Cursor>| {
-            made(bytes / point);
-            around(bytes, after(planned, 0, cursor.map(Mark::from)))
-        };
-        match &mut self.blocks {
-            Blocks::F32(packed) => {
-                packed.next_between(|bytes, blocks| noted(bytes, 8, blocks.cursor()))
-            }
-            Blocks::F64(packed) => {
-                packed.next_between(|bytes, blocks| noted(bytes, 16, blocks.cursor()))
-            }
-            Blocks::Rows(_) => None,
-        }
-    }
-
-    fn block(&mut self) -> Option<PointBlock> {
-        let Blocks::Rows(table) = &mut self.blocks else {
-            let mut rest = PointBlock::default();
-            let data = self.packed(|_, block| {
-                rest = block;
-                Default::default()
-            })?;
-            return Some(PointBlock { data, ..rest });
-        };
-        let (points, block) = table.next()?;
-        noting(&self.record)(points);
-        let (set, mark) = table.rows.mark().unzip();
-        let PointBlock { layer, cursor, .. } = after(&self.planned, set.unwrap_or_default(), mark);
-        Some(PointBlock {
-            layer,
-            cursor,
-            ..block
-        })
-    }
-
-    /// The next message framed: a block of packed coordinates in the buffer that it was made in.
-    fn frame(&mut self) -> Option<Bytes> {
-        let is_block = self.header.is_none() && !self.over;
-        let framed = is_block.then(|| self.packed(|bytes, rest| around(bytes, &rest)));
-        framed
-            .flatten()
-            .or_else(|| Some(frames::framed(&self.message()?)))
-    }
-}
-
-/// Notes how many points were made.
-fn noting(record: &Option<Arc<Record>>) -> impl Fn(usize) + use<'_> {
-    move |points| {
-        if let Some(record) = record {
-            record.made(points as u64);
-        }
-    }
-}
-
-/// A block without its points: its layer and the place after it.
-fn after(planned: &Planned, set: usize, mark: Option<Mark>) -> PointBlock {
-    let token = mark.and_then(|mark| planned.token(set, mark));
-    PointBlock {
-        layer: u32::try_from(set).unwrap_or(u32::MAX),
-        cursor: token.map(|token| token.to_string()).unwrap_or_default(),
-        ..PointBlock::default()
-    }
-}
-
-/// Room before and after the points of a block: for its prefix, two tags with their lengths; for the
-/// longest cursor, 174 digits.
-const ROOM: [usize; 2] = [32, 192];
-
-/// The bytes around the data of a block in a message of its own: prefix and tags, and the rest of
-/// its fields, all of which come after the data.
-fn around(data: usize, rest: &PointBlock) -> [Vec<u8>; 2] {
-    const BLOCK: u32 = 2;
-    const DATA: u32 = 4;
-    let tagged = |tag: u32, length: usize| {
-        let mut field = vec![];
-        encode_key(tag, WireType::LengthDelimited, &mut field);
-        encode_varint(length as u64, &mut field);
-        field
-    };
-    let after = rest.encode_to_vec();
-    let data_tag = tagged(DATA, data);
-    let block = data_tag.len() + data + after.len();
-    let block_tag = tagged(BLOCK, block);
-    let prefix = frames::prefix(block_tag.len() + block);
-    [[&prefix[..], &block_tag, &data_tag].concat(), after]
-}
-
-/// The messages as frames.
-impl Iterator for Messages {
-    type Item = Bytes;
-
-    fn next(&mut self) -> Option<Bytes> {
-        self.frame()
     }
 }
 
@@ -336,33 +255,4 @@ fn column(head: &ColumnHead, values: &Values) -> Option<Column> {
         numbers,
         indices,
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn framed_by_hand_a_block_is_what_prost_writes() {
-        for (bytes, layer, cursor) in [(1, 0, ""), (127, 0, "c"), (128, 3, "01"), (300_000, 0, "f")]
-        {
-            let data = Bytes::from(vec![7; bytes]);
-            let rest = PointBlock {
-                layer,
-                cursor: cursor.into(),
-                ..PointBlock::default()
-            };
-            let [before, after] = around(bytes, &rest);
-            let message = StreamPointsResponse {
-                message: Some(Message::Block(PointBlock {
-                    data: data.clone(),
-                    ..rest
-                })),
-            };
-            assert_eq!(
-                [&before, &data[..], &after].concat(),
-                frames::framed(&message)
-            );
-        }
-    }
 }

@@ -1,24 +1,24 @@
 //! gRPC: messages in, streamed messages out. It decides nothing itself.
 
 mod calls;
-mod compression;
+mod codec;
 mod deadline;
 mod field;
-mod frames;
 mod mask;
 mod message;
 mod messages;
-mod methods;
 mod periods;
 mod points;
 mod profile;
 mod query;
 mod region;
 mod resolved;
+mod server;
 mod set;
 mod single;
 mod split;
 mod status;
+mod unpacked;
 
 use std::sync::Arc;
 
@@ -28,10 +28,9 @@ use http::{HeaderMap, HeaderName, HeaderValue};
 use tonic::Status;
 use tonic_health::server::HealthReporter;
 
-pub use calls::{Calls, route};
+pub use calls::{Calls, route, unimplemented};
 use calls::{NAME, routed};
 pub use deadline::Deadline;
-pub use methods::unimplemented;
 use strew_error::Error;
 pub use strew_proto as proto;
 use strew_service::{Interrupted, Service};

@@ -1,21 +1,21 @@
 //! The service of the contract.
 
-use std::sync::Arc;
+use std::{pin::Pin, sync::Arc};
 
-use futures_util::TryStreamExt as _;
+use futures_util::{Stream, TryStreamExt as _};
 use strew_access::Caller;
+use strew_catalog::Entry;
 use strew_core::{ALGORITHM_VERSION, server::Stop};
 use strew_error::{Error, Fault};
 use strew_plan::{Found, Placed, effort::block_bytes};
 use strew_query::{Draft, Nearest, Query, Set, Values, groups};
 use strew_service::{Record, Service, allowance};
-use tonic::Status;
+use tonic::{Request, Response, Status};
 
 use super::{
-    field,
-    frames::FrameStream,
-    mask,
-    message::Received,
+    codec::Raw,
+    field, mask,
+    message::{Decoded, Shaped},
     messages::Messages,
     periods, profile,
     proto::{
@@ -23,9 +23,11 @@ use super::{
         GetMaskRequest, GetMaskResponse, GetPointRequest, GetPointResponse, ListFieldsRequest,
         ListFieldsResponse, ListPeriodsRequest, ListPeriodsResponse, ListProfilesRequest,
         ListProfilesResponse, ListWorldsRequest, ListWorldsResponse, LoadedWorld,
-        SplitPointsRequest, SplitPointsResponse, StreamPointsRequest,
+        SplitPointsRequest, SplitPointsResponse, StreamPointsRequest, StreamPointsResponse,
     },
-    query, resolved, set, single, split, status,
+    query, resolved,
+    server::point_service_server::PointService,
+    set, single, split, status,
 };
 
 /// A query as it was read.
@@ -46,10 +48,27 @@ impl Points {
         Self { service }
     }
 
+    /// Answers a call once its message is decoded. The memory of the message is held until the head of the answer.
+    async fn answer<M: Shaped, A>(
+        &self,
+        mut request: Request<Raw<M>>,
+        answer: impl AsyncFnOnce(&Caller, Decoded<M>) -> Result<A, Error>,
+    ) -> Answer<A> {
+        let caller = request.extensions_mut().remove().unwrap_or_default();
+        let answered = async {
+            let (decoded, _held) = request.into_inner().decoded(&self.service, &caller).await?;
+            answer(&caller, decoded).await
+        };
+        let answered: Result<A, Error> = answered.await;
+        answered
+            .map(Response::new)
+            .map_err(|error| status::status(&error))
+    }
+
     /// A request with its checked query.
     async fn read(
         &self,
-        Received { message, effort }: Received<StreamPointsRequest>,
+        Decoded { message, effort }: Decoded<StreamPointsRequest>,
     ) -> Result<Checked, Error> {
         let read = move || {
             let read = Box::new(query::read(&message));
@@ -66,8 +85,8 @@ impl Points {
     async fn stream(
         &self,
         caller: &Caller,
-        request: Received<StreamPointsRequest>,
-    ) -> Result<FrameStream, Error> {
+        request: Decoded<StreamPointsRequest>,
+    ) -> Result<<Self as PointService>::StreamPointsStream, Error> {
         let (request, query, encoding) = self.read(request).await?;
         let (permit, planned) = self.service.open(caller, query, None).await?;
         let block_bytes = block_bytes(&planned, self.service.limits().block_bytes);
@@ -84,7 +103,7 @@ impl Points {
     async fn count(
         &self,
         caller: &Caller,
-        request: Received<StreamPointsRequest>,
+        request: Decoded<StreamPointsRequest>,
     ) -> Result<CountPointsResponse, Error> {
         let (request, query, encoding) = self.read(request).await?;
         let planned = self.service.count(caller, query).await?;
@@ -98,7 +117,7 @@ impl Points {
     async fn split(
         &self,
         caller: &Caller,
-        request: Received<StreamPointsRequest>,
+        request: Decoded<StreamPointsRequest>,
         parts: u32,
     ) -> Result<SplitPointsResponse, Error> {
         let (request, query, _) = self.read(request).await?;
@@ -115,10 +134,10 @@ impl Points {
     async fn point(
         &self,
         caller: &Caller,
-        Received {
+        Decoded {
             mut message,
             effort,
-        }: Received<GetPointRequest>,
+        }: Decoded<GetPointRequest>,
     ) -> Result<GetPointResponse, Error> {
         let id = std::mem::take(&mut message.id);
         // An id in space has three parts.
@@ -144,7 +163,7 @@ impl Points {
     async fn nearest(
         &self,
         caller: &Caller,
-        Received { message, effort }: Received<FindNearestRequest>,
+        Decoded { message, effort }: Decoded<FindNearestRequest>,
     ) -> Result<FindNearestResponse, Error> {
         let read = move || Ok(query::nearest(&message));
         let check = |service: &Service, values: Values, stop: &Stop| {
@@ -166,136 +185,141 @@ impl Points {
 
 /// The query of a request, which must be there.
 fn required(
-    query: Option<Box<StreamPointsRequest>>,
+    query: Option<StreamPointsRequest>,
     effort: usize,
-) -> Result<Received<StreamPointsRequest>, Status> {
-    let message = query.ok_or_else(|| {
-        let fault = Fault::missing("query", "a StreamPointsRequest");
-        status::status(&fault.into())
-    })?;
-    Ok(Received { message, effort })
+) -> Result<Decoded<StreamPointsRequest>, Error> {
+    let missing = || Fault::missing("query", "a StreamPointsRequest");
+    let message = Box::new(query.ok_or_else(missing)?);
+    Ok(Decoded { message, effort })
 }
 
-/// An answer; faults of its set are named by their fields.
-fn answered<T>(answer: Result<T, Error>) -> Result<T, Status> {
-    plainly(answer.map_err(query::by_field))
+/// A fault of the query of a request, named as a part of it.
+fn of_query(error: Error) -> Error {
+    status::within("query", query::by_field(error))
 }
 
-/// The answer to a request that has no set: its faults already name its fields.
-fn plainly<T>(answer: Result<T, Error>) -> Result<T, Status> {
-    answer.map_err(|error| status::status(&error))
-}
+type Answer<A> = Result<Response<A>, Status>;
 
-/// The calls, by the names of the contract.
-impl Points {
-    pub(super) async fn stream_points(
-        self,
-        caller: Caller,
-        request: Received<StreamPointsRequest>,
-    ) -> Result<FrameStream, Status> {
-        answered(self.stream(&caller, request).await)
-    }
+/// The calls of the contract.
+#[tonic::async_trait]
+impl PointService for Points {
+    type StreamPointsStream =
+        Pin<Box<dyn Stream<Item = Result<StreamPointsResponse, Status>> + Send>>;
 
-    pub(super) async fn count_points(
-        self,
-        caller: Caller,
-        request: Received<CountPointsRequest>,
-    ) -> Result<CountPointsResponse, Status> {
-        let Received { message, effort } = request;
-        let query = required(message.query.map(Box::new), effort)?;
-        let answer = self.count(&caller, query).await;
-        answered(answer.map_err(|error| status::within("query", query::by_field(error))))
-    }
-
-    pub(super) async fn split_points(
-        self,
-        caller: Caller,
-        request: Received<SplitPointsRequest>,
-    ) -> Result<SplitPointsResponse, Status> {
-        let Received { message, effort } = request;
-        let SplitPointsRequest { query, parts } = *message;
-        let query = required(query.map(Box::new), effort)?;
-        let parts = plainly(split::check(&query.message, parts))?;
-        let answer = self.split(&caller, query, parts).await;
-        answered(answer.map_err(|error| status::within("query", query::by_field(error))))
-    }
-
-    pub(super) async fn get_point(
-        self,
-        caller: Caller,
-        request: Received<GetPointRequest>,
-    ) -> Result<GetPointResponse, Status> {
-        answered(self.point(&caller, request).await)
-    }
-
-    pub(super) async fn find_nearest(
-        self,
-        caller: Caller,
-        request: Received<FindNearestRequest>,
-    ) -> Result<FindNearestResponse, Status> {
-        answered(self.nearest(&caller, request).await)
-    }
-
-    pub(super) async fn list_profiles(
-        self,
-        _: Caller,
-        _: Received<ListProfilesRequest>,
-    ) -> Result<ListProfilesResponse, Status> {
-        let catalog = self.service.catalog();
-        let entries = catalog.entries();
-        Ok(ListProfilesResponse {
-            profiles: entries
-                .map(|entry| profile::profile(entry, &catalog))
-                .collect(),
-            in_space: (catalog.in_space())
-                .map(|entry| profile::profile(entry, &catalog))
-                .collect(),
-            algorithm: ALGORITHM_VERSION,
+    async fn stream_points(
+        &self,
+        request: Request<Raw<StreamPointsRequest>>,
+    ) -> Answer<Self::StreamPointsStream> {
+        self.answer(request, async |caller, request| {
+            self.stream(caller, request).await.map_err(query::by_field)
         })
+        .await
     }
 
-    pub(super) async fn list_periods(
-        self,
-        _: Caller,
-        request: Received<ListPeriodsRequest>,
-    ) -> Result<ListPeriodsResponse, Status> {
-        plainly(periods::list(*request.message, &self.service))
-    }
-
-    pub(super) async fn get_mask(
-        self,
-        caller: Caller,
-        request: Received<GetMaskRequest>,
-    ) -> Result<GetMaskResponse, Status> {
-        plainly(mask::mask(&self.service, &caller, *request.message).await)
-    }
-
-    pub(super) async fn list_fields(
-        self,
-        _: Caller,
-        _: Received<ListFieldsRequest>,
-    ) -> Result<ListFieldsResponse, Status> {
-        let catalog = self.service.catalog();
-        let fields = catalog.fields().iter().map(|loaded| field::loaded(loaded));
-        Ok(ListFieldsResponse {
-            fields: fields.collect(),
+    async fn count_points(
+        &self,
+        request: Request<Raw<CountPointsRequest>>,
+    ) -> Answer<CountPointsResponse> {
+        self.answer(request, async |caller, request| {
+            let query = required(request.message.query, request.effort)?;
+            self.count(caller, query).await.map_err(of_query)
         })
+        .await
     }
 
-    pub(super) async fn list_worlds(
-        self,
-        _: Caller,
-        _: Received<ListWorldsRequest>,
-    ) -> Result<ListWorldsResponse, Status> {
-        let catalog = self.service.catalog();
-        let worlds = catalog.worlds.iter().map(|world| LoadedWorld {
-            name: world.name.clone(),
-            digest: world.digest.clone(),
-            layers: world.layers.clone(),
-            query: world.json.to_string(),
-        });
-        Ok(ListWorldsResponse {
-            worlds: worlds.collect(),
+    async fn split_points(
+        &self,
+        request: Request<Raw<SplitPointsRequest>>,
+    ) -> Answer<SplitPointsResponse> {
+        self.answer(request, async |caller, request| {
+            let SplitPointsRequest { query, parts } = *request.message;
+            let query = required(query, request.effort)?;
+            let parts = split::check(&query.message, parts)?;
+            self.split(caller, query, parts).await.map_err(of_query)
         })
+        .await
+    }
+
+    async fn get_point(&self, request: Request<Raw<GetPointRequest>>) -> Answer<GetPointResponse> {
+        self.answer(request, async |caller, request| {
+            self.point(caller, request).await.map_err(query::by_field)
+        })
+        .await
+    }
+
+    async fn find_nearest(
+        &self,
+        request: Request<Raw<FindNearestRequest>>,
+    ) -> Answer<FindNearestResponse> {
+        self.answer(request, async |caller, request| {
+            self.nearest(caller, request).await.map_err(query::by_field)
+        })
+        .await
+    }
+
+    async fn list_profiles(
+        &self,
+        request: Request<Raw<ListProfilesRequest>>,
+    ) -> Answer<ListProfilesResponse> {
+        self.answer(request, async |_, _| {
+            let catalog = self.service.catalog();
+            let profile = |entry: &Arc<Entry>| profile::profile(entry, &catalog);
+            Ok(ListProfilesResponse {
+                profiles: catalog.entries().map(profile).collect(),
+                in_space: catalog.in_space().map(profile).collect(),
+                algorithm: ALGORITHM_VERSION,
+            })
+        })
+        .await
+    }
+
+    async fn list_periods(
+        &self,
+        request: Request<Raw<ListPeriodsRequest>>,
+    ) -> Answer<ListPeriodsResponse> {
+        self.answer(request, async |_, request| {
+            periods::list(*request.message, &self.service)
+        })
+        .await
+    }
+
+    async fn get_mask(&self, request: Request<Raw<GetMaskRequest>>) -> Answer<GetMaskResponse> {
+        self.answer(request, async |caller, request| {
+            mask::mask(&self.service, caller, *request.message).await
+        })
+        .await
+    }
+
+    async fn list_fields(
+        &self,
+        request: Request<Raw<ListFieldsRequest>>,
+    ) -> Answer<ListFieldsResponse> {
+        self.answer(request, async |_, _| {
+            let catalog = self.service.catalog();
+            let fields = catalog.fields().iter().map(|loaded| field::loaded(loaded));
+            Ok(ListFieldsResponse {
+                fields: fields.collect(),
+            })
+        })
+        .await
+    }
+
+    async fn list_worlds(
+        &self,
+        request: Request<Raw<ListWorldsRequest>>,
+    ) -> Answer<ListWorldsResponse> {
+        self.answer(request, async |_, _| {
+            let catalog = self.service.catalog();
+            let worlds = catalog.worlds.iter().map(|world| LoadedWorld {
+                name: world.name.clone(),
+                digest: world.digest.clone(),
+                layers: world.layers.clone(),
+                query: world.json.to_string(),
+            });
+            Ok(ListWorldsResponse {
+                worlds: worlds.collect(),
+            })
+        })
+        .await
     }
 }

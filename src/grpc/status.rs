@@ -2,7 +2,7 @@
 
 use std::{collections::HashMap, time::Duration};
 
-use http::{HeaderMap, HeaderValue};
+use http::HeaderMap;
 use strew_error::{Denied, Error, Kind};
 use strew_service::{Interrupted, Record};
 use tonic::{Code, Status};
@@ -122,13 +122,6 @@ pub(super) fn too_late(allowed: Duration) -> Status {
     details.set_error_info("DEADLINE_EXCEEDED", DOMAIN, HashMap::new());
     let message = format!("the call's deadline of {allowed:?} is over; it is not complete");
     Status::with_error_details(Code::DeadlineExceeded, message, details)
-}
-
-/// The trailers of an answer that is complete.
-pub(super) fn fine() -> HeaderMap {
-    let mut trailers = HeaderMap::with_capacity(1);
-    trailers.insert(Status::GRPC_STATUS, HeaderValue::from_static("0"));
-    trailers
 }
 
 /// A status as the trailers of an answer.

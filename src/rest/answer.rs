@@ -341,7 +341,7 @@ fn disposition(encoding: Encoding) -> HeaderValue {
             let text = format!("{way}; filename=\"{}\"", encoding.file_name());
             (encoding, HeaderValue::from_str(&text).expect("plain names"))
         };
-        Encoding::ALL.into_iter().map(made).collect()
+        Encoding::ALL.iter().copied().map(made).collect()
     });
     let found = KNOWN.iter().find(|(known, _)| *known == encoding);
     found.map_or(HeaderValue::from_static("attachment"), |(_, value)| {

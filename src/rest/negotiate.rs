@@ -24,28 +24,16 @@ impl Chosen {
 }
 
 /// The formats by media type, in the order of preference for clients that have none.
-const OFFERS: [(&str, Encoding); 20] = [
-    ("application/json", Encoding::Json),
-    ("application/x-ndjson", Encoding::Ndjson),
-    ("application/ndjson", Encoding::Ndjson),
-    ("application/jsonl", Encoding::Ndjson),
-    ("text/csv", Encoding::Csv),
-    ("application/vnd.strew.f32", Encoding::F32),
-    ("application/vnd.strew.f64", Encoding::F64),
-    ("application/octet-stream", Encoding::F64),
-    ("application/geo+json", Encoding::Geojson),
-    ("application/geo+json-seq", Encoding::Geojsonseq),
-    ("application/vnd.apache.arrow.stream", Encoding::Arrow),
-    ("application/x-npy", Encoding::Npy),
-    ("application/ply", Encoding::Ply),
-    ("model/ply", Encoding::Ply),
-    ("image/png", Encoding::Png),
-    ("image/svg+xml", Encoding::Svg),
-    ("model/gltf-binary", Encoding::Glb),
-    ("model/vnd.usda", Encoding::Usda),
-    ("application/vnd.strew.multimesh", Encoding::Multimesh),
-    ("application/vnd.strew.instances", Encoding::Instances),
-];
+fn offers() -> impl Iterator<Item = (&'static str, Encoding)> {
+    let of = |encoding: &Encoding| {
+        let encoding = *encoding;
+        encoding
+            .accepted()
+            .iter()
+            .map(move |media_type| (*media_type, encoding))
+    };
+    Encoding::ALL.iter().flat_map(of)
+}
 
 /// A format under the media type that a client accepts.
 fn offered(media_type: &'static str, encoding: Encoding) -> Chosen {
@@ -62,10 +50,10 @@ fn offered(media_type: &'static str, encoding: Encoding) -> Chosen {
 
 /// The content types that a client can be given, each once.
 pub(super) fn content_types() -> Vec<&'static str> {
-    let named = Encoding::ALL.map(Encoding::content_type);
+    let named = Encoding::ALL.iter().copied().map(Encoding::content_type);
     let mut types = vec![];
-    let offered = OFFERS.map(|(media_type, encoding)| offered(media_type, encoding).content_type);
-    for content_type in offered.into_iter().chain(named) {
+    let offered = offers().map(|(media_type, encoding)| offered(media_type, encoding).content_type);
+    for content_type in offered.chain(named) {
         if !types.contains(&content_type) {
             types.push(content_type);
         }
@@ -86,7 +74,7 @@ pub(super) fn accepted(headers: &HeaderMap) -> Result<Chosen, Error> {
     }
     let ranges: Vec<Range<'_>> = accept.split(',').filter_map(Range::parse).collect();
     let mut best: Option<(u16, Chosen)> = None;
-    for (media_type, encoding) in OFFERS {
+    for (media_type, encoding) in offers() {
         let closest = ranges
             .iter()
             .filter(|range| range.holds(media_type))
@@ -101,7 +89,9 @@ pub(super) fn accepted(headers: &HeaderMap) -> Result<Chosen, Error> {
     best.map(|(_, chosen)| chosen)
         .ok_or_else(|| Error::NotAcceptable {
             accept: accept.chars().take(200).collect(),
-            available: OFFERS.map(|(media_type, _)| media_type).join(", "),
+            available: (offers().map(|(media_type, _)| media_type))
+                .collect::<Vec<_>>()
+                .join(", "),
         })
 }
 

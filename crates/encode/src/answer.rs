@@ -292,50 +292,42 @@ impl Answer {
     }
 
     /// The exact size in bytes, where it is known before.
-    #[must_use]
     pub const fn size(&self) -> Option<u64> {
         self.size
     }
 
     /// The bytes of each point, for answers of nothing but a head and points of one size.
-    #[must_use]
     pub const fn record_bytes(&self) -> Option<u64> {
         self.record_bytes
     }
 
     /// The bytes before the points, until they are taken.
-    #[must_use]
     pub const fn head(&self) -> Option<&Bytes> {
         self.head.as_ref()
     }
 
     /// The origin of the coordinates, if it is not the world's.
-    #[must_use]
     pub const fn origin(&self) -> Option<Place> {
         self.origin
     }
 
     /// For formats without names in them: the columns, as a JSON list in ASCII. Each has a `name`, a
     /// `type` and, where its values are indices, the `names` that they stand for.
-    #[must_use]
     pub fn legend(&self) -> Option<&str> {
         self.legend.as_deref()
     }
 
     /// A warning of a mistake that readers of the format may make.
-    #[must_use]
     pub const fn warning(&self) -> Option<&'static str> {
         self.warning
     }
 
     /// The plan whose tiles are the answer, if that is all there is in it.
-    #[must_use]
     pub const fn plain(&self) -> Option<&Plain> {
         self.plain.as_ref()
     }
 
     /// The number of points encoded so far.
-    #[must_use]
     pub fn points(&self) -> u64 {
         self.blocks.points()
     }

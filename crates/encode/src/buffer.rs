@@ -3,10 +3,7 @@
 //! Fresh memory for every block would be cleared and mapped in again and again, which costs more
 //! than making the points. A buffer returns when the network is done with its block.
 
-use std::{
-    ops::Range,
-    sync::{Arc, Mutex, PoisonError},
-};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use bytemuck::NoUninit;
 use bytes::Bytes;
@@ -23,7 +20,6 @@ const KEPT: usize = 3;
 
 impl<T: Default + Clone + NoUninit + Send + 'static> Pool<T> {
     /// A pool of buffers of `length` items.
-    #[must_use]
     pub fn new(length: usize) -> Self {
         Self {
             free: Arc::default(),
@@ -32,7 +28,6 @@ impl<T: Default + Clone + NoUninit + Send + 'static> Pool<T> {
     }
 
     /// A buffer with some content.
-    #[must_use]
     pub fn take(&self) -> Vec<T> {
         let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
         free.pop()
@@ -40,7 +35,6 @@ impl<T: Default + Clone + NoUninit + Send + 'static> Pool<T> {
     }
 
     /// A buffer without content, but with room for as much as one of this pool has had.
-    #[must_use]
     pub(super) fn take_empty(&self) -> Vec<T> {
         let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
         let mut buffer = free.pop().unwrap_or_default();
@@ -50,15 +44,9 @@ impl<T: Default + Clone + NoUninit + Send + 'static> Pool<T> {
 
     /// The first `used` items of a buffer as bytes, in memory order. The buffer comes back when
     /// they are dropped.
-    #[must_use]
     pub fn lend(&self, buffer: Vec<T>, used: usize) -> Bytes {
-        self.lend_part(buffer, 0..used * size_of::<T>())
-    }
-
-    /// Some of a buffer's bytes, lent like those of [`lend`](Self::lend); none if the range is outside of it.
-    pub(super) fn lend_part(&self, buffer: Vec<T>, part: Range<usize>) -> Bytes {
         Bytes::from_owner(Lent {
-            part,
+            used,
             buffer,
             pool: self.clone(),
         })
@@ -75,14 +63,13 @@ impl<T: Default + Clone + NoUninit + Send + 'static> Pool<T> {
 /// A buffer that finds its way home.
 struct Lent<T: Default + Clone + NoUninit + Send + 'static> {
     buffer: Vec<T>,
-    part: Range<usize>,
+    used: usize,
     pool: Pool<T>,
 }
 
 impl<T: Default + Clone + NoUninit + Send + 'static> AsRef<[u8]> for Lent<T> {
     fn as_ref(&self) -> &[u8] {
-        let bytes: &[u8] = bytemuck::cast_slice(&self.buffer);
-        bytes.get(self.part.clone()).unwrap_or_default()
+        bytemuck::cast_slice(self.buffer.get(..self.used).unwrap_or_default())
     }
 }
 

@@ -16,7 +16,6 @@ pub enum Coordinates {
 
 impl Coordinates {
     /// The coordinates that an output wants, where its parts have a lower `corner`.
-    #[must_use]
     pub fn of(output: &Output, corner: impl FnOnce() -> Place) -> Self {
         match (output.encoding, output.relative_to) {
             (encoding, origin) if encoding.is_near() => Self::Near(origin.unwrap_or_else(corner)),
@@ -26,7 +25,6 @@ impl Coordinates {
     }
 
     /// The origin of the coordinates, if it is not the world's.
-    #[must_use]
     pub const fn origin(self) -> Option<Place> {
         match self {
             Self::World => None,

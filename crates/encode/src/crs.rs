@@ -69,7 +69,6 @@ impl Serialize for Crs {
 
 impl Crs {
     /// The member `crs` of GeoJSON of 2008.
-    #[must_use]
     pub fn to_geojson(&self) -> Value {
         json!({ "type": "name", "properties": { "name": self.urn() } })
     }
@@ -92,14 +91,12 @@ impl Crs {
     }
 
     /// Whether another name means the same plane. GeoJSON in degrees is longitude first under both of its names.
-    #[must_use]
     pub fn is_plane_of(&self, other: &Self) -> bool {
         let is_same = (&self.authority, &self.code) == (&other.authority, &other.code);
         is_same || self.is_geographic() && other.is_geographic()
     }
 
     /// The system of a code of EPSG.
-    #[must_use]
     pub fn epsg(code: u16) -> Self {
         Self {
             authority: "EPSG".into(),

@@ -1,100 +1,165 @@
-//! The formats of an answer: their names and content types.
+//! The formats of an answer: one table of all that is known of them. Beside its row, a format has a file that writes it
+//! and an arm in [`Answer`](crate::Answer).
 
-/// The formats of an answer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Encoding {
-    /// One JSON document.
-    Json,
-    /// One JSON document a line.
-    Ndjson,
-    /// Comma-separated values.
-    Csv,
-    /// Interleaved little-endian `f32` pairs, relative to the box's lower corner.
-    F32,
-    /// Interleaved little-endian `f64` pairs.
-    F64,
-    /// One GeoJSON feature collection.
-    Geojson,
-    /// GeoJSON features as a text sequence.
-    Geojsonseq,
-    /// A NumPy array of `f64`.
-    Npy,
-    /// PLY vertices, binary and little-endian.
-    Ply,
-    /// An Arrow IPC stream.
-    Arrow,
-    /// A picture in pixels.
-    Png,
-    /// A picture of circles.
-    Svg,
-    /// A binary glTF file: meshes that are drawn at every point.
-    Glb,
-    /// A USD stage as text: instancers.
-    Usda,
-    /// The buffer of a Godot `MultiMesh`.
-    Multimesh,
-    /// Records of 16 bytes for graphics cards, relative to the box's lower corner.
-    Instances,
-    /// A Parquet file. Only the command line writes it.
-    Parquet,
-    /// An Arrow IPC file. Only the command line writes it.
-    Feather,
+/// What is known of a format.
+struct Format {
+    /// The name in queries.
+    name: &'static str,
+    /// The media types that clients may accept, the usual one first. Those of NumPy and PLY are not registered, but in use.
+    accepted: &'static [&'static str],
+    /// The content type of an answer, where it is not the usual media type.
+    content_type: Option<&'static str>,
+    /// The endings of the names of files, the one under which browsers save an answer first.
+    endings: &'static [&'static str],
+    traits: Traits,
 }
+
+/// What holds for some formats.
+#[derive(Clone, Copy)]
+struct Traits {
+    /// Browsers show an answer by themselves instead of saving it.
+    is_shown: bool,
+    /// Coordinates are `f32`, relative to a corner.
+    is_near: bool,
+    /// `decimals` has an effect.
+    is_text: bool,
+    /// The last line can be a summary.
+    has_summary: bool,
+    /// Readers want to know what plane coordinates are in.
+    has_crs: bool,
+    is_picture: bool,
+    /// Arrow and Parquet come with the feature `columnar`.
+    is_columnar: bool,
+}
+
+const BINARY: Traits = Traits {
+    is_shown: false,
+    is_near: false,
+    is_text: false,
+    has_summary: false,
+    has_crs: false,
+    is_picture: false,
+    is_columnar: false,
+};
+
+const TEXT: Traits = Traits {
+    is_text: true,
+    ..BINARY
+};
+
+const NEAR: Traits = Traits {
+    is_near: true,
+    ..BINARY
+};
+
+const COLUMNS: Traits = Traits {
+    is_columnar: true,
+    ..BINARY
+};
+
+/// Declares the formats with their rows: those that are streamed, then those of files.
+macro_rules! formats {
+    ($($group:ident: [$(
+        $(#[$doc:meta])* $format:ident = $name:literal,
+        $accepted:expr, $content_type:expr, $endings:expr, $traits:expr;
+    )*])*) => {
+        /// The formats of an answer.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Encoding { $($($(#[$doc])* $format,)*)* }
+
+        /// The rows, in the order of [`Encoding`].
+        const FORMATS: &[Format] = &[$($(Format {
+            name: $name,
+            accepted: &$accepted,
+            content_type: $content_type,
+            endings: &$endings,
+            traits: $traits,
+        },)*)*];
+
+        $(const $group: &[Encoding] = &[$(Encoding::$format,)*];)*
+    };
+}
+
+formats! {
+    STREAMED: [
+        /// One JSON document.
+        Json = "json", ["application/json"], None, ["json"], Traits { is_shown: true, ..TEXT };
+        /// One JSON document a line.
+        Ndjson = "ndjson", ["application/x-ndjson", "application/ndjson", "application/jsonl"], None,
+            ["ndjson", "jsonl"], Traits { has_summary: true, ..TEXT };
+        /// Comma-separated values.
+        Csv = "csv", ["text/csv"], Some("text/csv; charset=utf-8; header=present"), ["csv"], TEXT;
+        /// Interleaved little-endian `f32` pairs, relative to the box's lower corner.
+        F32 = "f32", ["application/vnd.strew.f32"], Some(BYTES), ["f32"], NEAR;
+        /// Interleaved little-endian `f64` pairs.
+        F64 = "f64", ["application/vnd.strew.f64", BYTES], Some(BYTES), ["f64"], BINARY;
+        /// One GeoJSON feature collection.
+        Geojson = "geojson", ["application/geo+json"], None, ["geojson"], Traits { has_crs: true, ..TEXT };
+        /// GeoJSON features as a text sequence.
+        Geojsonseq = "geojsonseq", ["application/geo+json-seq"], None, ["geojsonl", "geojsons", "geojsonseq"], TEXT;
+        /// A NumPy array of `f64`.
+        Npy = "npy", ["application/x-npy"], None, ["npy"], BINARY;
+        /// PLY vertices, binary and little-endian.
+        Ply = "ply", ["application/ply", "model/ply"], None, ["ply"], BINARY;
+        /// An Arrow IPC stream.
+        Arrow = "arrow", ["application/vnd.apache.arrow.stream"], None, ["arrows"], COLUMNS;
+        /// A picture in pixels.
+        Png = "png", ["image/png"], None, ["png"],
+            Traits { is_shown: true, is_picture: true, ..BINARY };
+        /// A picture of circles.
+        Svg = "svg", ["image/svg+xml"], None, ["svg"], Traits { is_shown: true, is_picture: true, ..TEXT };
+        /// A binary glTF file: meshes that are drawn at every point.
+        Glb = "glb", ["model/gltf-binary"], None, ["glb"], NEAR;
+        /// A USD stage as text: instancers.
+        Usda = "usda", ["model/vnd.usda"], None, ["usda"], NEAR;
+        /// The buffer of a Godot `MultiMesh`.
+        Multimesh = "multimesh", ["application/vnd.strew.multimesh"], Some(BYTES), ["multimesh"], NEAR;
+        /// Records of 16 bytes for graphics cards, relative to the box's lower corner.
+        Instances = "instances", ["application/vnd.strew.instances"], Some(BYTES), ["instances"], NEAR;
+    ]
+    OF_FILES: [
+        /// A Parquet file. Only the command line writes it.
+        Parquet = "parquet", ["application/vnd.apache.parquet"], None, ["parquet"],
+            Traits { has_crs: true, ..COLUMNS };
+        /// An Arrow IPC file. Only the command line writes it.
+        Feather = "feather", ["application/vnd.apache.arrow.file"], None, ["arrow", "feather"], COLUMNS;
+    ]
+}
+
+const BYTES: &str = "application/octet-stream";
 
 impl Encoding {
     /// The formats that only the command line writes, to files.
-    pub const FILES: [Self; 2] = [Self::Parquet, Self::Feather];
+    pub const FILES: &[Self] = OF_FILES;
 
     /// The formats that are streamed.
-    pub const ALL: [Self; 16] = [
-        Self::Json,
-        Self::Ndjson,
-        Self::Csv,
-        Self::F32,
-        Self::F64,
-        Self::Geojson,
-        Self::Geojsonseq,
-        Self::Npy,
-        Self::Ply,
-        Self::Arrow,
-        Self::Png,
-        Self::Svg,
-        Self::Glb,
-        Self::Usda,
-        Self::Multimesh,
-        Self::Instances,
-    ];
+    pub const ALL: &[Self] = STREAMED;
+
+    const fn format(self) -> &'static Format {
+        &FORMATS[self as usize]
+    }
+
+    /// All formats, the streamed ones first.
+    pub fn every() -> impl Iterator<Item = Self> {
+        STREAMED.iter().chain(OF_FILES).copied()
+    }
 
     /// The name in queries.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Json => "json",
-            Self::Ndjson => "ndjson",
-            Self::Csv => "csv",
-            Self::F32 => "f32",
-            Self::F64 => "f64",
-            Self::Geojson => "geojson",
-            Self::Geojsonseq => "geojsonseq",
-            Self::Npy => "npy",
-            Self::Ply => "ply",
-            Self::Arrow => "arrow",
-            Self::Png => "png",
-            Self::Svg => "svg",
-            Self::Glb => "glb",
-            Self::Usda => "usda",
-            Self::Multimesh => "multimesh",
-            Self::Instances => "instances",
-            Self::Parquet => "parquet",
-            Self::Feather => "feather",
-        }
+        self.format().name
     }
 
     /// The format with a name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
-        let mut all = Self::ALL.into_iter().chain(Self::FILES);
-        all.find(|encoding| encoding.name() == name)
+        Self::every().find(|encoding| encoding.name() == name)
+    }
+
+    /// The format of a file whose name has an ending: `arrow` is that of files.
+    #[must_use]
+    pub fn of_ending(ending: &str) -> Option<Self> {
+        Self::every().find(|encoding| encoding.format().endings.contains(&ending))
     }
 
     /// Whether the daemon streams it; other formats are for files only.
@@ -106,118 +171,109 @@ impl Encoding {
     /// Whether this build writes it: Arrow and Parquet come with the feature `columnar`.
     #[must_use]
     pub const fn is_written(self) -> bool {
-        cfg!(feature = "columnar") || !matches!(self, Self::Arrow | Self::Feather | Self::Parquet)
+        cfg!(feature = "columnar") || !self.format().traits.is_columnar
     }
 
-    /// The content type of the format when a client names it. Those of NumPy and PLY are not registered, but in use.
+    /// The media types that clients may accept, the usual one first.
+    #[must_use]
+    pub const fn accepted(self) -> &'static [&'static str] {
+        self.format().accepted
+    }
+
+    /// The content type of the format when a client names it.
     #[must_use]
     pub const fn content_type(self) -> &'static str {
-        match self {
-            Self::Json => "application/json",
-            Self::Ndjson => "application/x-ndjson",
-            Self::Csv => "text/csv; charset=utf-8; header=present",
-            Self::F32 | Self::F64 | Self::Multimesh | Self::Instances => "application/octet-stream",
-            Self::Geojson => "application/geo+json",
-            Self::Geojsonseq => "application/geo+json-seq",
-            Self::Npy => "application/x-npy",
-            Self::Ply => "application/ply",
-            Self::Arrow => "application/vnd.apache.arrow.stream",
-            Self::Png => "image/png",
-            Self::Svg => "image/svg+xml",
-            Self::Glb => "model/gltf-binary",
-            Self::Usda => "model/vnd.usda",
-            Self::Parquet => "application/vnd.apache.parquet",
-            Self::Feather => "application/vnd.apache.arrow.file",
+        match self.format() {
+            Format {
+                content_type: Some(own),
+                ..
+            } => own,
+            Format { accepted, .. } => accepted[0],
         }
     }
 
     /// The name under which browsers save an answer.
     #[must_use]
-    pub const fn file_name(self) -> &'static str {
-        match self {
-            Self::Json => "points.json",
-            Self::Ndjson => "points.ndjson",
-            Self::Csv => "points.csv",
-            Self::F32 => "points.f32",
-            Self::F64 => "points.f64",
-            Self::Geojson => "points.geojson",
-            Self::Geojsonseq => "points.geojsonl",
-            Self::Npy => "points.npy",
-            Self::Ply => "points.ply",
-            Self::Arrow => "points.arrows",
-            Self::Png => "points.png",
-            Self::Svg => "points.svg",
-            Self::Glb => "points.glb",
-            Self::Usda => "points.usda",
-            Self::Multimesh => "points.multimesh",
-            Self::Instances => "points.instances",
-            Self::Parquet => "points.parquet",
-            Self::Feather => "points.arrow",
-        }
+    pub fn file_name(self) -> String {
+        format!("points.{}", self.format().endings[0])
     }
 
     /// Whether browsers show an answer by themselves instead of saving it.
     #[must_use]
     pub const fn is_shown(self) -> bool {
-        matches!(self, Self::Json | Self::Png | Self::Svg)
+        self.format().traits.is_shown
     }
 
     /// Whether coordinates are `f32`, relative to a corner.
     #[must_use]
     pub const fn is_near(self) -> bool {
-        matches!(
-            self,
-            Self::F32 | Self::Glb | Self::Usda | Self::Multimesh | Self::Instances
-        )
+        self.format().traits.is_near
     }
 
     /// Whether `decimals` has an effect.
     #[must_use]
     pub const fn is_text(self) -> bool {
-        match self {
-            Self::Json
-            | Self::Ndjson
-            | Self::Csv
-            | Self::Geojson
-            | Self::Geojsonseq
-            | Self::Svg => true,
-            Self::F32
-            | Self::F64
-            | Self::Npy
-            | Self::Ply
-            | Self::Arrow
-            | Self::Png
-            | Self::Glb
-            | Self::Usda
-            | Self::Multimesh
-            | Self::Instances
-            | Self::Parquet
-            | Self::Feather => false,
-        }
+        self.format().traits.is_text
     }
 
     /// Whether its last line can be a summary.
     #[must_use]
     pub const fn has_summary(self) -> bool {
-        matches!(self, Self::Ndjson)
+        self.format().traits.has_summary
     }
 
     /// Whether readers want to know what plane coordinates are in.
     #[must_use]
     pub const fn has_crs(self) -> bool {
-        matches!(self, Self::Geojson | Self::Parquet)
+        self.format().traits.has_crs
     }
 
     /// Whether it is a picture.
     #[must_use]
     pub const fn is_picture(self) -> bool {
-        matches!(self, Self::Png | Self::Svg)
+        self.format().traits.is_picture
+    }
+
+    /// The names of formats, for a text.
+    pub fn names(all: &[Self]) -> String {
+        all.iter()
+            .copied()
+            .map(Self::name)
+            .collect::<Vec<_>>()
+            .join(", ")
     }
 
     /// The names of the formats that some test holds for, for an error.
     pub fn names_where(holds: impl Fn(Self) -> bool) -> String {
-        let all = Self::ALL.into_iter().chain(Self::FILES);
-        let names = all.filter(|encoding| holds(*encoding));
-        names.map(Self::name).collect::<Vec<_>>().join(", ")
+        let holding: Vec<Self> = Self::every().filter(|encoding| holds(*encoding)).collect();
+        Self::names(&holding)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_an_ending_and_a_media_type_are_of_one_format_alone() {
+        let every = || FORMATS.iter();
+        assert_eq!(every().count(), Encoding::every().count());
+        let lists: [Vec<&str>; 3] = [
+            every().map(|format| format.name).collect(),
+            every().flat_map(|format| format.endings).copied().collect(),
+            (every().flat_map(|format| format.accepted).copied()).collect(),
+        ];
+        for mut list in lists {
+            let all = list.len();
+            list.sort_unstable();
+            list.dedup();
+            assert_eq!(list.len(), all, "{list:?}");
+        }
+        for encoding in Encoding::every() {
+            assert_eq!(Encoding::from_name(encoding.name()), Some(encoding));
+            // The name of a format is an ending of its files; `arrow` is that of files of Arrow.
+            let of_ending = Encoding::of_ending(encoding.name());
+            assert!(of_ending == Some(encoding) || encoding == Encoding::Arrow);
+        }
     }
 }

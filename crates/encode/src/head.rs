@@ -50,7 +50,6 @@ impl Json {
     }
 
     /// Its text.
-    #[must_use]
     pub fn text(&self) -> &str {
         self.0.get()
     }

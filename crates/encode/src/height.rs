@@ -25,7 +25,6 @@ pub struct Located<'a> {
 
 impl<'a> Located<'a> {
     /// A point in space in two parts.
-    #[must_use]
     pub const fn parted(point: &space::Point) -> (Point, Height) {
         let space::Point { id, x, y, z } = *point;
         let flat = Point {

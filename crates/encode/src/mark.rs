@@ -15,7 +15,6 @@ pub struct Mark {
 
 impl Mark {
     /// As a cursor of the plane.
-    #[must_use]
     pub const fn in_plane(self) -> Cursor {
         let Self { offset, total, at } = self;
         let [x, y, _] = at;
@@ -27,7 +26,6 @@ impl Mark {
     }
 
     /// As a cursor in space.
-    #[must_use]
     pub const fn in_space(self) -> space::Cursor {
         let Self { offset, total, at } = self;
         let [x, y, z] = at;

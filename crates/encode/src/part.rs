@@ -37,7 +37,6 @@ pub struct Part {
 
 impl Part {
     /// The lower corner of some parts together.
-    #[must_use]
     pub fn corner(parts: &[Self]) -> Place {
         let corners = parts.iter().map(|part| origin(&*part.plan));
         corners

@@ -14,7 +14,6 @@ pub enum Place {
 
 impl Place {
     /// Its coordinates: two in the plane, three in space.
-    #[must_use]
     pub const fn as_slice(&self) -> &[f64] {
         match self {
             Self::Plane(at) => at,
@@ -23,7 +22,6 @@ impl Place {
     }
 
     /// Its first two coordinates.
-    #[must_use]
     pub const fn flat(self) -> [f64; 2] {
         match self {
             Self::Plane(at) => at,
@@ -32,7 +30,6 @@ impl Place {
     }
 
     /// Its coordinate along z, 0 in the plane.
-    #[must_use]
     pub const fn z(self) -> f64 {
         match self {
             Self::Plane(_) => 0.0,

@@ -83,7 +83,6 @@ pub struct Rows {
 
 impl Rows {
     /// The rows of some parts, one part after another.
-    #[must_use]
     pub fn new(parts: Vec<Part>, coordinates: Coordinates) -> Self {
         let described: Vec<_> = parts
             .iter()
@@ -126,13 +125,11 @@ impl Rows {
     }
 
     /// The columns besides id, x and y.
-    #[must_use]
     pub const fn schema(&self) -> &Arc<Schema> {
         &self.schema
     }
 
     /// The number of rows, including those that were returned already.
-    #[must_use]
     pub const fn count(&self) -> u128 {
         self.count
     }
@@ -148,14 +145,12 @@ impl Rows {
     }
 
     /// The origin and the precision of the coordinates.
-    #[must_use]
     pub const fn coordinates(&self) -> Coordinates {
         self.coordinates
     }
 
     /// The only plan of the plane, if its coordinates, as the kernel makes them, are the whole answer. Call it before the first
     /// batch.
-    #[must_use]
     pub fn plain_plan(&self) -> Option<&Plan> {
         let [(_, part)] = self.parts.as_slice() else {
             return None;
@@ -186,7 +181,6 @@ impl Rows {
     }
 
     /// The place after the rows so far: the number of the part, and the place in it.
-    #[must_use]
     pub fn mark(&self) -> Option<(usize, Mark)> {
         let current = self.current.as_ref()?;
         Some((current.number, current.blocks.mark()?))

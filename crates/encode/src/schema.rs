@@ -26,7 +26,6 @@ pub enum Kind {
 
 impl Column {
     /// A column of numbers that every row has.
-    #[must_use]
     pub fn number(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -37,7 +36,6 @@ impl Column {
     }
 
     /// This column with bounds of its numbers.
-    #[must_use]
     pub fn within(self, range: [f64; 2]) -> Self {
         Self {
             range: Some(range),
@@ -46,7 +44,6 @@ impl Column {
     }
 
     /// A column of names out of a list that every row has.
-    #[must_use]
     pub fn dictionary(name: impl Into<String>, names: impl Into<Arc<[String]>>) -> Self {
         Self {
             name: name.into(),
@@ -75,13 +72,11 @@ impl Schema {
     /// The columns of parts in the plane, each with its layer's name and its own columns: first the layer, if any part
     /// has one, then the columns by name in the order in which they first occur. Dictionaries of the same name are
     /// joined.
-    #[must_use]
     pub fn joined(parts: &[(Option<&str>, Vec<Column>)]) -> Self {
         Self::with_heights(parts, None)
     }
 
     /// The columns of parts in space, whose heights are between two bounds: first `z`, then as in the plane.
-    #[must_use]
     pub(super) fn with_heights(
         parts: &[(Option<&str>, Vec<Column>)],
         heights: Option<[f64; 2]>,
@@ -118,7 +113,6 @@ impl Schema {
     }
 
     /// The columns, in order.
-    #[must_use]
     pub fn columns(&self) -> &[Column] {
         &self.columns
     }
@@ -129,19 +123,16 @@ impl Schema {
     }
 
     /// Whether the first column is the height of points in space.
-    #[must_use]
     pub const fn is_in_space(&self) -> bool {
         self.is_in_space
     }
 
     /// The place of the column with the layer's name.
-    #[must_use]
     pub fn layer(&self) -> Option<usize> {
         self.layered.then_some(usize::from(self.is_in_space))
     }
 
     /// The columns of parts' own, after those of height and layer.
-    #[must_use]
     pub fn own(&self) -> &[Column] {
         &self.columns[usize::from(self.is_in_space) + usize::from(self.layered)..]
     }
@@ -178,7 +169,6 @@ pub enum Values {
 
 impl Values {
     /// No values yet, of the kind of a column.
-    #[must_use]
     pub const fn of(kind: &Kind) -> Self {
         match kind {
             Kind::Number => Self::Numbers(vec![]),
@@ -196,7 +186,6 @@ impl Values {
     }
 
     /// The value of a row as a number: a name's index, and nothing where it is missing.
-    #[must_use]
     pub fn number(&self, row: usize) -> Option<f64> {
         match self {
             Self::Numbers(values) => values.get(row).copied(),
@@ -206,7 +195,6 @@ impl Values {
     }
 
     /// The index of a row's name.
-    #[must_use]
     pub fn index(&self, row: usize) -> Option<u32> {
         match self {
             Self::Indices(values) => values.get(row).copied(),

@@ -134,7 +134,6 @@ impl<T: TextFormat + std::fmt::Debug + Send> Blocks for TextBlocks<T> {
 }
 
 /// An id as a text of its own; in space with the height of its point.
-#[must_use]
 pub fn id_text(id: PointId, height: Option<&Height>) -> String {
     let (mut x, mut y) = (itoa::Buffer::new(), itoa::Buffer::new());
     let (x, y) = (x.format(id.x), y.format(id.y));

@@ -70,7 +70,8 @@ pub fn schema(shape: Shape) -> Value {
         }),
         Shape::Choice(words) => json!({ "type": "string", "enum": words }),
         Shape::Format => {
-            json!({ "type": "string", "enum": Encoding::ALL.map(Encoding::name) })
+            let names: Vec<&str> = Encoding::ALL.iter().map(|format| format.name()).collect();
+            json!({ "type": "string", "enum": names })
         }
         Shape::Pattern(pattern) => json!({ "type": "string", "pattern": pattern }),
         Shape::Fields => json!({

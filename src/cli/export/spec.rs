@@ -121,7 +121,7 @@ impl Spec {
         )?;
         let encoding = first.output.encoding;
         if !encoding.is_streamed() {
-            let formats = Encoding::ALL.map(Encoding::name).join(", ");
+            let formats = Encoding::names(Encoding::ALL);
             refuse!(
                 "--format {}: no daemon writes it; allowed: {formats}",
                 encoding.name()

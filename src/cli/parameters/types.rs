@@ -152,8 +152,7 @@ pub(super) fn python(table: &[&Parameter]) -> String {
     let kinds: String = (within(table, groups::POINTS).into_iter())
         .map(|of| format!("    \"{}\": \"{}\",\n", of.name, kind(of.shape)))
         .collect();
-    let placed = Encoding::ALL.iter().chain(&Encoding::FILES);
-    let placed: String = (placed.filter(|encoding| encoding.has_crs()))
+    let placed: String = (Encoding::every().filter(|encoding| encoding.has_crs()))
         .map(|encoding| format!("\"{}\", ", encoding.name()))
         .collect();
     let about: String = ([REGIONS, MEMBERS, OUTPUT].iter())

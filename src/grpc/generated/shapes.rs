@@ -4,6 +4,36 @@ const MOST_FIELDS: usize = 27;
 /// The number of shapes that are requests: the first ones.
 #[cfg(test)]
 pub(super) const REQUESTS: usize = 10;
+impl Shaped for proto::StreamPointsRequest {
+    const SHAPE: usize = 0;
+}
+impl Shaped for proto::CountPointsRequest {
+    const SHAPE: usize = 1;
+}
+impl Shaped for proto::SplitPointsRequest {
+    const SHAPE: usize = 2;
+}
+impl Shaped for proto::GetPointRequest {
+    const SHAPE: usize = 3;
+}
+impl Shaped for proto::FindNearestRequest {
+    const SHAPE: usize = 4;
+}
+impl Shaped for proto::ListProfilesRequest {
+    const SHAPE: usize = 5;
+}
+impl Shaped for proto::ListPeriodsRequest {
+    const SHAPE: usize = 6;
+}
+impl Shaped for proto::GetMaskRequest {
+    const SHAPE: usize = 7;
+}
+impl Shaped for proto::ListFieldsRequest {
+    const SHAPE: usize = 8;
+}
+impl Shaped for proto::ListWorldsRequest {
+    const SHAPE: usize = 9;
+}
 pub(super) static SHAPES: [Shape; 44] = [
     Shape {
         bytes: size_of::<proto::StreamPointsRequest>(),

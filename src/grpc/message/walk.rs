@@ -4,6 +4,7 @@
 //! An empty layer is 2 bytes on the wire and 2 kB in memory, and a decoder joins messages that occur twice where
 //! the contract has one. So the limits of a query, which is checked once it is read, would come too late.
 
+use prost::Message;
 use strew_config::Limits;
 use strew_error::{Error, Fault};
 
@@ -11,6 +12,12 @@ use super::{
     super::proto,
     most::{self, Among, Limit, Most, TALLIES, Tally},
 };
+
+/// A message that the contract has as a request.
+pub trait Shaped: Message + Default + 'static {
+    /// Its place among the shapes.
+    const SHAPE: usize;
+}
 
 /// A message of the contract.
 #[derive(Debug)]
@@ -42,7 +49,7 @@ pub(super) enum Kind {
     Message(usize),
 }
 
-// Made from the contract: `SHAPES`, the messages that requests are made of.
+// Made from the contract: `SHAPES`, the messages that requests are made of; requests, which are [`Shaped`], come first.
 include!("../generated/shapes.rs");
 
 /// The price of a message.
@@ -97,7 +104,7 @@ pub(super) fn cost(shape: usize, bytes: &[u8], limits: &Limits) -> Result<Cost, 
 }
 
 /// The fault of bytes that are no message.
-pub(super) fn no_message(detail: &str) -> Error {
+pub(in crate::grpc) fn no_message(detail: &str) -> Error {
     Fault::new("message", "", detail, "one whole message of the contract").into()
 }
 

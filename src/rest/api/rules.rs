@@ -236,7 +236,7 @@ fn published(rule: &rules::Rule, groups: &'static [Group]) -> Option<Rule> {
         Condition::Format(fits) => Rule::OnlyWith {
             parameter,
             other: FORMAT.name,
-            values: (Encoding::ALL.into_iter())
+            values: (Encoding::ALL.iter().copied())
                 .filter(|encoding| fits(*encoding))
                 .map(Encoding::name)
                 .collect(),

@@ -36,14 +36,8 @@ fn cases() -> Vec<Case> {
             vec!["set.spacing"],
             vec!["missing", "one of"],
         ),
-        (
-            dense(Amount::MinDistance(0.0)),
-            vec!["set.min_distance"],
-            vec!["1e-100"],
-        ),
-        (dense(Amount::Count(0)), vec!["set.count"], vec!["from 1"]),
     ];
-    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300, 1e-300] {
+    for bad in [0.0, f64::NAN, f64::INFINITY, 1e300] {
         cases.push((
             dense(Amount::Density(bad)),
             vec!["set.density"],
@@ -80,36 +74,15 @@ fn cases() -> Vec<Case> {
         &["set.alpha"],
         &["decimal"],
     );
-    case(&|s| s.map = Some("xl".into()), &["set.map"], &["xl"]);
     case(
         &|s| s.table = Some("abc".into()),
         &["set.table"],
         &["64 hexadecimal"],
     );
     case(
-        &|s| s.warp = Some(3.0),
-        &["set.warp"],
-        &["3.0", "out of range", "0 to 2"],
-    );
-    case(
         &|s| s.warp = Some(f64::NAN),
         &["set.warp"],
         &["NaN", "finite"],
-    );
-    case(
-        &|s| s.keep = Some(0.0),
-        &["set.keep"],
-        &["out of range", "1e-6 to 1"],
-    );
-    case(
-        &|s| s.attributes = vec!["size".into()],
-        &["set.attributes"],
-        &["size", "angle"],
-    );
-    case(
-        &|s| s.attributes = vec!["variant".into()],
-        &["set.variants"],
-        &["missing"],
     );
     let range = |min, max| Some(ScaleRange { min, max });
     case(
@@ -192,8 +165,6 @@ fn regions() -> Vec<Case> {
             "min_y is -inf",
         ),
         (boxed([0.0, 0.0, 1e300, 10.0]), "region.bbox", "too far"),
-        (boxed([10.0, 0.0, 0.0, 10.0]), "region.bbox", "reversed"),
-        (boxed([0.0, 0.0, 0.0, 10.0]), "region.bbox", "empty"),
         (boxed([0.0; 4]), "region.bbox", "empty"),
         (circle(0.0), "region.circle", "radius"),
         (circle(f64::NAN), "region.circle", "NaN"),
@@ -249,7 +220,6 @@ fn layers() -> Vec<Case> {
         of(&[trees(), rocks])
     };
     let clear = |name: &str, distance| [(name.to_owned(), distance)].into();
-    let dense = |amount| move |layer: &mut Layer| layer.set = set(amount);
     let with_warp = StreamPointsRequest {
         set: Some(PointSet {
             warp: Some(1.0),
@@ -276,16 +246,6 @@ fn layers() -> Vec<Case> {
             vec!["missing"],
         ),
         (
-            with(&dense(Amount::Spacing(-1.0))),
-            vec!["layers[1].set.spacing"],
-            vec!["-1.0"],
-        ),
-        (
-            with(&|l| l.set.get_or_insert_default().profile = Some("x".into())),
-            vec!["layers[1].set.profile"],
-            vec!["x"],
-        ),
-        (
             with(&|l| l.region = boxed([1.0; 4])),
             vec!["layers[1].region.bbox"],
             vec!["empty"],
@@ -304,11 +264,6 @@ fn layers() -> Vec<Case> {
             with(&|l| l.clear_of = clear("trees", 0.0)),
             vec!["layers[1].clear_of"],
             vec!["above 0"],
-        ),
-        (
-            with(&|l| l.clear_of = clear("rocks", 1.0)),
-            vec!["layers[1].clear_of"],
-            vec!["earlier"],
         ),
         (
             with(&|l| (l.set, l.clear_of) = (set(Amount::Count(3)), clear("trees", 1.0))),

@@ -14,7 +14,7 @@ fn curl_gets_the_same_bytes_over_http_1_and_2() {
         return;
     };
     let daemon = Daemon::start(&[]);
-    for format in Encoding::ALL.map(Encoding::name) {
+    for format in Encoding::ALL.iter().map(|format| format.name()) {
         let url = daemon.url(&format!("{QUERY}{format}"));
         let expected = daemon.get(&format!("{QUERY}{format}")).body;
         for version in ["--http1.1", "--http2-prior-knowledge"] {

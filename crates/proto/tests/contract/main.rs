@@ -3,6 +3,7 @@
 //! Of messages and calls it is in this crate; of what the program looks at or converts field by field, in
 //! `src/grpc/generated/`.
 
+mod server;
 mod sets;
 mod shapes;
 
@@ -17,7 +18,6 @@ const CONTRACT: &str = "strew/v1/points.proto";
 fn the_generated_code_is_that_of_the_contract() -> Result<(), Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let contract = protox::compile([CONTRACT], [root.join("proto")])?;
-    let tables = shapes::code(&contract)?;
     let files = [
         (
             "crates/proto/src/generated/strew.v1.rs",
@@ -31,8 +31,14 @@ fn the_generated_code_is_that_of_the_contract() -> Result<(), Box<dyn Error>> {
             "src/grpc/generated/sets.rs",
             formatted(&sets::code(&contract)?)?,
         ),
-        ("src/grpc/generated/methods.rs", formatted(&tables.methods)?),
-        ("src/grpc/generated/shapes.rs", formatted(&tables.shapes)?),
+        (
+            "src/grpc/generated/server.rs",
+            formatted(&server::code(&contract)?)?,
+        ),
+        (
+            "src/grpc/generated/shapes.rs",
+            formatted(&shapes::code(&contract)?)?,
+        ),
     ];
     for (path, made) in files {
         let kept = root.join(path);

@@ -54,40 +54,29 @@ pub fn code(descriptors: &FileDescriptorSet) -> Result<String, Box<dyn Error>> {
             }
             other => return Err(format!("PointSet.{name}: no value is a {other:?}").into()),
         };
-        if in_oneof {
+        let (found, put) = if in_oneof {
             let variant = camel_case(name);
-            writeln!(
-                read,
-                "if let Some(Amount::{variant}(v)) = &set.amount {{ values.push(({name:?}, Value::{kind}({from}))); }}"
-            )?;
-            writeln!(
-                write,
-                "({name:?}, Value::{kind}(v)) => set.amount = Some(Amount::{variant}({into})),"
-            )?;
+            (
+                format!("if let Some(Amount::{variant}(v)) = &set.amount"),
+                format!("amount = Some(Amount::{variant}({into}))"),
+            )
         } else if is_list {
-            writeln!(
-                read,
-                "let v = &set.{name}; if !v.is_empty() {{ values.push(({name:?}, Value::{kind}({from}))); }}"
-            )?;
-            writeln!(
-                write,
-                "({name:?}, Value::{kind}(v)) => set.{name} = {into},"
-            )?;
+            let found = format!("let v = &set.{name}; if !v.is_empty()");
+            (found, format!("{name} = {into}"))
         } else {
-            writeln!(
-                read,
-                "if let Some(v) = &set.{name} {{ values.push(({name:?}, Value::{kind}({from}))); }}"
-            )?;
-            let guard = if kind == "Numbers" {
-                " if v.len() == 2"
-            } else {
-                ""
-            };
-            writeln!(
-                write,
-                "({name:?}, Value::{kind}(v)){guard} => set.{name} = Some({into}),"
-            )?;
-        }
+            let found = format!("if let Some(v) = &set.{name}");
+            (found, format!("{name} = Some({into})"))
+        };
+        let guard = if kind == "Numbers" {
+            "if v.len() == 2"
+        } else {
+            ""
+        };
+        writeln!(
+            read,
+            "{found} {{ values.push(({name:?}, Value::{kind}({from}))); }}"
+        )?;
+        writeln!(write, "({name:?}, Value::{kind}(v)) {guard} => set.{put},")?;
     }
     Ok(format!(
         "fn fields(set: &PointSet) -> Vec<(&'static str, Value)> {{ let mut values = vec![]; {read} values }}\n\

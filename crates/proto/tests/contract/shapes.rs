@@ -1,5 +1,5 @@
-//! The methods of the contract, and the shapes of the messages that requests are made of, as tables: for calls
-//! (`src/grpc/methods.rs`) and for the look at a message before it is decoded (`src/grpc/message/walk.rs`).
+//! The shapes of the messages that requests are made of, as a table: for the look at a message before it is decoded
+//! (`src/grpc/message/walk.rs`).
 
 use std::{error::Error, fmt::Write as _};
 
@@ -8,14 +8,8 @@ use prost_types::{
     field_descriptor_proto::{Label, Type},
 };
 
-/// The code of the tables.
-pub struct Code {
-    pub shapes: String,
-    pub methods: String,
-}
-
-/// Writes the tables. A repeated field needs a limit, by its name, in `src/grpc/message/most.rs`.
-pub fn code(descriptors: &FileDescriptorSet) -> Result<Code, Box<dyn Error>> {
+/// The code of the table. A repeated field needs a limit, by its name, in `src/grpc/message/most.rs`.
+pub fn code(descriptors: &FileDescriptorSet) -> Result<String, Box<dyn Error>> {
     let files = || descriptors.file.iter();
     let mut known = vec![];
     for message in files().flat_map(|file| &file.message_type) {
@@ -36,23 +30,20 @@ pub fn code(descriptors: &FileDescriptorSet) -> Result<Code, Box<dyn Error>> {
     let methods = files()
         .flat_map(|file| &file.service)
         .flat_map(|service| &service.method);
-    let (mut wanted, mut of_methods): (Vec<String>, _) = (vec![], String::new());
+    let mut wanted = vec![];
     for method in methods {
-        let at = place(&mut wanted, method.input_type());
-        let read = if method.server_streaming() {
-            "streamed"
-        } else {
-            "once"
-        };
-        writeln!(
-            of_methods,
-            "Method {{ path: \"/strew.v1.PointService/{}\", shape: {at}, read: |bytes| {read}(bytes, Points::{}) }},",
-            method.name(),
-            words(method.name()).to_lowercase()
-        )?;
+        place(&mut wanted, method.input_type());
     }
     // Requests are the first of the shapes.
     let requests = wanted.len();
+    let mut shaped = String::new();
+    for (i, name) in wanted.iter().enumerate() {
+        let name = rust_type(find(name)?)?;
+        writeln!(
+            shaped,
+            "impl Shaped for {name} {{ const SHAPE: usize = {i}; }}"
+        )?;
+    }
     let (mut shapes, mut most, mut i) = (String::new(), 0, 0);
     while let Some(name) = wanted.get(i).cloned() {
         let message = find(&name)?;
@@ -77,17 +68,12 @@ pub fn code(descriptors: &FileDescriptorSet) -> Result<Code, Box<dyn Error>> {
         )?;
         i += 1;
     }
-    Ok(Code {
-        shapes: format!(
-            "/// The most fields of a message.\nconst MOST_FIELDS: usize = {most};\n\
-             /// The number of shapes that are requests: the first ones.\n#[cfg(test)]\n\
-             pub(super) const REQUESTS: usize = {requests};\n\
-             pub(super) static SHAPES: [Shape; {i}] = [{shapes}];\n"
-        ),
-        methods: format!(
-            "/// The methods of the contract.\npub(super) static METHODS: &[Method] = &[{of_methods}];\n"
-        ),
-    })
+    Ok(format!(
+        "/// The most fields of a message.\nconst MOST_FIELDS: usize = {most};\n\
+         /// The number of shapes that are requests: the first ones.\n#[cfg(test)]\n\
+         pub(super) const REQUESTS: usize = {requests};\n{shaped}\
+         pub(super) static SHAPES: [Shape; {i}] = [{shapes}];\n"
+    ))
 }
 
 /// The place of a message in the table.
@@ -127,7 +113,7 @@ fn limit(message: &DescriptorProto, field: &FieldDescriptorProto) -> String {
 }
 
 /// A name in camel case as words joined by underscores.
-fn words(name: &str) -> String {
+pub fn words(name: &str) -> String {
     let mut words = String::new();
     for (i, letter) in name.chars().enumerate() {
         if i > 0 && letter.is_uppercase() {
