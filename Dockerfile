@@ -40,9 +40,10 @@ LABEL org.opencontainers.image.title="strew" \
       org.opencontainers.image.licenses="MIT OR Apache-2.0"
 COPY --from=build /strew /usr/local/bin/strew
 COPY LICENSE-APACHE LICENSE-MIT /usr/share/doc/strew/
-# Settings come from STREW_… variables or a mounted file; tables from a mounted folder. Nothing is
-# ever written, so the root file system may be read-only.
-ENV STREW_SERVER_LISTEN=0.0.0.0:8080
+# More settings come from STREW_… variables or a mounted file (`serve --config FILE`); tables from a mounted folder.
+# Nothing is ever written, so the root file system may be read-only.
+COPY config/container.toml /etc/strew/container.toml
+ENV STREW_CONFIG=/etc/strew/container.toml
 USER 65532:65532
 EXPOSE 8080
 STOPSIGNAL SIGTERM

@@ -39,7 +39,7 @@ impl Uses {
 #[derive(Clone, Debug, Default, clap::Args)]
 #[group(skip)]
 pub(crate) struct Args {
-    /// A file with settings, in TOML [default: the file that the variable STREW_CONFIG names]
+    /// A file with settings, in TOML, laid over the one that the variable STREW_CONFIG names.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
     /// A folder with *.strew tables to load beside the built-in ones.
@@ -97,7 +97,7 @@ impl Args {
     fn merge(&self, uses: Uses, listen: Option<&str>) -> Result<Config, ConfigError> {
         let mut layers = Layers::new()?;
         let variable = std::env::var_os("STREW_CONFIG").map(PathBuf::from);
-        if let Some(file) = self.config.as_ref().or(variable.as_ref()) {
+        for file in variable.iter().chain(&self.config) {
             layers = layers.file(file)?;
         }
         // A variable that is not Unicode cannot be one of ours in name or value.

@@ -29,8 +29,8 @@ pub struct Layers {
     merged: Table,
     /// The keys that flags have set, each with the flag.
     by_flags: Vec<(String, String)>,
-    /// The last file that was laid over.
-    file: Option<PathBuf>,
+    /// The files that were laid over.
+    files: Vec<PathBuf>,
 }
 
 impl Layers {
@@ -42,7 +42,7 @@ impl Layers {
         Ok(Self {
             merged: parse("the built-in configuration", DEFAULTS)?,
             by_flags: vec![],
-            file: None,
+            files: vec![],
         })
     }
 
@@ -67,7 +67,7 @@ impl Layers {
             found: vec![],
         };
         merge(&mut self.merged, over, "", &mut faults);
-        self.file = Some(path.into());
+        self.files.push(path.into());
         match faults.found.len() {
             0 => Ok(self),
             1 => Err(faults.found.remove(0)),
@@ -176,7 +176,7 @@ impl Layers {
             .merged
             .try_into()
             .map_err(|error| ConfigError::Invalid(Box::new(error)))?;
-        config.file = self.file;
+        config.files = self.files;
         Ok(config)
     }
 
@@ -221,15 +221,13 @@ impl Layers {
 }
 
 impl Config {
-    /// Reads again the fields, lists and worlds that the file names. Other settings stay as they were at the start.
+    /// Reads again the fields, lists and worlds that the files name. Other settings stay as they were at the start.
     ///
     /// # Errors
-    /// If the file has become invalid.
+    /// If a file has become invalid.
     pub fn read_names(&self) -> Result<Self, ConfigError> {
-        let Some(file) = &self.file else {
-            return Ok(self.clone());
-        };
-        let now = Layers::new()?.file(file)?.read()?;
+        let over = |layers: Layers, file: &PathBuf| layers.file(file);
+        let now = self.files.iter().try_fold(Layers::new()?, over)?.read()?;
         let mut after = self.clone();
         after.fields.named = now.fields.named;
         after.except.named = now.except.named;

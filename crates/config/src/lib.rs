@@ -82,9 +82,9 @@ pub struct Config {
     pub except: Except,
     /// The worlds to load.
     pub worlds: Worlds,
-    /// The file that settings were read from.
+    /// The files that settings were read from.
     #[serde(skip)]
-    pub file: Option<PathBuf>,
+    pub files: Vec<PathBuf>,
 }
 
 impl Config {

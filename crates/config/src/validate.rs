@@ -24,7 +24,7 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         // Checked with the tables at hand.
         except,
         worlds: _,
-        file: _,
+        files: _,
     } = config;
     let faults = [
         server.faults(),

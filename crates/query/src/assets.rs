@@ -1,6 +1,6 @@
 //! Everything that queries may name: a catalog, and the worlds over it.
 
-use std::{ops::Deref, path::Path, sync::Arc};
+use std::{ops::Deref, sync::Arc};
 
 use strew_catalog::{Catalog, Reload};
 use strew_config::Config;
@@ -55,8 +55,8 @@ impl Assets {
         let names = match config.read_names() {
             Ok(names) => names,
             Err(error) => {
-                let file = config.file.as_deref().unwrap_or(Path::new(""));
-                reload.refuse_file(&file.display().to_string(), &error);
+                let file = config.files.last().map(|file| file.display().to_string());
+                reload.refuse_file(&file.unwrap_or_default(), &error);
                 // The earlier fields and worlds stay, including those of folders.
                 return (self.over(after), reload);
             }

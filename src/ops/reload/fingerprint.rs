@@ -27,11 +27,9 @@ impl Watched {
         let files = config.access.keys_file().into_iter();
         Self {
             config: Arc::new(config.clone()),
-            files: (files
-                .chain(config.tls.files())
-                .chain(config.file.as_deref()))
-            .map(Into::into)
-            .collect(),
+            files: (files.chain(config.tls.files()).map(Into::into))
+                .chain(config.files.iter().cloned())
+                .collect(),
         }
     }
 
@@ -146,7 +144,7 @@ mod tests {
         let mut config = layers
             .and_then(strew_config::Layers::finish)
             .expect("valid");
-        config.file = Some(folder.join("keys.toml"));
+        config.files = vec![folder.join("keys.toml")];
         let watched = Watched::of(&config);
         let look = || watched.look();
         let none = look();

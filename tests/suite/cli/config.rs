@@ -74,11 +74,13 @@ fn each_layer_overrides_the_one_before() {
     assert_eq!(settings["limits"]["max_streams"].as_integer(), Some(23));
     assert_eq!(settings["limits"]["block_bytes"].as_integer(), Some(5000));
     assert_eq!(settings["server"]["listen"].as_str(), Some("127.0.0.1:1"));
-    // The environment may name the file; the output is a valid file.
+    // The environment may name a file below that of the flag, as in the image; the output is a valid file.
     let (_, settings, _) = config(|command| {
-        command.env("STREW_CONFIG", file.path());
+        command.env("STREW_CONFIG", "config/container.toml");
+        command.arg("--config").arg(file.path());
     });
     assert_eq!(points(&settings), Some(11));
+    assert_eq!(settings["server"]["listen"].as_str(), Some("0.0.0.0:8080"));
     let printed = self::file(&toml::to_string(&settings).expect("TOML"));
     let (_, again, _) = config(|command| {
         command.arg("--config").arg(printed.path());
