@@ -3,20 +3,16 @@
 mod calls;
 mod codec;
 mod deadline;
+mod documents;
 mod field;
-mod mask;
 mod message;
 mod messages;
-mod periods;
 mod points;
-mod profile;
 mod query;
 mod region;
 mod resolved;
 mod server;
 mod set;
-mod single;
-mod split;
 mod status;
 mod unpacked;
 

@@ -14,10 +14,9 @@ use tonic::{Request, Response, Status};
 
 use super::{
     codec::Raw,
-    field, mask,
+    documents, field,
     message::{Decoded, Shaped},
     messages::Messages,
-    periods, profile,
     proto::{
         CountPointsRequest, CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse,
         GetMaskRequest, GetMaskResponse, GetPointRequest, GetPointResponse, ListFieldsRequest,
@@ -27,7 +26,7 @@ use super::{
     },
     query, resolved,
     server::point_service_server::PointService,
-    set, single, split, status,
+    set, status,
 };
 
 /// A query as it was read.
@@ -124,7 +123,7 @@ impl Points {
         let planned = self.service.count(caller, query).await?;
         let count = u64::try_from(planned.count()).unwrap_or(u64::MAX);
         let places = self.service.split(caller, planned, parts).await?;
-        let part = |place| split::part(&request, place);
+        let part = |place| query::part(&request, place);
         Ok(SplitPointsResponse {
             count,
             parts: places.into_iter().map(part).collect(),
@@ -155,7 +154,7 @@ impl Points {
             .await?;
         let placed = self.service.place(caller, set).await?;
         Ok(GetPointResponse {
-            point: Some(single::point(placed.point(&id)?)),
+            point: Some(resolved::point(placed.point(&id)?)),
             set: Some(resolved::placed(&placed)),
         })
     }
@@ -175,7 +174,7 @@ impl Points {
             .await?;
         let answer = |placed: &Placed, found: Vec<Found>| {
             Ok(FindNearestResponse {
-                neighbors: found.into_iter().map(single::point).collect(),
+                neighbors: found.into_iter().map(resolved::point).collect(),
                 set: Some(resolved::placed(placed)),
             })
         };
@@ -234,7 +233,7 @@ impl PointService for Points {
         self.answer(request, async |caller, request| {
             let SplitPointsRequest { query, parts } = *request.message;
             let query = required(query, request.effort)?;
-            let parts = split::check(&query.message, parts)?;
+            let parts = query::parts(&query.message, parts)?;
             self.split(caller, query, parts).await.map_err(of_query)
         })
         .await
@@ -263,7 +262,7 @@ impl PointService for Points {
     ) -> Answer<ListProfilesResponse> {
         self.answer(request, async |_, _| {
             let catalog = self.service.catalog();
-            let profile = |entry: &Arc<Entry>| profile::profile(entry, &catalog);
+            let profile = |entry: &Arc<Entry>| documents::profile(entry, &catalog);
             Ok(ListProfilesResponse {
                 profiles: catalog.entries().map(profile).collect(),
                 in_space: catalog.in_space().map(profile).collect(),
@@ -278,14 +277,14 @@ impl PointService for Points {
         request: Request<Raw<ListPeriodsRequest>>,
     ) -> Answer<ListPeriodsResponse> {
         self.answer(request, async |_, request| {
-            periods::list(*request.message, &self.service)
+            documents::periods(*request.message, &self.service)
         })
         .await
     }
 
     async fn get_mask(&self, request: Request<Raw<GetMaskRequest>>) -> Answer<GetMaskResponse> {
         self.answer(request, async |caller, request| {
-            mask::mask(&self.service, caller, *request.message).await
+            documents::mask(&self.service, caller, *request.message).await
         })
         .await
     }

@@ -1,12 +1,11 @@
-//! Queries as answers echo them.
+//! What was found, and queries as answers echo them.
 
 use strew_catalog::Entry;
-use strew_plan::{Placed, Planned};
-use strew_query::{Resolved, ResolvedSet, Value, parameters};
+use strew_plan::{Found, Placed, Planned};
+use strew_query::{PeriodEcho, Resolved, ResolvedSet, Value, parameters};
 
 use super::{
-    periods,
-    proto::{self, Encoding, Region, ResolvedQuery, StreamPointsRequest},
+    proto::{self, Block, Encoding, Point, Region, ResolvedQuery, StreamPointsRequest},
     region, set,
 };
 
@@ -84,8 +83,42 @@ fn resolved(echo: ResolvedSet, entry: &Entry, region: Option<Region>) -> proto::
         kinds: (echo.kinds.into_iter())
             .map(|(name, count)| (name, u64::try_from(count.0).unwrap_or(u64::MAX)))
             .collect(),
-        period: echo.period.map(periods::period),
+        period: echo.period.map(period),
         delta_min: entry.measured("delta_min"),
         delta_avg: entry.measured("delta_avg"),
+    }
+}
+
+/// A period.
+pub(super) const fn period(echo: PeriodEcho) -> proto::Period {
+    proto::Period {
+        p: echo.p,
+        q: echo.q,
+        points: echo.points,
+        side: echo.side,
+    }
+}
+
+/// A point that was found.
+pub(super) fn point(found: Found) -> Point {
+    let attribute = |(name, value): (String, serde_json::Value)| proto::Value {
+        name,
+        value: match value {
+            serde_json::Value::String(text) => Some(proto::value::Value::Text(text)),
+            number => number.as_f64().map(proto::value::Value::Number),
+        },
+    };
+    Point {
+        id: found.id,
+        x: found.x,
+        y: found.y,
+        z: found.z,
+        distance: found.distance,
+        attributes: found.attributes.into_iter().map(attribute).collect(),
+        block: found.block.map(|block| {
+            // A map has a few hundred intervals.
+            let [column, row] = block.map(|i| u32::try_from(i).unwrap_or(u32::MAX));
+            Block { column, row }
+        }),
     }
 }
