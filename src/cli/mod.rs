@@ -124,7 +124,6 @@ enum Command {
 const INTERRUPTED: u8 = 130;
 
 /// Runs the program, whose daemon serves these pages.
-#[must_use]
 pub fn main(pages: fn() -> Pages) -> ExitCode {
     // Shells run the program with COMPLETE=SHELL to complete a line.
     CompleteEnv::with_factory(Cli::command).complete();

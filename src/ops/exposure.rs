@@ -4,7 +4,6 @@ use strew_config::Config;
 
 /// The warning about a file of keys that every user of the machine can read. Keys are stored as
 /// hashes, but their names and limits are confidential.
-#[must_use]
 pub fn readable_keys(config: &Config) -> Option<String> {
     #[cfg(unix)]
     {
@@ -22,7 +21,6 @@ pub fn readable_keys(config: &Config) -> Option<String> {
 
 /// The warning about a daemon that listens beyond this machine without TLS, or without keys or client
 /// certificates.
-#[must_use]
 pub fn warning(config: &Config) -> Option<String> {
     let listen = config.server.listen;
     let is_local = listen.ip().is_loopback();

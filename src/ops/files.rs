@@ -5,7 +5,6 @@ const OTHERS: u64 = 64;
 
 /// Raises the limit on open files as far as `connections` need and the system allows. Returns the number of
 /// connections that there is room for, if that is less.
-#[must_use]
 pub fn make_room(connections: usize) -> Option<u64> {
     let wanted = u64::try_from(connections)
         .unwrap_or(u64::MAX)

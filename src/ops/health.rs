@@ -35,7 +35,6 @@ pub struct Readiness {
 
 impl Readiness {
     /// Ready from now on, while short work waits for no longer than `bound`.
-    #[must_use]
     pub fn within(bound: Duration) -> Self {
         Self {
             is_closed: Arc::default(),
@@ -50,7 +49,6 @@ impl Readiness {
     }
 
     /// Whether requests are welcome.
-    #[must_use]
     pub fn is_ready(&self) -> bool {
         !self.is_closed.load(Ordering::Acquire) && self.pulse.is_within(self.bound)
     }

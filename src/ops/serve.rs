@@ -85,9 +85,6 @@ pub struct App {
 
 impl App {
     /// Reads the certificates and keys, loads the tables and starts the workers.
-    ///
-    /// # Errors
-    /// If a certificate, key or table is not valid or the system refuses threads.
     pub fn new(config: Config) -> Result<Self, ServeError> {
         let watched = Watched::of(&config);
         // Before anything is read: what changes from here on is noticed.
@@ -145,50 +142,41 @@ impl App {
     }
 
     /// Serves these pages, too.
-    #[must_use]
     pub fn with_pages(mut self, pages: rest::Pages) -> Self {
         self.pages = pages;
         self
     }
 
     /// Serves further paths on the same port, which are not described.
-    #[must_use]
     pub fn with_endpoints(mut self, more: Vec<Endpoint>) -> Self {
         self.more = more;
         self
     }
 
     /// Lets administrators in on a socket of their own.
-    #[must_use]
     pub fn with_admin(mut self, listener: TcpListener) -> Self {
         self.admin = Some(listener);
         self
     }
 
     /// Reads its tables again whenever these come.
-    #[must_use]
     pub fn with_hangups(mut self, hangups: Hangups) -> Self {
         self.hangups = Some(hangups);
         self
     }
 
     /// Where administrators are let in.
-    #[must_use]
     pub fn admin_address(&self) -> Option<std::net::SocketAddr> {
         self.admin.as_ref()?.local_addr().ok()
     }
 
     /// What it serves.
-    #[must_use]
     pub const fn service(&self) -> &Arc<Service> {
         &self.service
     }
 
     /// Serves until `shutdown` is over, then drains for as long as the settings allow. Returns
     /// the number of streams that had to be broken off.
-    ///
-    /// # Errors
-    /// If the socket does not work.
     pub async fn run(
         mut self,
         listener: TcpListener,

@@ -17,9 +17,6 @@ pub struct Signals {
 
 impl Signals {
     /// Starts to listen for ctrl-C, and for SIGTERM where there is one. Needs a tokio runtime.
-    ///
-    /// # Errors
-    /// If the system does not let us.
     pub fn new() -> io::Result<Self> {
         #[cfg(unix)]
         use tokio::signal::unix::{SignalKind, signal};
@@ -66,9 +63,6 @@ pub struct Hangups {
 
 impl Hangups {
     /// Starts to listen. Needs a tokio runtime.
-    ///
-    /// # Errors
-    /// If the system does not let us.
     pub fn new() -> io::Result<Self> {
         #[cfg(unix)]
         use tokio::signal::unix::{SignalKind, signal};

@@ -24,9 +24,6 @@ use tracing_subscriber::{
 pub(super) const ACCESS: &str = "strew::access";
 
 /// Starts logging; a second call changes nothing.
-///
-/// # Errors
-/// If the filter does not read.
 pub fn start(log: &Log) -> Result<(), tracing_subscriber::filter::ParseError> {
     let filter: Targets = log.filter.parse()?;
     let is_json = log.format == LogFormat::Json;

@@ -23,7 +23,6 @@ pub(super) fn written(document: &impl Serialize) -> Result<Vec<u8>, Error> {
 }
 
 /// An answer that is true for a moment only, and never kept.
-#[must_use]
 pub fn momentary(mut response: Response) -> Response {
     let value = HeaderValue::from_static("no-store");
     response.headers_mut().insert(header::CACHE_CONTROL, value);

@@ -38,7 +38,6 @@ pub struct Preferences {
 
 impl Preferences {
     /// Those of a request.
-    #[must_use]
     pub fn of(request: &Request) -> Self {
         let headers = request.headers();
         Self {
@@ -52,7 +51,6 @@ impl Preferences {
 impl Finish {
     /// Answers that are private are not kept by caches that several clients share. On loopback requests for foreign
     /// hosts are refused.
-    #[must_use]
     pub fn new(
         config: &Config,
         is_private: bool,
@@ -71,7 +69,6 @@ impl Finish {
     }
 
     /// Why a request is refused in the words of its protocol, before anything else is done: it is for a foreign host.
-    #[must_use]
     pub fn misdirected(&self, request: &Request) -> Option<Error> {
         // Requests without one host are refused later.
         self.hosts
@@ -80,13 +77,11 @@ impl Finish {
     }
 
     /// The answer to a preflight of a browser, which is complete.
-    #[must_use]
     pub fn preflight(&self, request: &Request) -> Option<Response> {
         cors::preflight(&self.origins, request.method(), request.headers())
     }
 
     /// Why a request is refused whatever it asks for: by its head.
-    #[must_use]
     pub fn refusal(&self, request: &Request) -> Option<Response> {
         too_long(request, self.head_bytes)
             .or_else(|| wrong_host(request))

@@ -112,9 +112,6 @@ impl Freshness {
 
     /// Answers a conditional request: makes the answer if the client needs it. One that fails is answered as it would
     /// be without conditions.
-    ///
-    /// # Errors
-    /// As making it.
     pub(super) async fn answer(
         self,
         headers: &HeaderMap,

@@ -86,13 +86,11 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
 }
 
 /// The whole HTTP/1.1 response to a client whose connection is refused.
-#[must_use]
 pub fn no_place(error: &Error) -> Vec<u8> {
     Problem::last_words(error)
 }
 
 /// The answer to a request to a gRPC method that is no call.
-#[must_use]
 pub fn not_a_call(request: &Request) -> Response {
     let detail = format!(
         "`{}` is a gRPC method; allowed: POST with the content type application/grpc or \
@@ -103,7 +101,6 @@ pub fn not_a_call(request: &Request) -> Response {
 }
 
 /// The answer to a gRPC call over an HTTP that cannot carry it.
-#[must_use]
 pub fn needs_http2(request: &Request) -> Response {
     let detail = format!(
         "`{}` is a gRPC method; allowed: gRPC over HTTP/2, gRPC-Web over any HTTP",

@@ -223,7 +223,6 @@ pub struct Refused(pub Error);
 
 impl Refused {
     /// The answer.
-    #[must_use]
     pub fn response(&self) -> Response {
         Problem::response(&self.0)
     }

@@ -24,7 +24,6 @@ pub struct Paths(Arc<str>);
 
 impl Paths {
     /// The answer to an unknown path.
-    #[must_use]
     pub fn nothing(&self, path: &str) -> Response {
         not_found(path, &self.0)
     }
@@ -36,7 +35,6 @@ impl Routes {
     ///
     /// # Panics
     /// For two endpoints of one path.
-    #[must_use]
     pub fn new(
         mut endpoints: Vec<Endpoint>,
         more: &[Endpoint],

@@ -157,9 +157,6 @@ impl<'a> Described<'a> {
 }
 
 /// The body of the answer to `/v1/worlds/{name}`.
-///
-/// # Errors
-/// [`Error::Internal`] never: worlds were read before.
 pub fn world_document(world: &World) -> Result<Vec<u8>, Error> {
     document::written(&Described::new(world)?)
 }

@@ -37,7 +37,6 @@ pub(super) fn client<'a>(
     client
 }
 
-/// An address, perhaps with a port.
 fn read(name: &[u8]) -> Option<IpAddr> {
     let name = std::str::from_utf8(name).ok()?.trim();
     let bare = name

@@ -12,7 +12,6 @@ use std::{
 
 use strew_error::{Level, Rate, Short};
 
-/// A bucket.
 #[derive(Debug)]
 pub struct Bucket {
     rate: Rate,
@@ -27,7 +26,6 @@ struct State {
 }
 
 impl Bucket {
-    /// A full one.
     pub(super) const fn full(rate: Rate, now: Instant) -> Self {
         Self {
             rate,

@@ -19,7 +19,6 @@ const REQUEST: u128 = 1;
 const POINT: Duration = Duration::from_micros(5);
 const QUICK: Duration = Duration::from_millis(2);
 
-/// A client that the gate has admitted. Cheap to clone.
 #[derive(Clone, Debug, Default)]
 pub struct Caller {
     pub(super) name: Option<Arc<str>>,
@@ -29,7 +28,6 @@ pub struct Caller {
     pub(super) bucket: Option<Arc<Bucket>>,
     /// The expenses of its request; those of a key are not kept.
     pub(super) spent: Option<Arc<Mutex<Spent>>>,
-    /// The usage of its address.
     pub(super) usage: Option<Arc<Usage>>,
 }
 
@@ -65,8 +63,6 @@ impl Drop for Place {
 }
 
 impl Caller {
-    /// A caller at the administrators' address.
-    #[must_use]
     pub fn admin() -> Self {
         Self {
             is_admin: true,
@@ -75,7 +71,6 @@ impl Caller {
     }
 
     /// The name of the key, if there was one.
-    #[must_use]
     pub fn name(&self) -> Option<&str> {
         self.name.as_deref()
     }
@@ -94,7 +89,6 @@ impl Caller {
     }
 
     /// The most points of one answer, where the server allows `limit`.
-    #[must_use]
     pub fn max_points(&self, limit: u64) -> u64 {
         self.max_points.map_or(limit, |own| own.min(limit))
     }
@@ -155,7 +149,6 @@ impl Caller {
         }
     }
 
-    /// Takes the fixed price of a new request from the bucket.
     pub(super) fn begin(&mut self) -> Result<(), Denied> {
         self.spent = self.bucket.is_some().then(Arc::default);
         self.charge(REQUEST)
@@ -166,8 +159,6 @@ impl Caller {
         Some(spent.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// The state of the rate, where there is one.
-    #[must_use]
     pub fn level(&self) -> Option<Level> {
         let bucket = self.bucket.as_ref()?;
         Some(bucket.level(Instant::now()))

@@ -14,7 +14,6 @@ use strew_error::Rate;
 
 use super::bucket::Bucket;
 
-/// The buckets of one rate.
 #[derive(Debug)]
 pub(super) struct Clients {
     rate: Rate,
@@ -32,7 +31,6 @@ impl Clients {
         }
     }
 
-    /// The bucket of an address.
     pub(super) fn bucket(&self, address: IpAddr, now: Instant) -> Arc<Bucket> {
         let client = client(address);
         let mut buckets = self.buckets.lock().unwrap_or_else(PoisonError::into_inner);

@@ -35,40 +35,24 @@ use super::{
 pub enum KeysError {
     /// The file cannot be read.
     #[error("cannot read access.keys_file {}: {error}", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        error: io::Error,
-    },
+    Unreadable { path: PathBuf, error: io::Error },
     /// It is not such TOML.
     #[error("{place} holds no keys in TOML: {error}")]
     Syntax {
-        /// The file.
         place: String,
-        /// The fault and its line.
         error: Box<toml::de::Error>,
     },
-    /// A key has a field that is out of range.
     #[error("{place}: the key `{name}` has {field} = {value}; allowed: {allowed}")]
     Field {
-        /// Where.
         place: String,
-        /// The name of the key.
         name: String,
-        /// The name of the field.
         field: &'static str,
-        /// Its value.
         value: String,
-        /// The allowed values.
         allowed: &'static str,
     },
     /// Keys are required, and there are none: every request would be refused.
     #[error("{place} holds no key; make one with `strew key new NAME`")]
-    Empty {
-        /// Where.
-        place: String,
-    },
+    Empty { place: String },
 }
 
 impl KeysError {
@@ -102,7 +86,6 @@ struct Written {
     burst_points: Option<f64>,
 }
 
-/// A key and its rights.
 #[derive(Debug)]
 struct Key {
     hash: Hashed,
@@ -114,7 +97,6 @@ struct Key {
 /// The most bytes of a file of keys: some ten thousand.
 const MAX_BYTES: u64 = 4 << 20;
 
-/// All keys.
 #[derive(Debug, Default)]
 pub(super) struct Keys {
     keys: Vec<Key>,
@@ -261,7 +243,6 @@ impl Keys {
         found
     }
 
-    /// The number of keys.
     pub(super) const fn len(&self) -> usize {
         self.keys.len()
     }

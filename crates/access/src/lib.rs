@@ -5,6 +5,11 @@
 //!
 //! Depends on the settings and the words of refusals; the service charges a [`Caller`] and counts what it uses.
 
+#![allow(
+    missing_docs,
+    reason = "an internal crate: names say what its items are"
+)]
+
 mod address;
 mod bucket;
 mod caller;
@@ -37,7 +42,6 @@ fn rate_of(settings: &config::Rate) -> Option<Rate> {
     (per_second > 0.0).then(|| Rate::new(per_second, burst))
 }
 
-/// Lets callers in.
 #[derive(Debug)]
 pub struct Gate {
     settings: Settings,
@@ -50,10 +54,6 @@ pub struct Gate {
 }
 
 impl Gate {
-    /// Reads the keys.
-    ///
-    /// # Errors
-    /// [`KeysError`], naming the place and the key.
     pub fn new(
         settings: Settings,
         rate: &config::Rate,
@@ -74,9 +74,6 @@ impl Gate {
 
     /// Reads the keys again, and returns how many there are. If they cannot be read, those before stay; if there
     /// are none any more, none is valid.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new).
     pub fn reload(&self) -> Result<usize, KeysError> {
         let keys = Keys::read(&self.settings, self.rate, Some(&self.keys.load()))?;
         let count = keys.len();
@@ -84,8 +81,6 @@ impl Gate {
         Ok(count)
     }
 
-    /// The settings.
-    #[must_use]
     pub const fn settings(&self) -> &Settings {
         &self.settings
     }
@@ -100,7 +95,6 @@ impl Gate {
     }
 
     /// The usage of an address. Trusted proxies, which speak for many clients, have no limits.
-    #[must_use]
     pub fn usage(&self, address: IpAddr) -> Arc<Usage> {
         if self.proxies.contains(address) {
             return Usage::unlimited();
@@ -110,9 +104,6 @@ impl Gate {
 
     /// Admits a client with a key, or without one, from an address, and takes one point from its rate
     /// for the request itself.
-    ///
-    /// # Errors
-    /// [`Denied`], for want of a key, or of points.
     pub fn admit(
         &self,
         key: Option<&[u8]>,

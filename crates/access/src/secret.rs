@@ -16,14 +16,11 @@ const RANDOM_BYTES: usize = 32;
 pub struct Hashed(blake3::Hash);
 
 impl Hashed {
-    /// The hash of a key.
-    #[must_use]
     pub fn of(key: &[u8]) -> Self {
         Self(blake3::hash(key))
     }
 
     /// From 64 hexadecimal digits.
-    #[must_use]
     pub fn read(text: &str) -> Option<Self> {
         blake3::Hash::from_hex(text).ok().map(Self)
     }
@@ -42,9 +39,6 @@ impl std::fmt::Display for Hashed {
 }
 
 /// A new key for its holder, and the hash that the daemon keeps.
-///
-/// # Errors
-/// If the system has no random numbers.
 pub fn new_key() -> Result<(String, Hashed), getrandom::Error> {
     let mut random = [0; RANDOM_BYTES];
     getrandom::fill(&mut random)?;

@@ -26,8 +26,6 @@ pub struct Quota {
 }
 
 impl Quota {
-    /// A quota of which nothing is used.
-    #[must_use]
     pub const fn new(limit: usize) -> Self {
         Self {
             used: AtomicUsize::new(0),
@@ -35,14 +33,10 @@ impl Quota {
         }
     }
 
-    /// The amount in use.
-    #[must_use]
     pub fn used(&self) -> usize {
         self.used.load(Ordering::Acquire)
     }
 
-    /// The limit.
-    #[must_use]
     pub const fn limit(&self) -> usize {
         self.limit
     }
@@ -58,7 +52,6 @@ impl Quota {
     }
 
     /// Takes one, if the limit allows.
-    #[must_use]
     pub fn one(self: Arc<Self>) -> Option<OneOf> {
         self.take(1).then(|| OneOf(self))
     }
@@ -71,13 +64,11 @@ impl Quota {
     /// Whether an address may use this share of a quota that all addresses have in common: no more than is left for the
     /// others, so a few addresses together never take all. If the operator allows an address more than half of the
     /// quota, this rule does not apply.
-    #[must_use]
     pub fn is_fair(&self, all: &Self) -> bool {
         let left = all.limit.saturating_sub(all.used());
         self.limit > all.limit / 2 || self.used() <= left
     }
 
-    /// Gives back an amount.
     pub fn give_back(&self, amount: usize) {
         self.used.fetch_sub(amount, Ordering::AcqRel);
     }
@@ -97,7 +88,6 @@ impl Drop for OneOf {
 #[derive(Debug)]
 pub struct Usage {
     address: Option<(IpAddr, Weak<Table>)>,
-    /// Open connections.
     pub connections: Quota,
     /// Requests, from the head to the last byte of the answer.
     pub requests: Quota,
@@ -105,9 +95,7 @@ pub struct Usage {
     pub places: Quota,
     /// Health checks, which have places of their own.
     pub probes: Quota,
-    /// Streams of points.
     pub streams: Quota,
-    /// Bytes held for its requests and answers.
     pub bytes: Quota,
 }
 
@@ -128,7 +116,6 @@ impl Usage {
     }
 
     /// Usage without limits, of trusted proxies and of programs without sockets.
-    #[must_use]
     pub fn unlimited() -> Arc<Self> {
         let all = usize::MAX;
         let limits = AddressLimits {
@@ -141,7 +128,6 @@ impl Usage {
     }
 
     /// The client that it is of; none for those without limits.
-    #[must_use]
     pub fn client(&self) -> Option<IpAddr> {
         self.address.as_ref().map(|(client, _)| *client)
     }
@@ -171,13 +157,11 @@ impl Usage {
     }
 
     /// A place for a health check, if one is free; given back when dropped.
-    #[must_use]
     pub fn probe(self: &Arc<Self>) -> Option<InUse> {
         self.one(|usage| &usage.probes, "probes").ok()
     }
 
     /// Counts a request, also beyond the limit, since a refusal is an answer, too.
-    #[must_use]
     pub fn request(self: &Arc<Self>) -> InUse {
         self.requests.take_anyway(1);
         InUse {
@@ -274,7 +258,6 @@ impl Usages {
         }
     }
 
-    /// The usage of an address.
     pub(super) fn of(&self, address: IpAddr) -> Arc<Usage> {
         let address = client(address);
         let mut all = self.table.lock();

@@ -7,9 +7,6 @@ use serde::de::{Deserialize, Deserializer, Error as _, IgnoredAny, SeqAccess, Vi
 use crate::wanted;
 
 /// Reads a list of a number of elements, called `what`.
-///
-/// # Errors
-/// As the deserializer, and for fewer or more elements.
 pub fn list<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     deserializer: D,
     range: RangeInclusive<usize>,

@@ -43,23 +43,17 @@ const LIBRARY: [(&str, &[u8]); 2] = [
     ("space-blue-5-sqrt3-over-2-r16.strew", space::BLUE),
 ];
 
-/// The tables that are loaded, by key.
 #[derive(Clone, Debug, Default)]
 pub struct Catalog {
     pub(crate) entries: BTreeMap<Key, Arc<Entry>>,
     /// The built-in ones, also where a file's table stands in the place of one.
     pub(crate) built_in: BTreeMap<Key, Arc<Entry>>,
-    /// The fields that queries may name.
     pub(crate) fields: Arc<Fields>,
-    /// The lists of points that queries may leave out.
     pub(crate) except: Arc<Lists>,
-    /// The fields that clients have sent.
     sent: Arc<Sent<NamedField>>,
-    /// Plain patterns that queries have named.
     patterns: Arc<Patterns>,
     /// The bytes of files that are held.
     pub(crate) preload_bytes: u64,
-    /// How others can be had.
     offer: Offer,
     /// The most pixels that a query may include, if not the default.
     most_pixels: Option<usize>,
@@ -68,11 +62,9 @@ pub struct Catalog {
 /// The result of building a field: the room that is left, and the memory it takes.
 #[derive(Clone, Debug)]
 pub struct Built {
-    /// The pixels that the query may still include.
     pub left: usize,
     /// The memory that the field's pixels take, in bytes.
     pub bytes: usize,
-    /// A box around them.
     pub frame: Option<[f64; 4]>,
     /// The code of EPSG of the plane of loaded fields that it names.
     pub epsg: Option<u16>,
@@ -83,18 +75,12 @@ pub struct Built {
 impl Catalog {
     /// Loads the tables of a folder, if there is one, and with `embedded` the built-in ones. A table of the folder
     /// replaces a built-in one with the same key.
-    ///
-    /// # Errors
-    /// [`CatalogError`], naming the file.
     pub fn load(embedded: bool, folder: Option<&Path>) -> Result<Self, CatalogError> {
         Self::preloading(u64::MAX, embedded, folder)
     }
 
     /// Loads like [`load`](Self::load), but reads only the heads of files beyond `preload_bytes`. Damage of those shows
     /// when they are used.
-    ///
-    /// # Errors
-    /// As [`load`](Self::load).
     pub fn preloading(
         preload_bytes: u64,
         embedded: bool,
@@ -118,9 +104,6 @@ impl Catalog {
     }
 
     /// The tables of these files, which a program has in memory, and no others.
-    ///
-    /// # Errors
-    /// [`CatalogError`] with the number of a file that is no table or has the key of another one.
     pub fn of_files(files: impl IntoIterator<Item = Vec<u8>>) -> Result<Self, CatalogError> {
         let mut catalog = Self {
             offer: Offer::Files,
@@ -131,66 +114,50 @@ impl Catalog {
         Ok(catalog)
     }
 
-    /// The catalog with these fields.
-    #[must_use]
     pub fn with_fields(mut self, fields: Fields) -> Self {
         self.fields = Arc::new(fields);
         self
     }
 
-    /// The catalog with these lists of points.
-    #[must_use]
     pub fn with_except(mut self, lists: Lists) -> Self {
         self.except = Arc::new(lists);
         self
     }
 
-    /// The lists of points that queries may leave out.
-    #[must_use]
     pub fn except(&self) -> &Lists {
         &self.except
     }
 
     /// How tables can be had that are not loaded.
-    #[must_use]
     pub const fn offer(&self) -> Offer {
         self.offer
     }
 
-    /// The fields that queries may name.
-    #[must_use]
     pub fn fields(&self) -> &Fields {
         &self.fields
     }
 
     /// The catalog with room for fields that clients send, in bytes.
-    #[must_use]
     pub fn with_room(mut self, bytes: usize) -> Self {
         self.sent = Arc::new(Sent::new(bytes));
         self
     }
 
     /// The catalog for queries of up to this number of pixels, instead of [`field::MOST_PIXELS`].
-    #[must_use]
     pub const fn with_pixels(mut self, most: usize) -> Self {
         self.most_pixels = Some(most);
         self
     }
 
-    /// The most pixels that a query may include.
-    #[must_use]
     pub fn most_pixels(&self) -> usize {
         self.most_pixels.unwrap_or(field::MOST_PIXELS)
     }
 
-    /// The fields that clients have sent.
-    #[must_use]
     pub fn sent(&self) -> &Sent<NamedField> {
         &self.sent
     }
 
     /// The field of a name, or of the digest of one that was sent.
-    #[must_use]
     pub fn field(&self, name: &str) -> Option<Arc<NamedField>> {
         let loaded = self.fields.get(name).cloned();
         loaded.or_else(|| self.sent.get(name))
@@ -249,14 +216,11 @@ impl Catalog {
         Ok(())
     }
 
-    /// The table of a key.
-    #[must_use]
     pub fn entry(&self, key: &Key) -> Option<Arc<Entry>> {
         self.entries.get(key).cloned()
     }
 
     /// The plain pattern of an α, derived; `None` for a larger map than patterns have.
-    #[must_use]
     pub fn pattern(&self, alpha: Alpha, size: Size) -> Option<Arc<Entry>> {
         self.patterns.get(alpha, size)
     }
@@ -266,7 +230,6 @@ impl Catalog {
         self.of(Dimension::Plane)
     }
 
-    /// All tables of points in space, by profile, then α.
     pub fn in_space(&self) -> impl Iterator<Item = &Arc<Entry>> {
         self.of(Dimension::Space)
     }
@@ -294,12 +257,10 @@ impl Catalog {
     }
 
     /// The shares for which a table has joint kinds.
-    #[must_use]
     pub fn joint_kinds(&self, of: &Entry) -> Vec<String> {
         self.mixes(of, true).map(|(mix, _)| mix.text()).collect()
     }
 
-    /// The digests of all tables.
     pub fn digests(&self) -> impl Iterator<Item = &str> {
         self.entries.values().map(|entry| entry.digest.as_str())
     }
@@ -327,8 +288,6 @@ impl Catalog {
         keys.map(|key| key.size).collect()
     }
 
-    /// Whether any table of a profile is loaded.
-    #[must_use]
     pub fn has_profile(&self, dimension: Dimension, profile: &str) -> bool {
         self.of_profile(dimension, profile).next().is_some()
     }

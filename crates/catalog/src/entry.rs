@@ -24,20 +24,15 @@ use strew_forge::Aim;
 
 use super::{CatalogError, Dimension, Key, MixKey, Source};
 
-/// A loaded table.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// The key by which queries find it.
     pub key: Key,
-    /// Where it comes from.
     pub source: Source,
-    /// The half-width R of its map.
     pub radius: u32,
     /// The intervals of its map per axis.
     pub intervals: usize,
     /// Its digest, in hexadecimal.
     pub digest: String,
-    /// Its history, and the measurements on it.
     pub provenance: Provenance,
     /// The size of its file, in bytes.
     pub bytes: u64,
@@ -46,7 +41,6 @@ pub struct Entry {
     content: Content,
 }
 
-/// Where the vectors are.
 #[derive(Clone, Debug)]
 enum Content {
     /// The bytes of the file, checked.
@@ -67,7 +61,6 @@ impl PartialEq for Entry {
 
 impl Entry {
     /// The aim of the forge that made it, if its history records one.
-    #[must_use]
     pub fn aim(&self) -> Option<Aim> {
         Aim::of(&self.key.profile, &self.provenance)
     }
@@ -108,7 +101,6 @@ impl Entry {
     }
 
     /// The table, if its points lie in space.
-    #[must_use]
     pub fn space(&self) -> Option<&space::Table> {
         match &self.content {
             Content::Space(bytes, table) => {
@@ -150,9 +142,6 @@ impl Entry {
     }
 
     /// Reads a table file, which must be a regular file of the size that tables may have, and holds its bytes.
-    ///
-    /// # Errors
-    /// [`CatalogError::File`] or [`CatalogError::Table`], naming the file.
     pub fn from_file(path: PathBuf) -> Result<Self, CatalogError> {
         let source = Source::File(path.clone());
         match bounded_file::read(&path, MAX_FILE_BYTES) {
@@ -162,9 +151,6 @@ impl Entry {
     }
 
     /// Reads the head of a table file and leaves its vectors on disk. One with kinds or of space is read whole.
-    ///
-    /// # Errors
-    /// As [`from_file`](Self::from_file); damage beyond the head shows when the table is needed.
     pub(super) fn from_head(path: PathBuf) -> Result<Self, CatalogError> {
         let (head, bytes) = match read_head(&path) {
             Ok(read) => read,
@@ -219,23 +205,15 @@ impl Entry {
         }
     }
 
-    /// The number of the table's blocks, one vector each.
-    #[must_use]
     pub const fn blocks(&self) -> usize {
         self.intervals.pow(self.key.dimension.axes())
     }
 
-    /// Whether its vectors are on disk.
-    #[must_use]
     pub const fn is_on_disk(&self) -> bool {
         matches!(self.content, Content::OnDisk)
     }
 
     /// The table of a set of the plane. Waits for the disk if its vectors are on disk.
-    ///
-    /// # Errors
-    /// [`Error::TableUnreadable`] if its file is gone, has changed or is damaged, and [`Error::Internal`] only if
-    /// memory has been damaged since the table was checked.
     pub fn table(&self) -> Result<Table, Error> {
         let damaged = |error: strew_core::Error| {
             tracing::error!(source = %self.source, %error, "a checked table is not valid any more");
@@ -254,7 +232,6 @@ impl Entry {
         }
     }
 
-    /// Reads the table from its file.
     fn table_of(&self, path: &Path) -> Result<Table, Error> {
         let read = Self::from_file(path.to_owned()).map_err(|error| error.to_string());
         let table = read.and_then(|read| match read.digest == self.digest {
@@ -279,7 +256,6 @@ impl Entry {
     }
 
     /// A figure that was measured on the first set that the table was not made on, if it was.
-    #[must_use]
     pub fn measured(&self, name: &str) -> Option<f64> {
         let unseen = self
             .provenance

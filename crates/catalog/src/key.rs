@@ -10,19 +10,14 @@ use crate::dimension::Dimension;
 /// of their numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Key {
-    /// Whether its points lie in the plane or in space.
     pub dimension: Dimension,
-    /// The name of the noise profile.
     pub profile: Arc<str>,
-    /// The number α.
     pub alpha: Alpha,
-    /// The size of its map.
     pub size: Size,
     /// The mix of kinds, if it has one.
     pub mix: Option<Arc<MixKey>>,
 }
 
-/// The key of a mix among those of one table.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct MixKey {
     /// The shares of its kinds.
@@ -50,7 +45,6 @@ impl PartialOrd for Key {
 
 impl MixKey {
     /// The shares as text, such as `1:3`.
-    #[must_use]
     pub fn text(&self) -> String {
         let parts: Vec<String> = self.shares.iter().map(ToString::to_string).collect();
         parts.join(":")
@@ -74,12 +68,9 @@ impl fmt::Display for Key {
     }
 }
 
-/// Where a table comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// Built into the program, under this file name.
     Embedded(&'static str),
-    /// A file.
     File(PathBuf),
     /// The memory of a program: the table of this number.
     Memory(usize),

@@ -6,7 +6,6 @@ use strew_core::{Table, server::Stop, table::Shares};
 use strew_error::{Error, Fault};
 use strew_forge::{Progress, Watch};
 
-/// A table that kinds need beside their own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Made {
     /// Labels of its blocks, for kinds in these shares.
@@ -26,7 +25,6 @@ impl fmt::Display for Made {
 
 impl Made {
     /// A table with this, if that is built in.
-    #[must_use]
     pub fn built_in(&self, of: &Table) -> Option<Table> {
         match self {
             Self::Labels(shares) => of.built_in_even(shares),
@@ -58,9 +56,6 @@ impl Watch for Until<'_> {
 }
 
 /// Makes labels or a second order of a table, unless they are built in. Takes seconds.
-///
-/// # Errors
-/// [`Error::Invalid`] if the table has too few blocks for the shares, [`Error::Internal`] once it is stopped.
 pub fn make(table: &Table, what: &Made, stop: &Stop) -> Result<Table, Error> {
     if let Some(built_in) = what.built_in(table) {
         return Ok(built_in);

@@ -14,14 +14,11 @@ use strew_config::{
     name::{ALLOWED, is_name},
 };
 
-/// Where a document comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// The program.
     Embedded,
     /// The configuration: the section, and the name in it.
     Config(&'static str, String),
-    /// A file of the folder.
     File(PathBuf),
 }
 
@@ -72,7 +69,6 @@ impl Changes {
     }
 
     /// Whether anything is other than before.
-    #[must_use]
     pub const fn is_any(&self) -> bool {
         !self.loaded.is_empty() || !self.removed.is_empty()
     }
@@ -97,36 +93,27 @@ pub fn listed<'a>(what: &str, names: impl ExactSizeIterator<Item = &'a str>) -> 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{source_name}: {detail}")]
 pub struct NamedError {
-    /// The file, the folder or the section of the configuration.
     pub source_name: String,
-    /// A description of the fault.
     pub detail: String,
 }
 
-/// A document, and its result or why it is refused.
 pub type Checked<T> = (Found, Result<T, NamedError>);
 
 /// A document that is found, and not checked yet.
 #[derive(Clone, Debug)]
 pub struct Found {
-    /// Its name.
     pub name: String,
-    /// Where it comes from.
     pub source: Source,
     /// Its text: JSON, or lines; or why it cannot be read.
     text: Result<String, String>,
 }
 
-/// Where documents of a kind are.
 #[derive(Clone, Copy, Debug)]
 pub struct Places<'a> {
-    /// The section of the configuration.
     pub section: &'static str,
-    /// The documents of that section, by name.
     pub named: &'a BTreeMap<String, toml::Table>,
     /// The folder, if there is one.
     pub folder: Option<&'a Path>,
-    /// The endings of its files.
     pub endings: &'static [&'static str],
     /// The most bytes of a file.
     pub most_bytes: u64,
@@ -134,9 +121,6 @@ pub struct Places<'a> {
 
 impl Places<'_> {
     /// The documents, those of the configuration first.
-    ///
-    /// # Errors
-    /// If the folder cannot be listed.
     fn found(&self) -> Result<Vec<Found>, NamedError> {
         let section = |(name, table): (&String, &toml::Table)| Found {
             name: name.clone(),
@@ -159,9 +143,6 @@ impl Places<'_> {
     }
 
     /// Checks every document by itself. Of two of a name the first counts.
-    ///
-    /// # Errors
-    /// If the folder cannot be listed.
     pub fn each<T>(
         &self,
         check: impl Fn(&Found, &str) -> Result<T, String>,
@@ -190,9 +171,6 @@ impl Places<'_> {
     }
 
     /// Checks every document by itself. A refused document leaves its earlier version in place.
-    ///
-    /// # Errors
-    /// If the folder cannot be listed.
     pub fn over<T>(
         &self,
         before: &BTreeMap<String, Arc<T>>,
@@ -216,13 +194,9 @@ impl Places<'_> {
     }
 }
 
-/// Documents by name, and the refused ones.
 pub type Over<T> = (BTreeMap<String, Arc<T>>, Vec<Refused<NamedError>>);
 
 /// The files of a folder with one of some endings, in the order of their names.
-///
-/// # Errors
-/// If the folder cannot be listed.
 fn files_with(folder: &Path, endings: &[&str]) -> Result<Vec<PathBuf>, String> {
     let listed = || -> io::Result<Vec<PathBuf>> {
         fs::read_dir(folder)?

@@ -11,16 +11,13 @@ use crate::Dimension;
 /// How a table that is not loaded can be had.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Offer {
-    /// The operator makes it, into the folder of tables.
     #[default]
     Forge,
-    /// The program hands its file over.
     Files,
 }
 
 impl Offer {
     /// A remedy for a profile that is not loaded; empty if there is none.
-    #[must_use]
     pub fn of_profile(self, dimension: Dimension, profile: &str) -> String {
         let is_known = match dimension {
             Dimension::Plane => Profile::named(profile).is_ok(),
@@ -33,7 +30,6 @@ impl Offer {
     }
 
     /// A remedy for a table that is not loaded; empty if there is none.
-    #[must_use]
     pub fn of_table(
         self,
         dimension: Dimension,
@@ -98,7 +94,6 @@ impl Offer {
     }
 
     /// A remedy for a table that is shipped as a file; empty if tables are not handed over.
-    #[must_use]
     pub const fn of_file(self) -> &'static str {
         match self {
             Self::Files => {

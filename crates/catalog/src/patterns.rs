@@ -24,7 +24,6 @@ pub(super) struct Patterns(Mutex<Known>);
 #[derive(Debug, Default)]
 struct Known {
     entries: HashMap<(Alpha, Size), (Arc<Entry>, u64)>,
-    /// Counts uses.
     now: u64,
 }
 

@@ -7,10 +7,8 @@ use strew_error::Error;
 
 use crate::entry::Entry;
 
-/// A table ready to answer.
 #[derive(Clone, Debug)]
 pub struct Ready {
-    /// The table's entry in the catalog.
     pub entry: Arc<Entry>,
     /// The table; its least distances have been computed.
     pub table: Table,
@@ -20,15 +18,11 @@ pub struct Ready {
 
 impl Ready {
     /// Reads a table: microseconds to milliseconds, by its size.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if it cannot be read any more.
     pub fn load(entry: &Arc<Entry>) -> Result<Self, Error> {
         Ok(Self::new(entry.clone(), entry.table()?))
     }
 
     /// A table, once its least distances are computed.
-    #[must_use]
     pub fn new(entry: Arc<Entry>, table: Table) -> Self {
         let _ = (table.least_distance(), table.least_distance_of(0, 0));
         Self {

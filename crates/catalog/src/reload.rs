@@ -120,7 +120,6 @@ impl Reload {
 
 impl Catalog {
     /// The catalog after reading the fields and the lists of points again. What came of it is added to `reload`.
-    #[must_use]
     pub fn reload_names(self, names: &Config, reload: &mut Reload) -> Self {
         let (fields, changes, refused) = self.fields.reload(&names.fields);
         reload.fields = changes;
@@ -132,7 +131,6 @@ impl Catalog {
     }
 
     /// The catalog after reading the folder of tables again, and the changes.
-    #[must_use]
     pub fn reload_tables(&self, folder: Option<&Path>) -> (Self, Reload) {
         let mut reload = Reload::default();
         let files = folder.map_or(Ok(vec![]), table_files);

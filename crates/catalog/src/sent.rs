@@ -17,14 +17,12 @@ pub struct Sender(pub Option<IpAddr>);
 
 /// Something that can be sent once and named later.
 pub trait Sendable {
-    /// The digest by which it is named.
     fn name(&self) -> &str;
 
     /// The memory that it takes, at most, in bytes.
     fn size(&self) -> usize;
 }
 
-/// Everything of a kind that was sent.
 #[derive(Debug)]
 pub struct Sent<T> {
     /// The most memory that it may take, in bytes.
@@ -48,7 +46,6 @@ struct Held<T> {
 }
 
 impl<T> Default for Sent<T> {
-    /// No room.
     fn default() -> Self {
         let (held, now) = (HashMap::new(), 0);
         Self {
@@ -60,7 +57,6 @@ impl<T> Default for Sent<T> {
 
 impl<T: Sendable> Sent<T> {
     /// Room of this many bytes.
-    #[must_use]
     pub fn new(room: usize) -> Self {
         Self {
             room,
@@ -90,7 +86,6 @@ impl<T: Sendable> Sent<T> {
     }
 
     /// The item with a digest, if it is still there.
-    #[must_use]
     pub fn get(&self, digest: &str) -> Option<Arc<T>> {
         let mut shelf = self.shelf();
         shelf.now += 1;

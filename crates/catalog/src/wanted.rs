@@ -28,9 +28,6 @@ pub fn until<T>(stop: &Stop, read: impl FnOnce() -> T) -> T {
 }
 
 /// Looks before every few elements of a list.
-///
-/// # Errors
-/// A message once the flag is raised.
 pub(crate) fn look(element: usize) -> Result<(), &'static str> {
     if !element.is_multiple_of(OFTEN) {
         return Ok(());

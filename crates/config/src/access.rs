@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 
 use super::{Limits, NETWORKS, Networks, range::out_of_range};
 
-/// The settings of admission.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Access {
@@ -22,19 +21,15 @@ pub struct Access {
 
 impl Access {
     /// The file with keys, if there is one.
-    #[must_use]
     pub fn keys_file(&self) -> Option<&Path> {
         Some(self.keys_file.as_path()).filter(|file| !file.as_os_str().is_empty())
     }
 
-    /// Whether there are keys.
-    #[must_use]
     pub fn has_keys(&self) -> bool {
         self.keys_file().is_some() || !self.keys.is_empty()
     }
 
     /// Whether only clients with a key are admitted.
-    #[must_use]
     pub fn needs_key(&self) -> bool {
         self.has_keys() && !self.anonymous
     }
@@ -50,7 +45,6 @@ impl Access {
     }
 }
 
-/// How fast points may be taken, by each client.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rate {
@@ -58,7 +52,6 @@ pub struct Rate {
     pub points_per_second: f64,
     /// The burst allowed after a pause; 0 means ten seconds' worth.
     pub burst_points: f64,
-    /// The number of addresses that are remembered.
     pub max_clients: usize,
 }
 
@@ -72,15 +65,12 @@ impl Rate {
     }
 }
 
-/// The limits of one address at any moment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AddressLimits {
-    /// Connections.
     pub max_connections: usize,
     /// Requests, from their head to the last byte of the answer.
     pub max_requests: usize,
-    /// Answers with points.
     pub max_streams: usize,
     /// Bytes that its requests and answers hold.
     pub max_bytes_in_flight: usize,

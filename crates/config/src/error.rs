@@ -2,24 +2,19 @@
 
 use std::path::PathBuf;
 
-/// An error in the configuration.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConfigError {
     /// The file cannot be read.
     #[error("cannot read the configuration file {}: {error}", path.display())]
     Unreadable {
-        /// The file.
         path: PathBuf,
-        /// Why.
         error: std::io::Error,
     },
     /// The file is not TOML.
     #[error("{source_name} is not valid TOML: {error}")]
     Syntax {
-        /// The file.
         source_name: String,
-        /// Where and why.
         error: Box<toml::de::Error>,
     },
     /// A key that does not exist.
@@ -28,38 +23,25 @@ pub enum ConfigError {
         suggestion(suggestions)
     )]
     UnknownKey {
-        /// The place where it was set.
         source_name: String,
-        /// The key, or the name of the variable.
         key: String,
         /// Keys that exist, the likeliest first.
         suggestions: Vec<String>,
     },
-    /// A value of the wrong type.
     #[error("{source_name}: `{key}` is {value}; allowed: {allowed}")]
     WrongType {
-        /// The place where it was set.
         source_name: String,
-        /// The key.
         key: String,
-        /// The value.
         value: String,
-        /// The type it must have.
         allowed: &'static str,
     },
-    /// Faults of one file.
     #[error("{}", each_on_a_line(.0))]
     Several(Vec<ConfigError>),
     /// A flag that is not of the form `key=value`.
     #[error("--set {text}: expected key=value, for example limits.max_points=1000")]
-    Assignment {
-        /// The flag's value.
-        text: String,
-    },
-    /// A key that two flags set.
+    Assignment { text: String },
     #[error("`{key}` is set twice, by {first} and by {second}; allowed: one of them")]
     Twice {
-        /// The key.
         key: String,
         /// The first flag.
         first: String,
@@ -72,17 +54,12 @@ pub enum ConfigError {
         list(used)
     )]
     Unused {
-        /// The flag.
         source_name: String,
-        /// The key.
         key: String,
-        /// The keys of the settings that it uses.
         used: Vec<String>,
     },
-    /// A value of the wrong type.
     #[error("the settings are not valid: {}", in_a_line(.0))]
     Invalid(Box<toml::de::Error>),
-    /// Values out of range.
     #[error("the settings are not valid: {}", faults.join("; "))]
     OutOfRange {
         /// The faults, each with its key, its value and the allowed values.
@@ -90,7 +67,6 @@ pub enum ConfigError {
     },
 }
 
-/// A message of the reader of TOML, which has lines.
 fn in_a_line(error: &toml::de::Error) -> String {
     let text = error.to_string();
     let text = text.trim();

@@ -20,24 +20,18 @@ const OTHERS: [&str; 2] = ["STREW_CONFIG", "STREW_API_KEY"];
 /// The most bytes of a file of settings. Fields and worlds may hold outlines.
 const MOST_BYTES: u64 = 16 << 20;
 
-/// The sections whose tables are named by files.
 const NAMED: [&str; 3] = ["fields.", "worlds.", "except."];
 
 /// Layers of settings, merged so far, of which a [`Config`] is made.
 #[derive(Clone, Debug)]
 pub struct Layers {
     merged: Table,
-    /// The keys that flags have set, each with the flag.
     by_flags: Vec<(String, String)>,
     /// The files that were laid over.
     files: Vec<PathBuf>,
 }
 
 impl Layers {
-    /// The defaults alone.
-    ///
-    /// # Errors
-    /// Never, unless the built-in file is broken.
     pub fn new() -> Result<Self, ConfigError> {
         Ok(Self {
             merged: parse("the built-in configuration", DEFAULTS)?,
@@ -47,10 +41,6 @@ impl Layers {
     }
 
     /// Lays a file over the layers so far.
-    ///
-    /// # Errors
-    /// If the file is not a regular one, is too long, cannot be read, is not TOML, or has a key or type that does not
-    /// exist.
     pub fn file(mut self, path: &Path) -> Result<Self, ConfigError> {
         let text =
             bounded_file::read_text(path, MOST_BYTES).map_err(|error| ConfigError::Unreadable {
@@ -77,9 +67,6 @@ impl Layers {
 
     /// Lays the environment over the layers so far: `STREW_LIMITS_MAX_POINTS` is `limits.max_points`. Variables that
     /// begin with `STREW_TEST_` belong to the tests.
-    ///
-    /// # Errors
-    /// For a variable with the prefix that is no setting, or a value of the wrong type.
     pub fn environment(
         mut self,
         variables: impl IntoIterator<Item = (String, String)>,
@@ -105,9 +92,6 @@ impl Layers {
     }
 
     /// Lays a flag over the layers so far: `key=value`. The last one of a key counts.
-    ///
-    /// # Errors
-    /// For an unknown key, a value of the wrong type, or a text without `=`.
     pub fn assignment(mut self, text: &str) -> Result<Self, ConfigError> {
         let (key, value) = text
             .split_once('=')
@@ -127,9 +111,6 @@ impl Layers {
     }
 
     /// Lays a flag of its own over the layers so far.
-    ///
-    /// # Errors
-    /// If the value is of the wrong type, or another flag has set the key.
     pub fn flag(mut self, flag: &str, key: &str, value: &str) -> Result<Self, ConfigError> {
         if let Some((_, first)) = self.by_flags.iter().find(|(known, _)| known == key) {
             return Err(ConfigError::Twice {
@@ -145,9 +126,6 @@ impl Layers {
 
     /// Checks that flags set only the settings of `used`, each a section with a dot or a key. Files and the environment
     /// may set others, since the daemon shares them.
-    ///
-    /// # Errors
-    /// Names the flag and the settings that are allowed.
     pub fn only(self, used: &[&str]) -> Result<Self, ConfigError> {
         let is_used = |key: &str| used.iter().any(|used| key.starts_with(used));
         match self.by_flags.iter().find(|(key, _)| !is_used(key)) {
@@ -160,17 +138,12 @@ impl Layers {
         }
     }
 
-    /// The merged settings, checked.
-    ///
-    /// # Errors
-    /// If a value has the wrong type or is out of range.
     pub fn finish(self) -> Result<Config, ConfigError> {
         let config = self.read()?;
         validate(&config)?;
         Ok(config)
     }
 
-    /// The merged settings, unchecked.
     pub(super) fn read(self) -> Result<Config, ConfigError> {
         let mut config: Config = self
             .merged
@@ -222,9 +195,6 @@ impl Layers {
 
 impl Config {
     /// Reads again the fields, lists and worlds that the files name. Other settings stay as they were at the start.
-    ///
-    /// # Errors
-    /// If a file has become invalid.
     pub fn read_names(&self) -> Result<Self, ConfigError> {
         let over = |layers: Layers, file: &PathBuf| layers.file(file);
         let now = self.files.iter().try_fold(Layers::new()?, over)?.read()?;
@@ -243,11 +213,8 @@ fn parse(source_name: &str, text: &str) -> Result<Table, ConfigError> {
     })
 }
 
-/// The faults of a file, all of them.
 struct Faults<'a> {
-    /// Names the place of a key.
     at: &'a dyn Fn(&str) -> String,
-    /// Every key and section that exists.
     keys: &'a [String],
     found: Vec<ConfigError>,
 }

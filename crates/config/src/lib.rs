@@ -8,6 +8,11 @@
 //!
 //! Depends on no other crate of Strew. Everything that has a setting may depend on it.
 
+#![allow(
+    missing_docs,
+    reason = "an internal crate: names say what its items are"
+)]
+
 mod access;
 pub mod bounded_file;
 mod error;
@@ -39,59 +44,34 @@ pub use server::{Admin, Server, Shutdown, Tls};
 pub use error::ConfigError;
 pub use layers::Layers;
 
-/// The defaults, with comments.
 pub const DEFAULTS: &str = include_str!("../strew.toml");
 
-/// All settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Config {
-    /// Addresses, connections and their times.
     pub server: Server,
-    /// The certificates of the server and of clients.
     pub tls: Tls,
-    /// The admission of clients.
     pub access: Access,
-    /// The rate at which a client may take points.
     pub rate: Rate,
-    /// The address of administrators.
     pub admin: Admin,
-    /// Answers over HTTP.
     pub http: Http,
-    /// The tables to load.
     pub tables: Tables,
-    /// The fields to load.
     pub fields: Fields,
-    /// The limits of queries and of memory.
     pub limits: Limits,
-    /// The limits of one address.
     pub per_address: AddressLimits,
-    /// The reloading of files.
     pub reload: Reload,
-    /// The threads that make points.
     pub workers: Workers,
-    /// The times of a shutdown.
     pub shutdown: Shutdown,
-    /// The log.
     pub log: Log,
-    /// The metrics.
     pub metrics: Metrics,
-    /// The collector of spans.
     pub telemetry: Telemetry,
-    /// The lists of points to load.
     pub except: Except,
-    /// The worlds to load.
     pub worlds: Worlds,
-    /// The files that settings were read from.
     #[serde(skip)]
     pub files: Vec<PathBuf>,
 }
 
 impl Config {
-    /// The merged settings as TOML.
-    ///
-    /// # Errors
-    /// Only if a path is not Unicode.
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
         toml::to_string_pretty(self)
     }

@@ -37,7 +37,6 @@ pub struct Limits {
 }
 
 impl Default for Limits {
-    /// The limits of the built-in settings.
     fn default() -> Self {
         Self {
             memory_bytes: 0,
@@ -77,7 +76,6 @@ impl Limits {
     }
 }
 
-/// When files are read again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reload {
@@ -91,7 +89,6 @@ impl Reload {
     }
 }
 
-/// The threads that make points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Workers {

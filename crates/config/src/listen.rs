@@ -8,10 +8,6 @@ const ALLOWED: &str = "an address and a port (127.0.0.1:8080, [::1]:8080), a nam
                        (localhost:8080), a port on all addresses (:8080), or a port of this machine \
                        alone (8080)";
 
-/// Reads an address.
-///
-/// # Errors
-/// Names the value and the allowed forms.
 pub(super) fn read(text: &str) -> Result<SocketAddr, String> {
     let port = |text: &str| text.parse::<u16>().ok();
     let read = || {

@@ -9,11 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use super::range::out_of_range;
 
-/// The settings of tables to load.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tables {
-    /// Whether the built-in ones are loaded.
     pub embedded: bool,
     /// A folder with more; empty for none.
     pub folder: PathBuf,
@@ -23,16 +21,13 @@ pub struct Tables {
 
 impl Tables {
     /// The folder, if there is one.
-    #[must_use]
     pub fn folder(&self) -> Option<&Path> {
         some(&self.folder)
     }
 }
 
-/// The settings of fields to load.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fields {
-    /// Whether the built-in one is loaded.
     pub embedded: bool,
     /// A folder with documents and rasters; empty for none.
     pub folder: PathBuf,
@@ -40,32 +35,27 @@ pub struct Fields {
     pub max_bytes: usize,
     /// The most memory that fields may take which clients send to name them later, in bytes; 0 for none.
     pub max_sent_bytes: usize,
-    /// Fields by name, as documents.
     #[serde(flatten)]
     pub named: BTreeMap<String, toml::Table>,
 }
 
 impl Fields {
     /// The folder, if there is one.
-    #[must_use]
     pub fn folder(&self) -> Option<&Path> {
         some(&self.folder)
     }
 }
 
-/// The settings of worlds to load.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Worlds {
     /// A folder with documents; empty for none.
     pub folder: PathBuf,
-    /// Worlds by name, as documents.
     #[serde(flatten)]
     pub named: BTreeMap<String, toml::Table>,
 }
 
 impl Worlds {
     /// The folder, if there is one.
-    #[must_use]
     pub fn folder(&self) -> Option<&Path> {
         some(&self.folder)
     }
@@ -80,14 +70,12 @@ pub struct Except {
     pub max_ids: usize,
     /// The most memory that lists may take which clients send to name them later, in bytes; 0 for none.
     pub max_sent_bytes: usize,
-    /// Lists by name, as documents.
     #[serde(flatten)]
     pub named: BTreeMap<String, toml::Table>,
 }
 
 impl Except {
     /// The folder, if there is one.
-    #[must_use]
     pub fn folder(&self) -> Option<&Path> {
         some(&self.folder)
     }

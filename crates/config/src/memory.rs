@@ -17,18 +17,15 @@ const LEAST_CACHE: u64 = 4 << 20;
 /// Fewer connections than this would not serve a proxy.
 const LEAST_CONNECTIONS: u64 = 128;
 
-/// A setting that was lowered, and its value now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lowered {
     /// The name of the setting, such as `limits.cache_bytes`.
     pub key: &'static str,
-    /// The value in its place.
     pub value: u64,
 }
 
 impl Config {
     /// The most memory, in bytes, that clients can make the daemon take.
-    #[must_use]
     pub fn memory_bound(&self) -> u64 {
         let held = self.limits.max_bytes_in_flight as u64 + self.kept();
         let connections = self.server.max_connections as u64 * CONNECTION;

@@ -1,23 +1,18 @@
 //! The names of keys, fields, worlds and lists, which are parts of files and addresses, and the titles of layers.
 
-/// The rule for names, as messages state it.
 pub const ALLOWED: &str = "1 to 64 ASCII letters, digits, _, - and ., not dots alone";
 
-/// Whether a text may be a name.
-#[must_use]
 pub fn is_name(text: &str) -> bool {
     let is_allowed = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
     let is_path = text.bytes().all(|byte| byte == b'.');
     (1..=64).contains(&text.len()) && text.chars().all(is_allowed) && !is_path
 }
 
-/// The rule for titles, as messages state it.
 pub const TITLES: &str =
     "1 to 64 characters, none of them a control character but tabs and line breaks";
 
 /// Whether a text may be the title of a layer: any text, as properties of features are. Marks that change the direction
 /// of the text around are left out.
-#[must_use]
 pub fn is_title(text: &str) -> bool {
     let is_hidden = |c| matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}');
     let is_shown = |c: char| matches!(c, '\t' | '\n' | '\r') || !c.is_control() && !is_hidden(c);

@@ -2,21 +2,15 @@
 
 use std::net::IpAddr;
 
-/// Networks, such as those of proxies.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Networks {
     networks: Vec<(IpAddr, u32)>,
 }
 
-/// The rule for lists of networks, as messages state it.
 pub const NETWORKS: &str =
     "addresses (10.0.0.1) or networks (10.0.0.0/8, fd00::/8) with spaces or commas between them";
 
 impl Networks {
-    /// Reads a list.
-    ///
-    /// # Errors
-    /// The first part that is neither an address nor a network.
     pub fn read(text: &str) -> Result<Self, String> {
         let parts = text.split([' ', ',']).filter(|part| !part.is_empty());
         let network = |part: &str| {
@@ -38,8 +32,6 @@ impl Networks {
         })
     }
 
-    /// Whether one of the networks has an address.
-    #[must_use]
     pub fn contains(&self, address: IpAddr) -> bool {
         let address = address.to_canonical();
         self.networks.iter().any(|&(network, length)| {

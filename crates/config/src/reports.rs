@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 
 use super::range::{DAY, HOUR, SECOND, out_of_range};
 
-/// The settings of answers over HTTP.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Http {
@@ -20,7 +19,6 @@ pub struct Http {
 }
 
 impl Http {
-    /// The parts of the list of origins.
     pub(crate) fn origins(&self) -> impl Iterator<Item = &str> {
         let parts = self.cors_origins.split([' ', ',']);
         parts.filter(|origin| !origin.is_empty())
@@ -91,15 +89,11 @@ fn is_web_address(text: &str) -> bool {
     is_host && port.is_none_or(is_port)
 }
 
-/// The settings of the log.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Log {
-    /// A level, or levels by module.
     pub filter: String,
-    /// The format of a line.
     pub format: LogFormat,
-    /// The stream that lines are written to.
     pub output: LogOutput,
 }
 
@@ -117,27 +111,22 @@ impl Log {
     }
 }
 
-/// The format of the lines of the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LogFormat {
-    /// For people.
     Text,
     /// An object a line.
     Json,
 }
 
-/// The stream that the log is written to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LogOutput {
     /// Standard error; standard output has the address that the daemon listens on.
     Stderr,
-    /// Standard output, with nothing but the log.
     Stdout,
 }
 
-/// The settings of metrics.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Metrics {
@@ -153,11 +142,9 @@ pub struct Telemetry {
     pub otlp_endpoint: String,
     /// A PEM file with the authorities that vouch for the collector, for `https`.
     pub otlp_ca: PathBuf,
-    /// The daemon's name in traces.
     pub service_name: String,
     /// The share of requests without a trace of their own that begin one.
     pub sample_ratio: f64,
-    /// The most spans that wait to be sent.
     pub max_queued_spans: usize,
     /// How long sending may take, in seconds.
     pub export_timeout_seconds: f64,
@@ -196,7 +183,6 @@ impl Telemetry {
         })
     }
 
-    /// Whether spans are sent by TLS.
     pub fn is_https(&self) -> bool {
         self.otlp_endpoint.starts_with("https:")
     }

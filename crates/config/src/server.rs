@@ -12,11 +12,9 @@ use super::{
     range::{DAY, HOUR, SECOND, out_of_range},
 };
 
-/// Where and how to serve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Server {
-    /// Address and port.
     #[serde(deserialize_with = "listen::deserialize")]
     pub listen: SocketAddr,
     /// The most connections at once.
@@ -65,7 +63,6 @@ impl Server {
     }
 }
 
-/// The address of administrators.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Admin {
@@ -75,9 +72,6 @@ pub struct Admin {
 
 impl Admin {
     /// The address, if there is one.
-    ///
-    /// # Errors
-    /// If it does not read as one.
     pub fn address(&self) -> Result<Option<SocketAddr>, String> {
         let text = Some(self.listen.as_str()).filter(|text| !text.is_empty());
         text.map(listen::read).transpose()
@@ -96,7 +90,6 @@ impl Admin {
 pub struct Tls {
     /// A PEM file with the server's certificate and those that vouch for it; empty for no TLS.
     pub certificate: PathBuf,
-    /// A PEM file with the certificate's private key.
     pub key: PathBuf,
     /// A PEM file with the authorities that vouch for clients; empty if clients need not prove who
     /// they are.
@@ -104,7 +97,6 @@ pub struct Tls {
 }
 
 impl Tls {
-    /// The files that are named.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         let all = [&self.certificate, &self.key, &self.client_ca];
         all.into_iter()
@@ -112,8 +104,6 @@ impl Tls {
             .filter(|path| !path.as_os_str().is_empty())
     }
 
-    /// Whether TLS is spoken.
-    #[must_use]
     pub fn is_on(&self) -> bool {
         !self.certificate.as_os_str().is_empty()
     }
@@ -135,14 +125,11 @@ impl Tls {
         )]
     }
 
-    /// Whether clients have to show a certificate.
-    #[must_use]
     pub fn proves_clients(&self) -> bool {
         self.is_on() && !self.client_ca.as_os_str().is_empty()
     }
 }
 
-/// How to stop.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Shutdown {

@@ -2,7 +2,6 @@
 
 use crate::rate::Short;
 
-/// Why a request is refused, for good or for now.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Denied {
     /// A key is needed, and there is none.
@@ -16,11 +15,7 @@ pub enum Denied {
         "the request is for the host `{host}`, and a daemon on loopback answers for addresses, names without a \
          dot and the host of http.public_url alone"
     )]
-    ForeignHost {
-        /// The host, as the client names it.
-        host: String,
-    },
-    /// Only administrators may do that.
+    ForeignHost { host: String },
     #[error(
         "{} may not do this: it takes a key with `admin = true`, or the address of `admin.listen`, \
          if the daemon has one",
@@ -30,34 +25,18 @@ pub enum Denied {
         /// The name of the key, if there is one.
         name: Option<String>,
     },
-    /// The caller has reached its limit of streams.
     #[error(
         "{limit} answers are being streamed to this key, the limit: try again when one has ended"
     )]
-    TooManyStreams {
-        /// The limit.
-        limit: usize,
-    },
-    /// The client's address has reached the limit of one address.
+    TooManyStreams { limit: usize },
     #[error("{limit} {what} of this address are in use, the limit: try again later")]
-    Address {
-        /// The things that it uses.
-        what: &'static str,
-        /// The limit.
-        limit: usize,
-    },
+    Address { what: &'static str, limit: usize },
     /// The client's address uses all that it may use without leaving others less than itself.
     #[error(
         "this server has {limit} {what} for all clients, and an address uses no more of them than are left: \
          try again later"
     )]
-    Share {
-        /// The things that it uses.
-        what: &'static str,
-        /// The limit for all addresses.
-        limit: usize,
-    },
-    /// The caller takes points too fast.
+    Share { what: &'static str, limit: usize },
     #[error(
         "{points} points exceed the rate: {left} are left, and {rate} return every second, up to {burst}; \
          try again in {wait} s",
@@ -66,17 +45,11 @@ pub enum Denied {
         burst = short.level.rate.burst_points,
         wait = self.wait_seconds().unwrap_or_default()
     )]
-    TooFast {
-        /// The number of points that were requested.
-        points: u128,
-        /// The state of the caller's bucket.
-        short: Short,
-    },
+    TooFast { points: u128, short: Short },
 }
 
 impl Denied {
     /// The number of seconds, rounded up, after which a caller that is too fast may try again.
-    #[must_use]
     pub fn wait_seconds(&self) -> Option<u64> {
         let Self::TooFast { short, .. } = self else {
             return None;
@@ -85,8 +58,6 @@ impl Denied {
         Some(whole.max(1))
     }
 
-    /// The limit that the caller has reached, but for rates.
-    #[must_use]
     pub const fn limit(&self) -> Option<usize> {
         match self {
             Self::TooManyStreams { limit }

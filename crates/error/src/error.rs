@@ -17,130 +17,68 @@ pub enum Error {
         "the region holds {count} points, and this server returns at most {limit} in one answer: \
          request a smaller region, fewer points, or pages with limit and cursor"
     )]
-    TooManyPoints {
-        /// The exact count.
-        count: u128,
-        /// The limit.
-        limit: u64,
-    },
-    /// Counting the region's points would take too long.
+    TooManyPoints { count: u128, limit: u64 },
     #[error(
         "counting takes about {rows} steps (lattice rows, or points that keep clear of others), and \
          this server allows {limit}: request a smaller region, a wider spacing, or a box with warp=off"
     )]
-    TooManyRows {
-        /// About how many.
-        rows: u128,
-        /// The limit.
-        limit: u64,
-    },
+    TooManyRows { rows: u128, limit: u64 },
     /// The query is longer than queries may be.
     #[error(
         "the body is longer than {limit} bytes, the limit of this server: send fewer vertices or \
          regions"
     )]
-    BodyTooLarge {
-        /// The limit.
-        limit: usize,
-    },
+    BodyTooLarge { limit: usize },
     /// Another table would answer than the one that the query pins.
     #[error(
         "the query names the table {pinned}, but {loaded} would answer: leave out `table`, or load \
          that table"
     )]
-    OtherTable {
-        /// The digest in the query.
-        pinned: String,
-        /// The digest of the table that is loaded.
-        loaded: String,
-    },
+    OtherTable { pinned: String, loaded: String },
     /// The world that the query names is another one than the one that it pins.
     #[error(
         "the query names the world {name} of the digest {pinned}, but this server's is {loaded}: leave out \
          `world_digest`, or request what that world has become"
     )]
     OtherWorld {
-        /// The name.
         name: String,
-        /// The digest in the query.
         pinned: String,
-        /// The digest of the world that is loaded.
         loaded: String,
     },
     /// The table is loaded, but its file cannot be read.
     #[error("the table of {table} cannot be read now: its file is gone, has changed or is damaged")]
-    TableUnreadable {
-        /// The key of the table.
-        table: String,
-    },
-    /// None of the formats the client accepts is made here.
+    TableUnreadable { table: String },
     #[error("`Accept: {accept}` names no available format; available: {available}")]
-    NotAcceptable {
-        /// The formats that the client accepts.
-        accept: String,
-        /// The formats that exist.
-        available: String,
-    },
+    NotAcceptable { accept: String, available: String },
     /// The set has no point with that id.
     #[error("this set has no point `{}`", without_keys(id))]
-    NoSuchPoint {
-        /// The id.
-        id: String,
-    },
-    /// Nothing is at that path.
+    NoSuchPoint { id: String },
     #[error("nothing is at `{}`; available: {available}", without_keys(path))]
-    NoSuchPath {
-        /// The path.
-        path: String,
-        /// The available names.
-        available: String,
-    },
+    NoSuchPath { path: String, available: String },
     /// The path does not take that method.
     #[error(
         "`{}` does not take the method {method}; allowed: {allowed}",
         without_keys(path)
     )]
     NoSuchMethod {
-        /// The path.
         path: String,
-        /// The method.
         method: String,
-        /// The methods that the path takes.
         allowed: String,
     },
-    /// The caller is refused, for good or for now.
     #[error(transparent)]
     Denied(#[from] Denied),
-    /// The server has reached its limit of streams.
     #[error("{limit} answers are being streamed, the limit of this server: try again later")]
-    Busy {
-        /// The limit.
-        limit: usize,
-    },
-    /// The server has reached its limit of connections.
+    Busy { limit: usize },
     #[error("{limit} connections are open, the limit of this server: try again later")]
-    TooManyConnections {
-        /// The limit.
-        limit: usize,
-    },
+    TooManyConnections { limit: usize },
     /// The server has reached its limit of requests at once.
     #[error("{limit} requests are being answered, the limit of this server: try again later")]
-    TooManyRequests {
-        /// The limit.
-        limit: usize,
-    },
+    TooManyRequests { limit: usize },
     /// The server has reached its limit of labels of kinds, including those in the queue.
     #[error("{limit} kinds are being made, the limit of this server: try again later")]
-    TooManyMixes {
-        /// The limit.
-        limit: usize,
-    },
-    /// Requests and answers have reached the limit of their memory.
+    TooManyMixes { limit: usize },
     #[error("requests and answers hold {limit} bytes, the limit of this server: try again later")]
-    TooManyBytes {
-        /// The limit.
-        limit: usize,
-    },
+    TooManyBytes { limit: usize },
     /// The request needs more memory at once than this server ever has for it.
     #[error(
         "this takes {needed} bytes at once, and {setting} = {limit} on this server, which its operator can raise"
@@ -148,40 +86,26 @@ pub enum Error {
     NeedsMoreBytes {
         /// The bytes that the request needs.
         needed: usize,
-        /// The limit.
         limit: usize,
-        /// The setting of the limit.
         setting: &'static str,
     },
     /// The body has a coding that is not read.
     #[error("`Content-Encoding: {coding}` is not read; allowed: gzip, or none")]
-    UnknownCoding {
-        /// The coding, as the client names it.
-        coding: String,
-    },
+    UnknownCoding { coding: String },
     /// The body took longer to come than it may.
     #[error("the body did not arrive within {seconds} seconds")]
-    BodyTooSlow {
-        /// The limit.
-        seconds: String,
-    },
+    BodyTooSlow { seconds: String },
     /// The answer took longer than it may.
     #[error(
         "there was no answer within {seconds} seconds: try again later, or request a smaller region"
     )]
-    TimeOver {
-        /// The limit.
-        seconds: String,
-    },
+    TimeOver { seconds: String },
     /// The kinds of the query were still being made when the time for the answer was over.
     #[error(
         "labels of these kinds are being made, once, which takes longer than the {seconds} seconds of an answer: \
          try again in {} seconds", self.retry_seconds().unwrap_or(1)
     )]
-    KindsInTheMaking {
-        /// The limit.
-        seconds: String,
-    },
+    KindsInTheMaking { seconds: String },
     /// The server is about to stop.
     #[error("the server is shutting down: try again later, or elsewhere")]
     ShuttingDown,
@@ -195,16 +119,12 @@ fn joined(faults: &[Fault]) -> String {
     texts.join("; ")
 }
 
-/// The form of a kind of error on both protocols.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wire {
     /// The kind's name: the last part of the problem type `urn:strew:problem:…`.
     pub slug: &'static str,
-    /// The title of all problems of the type.
     pub title: &'static str,
-    /// The status in HTTP.
     pub status: u16,
-    /// The code in gRPC.
     pub code: i32,
     /// The number of seconds after which the same request is worth another try, where that helps.
     pub retry: Option<u64>,
@@ -220,17 +140,12 @@ macro_rules! kinds {
         }
 
         impl Kind {
-            /// All kinds.
             pub const ALL: [Self; [$($slug),+].len()] = [$(Self::$kind),+];
 
-            /// The kind's name in answers.
-            #[must_use]
             pub const fn slug(self) -> &'static str {
                 self.wire().slug
             }
 
-            /// The kind in answers of both protocols.
-            #[must_use]
             pub const fn wire(self) -> Wire {
                 match self {
                     $(Self::$kind => Wire {
@@ -284,8 +199,6 @@ kinds! {
 }
 
 impl Error {
-    /// The kind, on which the mapping to the wire depends.
-    #[must_use]
     pub const fn kind(&self) -> Kind {
         match self {
             Self::Invalid(_) => Kind::Invalid,
@@ -322,7 +235,6 @@ impl Error {
     }
 
     /// The number of seconds after which the same request is worth another try, where that helps.
-    #[must_use]
     pub fn retry_seconds(&self) -> Option<u64> {
         match self {
             // The setting never allows it.
@@ -333,7 +245,6 @@ impl Error {
     }
 
     /// The limit that the request exceeds, if there is one.
-    #[must_use]
     pub fn limit(&self) -> Option<u64> {
         let limit = match self {
             Self::TooManyPoints { limit, .. } | Self::TooManyRows { limit, .. } => {
@@ -353,7 +264,6 @@ impl Error {
     }
 
     /// The digest that the query pins and the digest of what would answer, if they differ.
-    #[must_use]
     pub fn digests(&self) -> Option<(&str, &str)> {
         match self {
             Self::OtherTable { pinned, loaded } | Self::OtherWorld { pinned, loaded, .. } => {
@@ -364,7 +274,6 @@ impl Error {
     }
 
     /// The faults of an invalid query; none for other errors.
-    #[must_use]
     pub fn faults(&self) -> &[Fault] {
         match self {
             Self::Invalid(faults) => faults.as_slice(),

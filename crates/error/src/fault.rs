@@ -21,7 +21,6 @@ pub struct Fault {
 }
 
 impl Fault {
-    /// A fault of a given value.
     pub fn new(
         field: &str,
         value: impl fmt::Display,
@@ -62,7 +61,6 @@ impl fmt::Display for Fault {
     }
 }
 
-/// The most characters of input that are echoed.
 const SHOWN: usize = 120;
 
 /// Input is echoed, but not by the kilobyte.

@@ -5,7 +5,6 @@ use crate::fault::Fault;
 /// The most faults that are reported at once.
 pub const MOST_FAULTS: usize = 16;
 
-/// A value, or everything that is wrong with it.
 pub type Checked<T> = Result<T, Faults>;
 
 /// At least one fault, at most `MOST_FAULTS`, one for each field.
@@ -13,8 +12,6 @@ pub type Checked<T> = Result<T, Faults>;
 pub struct Faults(Vec<Fault>);
 
 impl Faults {
-    /// These faults and others.
-    #[must_use]
     pub fn and(mut self, others: Self) -> Self {
         for fault in others.0 {
             let is_known = self.0.iter().any(|known| known.field == fault.field);
@@ -25,20 +22,16 @@ impl Faults {
         self
     }
 
-    /// The faults, at least one.
-    #[must_use]
     pub fn as_slice(&self) -> &[Fault] {
         &self.0
     }
 
     /// Whether the number of faults has reached the most that are reported.
-    #[must_use]
     pub const fn is_full(&self) -> bool {
         self.0.len() >= MOST_FAULTS
     }
 
     /// The faults with other names of fields.
-    #[must_use]
     pub fn rename(mut self, name: impl Fn(&str) -> String) -> Self {
         for fault in &mut self.0 {
             fault.field = name(&fault.field);
@@ -61,7 +54,6 @@ impl From<Fault> for Faults {
     }
 }
 
-/// All values, or the faults of all.
 pub fn all<T>(checked: impl IntoIterator<Item = Checked<T>>) -> Checked<Vec<T>> {
     let (mut values, mut faults) = (vec![], None);
     for one in checked {
@@ -81,15 +73,9 @@ fn join(found: &mut Option<Faults>, more: Faults) {
     });
 }
 
-/// Checked values of different types that belong together.
 pub trait Together {
-    /// The values.
     type Values;
 
-    /// All values, or the faults of all.
-    ///
-    /// # Errors
-    /// The faults, if any of them has some.
     fn together(self) -> Checked<Self::Values>;
 }
 

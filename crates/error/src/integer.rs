@@ -15,9 +15,6 @@ const LONG: u64 = 1 << 53;
 
 /// Reads an integer within the range of its type: digits, or a number without a fraction, such as `7.0` and `1e3` (an
 /// integer by JSON Schema 2020-12, Validation 6.1.1). It is never rounded.
-///
-/// # Errors
-/// Says that the text is no integer, or one that is out of range.
 pub fn integer<T: FromStr>(text: &str) -> Result<T, &'static str> {
     text.parse().or_else(|_| {
         let digits = digits(text).ok_or("must be an integer")?;
@@ -70,9 +67,6 @@ pub struct Whole<T>(pub T);
 
 impl<T> Whole<T> {
     /// Reads a member of a struct: `#[serde(deserialize_with = "Whole::read")]`.
-    ///
-    /// # Errors
-    /// Says that the value is no integer, or one that is out of range.
     pub fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error>
     where
         T: TryFrom<i128>,
@@ -80,10 +74,6 @@ impl<T> Whole<T> {
         Self::deserialize(deserializer).map(|whole| whole.0)
     }
 
-    /// Reads a member that may be missing.
-    ///
-    /// # Errors
-    /// As [`read`](Self::read).
     pub fn read_some<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error>
     where
         T: TryFrom<i128>,

@@ -4,6 +4,11 @@
 //! valid has [`Fault`]s, each with the field, its value and what is allowed: [`Checked`] and [`Together`] collect all
 //! of them, so that a client needs one round to learn them all. Depends on no other crate of Strew.
 
+#![allow(
+    missing_docs,
+    reason = "an internal crate: names say what its items are"
+)]
+
 mod denied;
 mod error;
 mod fault;

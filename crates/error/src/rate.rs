@@ -2,7 +2,6 @@
 
 use std::time::Duration;
 
-/// The speed at which points may be taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate {
     /// Points per second, above 0.
@@ -16,7 +15,6 @@ impl Rate {
     const REST: f64 = 10.0;
 
     /// A rate with its burst, or with that of ten seconds.
-    #[must_use]
     pub fn new(points_per_second: f64, burst_points: Option<f64>) -> Self {
         let burst = burst_points.unwrap_or(points_per_second * Self::REST);
         Self {
@@ -29,7 +27,6 @@ impl Rate {
 /// The points left in a bucket, and when it will be full.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Level {
-    /// The rate.
     pub rate: Rate,
     /// The points left; 0 while the bucket owes some.
     pub left: u64,
@@ -40,7 +37,6 @@ pub struct Level {
 /// A bucket holds too little.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Short {
-    /// The state of the bucket.
     pub level: Level,
     /// The time until the same request is let through, if no other comes first.
     pub wait: Duration,

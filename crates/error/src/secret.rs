@@ -5,12 +5,10 @@ use std::borrow::Cow;
 /// The beginning of every key, by which scanners find leaked ones.
 pub const KEY_PREFIX: &str = "strew_";
 
-/// What stands in the place of a key.
 const BLANK: &str = "***";
 
 /// A text, such as an address, without the keys in it: values of parameters whose names say that they are secret, and
 /// values and parts of paths that begin as keys do.
-#[must_use]
 pub fn without_keys(text: &str) -> Cow<'_, str> {
     const BETWEEN: [char; 4] = ['/', '?', '&', ';'];
     let is_secret = |piece: &str| match piece.split_once('=') {
@@ -38,7 +36,6 @@ pub fn without_keys(text: &str) -> Cow<'_, str> {
     clean.into()
 }
 
-/// Whether values of this name are secret.
 pub(crate) fn names_a_key(name: &str) -> bool {
     const ENDS: [&str; 6] = [
         "key",
@@ -57,7 +54,6 @@ pub(crate) fn names_a_key(name: &str) -> bool {
     ENDS.iter().any(ends)
 }
 
-/// Whether a value begins as keys do.
 fn is_key(value: &str) -> bool {
     let value = decoded(value);
     let value = value.trim_start_matches([' ', '"', '\'', '+']);

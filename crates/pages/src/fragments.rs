@@ -1,9 +1,6 @@
 //! Markup that pages share: a line such as `<!-- pages.html -->` stands for the text of that file.
 
 /// A page with its fragments. Links of a fragment to the page itself, which is at `path`, say that they are.
-///
-/// # Errors
-/// The name of a fragment that is no part.
 pub fn whole(path: &str, html: &str, parts: &[(&str, &str)]) -> Result<String, String> {
     let mut text = String::new();
     for line in html.lines() {
@@ -21,7 +18,6 @@ pub fn whole(path: &str, html: &str, parts: &[(&str, &str)]) -> Result<String, S
     Ok(text)
 }
 
-/// The name of the fragment that a line stands for.
 fn named(line: &str) -> Option<&str> {
     let name = line.trim().strip_prefix("<!-- ")?.strip_suffix(" -->")?;
     name.ends_with(".html").then_some(name)

@@ -7,10 +7,8 @@ use std::fmt::Write as _;
 
 use crate::stripped;
 
-/// A page whose parts are joined.
 #[derive(Debug)]
 pub struct Joined {
-    /// The page, which names the two files.
     pub html: String,
     pub script: String,
     pub style: String,
@@ -58,7 +56,6 @@ pub fn joined(name: &str, html: &str, parts: &[(&str, &str)]) -> Result<Joined, 
     })
 }
 
-/// The part that a line of a page names.
 fn named<'a>(line: &'a str, before: &str) -> Option<&'a str> {
     line.trim().strip_prefix(before)?.split('"').next()
 }
@@ -74,7 +71,6 @@ fn text_of<'a>(parts: &[(&str, &'a str)], name: &str) -> Result<&'a str, String>
 struct Modules<'a> {
     parts: &'a [(&'a str, &'a str)],
     done: Vec<String>,
-    /// Those that wait for what they import.
     open: Vec<String>,
     text: String,
 }
@@ -127,7 +123,6 @@ impl Modules<'_> {
         Ok((body, exports))
     }
 
-    /// An import as a declaration.
     fn import(&mut self, name: &str, line: &str) -> Result<String, String> {
         let unknown = || format!("{name}: {line}");
         let mut quoted = line.split('"');
@@ -154,7 +149,6 @@ impl Modules<'_> {
     }
 }
 
-/// The name that a declaration exports.
 fn exported(declaration: &str) -> Option<String> {
     let kinds = [
         "function* ",

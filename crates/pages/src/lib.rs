@@ -3,6 +3,11 @@
 //! It is a macro and not a build script, because an edit of a page then compiles the program's main file and links it,
 //! and nothing else.
 
+#![allow(
+    missing_docs,
+    reason = "an internal crate: names say what its items are"
+)]
+
 mod fragments;
 mod joined;
 mod packed;
@@ -87,7 +92,6 @@ fn embedded(folder: &str) -> Result<String, String> {
     ))
 }
 
-/// An item of the array.
 fn item(name: &str, plain: &[u8]) -> Result<String, String> {
     let is_picture = std::str::from_utf8(plain).is_err();
     let [zstd, gzip] = if is_picture {

@@ -2,16 +2,12 @@
 
 use std::io::{self, Write as _};
 
-/// A text in the codings that the daemon speaks.
 pub struct Packed {
     pub zstd: Vec<u8>,
     pub gzip: Vec<u8>,
 }
 
 /// Compresses a text. Takes about a second for a megabyte.
-///
-/// # Errors
-/// Those of the compressors.
 pub fn packed(text: &[u8]) -> io::Result<Packed> {
     /// The highest level that needs no more than 8 MiB in browsers (RFC 9659).
     const ZSTD: i32 = 19;

@@ -157,7 +157,6 @@ impl Left {
     }
 }
 
-/// The length of the string that a text begins with.
 fn string(text: &str) -> Option<usize> {
     let quote = text.chars().next()?;
     ended(text, |c| c == quote)

@@ -13,7 +13,6 @@ pub(super) fn placed(set: &Set, table: &space::Table) -> Result<(SpaceSet, f64),
     Ok((set.points_in_space(table, spacing)?, density))
 }
 
-/// The mean spacing of a set, and its density as requested.
 fn spacing(set: &Set, table: &space::Table) -> Result<(Spacing, f64), Error> {
     let fault = |parameter: &Parameter, value: f64, error: &strew_core::Error| {
         let detail = match error.kind() {

@@ -6,7 +6,6 @@ use strew_core::{Attribute, Attributes, Column, space};
 use strew_encode as encode;
 use strew_encode::{Bound, Located, POSE_ROTATION, Values};
 
-/// Attributes bound to the points of one set.
 #[derive(Clone, Debug)]
 pub struct PointAttributes {
     columns: Vec<encode::Column>,
@@ -15,7 +14,6 @@ pub struct PointAttributes {
 
 impl PointAttributes {
     /// The columns of `list`, of which `bound` was made.
-    #[must_use]
     pub fn new(list: &Attributes, bound: Bound) -> Self {
         let number = |name: &str, attribute: &Attribute| encode::Column {
             range: range(attribute),
@@ -36,7 +34,6 @@ impl PointAttributes {
     }
 }
 
-/// The bounds of an attribute's numbers, where they are known.
 fn range(attribute: &Attribute) -> Option<[f64; 2]> {
     match attribute {
         Attribute::Angle => Some([0.0, TAU]),

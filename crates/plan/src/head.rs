@@ -49,9 +49,6 @@ pub struct TableEcho {
 
 impl Planned {
     /// The answer, in blocks of about `block_bytes`, less where points are costly.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if the format cannot hold the answer.
     pub fn answer(&self, output: &Output, block_bytes: usize) -> Result<Answer, Error> {
         let head = |count| self.head(output, count);
         Answer::new(

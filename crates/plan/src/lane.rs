@@ -1,6 +1,5 @@
 //! The lanes of work: short work never waits for long work.
 
-/// Where work is done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lane {
     /// Work of a few milliseconds.
@@ -12,6 +11,5 @@ pub enum Lane {
 }
 
 impl Lane {
-    /// All lanes.
     pub const ALL: [Self; 3] = [Self::Short, Self::Long, Self::Making];
 }

@@ -22,9 +22,7 @@ use crate::{
 /// A query with its tables and plans: the exact count is known, no point is made yet.
 #[derive(Clone, Debug)]
 pub struct Planned {
-    /// The query.
     pub query: Box<Query>,
-    /// Its sets of points, each narrowed to the query's window.
     pub sets: Vec<PlannedSet>,
     /// The number of the query's points before the window.
     offset: u128,
@@ -38,23 +36,15 @@ pub struct Planned {
 /// A set of points with its table, when there is no region.
 #[derive(Clone, Debug)]
 pub struct Placed {
-    /// The set.
     pub set: Box<Set>,
-    /// Its points.
     pub points: PlacedPoints,
-    /// Their attributes.
     pub(super) attributes: Bound,
-    /// The ground of its points.
     pub(super) ground: Option<Ground>,
-    /// As answers echo it.
     pub resolved: ResolvedSet,
 }
 
 impl Placed {
     /// A set laid into the world at once, in the calling thread: what a command line needs.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new), and as [`Planned::tables`].
     pub fn at_once(set: Box<Set>) -> Result<Self, Error> {
         if set.space().is_some() {
             return Self::in_space(set);
@@ -63,10 +53,6 @@ impl Placed {
         Self::new(set, ready)
     }
 
-    /// A set in space laid into the world.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new); [`Error::Internal`] for a set of the plane.
     pub fn in_space(set: Box<Set>) -> Result<Self, Error> {
         let table = set
             .space()
@@ -86,10 +72,6 @@ impl Placed {
         })
     }
 
-    /// A set of the plane laid into the world.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] for a distance that cannot be kept, or a count.
     pub fn new(set: Box<Set>, ready: Ready) -> Result<Self, Error> {
         let resolve::Resolved::Known(spacing, density) = resolve::resolve(&set, &ready)? else {
             return Err(set.fault(
@@ -122,20 +104,14 @@ impl Placed {
     }
 }
 
-/// The points of a set that was laid into the world.
 #[derive(Clone, Debug)]
 pub enum PlacedPoints {
-    /// Points of the plane.
     Plane(Box<PointSet>),
-    /// Points of a period.
     Period(PeriodicSet),
-    /// Points in space.
     Space(Box<SpaceSet>),
 }
 
 impl PlacedPoints {
-    /// The point of an id in the plane.
-    #[must_use]
     pub fn point(&self, id: PointId) -> Option<Member> {
         match self {
             Self::Plane(points) => points.point(id),
@@ -144,8 +120,6 @@ impl PlacedPoints {
         }
     }
 
-    /// Its block of the neighborhood map.
-    #[must_use]
     pub fn block(&self, id: PointId) -> Option<[usize; 2]> {
         match self {
             Self::Plane(points) => points.block(id),
@@ -164,11 +138,6 @@ impl PlacedPoints {
 }
 
 impl Planned {
-    /// Plans a query on its sets' tables.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if the region lies beyond the reach of `f64` coordinates, or an amount cannot be reached;
-    /// [`Error::TooManyRows`] if counting would take too long.
     pub fn new(
         query: impl Into<Box<Query>>,
         tables: &[Ready],
@@ -178,9 +147,6 @@ impl Planned {
     }
 
     /// Like [`new`](Self::new), but ends early once `stop` is raised.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new), and [`Error::Internal`] once it is stopped; that error reaches no caller.
     pub fn unless_stopped(
         query: impl Into<Box<Query>>,
         tables: &[Ready],
@@ -229,26 +195,18 @@ impl Planned {
     }
 
     /// Plans a query at once, in the calling thread: what a command line needs.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new), or [`Error::Internal`] if a table cannot be read any more.
     pub fn at_once(query: Query, limits: &Limits) -> Result<Self, Error> {
         let tables = Self::tables(&query)?;
         Self::new(query, &tables, limits)
     }
 
     /// The tables of a query's sets, read or made in the calling thread.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if a table cannot be read any more; [`Error::Invalid`] if it has too few blocks for its
-    /// kinds.
     pub fn tables(query: &Query) -> Result<Vec<Ready>, Error> {
         // Tables in space are ready as they are.
         let flat = query.sets.iter().filter(|set| set.space().is_none());
         flat.map(|set| store::ready(set, &Anew)).collect()
     }
 
-    /// Narrows the sets' plans to the query's window.
     fn cut(&mut self) {
         let window = &self.query.window;
         // The plan has no points before the cursor; they only count for the offset.
@@ -287,7 +245,6 @@ impl Planned {
     }
 
     /// The token at which a later query resumes: a place in a set.
-    #[must_use]
     pub fn token(&self, i: usize, mark: Mark) -> Option<Token> {
         let (asked, set) = (self.query.sets.get(i)?, self.sets.get(i)?);
         let spacing = matches!(asked.amount, Amount::Count(_)).then_some(set.spacing);
@@ -304,13 +261,11 @@ impl Planned {
 
     /// How many points the answer has. Regions can hold more than 64 bits count, so this is wider
     /// than any limit.
-    #[must_use]
     pub const fn count(&self) -> u128 {
         self.count
     }
 
     /// The number of coordinates of each point: 2, or 3 in space.
-    #[must_use]
     pub const fn axes(&self) -> usize {
         if self.query.region.volume.is_some() {
             3
@@ -320,19 +275,16 @@ impl Planned {
     }
 
     /// The number of the query's points before those of the answer.
-    #[must_use]
     pub const fn offset(&self) -> u128 {
         self.offset
     }
 
     /// Where the query goes on after the answer, if it does.
-    #[must_use]
     pub const fn next(&self) -> Option<Token> {
         self.next
     }
 
     /// Where the answer begins, if it has points.
-    #[must_use]
     pub fn beginning(&self) -> Option<Token> {
         let mut sets = self.sets.iter().enumerate();
         let (i, mark) = sets.find_map(|(i, set)| Some((i, set.plan.beginning()?)))?;
@@ -340,16 +292,12 @@ impl Planned {
     }
 
     /// The first set's table: the only one's, without layers.
-    #[must_use]
     pub fn entry(&self) -> &Entry {
         &self.sets[0].entry
     }
 
     /// Splits the query into parts of equal size, give or take one point. Returns where each part that is not empty
     /// begins, and its number of points.
-    ///
-    /// # Errors
-    /// [`Error::TooManyPoints`] if a part has more points than a limit can express.
     pub fn split(&self, parts: u32) -> Result<Vec<(Token, u64)>, Error> {
         let parts = u128::from(parts.max(1));
         if self.count.div_ceil(parts) > u128::from(u64::MAX) {
@@ -380,7 +328,6 @@ impl Planned {
     }
 
     /// Stops all further work of the plans once this flag is raised.
-    #[must_use]
     pub fn stopped_by(mut self, stop: &Stop) -> Self {
         for set in &mut self.sets {
             set.plan = set.plan.stopped_by(stop);
@@ -388,10 +335,6 @@ impl Planned {
         self
     }
 
-    /// The parts of the answer.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if a table has not the kinds that were found for it.
     pub fn parts(&self) -> Result<Vec<Part>, Error> {
         let part = |(set, planned): (&Set, &PlannedSet)| -> Result<Part, Error> {
             let plan = planned.plan.clone();
@@ -416,8 +359,6 @@ impl Planned {
         self.query.sets.iter().zip(&self.sets).map(part).collect()
     }
 
-    /// The query as answers echo it.
-    #[must_use]
     pub fn resolved(&self) -> Resolved {
         let all = &self.query.sets;
         let resolved = |(set, planned): (&Set, &PlannedSet)| {

@@ -9,7 +9,6 @@ use strew_query::{KindDistance, Set};
 
 use crate::{amount_in_space, effort};
 
-/// The distance that the points of a set keep.
 #[derive(Clone, Debug)]
 pub(super) enum Least {
     Known(f64),
@@ -18,18 +17,14 @@ pub(super) enum Least {
     InSpace(Box<SpaceSet>, f64),
 }
 
-/// A planned set of points.
 #[derive(Clone, Debug)]
 pub struct PlannedSet {
-    /// The table that answers.
     pub entry: Arc<Entry>,
     /// Points per unit of area, from the amount.
     pub density: f64,
-    /// The mean spacing, from the amount.
     pub spacing: Spacing,
     /// No two points are nearer than this.
     least_distance: Least,
-    /// The points.
     pub plan: Arc<dyn Source>,
     /// The points that counting all of them looks at one by one; none without a field.
     pub candidates: u128,
@@ -37,7 +32,6 @@ pub struct PlannedSet {
     pub(super) nanoseconds: f64,
     /// The number of points of each of the set's kinds in the region.
     pub kinds: Vec<u128>,
-    /// The distances that the points of kinds keep.
     pub kind_distances: Vec<KindDistance>,
     /// The number of the set's points, as far as it is known.
     total: u128,
@@ -98,7 +92,6 @@ impl PlannedSet {
         self
     }
 
-    /// The number of points that are looked at to make one.
     pub(super) fn looks_by_point(&self, set: &Set) -> f64 {
         match set.field {
             Some(_) => (self.candidates as f64 / self.total.max(1) as f64).max(1.0),

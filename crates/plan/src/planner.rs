@@ -25,7 +25,6 @@ pub(super) struct Planner<'a> {
     pub(super) limits: &'a Limits,
     pub(super) stop: &'a Stop,
     layers: Vec<PointSet>,
-    /// The layers in space.
     pub(super) volumes: Vec<SpaceSet>,
     pub(super) chains: effort::Chains,
     prices: Layers,
@@ -191,7 +190,6 @@ impl<'a> Planner<'a> {
         Ok(except.cut(&field, points, area, step, &mut self.room)?)
     }
 
-    /// Plans a period.
     fn period(
         &self,
         i: usize,

@@ -5,16 +5,13 @@ use strew_core::{ErrorKind, LeastDistance, Spacing};
 use strew_error::{Error, number};
 use strew_query::{Amount, KindDistance, Parameter, Set, parameters};
 
-/// An amount, resolved on its table.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Resolved {
     /// A mean spacing, and the density as requested.
     Known(Spacing, f64),
-    /// A number of points, which needs a region.
     Count(u64),
 }
 
-/// Resolves an amount on its table.
 pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Resolved, Error> {
     let fault = |parameter: &Parameter, value: f64, detail: String| {
         set.fault(parameter.name, value, detail, parameter.allowed())

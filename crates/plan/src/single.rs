@@ -38,7 +38,6 @@ pub struct Found {
     pub attributes: Map<String, Value>,
 }
 
-/// The most points within a radius.
 pub const MOST_WITHIN: usize = 10_000;
 
 /// Points that were found, with the distances from a place, if there is one.
@@ -71,11 +70,6 @@ impl Spots {
 }
 
 impl Placed {
-    /// The point of an id.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] for a text that is no id, [`Error::NoSuchPoint`] if the set has no point
-    /// there.
     pub fn point(&self, id: &str) -> Result<Found, Error> {
         const ID: &str = "two integers joined by a colon, such as -31:52";
         const ID_IN_SPACE: &str = "three integers joined by colons, such as -31:52:7";
@@ -105,17 +99,11 @@ impl Placed {
 
     /// The nearest points of a place, nearest first: `k` at most and within `radius`, where these
     /// are given; else the nearest one.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] for a place too far out or too many points.
     pub fn nearest(&self, nearest: Nearest) -> Result<Vec<Found>, Error> {
         self.nearest_visiting(nearest, &Visits::new(usize::MAX, Stop::default()))
     }
 
     /// [`nearest`](Self::nearest) that visits a bounded number of points.
-    ///
-    /// # Errors
-    /// As `nearest`, also for more points than may be visited.
     pub fn nearest_visiting(&self, nearest: Nearest, visits: &Visits) -> Result<Vec<Found>, Error> {
         let mut spots = Spots::default();
         match (&self.points, nearest.at) {
@@ -134,7 +122,6 @@ impl Placed {
         self.described(&spots, visits)
     }
 
-    /// Some points with their attributes.
     fn described(&self, spots: &Spots, visits: &Visits) -> Result<Vec<Found>, Error> {
         resolve::check_reach(&self.set, spots.reach())?;
         let attributes = PointAttributes::new(&self.set.attributes, self.attributes.clone());
@@ -174,7 +161,6 @@ impl Placed {
     }
 }
 
-/// The value of a point in a column.
 fn value(column: &Column, values: &Values, row: usize) -> Value {
     match &column.kind {
         Kind::Number => values.number(row).unwrap_or_default().into(),

@@ -12,23 +12,12 @@ use strew_query::Set;
 
 /// A table that the kinds of a set need beside their own.
 pub enum Need {
-    /// Another table that is loaded.
     Loaded(Arc<Entry>),
-    /// A table that is made from the set's own.
     Made(Made),
 }
 
-/// Where tables come from.
 pub trait Store {
-    /// The table of an entry.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if it cannot be read any more.
     fn load(&self, entry: &Arc<Entry>) -> Result<Ready, Error>;
-    /// The mix of a table.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if the table has too few blocks for it.
     fn make(&self, plain: &Ready, what: &Made) -> Result<Table, Error>;
 }
 
@@ -46,9 +35,6 @@ impl Store for Anew {
 }
 
 /// The table of a set with its kinds, from a store that answers in the calling thread.
-///
-/// # Errors
-/// [`Error::Internal`] if a table cannot be read any more; [`Error::Invalid`] if it has too few blocks for its kinds.
 pub fn ready(set: &Set, store: &impl Store) -> Result<Ready, Error> {
     let plain = store.load(&set.entry)?;
     let made = match needs(&plain, set) {
@@ -59,8 +45,6 @@ pub fn ready(set: &Set, store: &impl Store) -> Result<Ready, Error> {
     Ok(with_made(plain, set, made))
 }
 
-/// The needs of a set's kinds beside its table.
-#[must_use]
 pub fn needs(plain: &Ready, set: &Set) -> Option<Need> {
     let kinds = set.kinds.as_ref().filter(|_| plain.table.mix().is_none())?;
     Some(match &kinds.made {
@@ -70,7 +54,6 @@ pub fn needs(plain: &Ready, set: &Set) -> Option<Need> {
 }
 
 /// A table with the one that the kinds of a set need beside it.
-#[must_use]
 pub fn with_made(plain: Ready, set: &Set, made: Table) -> Ready {
     match set.varies() {
         true => Ready {

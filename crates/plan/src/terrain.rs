@@ -13,18 +13,14 @@ use strew_encode as encode;
 use strew_encode::{Column, Located, POSE_ROTATION, POSE_Z, Values};
 use strew_query::Terrain;
 
-/// The attributes of points with what a terrain adds.
 #[derive(Debug)]
 pub struct OnTerrain {
     attributes: Option<Arc<dyn encode::Attributes>>,
-    /// The position of the angle among the attributes.
     angle: Option<usize>,
     ground: Ground,
 }
 
 impl OnTerrain {
-    /// Points with attributes on a terrain, with a mean spacing.
-    #[must_use]
     pub fn new(
         attributes: Option<Arc<dyn encode::Attributes>>,
         terrain: Terrain,
@@ -41,7 +37,6 @@ impl OnTerrain {
     }
 }
 
-/// A terrain, felt by things of some size.
 #[derive(Clone, Debug)]
 pub struct Ground {
     terrain: Terrain,
@@ -49,14 +44,11 @@ pub struct Ground {
     reach: f64,
 }
 
-/// The attribute that turns things around the vertical.
 pub const ANGLE: &str = "angle";
 
 const NORMAL: [&str; 3] = ["nx", "ny", "nz"];
 
 impl Ground {
-    /// The ground of points with a mean spacing.
-    #[must_use]
     pub const fn new(terrain: Terrain, spacing: f64) -> Self {
         Self {
             terrain,
@@ -64,7 +56,6 @@ impl Ground {
         }
     }
 
-    /// The names of the values at a point.
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
         let normal = NORMAL.into_iter().filter(|_| self.terrain.has_normals);
         let rotation = POSE_ROTATION.into_iter();
@@ -165,7 +156,6 @@ impl encode::Attributes for OnTerrain {
 mod tests {
     use super::*;
 
-    /// A vector, turned by a rotation.
     fn turned([x, y, z, w]: [f64; 4], v: [f64; 3]) -> [f64; 3] {
         let cross = |a: [f64; 3], b: [f64; 3]| {
             [

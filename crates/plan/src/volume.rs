@@ -81,7 +81,6 @@ impl Planner<'_> {
         })
     }
 
-    /// Checks that counting a volume stays within the limit.
     fn check_rows_in_space(&self, rows: f64) -> Result<(), Error> {
         let limit = self.limits.max_rows;
         match rows > limit as f64 {

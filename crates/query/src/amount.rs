@@ -15,19 +15,12 @@ use super::{
 pub enum Amount {
     /// Points per unit of area.
     Density(f64),
-    /// The mean spacing.
     Spacing(f64),
-    /// The least distance of any two points.
     MinDistance(f64),
-    /// The number of points in the region.
     Count(u64),
 }
 
 impl Amount {
-    /// The one amount among some values.
-    ///
-    /// # Errors
-    /// Faults if there is none, or more than one.
     pub(super) fn of(values: &Values) -> Checked<Self> {
         match values.two_of(&AMOUNTS) {
             [None, _] => {
@@ -47,8 +40,6 @@ impl Amount {
         }
     }
 
-    /// The parameter of the amount.
-    #[must_use]
     pub fn parameter(self) -> &'static Parameter {
         match self {
             Self::Density(_) => &DENSITY,
@@ -59,7 +50,6 @@ impl Amount {
     }
 }
 
-/// The groups of amounts.
 const AMOUNTS: [Group; 2] = [Group::Amount, Group::Count];
 
 fn one_of(values: &Values) -> String {

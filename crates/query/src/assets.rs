@@ -10,9 +10,7 @@ use crate::world::Worlds;
 /// A catalog with the worlds over it, which were checked against its tables, fields and lists.
 #[derive(Clone, Debug, Default)]
 pub struct Assets {
-    /// The tables, fields and lists of points.
     pub catalog: Catalog,
-    /// The worlds.
     pub worlds: Arc<Worlds>,
 }
 
@@ -35,21 +33,18 @@ impl Deref for Assets {
 
 impl Assets {
     /// These assets with other worlds.
-    #[must_use]
     pub fn with_worlds(self, worlds: Worlds) -> Self {
         let worlds = Arc::new(worlds);
         Self { worlds, ..self }
     }
 
     /// These worlds over another catalog: their digests follow.
-    #[must_use]
     pub fn over(&self, catalog: Catalog) -> Self {
         let worlds = Arc::new(self.worlds.over(&catalog));
         Self { catalog, worlds }
     }
 
     /// The assets after reading the folders of tables, fields, lists and worlds again, and the changes.
-    #[must_use]
     pub fn reload(&self, config: &Config) -> (Self, Reload) {
         let (after, mut reload) = self.catalog.reload_tables(config.tables.folder());
         let names = match config.read_names() {

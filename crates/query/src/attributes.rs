@@ -12,7 +12,6 @@ use super::{
     variants::variants,
 };
 
-/// Checks the attributes among some values.
 pub(super) fn check(values: &Values, kinds: Option<&Kinds>) -> Checked<Attributes> {
     let own = [&ATTRIBUTES, &SCALE_RANGE, &SCALE_RANGES, &VARIANTS];
     if !own.into_iter().any(|parameter| values.has(parameter)) {
@@ -49,7 +48,6 @@ pub(super) fn check(values: &Values, kinds: Option<&Kinds>) -> Checked<Attribute
     Attributes::new(list.collect()).map_err(fault)
 }
 
-/// An attribute that is made of its name alone.
 fn other(values: &Values, name: &str) -> Checked<Option<Attribute>> {
     if matches!(name, "scale" | "variant") {
         return Ok(None);
@@ -112,7 +110,6 @@ fn scales(
     scales.map(Some).map_err(|error| fault(error.to_string()))
 }
 
-/// The variants of the attribute among those named, or of kinds.
 fn chosen(values: &Values) -> Checked<Option<Variants>> {
     rules::check(values, &VARIANTS)?;
     rules::check(values, &ATTRIBUTES)?;

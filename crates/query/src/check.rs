@@ -19,17 +19,11 @@ use crate::{
 
 impl Draft {
     /// Checks everything against what is loaded; `most_vertices` bounds the polygons of all regions.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] with every fault, [`Error::OtherTable`] if a pinned table is not loaded.
     pub fn check(&self, assets: &Assets, most_vertices: usize) -> Result<(Query, Options), Error> {
         self.check_within(assets, most_vertices, Allowance::UNLIMITED)
     }
 
     /// As [`check`](Self::check), with no more than is allowed.
-    ///
-    /// # Errors
-    /// As [`check`](Self::check), and why there is no memory.
     pub fn check_within(
         &self,
         assets: &Assets,
@@ -47,10 +41,6 @@ impl Draft {
     }
 
     /// The draft, completed from the world that it names, and that world.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if there is none of that name, and [`Error::OtherWorld`] if it has another digest than
-    /// the draft wants.
     pub fn filled(&self, worlds: &Worlds) -> Result<(Cow<'_, Self>, Option<Named>), Error> {
         let Ok(named) = self.values.get::<String>(&WORLD) else {
             // A name that could not be read is a fault of the draft.

@@ -10,17 +10,14 @@ use strew_core::Spacing;
 use strew_encode::Mark;
 use strew_error::Fault;
 
-/// The cursors that are allowed, in words.
 const CURSOR: &str = "the cursor of an earlier answer to the same query";
 
 /// A place in the answer to a query.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Token {
-    /// The number of the set in the query.
     pub set: u16,
     /// The number of points in the sets before it.
     pub before: u128,
-    /// The place in that set.
     pub mark: Mark,
     /// The spacing, if the amount is a count: to find it again would take counting.
     pub spacing: Option<Spacing>,
@@ -37,7 +34,6 @@ const IN_SPACE: u8 = 3;
 
 impl Token {
     /// The token of a place in the answer to the query with this identity.
-    #[must_use]
     pub fn new(
         identity: &[u8; 32],
         set: u16,
@@ -57,9 +53,6 @@ impl Token {
     }
 
     /// Reads a token; that it is of the right query is for [`check`](Self::check).
-    ///
-    /// # Errors
-    /// A [`Fault`] of `cursor`.
     pub(super) fn parse(text: &str) -> Result<Self, Fault> {
         let fault = || Fault::new("cursor", text, "not a cursor", CURSOR);
         let bytes = from_hex(text).ok_or_else(fault)?;
@@ -99,10 +92,6 @@ impl Token {
         }
     }
 
-    /// Checks that it belongs to the query with this identity.
-    ///
-    /// # Errors
-    /// A [`Fault`] of `cursor`.
     pub fn check(&self, identity: &[u8; 32]) -> Result<(), Fault> {
         if self.seal == self.sealed(identity) {
             return Ok(());

@@ -2,7 +2,6 @@
 
 use super::{Set, SetField};
 
-/// Something that the points of a set depend on.
 struct Dependency<'a> {
     digest: &'a str,
     /// Whether it is always the same for one query, whatever is loaded.
@@ -50,7 +49,6 @@ impl Set {
 
     /// Whether the query holds all that its points depend on: it names the digest of the table, no field that may
     /// change, no list of points that may, and no kinds of a loaded table.
-    #[must_use]
     pub fn is_pinned(&self) -> bool {
         // A list may have no ids for this set now, and some later.
         let lists = self.except.as_ref();

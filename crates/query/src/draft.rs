@@ -28,7 +28,6 @@ use crate::{
     volume::VOLUME,
 };
 
-/// A query as it was read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draft {
     /// The region; a query must have one.
@@ -41,7 +40,6 @@ pub struct Draft {
 
 impl Draft {
     /// A query of one set, without a region yet.
-    #[must_use]
     pub const fn new(values: Values) -> Self {
         Self {
             region: Ok(None),
@@ -51,7 +49,6 @@ impl Draft {
     }
 
     /// A query by the parameters of an address, which may hold its region.
-    #[must_use]
     pub fn of(values: Values) -> Self {
         Self {
             region: RegionDraft::of(&values),
@@ -59,8 +56,6 @@ impl Draft {
         }
     }
 
-    /// This query in another region.
-    #[must_use]
     pub fn within(mut self, region: Checked<RegionDraft>) -> Self {
         self.region = region.map(Some);
         self
@@ -77,7 +72,6 @@ impl Draft {
             && !given.any(|parameter| *parameter != ONLY && is_of_set(parameter))
     }
 
-    /// Takes over what a world has and this query lacks.
     pub fn fill_from(&mut self, world: &Self) {
         self.values.replace(&WORLD, None);
         self.values.replace(&WORLD_DIGEST, None);
@@ -94,7 +88,6 @@ impl Draft {
         self.values.fill_from(&world.values, groups);
     }
 
-    /// Adds the points that the world leaves out.
     fn join_except(&mut self, world: &Self) {
         let items = |draft: &Self| draft.values.get::<Vec<String>>(&EXCEPT).ok().flatten();
         if let (Some(mut own), Some(others)) = (items(self), items(world)) {
@@ -108,9 +101,6 @@ impl Draft {
     }
 
     /// Checks a part of a query, with a region and an amount of its own in place of those that it lacks.
-    ///
-    /// # Errors
-    /// As [`check`](Self::check).
     pub fn try_out(&self, catalog: &Catalog, most_vertices: usize) -> Result<Query, Error> {
         let whole = self.tried("bbox=0,0,1,1");
         let loaded = Loaded::new(catalog, Allowance::UNLIMITED);
@@ -118,7 +108,6 @@ impl Draft {
     }
 
     /// A part of a query, made whole with a region and an amount where it has none.
-    #[must_use]
     pub fn tried(&self, region: &str) -> Self {
         let missing = parse_pairs(&format!("{region}&spacing=1"), groups::COUNT);
         let mut whole = self.clone();
@@ -220,7 +209,6 @@ impl Draft {
         }
     }
 
-    /// The one set.
     fn alone(&self, loaded: &Loaded<'_>) -> Checked<Box<Set>> {
         let except = except::of_set(&self.values, loaded.catalog);
         let (mut set, except) = (Set::of(&self.values, loaded), except).together()?;
@@ -299,7 +287,6 @@ impl Draft {
     }
 
     /// The part of the query that begins at a place and has a number of points.
-    #[must_use]
     pub fn part(&self, token: &Token, count: u64) -> Self {
         let mut part = self.clone();
         part.values.replace(&OFFSET, None);
@@ -310,7 +297,6 @@ impl Draft {
     }
 
     /// The body of `POST /v1/points:query` with this query.
-    #[must_use]
     pub fn to_body(&self) -> Map<String, Json> {
         let mut body = Map::new();
         if let Ok(Some(region)) = &self.region {
@@ -340,10 +326,6 @@ fn window(values: &Values) -> Checked<Window> {
     })
 }
 
-/// Reads the options of the answer's form.
-///
-/// # Errors
-/// Every fault.
 pub fn options(values: &Values) -> Checked<Options> {
     let encoding = values.get::<String>(&FORMAT).and_then(|name| {
         let Some(name) = name else { return Ok(None) };
@@ -378,10 +360,6 @@ pub fn options(values: &Values) -> Checked<Options> {
     })
 }
 
-/// The table of a profile that some values choose.
-///
-/// # Errors
-/// As [`Draft::check`].
 pub fn entry(values: &Values, profile: &str, catalog: &Catalog) -> Result<Arc<Entry>, Error> {
     let table = table::check(values, Some(profile), catalog);
     let ((), (entry, pin)) = (values.read(), table).together()?;
@@ -389,10 +367,6 @@ pub fn entry(values: &Values, profile: &str, catalog: &Catalog) -> Result<Arc<En
     Ok(entry)
 }
 
-/// The requested number of parts.
-///
-/// # Errors
-/// Every fault.
 pub fn parts(values: &Values) -> Checked<u32> {
     let ((), parts) = (values.read(), values.require::<u64>(&PARTS)).together()?;
     Ok(u32::try_from(parts).unwrap_or(u32::MAX))

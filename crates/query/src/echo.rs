@@ -63,7 +63,6 @@ pub struct Resolved {
 
 impl Resolved {
     /// The number of points of each kind, by name, in an object for each layer if there are layers.
-    #[must_use]
     pub fn kinds(&self) -> Option<Json> {
         let named = |set: &ResolvedSet| {
             let kinds = set
@@ -218,7 +217,6 @@ fn distances(pairs: &[(String, f64)]) -> Map<String, Json> {
 }
 
 impl Set {
-    /// As answers echo it, given what the amount became.
     pub fn resolved(
         &self,
         all: &[Self],
@@ -255,7 +253,6 @@ impl Set {
         }
     }
 
-    /// The digests of the fields of variants, by name.
     fn variant_field_digests(&self) -> BTreeMap<String, String> {
         let fields = self.kinds.iter().flat_map(|kinds| &kinds.fields);
         fields
@@ -270,7 +267,6 @@ impl Set {
         named.collect()
     }
 
-    /// All that its points depend on.
     fn identity(&self, all: &[Self]) -> Json {
         let mut identity = json!({
             "name": self.name,
@@ -315,7 +311,6 @@ impl QueryRegion {
 impl Query {
     /// A hash of everything that the points depend on, the same for every window and format. `digests` are those of the
     /// sets' tables.
-    #[must_use]
     pub fn identity(&self, digests: &[&str]) -> [u8; 32] {
         let mut document = json!({
             "algorithm": ALGORITHM_VERSION,

@@ -11,22 +11,17 @@ use strew_error::{Checked, Fault, Faults, all, unknown};
 
 use super::{Set, Values, parameters::EXCEPT, rules, table::is_digest};
 
-/// The message for a list whose digest is unknown.
 const GONE: &str = "a list that the server no longer holds must be sent again (POST /v1/except)";
 
 /// An item of `except`.
 enum Item {
-    /// An id, with the layer that it names.
     Id(Option<String>, PointId),
-    /// A list.
     List(Arc<NamedList>),
 }
 
-/// The items of some values with the names of their fields.
 struct Items(Vec<(String, Item)>);
 
 impl Items {
-    /// Reads the items of some values.
     fn of(values: &Values, catalog: &Catalog) -> Checked<Self> {
         let texts = values.get::<Vec<String>>(&EXCEPT)?.unwrap_or_default();
         let field = |i: usize| format!("{}{}[{i}]", values.path(), EXCEPT.name);
@@ -136,7 +131,6 @@ impl Items {
     }
 }
 
-/// The points that a single set leaves out.
 pub(super) fn of_set(values: &Values, catalog: &Catalog) -> Checked<Option<Except>> {
     if !values.has(&EXCEPT) {
         return Ok(None);
@@ -174,7 +168,6 @@ pub(super) fn of_layers(
 }
 
 impl Items {
-    /// Refuses ids of a layer that are of another one.
     fn check_layer(&self, name: &str) -> Checked<()> {
         let other = self.0.iter().find_map(|(field, item)| match item {
             Item::Id(Some(layer), _) if layer != name => Some((field, layer)),

@@ -15,10 +15,8 @@ use super::{
     region::around,
 };
 
-/// A part of the plane with a name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feature {
-    /// Its name.
     pub name: String,
     /// Its polygons; everywhere if there are none.
     pub region: Option<RegionDraft>,
@@ -31,7 +29,6 @@ pub struct Feature {
 impl Draft {
     /// This query of one set, with that set in each feature; in a box around all of them, unless it has a region. A
     /// query that could not be read stays as it is.
-    #[must_use]
     pub fn in_features(mut self, features: Checked<Vec<Feature>>) -> Self {
         if matches!(self.region, Ok(None)) {
             let known = features.as_deref().unwrap_or_default().iter();

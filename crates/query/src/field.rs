@@ -11,14 +11,12 @@ use strew_error::{Checked, Error};
 
 use super::{Values, parameters::FIELD};
 
-/// The field that a set is in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetField {
     /// Its name, if it is one that is loaded.
     pub name: Option<String>,
     /// Whether it is, or is made of, fields that are loaded, which may change.
     pub has_names: bool,
-    /// The field.
     pub spec: FieldSpec,
     /// Its digest, in hexadecimal.
     pub digest: String,
@@ -53,7 +51,6 @@ impl<'a> Loaded<'a> {
         self.built(&path, &document).map(Some)
     }
 
-    /// A field that is described at a path.
     pub(super) fn built(&self, path: &str, document: &Document) -> Checked<SetField> {
         let (pixels, allowance) = (self.pixels.get(), self.allowance);
         let (spec, sources) = self.catalog.build_field(path, document, pixels, allowance);

@@ -15,23 +15,18 @@ use super::{
     variants::variants,
 };
 
-/// Variants that are evenly spread.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kinds {
-    /// Their names and weights, and the kind that each is.
     pub variants: strew_core::Kinds,
-    /// How they are spread.
     pub spread: Spread,
     /// The name and the kind of the one to which points are limited.
     pub only: Option<(String, u8)>,
-    /// The fields that multiply the weights of variants, by name.
     pub fields: Vec<(String, SetField)>,
     /// The loaded table whose labels spread them evenly, if there is one.
     pub made: Option<Arc<Entry>>,
 }
 
 impl Kinds {
-    /// Checks the kinds among some values.
     pub(super) fn check(values: &Values) -> Checked<Option<Self>> {
         let (name, only) =
             (values.get::<String>(&SPREAD), values.get::<String>(&ONLY)).together()?;
@@ -88,7 +83,6 @@ impl Kinds {
         }))
     }
 
-    /// Reads the fields of variants among some values.
     pub(super) fn vary(&mut self, values: &Values, loaded: &Loaded<'_>) -> Checked<()> {
         let Some(given) = values.get::<Vec<(String, Arc<Document>)>>(&VARIANT_FIELDS)? else {
             return Ok(());
@@ -117,13 +111,11 @@ impl Kinds {
     }
 
     /// Whether shares vary from place to place.
-    #[must_use]
     pub const fn vary_by_place(&self) -> bool {
         !self.fields.is_empty()
     }
 
     /// The labels or the order that they need beside a table.
-    #[must_use]
     pub fn made_of(&self) -> Made {
         match self.vary_by_place() {
             true => Made::SecondOrder,
@@ -132,9 +124,6 @@ impl Kinds {
     }
 
     /// The points of a set with these kinds, or with one of them if `only` names it.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if the table lacks what the kinds need, or has other kinds.
     pub(super) fn of(&self, mut points: PointSet, ready: &Ready) -> Result<PointSet, Error> {
         if self.vary_by_place() {
             const WITHOUT: Error = Error::Internal("a table has no second order");
@@ -196,21 +185,17 @@ impl Kinds {
     }
 
     /// The shares of the kinds.
-    #[must_use]
     pub const fn shares(&self) -> &Shares {
         self.variants.shares()
     }
 
     /// The share of all points that are left when they are limited to one.
-    #[must_use]
     pub fn share(&self) -> f64 {
         self.only
             .as_ref()
             .map_or(1.0, |(_, kind)| self.shares().of(*kind))
     }
 
-    /// The name of the one to which points are limited.
-    #[must_use]
     pub fn only_name(&self) -> Option<&str> {
         self.only.as_ref().map(|(name, _)| name.as_str())
     }

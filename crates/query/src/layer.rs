@@ -13,27 +13,22 @@ use super::{
     parameters::{COUNT, FIELD, SEED},
 };
 
-/// A layer as it was read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayerDraft {
     /// Its name; it must be there.
     pub name: Checked<Option<String>>,
     /// Where it is; everywhere by default.
     pub region: Checked<Option<RegionDraft>>,
-    /// Its points.
     pub values: Values,
-    /// Names of earlier layers and the distances kept from their points.
     pub clear_of: Checked<Vec<(String, f64)>>,
 }
 
-/// The rule for names of layers, in words.
 pub(super) const NAME: &str = "1 to 64 characters, none of them a control character or a line break, another name for each layer";
 /// The rule for `clear_of`, in words.
 const CLEAR_OF: &str = "names of layers before this one, each with a finite distance above 0";
 
 impl LayerDraft {
     /// A layer without a name yet.
-    #[must_use]
     pub const fn new(values: Values) -> Self {
         Self {
             name: Ok(None),

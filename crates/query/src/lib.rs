@@ -7,6 +7,11 @@
 //! echoes and identities are loops over them. [`Worlds`] are queries that are described once. Depends on the catalog,
 //! the names of formats and the words of faults; plans nothing.
 
+#![allow(
+    missing_docs,
+    reason = "an internal crate: names say what its items are"
+)]
+
 mod amount;
 mod assets;
 mod attributes;

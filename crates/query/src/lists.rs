@@ -5,16 +5,13 @@ use std::{borrow::Cow, iter, sync::Arc};
 use strew_catalog::field::Document;
 use strew_error::number;
 
-/// A description of a faulty value.
 pub(super) type Detail = Cow<'static, str>;
 
-/// Numbers joined by commas.
 pub(super) fn listed(values: &[f64]) -> String {
     let values: Vec<String> = values.iter().copied().map(number).collect();
     values.join(",")
 }
 
-/// A number that is neither NaN nor infinite.
 pub(super) fn finite(text: &str) -> Result<f64, &'static str> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
@@ -66,7 +63,6 @@ pub(super) fn offsets(text: &str) -> Result<Vec<f64>, Detail> {
     Ok(pairs.collect::<Result<Vec<_>, _>>()?.into_flattened())
 }
 
-/// Checks that numbers are integers within a bound.
 pub(super) fn integers(values: &[f64], limit: i64) -> Result<(), Detail> {
     for value in values {
         if value.fract() != 0.0 {

@@ -8,38 +8,31 @@ use crate::{
 };
 
 impl Parameter {
-    /// The parameter with a name.
-    #[must_use]
     pub fn named(name: &str) -> Option<&'static Self> {
         let mut all = PARAMETERS.iter().copied();
         all.find(|parameter| parameter.name == name)
     }
 
     /// The parameter with a name as some groups have it, else as the plane has it.
-    #[must_use]
     pub fn taken(groups: &[Group], name: &str) -> Option<&'static Self> {
         find(groups, name).or_else(|| Self::named(name))
     }
 }
 
-/// The parameters of all tables.
 fn all() -> impl Iterator<Item = &'static Parameter> + Clone {
     let tables = PARAMETERS.iter().chain(PATTERN_PARAMETERS);
     tables.chain(SPACE_PARAMETERS).copied()
 }
 
-/// The parameter of some groups with a name.
 pub(crate) fn find(groups: &[Group], name: &str) -> Option<&'static Parameter> {
     let mut all = all();
     all.find(|parameter| parameter.name == name && groups.contains(&parameter.group))
 }
 
-/// The parameters of some groups.
 pub fn of(groups: &'static [Group]) -> impl Iterator<Item = &'static Parameter> + Clone {
     all().filter(|parameter| groups.contains(&parameter.group))
 }
 
-/// The names of the parameters of some groups, for a fault.
 pub(crate) fn names(groups: &'static [Group]) -> String {
     let names: Vec<&str> = of(groups).map(|parameter| parameter.name).collect();
     match names.as_slice() {

@@ -13,7 +13,6 @@ use super::{
 /// A query for the points nearest to a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
-    /// The place.
     pub at: Place,
     /// The most points; by default 1, or all within the radius.
     pub k: Option<usize>,
@@ -29,10 +28,6 @@ fn place(values: &Values) -> Checked<Place> {
 }
 
 impl Nearest {
-    /// Checks the values of the query.
-    ///
-    /// # Errors
-    /// Every fault.
     pub fn of(values: &Values) -> Checked<Self> {
         let (at, k, radius) =
             (place(values), values.get::<u64>(&K), values.get(&RADIUS)).together()?;
@@ -43,18 +38,11 @@ impl Nearest {
         })
     }
 
-    /// Checks the values of the query and of its set.
-    ///
-    /// # Errors
-    /// As [`Set::single`], with every fault of both.
     pub fn of_set(values: &Values, catalog: &Catalog) -> Result<(Box<Set>, Self), Error> {
         Self::of_set_within(values, catalog, Allowance::UNLIMITED)
     }
 
     /// As [`of_set`](Self::of_set), with no more than is allowed.
-    ///
-    /// # Errors
-    /// As [`Set::single_within`].
     pub fn of_set_within(
         values: &Values,
         catalog: &Catalog,

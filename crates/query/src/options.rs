@@ -10,7 +10,6 @@ use crate::{parameters, rules};
 pub struct Options {
     /// The format, if the query names one.
     pub encoding: Option<Encoding>,
-    /// Decimals of numbers in text formats.
     pub decimals: Option<u8>,
     /// The longer side of a picture, in pixels.
     pub size: Option<u32>,
@@ -18,15 +17,10 @@ pub struct Options {
     pub summary: Option<bool>,
     /// The coordinate reference system of the plane, if the query names it.
     pub crs: Option<Crs>,
-    /// That of its regions and rasters.
     pub plane: Option<Crs>,
 }
 
 impl Options {
-    /// These options for points in a plane.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if they name another one.
     pub fn of_plane(self, plane: Option<Crs>) -> Result<Self, Error> {
         match (&self.crs, &plane) {
             (Some(stated), Some(plane)) if !plane.is_plane_of(stated) => {
@@ -39,9 +33,6 @@ impl Options {
     }
 
     /// The output in `encoding`: the format that the query names, or another if it names none.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if an option has no effect in that format.
     pub fn output(self, encoding: Encoding) -> Result<Output, Error> {
         let check = |parameter, value| rules::check_format(parameter, value, encoding);
         let decimals = self.decimals.map(|decimals| decimals.to_string());

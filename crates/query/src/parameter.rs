@@ -10,25 +10,18 @@ use crate::{shape::Shape, value::Value};
 /// flags.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
-    /// Its name.
     pub name: &'static str,
     /// Its meaning, with its unit.
     pub about: &'static str,
-    /// Its group, which decides the requests that take it.
     pub group: Group,
-    /// The values it takes.
     pub shape: Shape,
     /// The rule for its values, where the shape does not state it in full.
     pub allowed: Option<&'static str>,
     /// Whether requests that take it must include it.
     pub is_required: bool,
-    /// Whether short help leaves it out, to fit a screen.
     pub is_rare: bool,
-    /// The meaning of its absence.
     pub default: Option<&'static str>,
-    /// A value that is valid on the built-in tables.
     pub example: &'static str,
-    /// Whether answers echo its value, and points may depend on it.
     pub is_echoed: bool,
 }
 
@@ -48,73 +41,45 @@ pub enum Group {
     Amount,
     /// The number of points in the region: an amount where there is a region.
     Count,
-    /// The points of a period, instead of a region.
     Period,
-    /// The name of a world.
     World,
-    /// The digest of the world.
     WorldPin,
-    /// The name of the profile.
     Profile,
-    /// The table of the profile.
     Table,
-    /// The set of points.
     Points,
     /// The part of a set of the plane that is there, from place to place, and how its points settle.
     Thinned,
-    /// Points that are left out one by one.
     Except,
-    /// Values of points.
     Attributes,
     /// The ranges of values and the names that they are chosen from.
     Choices,
-    /// The window of the points.
     Window,
-    /// The form of the answer.
     Output,
-    /// The coordinate reference system of the plane.
     Reference,
     /// The volume as text; JSON and messages have a member `region`.
     Volume,
     /// Values of points in space. All requests about points in space take it, and no others.
     SpaceAttributes,
-    /// A place in space, to find its neighbors.
     SpaceNearest,
-    /// A place, to find its neighbors.
     Nearest,
-    /// How many neighbors, and how far.
     Neighbors,
-    /// Into how many parts a query is split.
     Split,
-    /// The length of a list.
     Listed,
     /// The α of a pattern, of which no table is needed.
     Pattern,
-    /// The offsets of an arrangement.
     Arrangement,
-    /// Where an arrangement occurs.
     Occurrences,
-    /// The search for clusters.
     Clusters,
-    /// The sense in which clusters have the same shape.
     Shapes,
-    /// A neighborhood map.
     Map,
-    /// A finer map.
     Refined,
-    /// The content of a figure.
     Figure,
-    /// The pixels of a figure.
     Picture,
-    /// A threshold mask.
     Mask,
-    /// The file of a threshold mask.
     MaskFile,
-    /// A place in a path.
     Path,
 }
 
-/// The groups that requests take.
 pub mod groups {
     use super::Group::{self, *};
 
@@ -141,7 +106,6 @@ pub mod groups {
         Amount, Count, WorldPin, Profile, Table, Points, Thinned, Except, Attributes, Choices,
         Window, Output, Reference,
     ];
-    /// Bodies, in which the region is a member.
     pub const QUERY: &[Group] = &[
         Period, Amount, Count, World, WorldPin, Profile, Table, Points, Thinned, Except,
         Attributes, Choices, Window, Output, Reference,
@@ -169,41 +133,26 @@ pub mod groups {
     ];
     /// `POST /v1/points:split`, beside the body.
     pub const SPLIT: &[Group] = &[Split];
-    /// The choice of a table.
     pub const TABLES: &[Group] = &[Profile, Table];
-    /// The parameters of one table of a profile.
     pub const TABLE: &[Group] = &[Table];
     /// The parameters of an answer, without those of the points of a set.
     pub const ANSWER: &[Group] = &[Window, Output, Reference];
-    /// The parameters of the answer's form.
     pub const OUTPUT: &[Group] = &[Output, Reference];
-    /// Arrangements, with the set that displaces their points.
     pub const ARRANGEMENT: &[Group] = &[Pattern, Arrangement, Occurrences, Amount, Profile];
-    /// Clusters.
     pub const CLUSTERS: &[Group] = &[Pattern, Clusters, Shapes];
-    /// Neighborhood maps.
     pub const MAP: &[Group] = &[Pattern, Map, Refined];
-    /// The figure of the index.
     pub const INDEX_FIGURE: &[Group] = &[Pattern, Figure];
-    /// The figure of an arrangement.
     pub const ARRANGEMENT_FIGURE: &[Group] = &[Pattern, Arrangement, Figure];
-    /// The figure of clusters.
     pub const CLUSTERS_FIGURE: &[Group] = &[Pattern, Clusters, Figure];
-    /// The figure of a map.
     pub const MAP_FIGURE: &[Group] = &[Pattern, Map];
-    /// The figure of the index as pixels.
     pub const INDEX_PICTURE: &[Group] = &[Pattern, Figure, Picture];
-    /// The figure of an arrangement as pixels.
     pub const ARRANGEMENT_PICTURE: &[Group] = &[Pattern, Arrangement, Figure, Picture];
-    /// The figure of clusters as pixels.
     pub const CLUSTERS_PICTURE: &[Group] = &[Pattern, Clusters, Figure, Picture];
-    /// The figure of a map as pixels.
     pub const MAP_PICTURE: &[Group] = &[Pattern, Map, Picture];
     /// `GET /v1/mask.png`.
     pub const MASK: &[Group] = &[Mask, MaskFile, Profile, Table];
     /// `GET /v1/mask/spectrum.svg`.
     pub const MASK_SPECTRUM: &[Group] = &[Mask, Profile, Table];
-    /// A set of points in space.
     pub const SPACE_SET: &[Group] = &[Amount, Profile, Table, Points, SpaceAttributes, Choices];
     /// `GET /v1/space/points`.
     pub const SPACE_POINTS: &[Group] = &[
@@ -270,16 +219,11 @@ impl Parameter {
         is_echoed: false,
     };
 
-    /// A plain parameter that short help leaves out.
     pub const RARE: Self = Self {
         is_rare: true,
         ..Self::PLAIN
     };
 
-    /// Reads its value from text.
-    ///
-    /// # Errors
-    /// A fault of the parameter.
     pub fn read<T>(&self, text: &str) -> Checked<T>
     where
         T: for<'a> TryFrom<&'a Value, Error = &'static str>,
@@ -289,8 +233,6 @@ impl Parameter {
         T::try_from(&value).map_err(|detail| fault(detail.into()).into())
     }
 
-    /// The rule for its values, in words.
-    #[must_use]
     pub fn allowed(&self) -> String {
         self.allowed
             .map_or_else(|| self.shape.allowed(), Into::into)

@@ -34,7 +34,6 @@ macro_rules! parameters {
     };
 }
 
-/// The most periods of a list.
 pub const MOST_PERIODS: u64 = 1000;
 
 /// The most points of an answer about neighbors.
@@ -46,7 +45,6 @@ const SPACING_SHAPE: Shape = Shape::Number {
 };
 
 parameters! {
-    /// A box.
     BBOX = Parameter {
         name: "bbox",
         about: "The region as a box: min ≤ p < max on the reported coordinates.",
@@ -56,7 +54,6 @@ parameters! {
         example: "0,0,3,2",
         ..Parameter::PLAIN
     };
-    /// A circle.
     CIRCLE = Parameter {
         name: "circle",
         about: "The region as a circle: the points nearer to x,y than the radius.",
@@ -66,7 +63,6 @@ parameters! {
         example: "5,5,3",
         ..Parameter::PLAIN
     };
-    /// The outline of a polygon.
     POLYGON = Parameter {
         name: "polygon",
         about: "The region as a polygon with these vertices. Polygons that share an edge share no \
@@ -78,7 +74,6 @@ parameters! {
         example: "0,0,4,0,0,4",
         ..Parameter::RARE
     };
-    /// The least number of points of a period.
     PERIODIC = Parameter {
         name: "periodic",
         about: "One exact period of points on [0, L)² instead of a region: the smallest that has at least this \
@@ -101,7 +96,6 @@ parameters! {
         example: "1",
         ..Parameter::PLAIN
     };
-    /// The mean spacing.
     SPACING = Parameter {
         name: "spacing",
         about: "The mean spacing in world units: density^-1/2, in space density^-1/3.",
@@ -110,7 +104,6 @@ parameters! {
         example: "1",
         ..Parameter::PLAIN
     };
-    /// The least distance of any two points.
     MIN_DISTANCE = Parameter {
         name: "min_distance",
         about: "The least distance of any two points in world units: the density is the greatest that \
@@ -120,7 +113,6 @@ parameters! {
         example: "1",
         ..Parameter::PLAIN
     };
-    /// The number of points in the region.
     COUNT = Parameter {
         name: "count",
         about: "The exact number of points in the region: the density follows from it.",
@@ -129,11 +121,8 @@ parameters! {
         example: "100",
         ..Parameter::PLAIN
     };
-    /// The name of a world.
     WORLD = named::WORLD;
-    /// The digest of the world.
     WORLD_DIGEST = named::WORLD_DIGEST;
-    /// The name of the profile.
     PROFILE = Parameter {
         name: "profile",
         about: "The noise profile. The list of profiles shows what is loaded.",
@@ -144,7 +133,6 @@ parameters! {
         is_echoed: true,
         ..Parameter::PLAIN
     };
-    /// The number α.
     ALPHA = Parameter {
         name: "alpha",
         about: "The number α of the pattern, as a decimal, a fraction or a quadratic irrational.",
@@ -156,7 +144,6 @@ parameters! {
         is_echoed: true,
         ..Parameter::RARE
     };
-    /// The size of the neighborhood map.
     MAP = Parameter {
         name: "map",
         about: "The size of the neighborhood map: larger maps have better quality and take more memory.",
@@ -167,7 +154,6 @@ parameters! {
         is_echoed: true,
         ..Parameter::RARE
     };
-    /// The digest of the table.
     TABLE = Parameter {
         name: "table",
         about: "The digest of the table that must answer: caches may keep the answer forever. If \
@@ -179,7 +165,6 @@ parameters! {
         example: "964d5f8f3b54b47d272533f84423daa3e9b1dd6624fa906325132538c062fa4a",
         ..Parameter::RARE
     };
-    /// The seed.
     SEED = Parameter {
         name: "seed",
         about: "Which set of points. Seed 0 is the plain pattern, every other seed a set of its own. Beside layers: \
@@ -191,7 +176,6 @@ parameters! {
         is_echoed: true,
         ..Parameter::PLAIN
     };
-    /// The strength of the warp.
     WARP = Parameter {
         name: "warp",
         about: "The strength of the warp that makes a set isotropic and unlike those of other seeds: 0 \
@@ -215,11 +199,8 @@ parameters! {
         is_echoed: true,
         ..Parameter::PLAIN
     };
-    /// The steps by which points settle.
     SETTLE = thinned::SETTLE;
-    /// The level of detail.
     LOD = thinned::LOD;
-    /// The field that the set is in.
     FIELD = Parameter {
         name: "field",
         about: "The field that thins the points out, from place to place: a share of the density, which is \
@@ -231,9 +212,7 @@ parameters! {
         is_echoed: true,
         ..Parameter::PLAIN
     };
-    /// The points to leave out.
     EXCEPT = named::EXCEPT;
-    /// The names of the points' attributes.
     ATTRIBUTES = Parameter {
         name: "attributes",
         about: "Further values of each point, hashed from its id and the seed: angle (radians, 0 to \
@@ -288,7 +267,6 @@ parameters! {
         is_echoed: true,
         ..Parameter::PLAIN
     };
-    /// How variants are spread.
     SPREAD = Parameter {
         name: "spread",
         about: "How variants are spread. chance: each point has one by chance. even: each variant is evenly \
@@ -301,7 +279,6 @@ parameters! {
         is_echoed: true,
         ..Parameter::RARE
     };
-    /// The fields of variants.
     VARIANT_FIELDS = Parameter {
         name: "variant_fields",
         about: "The fields that multiply the weights of variants, from place to place. A variant without one has \
@@ -315,7 +292,6 @@ parameters! {
         is_echoed: true,
         ..Parameter::PLAIN
     };
-    /// The one variant wanted.
     ONLY = Parameter {
         name: "only",
         about: "The one variant whose points are wanted, of those that are evenly spread. Beside layers: the one \
@@ -328,7 +304,6 @@ parameters! {
         is_echoed: true,
         ..Parameter::RARE
     };
-    /// The number of points to leave out.
     OFFSET = Parameter {
         name: "offset",
         about: "The number of points to leave out, in the fixed order, from the start or after the \
@@ -339,7 +314,6 @@ parameters! {
         example: "3",
         ..Parameter::RARE
     };
-    /// The greatest number of points of the answer.
     LIMIT = Parameter {
         name: "limit",
         about: "The greatest number of points in the answer. The header strew-next is the cursor of the \
@@ -350,7 +324,6 @@ parameters! {
         example: "2",
         ..Parameter::PLAIN
     };
-    /// Where an earlier answer ended.
     CURSOR = Parameter {
         name: "cursor",
         about: "Where an earlier answer to the same query ended: the value of its header strew-next.",
@@ -361,7 +334,6 @@ parameters! {
         example: "01000000000000000000000000000000000000290000000000000000000000000000005100000000000000000000000000000008000000000000000f000000000000007228ff94af7ec61562886f26",
         ..Parameter::RARE
     };
-    /// The format of the answer.
     FORMAT = Parameter {
         name: "format",
         about: "The format of the answer; overrides the header Accept.",
@@ -371,7 +343,6 @@ parameters! {
         example: "csv",
         ..Parameter::PLAIN
     };
-    /// Decimals in text formats.
     DECIMALS = Parameter {
         name: "decimals",
         about: "The number of decimals in text formats, rounded to the nearest, ties to even; zero has \
@@ -382,7 +353,6 @@ parameters! {
         example: "3",
         ..Parameter::RARE
     };
-    /// The size of a picture.
     SIZE = Parameter {
         name: "size",
         about: "The longer side of a picture (png, svg) in pixels.",
@@ -403,7 +373,6 @@ parameters! {
         example: "off",
         ..Parameter::RARE
     };
-    /// The coordinate reference system of the plane.
     CRS = Parameter {
         name: "crs",
         about: "The coordinate reference system of the plane, for geojson and Parquet: by default that of the \
@@ -416,7 +385,6 @@ parameters! {
         example: "EPSG:3857",
         ..Parameter::RARE
     };
-    /// The place whose neighbors are wanted.
     AT = Parameter {
         name: "at",
         about: "The place whose neighbors are wanted.",
@@ -426,7 +394,6 @@ parameters! {
         example: "100.5,-3",
         ..Parameter::PLAIN
     };
-    /// The number of neighbors.
     K = Parameter {
         name: "k",
         about: "The number of nearest points.",
@@ -436,7 +403,6 @@ parameters! {
         example: "8",
         ..Parameter::PLAIN
     };
-    /// How far neighbors may be.
     RADIUS = Parameter {
         name: "radius",
         about: "The greatest distance from the place, in world units: points at exactly this distance, as reported, are found.",
@@ -446,7 +412,6 @@ parameters! {
         example: "2",
         ..Parameter::PLAIN
     };
-    /// The number of entries of a list.
     MOST = Parameter {
         name: "most",
         about: "The greatest number of entries of the list.",
@@ -456,7 +421,6 @@ parameters! {
         example: "4",
         ..Parameter::PLAIN
     };
-    /// The number of parts.
     PARTS = Parameter {
         name: "parts",
         about: "The number of queries to split the query into.",
@@ -466,13 +430,9 @@ parameters! {
         example: "4",
         ..Parameter::PLAIN
     };
-    /// The terrain that points stand on.
     TERRAIN = terrain::TERRAIN;
-    /// The bounds of its heights.
     HEIGHTS = terrain::HEIGHTS;
-    /// Whether points have normals.
     NORMALS = terrain::NORMALS;
-    /// How far things lean.
     ALIGN = terrain::ALIGN;
 }
 

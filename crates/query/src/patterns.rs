@@ -12,11 +12,8 @@ use super::{
     parameters::{MAP as MAP_OF_SET, SEED as SEED_OF_SET, WARP as WARP_OF_SET},
 };
 
-/// The largest half-width of a map.
 pub const MOST_RADIUS: u32 = strew_core::map::MAX_RADIUS;
-/// The largest side of a threshold mask that the daemon makes.
 pub const MOST_MASK: u32 = 512;
-/// The most offsets of an arrangement whose places are listed.
 pub const MOST_PLACED: usize = 1000;
 
 /// Makes a static of each parameter, and the list of all.
@@ -30,7 +27,6 @@ macro_rules! parameters {
 }
 
 parameters! {
-    /// Any α.
     ALPHA = Parameter {
         name: "alpha",
         about: "The number α of the pattern: a decimal, a fraction or a quadratic irrational.",
@@ -41,7 +37,6 @@ parameters! {
         example: "sqrt(3)",
         ..Parameter::PLAIN
     };
-    /// The offsets of an arrangement.
     OFFSETS = Parameter {
         name: "offsets",
         about: "The offsets of the other points from the first, in grid units: x,y pairs. In an address they are \
@@ -53,14 +48,12 @@ parameters! {
         example: "2,1 3,3",
         ..Parameter::PLAIN
     };
-    /// The seed.
     SEED = Parameter {
         name: "seed",
         about: "The seed that moves the pattern. Occurrences are at the ids that its points have.",
         group: Group::Occurrences,
         ..SEED_OF_SET
     };
-    /// The box in which occurrences are counted.
     GRID = Parameter {
         name: "grid",
         about: "A box of the grid: occurrences are counted whose first point has a column and a row from min \
@@ -76,7 +69,6 @@ parameters! {
         example: "0,0,20,10",
         ..Parameter::PLAIN
     };
-    /// The format of the list.
     LIST = Parameter {
         name: "list",
         about: "Lists the occurrences in the box, in this format, in the order of points: bands of 1024 columns, \
@@ -87,7 +79,6 @@ parameters! {
         example: "csv",
         ..Parameter::PLAIN
     };
-    /// The greatest number of occurrences.
     LIMIT = Parameter {
         name: "limit",
         about: "The greatest number of occurrences in the list. The header strew-next is the cursor of the rest.",
@@ -97,7 +88,6 @@ parameters! {
         example: "2",
         ..Parameter::PLAIN
     };
-    /// Where an earlier list ended.
     CURSOR = Parameter {
         name: "cursor",
         about: "Where an earlier list of the same arrangement ended: the value of its header strew-next, the \
@@ -109,19 +99,16 @@ parameters! {
         example: "3:-7",
         ..Parameter::PLAIN
     };
-    /// The map of the table that displaces the points.
     MAP = Parameter {
         name: "map",
         group: Group::Occurrences,
         ..MAP_OF_SET
     };
-    /// The warp of the places.
     WARP = Parameter {
         name: "warp",
         group: Group::Occurrences,
         ..WARP_OF_SET
     };
-    /// The distance of neighbors in a cluster.
     DISTANCE = Parameter {
         name: "distance",
         about: "The largest distance of neighbors in a cluster, in grid units.",
@@ -131,7 +118,6 @@ parameters! {
         example: "2.24",
         ..Parameter::PLAIN
     };
-    /// The number of points up to which clusters are distinguished.
     MOST = Parameter {
         name: "most",
         about: "The number of points up to which clusters are searched. Larger ones are counted together.",
@@ -141,7 +127,6 @@ parameters! {
         example: "16",
         ..Parameter::PLAIN
     };
-    /// The sense in which clusters have the same shape.
     UP_TO = Parameter {
         name: "up_to",
         about: "Which clusters have the same shape: those that are translations of each other, or also those \
@@ -152,7 +137,6 @@ parameters! {
         example: "symmetry",
         ..Parameter::PLAIN
     };
-    /// The half-width of a map.
     RADIUS = Parameter {
         name: "radius",
         about: "The half-width R of the neighborhood map, in grid units.",
@@ -162,7 +146,6 @@ parameters! {
         example: "20",
         ..Parameter::PLAIN
     };
-    /// The block whose neighbors are wanted.
     BLOCK = Parameter {
         name: "block",
         about: "The block whose neighbors are wanted: its intervals of dX and dY, from 0.",
@@ -173,7 +156,6 @@ parameters! {
         example: "0,0",
         ..Parameter::PLAIN
     };
-    /// The half-width of the map that refines it.
     REFINED = Parameter {
         name: "refined",
         about: "The half-width R' of a finer map: for each of its intervals the one of R that holds it.",
@@ -184,7 +166,6 @@ parameters! {
         example: "40",
         ..Parameter::PLAIN
     };
-    /// The side of the window that a figure draws.
     WINDOW = Parameter {
         name: "window",
         about: "The side of the window of the plane, in grid units.",
@@ -194,7 +175,6 @@ parameters! {
         example: "64",
         ..Parameter::PLAIN
     };
-    /// The pixels of a figure.
     PIXELS = Parameter {
         name: "size",
         about: "The longer side of the picture in pixels.",
@@ -204,7 +184,6 @@ parameters! {
         example: "800",
         ..Parameter::PLAIN
     };
-    /// The side of a threshold mask.
     MASK_SIZE = Parameter {
         name: "size",
         about: "The side of the mask in pixels.",
@@ -214,14 +193,12 @@ parameters! {
         example: "64",
         ..Parameter::PLAIN
     };
-    /// The threshold mask.
     MASK_SEED = Parameter {
         name: "seed",
         about: "Which mask: every seed has another one.",
         group: Group::Mask,
         ..SEED_OF_SET
     };
-    /// The bits of a threshold.
     BITS = Parameter {
         name: "bits",
         about: "The bits of a threshold.",

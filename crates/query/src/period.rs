@@ -14,19 +14,14 @@ use crate::{
     values::Values,
 };
 
-/// The period of a set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Period {
-    /// The least number of points that was requested.
     pub least: u64,
-    /// The twin whose period it is.
     pub twin: Twin,
-    /// The side L.
     pub side: f64,
 }
 
 impl Period {
-    /// The period among some values, on the map of a table.
     pub(super) fn check(values: &Values, amount: Amount, entry: &Entry) -> Checked<Option<Self>> {
         let Some(least) = values.get::<u64>(&PERIODIC)? else {
             return Ok(None);
@@ -52,7 +47,6 @@ impl Period {
         Ok(Some(Self { least, twin, side }))
     }
 
-    /// The period as a region.
     pub(super) fn region(&self) -> Checked<QueryRegion> {
         let bounds = Region::new([0.0; 2], [self.side; 2])
             .map_err(|error| Fault::new(PERIODIC.name, self.least, error.to_string(), ""))?;
@@ -84,9 +78,6 @@ pub struct Periods {
 
 impl Periods {
     /// The periods that some values request: those with at least a number of points, and at most a number of them.
-    ///
-    /// # Errors
-    /// Every fault, and [`Error::OtherTable`] if a pinned table is not loaded.
     pub fn of(values: &Values, catalog: &Catalog) -> Result<Self, Error> {
         /// The length of a list that none is given for.
         const MANY: u64 = 100;
@@ -147,15 +138,12 @@ pub struct PeriodEcho {
 }
 
 impl Period {
-    /// As answers echo it.
-    #[must_use]
     pub const fn echo(self) -> PeriodEcho {
         PeriodEcho::new(self.twin, self.side)
     }
 }
 
 impl PeriodEcho {
-    /// The period of a twin on a side.
     const fn new(twin: Twin, side: f64) -> Self {
         Self {
             p: twin.p(),

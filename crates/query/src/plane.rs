@@ -35,9 +35,6 @@ impl Seen {
 
 impl Draft {
     /// The plane that the query is in, if anything states it.
-    ///
-    /// # Errors
-    /// A fault of the first field that states another plane than those before.
     pub(super) fn plane(&self, sets: &[Set], stated: Option<&Crs>) -> Checked<Option<Crs>> {
         let mut seen = Seen::default();
         let regions = self.layers.iter().flatten().map(LayerDraft::given_region);

@@ -5,8 +5,6 @@ use strew_raster::Price;
 use super::{Draft, Value, Values};
 
 impl Draft {
-    /// The price of the pictures of all its sets.
-    #[must_use]
     pub fn price(&self) -> Price {
         let layers = self.layers.iter().flatten().map(|layer| &layer.values);
         let all = [&self.values].into_iter().chain(layers);
@@ -15,8 +13,6 @@ impl Draft {
 }
 
 impl Values {
-    /// The price of the pictures among them.
-    #[must_use]
     pub fn price(&self) -> Price {
         let of = |value: &Value| match value {
             Value::Field(field) => field.price(),

@@ -6,20 +6,15 @@ use strew_core::{Area, server, space::Volume};
 
 use super::{QueryRegion, QueryVolume, Token, amount::Amount, set::Set};
 
-/// A checked query.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Query {
-    /// Where.
     pub region: QueryRegion,
     /// The sets of points: one, or one for each layer.
     pub sets: Arc<[Set]>,
-    /// Whether the sets are named layers.
     pub is_layered: bool,
     /// The window of the points, in their order.
     pub window: Window,
-    /// The world that a part of it comes from.
     pub world: Option<Named>,
-    /// The number of the one requested layer.
     pub only: Option<usize>,
 }
 
@@ -28,9 +23,7 @@ pub struct Query {
 pub struct Window {
     /// The number of points left out at the beginning, or after the cursor.
     pub offset: u64,
-    /// The most points of the answer.
     pub limit: Option<u64>,
-    /// The place to begin at.
     pub cursor: Option<Token>,
 }
 
@@ -40,7 +33,6 @@ const QUICK: f64 = 3e5;
 impl Query {
     /// Whether it holds all that its answer depends on: in its sets, or in the digest of a world that all of it comes
     /// from.
-    #[must_use]
     pub fn is_pinned(&self) -> bool {
         match &self.world {
             Some(world) => world.is_pinned,
@@ -50,7 +42,6 @@ impl Query {
 
     /// The digests of the tables that answer, each once, in the order of the sets. There are 16 at most: queries of more
     /// layers than that have one table.
-    #[must_use]
     pub fn tables(&self) -> Vec<&str> {
         let mut tables: Vec<&str> = vec![];
         for set in self.sets.iter() {
@@ -70,7 +61,6 @@ impl Query {
 
     /// Whether planning counts the points of set number `i`. Those before a cursor and in its own set are not counted
     /// again, and those of layers that are not requested are not, unless their spacing follows from their number.
-    #[must_use]
     pub fn is_counted(&self, i: usize) -> bool {
         let is_requested = self.only.is_none_or(|only| only == i);
         let cursor = self.window.cursor;
@@ -86,7 +76,6 @@ impl Query {
 
     /// Whether planning it and making its points takes no longer than handing it to another
     /// thread: a single set in a box of about 2,000 spacings' area at most, and not long and thin.
-    #[must_use]
     pub fn is_small(&self) -> bool {
         let ([set], Area::Region(_)) = (&*self.sets, &self.region.area) else {
             return false;
@@ -139,12 +128,9 @@ fn is_small_in_space(amount: Amount, volume: &QueryVolume) -> bool {
     volume.spacings(spacing) <= 1024.0 && longest / spacing <= 64.0
 }
 
-/// The world that a query names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Named {
-    /// Its name.
     pub name: String,
-    /// Its digest.
     pub digest: String,
     /// Whether the query names this digest, and nothing beside it that a server could change.
     pub is_pinned: bool,

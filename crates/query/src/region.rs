@@ -17,10 +17,8 @@ use super::{
     volume::{QueryVolume, VOLUME, VolumeDraft},
 };
 
-/// The form of a chunk, as faults describe it.
 const CHUNK: &str =
     "a size above 0 and two integers within ±4503599627370496, the chunk's column and row";
-/// The forms of a region.
 pub(super) const REGION: &str =
     "one of bbox, circle, polygon (GeoJSON), chunk, or include with exclude";
 
@@ -40,39 +38,29 @@ pub(super) fn around<'a>(regions: impl Iterator<Item = &'a RegionDraft>) -> Opti
 /// A region as it was given, not checked. `path` names it in faults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegionDraft {
-    /// The field it came from.
     pub path: Cow<'static, str>,
-    /// The shape as it was read.
     pub shape: ShapeDraft,
 }
 
-/// The shape of a region.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ShapeDraft {
     /// min x, min y, max x, max y.
     Box([f64; 4]),
-    /// A center and a radius.
     Circle([f64; 2], f64),
-    /// Polygons with their holes, and the plane that they state.
     Polygons(Vec<Rings>, Option<Crs>),
     /// A square of the world grid of this size; answers are relative to its lower corner.
     Chunk(f64, [i64; 2]),
     /// The points in any region of the first list and in none of the second.
     Combined(Vec<Checked<RegionDraft>>, Vec<Checked<RegionDraft>>),
-    /// A volume of space.
     Volume(VolumeDraft),
 }
 
-/// A checked region.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QueryRegion {
-    /// The field it came from.
     pub path: Cow<'static, str>,
     /// The area; it has a box around it, which is not empty. Of a volume, the shadow along z.
     pub area: Area,
-    /// That box.
     pub bounds: Region,
-    /// The volume, for points in space.
     pub volume: Option<QueryVolume>,
     /// As answers echo it, unless it is just that box.
     pub echo: Option<Json>,
@@ -82,7 +70,6 @@ pub struct QueryRegion {
 
 impl QueryRegion {
     /// The coordinates of the box around it: the lower corner, then the upper one.
-    #[must_use]
     pub fn corners(&self) -> Vec<f64> {
         match &self.volume {
             Some(volume) => volume.bbox().into(),
@@ -91,7 +78,6 @@ impl QueryRegion {
     }
 
     /// The area of the box around it, or in space its volume.
-    #[must_use]
     pub fn measure(&self) -> f64 {
         match &self.volume {
             Some(volume) => sides(&volume.bounds.min(), &volume.bounds.max()).product(),
@@ -100,14 +86,12 @@ impl QueryRegion {
     }
 
     /// min x, min y, max x, max y of the box around it.
-    #[must_use]
     pub fn bbox(&self) -> [f64; 4] {
         let ([min_x, min_y], [max_x, max_y]) = (self.bounds.min(), self.bounds.max());
         [min_x, min_y, max_x, max_y]
     }
 
     /// The largest absolute coordinate of an answer, which a chunk's are not far from.
-    #[must_use]
     pub fn reach(&self) -> f64 {
         let reach = |min: &[f64], max: &[f64]| match self.corner {
             Some(_) => sides(min, max).fold(0.0, f64::max),
@@ -121,23 +105,17 @@ impl QueryRegion {
         }
     }
 
-    /// The area that lies in both regions.
-    #[must_use]
     pub fn and(&self, own: &Self) -> Area {
         own.area.clone().and(self.area.clone())
     }
 }
 
-/// The sides of a box.
 fn sides(min: &[f64], max: &[f64]) -> impl Iterator<Item = f64> {
     max.iter().zip(min).map(|(max, min)| max - min)
 }
 
 impl RegionDraft {
     /// The region among the parameters of an address or a command line.
-    ///
-    /// # Errors
-    /// Faults if there are several, or one that cannot be read.
     pub fn of(values: &Values) -> Checked<Option<Self>> {
         if values.dimension() == Dimension::Space {
             let volume = VolumeDraft::of(values)?;
@@ -172,10 +150,6 @@ impl RegionDraft {
         }))
     }
 
-    /// Checks it and everything in it.
-    ///
-    /// # Errors
-    /// Every fault.
     pub fn check(&self) -> Checked<QueryRegion> {
         if self.is_in_space() {
             return self.check_volume();
@@ -290,7 +264,6 @@ impl RegionDraft {
         Ok((include, exclude))
     }
 
-    /// The number of vertices of its polygons.
     pub(super) fn vertices(&self) -> usize {
         match &self.shape {
             ShapeDraft::Polygons(polygons, _) => polygons.iter().flatten().map(Vec::len).sum(),
@@ -377,8 +350,6 @@ impl RegionDraft {
         })
     }
 
-    /// As answers echo it, and as a query's body has it.
-    #[must_use]
     pub fn echo(&self) -> Json {
         let list = |regions: &[Checked<Self>]| {
             regions.iter().flatten().map(Self::echo).collect::<Vec<_>>()

@@ -2,7 +2,6 @@
 
 use crate::{parameter::Parameter, parameters::PARAMETERS, value::Value, values::Values};
 
-/// Values by parameter.
 pub(crate) type Resolved = Vec<(&'static Parameter, Value)>;
 
 /// The given values that answers echo. Fields are there by their names; others are known by their digests.

@@ -7,9 +7,6 @@ pub type Rings = Vec<Vec<[f64; 2]>>;
 
 /// Polygons, each with the polygons of its holes. Those that are empty or lie on one line have no points and are left
 /// out.
-///
-/// # Errors
-/// Says what is wrong: there is none that is not empty, or a ring cannot be one.
 pub(super) fn surfaces(polygons: &[Rings]) -> Result<Vec<(Polygon, Vec<Polygon>)>, String> {
     // Two different positions in all.
     let is_flat = |ring: &[[f64; 2]]| match ring {

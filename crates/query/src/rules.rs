@@ -19,13 +19,10 @@ use crate::{
 /// A rule about a parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Rule {
-    /// The parameter.
     pub parameter: &'static Parameter,
-    /// The condition under which it may be given.
     pub condition: Condition,
 }
 
-/// A condition of a rule.
 #[derive(Clone, Copy, Debug)]
 pub enum Condition {
     /// One of some others is present. The words of the fault if none is.
@@ -34,16 +31,13 @@ pub enum Condition {
     Without(&'static Parameter, &'static str, Option<&'static str>),
     /// With a value, or a list that has it, another one must be present.
     Needs(&'static str, &'static Parameter),
-    /// The format of the answer is a fitting one.
     Format(fn(Encoding) -> bool),
 }
 
 /// A parameter with one of some values, or a list with one of them among its items; with any value if there are none.
 #[derive(Clone, Copy, Debug)]
 pub struct Other {
-    /// The parameter.
     pub parameter: &'static Parameter,
-    /// The values.
     pub values: &'static [&'static str],
 }
 
@@ -58,7 +52,6 @@ const fn rule(parameter: &'static Parameter, condition: Condition) -> Rule {
     }
 }
 
-/// The spreads of kinds.
 const EVEN: &[&str] = &[Spread::Even.name(), Spread::Joint.name()];
 
 const GROUND: Condition =

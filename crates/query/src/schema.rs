@@ -5,15 +5,12 @@ use strew_encode::Encoding;
 
 use crate::shape::Shape;
 
-/// The names of fields and variants.
 pub const NAME: &str = "[A-Za-z0-9_.-]{1,64}";
 
 /// The names of layers ([`is_title`](strew_config::name::is_title)).
 pub const TITLE: &str =
     r"^[^\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff]{1,64}$";
 
-/// The JSON Schema of a parameter in JSON.
-#[must_use]
 pub fn schema(shape: Shape) -> Value {
     match shape {
         Shape::Number { min, max } => json!({ "type": "number", "minimum": min, "maximum": max }),

@@ -19,39 +19,28 @@ use crate::{
 pub struct Set {
     /// The prefix of its fields' names in faults: empty, or `layers[3].`.
     pub path: String,
-    /// The name of the layer.
     pub name: String,
     /// The table. It is found once, when the query is checked, and answers to the end, whatever is
     /// loaded in its place meanwhile.
     pub entry: Arc<Entry>,
     /// The digest that the query wants it to have, in lower case.
     pub pin: Option<String>,
-    /// The amount of points.
     pub amount: Amount,
-    /// The seed.
     pub seed: Seed,
-    /// How strongly the plane is warped.
     pub warp: Warp,
     /// The share of the points that are kept.
     pub keep: Keep,
-    /// How points settle.
     pub settle: Settle,
     /// The level of detail: the set's own times the common one of a query with layers. Later layers keep clear of all
     /// points, so a coarser level has a part of the points of a finer one.
     pub lod: Keep,
-    /// The field that the set is in.
     pub field: Option<SetField>,
-    /// The further values of points.
     pub attributes: Attributes,
-    /// The terrain that points stand on.
     pub terrain: Option<Terrain>,
-    /// The variants that are evenly spread.
     pub kinds: Option<Kinds>,
-    /// The period that the points are of, instead of a region.
     pub period: Option<Period>,
     /// The points that it is without.
     pub except: Option<Except>,
-    /// The values that were given, of those that answers echo.
     pub(crate) given: Resolved,
     /// Where the layer is; everywhere if `None`.
     pub region: Option<QueryRegion>,
@@ -61,7 +50,6 @@ pub struct Set {
 
 impl Set {
     /// How the table's points are laid into the world, given the spacing.
-    #[must_use]
     pub const fn placement(&self, spacing: Spacing) -> Placement {
         Placement::new(spacing, self.seed)
             .with_warp(self.warp)
@@ -70,10 +58,6 @@ impl Set {
             .with_lod(self.lod)
     }
 
-    /// The points of a table at a spacing.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if the table lacks what the kinds need.
     pub fn points(&self, ready: &Ready, spacing: Spacing) -> Result<PointSet, Error> {
         let mut points = PointSet::new(ready.table.clone()).placed(self.placement(spacing));
         if let Some(kinds) = &self.kinds {
@@ -86,15 +70,10 @@ impl Set {
     }
 
     /// Its table, if its points lie in space.
-    #[must_use]
     pub fn space(&self) -> Option<&space::Table> {
         self.entry.space()
     }
 
-    /// The points in space of a table at a spacing.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] unless the placement is one that points in space have.
     pub fn points_in_space(
         &self,
         table: &space::Table,
@@ -118,7 +97,6 @@ impl Set {
 
     /// The number of steps by which points settle; `None` in sets whose points do not settle by default: periods, and
     /// sets of all points or of a tiny part of them.
-    #[must_use]
     pub fn steps(&self) -> Option<u32> {
         if self.period.is_some() || self.space().is_some() {
             return None;
@@ -132,13 +110,11 @@ impl Set {
     }
 
     /// Whether points move so that those of a kind, or in a field any, keep no distance of their own.
-    #[must_use]
     pub fn moves(&self) -> bool {
         self.steps().is_some_and(|steps| steps > 0)
     }
 
     /// All points that the table has for it, whatever its share, its kinds and its fields leave out.
-    #[must_use]
     pub fn every_point(&self, ready: &Ready) -> PointSet {
         PointSet::new(ready.table.clone()).placed(Placement::new(Spacing::ONE, self.seed))
     }
@@ -160,7 +136,6 @@ impl Set {
         self.keep.get() * self.lod.get() * kind
     }
 
-    /// The part of the query's region in which the layer lies.
     pub fn area(&self, query: &QueryRegion) -> Area {
         match &self.region {
             Some(own) => query.and(own),
@@ -168,7 +143,6 @@ impl Set {
         }
     }
 
-    /// A fault of one of its fields.
     pub fn fault(
         &self,
         field: &str,
@@ -180,7 +154,6 @@ impl Set {
         Fault::new(&field, value, detail, allowed).into()
     }
 
-    /// The points of a table in a period.
     pub fn periodic(
         &self,
         table: &Table,

@@ -22,7 +22,6 @@ use crate::{
 };
 
 impl Set {
-    /// Checks the set of some values.
     pub(super) fn of(values: &Values, loaded: &Loaded<'_>) -> Checked<Box<Self>> {
         let kinds = Kinds::check(values);
         let known = kinds.as_ref().ok().and_then(Option::as_ref);
@@ -144,17 +143,11 @@ impl Set {
     }
 
     /// Checks a set without a region.
-    ///
-    /// # Errors
-    /// As [`crate::Draft::check`].
     pub fn single(values: &Values, catalog: &Catalog) -> Result<Box<Self>, Error> {
         Self::single_within(values, catalog, Allowance::UNLIMITED)
     }
 
     /// As [`single`](Self::single), with no more than is allowed.
-    ///
-    /// # Errors
-    /// As [`crate::Draft::check_within`].
     pub fn single_within(
         values: &Values,
         catalog: &Catalog,

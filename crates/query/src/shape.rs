@@ -13,67 +13,47 @@ use crate::{
     value::{OTHER_TYPE, Value},
 };
 
-/// The values that a parameter takes.
 #[derive(Clone, Copy, Debug)]
 pub enum Shape {
-    /// A number within bounds, both included.
     Number {
-        /// The least.
         min: f64,
-        /// The greatest.
         max: f64,
     },
-    /// An integer within bounds, both included.
     Integer {
-        /// The least.
         min: u64,
-        /// The greatest.
         max: u64,
     },
     /// `on` or `off`.
     Switch,
     /// `off` for 0, `on` for 1, or a number from 0 to a greatest one.
     Strength {
-        /// The greatest.
         max: f64,
     },
-    /// Several numbers, by what each is called.
     Numbers(&'static [&'static str]),
     /// x and y of vertices by turns.
     Vertices,
-    /// An integer whose absolute value is bounded.
     Signed {
-        /// The bound.
         limit: i64,
     },
     /// Several integers whose absolute values are bounded, by what each is called.
     Integers {
-        /// Their names.
         names: &'static [&'static str],
         /// The bound, at most 2⁵³.
         limit: i64,
     },
-    /// Pairs of integers whose absolute values are bounded, at least one.
     Offsets {
         /// The bound, at most 2⁵³.
         limit: i64,
     },
     /// Names, each once.
     Names {
-        /// A regular expression that each of them matches.
         pattern: &'static str,
     },
-    /// Names with weights.
     Weights,
-    /// Names with two numbers each.
     Ranges,
-    /// One of some words.
     Choice(&'static [&'static str]),
-    /// The name of a format.
     Format,
-    /// A number as a decimal, a fraction or a quadratic irrational.
     Quadratic,
-    /// Text that matches a regular expression.
     Pattern(&'static str),
     /// A field: a name, or in JSON also a description.
     Field,
@@ -89,8 +69,6 @@ pub(super) const LONGEST: usize = 1 << 16;
 const LONGEST_NAMES: usize = 1 << 20;
 
 impl Shape {
-    /// The rule for values of this shape, in words.
-    #[must_use]
     pub fn allowed(self) -> String {
         let integers = |max: u64| match max {
             u64::MAX => "18446744073709551615".into(),
@@ -144,7 +122,6 @@ impl Shape {
     }
 
     /// Whether its values are names, which begin with no sign.
-    #[must_use]
     pub const fn is_of_names(self) -> bool {
         matches!(
             self,
@@ -158,10 +135,6 @@ impl Shape {
         )
     }
 
-    /// Reads a value from text.
-    ///
-    /// # Errors
-    /// A description of the fault.
     pub fn read(self, text: &str) -> Result<Value, Detail> {
         let text = text.trim();
         let value = match self {
@@ -198,9 +171,6 @@ impl Shape {
 
     /// Reads a value from JSON. Every value may also be text, as in an address: long integers are, and numbers that
     /// are not decimals.
-    ///
-    /// # Errors
-    /// A description of the fault.
     pub fn read_json(self, json: &RawValue) -> Result<Value, Detail> {
         let longest = match self {
             Self::Names { .. } => LONGEST_NAMES,
@@ -251,10 +221,6 @@ impl Shape {
         self.check(value)
     }
 
-    /// Checks that a value is of this shape.
-    ///
-    /// # Errors
-    /// A description of the fault.
     pub fn check(self, value: Value) -> Result<Value, Detail> {
         const RANGE: Detail = Cow::Borrowed("out of range");
         match (self, &value) {

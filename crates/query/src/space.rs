@@ -5,7 +5,6 @@ use crate::{
     shape::Shape,
 };
 
-/// A box.
 pub static BOX: Parameter = Parameter {
     name: "bbox",
     about: "The volume as a box: min ≤ p < max on the reported coordinates.",
@@ -16,7 +15,6 @@ pub static BOX: Parameter = Parameter {
     ..Parameter::PLAIN
 };
 
-/// A ball.
 pub static BALL: Parameter = Parameter {
     name: "ball",
     about: "The volume as a ball: the points nearer to x,y,z than the radius.",
@@ -27,7 +25,6 @@ pub static BALL: Parameter = Parameter {
     ..Parameter::PLAIN
 };
 
-/// The names of the points' attributes.
 pub static SPACE_ATTRIBUTES: Parameter = Parameter {
     name: "attributes",
     about: "Further values of each point, hashed from its id and the seed: rotation (a uniform unit quaternion, as qx, \
@@ -46,7 +43,6 @@ pub static SPACE_ATTRIBUTES: Parameter = Parameter {
     ..Parameter::PLAIN
 };
 
-/// The place whose neighbors are wanted.
 pub static SPACE_AT: Parameter = Parameter {
     name: "at",
     about: "The place whose neighbors are wanted.",

@@ -1,6 +1,5 @@
 //! How variants are spread over the points.
 
-/// How variants are spread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spread {
     /// Evenly, each of them and all together; points do not move.
@@ -13,11 +12,8 @@ pub enum Spread {
 pub(crate) const CHANCE: &str = "chance";
 
 impl Spread {
-    /// The names of all spreads.
     pub const NAMES: &'static [&'static str] = &[CHANCE, Self::Even.name(), Self::Joint.name()];
 
-    /// The name of the spread.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Even => "even",

@@ -93,7 +93,6 @@ pub(super) fn check(
     Err(fault(&MAP, text, detail, allowed))
 }
 
-/// The tables that a query could mean.
 struct Wanted<'a> {
     dimension: Dimension,
     profile: Arc<str>,
@@ -140,10 +139,6 @@ impl Wanted<'_> {
     }
 }
 
-/// The table that some values choose.
-///
-/// # Errors
-/// Every fault, and [`Error::OtherTable`] if a pinned table is not loaded.
 pub fn chosen(values: &Values, catalog: &Catalog) -> Result<Arc<Entry>, Error> {
     let ((), (entry, pin)) = (values.read(), check(values, None, catalog)).together()?;
     hold(&entry, pin.as_deref())?;
@@ -166,10 +161,6 @@ pub(super) fn is_digest(text: &str) -> bool {
     text.len() == 64 && text.bytes().all(|byte| byte.is_ascii_hexdigit())
 }
 
-/// Checks that a table is the pinned one.
-///
-/// # Errors
-/// [`Error::OtherTable`] if it is not.
 pub(super) fn hold(entry: &Entry, pin: Option<&str>) -> Result<(), Error> {
     match pin {
         Some(pin) if pin != entry.digest => Err(Error::OtherTable {
@@ -189,7 +180,6 @@ fn parse(text: &str) -> Result<Alpha, strew_core::Error> {
     }
 }
 
-/// The loaded tables, in words for an error.
 fn loaded(catalog: &Catalog, dimension: Dimension) -> String {
     let of = |profile: &str| {
         let alphas = some(

@@ -12,20 +12,17 @@ use crate::{
     values::Values,
 };
 
-/// The terrain of a set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Terrain {
     /// Its share is the height, from the lower of the bounds to the upper one.
     pub field: SetField,
     /// The heights where the share is 0 and where it is 1, in world units.
     pub heights: [f64; 2],
-    /// Whether points have normals.
     pub has_normals: bool,
     /// How far things lean from the vertical to the normal, 0 to 1, if they have rotations.
     pub align: Option<f64>,
 }
 
-/// The terrain among some values.
 pub(super) fn check(values: &Values, loaded: &Loaded<'_>) -> Checked<Option<Terrain>> {
     let document = values.get::<Arc<Document>>(&TERRAIN);
     let Some(document) = document? else {

@@ -9,7 +9,6 @@ use super::{Values, lists::parts, parameter::Group};
 
 /// The parameters of an address: `name=value` joined by `&`, percent-encoded. A plus is a plus, as
 /// in `1e+5` and `(1+sqrt(5))/2`, not a space.
-#[must_use]
 pub fn parse_pairs(text: &str, groups: &'static [Group]) -> Values {
     let mut values = Values::new(groups, "");
     for pair in parts(text, b'&').filter(|pair| !pair.is_empty()) {

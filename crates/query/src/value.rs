@@ -6,28 +6,21 @@ use serde::{Serialize, Serializer, ser::SerializeMap as _};
 use strew_catalog::field::Document;
 use strew_error::{integer::Long, number};
 
-/// A value of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A number, not NaN and not infinite.
     Number(f64),
-    /// An integer.
     Integer(u64),
-    /// An integer with a sign.
     Signed(i64),
-    /// On or off.
     Switch(bool),
     /// Several numbers, none of them NaN or infinite.
     Numbers(Vec<f64>),
-    /// Names.
     Names(Vec<String>),
     /// Names with weights, sorted by name.
     Weights(Vec<(String, f64)>),
     /// Names with two numbers each, sorted by name.
     Ranges(Vec<(String, [f64; 2])>),
-    /// Text.
     Text(String),
-    /// A field.
     Field(Arc<Document>),
     /// Fields by name, sorted by name.
     Fields(Vec<(String, Arc<Document>)>),
@@ -51,8 +44,6 @@ impl Value {
         }
     }
 
-    /// As text, in the way an address has it.
-    #[must_use]
     pub fn to_text(&self) -> String {
         let listed = |parts: Vec<String>| parts.join(",");
         match self {

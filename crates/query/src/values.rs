@@ -17,7 +17,6 @@ use crate::{
 /// The values of parameters, each read or with its fault in its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Values {
-    /// The groups of parameters that the request takes.
     groups: &'static [Group],
     /// The prefix of their names in faults: empty, or `layers[3].`.
     path: String,
@@ -31,7 +30,6 @@ pub(crate) const NOT_IN_SPACE: &str = "not for points in space";
 
 impl Values {
     /// No values, of a request that takes these groups; `path` is put before names in faults.
-    #[must_use]
     pub fn new(groups: &'static [Group], path: &str) -> Self {
         Self {
             groups,
@@ -41,14 +39,11 @@ impl Values {
         }
     }
 
-    /// The prefix of the names of fields in faults.
-    #[must_use]
     pub fn path(&self) -> &str {
         &self.path
     }
 
     /// Whether the request is about points of the plane or in space.
-    #[must_use]
     pub fn dimension(&self) -> Dimension {
         match self.groups.contains(&Group::SpaceAttributes) {
             true => Dimension::Space,
@@ -56,7 +51,6 @@ impl Values {
         }
     }
 
-    /// The parameters that the request takes.
     pub fn takes(&self) -> impl Iterator<Item = &'static Parameter> + Clone {
         of(self.groups)
     }
@@ -113,7 +107,6 @@ impl Values {
         self.add(parameter, value.map_err(fault), || shown(json).into());
     }
 
-    /// Adds the typed values that are given.
     pub fn add_values(
         &mut self,
         values: impl IntoIterator<Item = (&'static Parameter, Option<Value>)>,
@@ -125,7 +118,6 @@ impl Values {
         }
     }
 
-    /// Adds a typed value.
     pub fn add_value(&mut self, parameter: &'static Parameter, value: Value) {
         if !self.takes().any(|taken| taken == parameter) {
             let field = format!("{}{}", self.path, parameter.name);
@@ -148,7 +140,6 @@ impl Values {
     }
 
     /// Whether the number of faults has reached the most that are reported, so that reading can stop.
-    #[must_use]
     pub fn is_full(&self) -> bool {
         let faulty = self.given.iter().filter(|(_, value)| value.is_err());
         faulty.count() >= strew_error::faults::MOST_FAULTS
@@ -201,9 +192,6 @@ impl Values {
     }
 
     /// Nothing, or the faults of all that could not be read.
-    ///
-    /// # Errors
-    /// These faults.
     pub fn read(&self) -> Checked<()> {
         let unread = self
             .given
@@ -215,8 +203,6 @@ impl Values {
         })
     }
 
-    /// Whether a parameter is given.
-    #[must_use]
     pub fn has(&self, parameter: &Parameter) -> bool {
         self.of(parameter).is_some()
     }
@@ -227,7 +213,6 @@ impl Values {
     }
 
     /// The first two given parameters of some groups, in the order of the table.
-    #[must_use]
     pub(crate) fn two_of(&self, groups: &[Group]) -> [Option<&'static Parameter>; 2] {
         let given = self.given.iter().map(|(parameter, _)| *parameter);
         let mut given = given.filter(|parameter| groups.contains(&parameter.group));
@@ -241,9 +226,6 @@ impl Values {
     }
 
     /// The value of a parameter, if it is given.
-    ///
-    /// # Errors
-    /// Its faults.
     pub fn get<T>(&self, parameter: &Parameter) -> Checked<Option<T>>
     where
         T: for<'a> TryFrom<&'a Value, Error = &'static str>,
@@ -258,10 +240,6 @@ impl Values {
         }
     }
 
-    /// The value of a parameter that must be given.
-    ///
-    /// # Errors
-    /// Its faults; that it is missing is one.
     pub fn require<T>(&self, parameter: &Parameter) -> Checked<T>
     where
         T: for<'a> TryFrom<&'a Value, Error = &'static str>,
@@ -270,8 +248,6 @@ impl Values {
             .ok_or_else(|| self.missing(parameter).into())
     }
 
-    /// The fault of a given value.
-    #[must_use]
     pub fn fault(&self, parameter: &Parameter, detail: impl Into<String>) -> Fault {
         // Parameters of space have names of the plane, and rules of their own.
         let parameter = self.of(parameter).map_or(parameter, |(given, _)| given);
@@ -280,14 +256,12 @@ impl Values {
     }
 
     /// The fault of a value that is not given.
-    #[must_use]
     pub fn missing(&self, parameter: &Parameter) -> Fault {
         let field = format!("{}{}", self.path, parameter.name);
         Fault::missing(&field, parameter.allowed())
     }
 
     /// The text of a value; empty if it is not given or could not be read.
-    #[must_use]
     pub fn text(&self, parameter: &Parameter) -> String {
         let mut given = self.given();
         let value = given.find(|(known, _)| *known == parameter);
@@ -300,7 +274,6 @@ impl Values {
         given.filter_map(|(parameter, value)| Some((*parameter, value.as_ref().ok()?)))
     }
 
-    /// Replaces a value, or removes it.
     pub fn replace(&mut self, parameter: &'static Parameter, value: Option<Value>) {
         self.given.retain(|(known, _)| *known != parameter);
         let value = value.map(|value| (parameter, Ok(value)));
@@ -322,7 +295,6 @@ impl Values {
         }
     }
 
-    /// The values as members of JSON.
     pub(crate) fn written(&self) -> Map<String, Json> {
         let in_body =
             |group: &Group| groups::QUERY.contains(group) || groups::SPACE_QUERY.contains(group);

@@ -15,20 +15,15 @@ use crate::{
     values::Values,
 };
 
-/// The form of a chunk, as faults describe it.
 const CHUNK: &str = "a size above 0 and three integers within ±4503599627370496, the chunk's place along x, y and z";
-/// The form of a prism.
 pub(super) const PRISM: &str =
     "a polygon (GeoJSON) between two heights, finite numbers with bottom below top";
-/// The forms of a volume.
 pub(super) const VOLUME: &str = "one of bbox, ball, prism, chunk, or include with exclude";
 
-/// The shape of a volume.
 #[derive(Clone, Debug, PartialEq)]
 pub enum VolumeDraft {
     /// min x, min y, min z, max x, max y, max z.
     Box([f64; 6]),
-    /// A center and a radius.
     Ball([f64; 3], f64),
     /// Polygons with their holes, between two heights.
     Prism(Vec<Rings>, [f64; 2]),
@@ -36,12 +31,10 @@ pub enum VolumeDraft {
     Chunk(f64, [i64; 3]),
 }
 
-/// A checked volume.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QueryVolume {
     /// The volume; it has a box around it, which is not empty.
     pub volume: Volume,
-    /// That box.
     pub bounds: Region,
 }
 
@@ -66,7 +59,6 @@ impl VolumeDraft {
         Ok(shape.map(|shape| (only.name, shape)))
     }
 
-    /// The number of vertices of its polygons.
     pub(super) fn vertices(&self) -> usize {
         match self {
             Self::Prism(polygons, _) => polygons.iter().flatten().map(Vec::len).sum(),
@@ -124,7 +116,6 @@ impl VolumeDraft {
         Ok(Volume::any_of(volumes.collect::<Result<Vec<_>, _>>()?))
     }
 
-    /// As answers echo it, and as a query's body has it.
     pub(super) fn echo(&self) -> Json {
         match self {
             Self::Box(corners) => json!({ "bbox": corners }),
@@ -145,7 +136,6 @@ impl VolumeDraft {
     }
 }
 
-/// The box of some corners.
 fn region(path: &str, corners: [f64; 6]) -> Result<Region, Fault> {
     let [x, y, z, max_x, max_y, max_z] = corners;
     let fault = |detail: String| Fault::new(path, listed(&corners), detail, BOX.allowed());
@@ -178,14 +168,12 @@ fn region(path: &str, corners: [f64; 6]) -> Result<Region, Fault> {
 
 impl QueryVolume {
     /// min x, min y, min z, max x, max y, max z of the box around it.
-    #[must_use]
     pub fn bbox(&self) -> [f64; 6] {
         let ([x, y, z], [max_x, max_y, max_z]) = (self.bounds.min(), self.bounds.max());
         [x, y, z, max_x, max_y, max_z]
     }
 
     /// The volume of the box around it, in mean spacings cubed.
-    #[must_use]
     pub fn spacings(&self, spacing: f64) -> f64 {
         let ([x, y, z], [max_x, max_y, max_z]) = (self.bounds.min(), self.bounds.max());
         [max_x - x, max_y - y, max_z - z]
@@ -194,8 +182,6 @@ impl QueryVolume {
             .product()
     }
 
-    /// The part of a layer's own volume that lies in it.
-    #[must_use]
     pub fn and(&self, own: Option<&Self>) -> Volume {
         match own {
             Some(own) => own.volume.clone().and(self.volume.clone()),

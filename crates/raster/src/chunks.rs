@@ -24,15 +24,12 @@ const LEAST: u128 = 256;
 /// The bytes that a compressor may add to each strip or tile.
 const OVERHEAD: u128 = 1024;
 
-/// How the picture is cut up.
 pub(super) struct Cut {
     /// Width and height in pixels.
     pub(super) size: [usize; 2],
-    /// The channels that are read.
     pub(super) channels: usize,
     /// The width of a strip or tile, and how many lie side by side.
     pub(super) across: [u32; 2],
-    /// The number of strips or tiles.
     pub(super) chunks: u64,
 }
 

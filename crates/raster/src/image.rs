@@ -9,12 +9,10 @@ use super::{
     wanted::{FEW, look},
 };
 
-/// A raster as it was read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
     /// Width and height in pixels.
     pub size: [usize; 2],
-    /// A number for each pixel, row by row from the top.
     pub samples: Samples,
     /// Which pixels have no data, if any: their number is 0.
     pub missing: Option<Vec<bool>>,
@@ -30,10 +28,8 @@ pub struct Image {
     pub epsg: Option<u16>,
 }
 
-/// Where a file says that its pixels lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
-    /// Nowhere.
     Unknown,
     /// Min x, min y, max x, max y.
     Box([f64; 4]),
@@ -81,7 +77,6 @@ impl Image {
         Ok(self)
     }
 
-    /// Takes further pixels as missing.
     pub(super) fn without(mut self, further: Vec<bool>) -> Self {
         self.samples.clear(&further);
         match &mut self.missing {
@@ -98,9 +93,6 @@ impl Image {
 
     /// Places it by x = a·column + b·row + c and y = d·column + e·row + f of the corners of pixels. Rows that run from
     /// south to north, or from east to west, are turned around.
-    ///
-    /// # Errors
-    /// [`RasterError::Stopped`].
     pub fn at(self, [a, b, c, d, e, f]: [f64; 6], stop: &Stop) -> Result<Self, RasterError> {
         let [width, height] = self.size.map(|side| side as f64);
         let [x, y] = [[c, c + a * width], [f, f + e * height]];
@@ -201,10 +193,6 @@ pub(super) fn orientation(exif: &[u8]) -> u16 {
 }
 
 impl Limits {
-    /// The number of pixels of a size.
-    ///
-    /// # Errors
-    /// [`RasterError::Size`] if it is empty or beyond the limits.
     pub(super) fn check(self, width: u64, height: u64) -> Result<[usize; 2], RasterError> {
         let side = self.side as u64;
         let is_within = (1..=side).contains(&width) && (1..=side).contains(&height);

@@ -6,6 +6,11 @@
 //!
 //! Depends on the core alone, for its flags that stop long work. Knows no field and no query.
 
+#![allow(
+    missing_docs,
+    reason = "an internal crate: names say what its items are"
+)]
+
 #[cfg(feature = "tiff")]
 mod chunks;
 mod error;
@@ -40,9 +45,6 @@ use wanted::{Wanted, look};
 
 impl Image {
     /// Reads a PNG, a TIFF or a npy file, whichever it is. Stops soon after the flag is raised.
-    ///
-    /// # Errors
-    /// [`RasterError`].
     pub fn read(
         mut from: impl BufRead + Seek,
         meaning: Meaning,
@@ -62,9 +64,6 @@ impl Image {
     }
 
     /// Reads a PNG, and no other format: of those, the bytes that are to be decoded are known from the header.
-    ///
-    /// # Errors
-    /// [`RasterError`].
     pub fn read_png(
         bytes: &[u8],
         meaning: Meaning,
@@ -83,9 +82,6 @@ impl Image {
     }
 
     /// Reads 32-bit floats, little endian, row by row from the top. Stops soon after the flag is raised.
-    ///
-    /// # Errors
-    /// [`RasterError`], if their number differs from the size.
     pub fn read_floats(
         from: impl Read + Seek,
         [width, height]: [usize; 2],
@@ -99,9 +95,6 @@ impl Image {
 
     #[cfg(feature = "pictures")]
     /// Reads a picture: also JPEG and WebP. Its numbers are shares of the greatest light.
-    ///
-    /// # Errors
-    /// [`RasterError`].
     pub fn read_picture(
         mut from: impl BufRead + Seek,
         limits: Limits,
@@ -115,7 +108,6 @@ impl Image {
     }
 
     /// How dark each pixel of a picture is, or how light if it is inverted: 65535 for black. Missing pixels are neither.
-    #[must_use]
     pub fn darkness(&self, is_inverted: bool) -> Vec<u16> {
         let (samples, full) = (&self.samples, self.full);
         let light = |i: usize| (samples.get(i) / full).clamp(0.0, 1.0);
@@ -134,10 +126,6 @@ impl Image {
         words
     }
 
-    /// Reads a raster in memory.
-    ///
-    /// # Errors
-    /// As [`read`](Self::read).
     pub fn from_bytes(
         bytes: &[u8],
         meaning: Meaning,
@@ -148,7 +136,6 @@ impl Image {
     }
 }
 
-/// How PNGs begin.
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// The allowed files where only PNG is read.
 const ONLY_PNG: &str = "a PNG";
@@ -159,7 +146,6 @@ fn unless_stopped(read: Result<Image, RasterError>, stop: &Stop) -> Result<Image
     read
 }
 
-/// A format, by how its files begin.
 enum Format {
     Png,
     Tiff,
@@ -169,7 +155,6 @@ enum Format {
 }
 
 impl Format {
-    /// The name of a file of this format.
     const fn name(&self) -> &'static str {
         match self {
             Self::Png => "a PNG",

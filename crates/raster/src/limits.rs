@@ -3,12 +3,10 @@
 /// The longest side of a raster, in pixels.
 pub const MOST_SIDE: usize = 16_384;
 
-/// The upper limits of a raster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// The longest side, in pixels.
     pub side: usize,
-    /// The most pixels.
     pub pixels: usize,
 }
 

@@ -12,12 +12,10 @@ use super::{
     wanted::{FEW, look},
 };
 
-/// The arrays that are read.
 const ALLOWED: &str = "two dimensions in C order, of the types u1, u2, f4 or f8, little endian";
 /// The longest header: far longer than any of an array of two dimensions.
 const LONGEST_HEADER: usize = 1 << 16;
 
-/// The number types that are read.
 #[derive(Clone, Copy)]
 enum Kind {
     U8,

@@ -205,7 +205,6 @@ fn damaged(error: impl Into<PngProblem>) -> RasterError {
     }
 }
 
-/// An error of the decoder, or of the checks here.
 enum PngProblem {
     Decoding(DecodingError),
     Other(&'static str),

@@ -7,7 +7,6 @@ use super::{Limits, PNG};
 /// An upper bound of the cost of decoding. Rasters whose headers cannot be read cost nothing: they are refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Price {
-    /// The pixels, on which the time depends.
     pub pixels: usize,
     /// The memory while it is decoded and of what becomes of it, in bytes.
     pub bytes: usize,
@@ -23,7 +22,6 @@ impl Price {
     pub const HEADER: usize = PNG_HEADER;
 
     /// Of a PNG that begins with these bytes.
-    #[must_use]
     pub fn of_png(head: &[u8]) -> Self {
         let number = |at: usize| -> Option<u64> {
             let bytes = head.get(at..at + 4)?;
@@ -70,8 +68,6 @@ impl Price {
         }
     }
 
-    /// Of bare floats.
-    #[must_use]
     pub fn of_floats([width, height]: [usize; 2]) -> Self {
         let pixels = pixels(width as u64, height as u64).unwrap_or_default();
         Self {

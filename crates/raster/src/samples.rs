@@ -1,19 +1,16 @@
 //! The numbers of a raster's pixels, as small as the file has them.
 
-/// A number for each pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Samples {
     /// Of 8 bits.
     U8(Vec<u8>),
     /// Of 16 bits.
     U16(Vec<u16>),
-    /// Finite floats.
     F32(Vec<f32>),
 }
 
 impl Samples {
     /// The greatest number of an integer type, else 1.
-    #[must_use]
     pub const fn full(&self) -> f64 {
         match self {
             Self::U8(_) => u8::MAX as f64,
@@ -23,7 +20,6 @@ impl Samples {
     }
 
     /// The bytes of a number.
-    #[must_use]
     pub const fn width(&self) -> usize {
         match self {
             Self::U8(_) => 1,
@@ -32,8 +28,6 @@ impl Samples {
         }
     }
 
-    /// The number of samples.
-    #[must_use]
     pub const fn len(&self) -> usize {
         match self {
             Self::U8(values) => values.len(),
@@ -43,7 +37,6 @@ impl Samples {
     }
 
     /// Whether there are none.
-    #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -52,7 +45,6 @@ impl Samples {
     ///
     /// # Panics
     /// If there is no such pixel.
-    #[must_use]
     pub fn get(&self, i: usize) -> f64 {
         match self {
             Self::U8(values) => values[i].into(),

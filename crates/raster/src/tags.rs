@@ -14,7 +14,6 @@ pub(super) const WHITE_IS_ZERO: u16 = 0;
 pub(super) const PALETTE: u16 = 3;
 const MASK: u16 = 4;
 
-/// A directory that fits into the file.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Directory {
     /// The bits of NewSubfileType: 4 for a mask.

@@ -259,7 +259,6 @@ fn headers_are_checked_before_memory_is_taken() {
     );
 }
 
-/// The checksum of a PNG's chunk.
 fn crc(bytes: &[u8]) -> u32 {
     let step = |crc: u32| (crc >> 1) ^ if crc & 1 == 1 { 0xedb8_8320 } else { 0 };
     !bytes.iter().fold(!0, |crc, byte| {

@@ -26,7 +26,6 @@ const CHUNK_BYTES: usize = 128 << 20;
 /// A tag may take this much: the places of a million tiles.
 const TAG_BYTES: usize = 16 << 20;
 
-/// A file that is decoded.
 type File<R> = Decoder<Tagged<R>>;
 
 pub(super) fn read(
@@ -112,11 +111,9 @@ pub(super) fn read(
     })
 }
 
-/// How a pixel is stored.
 #[derive(Clone, Copy)]
 struct Layout {
     channels: Channels,
-    /// The bits of each channel.
     bits: u8,
 }
 
@@ -158,7 +155,6 @@ struct Pixels {
     nodata: Option<f64>,
     /// Whether 0 is white.
     is_inverted: bool,
-    /// The light of each index of a palette.
     palette: Option<Vec<u16>>,
     samples: Option<Samples>,
     missing: Vec<bool>,
@@ -202,7 +198,6 @@ impl Pixels {
         Ok(())
     }
 
-    /// Takes a strip or tile.
     fn put(
         &mut self,
         decoded: DecodingResult,
@@ -327,7 +322,6 @@ impl Pixels {
         })
     }
 
-    /// All of the picture.
     fn image(self) -> Result<Image, RasterError> {
         let samples = self.samples.ok_or_else(|| broken("it has no pixels"))?;
         let mut missing = self.missing;
@@ -336,7 +330,6 @@ impl Pixels {
     }
 }
 
-/// The place of a strip or tile.
 struct Cell {
     /// The width of the picture.
     width: usize,
@@ -367,7 +360,6 @@ impl Cell {
     }
 }
 
-/// The light of each index of the palette.
 fn palette(decoder: &mut File<impl BufRead + Seek>) -> Result<Vec<u16>, RasterError> {
     let colors = decoder.find_tag_unsigned_vec::<u16>(Tag::ColorMap);
     let colors = colors.map_err(damaged)?.unwrap_or_default();
@@ -386,7 +378,6 @@ fn palette(decoder: &mut File<impl BufRead + Seek>) -> Result<Vec<u16>, RasterEr
     Ok(light)
 }
 
-/// Where a file says that it lies.
 enum Georeference {
     None,
     /// From columns and rows to x and y: see [`Image::at`].
@@ -442,7 +433,6 @@ fn place(
     Ok(Georeference::Transform([a, b, corner[0], d, e, corner[1]]))
 }
 
-/// A key of GeoTIFF that is a short number.
 fn key(keys: &[u16], name: u16) -> Option<u16> {
     // The first four numbers are the directory's own.
     let mut entries = keys.chunks_exact(4).skip(1);

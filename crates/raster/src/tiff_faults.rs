@@ -4,7 +4,6 @@ use tiff::{ColorType, TiffError, TiffUnsupportedError};
 
 use super::error::RasterError;
 
-/// The TIFF files that are read.
 const ALLOWED: &str = "one channel of 1 to 32 bits (integers or floats) or of 64-bit floats, or a palette, or RGB of \
                        8 or 16 bits, either with alpha; pixels side by side; compression with LZW, PackBits or \
                        deflate, or none, such as gdal_translate -co COMPRESS=DEFLATE makes";
@@ -38,7 +37,6 @@ pub(super) fn damaged(error: TiffError) -> RasterError {
     }
 }
 
-/// The name of a method of compression.
 fn compression(method: u16) -> String {
     let names = [
         (2, "CCITT"),
@@ -64,7 +62,6 @@ pub(super) fn broken(detail: &str) -> RasterError {
     }
 }
 
-/// The kind of pixels, in words.
 pub(super) fn kind(color: ColorType) -> String {
     match color {
         ColorType::Palette(_) => "pixels of a palette".into(),

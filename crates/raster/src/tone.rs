@@ -4,7 +4,6 @@ use std::sync::LazyLock;
 
 use super::samples::Samples;
 
-/// The meaning of the numbers in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meaning {
     /// A mask or a measurement: a single channel is taken as it is. Colors, also those of a palette, are taken as
@@ -17,10 +16,8 @@ pub enum Meaning {
     Picture,
 }
 
-/// The channels of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Channels {
-    /// Whether there are three colors instead of one gray.
     pub(super) has_colors: bool,
     /// Whether there is an alpha channel after them.
     pub(super) has_alpha: bool,
@@ -31,7 +28,6 @@ impl Channels {
         (if self.has_colors { 3 } else { 1 }) + self.has_alpha as usize
     }
 
-    /// Whether numbers are taken as they are.
     pub(super) fn are_plain(self, meaning: Meaning) -> bool {
         meaning != Meaning::Picture && !self.has_colors
     }
@@ -59,7 +55,6 @@ static LIGHT_16: LazyLock<Vec<f32>> = LazyLock::new(|| {
     all.map(|v| linear(f64::from(v) / 65535.0)).collect()
 });
 
-/// Integers of pixels.
 pub(super) trait Depth: Copy + Into<u64> {
     const FULL: u64;
 

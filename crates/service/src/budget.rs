@@ -19,7 +19,6 @@ pub struct Budget {
 
 impl Budget {
     /// A budget of `limit` bytes for all addresses.
-    #[must_use]
     pub fn new(limit: usize) -> Self {
         Self {
             all: Arc::new(Quota::new(limit)),
@@ -28,7 +27,6 @@ impl Budget {
     }
 
     /// This budget, limited further by what one address may hold.
-    #[must_use]
     pub fn of_address(&self, address: Arc<Usage>) -> Self {
         Self {
             all: self.all.clone(),
@@ -36,24 +34,19 @@ impl Budget {
         }
     }
 
-    /// An identifier of the address, by which its work takes turns.
     pub(super) fn address(&self) -> usize {
         Arc::as_ptr(&self.address).addr()
     }
 
-    /// The sender of the items that the request includes.
     pub(super) fn sender(&self) -> Sender {
         Sender(self.address.client())
     }
 
     /// The bytes that are held of all addresses together.
-    #[must_use]
     pub fn held(&self) -> usize {
         self.all.used()
     }
 
-    /// The limit of all addresses together.
-    #[must_use]
     pub fn limit(&self) -> usize {
         self.all.limit()
     }
@@ -70,7 +63,6 @@ impl Budget {
     }
 
     /// Takes bytes that exist already, whatever the limit.
-    #[must_use]
     pub fn hold_anyway(&self, bytes: usize) -> Held {
         self.all.take_anyway(bytes);
         self.address.bytes.take_anyway(bytes);

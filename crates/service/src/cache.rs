@@ -17,7 +17,6 @@ use strew_plan::Lane;
 
 use crate::Workers;
 
-/// The cache.
 #[derive(Clone)]
 pub(super) struct Samplers {
     ready: Cache<String, Ready>,
@@ -28,14 +27,10 @@ pub(super) struct Samplers {
     loaded: Arc<AtomicU64>,
 }
 
-/// How a cache stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CacheState {
-    /// The lookups that found an entry, made or being made.
     pub hits: u64,
-    /// The lookups that had to make one.
     pub misses: u64,
-    /// The lookups that read a file.
     pub loads: u64,
     /// The bytes of all entries.
     pub bytes: u64,
@@ -71,7 +66,6 @@ impl Samplers {
         }
     }
 
-    /// The state of the cache.
     pub(super) async fn state(&self) -> CacheState {
         // The cache updates its weight only now and then.
         self.ready.run_pending_tasks().await;
@@ -85,7 +79,6 @@ impl Samplers {
         }
     }
 
-    /// A table, ready.
     pub(super) async fn get(&self, entry: &Arc<Entry>, workers: &Workers) -> Result<Ready, Error> {
         self.asked.fetch_add(1, Ordering::Relaxed);
         if let Some(last) = &*self.last.load()

@@ -50,8 +50,6 @@ pub struct Service {
 }
 
 impl Service {
-    /// A service over everything that queries may name.
-    #[must_use]
     pub fn new(assets: impl Into<Assets>, limits: Limits, workers: Workers) -> Self {
         let samplers = Samplers::new(limits.cache_bytes);
         let budget = Budget::new(limits.max_bytes_in_flight);
@@ -69,7 +67,6 @@ impl Service {
     }
 
     /// The service with a folder of mixes, where those are kept that queries have made.
-    #[must_use]
     pub fn with_mixes(self, folder: Option<PathBuf>) -> Self {
         Self {
             mixes: Mixes::new(self.samplers.clone(), self.budget.clone(), folder),
@@ -78,14 +75,12 @@ impl Service {
     }
 
     /// Everything that queries may name now. A query holds on to the tables that it was checked against.
-    #[must_use]
     pub fn catalog(&self) -> Arc<Assets> {
         self.assets.load_full()
     }
 
     /// Reads the folders and the names of the configuration again. Invalid documents are refused, and their earlier
     /// versions stay.
-    #[must_use]
     pub fn read_tables(&self, config: &Config) -> (Assets, Reload) {
         self.catalog().reload(config)
     }
@@ -99,10 +94,6 @@ impl Service {
         reload
     }
 
-    /// Holds a field that a client sends, under its digest.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] for a field that is not valid or too large to be held.
     pub fn hold_field(&self, document: Document, stop: &Stop) -> Result<Arc<NamedField>, Error> {
         let (catalog, sender) = (self.catalog(), self.own_budget().sender());
         library::hold_field(
@@ -115,10 +106,6 @@ impl Service {
     }
 
     /// Reads and holds a list of points that a client sends, under its digest.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] for a list that is not valid or too large to be held, and as [`hold`](Self::hold) where
-    /// there is no room to read it.
     pub fn hold_list(&self, body: &[u8]) -> Result<Arc<NamedList>, Error> {
         let (catalog, budget) = (self.catalog(), self.own_budget());
         let lists = catalog.except();
@@ -127,45 +114,32 @@ impl Service {
         Ok(lists.hold(&text, budget.sender())?)
     }
 
-    /// The limits.
-    #[must_use]
     pub const fn limits(&self) -> &Limits {
         &self.limits
     }
 
-    /// The threads that make points.
-    #[must_use]
     pub const fn workers(&self) -> &Workers {
         &self.workers
     }
 
-    /// How the cache of samplers stands.
     pub async fn cache(&self) -> CacheState {
         self.samplers.state().await
     }
 
-    /// The open streams.
-    #[must_use]
     pub const fn streams(&self) -> &Arc<Streams> {
         &self.streams
     }
 
-    /// The points that answers in progress still have to make.
-    #[must_use]
     pub const fn points_in_flight(&self) -> &PointsInFlight {
         &self.points_in_flight
     }
 
     /// The byte budget of all requests and answers.
-    #[must_use]
     pub const fn budget(&self) -> &Budget {
         &self.budget
     }
 
     /// Checks a query against the tables that are loaded and the limits.
-    ///
-    /// # Errors
-    /// As [`Draft::check`], and [`Error::Invalid`] for a format that is for files only.
     pub fn check(&self, draft: &Draft, stop: &Stop) -> Result<(Box<Query>, Options), Error> {
         let (catalog, vertices) = (self.catalog(), self.limits.max_vertices);
         let allowance = allowance(stop);
@@ -181,10 +155,6 @@ impl Service {
     }
 
     /// Admits a caller and plans a query whose points are to be made, charging the points considered.
-    ///
-    /// # Errors
-    /// As admitting and [`plan`](Self::plan), and [`Error::Denied`] if the caller takes
-    /// points too fast.
     pub async fn open(
         &self,
         caller: &Caller,
@@ -207,32 +177,22 @@ impl Service {
     }
 
     /// The byte budget of the request that is being answered.
-    #[must_use]
     pub fn own_budget(&self) -> Budget {
         let record = Record::current();
         record.map_or_else(|| self.budget.clone(), |record| record.budget().clone())
     }
 
     /// Takes bytes of the budget for the request that is being answered.
-    ///
-    /// # Errors
-    /// As [`Budget::hold`].
     pub fn hold(&self, bytes: usize) -> Result<Held, Error> {
         self.own_budget().hold(bytes)
     }
 
     /// Plans a query on the workers, whatever it counts. Charges the rows that are counted one by one.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] for a region out of reach or an amount that cannot be had,
-    /// [`Error::TooManyRows`] if counting would take too long, and [`Error::Denied`] if the caller's
-    /// rate does not allow it.
     pub async fn count(&self, caller: &Caller, query: Box<Query>) -> Result<Planned, Error> {
         let tables = self.tables(caller, &query).await?;
         self.charged(caller, query, tables).await
     }
 
-    /// The tables of the sets of a query.
     async fn tables(&self, caller: &Caller, query: &Query) -> Result<Vec<Ready>, Error> {
         let mut tables = Vec::with_capacity(query.sets.len());
         // Tables in space are ready as they are.
@@ -242,7 +202,6 @@ impl Service {
         Ok(tables)
     }
 
-    /// Plans a query, and charges for it.
     async fn charged(
         &self,
         caller: &Caller,
@@ -312,10 +271,6 @@ impl Service {
     }
 
     /// Admits one more stream of a caller; a picture of that size is held whole.
-    ///
-    /// # Errors
-    /// As [`Streams::admit`], [`Error::Denied`] if the caller has reached its own limit, and [`Error::TooManyBytes`] if
-    /// there is no room.
     pub(super) fn admit(&self, caller: &Caller, picture: Option<u32>) -> Result<Permit, Error> {
         /// The bytes in which rows and text are made, besides blocks.
         const ROWS: usize = 2 << 20;
@@ -329,10 +284,6 @@ impl Service {
         Ok(permit.with(place, self.hold(held)?))
     }
 
-    /// Plans a query that is to be answered with its points.
-    ///
-    /// # Errors
-    /// As [`count`](Self::count), and [`Error::TooManyPoints`] over the limit.
     pub async fn plan(&self, caller: &Caller, query: Box<Query>) -> Result<Planned, Error> {
         let planned = self.count(caller, query).await?;
         self.check_points(caller, &planned)?;
@@ -350,9 +301,6 @@ impl Service {
     }
 
     /// The query in parts; see [`Planned::split`]. Charges the rows that are counted for them.
-    ///
-    /// # Errors
-    /// As [`Planned::split`], and [`Error::Denied`] if the caller's rate does not allow it.
     pub async fn split(
         &self,
         caller: &Caller,
@@ -364,10 +312,6 @@ impl Service {
         self.workers.take_turn(Lane::Long, split).await?
     }
 
-    /// Lays a set into the world, to look up single points.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] for an amount that the table cannot have.
     pub async fn place(&self, caller: &Caller, set: Box<Set>) -> Result<Placed, Error> {
         if set.space().is_some() {
             return Placed::in_space(set);
@@ -378,10 +322,6 @@ impl Service {
 
     /// The answer about the points of a set nearest to a place, made where they are found: there may be
     /// thousands. Charges them.
-    ///
-    /// # Errors
-    /// As [`place`](Self::place) and [`Placed::nearest`], [`Error::Denied`] if the caller takes points
-    /// too fast, and [`Error::TooManyBytes`] if there is no room.
     pub async fn nearest<T: Send + 'static>(
         &self,
         caller: &Caller,
@@ -405,19 +345,12 @@ impl Service {
         self.workers.take_turn(effort.lane, search).await?
     }
 
-    /// The portrait of a table's points.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if it cannot be measured or drawn.
     pub async fn portrait(&self, entry: &Arc<Entry>) -> Result<Arc<Portrait>, Error> {
         self.portraits.get(entry, &self.workers).await
     }
 
     /// All of the answer to a [small](Query::is_small) query: handing it to the workers block by
     /// block would take longer than making it.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if it cannot be made.
     pub fn at_once(&self, _permit: Permit, answer: Answer) -> Result<Bytes, Error> {
         let mut whole = Bytes::new();
         for block in Recorded::new(answer) {

@@ -7,6 +7,11 @@
 //!
 //! Depends on plans and all below them, and on access. The only library with an async runtime; knows no protocol.
 
+#![allow(
+    missing_docs,
+    reason = "an internal crate: names say what its items are"
+)]
+
 pub mod budget;
 pub mod cache;
 mod daemon;

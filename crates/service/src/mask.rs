@@ -19,32 +19,24 @@ use strew_query::{
 
 use crate::Service;
 
-/// A checked query for a threshold mask.
 #[derive(Clone, Debug)]
 pub struct MaskQuery {
     /// The table whose points come first.
     pub entry: Arc<Entry>,
-    /// Whether the table is pinned by its digest.
     pub is_pinned: bool,
     size: u32,
     seed: u64,
     bits: u8,
 }
 
-/// The two files of a mask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drawn {
-    /// Its thresholds, as PNG.
     Thresholds,
     /// Its spectrum at the levels 1/8, 1/4 and 1/2, as SVG.
     Spectrum,
 }
 
 impl MaskQuery {
-    /// Checks some values.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] with every fault, and [`Error::OtherTable`] if a pinned table is not loaded.
     pub fn check(values: &Values, catalog: &Catalog) -> Result<Self, Error> {
         let parts = (
             values.read(),
@@ -92,10 +84,6 @@ fn refused(error: MaskError) -> Error {
 
 impl Service {
     /// Makes a mask, charged, as a file. It stops when its client leaves.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] for a table without periods, [`Error::Denied`] if the caller takes points too fast,
-    /// [`Error::TooManyBytes`] if there is no room.
     pub async fn mask(
         &self,
         caller: &Caller,

@@ -29,7 +29,6 @@ use tokio::runtime::Handle;
 
 use crate::{Budget, Owner, Record, Workers, cache::Samplers};
 
-/// The mixes that were made.
 #[derive(Clone)]
 pub(super) struct Mixes {
     samplers: Samplers,
@@ -41,7 +40,6 @@ pub(super) struct Mixes {
 /// A table that is being read or made, while any request waits for it.
 type Making = Shared<BoxFuture<'static, Result<Ready, Error>>>;
 
-/// Something that was begun, and for whom.
 struct Begun {
     making: WeakShared<BoxFuture<'static, Result<Ready, Error>>>,
     owner: Owner,
@@ -74,7 +72,6 @@ impl Drop for Waiter {
 const MOST_OF_ADDRESS: usize = 4;
 const MOST: usize = 16;
 
-/// The most mixes that are kept in a folder.
 const MOST_KEPT: usize = 256;
 /// The bytes for making one, most of them for the neighbors of blocks.
 const ROOM: usize = 8 << 20;
@@ -176,7 +173,6 @@ impl Mixes {
         Ok(begun)
     }
 
-    /// Reads or makes a mix.
     async fn make(
         self,
         name: String,
@@ -209,7 +205,6 @@ impl Mixes {
     }
 }
 
-/// The name of a mix.
 fn name(plain: &Ready, what: &Made) -> String {
     format!(
         "{}-{}",
@@ -232,7 +227,6 @@ fn read_or_make(path: &Path, plain: &Table, what: &Made, stop: &Stop) -> Result<
     Ok(made)
 }
 
-/// Writes a mix. The oldest make room.
 fn keep(path: &Path, table: &Table) -> anyhow::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(folder)?;

@@ -13,13 +13,10 @@ use std::sync::{
 pub struct PointsInFlight(Arc<AtomicU64>);
 
 impl PointsInFlight {
-    /// The number of these points now.
-    #[must_use]
     pub fn get(&self) -> u64 {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Adds the points of an answer.
     pub(super) fn promise(&self, points: u64) -> Promise {
         self.0.fetch_add(points, Ordering::Relaxed);
         Promise {
@@ -37,7 +34,6 @@ pub(super) struct Promise {
 }
 
 impl Promise {
-    /// Notes that some of the points were made.
     pub(super) fn keep(&self, points: u64) {
         let less = |rest: u64| Some(rest.saturating_sub(points));
         let (set, fetch) = (Ordering::Relaxed, Ordering::Relaxed);

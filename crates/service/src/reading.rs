@@ -30,9 +30,6 @@ fn lane(bytes: usize) -> Option<Lane> {
 }
 
 /// Charges a caller for a request of this many bytes, before any of them is read.
-///
-/// # Errors
-/// [`Denied::TooFast`](strew_error::Denied) if the caller takes points too fast.
 pub fn charge_reading(caller: &Caller, bytes: usize) -> Result<(), Error> {
     /// The bytes that are read and checked in a microsecond.
     const BYTES: usize = 50;
@@ -45,9 +42,6 @@ pub fn charge_reading(caller: &Caller, bytes: usize) -> Result<(), Error> {
 impl Service {
     /// Reads or writes this many bytes of a request or an answer: at once if they are few, else on the
     /// workers. The job should stop when the flag is raised: then the result is not wanted any more.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if the job panicked.
     pub async fn process<T: Send + 'static>(
         self: &Arc<Self>,
         bytes: usize,
@@ -63,9 +57,6 @@ impl Service {
     }
 
     /// Reads a request of this many bytes, then checks it: where that belongs by the pictures in it.
-    ///
-    /// # Errors
-    /// As reading and checking, and [`Error::Internal`] if either panicked.
     pub async fn read<R: Send + 'static, T: Send + 'static>(
         self: &Arc<Self>,
         bytes: usize,

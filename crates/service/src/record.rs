@@ -41,9 +41,7 @@ pub struct Record {
     is_expected: AtomicBool,
     code: AtomicU32,
     clock: Clock,
-    /// Who pays for its work.
     caller: OnceLock<Caller>,
-    /// The memory of what the request has brought along.
     held: Mutex<Option<Held>>,
 }
 
@@ -59,12 +57,10 @@ impl Drop for Making {
     }
 }
 
-/// No code yet.
 const NONE: u32 = u32::MAX;
 
 impl Record {
     /// Of a request with this id, in a trace or in none, which takes its memory from a budget.
-    #[must_use]
     pub fn new(id: impl Into<Box<str>>, trace: Option<&str>, budget: Budget) -> Arc<Self> {
         Arc::new(Self {
             id: id.into(),
@@ -91,7 +87,6 @@ impl Record {
     }
 
     /// The record of the request that is being answered, if it has one: a command line's has none.
-    #[must_use]
     pub fn current() -> Option<Arc<Self>> {
         CURRENT.try_with(Arc::clone).ok()
     }
@@ -105,9 +100,6 @@ impl Record {
     }
 
     /// Takes memory for the data that the current request includes, until its answer is complete.
-    ///
-    /// # Errors
-    /// As [`Budget::hold`].
     pub(super) fn hold(bytes: usize) -> Result<(), Error> {
         let Some(record) = Self::current() else {
             return Ok(());
@@ -122,18 +114,15 @@ impl Record {
         }
     }
 
-    /// Notes the route of the request that is being answered.
     pub fn at(route: &str) {
         let _ = CURRENT.try_with(|record| record.route.set(route.into()));
     }
 
     /// The route, if the path of the request leads to one.
-    #[must_use]
     pub fn route(&self) -> Option<&str> {
         self.route.get().map(|route| &**route)
     }
 
-    /// Notes why the request that is being answered was refused.
     pub fn refuse(kind: Kind) {
         let _ = CURRENT.try_with(|record| record.refused.set(kind));
     }
@@ -143,61 +132,49 @@ impl Record {
         let _ = CURRENT.try_with(|record| record.caller.set(caller.clone()));
     }
 
-    /// Charges the caller for processor time.
     pub(super) fn took(&self, time: Duration) {
         if let Some(caller) = self.caller.get() {
             caller.took(time);
         }
     }
 
-    /// Notes in which format the request is answered.
     pub fn in_format(name: &'static str) {
         let _ = CURRENT.try_with(|record| record.format.set(name));
     }
 
     /// The byte budget of the request.
-    #[must_use]
     pub const fn budget(&self) -> &Budget {
         &self.budget
     }
 
-    /// How long the request has waited for turns.
-    #[must_use]
     pub const fn clock(&self) -> &Clock {
         &self.clock
     }
 
-    /// The name of the request.
-    #[must_use]
     pub fn id(&self) -> &str {
         &self.id
     }
 
     /// The name of the trace that the request is in, if it is in one.
-    #[must_use]
     pub fn trace(&self) -> Option<&str> {
         self.trace.as_deref()
     }
 
     /// The format of the answer, if it has points.
-    #[must_use]
     pub fn format(&self) -> Option<&'static str> {
         self.format.get().copied()
     }
 
     /// Why it was refused, if it was.
-    #[must_use]
     pub fn refused(&self) -> Option<Kind> {
         self.refused.get().copied()
     }
 
     /// The number of points made for it so far.
-    #[must_use]
     pub fn points(&self) -> u64 {
         self.points.load(Ordering::Relaxed)
     }
 
-    /// Notes that more points were made.
     pub fn made(&self, points: u64) {
         self.points.fetch_add(points, Ordering::Relaxed);
         if let Some(promise) = self.promise.get() {
@@ -211,8 +188,6 @@ impl Record {
         let _ = CURRENT.try_with(|record| record.promise.set(all.promise(points)));
     }
 
-    /// The lane in which the blocks of the answer are made.
-    #[must_use]
     pub(super) fn lane(&self) -> Lane {
         match self.is_long.load(Ordering::Relaxed) {
             true => Lane::Long,
@@ -226,7 +201,6 @@ impl Record {
     }
 
     /// Notes that the request that is being answered waits for kinds to be made.
-    #[must_use]
     pub(super) fn making() -> Making {
         let record = Self::current();
         if let Some(record) = &record {
@@ -237,32 +211,26 @@ impl Record {
 
     /// Notes that the answer has reached its time limit. Returns whether the request waits for kinds to be made; its
     /// client then retries.
-    #[must_use]
     pub fn come_back(&self) -> bool {
         let is_making = self.is_making.load(Ordering::Relaxed);
         self.is_expected.store(is_making, Ordering::Relaxed);
         is_making
     }
 
-    /// Whether the client will retry for what the request waited for.
     pub(super) fn is_expected(&self) -> bool {
         self.is_expected.load(Ordering::Relaxed)
     }
 
     /// The code with which a call ended, where the protocol sends it after the answer.
-    #[must_use]
     pub fn code(&self) -> Option<u32> {
         Some(self.code.load(Ordering::Relaxed)).filter(|&code| code != NONE)
     }
 
-    /// Notes with which code a call ended.
     pub fn ended(&self, code: u32) {
         self.code.store(code, Ordering::Relaxed);
     }
 }
 
-/// The limits on making the fields of the current request.
-#[must_use]
 pub fn allowance(stop: &Stop) -> Allowance<'_> {
     Allowance {
         stop,
@@ -279,7 +247,6 @@ pub(super) struct Recorded {
 }
 
 impl Recorded {
-    /// For the request that is being answered.
     pub(super) fn new(answer: Answer) -> Self {
         Self {
             answer,

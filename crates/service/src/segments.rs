@@ -15,18 +15,15 @@ impl Segments {
     const SIZE: usize = 64 << 10;
 
     /// The number of bytes.
-    #[must_use]
     pub const fn len(&self) -> usize {
         self.length
     }
 
     /// Whether there are none.
-    #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.length == 0
     }
 
-    /// Adds a piece.
     pub fn append(&mut self, mut piece: &[u8]) {
         self.length += piece.len();
         while !piece.is_empty() {
@@ -45,8 +42,6 @@ impl Segments {
         }
     }
 
-    /// All of it.
-    #[must_use]
     pub fn joined(mut self) -> Bytes {
         let whole = match self.parts.len() {
             1 => self.parts.swap_remove(0),

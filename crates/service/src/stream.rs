@@ -28,13 +28,10 @@ pub enum Interrupted {
     /// The server stops and does not wait any longer.
     #[error("the server is shutting down; the stream is incomplete")]
     Shutdown,
-    /// The client read nothing for too long.
     #[error("the client read nothing for too long; the stream is incomplete")]
     Stalled,
-    /// The stream reached its time limit.
     #[error("the stream reached its time limit and is incomplete; resume from its cursor")]
     TimeOver,
-    /// Making a block failed.
     #[error("an internal error; the stream is incomplete")]
     Failed,
 }
@@ -48,7 +45,6 @@ pub struct Streams {
 
 impl Streams {
     /// No streams, and at most `limit` at once.
-    #[must_use]
     pub fn new(limit: usize) -> Self {
         Self {
             open: Arc::new(Quota::new(limit)),
@@ -57,12 +53,10 @@ impl Streams {
     }
 
     /// The number of open streams, including abandoned ones whose last block is still being computed.
-    #[must_use]
     pub fn open(&self) -> usize {
         self.open.used()
     }
 
-    /// The places of all streams.
     pub(super) fn places(&self) -> &Quota {
         &self.open
     }
@@ -96,9 +90,7 @@ impl Streams {
 pub struct Permit {
     streams: Arc<Streams>,
     _one: OneOf,
-    /// The caller's place.
     _place: Option<Place>,
-    /// Its memory.
     _held: Option<Held>,
 }
 
@@ -129,9 +121,7 @@ const OFTEN: u32 = 32;
 
 /// The state that a reader shares with the worker that makes its blocks.
 struct Shared<I: Iterator> {
-    /// Blocks that wait to be taken.
     ready: VecDeque<I::Item>,
-    /// The number of blocks that may wait.
     ahead: usize,
     /// The maker, unless a worker has it.
     maker: Option<Maker<I>>,
@@ -149,7 +139,6 @@ impl<I: Iterator> Shared<I> {
     }
 }
 
-/// A stream of what an iterator makes.
 pub struct BlockStream<I: Iterator> {
     /// The shared state; none after the end.
     shared: Option<Arc<Mutex<Shared<I>>>>,

@@ -12,12 +12,9 @@ use strew_error::{Error, Fault};
 
 use crate::{Budget, Held, Service, segments::Segments};
 
-/// A coding that is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coding {
-    /// gzip.
     Gzip,
-    /// Zstandard.
     Zstd,
 }
 

@@ -10,7 +10,6 @@ use rcgen::{
     KeyPair, date_time_ymd,
 };
 
-/// A certificate authority of its own.
 pub struct Authority {
     issuer: CertifiedIssuer<'static, KeyPair>,
 }
@@ -30,12 +29,10 @@ impl Authority {
         Self { issuer }
     }
 
-    /// The authority's own certificate as DER.
     pub fn der(&self) -> Vec<u8> {
         self.issuer.der().to_vec()
     }
 
-    /// The authority's own certificate as PEM.
     pub fn pem(&self) -> String {
         self.issuer.pem()
     }
@@ -45,12 +42,10 @@ impl Authority {
         self.issue(ExtendedKeyUsagePurpose::ServerAuth, 4000)
     }
 
-    /// Issues a server certificate that has expired.
     pub fn issue_expired_server(&self) -> Certificate {
         self.issue(ExtendedKeyUsagePurpose::ServerAuth, 2020)
     }
 
-    /// Issues a client certificate.
     pub fn issue_client(&self) -> Certificate {
         self.issue(ExtendedKeyUsagePurpose::ClientAuth, 4000)
     }
@@ -82,13 +77,9 @@ fn names() -> Vec<String> {
 
 /// A certificate with its key. The key is PKCS #8.
 pub struct Certificate {
-    /// The certificate as PEM.
     pub pem: String,
-    /// The key as PEM.
     pub key_pem: String,
-    /// The certificate as DER.
     pub der: Vec<u8>,
-    /// The key as DER.
     pub key_der: Vec<u8>,
 }
 

@@ -52,7 +52,6 @@ pub fn send(
     Ok(stream)
 }
 
-/// Sends a request and reads the head of the response.
 pub fn try_open(
     address: SocketAddr,
     method: &str,
@@ -69,7 +68,6 @@ pub fn open(address: SocketAddr, method: &str, path: &str, headers: &[(&str, &st
         .unwrap_or_else(|e| panic!("{method} {path}: {e}"))
 }
 
-/// Sends a POST and reads the head of the response.
 pub fn open_post(
     address: SocketAddr,
     path: &str,
@@ -86,12 +84,10 @@ pub fn request(address: SocketAddr, method: &str, path: &str, headers: &[(&str, 
     response.answer(&format!("{method} {path}"))
 }
 
-/// The whole response to a GET.
 pub fn get(address: SocketAddr, path: &str, headers: &[(&str, &str)]) -> Answer {
     request(address, "GET", path, headers)
 }
 
-/// The whole response to a POST.
 pub fn post(address: SocketAddr, path: &str, headers: &[(&str, &str)], body: &[u8]) -> Answer {
     let response = open_post(address, path, headers, body);
     response.answer(&format!("POST {path}"))
@@ -104,13 +100,9 @@ pub fn read_to_close(mut stream: TcpStream) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// A whole response.
 pub struct Answer {
-    /// The status code.
     pub status: u16,
-    /// Values by lower-case names.
     pub headers: BTreeMap<String, String>,
-    /// The body, complete.
     pub body: Vec<u8>,
 }
 
@@ -120,12 +112,10 @@ impl Answer {
         self.headers.get(name).map_or("", String::as_str)
     }
 
-    /// The body as text.
     pub fn text(&self) -> &str {
         std::str::from_utf8(&self.body).expect("UTF-8")
     }
 
-    /// The body as JSON.
     pub fn json(&self) -> serde_json::Value {
         serde_json::from_slice(&self.body).unwrap_or_else(|e| panic!("{e}: {}", self.text()))
     }
@@ -134,9 +124,7 @@ impl Answer {
 /// A response whose body is still to be read. [`Read`] yields the body without HTTP's framing; a
 /// body that breaks off is an [`io::ErrorKind::UnexpectedEof`].
 pub struct Response {
-    /// The status code.
     pub status: u16,
-    /// Values by lower-case names.
     pub headers: BTreeMap<String, String>,
     stream: BufReader<TcpStream>,
     left: Left,
@@ -210,7 +198,6 @@ impl Response {
         self.read(&mut vec![0; most])
     }
 
-    /// The whole body. The connection may stay open.
     pub fn body(mut self) -> io::Result<Vec<u8>> {
         let mut body = vec![];
         self.read_to_end(&mut body)?;
@@ -261,7 +248,6 @@ impl Response {
         matches!(self.stream.read(&mut [0]), Ok(0))
     }
 
-    /// Reads up to the content of the next chunk.
     fn next_chunk(&mut self) -> io::Result<Left> {
         let size = line(&mut self.stream)?;
         let size = u64::from_str_radix(&size, 16).map_err(|_| io::ErrorKind::InvalidData)?;

@@ -15,6 +15,11 @@
 //! (`env!("CARGO_BIN_EXE_strew")`). Functions that return no `Result` panic when something fails,
 //! which is what a test wants.
 
+#![allow(
+    missing_docs,
+    reason = "an internal crate: names say what its items are"
+)]
+
 pub mod certificates;
 pub mod daemon;
 pub mod http1;

@@ -59,12 +59,10 @@ pub fn signal(process: u32, name: &str) {
 pub struct Running(Option<Child>);
 
 impl Running {
-    /// Starts a command.
     pub fn start(command: &mut Command) -> Self {
         Self(Some(command.spawn().expect("the program runs")))
     }
 
-    /// Its process id.
     pub fn id(&self) -> u32 {
         self.0.as_ref().expect("running").id()
     }

@@ -6,7 +6,6 @@
 pub struct SplitMix(u64);
 
 impl SplitMix {
-    /// A generator with a seed.
     pub const fn new(seed: u64) -> Self {
         Self(seed)
     }

@@ -36,7 +36,6 @@ pub fn random(alpha: &str, profile: &str, radius: u32) -> Table {
     Table::new(map, profile, displacements, provenance).expect("valid")
 }
 
-/// Writes a table into a folder.
 pub fn write(folder: &Path, name: &str, table: &Table) {
     std::fs::write(folder.join(name), table.to_bytes()).expect("writable");
 }

@@ -37,9 +37,6 @@ pub(super) struct Folder {
 }
 
 /// Whether the folder has all of the export.
-///
-/// # Errors
-/// It has all of another one.
 fn is_complete(root: &Path, spec: &Spec) -> Result<bool, Failure> {
     let Ok(bytes) = fs::read(root.join(MANIFEST)) else {
         return Ok(false);
@@ -239,9 +236,6 @@ impl Folder {
 ///
 /// The process that held it may have renamed or removed it between the opening and the lock. Then the name is opened
 /// again, so the file that is returned is the one that has the name now.
-///
-/// # Errors
-/// The error of the file system.
 fn lock(path: &Path) -> io::Result<Option<File>> {
     loop {
         let mut options = File::options();

@@ -68,9 +68,6 @@ impl Level {
     }
 
     /// Checks a level that was read from a file, which may be damaged.
-    ///
-    /// # Errors
-    /// The invalid member, its value, and the allowed values.
     pub(super) fn validate(&self) -> anyhow::Result<()> {
         let Self { size, lod, .. } = self;
         if !(size.is_finite() && *size > 0.0) {

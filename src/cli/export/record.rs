@@ -162,9 +162,6 @@ fn digests(spec: &Spec, maker: &Maker, records: &[Record], files: &[(String, Vec
 
 impl Manifest {
     /// Reads a manifest.
-    ///
-    /// # Errors
-    /// The invalid member, if the file is damaged.
     pub(super) fn read(bytes: &[u8]) -> anyhow::Result<Self> {
         let manifest: Self = serde_json::from_slice(bytes)
             .map_err(|error| anyhow!("{MANIFEST} is no manifest of an export: {error}"))?;

@@ -190,9 +190,6 @@ impl Spec {
     }
 
     /// The checked query of each level, and the tables of all.
-    ///
-    /// # Errors
-    /// The query is invalid with these tables, or has become another one.
     pub(super) fn checked(
         &self,
         catalog: &Assets,

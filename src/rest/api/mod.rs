@@ -81,7 +81,6 @@ macro_rules! tags {
             pub const ALL: &[Self] = &[$(Self::$tag),+];
 
             /// The name and the description of the subject.
-            #[must_use]
             pub const fn words(self) -> (&'static str, &'static str) {
                 match self {
                     $(Self::$tag => ($name, $about),)+
@@ -149,13 +148,11 @@ pub struct Answer {
 
 impl Answer {
     /// A JSON document of a type.
-    #[must_use]
     pub fn json<T: JsonSchema>(about: &'static str) -> Self {
         Self::file(about, "application/json", schemas::of::<T>)
     }
 
     /// A file of a media type.
-    #[must_use]
     pub fn file(about: &'static str, media_type: &'static str, schema: Content) -> Self {
         Self {
             status: 200,
@@ -186,7 +183,6 @@ impl Answer {
 impl Operation {
     /// A GET without parameters, whose only problem of its own is an invalid query. Descriptions of operations state
     /// how they differ from it.
-    #[must_use]
     pub fn new(tag: Tag, answers: Vec<Answer>) -> Self {
         Self {
             method: Method::GET,
@@ -220,7 +216,6 @@ impl Endpoint {
     }
 
     /// A path without operations yet.
-    #[must_use]
     pub fn new(path: &'static str) -> Self {
         Self {
             path,
@@ -234,7 +229,6 @@ impl Endpoint {
     ///
     /// # Panics
     /// For a method that HTTP does not define, or that the path has already.
-    #[must_use]
     pub fn with<S, T>(mut self, state: S, operation: Operation, handle: impl Handler<T, S>) -> Self
     where
         S: Clone + Send + Sync + 'static,
@@ -247,26 +241,22 @@ impl Endpoint {
     }
 
     /// Lets everyone in, with a key or without.
-    #[must_use]
     pub fn open(mut self) -> Self {
         self.is_open = true;
         self
     }
 
     /// Whether everyone is let in.
-    #[must_use]
     pub const fn is_open(&self) -> bool {
         self.is_open
     }
 
     /// The path, with its parameters in braces.
-    #[must_use]
     pub const fn path(&self) -> &'static str {
         self.path
     }
 
     /// Its operations.
-    #[must_use]
     pub fn operations(&self) -> &[Operation] {
         &self.operations
     }

@@ -12,9 +12,6 @@ impl Except {
     /// coordinates of two points can have along an axis near the origin, in world units.
     ///
     /// `field` is named in faults, `room` is the number of holes that are left, and is lowered.
-    ///
-    /// # Errors
-    /// A fault for too many of them in the area.
     pub fn cut(
         &self,
         field: &str,

@@ -18,7 +18,6 @@ use crate::{
     wanted,
 };
 
-/// The most layers that a list has ids of.
 const MOST_LAYERS: usize = 1000;
 
 /// The lists that are loaded, by name, and those that were sent.
@@ -26,11 +25,9 @@ const MOST_LAYERS: usize = 1000;
 pub struct Lists {
     entries: BTreeMap<String, Arc<NamedList>>,
     sent: Arc<Sent<NamedList>>,
-    /// The most ids of a list.
     most: usize,
 }
 
-/// A list of points.
 #[derive(Clone, Debug)]
 pub struct NamedList {
     /// Its name; of one that was sent, its digest.
@@ -58,9 +55,6 @@ struct Item<'a>(#[serde(borrow)] Cow<'a, str>);
 
 impl Lists {
     /// Loads the lists that the settings name.
-    ///
-    /// # Errors
-    /// The first that is not valid.
     pub fn load(settings: &Settings) -> Result<Self, NamedError> {
         let empty = Self {
             sent: Arc::new(Sent::new(settings.max_sent_bytes)),
@@ -75,7 +69,6 @@ impl Lists {
 
     /// The lists after reading all documents again, the changes, and the refused documents. A refused document leaves
     /// its earlier list in place.
-    #[must_use]
     pub fn reload(&self, settings: &Settings) -> (Self, Changes, Vec<Refused<NamedError>>) {
         let digest = |list: &NamedList| list.digest.clone();
         let places = Places {
@@ -110,14 +103,12 @@ impl Lists {
     }
 
     /// The list of a digest that was sent, or of a name. What a digest names is never another list.
-    #[must_use]
     pub fn get(&self, name: &str) -> Option<Arc<NamedList>> {
         let sent = self.sent.get(name);
         sent.or_else(|| self.entries.get(name).cloned())
     }
 
     /// The memory that it takes to read a list that is sent, at most, in bytes.
-    #[must_use]
     pub fn reading(&self, body: &[u8]) -> usize {
         /// An id is held as text, then as a number, in lists that double as they grow.
         const ID: usize = 3 * (size_of::<Item<'_>>() + size_of::<PointId>());
@@ -127,9 +118,6 @@ impl Lists {
     }
 
     /// Reads a list that was sent, and holds it.
-    ///
-    /// # Errors
-    /// A fault of a list that is not valid or too large to be held.
     pub fn hold(&self, text: &str, sender: Sender) -> Result<Arc<NamedList>, Fault> {
         let list = NamedList::read(text, self.most)?;
         let size = list.size();
@@ -146,14 +134,12 @@ impl Lists {
     }
 
     /// The names, for faults.
-    #[must_use]
     pub fn names(&self) -> String {
         named::listed("list", self.entries.keys().map(String::as_str))
     }
 }
 
 impl NamedList {
-    /// Reads a list, whose name is its digest.
     fn read(text: &str, most: usize) -> Result<Self, Fault> {
         // Editors of Windows begin files with this mark.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -206,30 +192,24 @@ impl NamedList {
     }
 
     /// Whether another list may have its name later.
-    #[must_use]
     pub fn may_change(&self) -> bool {
         self.name != self.digest
     }
 
-    /// The number of its ids.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.by_layer.values().map(|ids| ids.len()).sum()
     }
 
     /// Whether it has no ids.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.by_layer.is_empty()
     }
 
     /// The ids of a layer, or with an empty name those of no layer.
-    #[must_use]
     pub fn of(&self, layer: &str) -> Option<&Arc<Ids>> {
         self.by_layer.get(layer)
     }
 
-    /// The layers that it has ids of.
     pub fn layers(&self) -> impl Iterator<Item = &str> {
         let names = self.by_layer.keys().map(String::as_str);
         names.filter(|name| !name.is_empty())
@@ -291,7 +271,6 @@ fn lines(text: &str) -> impl Iterator<Item = (&str, &str)> {
     })
 }
 
-/// Refuses a list that is too long.
 fn check_count(count: usize, most: usize) -> Result<(), Fault> {
     if count <= most {
         return Ok(());
@@ -301,7 +280,6 @@ fn check_count(count: usize, most: usize) -> Result<(), Fault> {
 }
 
 /// The layer and the id of an item: `12:-3` or `trees/12:-3`.
-#[must_use]
 pub fn split(item: &str) -> Option<(Option<&str>, PointId)> {
     let (layer, id) = match item.rsplit_once('/') {
         Some((layer, id)) if is_title(layer) => (Some(layer), id),

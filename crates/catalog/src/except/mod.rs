@@ -15,7 +15,6 @@ use strew_error::Fault;
 
 pub use list::{Lists, NamedList, Section, split};
 
-/// The most ids of one query, besides those of lists.
 pub const MOST_GIVEN: usize = 10_000;
 /// The most points that all sets of a query together leave out within its region.
 pub const MOST_HOLES: usize = 10_000;
@@ -27,22 +26,17 @@ pub struct Ids {
     digest: String,
 }
 
-/// The points that a set leaves out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Except {
     /// The ids of the query, which must be points of the set, each with the name of its field.
     pub given: Vec<(String, PointId)>,
-    /// The names of the lists.
     pub names: Vec<String>,
     /// Whether the name of one may stand for another list later.
     pub may_change: bool,
-    /// The ids of the query and of the lists.
     pub parts: Vec<Arc<Ids>>,
 }
 
 impl Ids {
-    /// Sorts ids.
-    #[must_use]
     pub fn new(mut ids: Vec<PointId>) -> Self {
         ids.sort_unstable_by_key(|id| (id.x, id.y));
         ids.dedup();
@@ -58,20 +52,16 @@ impl Ids {
         }
     }
 
-    /// The number of ids.
-    #[must_use]
     pub const fn len(&self) -> usize {
         self.sorted.len()
     }
 
     /// Whether there are none.
-    #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.sorted.is_empty()
     }
 
     /// The digest of all of them, in hexadecimal.
-    #[must_use]
     pub fn digest(&self) -> &str {
         &self.digest
     }
@@ -79,7 +69,6 @@ impl Ids {
 
 impl Except {
     /// The digest of all ids, in hexadecimal.
-    #[must_use]
     pub fn digest(&self) -> String {
         match self.parts.as_slice() {
             [only] => only.digest.clone(),
@@ -95,9 +84,6 @@ impl Except {
 
     /// Refuses ids of the query that are no points of a set's table. Those that the set leaves out anyway, by its
     /// share or its field, are allowed.
-    ///
-    /// # Errors
-    /// A fault of the first that is none.
     pub fn check(&self, layer: &str, points: &PointSet) -> Result<(), Fault> {
         let wrong = self
             .given

@@ -15,9 +15,6 @@ use super::{
 };
 
 /// Makes the field of a document. `path` is put before the names of members in faults.
-///
-/// # Errors
-/// Every fault.
 pub fn build(path: &str, document: &Document, sources: &Sources<'_>) -> Checked<FieldSpec> {
     sources.go_on(path)?;
     let inside = |name: &str| format!("{path}.{name}");
@@ -165,7 +162,6 @@ fn within(path: &str, error: &strew_core::Error) -> Faults {
     at(path, error.field(), error)
 }
 
-/// The fault of what the library refuses, under a name.
 fn at(path: &str, name: &str, error: &strew_core::Error) -> Faults {
     let allowed = match error.allowed() {
         "" => FIELD,

@@ -48,7 +48,6 @@ pub enum Document {
 
 impl Document {
     /// The name of its shape.
-    #[must_use]
     pub const fn shape(&self) -> &'static str {
         match self {
             Self::Name(_) => "name",
@@ -69,7 +68,6 @@ impl Document {
     }
 
     /// The document as clients see it: of files only their names.
-    #[must_use]
     pub fn without_folders(&self) -> Self {
         let mut shown = self.clone();
         shown.each_pixels(&mut |pixels| {
@@ -82,7 +80,6 @@ impl Document {
     }
 
     /// Whether it is a name, or one of its parts is.
-    #[must_use]
     pub fn has_names(&self) -> bool {
         match self {
             Self::Name(_) => true,
@@ -96,7 +93,6 @@ impl Document {
     }
 
     /// The price of decoding its pixels, as far as it holds them itself.
-    #[must_use]
     pub fn price(&self) -> Price {
         let mut all = vec![];
         self.for_each_pixels(&mut |pixels| all.push(pixels.price()));
@@ -278,7 +274,6 @@ pub struct Pixels {
 
 impl Pixels {
     /// The price of decoding them, as far as the document holds them itself.
-    #[must_use]
     pub fn price(&self) -> Price {
         match (&self.png, self.f32.is_some(), self.width, self.height) {
             (Some(png), ..) => {
@@ -292,7 +287,6 @@ impl Pixels {
     }
 
     /// The form in which the document holds them, for faults: never the pixels themselves.
-    #[must_use]
     pub fn shown(&self) -> String {
         let bytes = |text: &str| text.trim_end_matches('=').len() * 3 / 4;
         match (&self.file, &self.png, &self.f32) {

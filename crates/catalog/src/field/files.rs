@@ -11,7 +11,6 @@ use strew_raster::{Image, RasterError};
 
 use super::Document;
 
-/// The endings of documents, then of rasters.
 const DOCUMENTS: [&str; 2] = ["json", "toml"];
 const RASTERS: [&str; 4] = ["png", "tif", "tiff", "npy"];
 
@@ -85,7 +84,6 @@ pub(super) fn placed(image: Image, path: &Path) -> Result<Image, RasterError> {
     }
 }
 
-/// Visits the files that a document names.
 pub(super) fn of_document(document: &Document, visit: &mut impl FnMut(&str)) {
     document.for_each_pixels(&mut |pixels| {
         if let Some(file) = &pixels.file {
@@ -100,14 +98,12 @@ pub(super) fn of_document(document: &Document, visit: &mut impl FnMut(&str)) {
 pub struct Stamp(Vec<blake3::Hash>);
 
 impl Stamp {
-    /// Adds it to a hash.
     pub fn add_to(&self, hasher: &mut blake3::Hasher) {
         for file in &self.0 {
             hasher.update(file.as_bytes());
         }
     }
 
-    /// Adds a raster, with its world file.
     pub(super) fn add_raster(&mut self, path: &Path) {
         self.add(path);
         if let Some(world) = world_file(path) {
@@ -148,7 +144,6 @@ const fn place(_: &fs::Metadata) -> u64 {
     0
 }
 
-/// A stamp of the present contents of a folder's files.
 pub fn stamp_of(folder: Option<&Path>) -> Stamp {
     let mut stamp = Stamp::default();
     let files = folder.and_then(|folder| all(folder).ok());

@@ -29,7 +29,6 @@ use super::{
 };
 use crate::named::{self, Changes, Refused, Source};
 
-/// The longest document.
 const DOCUMENT_BYTES: u64 = 4 << 20;
 
 /// The fields that are built into the program: their names and their documents.
@@ -42,23 +41,16 @@ const EMBEDDED: &[(&str, &str)] = &[
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("the field {source_name} is not valid: {detail}")]
 pub struct FieldError {
-    /// The file, the folder or the section of the configuration.
     pub source_name: String,
-    /// A description of the fault.
     pub detail: String,
 }
 
-/// The fields that are loaded, by name.
 #[derive(Clone, Debug, Default)]
 pub struct Fields {
     entries: BTreeMap<String, Arc<NamedField>>,
 }
 
 impl Fields {
-    /// Loads the fields that the settings name.
-    ///
-    /// # Errors
-    /// The first that is not valid.
     pub fn load(settings: &Settings) -> Result<Self, FieldError> {
         let (fields, refused) = Self::default().read(settings);
         match refused.into_iter().next() {
@@ -69,20 +61,16 @@ impl Fields {
 
     /// The fields after reading all documents again, the changes, and the refused documents, each with the digest of
     /// the field that stays in its place.
-    #[must_use]
     pub fn reload(&self, settings: &Settings) -> (Self, Changes, Vec<Refused<FieldError>>) {
         let (after, refused) = self.read(settings);
         let changes = Changes::between(&self.entries, &after.entries, NamedField::digest);
         (after, changes, refused)
     }
 
-    /// The field of a name.
-    #[must_use]
     pub fn get(&self, name: &str) -> Option<&Arc<NamedField>> {
         self.entries.get(name)
     }
 
-    /// All fields, by name.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &Arc<NamedField>> {
         self.entries.values()
     }
@@ -93,7 +81,6 @@ impl Fields {
     }
 
     /// The names, for faults: not all of a long list.
-    #[must_use]
     pub fn names(&self) -> String {
         named::listed("field", self.entries.keys().map(String::as_str))
     }
@@ -164,7 +151,6 @@ impl Fields {
         (after, refused)
     }
 
-    /// Adds the built-in fields. A test builds them.
     fn insert_embedded(&mut self) {
         for &(name, text) in EMBEDDED {
             let table = text.parse::<toml::Table>().ok();
@@ -229,7 +215,6 @@ struct Unbuilt {
     name: String,
     source: Source,
     document: Result<Document, String>,
-    /// Where the files that it names are.
     base: PathBuf,
 }
 
@@ -283,7 +268,6 @@ impl Unbuilt {
         }
     }
 
-    /// A stamp of the contents of its files.
     fn stamp(&self) -> Stamp {
         let mut stamp = Stamp::default();
         if let Ok(document) = &self.document {
@@ -352,9 +336,6 @@ fn of_files(
 }
 
 /// The field of a file that a command names: a document or a raster. A document may name others in its folder.
-///
-/// # Errors
-/// A description of the fault.
 pub fn from_file(path: &Path, fields: &Fields) -> Result<NamedField, FieldError> {
     let base = path.parent().unwrap_or(Path::new(""));
     let field = Unbuilt::of_file(path.into(), base, Some("file"));
@@ -382,9 +363,6 @@ pub fn from_file(path: &Path, fields: &Fields) -> Result<NamedField, FieldError>
 
 /// The least and the greatest height in a file of numbers: the ground of a command is at the height that it says. None
 /// of a picture, whose light is a share, and of what is no raster.
-///
-/// # Errors
-/// A description of the fault.
 pub fn heights(path: &Path) -> Result<Option<[f64; 2]>, RasterError> {
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
     if ["tif", "tiff", "npy"].iter().all(|known| ending != *known) {
@@ -401,10 +379,6 @@ pub fn heights(path: &Path) -> Result<Option<[f64; 2]>, RasterError> {
     Ok((!image.is_picture && low <= high).then_some([low, high]))
 }
 
-/// The field of a document that a command makes.
-///
-/// # Errors
-/// A description of the fault.
 pub fn from_document(
     name: &str,
     document: Document,
@@ -448,7 +422,6 @@ pub(super) fn read_file(
 /// A field, the memory of its pixels, a box around them, and the code of their plane.
 type Built = (FieldSpec, usize, Option<[f64; 4]>, Option<u16>);
 
-/// The names of the fields that a document is made of.
 fn names(document: &Document) -> Box<dyn Iterator<Item = &str> + '_> {
     match document {
         Document::Name(name) => Box::new(std::iter::once(name.as_str())),

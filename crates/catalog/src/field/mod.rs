@@ -31,7 +31,6 @@ pub use sources::{Allowance, MOST_PIXELS, ReadFile, Sources};
 
 use strew_error::Faults;
 
-/// Faults in one line.
 fn listed(faults: &Faults) -> String {
     let faults = faults.as_slice().iter().map(ToString::to_string);
     faults.collect::<Vec<_>>().join("; ")

@@ -5,16 +5,11 @@ use strew_core::field::FieldSpec;
 use super::{Document, files::Stamp};
 use crate::{named::Source, sent::Sendable};
 
-/// A field that is loaded.
 #[derive(Clone, Debug)]
 pub struct NamedField {
-    /// Its name.
     pub name: String,
-    /// Where it comes from.
     pub source: Source,
-    /// How it is described.
     pub document: Document,
-    /// The field.
     pub spec: FieldSpec,
     /// The memory that its pixels take, in bytes.
     pub bytes: usize,
@@ -27,8 +22,6 @@ pub struct NamedField {
 }
 
 impl NamedField {
-    /// A field that a program has made.
-    #[must_use]
     pub fn of_spec(name: &str, spec: FieldSpec) -> Self {
         Self {
             name: name.into(),
@@ -43,7 +36,6 @@ impl NamedField {
     }
 
     /// A field that a client has sent; its name is its digest. Pixels are not held twice.
-    #[must_use]
     pub fn sent(
         mut document: Document,
         spec: FieldSpec,
@@ -61,7 +53,6 @@ impl NamedField {
     }
 
     /// Its digest, in hexadecimal.
-    #[must_use]
     pub fn digest(&self) -> String {
         self.spec.digest().to_string()
     }

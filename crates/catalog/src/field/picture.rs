@@ -14,7 +14,6 @@ pub const SIDE: usize = 256;
 
 impl NamedField {
     /// The price of a picture of a chunk, in microseconds.
-    #[must_use]
     pub fn picture_price(&self, size: f64, cell: [i64; 2]) -> u128 {
         /// The nanoseconds to place and pack a pixel.
         const PIXEL: f64 = 20.0;
@@ -23,9 +22,6 @@ impl NamedField {
     }
 
     /// The shares at the centers of the pixels of a chunk, as a gray PNG: black for 0.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] for a chunk that is too far out for `f64`, and [`Error::Internal`] once the flag is raised.
     pub fn picture(&self, size: f64, cell: [i64; 2], stop: &Stop) -> Result<Vec<u8>, Error> {
         let refused = |detail: String| {
             let value = format!("{size}/{}/{}", cell[0], cell[1]);

@@ -13,7 +13,6 @@ use super::{
 /// The most pixels that are looked at in a row.
 const FEW: usize = 1 << 16;
 
-/// The sources of pixels that documents may have, in words.
 const SOURCES: &str = "one of png and f32, or in the daemon's configuration a file";
 
 /// The pixels of a mask as shares, where they lie, and whether there is nothing between them.
@@ -90,7 +89,6 @@ fn is_mask(path: &str, document: &Pixels, image: &Image, sources: &Sources<'_>) 
     Ok(is_mask && most <= 1.0)
 }
 
-/// The pixels of a terrain as heights, and where they lie.
 pub(super) fn heights(
     path: &str,
     document: &Pixels,
@@ -117,7 +115,6 @@ fn without(pixels: Grid, missing: Option<Vec<bool>>, width: usize) -> Grid {
     }
 }
 
-/// Numbers made of all pixels.
 fn numbers(
     path: &str,
     samples: &Samples,
@@ -133,7 +130,6 @@ fn numbers(
     Ok(all)
 }
 
-/// Rows from the top as rows from the bottom.
 fn flipped<T>(mut pixels: Vec<T>, width: usize) -> Vec<T> {
     let height = pixels.len() / width.max(1);
     for row in 0..height / 2 {
@@ -174,7 +170,6 @@ fn region(path: &str, document: &Pixels, image: &Image, sources: &Sources<'_>) -
     })
 }
 
-/// Reads the pixels, wherever they are.
 fn image(path: &str, document: &Pixels, meaning: Meaning, sources: &Sources<'_>) -> Checked<Image> {
     let size = match (document.width, document.height) {
         (Some(width), Some(height)) => Some([width, height]),

@@ -6,15 +6,11 @@ use strew_error::{Fault, Faults};
 
 use super::Document;
 
-/// The rule for fields, in words.
 pub(super) const FIELD: &str = "the name of a loaded field, or an object with one member: name, constant, ramp, \
                                 radial, distance, noise, raster, height, slope, multiply, min, max, \
                                 invert or curve";
 
 /// Reads JSON: a name, or an object. `path` is put before the names of members in faults.
-///
-/// # Errors
-/// A fault with the path of the member.
 pub fn read_json(path: &str, text: &str) -> Result<Document, Faults> {
     let text = text.trim_start_matches('\u{feff}').trim();
     if text.starts_with('"') {
@@ -33,9 +29,6 @@ pub fn read_json(path: &str, text: &str) -> Result<Document, Faults> {
 }
 
 /// Reads TOML: a table with one member.
-///
-/// # Errors
-/// A fault with the path of the member.
 pub fn read_toml(path: &str, table: &toml::Table) -> Result<Document, Faults> {
     let value = toml::Value::Table(table.clone());
     let text = table.to_string();

@@ -15,7 +15,6 @@ pub type ReadFile<'a> =
 /// The most pixels that a query may include, over all its layers.
 pub const MOST_PIXELS: usize = 1 << 20;
 
-/// The time and the memory that making fields may take.
 #[derive(Clone, Copy)]
 pub struct Allowance<'a> {
     /// Raised when the field is no longer wanted.
@@ -25,7 +24,6 @@ pub struct Allowance<'a> {
 }
 
 impl Allowance<'_> {
-    /// Of programs that answer their own queries.
     pub const UNLIMITED: Allowance<'static> = Allowance {
         stop: &NEVER,
         hold: &|_| Ok(()),
@@ -34,24 +32,19 @@ impl Allowance<'_> {
 
 static NEVER: Stop = Stop::NEVER;
 
-/// A loaded field, and the code of EPSG of its plane.
 pub type Known = (FieldSpec, Option<u16>);
 
-/// Where names and files of documents lead.
 pub struct Sources<'a> {
     /// The field of a name, with the code of EPSG of its plane.
     pub named: &'a dyn Fn(&str) -> Option<Known>,
-    /// The names that there are, for faults.
     pub names: &'a dyn Fn() -> String,
     /// Reads files; `None` where documents may not name any.
     pub files: Option<&'a ReadFile<'a>>,
-    /// The time and the memory that reading may take.
     pub allowance: Allowance<'a>,
     /// Why there was no memory, if there was none.
     pub refused: RefCell<Option<Error>>,
     /// The number of pixels that documents may still hold.
     pub pixels: Cell<usize>,
-    /// A box around all pixels that were read.
     pub frame: Cell<Option<[f64; 4]>>,
     /// The code of EPSG of the plane that files of pixels state.
     pub epsg: Cell<Option<u16>>,
@@ -91,7 +84,6 @@ impl Sources<'_> {
         }
     }
 
-    /// Whether the field is still wanted.
     pub(super) fn go_on(&self, path: &str) -> Checked<()> {
         match self.allowance.stop.is_raised() {
             true => Err(Fault::new(path, "", "not wanted any more", FIELD).into()),

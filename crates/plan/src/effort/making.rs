@@ -40,7 +40,6 @@ pub fn block_bytes(planned: &Planned, most: usize) -> usize {
 /// The points that a rate is charged for a plan: the points considered to make its own, or the microseconds that this
 /// takes, if they are more. Considered points include those that `keep` thins out, also after the last one, and in a
 /// field those that are counted and left out.
-#[must_use]
 pub fn considered(planned: &Planned) -> u128 {
     let measure = planned.query.region.measure();
     let is_counted = planned.query.window.cursor.is_none();
@@ -65,7 +64,6 @@ pub fn considered(planned: &Planned) -> u128 {
 }
 
 /// The rows that are counted to split a plan, or points made, which takes as long: many parts take little more than one.
-#[must_use]
 pub fn splitting(planned: &Planned, parts: u32) -> f64 {
     /// Those of each part: a row is made to find where it begins.
     const PART: f64 = 3.0;

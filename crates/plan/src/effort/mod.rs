@@ -146,10 +146,6 @@ pub fn is_plain(query: &Query) -> bool {
 }
 
 /// The price of planning a query, in rows of warped sets.
-///
-/// # Errors
-/// [`Error::TooManyRows`] if all sets together have more than `limit` rows that are counted one by one, and
-/// [`Error::Internal`] once the flag is raised.
 pub fn planning(query: &Query, tables: &[Ready], limit: u64, stop: &Stop) -> Result<f64, Error> {
     if query.region.volume.is_some() {
         let rows = volume::counting(query) / ROW;

@@ -23,7 +23,6 @@ pub struct Neighbors {
 
 impl Neighbors {
     /// The price of a search among the points of a set.
-    #[must_use]
     pub fn of(placed: &Placed, nearest: &Nearest) -> Self {
         /// A point without attributes, and a value, in memory and as text.
         const POINT: usize = 384;
@@ -60,14 +59,12 @@ impl Neighbors {
     }
 
     /// The most points that a search may visit, where counting may take this many rows.
-    #[must_use]
     pub fn visits(&self, most_rows: u64) -> usize {
         (most_rows as f64 * ROW / self.visit) as usize
     }
 
     /// The points that a rate is charged: those found and those thinned out among them, or the microseconds of all
     /// visits if they are more.
-    #[must_use]
     pub fn considered(&self, found: f64, visited: usize) -> u128 {
         (visited as f64 * self.visit / ROW).max(found).round() as u128
     }

@@ -9,7 +9,6 @@ use strew_error::Error;
 
 use crate::Planned;
 
-/// Points as columns of the same length.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
     /// The number of coordinates of each point: 2, or 3 in space.
@@ -24,18 +23,13 @@ pub struct Columns {
     pub further: Vec<Further>,
 }
 
-/// A column beside ids and coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Further {
-    /// Its name.
     pub name: String,
-    /// Whether some layer lacks it.
     pub is_optional: bool,
-    /// Its values.
     pub values: FurtherValues,
 }
 
-/// The values of a column.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FurtherValues {
     /// Numbers; NaN where a layer lacks them.
@@ -82,14 +76,11 @@ impl Columns {
         })
     }
 
-    /// The number of points.
-    #[must_use]
     pub const fn len(&self) -> usize {
         self.at.len() / self.axes
     }
 
     /// Whether there are none.
-    #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.at.is_empty()
     }
@@ -201,7 +192,6 @@ fn room<T: Clone + Default>(count: usize) -> Result<Vec<T>, Error> {
     Ok(values)
 }
 
-/// The number of points that one thread makes.
 fn piece(count: usize) -> usize {
     count.div_ceil(rayon::current_num_threads()).max(FEW)
 }

@@ -21,16 +21,10 @@ pub struct Measured {
     pub bbox: [f64; 4],
     /// Points per unit of area, where that is known better than by counting.
     pub density: Option<f64>,
-    /// Whether the set repeats beyond the square.
     pub is_periodic: bool,
-    /// Up to which frequency, and how finely.
     pub resolution: Resolution,
 }
 
-/// Measures points that fill a square.
-///
-/// # Errors
-/// [`Error::Invalid`] for a box that is no square, points outside of it, or too few or too many.
 pub fn measure(mut points: Vec<[f64; 2]>, of: &Measured) -> Result<Report, Error> {
     let [min_x, min_y, max_x, max_y] = of.bbox;
     let (width, height) = (max_x - min_x, max_y - min_y);
@@ -75,8 +69,6 @@ pub fn measure(mut points: Vec<[f64; 2]>, of: &Measured) -> Result<Report, Error
     })
 }
 
-/// A report as JSON.
-#[must_use]
 pub fn document(report: &Report) -> Value {
     let figures: Map<String, Value> = report
         .figures
@@ -106,9 +98,6 @@ pub fn document(report: &Report) -> Value {
 }
 
 /// A report as a picture: points, spectrum and curves, as SVG.
-///
-/// # Errors
-/// [`Error::Internal`] if it cannot be drawn.
 pub fn drawing(report: &Report, title: &str) -> Result<String, Error> {
     Ok(picture(report, title, None).map_err(EncodeError::of)?)
 }

@@ -41,7 +41,6 @@ pub use columns::{Columns, Further, FurtherValues};
 #[cfg(feature = "measure")]
 pub use measured::{Measured, measure};
 
-/// Tables, fields and limits, with which queries are answered.
 #[derive(Debug)]
 pub struct Library {
     assets: Assets,
@@ -96,7 +95,6 @@ impl Library {
         Ok(Self::of(Catalog::of_files(files)?, Limits::default()))
     }
 
-    /// These tables and fields, and these limits.
     #[must_use]
     pub fn of(catalog: Catalog, limits: Limits) -> Self {
         Self {
@@ -106,13 +104,11 @@ impl Library {
         }
     }
 
-    /// The tables and the fields.
     #[must_use]
     pub const fn catalog(&self) -> &Catalog {
         &self.assets.catalog
     }
 
-    /// The limits.
     #[must_use]
     pub const fn limits(&self) -> &Limits {
         &self.limits
@@ -213,7 +209,6 @@ impl Library {
         Ok((at.len() / planned.axes(), origin))
     }
 
-    /// The places for the coordinates of all points of a plan.
     fn places<'a, T>(&self, planned: &Planned, room: &'a mut [T]) -> Result<&'a mut [T], Error> {
         let (count, axes) = (self.count_to_make(planned)?, planned.axes());
         let length = room.len() / axes;
@@ -256,17 +251,11 @@ impl Library {
     }
 
     /// The point of an id, in the set of an address: the text after `/v1/points/{id}?`.
-    ///
-    /// # Errors
-    /// The error that the daemon answers.
     pub fn point(&self, id: &str, address: &str) -> Result<Found, Error> {
         self.point_of(id, &parse_pairs(address, groups::SINGLE))
     }
 
     /// The point in space of an id, in the set of an address: the text after `/v1/space/points/{id}?`.
-    ///
-    /// # Errors
-    /// The error that the daemon answers.
     pub fn point_in_space(&self, id: &str, address: &str) -> Result<Found, Error> {
         self.point_of(id, &parse_pairs(address, groups::SPACE_SET))
     }
@@ -277,17 +266,11 @@ impl Library {
     }
 
     /// The points nearest to a place, by an address: the text after `/v1/nearest?`.
-    ///
-    /// # Errors
-    /// The error that the daemon answers.
     pub fn nearest(&self, address: &str) -> Result<Vec<Found>, Error> {
         self.nearest_of(&parse_pairs(address, groups::NEAREST))
     }
 
     /// The points in space nearest to a place, by an address: the text after `/v1/space/nearest?`.
-    ///
-    /// # Errors
-    /// The error that the daemon answers.
     pub fn nearest_in_space(&self, address: &str) -> Result<Vec<Found>, Error> {
         self.nearest_of(&parse_pairs(address, groups::SPACE_NEAREST))
     }
@@ -298,9 +281,6 @@ impl Library {
     }
 
     /// Holds a field, a body of `POST /v1/fields`, and returns the digest by which queries name it.
-    ///
-    /// # Errors
-    /// The error that the daemon answers.
     pub fn hold_field(&self, body: &str) -> Result<String, Error> {
         let document = field::read_json("field", body)?;
         let held = hold_field(
@@ -352,7 +332,6 @@ impl Library {
     }
 }
 
-/// The built-in fields.
 #[cfg(feature = "shipped")]
 fn shipped_fields() -> Result<Fields, Unavailable> {
     Ok(Fields::load(&Layers::new()?.finish()?.fields)?)

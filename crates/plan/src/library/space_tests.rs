@@ -6,7 +6,6 @@ fn library() -> Library {
     Library::new().expect("built-in tables")
 }
 
-/// Boxes, balls, prisms and chunks, in layers and parts.
 const QUERIES: [&str; 6] = [
     "bbox=-9,-8,-7,20,11,12&spacing=1.3&seed=5&attributes=rotation,u1",
     "ball=1e6,-7,20,9&spacing=1.1&keep=0.5",

@@ -11,21 +11,15 @@ use super::{
     object::{Object, elements, parse, shown},
 };
 
-/// The members of features in a body.
 const MEMBERS: [&str; 3] = ["of", "id", "count"];
-/// Their form, as faults describe it.
 const FEATURES: &str = r#"{"of": a FeatureCollection of polygons, "id": the property with the name of a feature, by default its place, "count": the property with its number of points}"#;
-/// The form of a collection.
 const COLLECTION: &str =
     "GeoJSON: a FeatureCollection of 1 to 1000 features, each a Polygon or MultiPolygon";
-/// The rule for names.
 const NAMES: &str = "a property that is text of 1 to 64 characters in one line, or a number, and tells features apart; \
                      without it features have the names 0, 1, 2, …";
-/// The rule for numbers of points.
 const COUNTS: &str =
     "a property that is an integer, 0 or more; a feature without it, or with null, has no points";
 
-/// Features of a body.
 pub(super) fn read(json: &RawValue) -> Checked<Vec<Feature>> {
     let wrong =
         |field: &str, json, detail| Faults::from(Fault::new(field, shown(json), detail, FEATURES));
@@ -52,9 +46,6 @@ pub(super) fn read(json: &RawValue) -> Checked<Vec<Feature>> {
 }
 
 /// The features of a GeoJSON file, with the properties that hold their names and their numbers of points.
-///
-/// # Errors
-/// A fault of `features`.
 pub fn read_features(bytes: &[u8], [id, count]: [Option<&str>; 2]) -> Checked<Vec<Feature>> {
     let json = parse(bytes);
     let json = json.map_err(|detail| Fault::new("features", "", detail, COLLECTION))?;

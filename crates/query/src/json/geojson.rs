@@ -248,9 +248,6 @@ fn is_empty(coordinates: &RawValue) -> bool {
 }
 
 /// The polygons of a GeoJSON object, with their holes, and the plane that it states; what lies in any of them is meant.
-///
-/// # Errors
-/// Says what is wrong and at which path.
 pub(super) fn polygons(json: &RawValue) -> Result<(Vec<Rings>, Option<Crs>), String> {
     match polygons_or_none(json)? {
         (none, _) if none.is_empty() => Err("contains no polygon, or empty ones alone".into()),

@@ -28,7 +28,6 @@ use forms::Forms;
 pub use region::{RegionSchema, read_region};
 pub use volume::VolumeSchema;
 
-/// The form of layers, as faults describe it.
 const LAYERS: &str = "an array of 1 to 16 layers, or of 1000 that differ in name, region, amount, seed and field alone: objects with a name and a set of points each";
 /// The form of `clear_of`.
 const CLEAR_OF: &str =
@@ -36,13 +35,9 @@ const CLEAR_OF: &str =
 
 /// The members of a query that are no parameters.
 const QUERY: [&str; 3] = ["region", "features", "layers"];
-/// Those of a layer.
 const LAYER: [&str; 3] = ["name", "region", "clear_of"];
 
 /// Reads a query. What cannot be read is a fault in its place in the draft.
-///
-/// # Errors
-/// A fault of `body` if it is not a JSON object.
 pub fn read_body(bytes: &[u8], groups: &'static [Group]) -> Checked<Draft> {
     let object = object_of(bytes)?;
     let mut draft = Draft::new(Values::new(groups, ""));
@@ -83,10 +78,6 @@ pub fn read_body(bytes: &[u8], groups: &'static [Group]) -> Checked<Draft> {
     Ok(draft.in_features(features::read(json)))
 }
 
-/// Reads a body whose members are all parameters.
-///
-/// # Errors
-/// A fault of `body` if it is not a JSON object. Other faults are in their places.
 pub fn read_members(bytes: &[u8], groups: &'static [Group]) -> Checked<Values> {
     let object = object_of(bytes)?;
     let mut values = Values::new(groups, "");
@@ -96,13 +87,11 @@ pub fn read_members(bytes: &[u8], groups: &'static [Group]) -> Checked<Values> {
     Ok(values)
 }
 
-/// The object that a body is.
 fn object_of(bytes: &[u8]) -> Result<Object<'_>, Fault> {
     let object = parse(bytes).and_then(Object::read);
     object.map_err(of_text("body", bytes, "a JSON object"))
 }
 
-/// Adds a member that is a parameter, or nothing known.
 fn add_member(
     values: &mut Values,
     name: &str,
@@ -128,7 +117,6 @@ fn add_member(
     ));
 }
 
-/// The names of all members.
 fn members(others: &[&str], groups: &'static [Group]) -> String {
     format!("{}, {}", others.join(", "), names(groups))
 }

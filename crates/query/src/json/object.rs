@@ -25,10 +25,6 @@ pub(super) struct Object<'a> {
 }
 
 impl<'a> Object<'a> {
-    /// Reads an object.
-    ///
-    /// # Errors
-    /// Says what is wrong: the value is no object, has a member twice, or has too many members.
     pub(super) fn read(json: &'a RawValue) -> Result<Self, String> {
         if !json.get().starts_with('{') {
             return Err("must be an object".into());
@@ -39,7 +35,6 @@ impl<'a> Object<'a> {
             .map_err(|error| text_of(&error))
     }
 
-    /// The members with their names.
     pub(super) fn members(&self) -> impl Iterator<Item = (&str, &'a RawValue)> {
         self.members
             .iter()
@@ -88,9 +83,6 @@ impl<'a> Visitor<'a> for Members {
 }
 
 /// Reads JSON. `path` is the prefix of all paths in errors.
-///
-/// # Errors
-/// Says what is wrong and, for a part of the value, at which path.
 pub(super) fn read<'a, T: Deserialize<'a>>(json: &'a RawValue, path: &str) -> Result<T, String> {
     let mut json = Deserializer::from_str(json.get());
     serde_path_to_error::deserialize(&mut json).map_err(|error| {
@@ -135,10 +127,6 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Only<T> {
     }
 }
 
-/// The elements of an array, as texts.
-///
-/// # Errors
-/// Says what is wrong: the value is no array, or has more than `most` elements.
 pub(super) fn elements<'a>(
     json: &'a RawValue,
     most: usize,
@@ -163,10 +151,6 @@ fn by_name<'a, T: Deserialize<'a>>(
     Object::read(json)?.members.into_iter().map(read).collect()
 }
 
-/// An array of names.
-///
-/// # Errors
-/// Says that the value is no such array, or that it is too long.
 pub(crate) fn list_of_names(json: &RawValue) -> Result<Vec<String>, String> {
     let mut deserializer = Deserializer::from_str(json.get());
     list(&mut deserializer, 0..=MOST_GIVEN, "names").map_err(|error| match text_of(&error) {
@@ -175,26 +159,15 @@ pub(crate) fn list_of_names(json: &RawValue) -> Result<Vec<String>, String> {
     })
 }
 
-/// An object of numbers by name.
-///
-/// # Errors
-/// Says what is wrong with the object, or which of its values is no number.
 pub(crate) fn weights(json: &RawValue) -> Result<Vec<(String, f64)>, String> {
     by_name(json, "a number")
 }
 
-/// An object of pairs of numbers by name.
-///
-/// # Errors
-/// Says what is wrong with the object, or which of its values is no pair.
 pub(crate) fn ranges(json: &RawValue) -> Result<Vec<(String, [f64; 2])>, String> {
     by_name(json, "an array of two numbers")
 }
 
 /// Fields: an object of fields by name. `path` is put before the names in faults.
-///
-/// # Errors
-/// Every fault.
 pub(crate) fn fields(
     path: &str,
     json: &RawValue,
@@ -209,7 +182,6 @@ pub(crate) fn fields(
     all(object.members().map(read))
 }
 
-/// The beginning of JSON, as much as a fault shows.
 pub fn shown(json: &RawValue) -> &str {
     let text = json.get();
     match text.char_indices().nth(200) {
@@ -218,7 +190,6 @@ pub fn shown(json: &RawValue) -> &str {
     }
 }
 
-/// A text that is JSON.
 pub(super) fn parse(bytes: &[u8]) -> Result<&RawValue, String> {
     let wrong = |detail: &str| format!("not JSON: {detail}");
     let bytes = without_mark(bytes).map_err(wrong)?;

@@ -15,11 +15,8 @@ use super::{
     volume,
 };
 
-/// The form of a box, as faults describe it.
 const BOX: &str = "[min_x, min_y, max_x, max_y], numbers with min_x < max_x and min_y < max_y";
-/// The form of a circle.
 const CIRCLE: &str = r#"{"center": [x, y], "radius": r}, numbers with r above 0"#;
-/// The form of a chunk.
 const CHUNK: &str =
     r#"{"size": s, "x": column, "y": row}, a number above 0 and integers within ±4503599627370496"#;
 /// A circle.
@@ -104,9 +101,6 @@ objects! {
 }
 
 /// The region of a GeoJSON file: all of its polygons.
-///
-/// # Errors
-/// A [`Fault`] of `region`, which says where in the file something is wrong.
 pub fn read_region(bytes: &[u8]) -> Result<RegionDraft, Fault> {
     let polygons = parse(bytes).and_then(polygons);
     Ok(RegionDraft {
@@ -208,7 +202,6 @@ fn combined(
     ))
 }
 
-/// A list of regions, each with its faults in its place.
 fn list(
     path: &str,
     json: &RawValue,

@@ -11,11 +11,8 @@ use super::{
     object::{Object, Only, read as typed, shown},
 };
 
-/// The form of a box, as faults describe it.
 const BOX: &str = "[min_x, min_y, min_z, max_x, max_y, max_z], numbers, each min below its max";
-/// The form of a ball.
 const BALL: &str = r#"{"center": [x, y, z], "radius": r}, numbers with r above 0"#;
-/// The form of a chunk.
 const CHUNK: &str = r#"{"size": s, "x": i, "y": j, "z": k}, a number above 0 and integers within ±4503599627370496"#;
 
 /// A ball.
@@ -146,7 +143,6 @@ pub(super) fn shape(field: &str, kind: &str, json: &RawValue) -> Checked<Option<
     }))
 }
 
-/// A prism, whose polygon is read as everywhere.
 fn prism(field: &str, json: &RawValue) -> Checked<VolumeDraft> {
     let wrong = |detail: String| Fault::new(field, shown(json), detail, PRISM);
     let object = Object::read(json).map_err(wrong)?;

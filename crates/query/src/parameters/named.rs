@@ -7,7 +7,6 @@ use crate::{
     shape::Shape,
 };
 
-/// The name of a world.
 pub(super) const WORLD: Parameter = Parameter {
     name: "world",
     about: "The world that everything is taken from that the query leaves open: layers or a set of \
@@ -19,7 +18,6 @@ pub(super) const WORLD: Parameter = Parameter {
     ..Parameter::PLAIN
 };
 
-/// The digest of the world.
 pub(super) const WORLD_DIGEST: Parameter = Parameter {
     name: "world_digest",
     about: "The digest that the world must have: caches may keep the answer forever. If the server's world \
@@ -32,7 +30,6 @@ pub(super) const WORLD_DIGEST: Parameter = Parameter {
     ..Parameter::RARE
 };
 
-/// The points to leave out.
 pub(super) const EXCEPT: Parameter = Parameter {
     name: "except",
     about: "The points that are left out, by their ids, lists of the server by their names, and lists that were sent \

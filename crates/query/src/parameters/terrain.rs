@@ -5,7 +5,6 @@ use crate::{
     shape::Shape,
 };
 
-/// The terrain that points stand on.
 pub(super) const TERRAIN: Parameter = Parameter {
     name: "terrain",
     about: "The terrain that points stand on: each has a height z. It is a field: its share becomes a height \
@@ -17,7 +16,6 @@ pub(super) const TERRAIN: Parameter = Parameter {
     is_echoed: true,
     ..Parameter::RARE
 };
-/// The bounds of its heights.
 pub(super) const HEIGHTS: Parameter = Parameter {
     name: "heights",
     about: "The heights of the terrain where its field is 0 and where it is 1, in world units.",
@@ -29,7 +27,6 @@ pub(super) const HEIGHTS: Parameter = Parameter {
     is_echoed: true,
     ..Parameter::RARE
 };
-/// Whether points have normals.
 pub(super) const NORMALS: Parameter = Parameter {
     name: "normals",
     about: "Whether points have the normal nx, ny, nz of the terrain, of unit length.",
@@ -41,7 +38,6 @@ pub(super) const NORMALS: Parameter = Parameter {
     is_echoed: true,
     ..Parameter::RARE
 };
-/// How far things lean.
 pub(super) const ALIGN: Parameter = Parameter {
     name: "align",
     about: "How far things lean from the vertical (0) to the normal of the terrain (1). Points then have a \

@@ -7,7 +7,6 @@ use crate::{
     shape::Shape,
 };
 
-/// The steps by which points settle.
 pub(super) const SETTLE: Parameter = Parameter {
     name: "settle",
     about: "The steps by which the points of a set that is thinned or in a field move apart, so that they are \
@@ -25,7 +24,6 @@ pub(super) const SETTLE: Parameter = Parameter {
     ..Parameter::RARE
 };
 
-/// The level of detail.
 pub(super) const LOD: Parameter = Parameter {
     name: "lod",
     about: "The level of detail: the part of the points that the answer has, at each place those of the lowest \

@@ -16,10 +16,8 @@ use crate::{
     read_body,
 };
 
-/// The rule for worlds, in words.
 const ALLOWED: &str = "members of a query but region, count, offset and cursor: layers or a set of points, seed, limit and the form of answers";
 
-/// Where worlds are described.
 fn places(settings: &Settings) -> Places<'_> {
     Places {
         section: "worlds",
@@ -30,7 +28,6 @@ fn places(settings: &Settings) -> Places<'_> {
     }
 }
 
-/// Reads and checks a document.
 fn check(
     found: &Found,
     json: &str,
@@ -43,9 +40,6 @@ fn check(
 
 impl Worlds {
     /// Loads the worlds that the settings name, over the tables and fields that they are of.
-    ///
-    /// # Errors
-    /// The first that is not valid.
     pub fn load(
         settings: &Settings,
         catalog: &Catalog,
@@ -64,7 +58,6 @@ impl Worlds {
 
     /// The worlds after reading all documents again, the changes, and the refused documents. A refused document leaves
     /// its earlier world in place.
-    #[must_use]
     pub fn reload(
         &self,
         settings: &Settings,
@@ -86,7 +79,6 @@ impl Worlds {
 
     /// These worlds over other tables and fields, with new digests. Worlds that do not fit the new ones keep their
     /// digests, and queries that name them are refused.
-    #[must_use]
     pub fn over(&self, catalog: &Catalog) -> Self {
         let renewed = |(name, world): (&String, &Arc<World>)| {
             let query = world.draft.try_out(catalog, self.most_vertices).ok();
@@ -105,9 +97,6 @@ impl Worlds {
     }
 
     /// Reads every world by itself.
-    ///
-    /// # Errors
-    /// If the folder cannot be listed.
     pub fn each(
         settings: &Settings,
         catalog: &Catalog,
@@ -118,7 +107,6 @@ impl Worlds {
 }
 
 impl World {
-    /// Reads and checks a document.
     fn read(
         found: &Found,
         json: &str,
@@ -189,7 +177,6 @@ fn digest(json: &str, query: &Query) -> String {
 }
 
 /// Names the layers of faults by their names: `layers[2].spacing` is `layers.oak.spacing`.
-#[must_use]
 pub fn by_layer(error: Error, draft: &Draft) -> Error {
     let Error::Invalid(faults) = error else {
         return error;

@@ -40,7 +40,6 @@ fn directory(size: [u16; 2], bits: u16, pixels: &[u8], further: Vec<(u16, Value)
 
 struct Directory(Vec<(u16, Value)>, Vec<u8>);
 
-/// A file of some directories.
 fn file(directories: Vec<Directory>) -> Vec<u8> {
     let mut file = b"II*\0\x08\0\0\0".to_vec();
     let number = directories.len();
@@ -84,7 +83,6 @@ fn one(size: [u16; 2], bits: u16, pixels: &[u8], further: Vec<(u16, Value)>) -> 
 const NODATA: u16 = 42113;
 const FORMAT: u16 = 339;
 
-/// The image, read as numbers.
 fn numbers(bytes: &[u8]) -> Image {
     let read = Image::from_bytes(bytes, Meaning::Numbers, SMALL, &Stop::default());
     read.expect("a raster")

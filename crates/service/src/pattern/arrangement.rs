@@ -14,7 +14,6 @@ use strew_query::{
 
 use super::{List, TURN, alpha, refused};
 
-/// The amounts, one of which sets the distance of points.
 const AMOUNTS: [&Parameter; 3] = [
     &parameters::DENSITY,
     &parameters::SPACING,
@@ -24,17 +23,12 @@ const AMOUNTS: [&Parameter; 3] = [
 /// A checked query about an arrangement.
 #[derive(Clone, Debug)]
 pub struct ArrangementQuery {
-    /// The arrangement in the pattern of α and the seed.
     pub found: Arrangement,
-    /// The columns and rows in which occurrences are counted.
     pub grid: Option<[Range<i64>; 2]>,
-    /// The format of the list of occurrences.
     pub list: Option<List>,
-    /// The most occurrences that are listed.
     pub limit: Option<u64>,
     /// The first place of the list.
     pub from: Option<(i64, i64)>,
-    /// The set whose points' places are listed.
     pub set: Option<Box<Set>>,
 }
 
@@ -67,10 +61,6 @@ pub struct Facts {
 }
 
 impl ArrangementQuery {
-    /// Checks some values.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] with every fault, and as [`Set::single`] where places are wanted.
     pub fn check(values: &Values, catalog: &Catalog) -> Result<Self, Error> {
         let places = places(values);
         let parts = (
@@ -105,7 +95,6 @@ impl ArrangementQuery {
         Ok(query)
     }
 
-    /// Checks what belongs together.
     fn check_parts(&self, values: &Values) -> Checked<()> {
         let beside = |parameter: &Parameter, other: &str| -> Checked<()> {
             let allowed = format!("beside {other}");
@@ -136,7 +125,6 @@ impl ArrangementQuery {
         })
     }
 
-    /// Checks that all places can be had.
     fn check_places(&self, values: &Values) -> Checked<()> {
         let offsets = self.found.offsets();
         if offsets.len() > MOST_PLACED {
@@ -158,7 +146,6 @@ impl ArrangementQuery {
     }
 
     /// The facts about the arrangement.
-    #[must_use]
     pub fn facts(&self) -> Facts {
         let found = &self.found;
         let margin = found.margin();

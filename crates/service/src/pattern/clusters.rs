@@ -18,14 +18,10 @@ use strew_query::{
 use super::{alpha, refused};
 use crate::Service;
 
-/// A checked query for clusters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClustersQuery {
-    /// The α of the pattern.
     pub alpha: Alpha,
-    /// The largest distance of neighbors.
     pub distance: f64,
-    /// The number of points up to which clusters are searched.
     pub most: usize,
     /// Whether shapes that are symmetric to each other are one.
     pub up_to_symmetry: bool,
@@ -71,10 +67,6 @@ pub struct ShapeDocument {
 }
 
 impl ClustersQuery {
-    /// Checks some values.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] with every fault.
     pub fn check(values: &Values) -> Result<Self, Error> {
         let parts = (
             values.read(),
@@ -95,7 +87,6 @@ impl ClustersQuery {
         })
     }
 
-    /// About how many points the search looks at.
     pub(super) fn points(&self) -> u128 {
         // The intervals of a map that sees clusters as wide as this.
         let reach = self.distance * (1.0 + (self.most as f64).sqrt());
@@ -104,9 +95,6 @@ impl ClustersQuery {
     }
 
     /// Searches, unless the flag is raised.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if the clusters reach too far, [`Error::ShuttingDown`] if it was stopped.
     pub fn search(&self, stop: &Stop) -> Result<Clusters, Error> {
         let found = server::clusters(self.alpha, self.distance, self.most, stop);
         found.map_err(|error| match error.kind() {
@@ -119,8 +107,6 @@ impl ClustersQuery {
         })
     }
 
-    /// The document of the clusters found.
-    #[must_use]
     pub fn document(&self, found: &Clusters) -> ClustersDocument {
         let one = |shape: &Shape| ShapeDocument {
             points: shape.points().to_vec(),
@@ -158,9 +144,6 @@ impl ClustersQuery {
 impl Service {
     /// Searches for the clusters of a pattern, charged, and makes something of them where they are found. The
     /// search stops when its client leaves or its time is over.
-    ///
-    /// # Errors
-    /// As [`ClustersQuery::search`], and [`Error::Denied`] if the caller takes points too fast.
     pub async fn clusters<T: Send + 'static>(
         &self,
         caller: &Caller,

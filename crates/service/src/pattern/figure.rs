@@ -13,31 +13,21 @@ use strew_query::{
 use super::{ClustersQuery, alpha, map::DEFAULT_RADIUS};
 use crate::Service;
 
-/// The figures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
-    /// The index torus and the set region.
     Index,
-    /// An arrangement.
     Arrangement,
-    /// Clusters.
     Clusters,
-    /// A neighborhood map.
     Map,
 }
 
-/// The formats of figures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Lines and letters.
     Svg,
-    /// Pixels.
     Png,
 }
 
 impl Format {
-    /// The content type.
-    #[must_use]
     pub const fn content_type(self) -> &'static str {
         match self {
             Self::Svg => "image/svg+xml",
@@ -47,8 +37,6 @@ impl Format {
 }
 
 impl Figure {
-    /// The parameters that it takes.
-    #[must_use]
     pub const fn groups(self, format: Format) -> &'static [Group] {
         match (self, format) {
             (Self::Index, Format::Svg) => groups::INDEX_FIGURE,
@@ -62,7 +50,6 @@ impl Figure {
         }
     }
 
-    /// The side of the window that it draws by default.
     const fn window(self) -> u32 {
         match self {
             Self::Index => 64,
@@ -72,7 +59,6 @@ impl Figure {
     }
 }
 
-/// A checked query for a figure.
 #[derive(Clone, Debug)]
 pub struct FigureQuery {
     alpha: Alpha,
@@ -81,7 +67,6 @@ pub struct FigureQuery {
     what: What,
 }
 
-/// The subject of a figure.
 #[derive(Clone, Debug)]
 enum What {
     Index,
@@ -91,10 +76,6 @@ enum What {
 }
 
 impl FigureQuery {
-    /// Checks some values.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] with every fault.
     pub fn check(figure: Figure, values: &Values) -> Result<Self, Error> {
         let what = match figure {
             Figure::Index => Ok(What::Index),
@@ -124,7 +105,6 @@ impl FigureQuery {
         })
     }
 
-    /// Draws it.
     fn draw(self, stop: &Stop) -> Result<Drawing, Error> {
         let Self {
             alpha,
@@ -170,10 +150,6 @@ fn offsets(values: &Values) -> Checked<Vec<(i64, i64)>> {
 
 impl Service {
     /// Draws a figure, charged, as a file. It stops when its client leaves.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] for what cannot be drawn, [`Error::Denied`] if the caller takes points too fast,
-    /// [`Error::TooManyBytes`] if there is no room.
     pub async fn figure(
         &self,
         caller: &Caller,

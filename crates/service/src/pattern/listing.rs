@@ -22,13 +22,11 @@ pub struct Listing {
     grid: [Range<i64>; 2],
     from: (i64, i64),
     placed: Option<Arc<Placed>>,
-    /// The number of listed occurrences.
     pub count: u64,
     /// The place of the one after them.
     pub next: Option<(i64, i64)>,
 }
 
-/// An occurrence of an arrangement.
 struct Occurrence {
     /// The column and the row of its first point.
     at: (i64, i64),
@@ -37,10 +35,6 @@ struct Occurrence {
 }
 
 impl Listing {
-    /// Counts the occurrences of a query that has a box.
-    ///
-    /// # Errors
-    /// [`Error::TooManyPoints`] if they have more points than `most`.
     pub fn new(query: &ArrangementQuery, placed: Option<Placed>, most: u64) -> Result<Self, Error> {
         let found = query.found.clone();
         let grid = query.grid.clone().unwrap_or([0..0, 0..0]);
@@ -74,15 +68,11 @@ impl Listing {
             .map_or(1, |_| 1 + self.found.offsets().len())
     }
 
-    /// The cursor of the rest.
-    #[must_use]
     pub fn cursor(&self) -> Option<String> {
         self.next.map(|(x, y)| format!("{x}:{y}"))
     }
 
-    /// The occurrences, some at a time.
     fn occurrences(self) -> Occurrences {
-        /// The points of a batch.
         const POINTS: usize = 4096;
         let batch = (POINTS / self.each()).max(1);
         let [x, y] = self.grid;
@@ -98,8 +88,6 @@ impl Listing {
         }
     }
 
-    /// The list as text.
-    #[must_use]
     pub fn text(self, list: List, facts: &Facts) -> Text {
         let columns = if self.placed.is_some() {
             self.found.offsets().len() + 1
@@ -188,7 +176,6 @@ impl Iterator for Occurrences {
     }
 }
 
-/// A list as text, in blocks.
 #[derive(Debug)]
 pub struct Text {
     list: List,
@@ -261,9 +248,6 @@ impl Text {
 
 impl Service {
     /// Admits a caller and counts the occurrences that are to be listed, charging their points.
-    ///
-    /// # Errors
-    /// As [`Listing::new`], [`place`](Self::place) and admitting.
     pub async fn list(
         &self,
         caller: &Caller,

@@ -17,16 +17,11 @@ use crate::Service;
 /// The half-width of a map that names none.
 pub(super) const DEFAULT_RADIUS: u32 = 20;
 
-/// A checked query for a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MapQuery {
-    /// The α of the pattern.
     pub alpha: Alpha,
-    /// The half-width.
     pub radius: u32,
-    /// The half-width of the finer map.
     pub refined: Option<u32>,
-    /// The block whose neighbors are wanted.
     pub block: Option<[usize; 2]>,
 }
 
@@ -78,10 +73,6 @@ pub struct Neighborhood {
 }
 
 impl MapQuery {
-    /// Checks some values.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] with every fault.
     pub fn check(values: &Values) -> Result<Self, Error> {
         let parts = (
             values.read(),
@@ -116,10 +107,6 @@ impl MapQuery {
         })
     }
 
-    /// The document of the map.
-    ///
-    /// # Errors
-    /// Never: the half-widths were checked.
     pub fn document(&self) -> Result<MapDocument, Error> {
         let made = |error: strew_core::Error| refused(&error);
         let map = Map::new(self.alpha, self.radius).map_err(made)?;
@@ -161,9 +148,6 @@ impl MapQuery {
 
 impl Service {
     /// Makes a map, and something of it. Neighbors are charged as points.
-    ///
-    /// # Errors
-    /// [`Error::Denied`] if the caller takes points too fast, [`Error::TooManyBytes`] if there is no room.
     pub async fn map<T: Send + 'static>(
         &self,
         caller: &Caller,

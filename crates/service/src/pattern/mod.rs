@@ -25,7 +25,6 @@ use strew_query::{DEFAULT_ALPHA, Values, patterns};
 /// One turn of the index torus, in its units.
 const TURN: f64 = 18_446_744_073_709_551_616.0;
 
-/// The α of some values.
 fn alpha(values: &Values) -> Checked<Alpha> {
     let text = values.get::<String>(&patterns::ALPHA)?;
     let text = text.unwrap_or_else(|| DEFAULT_ALPHA.into());

@@ -5,7 +5,6 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How long a request has waited for turns.
 #[derive(Debug, Default)]
 pub struct Clock(Mutex<Waited>);
 
@@ -14,19 +13,16 @@ struct Waited {
     /// The work of the request that waits now, and since when it does.
     waiting: usize,
     since: Option<Instant>,
-    /// The time of waits that are over.
     before: Duration,
 }
 
 impl Clock {
     /// How long the request has waited so far.
-    #[must_use]
     pub fn waited(&self) -> Duration {
         let waited = self.lock();
         waited.before + waited.since.map_or(Duration::ZERO, |since| since.elapsed())
     }
 
-    /// Some of its work begins to wait.
     pub(super) fn wait(&self) {
         let mut waited = self.lock();
         waited.waiting += 1;

@@ -13,22 +13,18 @@ use std::{
 
 use super::shift::{Shift, lower_priority};
 
-/// The threads. Cheap to clone.
 #[derive(Clone)]
 pub(super) struct Crew(Arc<Threads>);
 
 struct Threads {
     /// Those for short work that wait for more, and those of lower priority.
     idle: [Mutex<Vec<Sender<Task>>>; 2],
-    /// The most that are kept of each.
     most_idle: usize,
 }
 
-/// Work with its thread.
 struct Task {
     shift: Arc<Shift>,
     job: Box<dyn FnOnce() + Send>,
-    /// By which the thread gets its next work.
     thread: Sender<Task>,
     crew: Crew,
 }

@@ -8,29 +8,24 @@ use strew_plan::Lane;
 
 use crate::{Budget, Record};
 
-/// The request that work is done for. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct Owner(Option<Arc<Record>>);
 
 impl Owner {
     /// The request that is being answered; outside of all requests the daemon itself.
-    #[must_use]
     pub fn current() -> Self {
         Self(Record::current())
     }
 
-    /// An identifier of the address.
     pub(super) fn address(&self) -> usize {
         let budget = self.0.as_ref().map(|record| record.budget());
         budget.map_or(0, Budget::address)
     }
 
-    /// Whether both are requests of one address.
     pub(crate) fn is_of(&self, other: &Self) -> bool {
         self.address() == other.address()
     }
 
-    /// Runs a future as a part of the request.
     pub(crate) async fn scope<F: Future>(self, future: F) -> F::Output {
         match self.0 {
             Some(record) => record.scope(future).await,
@@ -38,7 +33,6 @@ impl Owner {
         }
     }
 
-    /// Charges the request for processor time.
     pub(super) fn took(&self, time: Duration) {
         if let Some(record) = &self.0 {
             record.took(time);
@@ -52,7 +46,6 @@ impl Owner {
         }
     }
 
-    /// The lane of the blocks of the request's answer.
     pub(crate) fn lane(&self) -> Lane {
         self.0.as_ref().map_or(Lane::Short, |record| record.lane())
     }

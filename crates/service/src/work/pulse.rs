@@ -38,8 +38,6 @@ impl Pulse {
         }
     }
 
-    /// Whether short work is begun within a time.
-    #[must_use]
     pub fn is_within(&self, bound: Duration) -> bool {
         self.begun().is_none_or(|begun| begun.elapsed() <= bound)
     }

@@ -36,7 +36,6 @@ const AGAIN: Duration = Duration::from_millis(5);
 const NICENESS: i32 = 10;
 
 thread_local! {
-    /// The work of this thread.
     static CURRENT: RefCell<Option<Arc<Shift>>> = const { RefCell::new(None) };
 }
 
@@ -61,10 +60,8 @@ pub(super) fn charge() {
     });
 }
 
-/// The turns of each lane.
 pub(super) struct Lanes {
     turns: [Turns; 3],
-    /// How often short work became long.
     pub(super) moved: AtomicU64,
     /// The longest processor time that short work had before it ended or became long, in nanoseconds.
     pub(super) longest: AtomicU64,
@@ -124,7 +121,6 @@ impl Shift {
         })
     }
 
-    /// Whether its thread has lower priority.
     pub(super) fn is_long(&self) -> bool {
         self.lock().lane != Lane::Short
     }
@@ -243,7 +239,6 @@ impl Shift {
     }
 }
 
-/// Work that waits for its next turn.
 struct Paused(Arc<Shift>);
 
 impl Waiter for Paused {

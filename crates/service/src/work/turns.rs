@@ -6,9 +6,7 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
-/// Work that waits for a place.
 pub(super) trait Waiter: Send {
-    /// Whether anyone still waits for the result.
     fn is_wanted(&self) -> bool;
     /// Begins, or goes on, elsewhere: must return at once.
     fn begin(self: Box<Self>, turn: Turn);
@@ -101,7 +99,6 @@ impl Turns {
         drop(turn);
     }
 
-    /// Whether another address waits.
     pub(super) fn is_wanted_by_others(&self, address: usize) -> bool {
         self.lock().order.iter().any(|&other| other != address)
     }

@@ -21,7 +21,6 @@ use super::{
     turns::{Turn, Waiter},
 };
 
-/// The threads and whose turn it is. Cheap to clone.
 #[derive(Clone)]
 pub struct Workers {
     crew: Crew,
@@ -40,7 +39,6 @@ impl fmt::Debug for Workers {
 
 impl Workers {
     /// Threads for this number of pieces of short work at once, 0 for one per core, and half of it for long work.
-    #[must_use]
     pub fn new(threads: usize) -> Self {
         let cores = || thread::available_parallelism().map_or(1, NonZero::get);
         let threads = if threads == 0 { cores() } else { threads };
@@ -55,23 +53,17 @@ impl Workers {
         }
     }
 
-    /// How often short work took too long and became long work.
-    #[must_use]
     pub fn moved(&self) -> u64 {
         self.lanes.moved.load(Ordering::Relaxed)
     }
 
     /// The longest processor time that short work had before it ended or became long.
-    #[must_use]
     pub fn longest_short(&self) -> Duration {
         Duration::from_nanos(self.lanes.longest.load(Ordering::Relaxed))
     }
 
     /// Runs a job when it is the turn of its owner's address, and waits for its result. The job
     /// should stop when the flag is raised: then the result is not wanted any more.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if the job panicked.
     pub async fn take_turn<T: Send + 'static>(
         &self,
         lane: Lane,
@@ -81,9 +73,6 @@ impl Workers {
     }
 
     /// [`take_turn`](Self::take_turn) for a request that is not the one being answered.
-    ///
-    /// # Errors
-    /// As `take_turn`.
     pub async fn take_turn_for<T: Send + 'static>(
         &self,
         owner: &Owner,
@@ -144,7 +133,6 @@ impl Drop for Wanted {
     }
 }
 
-/// A job that waits for its turn.
 struct Job<T, F> {
     waiting: Waiting,
     crew: Crew,
@@ -180,7 +168,6 @@ impl<T: Send + 'static, F: FnOnce() -> T + Send + 'static> Waiter for Job<T, F> 
     }
 }
 
-/// A piece of work that waits for its turn.
 struct Piece<F> {
     crew: Crew,
     shift: Arc<Shift>,
@@ -208,7 +195,6 @@ mod tests {
     use super::*;
     use crate::{Budget, Record};
 
-    /// The owner of an address of its own.
     fn record() -> Arc<Record> {
         Record::new(
             "r",

@@ -45,13 +45,11 @@ impl Launcher {
         self
     }
 
-    /// Adds the tables of a folder.
     pub fn tables(mut self, folder: &Path) -> Self {
         self.command.arg("--tables").arg(folder);
         self
     }
 
-    /// Adds a file of settings.
     pub fn config(mut self, file: &Path) -> Self {
         self.command.arg("--config").arg(file);
         self
@@ -72,8 +70,6 @@ impl Launcher {
     }
 
     /// Starts the daemon and waits until it listens.
-    ///
-    /// # Errors
     ///
     /// [`NotReady`] if its first line does not say where it listens.
     pub fn start(mut self) -> Result<Daemon, NotReady> {
@@ -153,7 +149,6 @@ impl Process {
         }
     }
 
-    /// The whole log of a process that has ended.
     fn closed_log(&mut self) -> String {
         self.log.as_mut().map_or_else(String::new, |log| {
             log.close();
@@ -183,17 +178,14 @@ pub struct Daemon {
 }
 
 impl Daemon {
-    /// The address it listens on.
     pub fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// The URL of a path, over plain HTTP.
     pub fn url(&self, path: &str) -> String {
         format!("http://{}{path}", self.address)
     }
 
-    /// Waits for the next line on its standard output.
     pub fn line(&self) -> String {
         self.output.next("").expect("a line on standard output")
     }
@@ -211,7 +203,6 @@ impl Daemon {
         log.expect("the log is kept").text()
     }
 
-    /// Its process id.
     pub fn pid(&self) -> u32 {
         self.process.child.id()
     }
@@ -226,12 +217,10 @@ impl Daemon {
         self.signal("TERM");
     }
 
-    /// Waits for the process to end.
     pub fn wait(&mut self) -> ExitStatus {
         until("the daemon ends", || self.ended())
     }
 
-    /// The status of a process that has ended.
     pub fn ended(&mut self) -> Option<ExitStatus> {
         self.process.child.try_wait().expect("a child")
     }
@@ -278,7 +267,6 @@ impl Daemon {
         })
     }
 
-    /// The number of files and sockets it has open.
     pub fn open_files(&self) -> usize {
         let folder = format!("/proc/{}/fd", self.pid());
         std::fs::read_dir(folder).expect("Linux").count()
@@ -308,7 +296,6 @@ mod tests {
     /// still has its file open for writing.
     static ALONE: Mutex<()> = Mutex::new(());
 
-    /// A shell script in place of the program.
     fn program(folder: &Path, script: &str) -> std::path::PathBuf {
         let path = folder.join("program");
         std::fs::write(&path, format!("#!/bin/sh\n{script}\n")).expect("writable");

@@ -89,7 +89,6 @@ impl Output {
         }
     }
 
-    /// Whether the pipe is closed.
     pub fn is_closed(&self) -> bool {
         self.shared.lines().is_closed
     }

@@ -61,7 +61,6 @@ fn rasters_documents_and_sections_are_fields() {
     assert_eq!(fields.get("bare").expect("loaded").bytes, 8);
 }
 
-/// An array of a type, of two pixels.
 fn npy(descr: &str, data: &[u8]) -> Vec<u8> {
     let header = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': (1, 2), }}");
     let mut file = b"\x93NUMPY\x01\x00".to_vec();
