@@ -17,9 +17,8 @@ use super::{
     api::{self, schemas},
     coding,
     context::Context,
-    freshness::{Freshness, Verdict},
+    freshness::{self, Freshness, Verdict, Wanted},
     negotiate::{self, Chosen},
-    range::{self, Wanted},
 };
 use crate::body::{Body, Response};
 
@@ -269,7 +268,7 @@ async fn part(
         return points(service, context, query, (chosen, output), true).await;
     };
     let Some(part) = wanted.within(size) else {
-        return Ok(range::unsatisfiable(size));
+        return Ok(freshness::unsatisfiable(size));
     };
     let before = whole.head().cloned().unwrap_or_default();
     let length = before.len() as u64;
@@ -293,7 +292,7 @@ async fn part(
         let head = rows.head().map_or(0, |head| head.len() as u64);
         let start = head + bytes.start - records.start * record;
         let blocks = service.blocks(permit, rows);
-        let wanted = range::cut(blocks, start..start + (bytes.end - bytes.start));
+        let wanted = freshness::cut(blocks, start..start + (bytes.end - bytes.start));
         Body::from_stream(stream::iter([Ok(front)]).chain(wanted))
     };
     let mut response = Response::new(body);
@@ -428,7 +427,7 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
     }
     headers.insert(header::CONTENT_DISPOSITION, disposition(chosen.encoding));
     if answer.record_bytes().is_some() {
-        headers.insert(header::ACCEPT_RANGES, range::BYTES);
+        headers.insert(header::ACCEPT_RANGES, freshness::BYTES);
     }
     Ok(headers)
 }

@@ -1,6 +1,10 @@
-//! Requests as handlers take them: the caller, and all that decides how the answer is sent; for some, the body.
+//! Requests as handlers take them: the caller, and all that decides how the answer is sent; for some, the body: read
+//! whole, up to a limit, and unpacked if it is gzip.
+//!
+//! The content type of a body is not looked at: it is read as JSON anyway, and `curl -d` calls everything a form.
 
 use std::{
+    fmt::Display,
     mem::take,
     pin::{Pin, pin},
     sync::Arc,
@@ -8,19 +12,21 @@ use std::{
 
 use axum::extract::{FromRequest, FromRequestParts, MatchedPath, RawPathParams};
 use bytes::Bytes;
-use http::{HeaderMap, Method, StatusCode, Uri, request::Parts};
+use futures_util::StreamExt as _;
+use http::{HeaderMap, Method, StatusCode, Uri, header, request::Parts};
 use serde::Serialize;
 use strew_access::Caller;
+use strew_core::server::Stop;
 use strew_error::{Error, Fault};
-use strew_query::{Group, Values, parse_pairs};
-use strew_service::{Record, Service, charge_reading};
+use strew_query::{Draft, Group, Options, Query, Values, parse_pairs, read_body};
+use strew_service::{Record, Service, charge_reading, segments::Segments, unpack::Coding};
 
 use super::{
-    body, document,
+    document,
     freshness::Freshness,
     problem::{Problem, Refused},
 };
-use crate::body::{Request, Response};
+use crate::body::{Body, Request, Response};
 
 /// A request without its body.
 #[derive(Debug)]
@@ -78,6 +84,11 @@ impl Context {
         let path = self.uri.path().into();
         Error::NoSuchPath { path, available }
     }
+
+    /// The error of a path of this form with a name that is none of some.
+    pub(super) fn nothing_named(&self, path: &str, names: &impl Display) -> Error {
+        self.nothing(format!("{path}, where name is {names}"))
+    }
 }
 
 /// Takes all that the head of a request has: handlers have no other extractor after it.
@@ -109,18 +120,6 @@ pub struct Posted {
     pub(super) body: Bytes,
 }
 
-impl FromRequest<Arc<Service>> for Posted {
-    type Rejection = Response;
-
-    async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, Response> {
-        let (mut parts, body) = request.into_parts();
-        let context = Context::from_request_parts(&mut parts, service).await?;
-        let body = body::whole(service, &context.headers, body).await;
-        let body = body.map_err(|error| Refused(error).response())?;
-        Ok(Self { context, body })
-    }
-}
-
 /// A request whose query is its body, and which has no parameters beside it.
 #[derive(Debug)]
 pub struct Sent {
@@ -128,22 +127,113 @@ pub struct Sent {
     pub(super) body: Bytes,
 }
 
+impl FromRequest<Arc<Service>> for Posted {
+    type Rejection = Response;
+
+    async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, Response> {
+        let (mut parts, body) = request.into_parts();
+        let context = Context::from_request_parts(&mut parts, service).await?;
+        let body = whole_body(service, &context.headers, body).await;
+        let body = body.map_err(|error| Refused(error).response())?;
+        Ok(Self { context, body })
+    }
+}
+
 impl FromRequest<Arc<Service>> for Sent {
     type Rejection = Response;
 
     async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, Response> {
-        let refused = |error| Refused(error).response();
-        let (mut parts, body) = request.into_parts();
-        let context = Context::from_request_parts(&mut parts, service).await?;
-        if let Some(text) = context.uri.query().filter(|text| !text.is_empty()) {
+        let text = request.uri().query().filter(|text| !text.is_empty());
+        if let Some(text) = text {
             let detail = "not allowed here: the query is in the body";
-            return Err(refused(
-                Fault::new("query", text, detail, "no parameters").into(),
-            ));
+            let fault = Fault::new("query", text, detail, "no parameters");
+            return Err(Refused(fault.into()).response());
         }
-        let body = body::whole(service, &context.headers, body).await;
-        let body = body.map_err(refused)?;
-        charge_reading(&context.caller, body.len()).map_err(refused)?;
+        let Posted { context, body } = Posted::from_request(request, service).await?;
+        charge_reading(&context.caller, body.len())
+            .map_err(|error| Refused(error.into()).response())?;
         Ok(Self { context, body })
     }
+}
+
+/// Reads a whole body.
+async fn whole_body(
+    service: &Arc<Service>,
+    headers: &HeaderMap,
+    body: Body,
+) -> Result<Bytes, Error> {
+    let limit = service.limits().max_body_bytes;
+    let is_packed = is_packed(headers)?;
+    let length = headers.get(header::CONTENT_LENGTH);
+    let length = length.and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
+    // A body that announces that it is too long need not even be sent.
+    if length.is_some_and(|length| usize::try_from(length).is_ok_and(|length| length > limit)) {
+        return Err(Error::BodyTooLarge { limit });
+    }
+    let mut pieces = body.into_data_stream();
+    let mut segments = Segments::default();
+    while let Some(piece) = pieces.next().await {
+        let piece = piece.map_err(|error| why(&error))?;
+        if segments.len() + piece.len() > limit {
+            return Err(Error::BodyTooLarge { limit });
+        }
+        segments.append(&piece);
+    }
+    let bytes = segments.joined();
+    match is_packed {
+        true => service.unpacked(Coding::Gzip, bytes, "body").await,
+        false => Ok(bytes),
+    }
+}
+
+/// Whether a body is gzip.
+fn is_packed(headers: &HeaderMap) -> Result<bool, Error> {
+    let lines = headers.get_all(header::CONTENT_ENCODING).iter();
+    let names: Vec<String> = lines
+        .flat_map(|line| line.as_bytes().split(|&byte| byte == b','))
+        .map(|name| String::from_utf8_lossy(name).trim().to_ascii_lowercase())
+        .filter(|name| name != "identity")
+        .collect();
+    match names.as_slice() {
+        [] => Ok(false),
+        [name] if name == "gzip" || name == "x-gzip" => Ok(true),
+        _ => {
+            let coding = names.join(", ").chars().take(60).collect();
+            Err(Error::UnknownCoding { coding })
+        }
+    }
+}
+
+/// The bytes of memory that reading takes for each of a body.
+pub(super) const BODY_COPIES: usize = 4;
+
+/// The query of a body, read and checked: on the workers if it is long.
+pub(super) async fn query_of_body(
+    service: &Arc<Service>,
+    body: Bytes,
+    groups: &'static [Group],
+) -> Result<(Draft, Box<Query>, Options), Error> {
+    let (bytes, budget) = (body.len(), service.own_budget());
+    let read = move || {
+        let _held = budget.hold(BODY_COPIES * body.len())?;
+        Ok(read_body(&body, groups)?)
+    };
+    let check = |service: &Service, draft: Draft, stop: &Stop| {
+        let (query, options) = service.check(&draft, stop)?;
+        Ok((draft, query, options))
+    };
+    service.read(bytes, read, Draft::price, check).await
+}
+
+/// Why a body broke off: as the gate says, or because the client stopped.
+fn why(error: &(dyn std::error::Error + 'static)) -> Error {
+    let mut cause = Some(error);
+    while let Some(inner) = cause {
+        if let Some(error) = inner.downcast_ref::<Error>() {
+            return error.clone();
+        }
+        cause = inner.source();
+    }
+    let detail = "broke off before its end";
+    Fault::new("body", "", detail, "a whole body").into()
 }

@@ -4,7 +4,7 @@
 use std::{pin::pin, sync::Arc};
 
 use axum::extract::State;
-use http::Method;
+
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -17,91 +17,68 @@ use strew_service::Service;
 use super::{
     answer,
     api::{
-        self, Endpoint, Operation, Tag,
+        self, Endpoint, Operation, Tag, either,
         schemas::{self, AnyQuery, CountQuery, PointsQuery, SpaceQuery},
     },
-    body,
-    context::{Context, Posted, Sent},
+    context::{Context, Posted, Sent, query_of_body},
     document,
 };
 use crate::{body::Response, rest::Refused};
 
 /// The problems of counting.
-fn problems(more: &[Kind]) -> Vec<Kind> {
-    let counting = [
-        Kind::Invalid,
-        Kind::OtherTable,
-        Kind::OtherWorld,
-        Kind::TooManyRows,
-        Kind::TooManyPoints,
-    ];
-    [&counting, more].concat()
-}
+const PROBLEMS: [Kind; 5] = [
+    Kind::Invalid,
+    Kind::OtherTable,
+    Kind::OtherWorld,
+    Kind::TooManyRows,
+    Kind::TooManyPoints,
+];
 
 /// The path of counts of a dimension.
 pub(super) fn counts(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
+    let path = either(dimension, ["/v1/count", "/v1/space/count"]);
+    let parameters = either(dimension, [groups::COUNT, groups::SPACE_COUNT]);
+    let members = either(dimension, [groups::COUNTED, groups::SPACE_QUERY]);
+    let about = [
+        "Exact, in closed form for a box without warp, whatever it holds; otherwise in time proportional to its rows.",
+        "Exact, in a fraction of a millisecond for a box without warp, whatever it holds; otherwise in time \
+         proportional to its surface.",
+    ];
+    let summary = [
+        "The number of points of a region",
+        "The number of points of a volume",
+    ];
+    let example = [
+        "'/v1/count?bbox=-5e8,-5e8,5e8,5e8&spacing=1'",
+        "'/v1/space/count?bbox=-5e8,-5e8,-5e8,5e8,5e8,5e8&spacing=1'",
+    ];
     let answers = || api::Answer::json::<Count>("The count.");
     let given = Operation {
-        problems: problems(&[]),
+        id: either(dimension, ["getCount", "getSpaceCount"]),
+        summary: either(dimension, summary),
+        about: either(dimension, about),
+        parameters,
+        problems: PROBLEMS.into(),
+        example: either(dimension, example).into(),
         ..Operation::new(Tag::of(dimension), answers().or_unchanged())
     };
+    let region = [
+        json!({ "circle": { "center": [0, 0], "radius": 9 } }),
+        json!({ "ball": { "center": [0, 0, 0], "radius": 9 } }),
+    ];
+    let body = json!({ "region": either(dimension, region), "spacing": 1 });
+    let schemas = [schemas::of::<CountQuery>, schemas::of::<SpaceQuery>];
+    let summary = [
+        "The number of points of a query",
+        "The number of points of a query in space",
+    ];
     let posted = Operation {
-        method: Method::POST,
-        problems: problems(&[Kind::BodyTooLarge]),
-        ..Operation::new(Tag::of(dimension), vec![answers()])
+        id: either(dimension, ["countPoints", "countSpacePoints"]),
+        summary: either(dimension, summary),
+        parameters: groups::NONE,
+        answers: vec![answers()],
+        ..given.clone().posted(path, either(dimension, schemas), body)
     };
-    let (path, members, given, posted) = match dimension {
-        Dimension::Plane => {
-            let about = "Exact, in closed form for a box without warp, whatever it holds; otherwise in time \
-                         proportional to its rows.";
-            let given = Operation {
-                id: "getCount",
-                summary: "The number of points of a region",
-                about,
-                parameters: groups::COUNT,
-                example: "'/v1/count?bbox=-5e8,-5e8,5e8,5e8&spacing=1'".into(),
-                ..given
-            };
-            let region = json!({ "circle": { "center": [0, 0], "radius": 9 } });
-            let posted = Operation {
-                id: "countPoints",
-                summary: "The number of points of a query",
-                about,
-                body: Some(api::Body::json(
-                    schemas::of::<CountQuery>,
-                    json!({ "region": region, "spacing": 1 }),
-                )),
-                example: r#"/v1/count -d '{"region": {"circle": {"center": [0, 0], "radius": 9}}, "spacing": 1}'"#
-                    .into(),
-                ..posted
-            };
-            ("/v1/count", groups::COUNTED, given, posted)
-        }
-        Dimension::Space => {
-            let about = "Exact, in a fraction of a millisecond for a box without warp, whatever it holds; otherwise \
-                         in time proportional to its surface.";
-            let given = Operation {
-                id: "getSpaceCount",
-                summary: "The number of points of a volume",
-                about,
-                parameters: groups::SPACE_COUNT,
-                example: "'/v1/space/count?bbox=-5e8,-5e8,-5e8,5e8,5e8,5e8&spacing=1'".into(),
-                ..given
-            };
-            let region = json!({ "ball": { "center": [0, 0, 0], "radius": 9 } });
-            let body = json!({ "region": region, "spacing": 1 });
-            let posted = Operation {
-                id: "countSpacePoints",
-                summary: "The number of points of a query in space",
-                about,
-                example: format!("/v1/space/count -d '{body}'"),
-                body: Some(api::Body::json(schemas::of::<SpaceQuery>, body)),
-                ..posted
-            };
-            ("/v1/space/count", groups::SPACE_QUERY, given, posted)
-        }
-    };
-    let parameters = given.parameters;
     let get = move |State(service): State<Arc<Service>>, context: Context| async move {
         let draft = Draft::of(context.values(parameters));
         let (query, _) = service.check(&draft, &Stop::NEVER)?;
@@ -110,7 +87,7 @@ pub(super) fn counts(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
         Ok::<_, Refused>(freshness.answer(&context.headers, make).await?)
     };
     let post = move |State(service): State<Arc<Service>>, Sent { context, body }: Sent| async move {
-        let (_, query, _) = body::query(&service, body, members).await?;
+        let (_, query, _) = query_of_body(&service, body, members).await?;
         Ok::<_, Refused>(counted(&service, &context, query).await?)
     };
     Endpoint::only(path, service.clone(), given, get).with(service.clone(), posted, post)
@@ -139,52 +116,35 @@ async fn counted(
 
 /// The path of parts of a dimension.
 pub(super) fn parts_of(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
+    let path = either(dimension, ["/v1/points:split", "/v1/space/points:split"]);
+    let members = either(dimension, [groups::QUERY, groups::SPACE_QUERY]);
+    let about = [
+        "Queries of equal numbers of points, give or take one, that together return the points of the query in its \
+         order; each is a body of POST /v1/points:query. Parts without points are left out.",
+        "Queries of equal numbers of points, give or take one, that together return the points of the query in its \
+         order; each is a body of POST /v1/space/points. Parts without points are left out.",
+    ];
+    let region = [
+        json!({ "bbox": [0, 0, 9, 9] }),
+        json!({ "bbox": [0, 0, 0, 4, 4, 4] }),
+    ];
+    let body = json!({ "region": either(dimension, region), "spacing": 1 });
+    let schemas = [schemas::of::<PointsQuery>, schemas::of::<SpaceQuery>];
+    let answers = vec![api::Answer::json::<Split>("The parts.")];
     let operation = Operation {
-        method: Method::POST,
+        id: either(dimension, ["splitPoints", "splitSpacePoints"]),
+        summary: either(dimension, ["A query in parts", "A query in space in parts"]),
+        about: either(dimension, about),
         parameters: groups::SPLIT,
-        problems: problems(&[Kind::BodyTooLarge]),
-        ..Operation::new(
-            Tag::of(dimension),
-            vec![api::Answer::json::<Split>("The parts.")],
-        )
+        problems: PROBLEMS.into(),
+        ..Operation::new(Tag::of(dimension), answers)
     };
-    let (path, members, operation) = match dimension {
-        Dimension::Plane => (
-            "/v1/points:split",
-            groups::QUERY,
-            Operation {
-                id: "splitPoints",
-                summary: "A query in parts",
-                about: "Queries of equal numbers of points, give or take one, that together return the points of the \
-                        query in its order; each is a body of POST /v1/points:query. Parts without points are \
-                        left out.",
-                body: Some(api::Body::json(
-                    schemas::of::<PointsQuery>,
-                    json!({ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1 }),
-                )),
-                example: r#"'/v1/points:split?parts=2' -d '{"region": {"bbox": [0, 0, 9, 9]}, "spacing": 1}'"#.into(),
-                ..operation
-            },
-        ),
-        Dimension::Space => {
-            let body = json!({ "region": { "bbox": [0, 0, 0, 4, 4, 4] }, "spacing": 1 });
-            let operation = Operation {
-                id: "splitSpacePoints",
-                summary: "A query in space in parts",
-                about: "Queries of equal numbers of points, give or take one, that together return the points of the \
-                        query in its order; each is a body of POST /v1/space/points. Parts without points are left \
-                        out.",
-                example: format!("'/v1/space/points:split?parts=2' -d '{body}'"),
-                body: Some(api::Body::json(schemas::of::<SpaceQuery>, body)),
-                ..operation
-            };
-            ("/v1/space/points:split", groups::SPACE_QUERY, operation)
-        }
-    };
+    let example = format!("'{path}?parts=2'");
+    let operation = operation.posted(&example, either(dimension, schemas), body);
     let post = move |State(service): State<Arc<Service>>, Posted { context, body }: Posted| async move {
         let parts = parts(&context.values(groups::SPLIT));
         let size = body.len();
-        let (draft, query, _) = body::query(&service, body, members).await?;
+        let (draft, query, _) = query_of_body(&service, body, members).await?;
         split(&service, &context, parts?, size, draft, query).await
     };
     Endpoint::only(path, service.clone(), operation, post)

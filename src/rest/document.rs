@@ -1,9 +1,18 @@
-//! Answers that are one small document: JSON, or a file of another type.
+//! Answers that are one document: JSON or a file of another type, made for the request; or one that never changes while
+//! the daemon runs, such as a page.
 
-use http::{HeaderValue, header};
+use std::sync::Arc;
+
+use bytes::Bytes;
+use http::{HeaderMap, HeaderValue, Uri, header};
 use serde::Serialize;
 use strew_error::Error;
 
+use super::{
+    coding::Encoder,
+    freshness::{Freshness, Verdict},
+    negotiate::Coding,
+};
 use crate::body::{Body, Response};
 
 /// The content type of JSON.
@@ -37,4 +46,74 @@ pub fn file(bytes: impl Into<Body>, content_type: &'static str) -> Response {
     let value = HeaderValue::from_static(content_type);
     response.headers_mut().insert(header::CONTENT_TYPE, value);
     response
+}
+
+/// A document that never changes. Compressed once, at the start or earlier, so that answering with it holds nothing but
+/// its place. Cheap to clone.
+#[derive(Clone, Debug)]
+pub(super) struct Fixed {
+    inner: Arc<Inner>,
+}
+
+#[derive(Debug)]
+struct Inner {
+    content_type: &'static str,
+    digest: String,
+    plain: Bytes,
+    /// In each coding.
+    coded: Vec<(Coding, Bytes)>,
+}
+
+impl Fixed {
+    /// Compresses a document.
+    pub(super) fn new(content_type: &'static str, plain: Bytes) -> Self {
+        let coded = |coding| {
+            let coded = Encoder::whole(coding, &plain).ok()?;
+            Some((coding, coded))
+        };
+        let coded: Vec<_> = Coding::ALL.into_iter().filter_map(coded).collect();
+        Self::coded(content_type, plain, coded)
+    }
+
+    /// A document that is compressed already, in some codings.
+    pub(super) fn coded(
+        content_type: &'static str,
+        plain: Bytes,
+        coded: impl IntoIterator<Item = (Coding, Bytes)>,
+    ) -> Self {
+        Self {
+            inner: Arc::new(Inner {
+                content_type,
+                digest: blake3::hash(&plain).to_hex().to_string(),
+                coded: coded.into_iter().collect(),
+                plain,
+            }),
+        }
+    }
+
+    /// The document as an answer to a request.
+    pub(super) fn answer(&self, uri: &Uri, headers: &HeaderMap) -> Response {
+        let inner = &*self.inner;
+        let freshness = Freshness::of(uri, headers, inner.content_type, &inner.digest);
+        let verdict = freshness.verdict(headers);
+        if verdict != Verdict::Wanted {
+            return freshness.instead(verdict);
+        }
+        let chosen = freshness.coding();
+        let coded = inner
+            .coded
+            .iter()
+            .find(|(coding, _)| Some(*coding) == chosen);
+        let content = coded.map_or(&inner.plain, |(_, content)| content);
+        let mut response = Response::new(Body::from(content.clone()));
+        let headers = response.headers_mut();
+        let content_type = HeaderValue::from_static(inner.content_type);
+        headers.insert(header::CONTENT_TYPE, content_type);
+        if let Some((coding, _)) = coded {
+            let name = HeaderValue::from_static(coding.name());
+            headers.insert(header::CONTENT_ENCODING, name);
+        }
+        freshness.stamp(&mut response);
+        response
+    }
 }

@@ -10,10 +10,9 @@ use strew_service::Service;
 
 use super::{
     coding,
-    cors::{self, Origins},
     freshness::Keeping,
-    harden,
-    host::Hosts,
+    headers,
+    origin::{self, Hosts, Origins},
     problem::{self, Problem},
 };
 use crate::body::{Request, Response};
@@ -78,7 +77,7 @@ impl Finish {
 
     /// The answer to a preflight of a browser, which is complete.
     pub fn preflight(&self, request: &Request) -> Option<Response> {
-        cors::preflight(&self.origins, request.method(), request.headers())
+        origin::preflight(&self.origins, request.method(), request.headers())
     }
 
     /// Why a request is refused whatever it asks for: by its head.
@@ -91,7 +90,7 @@ impl Finish {
     /// Puts onto an answer what all have.
     pub async fn finish(&self, preferences: &Preferences, response: &mut Response) {
         let origin = preferences.origin.as_ref();
-        cors::allow(&self.origins, origin, response.headers_mut());
+        origin::allow(&self.origins, origin, response.headers_mut());
         if is_grpc(response.headers()) {
             return;
         }
@@ -99,7 +98,7 @@ impl Finish {
             *response = Box::pin(problem::instead(take(response))).await;
         }
         self.keeping.set(response);
-        harden::guard(response.headers_mut(), self.origins == Origins::All);
+        headers::guard(response.headers_mut(), self.origins == Origins::All);
         if let Some(chosen) = coding::choose(&preferences.accept, response) {
             let plain = take(response);
             // On the heap, lest plain answers have room for it.
@@ -133,7 +132,7 @@ fn wrong_host(request: &Request) -> Option<Response> {
 
 /// The refusal of a request of a page that may not send it, before its body is read.
 fn foreign(origins: &Origins, hosts: &Hosts, request: &Request) -> Option<Response> {
-    let detail = cors::refusal(origins, hosts, request)?;
+    let detail = origin::refusal(origins, hosts, request)?;
     Some(Problem::of_status(StatusCode::FORBIDDEN, detail))
 }
 

@@ -18,9 +18,9 @@ use super::{
 };
 use crate::{body::Response, rest::Refused};
 
-/// The path of the mask.
-pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
-    let operation = Operation {
+/// The paths of the mask and of its spectrum.
+pub(super) fn endpoints(service: &Arc<Service>) -> [Endpoint; 2] {
+    let mask = Operation {
         id: "getMask",
         summary: "A tileable threshold mask",
         about: "A gray picture that tiles: the pixels darker than a share of the gray levels are spread evenly, \
@@ -29,12 +29,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         example: "'/v1/mask.png?size=64&seed=7' -o mask.png".into(),
         ..Operation::new(Tag::Profiles, vec![])
     };
-    drawn(Drawn::Thresholds, "/v1/mask.png", service, operation)
-}
-
-/// The path of its spectrum.
-pub(super) fn spectrum(service: Arc<Service>) -> Endpoint {
-    let operation = Operation {
+    let spectrum = Operation {
         id: "getMaskSpectrum",
         summary: "The spectrum of a threshold mask",
         about: "The power spectra of the pixels below 1/8, 1/4 and 1/2.",
@@ -42,14 +37,17 @@ pub(super) fn spectrum(service: Arc<Service>) -> Endpoint {
         example: "'/v1/mask/spectrum.svg?size=64&seed=7' -o spectrum.svg".into(),
         ..Operation::new(Tag::Profiles, vec![])
     };
-    drawn(Drawn::Spectrum, "/v1/mask/spectrum.svg", service, operation)
+    [
+        drawn(Drawn::Thresholds, "/v1/mask.png", service, mask),
+        drawn(Drawn::Spectrum, "/v1/mask/spectrum.svg", service, spectrum),
+    ]
 }
 
 /// The path of a picture.
 fn drawn(
     drawn: Drawn,
     path: &'static str,
-    service: Arc<Service>,
+    service: &Arc<Service>,
     mut operation: Operation,
 ) -> Endpoint {
     let (format, schema) = match drawn {
@@ -69,5 +67,5 @@ fn drawn(
         };
         Ok::<_, Refused>(freshness.answer(&context.headers, pin!(make)).await?)
     };
-    Endpoint::only(path, service, operation, handler)
+    Endpoint::only(path, service.clone(), operation, handler)
 }

@@ -2,55 +2,41 @@
 
 mod answer;
 pub mod api;
-mod body;
 mod coding;
 mod context;
-mod cors;
 mod count;
 mod document;
-mod except;
-mod fields;
 mod finish;
-mod fixed;
 mod freshness;
-mod harden;
-mod host;
+mod headers;
 mod mask;
+mod named;
 mod negotiate;
-mod openapi;
+mod origin;
 mod page;
 mod pattern;
-mod periods;
 mod points;
-mod portrait;
 mod problem;
 mod profiles;
-mod quality;
-mod range;
-mod routes;
 mod single;
-mod unknown;
-mod vary;
-mod worlds;
 
 use std::sync::Arc;
 
+use axum::Router;
 use http::StatusCode;
-
-use api::Endpoint;
-pub use context::{Context, Posted, Sent};
-pub use document::{JSON, file, json, momentary};
-pub use finish::{Finish, Preferences};
-pub use page::{Page, Pages, Part};
-use problem::Problem;
-pub use problem::Refused;
-pub use routes::{Paths, Routes};
 use strew_catalog::Dimension;
 use strew_error::Error;
 use strew_service::Service;
 
 use crate::body::{Request, Response};
-pub use worlds::world_document;
+use api::Endpoint;
+pub use context::{Context, Posted, Sent};
+pub use document::{JSON, file, json, momentary};
+pub use finish::{Finish, Preferences};
+pub use named::world_document;
+pub use page::{Page, Pages, Part};
+pub use problem::Refused;
+use problem::{Problem, not_found};
 
 /// The endpoints of REST, without their description.
 pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
@@ -61,25 +47,17 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
             count::parts_of(service, dimension),
             single::by_id(service, dimension),
             single::nearest(service, dimension),
-            profiles::endpoint(service, dimension),
+            profiles::list(service, dimension),
         ]);
         all
     };
     let mut all = of(Dimension::Plane);
-    all.extend([
-        periods::endpoint(service.clone()),
-        mask::endpoint(service.clone()),
-        mask::spectrum(service.clone()),
-        except::endpoint(service.clone()),
-        worlds::list(service.clone()),
-        worlds::endpoint(service.clone()),
-        worlds::chunks(service.clone()),
-        portrait::endpoint(service.clone()),
-        portrait::picture(service.clone()),
-        fields::list(service.clone()),
-        fields::endpoint(service.clone()),
-        fields::picture(service.clone()),
-    ]);
+    all.push(profiles::periods(service));
+    all.extend(mask::endpoints(service));
+    all.push(named::except(service));
+    all.extend(named::worlds(service));
+    all.extend(profiles::one(service));
+    all.extend(named::fields(service));
     all.extend(of(Dimension::Space));
     all.extend(pattern::endpoints(service));
     all
@@ -107,4 +85,60 @@ pub fn needs_http2(request: &Request) -> Response {
         request.uri().path()
     );
     Problem::of_status(StatusCode::HTTP_VERSION_NOT_SUPPORTED, detail)
+}
+
+/// All that a port answers by REST.
+#[derive(Debug)]
+pub struct Routes {
+    /// What is let in with a key, where keys are required.
+    pub gated: Router,
+    /// What everyone is let in to.
+    pub open: Router,
+    /// Answers requests to other paths.
+    pub paths: Paths,
+}
+
+/// The paths that are described, for answers to unknown ones.
+#[derive(Clone, Debug)]
+pub struct Paths(Arc<str>);
+
+impl Paths {
+    /// The answer to an unknown path.
+    #[must_use]
+    pub fn nothing(&self, path: &str) -> Response {
+        not_found(path, &self.0)
+    }
+}
+
+impl Routes {
+    /// The routes of these endpoints, of their description and of the pages, which name `public_url` as their own
+    /// address if it is not empty; and `more`, which are not described.
+    ///
+    /// # Panics
+    /// For two endpoints of one path.
+    #[must_use]
+    pub fn new(
+        mut endpoints: Vec<Endpoint>,
+        more: &[Endpoint],
+        pages: &Pages,
+        public_url: &str,
+    ) -> Self {
+        endpoints.extend(page::endpoints(pages, public_url));
+        endpoints.push(page::description(&endpoints));
+        let paths: Vec<&str> = endpoints.iter().map(Endpoint::path).collect();
+        let paths = Paths(paths.join(", ").into());
+        endpoints.extend(page::icon(pages));
+        let of = |is_open| {
+            let all = endpoints.iter().chain(more);
+            let all = all.filter(|endpoint| endpoint.is_open() == is_open);
+            all.fold(Router::new(), |router, endpoint| {
+                router.route(endpoint.path(), endpoint.answers())
+            })
+        };
+        Self {
+            gated: of(false),
+            open: of(true),
+            paths,
+        }
+    }
 }

@@ -13,11 +13,12 @@ use strew_query::Parameter;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
-    coding::Coding,
     context::Context,
-    fixed::Fixed,
+    document::{Fixed, JSON},
+    negotiate::Coding,
+    problem::Refused,
 };
-use crate::{body::Response, rest::Refused};
+use crate::body::Response;
 
 /// The policy of pages: they may load their own parts and the answers of the daemon, and nothing inline.
 const POLICY: &str = "default-src 'none'; style-src 'self'; script-src 'self'; worker-src 'self'; \
@@ -100,20 +101,18 @@ fn content_type(name: &str) -> &'static str {
 pub(super) fn endpoints(pages: &Pages, public_url: &str) -> Vec<Endpoint> {
     let parts = pages.parts.iter().map(|part| (part.name, part.document()));
     let parts: Parts = Arc::new(parts.collect());
-    let mut all: Vec<_> = pages
-        .pages
-        .iter()
-        .map(|one| page(one, public_url))
-        .collect();
     let of_the_first = ("/page/{file}", "getPagePart", "/page/main.js");
-    all.push(parts_at(of_the_first, &[&FILE], &parts));
     let of_a_folder = (
         "/page/{folder}/{file}",
         "getPagePartIn",
         "/page/works/works.js",
     );
-    all.push(parts_at(of_a_folder, &[&FOLDER, &FILE], &parts));
-    all
+    let all = pages.pages.iter().map(|one| page(one, public_url));
+    let parts = [
+        parts_at(of_the_first, &[&FILE], &parts),
+        parts_at(of_a_folder, &[&FOLDER, &FILE], &parts),
+    ];
+    all.chain(parts).collect()
 }
 
 /// The icon at the address where browsers look for that of an answer that is no page.
@@ -157,17 +156,10 @@ fn parts_at(
     parameters: &'static [&'static Parameter],
     parts: &Parts,
 ) -> Endpoint {
-    let operation = operation(
-        (
-            id,
-            example,
-            "A part of a page",
-            "A script, a style or a picture that the pages load.",
-        ),
-        &[SCRIPT, STYLE, DRAWING, PICTURE],
-        parameters,
-        vec![Kind::NoSuchPath],
-    );
+    let about = "A script, a style or a picture that the pages load.";
+    let described = (id, example, "A part of a page", about);
+    let types = [SCRIPT, STYLE, DRAWING, PICTURE];
+    let operation = operation(described, &types, parameters, vec![Kind::NoSuchPath]);
     Endpoint::only(path, parts.clone(), operation, one).open()
 }
 
@@ -176,10 +168,8 @@ const FOLDER: Parameter = Parameter {
     about: "The folder of the part.",
     allowed: Some("the name of a folder of parts"),
     example: "works",
-    is_required: true,
-    ..Parameter::PLAIN
+    ..FILE
 };
-
 const FILE: Parameter = Parameter {
     name: "file",
     about: "The name of the part.",
@@ -249,3 +239,26 @@ async fn fixed(State(document): State<Fixed>, context: Context) -> Result<Respon
 
 const CROSS_ORIGIN_OPENER_POLICY: HeaderName =
     HeaderName::from_static("cross-origin-opener-policy");
+
+/// The path of the description of these endpoints, and of itself.
+pub(super) fn description(endpoints: &[Endpoint]) -> Endpoint {
+    let answers = api::Answer::file("The document.", JSON, schemas::object).or_unchanged();
+    let operation = Operation {
+        id: "getOpenapi",
+        summary: "This document",
+        about: "OpenAPI 3.1. The page /docs shows it.",
+        problems: vec![],
+        ..Operation::new(Tag::About, answers)
+    };
+    let answer = async |State(document): State<Fixed>, context: Context| {
+        document.answer(&context.uri, &context.headers)
+    };
+    let with = |document: Fixed| {
+        Endpoint::only("/openapi.json", document, operation.clone(), answer).open()
+    };
+    let own = with(Fixed::new(JSON, Bytes::new()));
+    let document = api::document(endpoints.iter().chain([&own]));
+    let mut text = serde_json::to_vec_pretty(&document).unwrap_or_default();
+    text.push(b'\n');
+    with(Fixed::new(JSON, text.into()))
+}

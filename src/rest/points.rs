@@ -3,53 +3,51 @@
 use std::sync::Arc;
 
 use axum::extract::State;
-use http::Method;
+
 use serde_json::json;
 use strew_catalog::Dimension;
 use strew_core::server::Stop;
-use strew_error::{Checked, Kind, Together as _};
+use strew_error::{Checked, Together as _};
 use strew_query::{Draft, Group, Parameter, RegionDraft, Shape, ShapeDraft, VolumeDraft, groups};
 use strew_service::Service;
 
 use super::{
     answer,
     api::{
-        self, Endpoint, Operation, Tag,
+        Endpoint, Operation, Tag, either,
         schemas::{self, PointsQuery, SpaceQuery},
     },
-    body,
-    context::{Context, Sent},
+    context::{Context, Sent, query_of_body},
 };
 use crate::{body::Response, rest::Refused};
 
 /// The paths of a dimension.
 pub(super) fn endpoints(service: &Arc<Service>, dimension: Dimension) -> Vec<Endpoint> {
-    let (parameters, members) = match dimension {
-        Dimension::Plane => (groups::POINTS, groups::QUERY),
-        Dimension::Space => (groups::SPACE_POINTS, groups::SPACE_QUERY),
-    };
+    let parameters = either(dimension, [groups::POINTS, groups::SPACE_POINTS]);
+    let members = either(dimension, [groups::QUERY, groups::SPACE_QUERY]);
     let get = move |State(service): State<Arc<Service>>, context: Context| async move {
         let draft = Draft::of(context.values(parameters));
         stream(&service, &context, &draft).await
     };
     let post = move |State(service): State<Arc<Service>>, Sent { context, body }: Sent| async move {
-        let (_, query, options) = body::query(&service, body, members).await?;
+        let (_, query, options) = query_of_body(&service, body, members).await?;
         Ok::<_, Refused>(answer::stream(&service, &context, query, options).await?)
     };
-    let (given, posted) = (given(dimension, parameters), posted(dimension));
+    let given = Endpoint::only(
+        either(dimension, ["/v1/points", "/v1/space/points"]),
+        service.clone(),
+        given(dimension, parameters),
+        get,
+    );
+    let posted = posted(dimension);
     let service = service.clone();
     let chunk = chunk(&service, dimension);
     match dimension {
-        Dimension::Plane => vec![
-            Endpoint::only("/v1/points", service.clone(), given, get),
-            Endpoint::only("/v1/points:query", service, posted, post),
-            chunk,
-        ],
-        Dimension::Space => vec![
-            Endpoint::only("/v1/space/points", service.clone(), given, get)
-                .with(service, posted, post),
-            chunk,
-        ],
+        Dimension::Plane => {
+            let post = Endpoint::only("/v1/points:query", service, posted, post);
+            vec![given, post, chunk]
+        }
+        Dimension::Space => vec![given.with(service, posted, post), chunk],
     }
 }
 
@@ -64,35 +62,33 @@ pub(super) async fn stream(
 }
 
 fn given(dimension: Dimension, parameters: &'static [Group]) -> Operation {
-    let operation = Operation {
+    let about = [
+        "Streams every point of a half-open box, a circle or a polygon, in a fixed order. The exact count is in the \
+         header strew-count before any point is made.",
+        "Streams every point of a half-open box or a ball, in a fixed order. Ids are x:y:z. With png the points are \
+         seen along z, as a slab.",
+    ];
+    let example = [
+        "'/v1/points?bbox=0,0,3,2&spacing=1&format=csv'",
+        "'/v1/space/points?bbox=0,0,0,2,2,1&spacing=1&format=csv'",
+    ];
+    Operation {
+        id: either(dimension, ["getPoints", "getSpacePoints"]),
+        summary: either(
+            dimension,
+            ["The points of a region", "The points of a volume"],
+        ),
+        about: either(dimension, about),
         parameters,
         problems: answer::problems(),
+        example: either(dimension, example).into(),
         ..Operation::new(Tag::of(dimension), answer::described().or_unchanged())
-    };
-    match dimension {
-        Dimension::Plane => Operation {
-            id: "getPoints",
-            summary: "The points of a region",
-            about: "Streams every point of a half-open box, a circle or a polygon, in a fixed order. The \
-                    exact count is in the header strew-count before any point is made.",
-            example: "'/v1/points?bbox=0,0,3,2&spacing=1&format=csv'".into(),
-            ..operation
-        },
-        Dimension::Space => Operation {
-            id: "getSpacePoints",
-            summary: "The points of a volume",
-            about: "Streams every point of a half-open box or a ball, in a fixed order. Ids are x:y:z. With png the \
-                    points are seen along z, as a slab.",
-            example: "'/v1/space/points?bbox=0,0,0,2,2,1&spacing=1&format=csv'".into(),
-            ..operation
-        },
     }
 }
 
 fn posted(dimension: Dimension) -> Operation {
     let operation = Operation {
-        method: Method::POST,
-        problems: [answer::problems(), vec![Kind::BodyTooLarge]].concat(),
+        problems: answer::problems(),
         ..Operation::new(Tag::of(dimension), vec![answer::described()])
     };
     match dimension {
@@ -110,9 +106,7 @@ fn posted(dimension: Dimension) -> Operation {
                 summary: "The points of any region, in layers",
                 about: "The same as GET /v1/points, with regions of all kinds and several layers at once, \
                         streamed one after another in one answer.",
-                example: format!("/v1/points:query -d '{example}'"),
-                body: Some(api::Body::json(schemas::of::<PointsQuery>, example)),
-                ..operation
+                ..operation.posted("/v1/points:query", schemas::of::<PointsQuery>, example)
             }
         }
         Dimension::Space => {
@@ -123,9 +117,7 @@ fn posted(dimension: Dimension) -> Operation {
                 summary: "The points of any volume, in layers",
                 about: "The same as GET, with volumes of all kinds and several layers at once, streamed one after \
                         another in one answer.",
-                example: format!("/v1/space/points -d '{example}'"),
-                body: Some(api::Body::json(schemas::of::<SpaceQuery>, example)),
-                ..operation
+                ..operation.posted("/v1/space/points", schemas::of::<SpaceQuery>, example)
             }
         }
     }
@@ -162,40 +154,33 @@ const fn cell(name: &'static str, about: &'static str, example: &'static str) ->
 }
 
 fn chunk(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
+    const AT: [&[&Parameter]; 2] = [&[&SIZE, &COLUMN, &ROW], &[&SIZE, &COLUMN, &ROW, &LEVEL]];
+    let path = [
+        "/v1/chunks/{size}/{cx}/{cy}",
+        "/v1/space/chunks/{size}/{cx}/{cy}/{cz}",
+    ];
+    let summary = ["The points of a chunk", "The points of a chunk of space"];
+    let about = [
+        "A chunk is a square of the world grid: size·cx ≤ x < size·(cx + 1), and so for y. Coordinates are relative \
+         to its corner, so that f32 is exact enough at any distance. Neighbors share no point and lose none.",
+        "A chunk is a cube of the world grid: size·cx ≤ x < size·(cx + 1), and so for y and z. Coordinates are \
+         relative to its corner. Neighbors share no point and lose none.",
+    ];
+    let example = [
+        "'/v1/chunks/64/-3/2?spacing=16&format=csv'",
+        "'/v1/space/chunks/16/-3/2/0?spacing=8&format=csv'",
+    ];
+    let parameters = either(dimension, [groups::CHUNK, groups::SPACE_QUERY]);
     let operation = Operation {
+        id: either(dimension, ["getChunk", "getSpaceChunk"]),
+        summary: either(dimension, summary),
+        about: either(dimension, about),
+        path_parameters: either(dimension, AT),
+        parameters,
         problems: answer::problems(),
+        example: either(dimension, example).into(),
         ..Operation::new(Tag::of(dimension), answer::described().or_unchanged())
     };
-    let (path, operation) = match dimension {
-        Dimension::Plane => (
-            "/v1/chunks/{size}/{cx}/{cy}",
-            Operation {
-                id: "getChunk",
-                summary: "The points of a chunk",
-                about: "A chunk is a square of the world grid: size·cx ≤ x < size·(cx + 1), and so for y. \
-                        Coordinates are relative to its corner, so that f32 is exact enough at any \
-                        distance. Neighbors share no point and lose none.",
-                path_parameters: &[&SIZE, &COLUMN, &ROW],
-                parameters: groups::CHUNK,
-                example: "'/v1/chunks/64/-3/2?spacing=16&format=csv'".into(),
-                ..operation
-            },
-        ),
-        Dimension::Space => (
-            "/v1/space/chunks/{size}/{cx}/{cy}/{cz}",
-            Operation {
-                id: "getSpaceChunk",
-                summary: "The points of a chunk of space",
-                about: "A chunk is a cube of the world grid: size·cx ≤ x < size·(cx + 1), and so for y and z. \
-                        Coordinates are relative to its corner. Neighbors share no point and lose none.",
-                path_parameters: &[&SIZE, &COLUMN, &ROW, &LEVEL],
-                parameters: groups::SPACE_QUERY,
-                example: "'/v1/space/chunks/16/-3/2/0?spacing=8&format=csv'".into(),
-                ..operation
-            },
-        ),
-    };
-    let parameters = operation.parameters;
     let get = move |State(service): State<Arc<Service>>, context: Context| async move {
         let region = match dimension {
             Dimension::Plane => square(context.path()),
@@ -204,7 +189,7 @@ fn chunk(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
         let draft = Draft::new(context.values(parameters)).within(region);
         stream(&service, &context, &draft).await
     };
-    Endpoint::only(path, service.clone(), operation, get)
+    Endpoint::only(either(dimension, path), service.clone(), operation, get)
 }
 
 /// The chunk of a path.

@@ -1,4 +1,5 @@
-//! The tables that are loaded, in the plane and in space, by their profiles.
+//! The tables that are loaded: their list in the plane and in space, one of the plane with its curves and its picture,
+//! and the periods that a table has.
 
 use std::{collections::BTreeMap, pin::pin, sync::Arc};
 
@@ -7,78 +8,63 @@ use schemars::JsonSchema;
 use serde::{Serialize, Serializer, ser::SerializeMap as _};
 use strew_catalog::{Catalog, Dimension, Entry};
 use strew_core::{ALGORITHM_VERSION, table};
-use strew_error::integer::Long;
-use strew_query::groups;
+use strew_error::{Error, Kind, integer::Long};
+use strew_forge::Aim;
+use strew_query::{self as query, Parameter, Periods, groups, parameters};
 use strew_service::Service;
 
 use super::{
-    api::{self, Endpoint, Operation, Tag},
+    Refused,
+    api::{self, Endpoint, Operation, Tag, either, schemas},
     context::Context,
     document,
+    freshness::Freshness,
 };
-use crate::{body::Response, rest::Refused};
+use crate::body::Response;
 
-/// The path of a dimension.
-pub(super) fn endpoint(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
-    let (path, operation) = match dimension {
-        Dimension::Plane => {
-            let about = "The list, sorted by profile, then alpha.";
-            let operation = Operation {
-                id: "listProfiles",
-                summary: "The noise profiles that are loaded",
-                about: "Every table with its provenance and its measured figures.",
-                ..Operation::new(Tag::Profiles, answers(about))
-            };
-            ("/v1/profiles", operation)
-        }
-        Dimension::Space => {
-            let operation = Operation {
-                id: "listSpaceProfiles",
-                summary: "The tables of points in space",
-                about: "The tables that are loaded, as GET /v1/profiles lists those of the plane.",
-                ..Operation::new(Tag::Space, answers("The tables."))
-            };
-            ("/v1/space/profiles", operation)
-        }
-    };
+/// The list of a dimension.
+pub(super) fn list(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
+    let summary = [
+        "The noise profiles that are loaded",
+        "The tables of points in space",
+    ];
+    let about = [
+        "Every table with its provenance and its measured figures.",
+        "The tables that are loaded, as GET /v1/profiles lists those of the plane.",
+    ];
+    let answer = either(
+        dimension,
+        ["The list, sorted by profile, then alpha.", "The tables."],
+    );
+    let answers = api::Answer::json::<Profiles<'_>>(answer).or_unchanged();
     let operation = Operation {
-        example: path.into(),
-        ..operation
+        id: either(dimension, ["listProfiles", "listSpaceProfiles"]),
+        summary: either(dimension, summary),
+        about: either(dimension, about),
+        ..Operation::new(either(dimension, [Tag::Profiles, Tag::Space]), answers)
     };
     let get = move |State(service): State<Arc<Service>>, context: Context| async move {
         context.values(groups::NONE).read()?;
         let catalog = service.catalog();
-        match dimension {
-            Dimension::Plane => list(&context, &catalog, catalog.entries()).await,
-            Dimension::Space => list(&context, &catalog, catalog.in_space()).await,
-        }
+        let made_of: Vec<&str> = catalog.digests().collect();
+        let make = async {
+            let new = |entry| Profile::new(entry, &catalog);
+            document::json(&Profiles {
+                algorithm: ALGORITHM_VERSION,
+                profiles: match dimension {
+                    Dimension::Plane => catalog.entries().map(new).collect(),
+                    Dimension::Space => catalog.in_space().map(new).collect(),
+                },
+            })
+        };
+        Ok::<_, Refused>(context.answer(document::JSON, &made_of, pin!(make)).await?)
     };
+    let path = either(dimension, ["/v1/profiles", "/v1/space/profiles"]);
     Endpoint::only(path, service.clone(), operation, get)
-}
-
-fn answers(about: &'static str) -> Vec<api::Answer> {
-    api::Answer::json::<Profiles<'_>>(about).or_unchanged()
-}
-
-/// Lists some tables of a catalog.
-async fn list<'a>(
-    context: &Context,
-    catalog: &'a Catalog,
-    entries: impl Iterator<Item = &'a Arc<Entry>> + Send,
-) -> Result<Response, Refused> {
-    let made_of: Vec<&str> = catalog.digests().collect();
-    let make = async {
-        document::json(&Profiles {
-            algorithm: ALGORITHM_VERSION,
-            profiles: entries.map(|entry| Profile::new(entry, catalog)).collect(),
-        })
-    };
-    Ok(context.answer(document::JSON, &made_of, pin!(make)).await?)
 }
 
 /// The tables that are loaded.
 #[derive(Serialize, JsonSchema)]
-#[schemars(rename = "Profiles")]
 struct Profiles<'a> {
     /// The version of the algorithm that answers.
     algorithm: u32,
@@ -88,8 +74,7 @@ struct Profiles<'a> {
 
 /// A table of a noise profile.
 #[derive(Serialize, JsonSchema)]
-#[schemars(rename = "Profile")]
-pub(super) struct Profile<'a> {
+struct Profile<'a> {
     /// The name of the noise profile.
     profile: &'a str,
     /// The number α of its pattern.
@@ -114,7 +99,6 @@ pub(super) struct Profile<'a> {
 
 /// How a table was made and what was measured on it.
 #[derive(Serialize, JsonSchema)]
-#[schemars(rename = "Provenance")]
 struct Provenance<'a> {
     /// The name of the optimizer.
     optimizer: &'a str,
@@ -132,7 +116,6 @@ struct Provenance<'a> {
 
 /// Figures measured on one point set.
 #[derive(Serialize, JsonSchema)]
-#[schemars(rename = "Figures")]
 struct Figures<'a> {
     /// The point set that was measured.
     subject: &'a str,
@@ -147,7 +130,7 @@ struct Figures<'a> {
 }
 
 impl<'a> Profile<'a> {
-    pub(super) fn new(entry: &'a Entry, catalog: &Catalog) -> Self {
+    fn new(entry: &'a Arc<Entry>, catalog: &Catalog) -> Self {
         Self {
             profile: &entry.key.profile,
             alpha: entry.key.alpha.to_string(),
@@ -198,4 +181,205 @@ fn as_map<S: Serializer, T: Serialize>(
         map.serialize_entry(name, value)?;
     }
     map.end()
+}
+
+/// The paths of one profile: its curves and its picture.
+pub(super) fn one(service: &Arc<Service>) -> [Endpoint; 2] {
+    let answer = "One noise profile with its curves";
+    let answers = api::Answer::json::<ProfileCurves<'_>>(answer).or_unchanged();
+    let curves = Operation {
+        id: "getProfile",
+        summary: answer,
+        about: "The table's provenance and figures; the aim that it was made for, with the radial power curve it \
+                follows if it follows one; radial power, anisotropy and radial distribution of a window of \
+                the unbounded pattern.",
+        path_parameters: &[&NAME],
+        parameters: groups::TABLE,
+        problems: vec![Kind::Invalid, Kind::NoSuchPath, Kind::OtherTable],
+        example: "'/v1/profiles/blue?alpha=sqrt(3)'".into(),
+        ..Operation::new(Tag::Profiles, answers)
+    };
+    let answer = "A picture of one noise profile";
+    let picture = Operation {
+        id: "getSpectrum",
+        summary: answer,
+        about: "Points, radial power, anisotropy and radial distribution.",
+        answers: api::Answer::file(answer, SVG, schemas::text).or_unchanged(),
+        example: "/v1/profiles/blue/spectrum.svg -o spectrum.svg".into(),
+        ..curves.clone()
+    };
+    [
+        Endpoint::only("/v1/profiles/{name}", service.clone(), curves, get),
+        Endpoint::only(
+            "/v1/profiles/{name}/spectrum.svg",
+            service.clone(),
+            picture,
+            svg,
+        ),
+    ]
+}
+
+const SVG: &str = "image/svg+xml";
+
+const NAME: Parameter = Parameter {
+    name: "name",
+    about: "The noise profile. The list of profiles shows what is loaded.",
+    allowed: Some("the name of a loaded profile"),
+    is_required: true,
+    example: "blue",
+    ..Parameter::PLAIN
+};
+
+/// The table of a profile with its measured curves.
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+    let [name] = context.path();
+    let (entry, freshness) = chosen(&service, name, &context, document::JSON)?;
+    let make = async {
+        let portrait = service.portrait(&entry).await?;
+        let aim = entry.aim();
+        document::json(&ProfileCurves {
+            table: Profile::new(&entry, &service.catalog()),
+            target: aim.as_ref().map(Target::new),
+            measured: Measured {
+                points: portrait.points,
+                radial: Curve {
+                    columns: ["nu", "power", "anisotropy_db"],
+                    values: &portrait.radial,
+                },
+                rdf: Curve {
+                    columns: ["distance", "g"],
+                    values: &portrait.rdf,
+                },
+            },
+        })
+    };
+    Ok(freshness.answer(&context.headers, pin!(make)).await?)
+}
+
+async fn svg(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+    let [name] = context.path();
+    let (entry, freshness) = chosen(&service, name, &context, SVG)?;
+    let make = async {
+        let portrait = service.portrait(&entry).await?;
+        Ok(document::file(portrait.svg.clone(), SVG))
+    };
+    Ok(freshness.answer(&context.headers, pin!(make)).await?)
+}
+
+/// The table that is wanted, and how fresh what is made of it is.
+fn chosen(
+    service: &Service,
+    name: &str,
+    context: &Context,
+    content_type: &'static str,
+) -> Result<(Arc<Entry>, Freshness), Error> {
+    let catalog = service.catalog();
+    if catalog.alphas(Dimension::Plane, name).is_empty() {
+        let profiles = catalog.profiles(Dimension::Plane);
+        let paths = profiles.iter().map(|name| format!("/v1/profiles/{name}"));
+        return Err(context.nothing(paths.collect::<Vec<_>>().join(", ")));
+    }
+    let values = context.values(groups::TABLE);
+    let entry = query::entry(&values, name, &catalog)?;
+    let freshness = context.freshness(content_type, &entry.digest);
+    Ok((entry, freshness.pinned(values.has(&parameters::TABLE))))
+}
+
+/// A table of a noise profile with its curves.
+#[derive(Serialize, JsonSchema)]
+struct ProfileCurves<'a> {
+    /// The table.
+    table: Profile<'a>,
+    /// The aim that it was made for; null if the table does not say.
+    target: Option<Target<'a>>,
+    /// The measured curves.
+    measured: Measured<'a>,
+}
+
+/// The aim that a table was made for.
+#[derive(Serialize, JsonSchema)]
+struct Target<'a> {
+    /// In words.
+    statement: &'a str,
+    /// Bounds on its figures.
+    bounds: Vec<Bound>,
+    /// The radial power curve that it follows, if it follows one.
+    curve: Option<Curve<'a, 2>>,
+}
+
+/// A bound on a figure.
+#[derive(Serialize, JsonSchema)]
+struct Bound {
+    /// The name of the figure.
+    figure: &'static str,
+    /// `at most` or `at least`.
+    side: String,
+    /// The bound.
+    limit: f64,
+}
+
+impl<'a> Target<'a> {
+    fn new(aim: &'a Aim) -> Self {
+        let bounds = aim.bounds.iter().map(|bound| Bound {
+            figure: bound.figure.name(),
+            side: bound.side.to_string(),
+            limit: bound.limit,
+        });
+        Self {
+            statement: &aim.statement,
+            bounds: bounds.collect(),
+            curve: aim.curve.as_ref().map(|curve| Curve {
+                columns: ["nu", "power"],
+                values: curve.points(),
+            }),
+        }
+    }
+}
+
+/// The curves of a window of the unbounded pattern.
+#[derive(Serialize, JsonSchema)]
+struct Measured<'a> {
+    /// The number of points in the window.
+    points: u64,
+    /// Radial power and anisotropy by frequency.
+    radial: Curve<'a, 3>,
+    /// The radial distribution by distance.
+    rdf: Curve<'a, 2>,
+}
+
+/// A curve: rows of numbers.
+#[derive(Serialize, JsonSchema)]
+#[schemars(inline)]
+struct Curve<'a, const N: usize>
+where
+    [f64; N]: Serialize,
+    [&'static str; N]: Serialize,
+{
+    /// The names of the columns.
+    #[schemars(with = "Vec<String>")]
+    columns: [&'static str; N],
+    /// The rows.
+    #[schemars(with = "Vec<Vec<f64>>")]
+    values: &'a [[f64; N]],
+}
+
+/// The path of the periods of a table.
+pub(super) fn periods(service: &Arc<Service>) -> Endpoint {
+    let answers = api::Answer::json::<Periods>("The list.").or_unchanged();
+    let operation = Operation {
+        id: "listPeriods",
+        summary: "The periods of a table",
+        about: "The sizes of periodic sets, smallest first: with periodic, from that number of points on.",
+        parameters: groups::PERIODS,
+        problems: vec![Kind::Invalid, Kind::OtherTable],
+        example: "'/v1/periods?periodic=20000&most=3'".into(),
+        ..Operation::new(Tag::Profiles, answers)
+    };
+    let get = async |State(service): State<Arc<Service>>, context: Context| {
+        let periods = Periods::of(&context.values(groups::PERIODS), &service.catalog())?;
+        let made_of = (&periods.alpha, periods.radius);
+        let make = async { document::json(&periods) };
+        Ok::<_, Refused>(context.answer(document::JSON, &made_of, pin!(make)).await?)
+    };
+    Endpoint::only("/v1/periods", service.clone(), operation, get)
 }

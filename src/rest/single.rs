@@ -12,7 +12,7 @@ use strew_query::{Nearest, Parameter, ResolvedSet, Set, Shape, groups};
 use strew_service::Service;
 
 use super::{
-    api::{self, Endpoint, Operation, Tag},
+    api::{self, Endpoint, Operation, Tag, either},
     context::Context,
     document,
     freshness::Freshness,
@@ -38,36 +38,24 @@ const SPACE_ID: Parameter = Parameter {
 /// The path of points by id.
 pub(super) fn by_id(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
     let answers = api::Answer::json::<One>("The point.").or_unchanged();
+    let example = [
+        "'/v1/points/0:0?spacing=1&attributes=angle'",
+        "'/v1/space/points/0:0:0?spacing=1&attributes=rotation'",
+    ];
+    let parameters = either(dimension, [groups::SINGLE, groups::SPACE_SET]);
     let operation = Operation {
+        id: either(dimension, ["getPoint", "getSpacePoint"]),
+        summary: either(
+            dimension,
+            ["A point by its id", "A point in space by its id"],
+        ),
         about: "The parameters of the query that returned the id find the point again.",
+        path_parameters: either(dimension, [&[&ID], &[&SPACE_ID]]),
+        parameters,
         problems: vec![Kind::Invalid, Kind::OtherTable, Kind::NoSuchPoint],
+        example: either(dimension, example).into(),
         ..Operation::new(Tag::of(dimension), answers)
     };
-    let (path, operation) = match dimension {
-        Dimension::Plane => (
-            "/v1/points/{id}",
-            Operation {
-                id: "getPoint",
-                summary: "A point by its id",
-                path_parameters: &[&ID],
-                parameters: groups::SINGLE,
-                example: "'/v1/points/0:0?spacing=1&attributes=angle'".into(),
-                ..operation
-            },
-        ),
-        Dimension::Space => (
-            "/v1/space/points/{id}",
-            Operation {
-                id: "getSpacePoint",
-                summary: "A point in space by its id",
-                path_parameters: &[&SPACE_ID],
-                parameters: groups::SPACE_SET,
-                example: "'/v1/space/points/0:0:0?spacing=1&attributes=rotation'".into(),
-                ..operation
-            },
-        ),
-    };
-    let parameters = operation.parameters;
     let get = move |State(service): State<Arc<Service>>, context: Context| async move {
         let [id] = context.path();
         let set = Set::single(&context.values(parameters), &service.catalog())?;
@@ -81,41 +69,32 @@ pub(super) fn by_id(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
         };
         Ok::<_, Refused>(freshness.answer(&context.headers, pin!(make)).await?)
     };
+    let path = either(dimension, ["/v1/points/{id}", "/v1/space/points/{id}"]);
     Endpoint::only(path, service.clone(), operation, get)
 }
 
 /// The path of the points near a place.
 pub(super) fn nearest(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
     let answers = api::Answer::json::<Several>("The points.").or_unchanged();
+    let example = [
+        "'/v1/nearest?at=100.5,-3&k=2&spacing=1'",
+        "'/v1/space/nearest?at=100.5,-3,12&k=2&spacing=1'",
+    ];
+    let summary = [
+        "The points nearest to a place",
+        "The points in space nearest to a place",
+    ];
+    let parameters = either(dimension, [groups::NEAREST, groups::SPACE_NEAREST]);
     let operation = Operation {
+        id: either(dimension, ["getNearest", "getSpaceNearest"]),
+        summary: either(dimension, summary),
         about: "Exact, nearest first; of equally near ones the smaller id first. With k and radius both must hold; at \
                 most 10000 points.",
+        parameters,
         problems: vec![Kind::Invalid, Kind::OtherTable],
+        example: either(dimension, example).into(),
         ..Operation::new(Tag::of(dimension), answers)
     };
-    let (path, operation) = match dimension {
-        Dimension::Plane => (
-            "/v1/nearest",
-            Operation {
-                id: "getNearest",
-                summary: "The points nearest to a place",
-                parameters: groups::NEAREST,
-                example: "'/v1/nearest?at=100.5,-3&k=2&spacing=1'".into(),
-                ..operation
-            },
-        ),
-        Dimension::Space => (
-            "/v1/space/nearest",
-            Operation {
-                id: "getSpaceNearest",
-                summary: "The points in space nearest to a place",
-                parameters: groups::SPACE_NEAREST,
-                example: "'/v1/space/nearest?at=100.5,-3,12&k=2&spacing=1'".into(),
-                ..operation
-            },
-        ),
-    };
-    let parameters = operation.parameters;
     let get = move |State(service): State<Arc<Service>>, context: Context| async move {
         let values = context.values(parameters);
         let (set, nearest) = Nearest::of_set(&values, &service.catalog())?;
@@ -129,6 +108,7 @@ pub(super) fn nearest(service: &Arc<Service>, dimension: Dimension) -> Endpoint 
         let make = service.nearest(&context.caller, set, nearest, write);
         Ok::<_, Refused>(freshness.answer(&context.headers, pin!(make)).await?)
     };
+    let path = either(dimension, ["/v1/nearest", "/v1/space/nearest"]);
     Endpoint::only(path, service.clone(), operation, get)
 }
 

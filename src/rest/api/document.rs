@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use strew_error::Kind;
 use strew_query::{Parameter, of};
 
-use super::{Answer, Endpoint, Operation, Tag, examples, rules, schemas, shape};
+use super::{Answer, Endpoint, Operation, Tag, rules, schemas};
 use crate::rest::problem::{self, Problem};
 
 const ABOUT: &str = "Strew scatters points: any region of an unbounded plane, at any density, the \
@@ -56,14 +56,14 @@ pub(in crate::rest) fn document<'a>(endpoints: impl IntoIterator<Item = &'a Endp
         sections: Map::new(),
     };
     let mut paths = Map::new();
-    let answers = examples::all();
+    let answers = example_answers();
     for endpoint in endpoints {
         let mut item = Map::new();
         for operation in endpoint.operations() {
             let method = operation.method.as_str().to_lowercase();
             let mut described = described(operation, endpoint.is_open(), &mut components);
             if let Some(example) = answers.get(operation.id) {
-                examples::put(example, &mut described["responses"]);
+                put_example(example, &mut described["responses"]);
             }
             item.insert(method, described);
         }
@@ -142,11 +142,10 @@ fn described(operation: &Operation, is_open: bool, components: &mut Components) 
     if is_open {
         described["security"] = json!([]);
     }
-    if let Some(body) = &operation.body {
-        described["requestBody"] = json!({
-            "required": true,
-            "content": { body.media_type: { "schema": (body.schema)(&mut components.generator), "example": body.example } },
-        });
+    if let Some((schema, example)) = &operation.body {
+        let content = json!({ "schema": schema(&mut components.generator), "example": example });
+        described["requestBody"] =
+            json!({ "required": true, "content": { "application/json": content } });
     }
     described
 }
@@ -172,10 +171,10 @@ fn parameter_in(
         "in": place,
         "required": parameter.is_required,
         "description": text,
-        "schema": shape::as_text(parameter.shape),
+        "schema": schemas::as_text(parameter.shape),
     });
     if with_example {
-        described["example"] = shape::sample(parameter.shape, parameter.example);
+        described["example"] = schemas::sample(parameter.shape, parameter.example);
     }
     (parameter.name, described)
 }
@@ -219,6 +218,31 @@ fn refused(kinds: &[Kind], components: &mut Components) -> Value {
     });
     let slugs: Vec<&str> = kinds.iter().map(|kind| kind.slug()).collect();
     components.share("responses", &slugs.join("."), response)
+}
+
+/// Answers by the names of operations: documents, and text as strings.
+const ANSWERS: &str = include_str!("examples.json");
+
+/// All example answers.
+fn example_answers() -> Map<String, Value> {
+    serde_json::from_str(ANSWERS).expect("the example answers are a JSON object")
+}
+
+/// Puts the example answer of an operation where its answers are described.
+fn put_example(example: &Value, responses: &mut Value) {
+    let media_type = if example.is_string() {
+        "text/csv"
+    } else {
+        "application/json"
+    };
+    let contents = responses["200"]["content"].as_object_mut();
+    let content = contents
+        .into_iter()
+        .flatten()
+        .find(|(name, _)| name.starts_with(media_type));
+    if let Some((_, content)) = content {
+        content["example"] = example.clone();
+    }
 }
 
 #[cfg(test)]

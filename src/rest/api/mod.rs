@@ -5,11 +5,8 @@
 //! [`rest::endpoints`](super::endpoints).
 
 mod document;
-mod examples;
 mod rules;
 pub mod schemas;
-mod sets;
-mod shape;
 
 use axum::{
     handler::Handler,
@@ -25,7 +22,7 @@ use strew_service::Record;
 
 use schemas::Content;
 
-use super::{problem::Problem, unknown::wrong_method};
+use super::problem::{Problem, wrong_method};
 
 pub(super) use document::document;
 
@@ -56,14 +53,14 @@ pub struct Operation {
     pub path_parameters: &'static [&'static Parameter],
     /// The parameters of the query.
     pub parameters: &'static [Group],
-    /// The body of a request, if it has one.
-    pub body: Option<Body>,
+    /// The JSON Schema of the body of a request, if it has one, and a body that is in order on the built-in tables.
+    pub body: Option<(Content, Value)>,
     /// The answers that are not problems.
     pub answers: Vec<Answer>,
     /// The problems that this operation can have, besides those that every one can have.
     pub problems: Vec<Kind>,
-    /// The rest of a `curl` command that works on the built-in tables: first the address, in single
-    /// quotes if it needs them.
+    /// The rest of a `curl` command that works on the built-in tables: first the address, in single quotes if it needs
+    /// them; by default the path.
     pub example: String,
 }
 
@@ -103,33 +100,8 @@ tags! {
 
 impl Tag {
     /// The subject of the points of a dimension.
-    pub(super) const fn of(dimension: Dimension) -> Self {
-        match dimension {
-            Dimension::Plane => Self::Points,
-            Dimension::Space => Self::Space,
-        }
-    }
-}
-
-/// The body of a request.
-#[derive(Clone, Debug)]
-pub struct Body {
-    /// Its media type.
-    pub media_type: &'static str,
-    /// Its JSON Schema.
-    pub schema: Content,
-    /// A body that is in order on the built-in tables.
-    pub example: Value,
-}
-
-impl Body {
-    /// A document in JSON.
-    pub(super) const fn json(schema: Content, example: Value) -> Self {
-        Self {
-            media_type: "application/json",
-            schema,
-            example,
-        }
+    pub(super) fn of(dimension: Dimension) -> Self {
+        either(dimension, [Self::Points, Self::Space])
     }
 }
 
@@ -198,6 +170,23 @@ impl Operation {
             example: String::new(),
         }
     }
+
+    /// As a POST to an address, with a document in JSON as its body.
+    pub(super) fn posted(mut self, address: &str, schema: Content, body: Value) -> Self {
+        self.method = Method::POST;
+        self.problems.push(Kind::BodyTooLarge);
+        self.example = format!("{address} -d '{body}'");
+        self.body = Some((schema, body));
+        self
+    }
+}
+
+/// What belongs to a dimension, of the plane's and of space's.
+pub(super) fn either<T>(dimension: Dimension, [plane, space]: [T; 2]) -> T {
+    match dimension {
+        Dimension::Plane => plane,
+        Dimension::Space => space,
+    }
 }
 
 impl Endpoint {
@@ -229,13 +218,21 @@ impl Endpoint {
     ///
     /// # Panics
     /// For a method that HTTP does not define, or that the path has already.
-    pub fn with<S, T>(mut self, state: S, operation: Operation, handle: impl Handler<T, S>) -> Self
+    pub fn with<S, T>(
+        mut self,
+        state: S,
+        mut operation: Operation,
+        handle: impl Handler<T, S>,
+    ) -> Self
     where
         S: Clone + Send + Sync + 'static,
         T: 'static,
     {
         let method = MethodFilter::try_from(operation.method.clone()).expect("a usual method");
         self.answers = self.answers.merge(on(method, handle).with_state(state));
+        if operation.example.is_empty() {
+            operation.example = self.path.into();
+        }
         self.operations.push(operation);
         self
     }

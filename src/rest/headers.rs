@@ -1,6 +1,35 @@
-//! Headers that keep browsers from taking any answer for what it is not.
+//! Headers that all answers have: `Vary`, with the headers of requests that they depend on, and those that keep browsers
+//! from taking an answer for what it is not.
 
-use http::{HeaderMap, HeaderName, HeaderValue, header};
+use http::{
+    HeaderMap, HeaderName, HeaderValue,
+    header::{self, Entry},
+};
+
+/// A header that answers depend on.
+pub(super) const ACCEPT_ENCODING: HeaderValue = HeaderValue::from_static("accept-encoding");
+/// As [`ACCEPT_ENCODING`].
+pub(super) const ORIGIN: HeaderValue = HeaderValue::from_static("origin");
+/// What almost all answers with points depend on: the second is added to all answers.
+pub(super) const BOTH: HeaderValue = HeaderValue::from_static("accept, accept-encoding");
+
+/// Adds the name of a header.
+pub(super) fn vary(headers: &mut HeaderMap, name: HeaderValue) {
+    let line = match headers.entry(header::VARY) {
+        Entry::Vacant(line) => {
+            line.insert(name);
+            return;
+        }
+        Entry::Occupied(line) => line.into_mut(),
+    };
+    if *line == BOTH && name == ACCEPT_ENCODING {
+        return;
+    }
+    if let Ok(joined) = HeaderValue::from_bytes(&[line.as_bytes(), b", ", name.as_bytes()].concat())
+    {
+        *line = joined;
+    }
+}
 
 const NO_SNIFFING: HeaderValue = HeaderValue::from_static("nosniff");
 const NO_REFERRER: HeaderValue = HeaderValue::from_static("no-referrer");

@@ -1,0 +1,316 @@
+//! `/v1/pattern/…`: what is known of the pattern of any α, without a table: arrangements (facts, counts and lists of
+//! occurrences), shapes of clusters, neighborhood maps, figures.
+
+use std::{pin::pin, sync::Arc};
+
+use axum::extract::State;
+use futures_util::StreamExt as _;
+use http::{HeaderName, HeaderValue, Method};
+use schemars::JsonSchema;
+use serde_json::json;
+use strew_core::server::Stop;
+use strew_error::{Error, Kind, integer::Long};
+use strew_query::{groups, read_members};
+use strew_service::{
+    Interrupted, Record, Service,
+    pattern::{
+        ArrangementQuery, ClustersDocument, ClustersQuery, Facts, Figure, FigureQuery, Format,
+        MapDocument, MapQuery,
+    },
+};
+
+use super::{
+    Refused,
+    api::{
+        self, Endpoint, Operation, Tag,
+        schemas::{self, ArrangementQuery as ArrangementBody},
+    },
+    coding::unknown_length,
+    context::{Context, Sent},
+    document,
+};
+use crate::body::{Body, Response};
+
+/// The paths.
+pub(super) fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
+    let figures = FIGURES.into_iter().flat_map(|described| {
+        [Format::Svg, Format::Png].map(|format| figure(service, described, format))
+    });
+    let all = [arrangements(service), clusters(service), map(service)];
+    all.into_iter().chain(figures).collect()
+}
+
+const COUNT: HeaderName = HeaderName::from_static("strew-count");
+const NEXT: HeaderName = HeaderName::from_static("strew-next");
+
+/// The definition of an arrangement, for the description.
+const ABOUT: &str = "An arrangement is a point of the pattern with others at some offsets from it. It exists iff its image in \
+     index space fits the set region, and the area of the margin that is left is the exact density of its \
+     occurrences. In a box of the grid occurrences are counted in closed form, whatever its size; list returns \
+     every one of them, and with an amount the displaced places of its points.";
+
+fn arrangements(service: &Arc<Service>) -> Endpoint {
+    let path = "/v1/pattern/arrangements";
+    let given = Operation {
+        id: "getArrangement",
+        summary: "An arrangement, and where it occurs",
+        about: ABOUT,
+        parameters: groups::ARRANGEMENT,
+        problems: vec![
+            Kind::Invalid,
+            Kind::OtherTable,
+            Kind::TooManyPoints,
+            Kind::TooManyStreams,
+            Kind::ShuttingDown,
+        ],
+        example: format!("'{path}?alpha=sqrt(3)&offsets=2,0+1,2&grid=0,0,40,40'"),
+        ..Operation::new(Tag::Patterns, described().or_unchanged())
+    };
+    let body = json!({ "alpha": "sqrt(3)", "offsets": [[2, 0], [1, 2]], "grid": [0, 0, 40, 40] });
+    let posted = Operation {
+        id: "findArrangement",
+        parameters: groups::NONE,
+        answers: vec![described()],
+        ..given
+            .clone()
+            .posted(path, schemas::of::<ArrangementBody>, body)
+    };
+    Endpoint::only(path, service.clone(), given, get).with(service.clone(), posted, post)
+}
+
+/// The answer, with a list or without.
+fn described() -> api::Answer {
+    api::Answer {
+        status: 200,
+        about: "The arrangement; with list, its occurrences.",
+        headers: vec![
+            (
+                "strew-count",
+                "With list: the exact number of occurrences that follow.",
+            ),
+            (
+                "strew-next",
+                "With list and a limit: the cursor of the occurrences after these, if there are any.",
+            ),
+        ],
+        contents: vec![
+            (document::JSON, schemas::of::<Answered>),
+            ("application/x-ndjson", schemas::any),
+            ("text/csv", schemas::text),
+        ],
+    }
+}
+
+/// An arrangement, alone or with a list.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "ArrangementAnswer")]
+#[allow(dead_code, reason = "only described")]
+enum Answered {
+    /// Without a list.
+    Facts(Facts),
+    /// With list=json.
+    Listed(Listed),
+}
+
+/// An arrangement with its occurrences.
+#[derive(JsonSchema)]
+#[schemars(rename = "ArrangementList")]
+#[allow(dead_code, reason = "only described; a stream writes it")]
+struct Listed {
+    /// The arrangement.
+    arrangement: Facts,
+    /// The number of occurrences in the list.
+    listed: u64,
+    /// The cursor of those after them, if there are any.
+    next: Option<String>,
+    /// The occurrences. Lines of ndjson are like them.
+    occurrences: Vec<Occurrence>,
+}
+
+/// An occurrence of an arrangement. As CSV: column, row, and then x and y of each place.
+#[derive(JsonSchema)]
+#[allow(dead_code, reason = "only described; a stream writes it")]
+struct Occurrence {
+    /// The column and the row of its first point, which are the point's id.
+    at: [Long<i64>; 2],
+    /// With an amount: the places of its points, the first one and those at the offsets.
+    #[schemars(default)]
+    places: Option<Vec<[f64; 2]>>,
+}
+
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+    let query = ArrangementQuery::check(&context.values(groups::ARRANGEMENT), &service.catalog())?;
+    let content_type = query
+        .list
+        .map_or(document::JSON, |list| list.content_type());
+    let digest = query.set.as_ref().map(|set| &set.entry.digest);
+    let made_of = (digest, service.limits().max_points);
+    let freshness = context.freshness(content_type, &made_of);
+    let make = answer(&service, &context, query);
+    Ok(freshness.answer(&context.headers, pin!(make)).await?)
+}
+
+async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
+    let Sent { context, body } = sent;
+    let bytes = body.len();
+    let read = move |service: &Service, _: &Stop| {
+        let values = read_members(&body, groups::ARRANGEMENT)?;
+        ArrangementQuery::check(&values, &service.catalog())
+    };
+    let query = service.process(bytes, read).await??;
+    Ok(answer(&service, &context, query).await?)
+}
+
+async fn answer(
+    service: &Service,
+    context: &Context,
+    query: ArrangementQuery,
+) -> Result<Response, Error> {
+    let facts = query.facts();
+    let Some(list) = query.list else {
+        return document::json(&facts);
+    };
+    Record::in_format(list.name());
+    let (permit, listing) = service.list(&context.caller, &query).await?;
+    let (count, next) = (listing.count, listing.cursor());
+    let body = match context.method == Method::HEAD {
+        true => unknown_length(),
+        false => {
+            let blocks = service.stream(permit, listing.text(list, &facts));
+            Body::from_stream(blocks.map(|made| {
+                made?.map_err(|error| {
+                    tracing::error!(%error, "a list of occurrences broke off");
+                    Interrupted::Failed
+                })
+            }))
+        }
+    };
+    let mut response = document::file(body, list.content_type());
+    let headers = response.headers_mut();
+    headers.insert(COUNT, count.into());
+    if let Some(next) = next.and_then(|next| HeaderValue::from_str(&next).ok()) {
+        headers.insert(NEXT, next);
+    }
+    Ok(response)
+}
+
+fn clusters(service: &Arc<Service>) -> Endpoint {
+    let answers = api::Answer::json::<ClustersDocument>("The clusters.").or_unchanged();
+    let operation = Operation {
+        id: "getClusters",
+        summary: "The shapes of clusters of pattern points",
+        about: "Points at most a distance apart are neighbors, and points that neighbors connect are a cluster. \
+                Exact up to a number of points: the density of a shape is the area of index space that holds \
+                its first points. A search that takes too long ends with its client, or with the time for an \
+                answer.",
+        parameters: groups::CLUSTERS,
+        example: "'/v1/pattern/clusters?alpha=sqrt(3)&distance=2&up_to=symmetry'".into(),
+        ..Operation::new(Tag::Patterns, answers)
+    };
+    let get = async |State(service): State<Arc<Service>>, context: Context| {
+        let query = ClustersQuery::check(&context.values(groups::CLUSTERS))?;
+        let make = service.clusters(&context.caller, query, move |found| {
+            document::json(&query.document(found))
+        });
+        Ok::<_, Refused>(context.answer(document::JSON, &(), pin!(make)).await?)
+    };
+    Endpoint::only("/v1/pattern/clusters", service.clone(), operation, get)
+}
+
+fn map(service: &Arc<Service>) -> Endpoint {
+    let answers = api::Answer::json::<MapDocument>("The map.").or_unchanged();
+    let operation = Operation {
+        id: "getMap",
+        summary: "A neighborhood map",
+        about: "The intervals of index space along each axis, whose pairs are the blocks; all points of a block \
+                have the same neighbors up to the half-width R. A larger R refines the map. The number of \
+                intervals grows linearly, by 2(α − 1) for each grid unit.",
+        parameters: groups::MAP,
+        example: "'/v1/pattern/map?alpha=sqrt(3)&radius=10&refined=20&block=3,4'".into(),
+        ..Operation::new(Tag::Patterns, answers)
+    };
+    let get = async |State(service): State<Arc<Service>>, context: Context| {
+        let query = MapQuery::check(&context.values(groups::MAP))?;
+        let make = service.map(&context.caller, query, |map| document::json(&map));
+        Ok::<_, Refused>(context.answer(document::JSON, &(), pin!(make)).await?)
+    };
+    Endpoint::only("/v1/pattern/map", service.clone(), operation, get)
+}
+
+/// A figure as it is described: itself, its paths as a drawing and as pixels, their names for programs, a few words,
+/// the rest of its address.
+type Described = (
+    Figure,
+    [&'static str; 2],
+    [&'static str; 2],
+    &'static str,
+    &'static str,
+);
+
+const FIGURES: [Described; 4] = [
+    (
+        Figure::Index,
+        [
+            "/v1/pattern/figures/index.svg",
+            "/v1/pattern/figures/index.png",
+        ],
+        ["getIndexFigure", "getIndexPicture"],
+        "A figure of the pattern, the index torus and the set region",
+        "alpha=sqrt(3)&window=32",
+    ),
+    (
+        Figure::Arrangement,
+        [
+            "/v1/pattern/figures/arrangement.svg",
+            "/v1/pattern/figures/arrangement.png",
+        ],
+        ["getArrangementFigure", "getArrangementPicture"],
+        "A figure of an arrangement, its image and its margin",
+        "offsets=2,1+3,3",
+    ),
+    (
+        Figure::Clusters,
+        [
+            "/v1/pattern/figures/clusters.svg",
+            "/v1/pattern/figures/clusters.png",
+        ],
+        ["getClustersFigure", "getClustersPicture"],
+        "A figure of clusters in the plane and in the set region",
+        "alpha=sqrt(3)&distance=2&window=32",
+    ),
+    (
+        Figure::Map,
+        ["/v1/pattern/figures/map.svg", "/v1/pattern/figures/map.png"],
+        ["getMapFigure", "getMapPicture"],
+        "A figure of a neighborhood map, a block's neighbors and the growth with R",
+        "radius=20&block=3,8",
+    ),
+];
+
+fn figure(service: &Arc<Service>, described: Described, format: Format) -> Endpoint {
+    let (figure, paths, ids, summary, query) = described;
+    let (number, content, ending, more) = match format {
+        Format::Svg => (0, schemas::text as schemas::Content, "svg", ""),
+        Format::Png => (1, schemas::any as schemas::Content, "png", "&size=800"),
+    };
+    let content_type = format.content_type();
+    let answers = api::Answer::file("The figure.", content_type, content).or_unchanged();
+    let operation = Operation {
+        id: ids[number],
+        summary,
+        about: "As strew figure draws it, for any α.",
+        parameters: figure.groups(format),
+        example: format!("'{}?{query}{more}' -o figure.{ending}", paths[number]),
+        ..Operation::new(Tag::Patterns, answers)
+    };
+    let get = move |State(service): State<Arc<Service>>, context: Context| async move {
+        let query = FigureQuery::check(figure, &context.values(figure.groups(format)))?;
+        let make = async {
+            let file = service.figure(&context.caller, query, format).await?;
+            Ok(document::file(file, content_type))
+        };
+        Ok::<_, Refused>(context.answer(content_type, &(), pin!(make)).await?)
+    };
+    Endpoint::only(paths[number], service.clone(), operation, get)
+}
