@@ -7,7 +7,7 @@ use bytemuck::cast_slice;
 use rayon::prelude::*;
 use strew_config::Config;
 use strew_core::{F32, F64, Plan, Tile};
-use strew_encode::{Answer, Encoding, Output, Plain, Scalars, write_number};
+use strew_encode::{Answer, Encoding, Output, Plain, Scalars, to_little_endian, write_number};
 use strew_error::Error;
 use strew_plan::Planned;
 
@@ -272,11 +272,7 @@ where
                     *buffer = vec![F::Item::default(); TILE_POINTS];
                 }
                 *filled = plan.tile_blocks::<F>(tile).fill(buffer);
-                if cfg!(target_endian = "big") {
-                    for item in &mut buffer[..*filled] {
-                        *item = F::to_little_endian(*item);
-                    }
-                }
+                to_little_endian(&mut buffer[..*filled], 2);
             });
     }
 

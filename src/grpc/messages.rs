@@ -5,7 +5,7 @@ use std::sync::Arc;
 use strew_core::{ALGORITHM_VERSION, F32, F64};
 use strew_encode as encode;
 use strew_encode::{
-    Batch, Coordinates, Encoding as Format, Mark, Output, Packed, Rows, Values, id_text,
+    Batch, Coordinates, Encoding as Format, Mark, Output, Pairs, Rows, Values, id_text,
     schema::Kind,
 };
 use strew_error::Error;
@@ -35,8 +35,8 @@ pub(super) struct Messages {
 #[derive(Debug)]
 enum Blocks {
     /// Coordinates without anything else, straight from the kernel.
-    F32(Packed<F32>),
-    F64(Packed<F64>),
+    F32(Pairs<F32>),
+    F64(Pairs<F64>),
     /// All else.
     Rows(Box<Table>),
 }
@@ -71,8 +71,8 @@ impl Messages {
             origin: coordinates.origin().map(region::position),
         };
         let blocks = match (encoding, rows.plain_plan()) {
-            (Encoding::F32Le, Some(plan)) => Blocks::F32(Packed::new(plan, block_bytes)),
-            (Encoding::F64Le, Some(plan)) => Blocks::F64(Packed::new(plan, block_bytes)),
+            (Encoding::F32Le, Some(plan)) => Blocks::F32(Pairs::new(plan, block_bytes)),
+            (Encoding::F64Le, Some(plan)) => Blocks::F64(Pairs::new(plan, block_bytes)),
             _ => Blocks::Rows(Box::new(Table::new(rows, heads, encoding, block_bytes))),
         };
         Ok(Self {

@@ -24,7 +24,7 @@ use crate::{
     members::Members,
     ndjson, npy,
     output::Output,
-    packed::Packed,
+    packed::{Pairs, Triples},
     part::Part,
     place::Place,
     ply, png,
@@ -35,7 +35,6 @@ use crate::{
     rows::Rows,
     svg,
     text::{TextBlocks, TextFormat},
-    triples::Triples,
     usda,
 };
 
@@ -269,9 +268,9 @@ impl Answer {
         let blocks: Box<dyn Blocks> = match &plain {
             _ if rows.count() == 0 => Box::new(Nothing),
             Some(Plain { plan, is_f32, .. }) if *is_f32 => {
-                Box::new(Packed::<F32>::new(plan, block_bytes))
+                Box::new(Pairs::<F32>::new(plan, block_bytes))
             }
-            Some(Plain { plan, .. }) => Box::new(Packed::<F64>::new(plan, block_bytes)),
+            Some(Plain { plan, .. }) => Box::new(Pairs::<F64>::new(plan, block_bytes)),
             None => match (rows.plain_volume(), layout.plain_f32()) {
                 (Some(plan), Some(true)) => Box::new(Triples::<F32>::new(plan, block_bytes)),
                 (Some(plan), Some(false)) => Box::new(Triples::<F64>::new(plan, block_bytes)),
