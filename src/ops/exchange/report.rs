@@ -3,7 +3,7 @@
 //! It is made when the exchange is over. The access line (target `strew::access`) has the level
 //! `info`, for probes and scrapes `debug`.
 
-use std::{borrow::Cow, net::SocketAddr, sync::Arc};
+use std::{borrow::Cow, cell::LazyCell, net::SocketAddr, sync::Arc};
 
 use bytes::Bytes;
 use http::{Method, StatusCode, header, uri::PathAndQuery};
@@ -256,7 +256,8 @@ impl Drop for Report {
         let requests = metrics.requests(protocol, route, method, outcome);
         requests.inc();
 
-        let (trace, address) = (self.trace.as_ref(), self.address());
+        // Only those who read it look for keys in an address.
+        let (trace, address) = (self.trace.as_ref(), LazyCell::new(|| self.address()));
         let reason = self.record.refused().map(Kind::slug);
         macro_rules! line {
             ($level:ident) => {
@@ -270,7 +271,7 @@ impl Drop for Report {
                     client = %self.client,
                     protocol = self.protocol.name(),
                     method = self.method.as_str(),
-                    address = &*address,
+                    address = &**address,
                     route,
                     status = self.status.map(|status| status.as_u16()),
                     outcome,
