@@ -3,8 +3,8 @@
 use std::{convert::Infallible, fmt, sync::Arc};
 
 use axum::{Extension, Router, routing::any};
-use strew_access::Caller;
 use strew_service::Service;
+use strew_service::access::Caller;
 use tonic::{body::Body as TonicBody, codegen};
 use tower::ServiceBuilder;
 

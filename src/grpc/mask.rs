@@ -1,12 +1,12 @@
 //! Threshold masks as messages.
 
-use strew_access::Caller;
 use strew_error::Error;
 use strew_query::{
     Parameter, Value, Values, groups,
     parameters::{ALPHA, MAP, PROFILE, TABLE},
     patterns::{BITS, MASK_SEED, MASK_SIZE},
 };
+use strew_service::access::Caller;
 use strew_service::{
     Service,
     mask::{Drawn, MaskQuery},

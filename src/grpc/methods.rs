@@ -7,8 +7,8 @@ use std::{fmt, pin::Pin, sync::Arc};
 
 use bytes::Bytes;
 use prost::{DecodeError, Message};
-use strew_access::Caller;
 use strew_service::Service;
+use strew_service::access::Caller;
 use tonic::Status;
 
 use super::{

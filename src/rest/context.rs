@@ -10,9 +10,9 @@ use axum::extract::{FromRequest, FromRequestParts, MatchedPath, RawPathParams};
 use bytes::Bytes;
 use http::{HeaderMap, Method, StatusCode, Uri, request::Parts};
 use serde::Serialize;
-use strew_access::Caller;
 use strew_error::{Error, Fault};
 use strew_query::{Group, Values, parse_pairs};
+use strew_service::access::Caller;
 use strew_service::{Record, Service, charge_reading};
 
 use super::{

@@ -8,9 +8,9 @@ use std::sync::Arc;
 use bytes::Bytes;
 use http_body_util::BodyExt as _;
 use prost::DecodeError;
-use strew_access::Caller;
 use strew_core::server::Stop;
 use strew_error::Error;
+use strew_service::access::Caller;
 use strew_service::{Held, Service, charge_reading, segments::Segments};
 use tonic::Status;
 
