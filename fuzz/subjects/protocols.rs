@@ -9,9 +9,9 @@ use strew::{
     body::{Body, Request, Response},
     grpc, rest,
 };
-use strew_access::Caller;
 use strew_catalog::Catalog;
 use strew_config::{Layers, Limits};
+use strew_service::access::Caller;
 use strew_service::{Service, Workers};
 use tokio::runtime::Runtime;
 use tower::ServiceExt as _;

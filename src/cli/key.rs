@@ -1,8 +1,8 @@
 //! `strew key`: keys for clients.
 
 use anyhow::Context as _;
-use strew_access as access;
 use strew_config::name::{ALLOWED, is_name};
+use strew_service::access;
 
 use super::{Failure, must_be_within, output, refuse};
 

@@ -47,7 +47,6 @@ pub(super) fn run(args: &config::Served, pages: fn() -> Pages) -> Result<(), Fai
     let announced = (config.log.output == LogOutput::Stderr).then_some(scheme);
     let app = App::new(config).map_err(|error| match error {
         ServeError::Catalog(_)
-        | ServeError::Fields(_)
         | ServeError::Tls(_)
         | ServeError::Keys(_)
         | ServeError::Named(_)

@@ -1,6 +1,5 @@
 //! Loaded tables, periods and masks as messages.
 
-use strew_access::Caller;
 use strew_catalog::{Catalog, Entry};
 use strew_error::Error;
 use strew_query::{
@@ -8,6 +7,7 @@ use strew_query::{
     parameters::{ALPHA, MAP, MOST, PERIODIC, PROFILE, TABLE},
     patterns::{BITS, MASK_SEED, MASK_SIZE},
 };
+use strew_service::access::Caller;
 use strew_service::{
     Service,
     mask::{Drawn, MaskQuery},

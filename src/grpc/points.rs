@@ -3,12 +3,12 @@
 use std::{pin::Pin, sync::Arc};
 
 use futures_util::{Stream, TryStreamExt as _};
-use strew_access::Caller;
 use strew_catalog::Entry;
 use strew_core::{ALGORITHM_VERSION, server::Stop};
 use strew_error::{Error, Fault};
 use strew_plan::{Found, Placed, effort::block_bytes};
 use strew_query::{Draft, Nearest, Query, Set, Values, groups};
+use strew_service::access::Caller;
 use strew_service::{Record, Service, allowance};
 use tonic::{Request, Response, Status};
 

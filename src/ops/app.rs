@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use axum::Router;
-use strew_access::Gate;
+use strew_service::access::Gate;
 use tower::{Service as _, ServiceBuilder};
 
 use super::{

@@ -13,9 +13,9 @@ use hyper_util::{
     server::conn::auto::Builder,
 };
 use prometheus::IntCounter;
-use strew_access::{Gate, InUse, OneOf, Quota};
 use strew_config::{Server, seconds};
 use strew_error::Error;
+use strew_service::access::{Gate, InUse, OneOf, Quota};
 use tokio::{
     io::{AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _},
     net::{TcpListener, TcpStream},

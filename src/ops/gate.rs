@@ -14,9 +14,9 @@ use std::{
 
 use axum::extract::MatchedPath;
 use http::{HeaderMap, HeaderName, HeaderValue, header};
-use strew_access::{Caller, Gate};
 use strew_error::{Denied, Error, Level};
 use strew_service::Record;
+use strew_service::access::{Caller, Gate};
 use tower::{Layer, Service};
 
 use super::exchange::Client;

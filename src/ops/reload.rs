@@ -21,10 +21,10 @@ use tokio::sync::Mutex;
 
 use super::{metrics::Metrics, shutdown::Hangups, tls::Tls};
 pub use fingerprint::{Fingerprint, Watched};
-use strew_access::Gate;
 use strew_catalog::{Refusal, Reload};
 use strew_error::Error;
 use strew_service::Service;
+use strew_service::access::Gate;
 
 /// Why files are read again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,16 +2,11 @@
 
 use std::{io, net::TcpListener, sync::Arc, time::Duration};
 
-use strew_access::{Gate, KeysError};
-use strew_catalog::{
-    Catalog, CatalogError,
-    except::Lists,
-    field::{FieldError, Fields},
-    named::NamedError,
-};
+use strew_catalog::{Catalog, CatalogError, except::Lists, field::Fields, named::NamedError};
 use strew_config as config;
 use strew_config::Config;
 use strew_query::{Assets, Worlds};
+use strew_service::access::{Gate, KeysError};
 use strew_service::{Service, Workers};
 use tokio_util::task::AbortOnDropHandle;
 
@@ -40,9 +35,6 @@ pub enum ServeError {
     /// The tables cannot be loaded.
     #[error(transparent)]
     Catalog(#[from] CatalogError),
-    /// The fields cannot be loaded.
-    #[error(transparent)]
-    Fields(#[from] FieldError),
     /// The program was built wrongly.
     #[error("cannot serve gRPC: {0}")]
     Grpc(#[from] grpc::BuildError),
@@ -52,7 +44,7 @@ pub enum ServeError {
     /// The keys cannot be used.
     #[error(transparent)]
     Keys(#[from] KeysError),
-    /// A world or a list of points cannot be used.
+    /// A field, a world or a list of points cannot be used.
     #[error(transparent)]
     Named(#[from] NamedError),
     /// Spans cannot be sent.

@@ -15,10 +15,10 @@ use bytes::Bytes;
 use futures_util::StreamExt as _;
 use http::{HeaderMap, Method, StatusCode, Uri, header, request::Parts};
 use serde::Serialize;
-use strew_access::Caller;
 use strew_core::server::Stop;
 use strew_error::{Error, Fault};
 use strew_query::{Draft, Group, Options, Query, Values, parse_pairs, read_body};
+use strew_service::access::Caller;
 use strew_service::{Record, Service, charge_reading, segments::Segments, unpack::Coding};
 
 use super::{

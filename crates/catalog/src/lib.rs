@@ -5,10 +5,7 @@
 //! [`except`] the lists of points that answers leave out, [`mix`] the tables that evenly spread variants need beside
 //! their own. Depends on the core, rasters and settings; knows no query.
 
-#![allow(
-    missing_docs,
-    reason = "an internal crate: names say what its items are"
-)]
+#![allow(missing_docs, reason = "internal: names say what items are")]
 
 pub mod bounded_list;
 mod catalog;

@@ -33,7 +33,106 @@ impl fmt::Display for Source {
 }
 
 /// A document that was not taken, and the digest of the one that stays in its place.
-pub type Refused<E> = (E, Option<String>);
+pub type Refused = (NamedError, Option<String>);
+
+/// A state after reading all documents again, the changes, and the refused documents.
+pub type Reread<S> = (S, Changes, Vec<Refused>);
+
+/// The state of documents that are read at the start, where none may be refused.
+pub fn all_of<S>((state, _, refused): Reread<S>) -> Result<S, NamedError> {
+    match refused.into_iter().next() {
+        Some((error, _)) => Err(error),
+        None => Ok(state),
+    }
+}
+
+/// A document that is loaded.
+pub trait Loaded: Clone {
+    /// What it is called in lists of names.
+    const KIND: &'static str;
+
+    /// All that it means, in hexadecimal.
+    fn digest(&self) -> String;
+}
+
+/// The documents of a kind that are loaded, by name.
+#[derive(Clone, Debug)]
+pub struct Names<T>(pub BTreeMap<String, Arc<T>>);
+
+impl<T> Default for Names<T> {
+    fn default() -> Self {
+        Self(BTreeMap::new())
+    }
+}
+
+impl<T: Loaded> Names<T> {
+    pub fn get(&self, name: &str) -> Option<&Arc<T>> {
+        self.0.get(name)
+    }
+
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Arc<T>> {
+        self.0.values()
+    }
+
+    /// The names, for faults: not all of a long list.
+    pub fn names(&self) -> String {
+        const SHOWN: usize = 16;
+        let (kind, more) = (T::KIND, self.0.len().saturating_sub(SHOWN));
+        let names: Vec<&str> = self.0.keys().take(SHOWN).map(String::as_str).collect();
+        match (names.as_slice(), more) {
+            ([], _) => format!("nothing: no {kind} is loaded"),
+            (names, 0) => names.join(", "),
+            (names, more) => {
+                let names = names.join(", ");
+                format!("{names}, and {more} more (see the list of {kind}s)")
+            }
+        }
+    }
+
+    pub(super) fn digest(&self, name: &str) -> Option<String> {
+        self.0.get(name).map(|document| document.digest())
+    }
+
+    pub fn changes_to(&self, after: &Self) -> Changes {
+        let mut changes = Changes::default();
+        for (name, new) in &after.0 {
+            let list = match self.digest(name) == Some(new.digest()) {
+                true => &mut changes.kept,
+                false => &mut changes.loaded,
+            };
+            list.push(name.clone());
+        }
+        let gone = self.0.keys().filter(|name| !after.0.contains_key(*name));
+        changes.removed = gone.cloned().collect();
+        changes
+    }
+
+    /// Reads all documents again, each by itself. A refused document leaves its earlier version in place; if the folder
+    /// cannot be listed, all stay.
+    pub fn read(
+        &self,
+        places: &Places<'_>,
+        check: impl Fn(&Found, &str) -> Result<T, String>,
+    ) -> (Self, Vec<Refused>) {
+        let all = match places.each(check) {
+            Ok(all) => all,
+            Err(error) => return (self.clone(), vec![(error, None)]),
+        };
+        let (mut after, mut refused) = (Self::default(), vec![]);
+        for (found, checked) in all {
+            match checked {
+                Ok(new) => drop(after.0.insert(found.name, Arc::new(new))),
+                Err(error) => {
+                    refused.push((error, self.digest(&found.name)));
+                    if let Some(old) = self.get(&found.name) {
+                        after.0.entry(found.name).or_insert_with(|| old.clone());
+                    }
+                }
+            }
+        }
+        (after, refused)
+    }
+}
 
 /// The changes since documents of a kind were last read.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
@@ -48,44 +147,9 @@ pub struct Changes {
 }
 
 impl Changes {
-    /// The changes from one state to another; `digest` identifies a document.
-    pub fn between<T>(
-        before: &BTreeMap<String, Arc<T>>,
-        after: &BTreeMap<String, Arc<T>>,
-        digest: impl Fn(&T) -> String,
-    ) -> Self {
-        let mut changes = Self::default();
-        for (name, new) in after {
-            let is_same = (before.get(name)).is_some_and(|old| digest(old) == digest(new));
-            let list = match is_same {
-                true => &mut changes.kept,
-                false => &mut changes.loaded,
-            };
-            list.push(name.clone());
-        }
-        let gone = before.keys().filter(|name| !after.contains_key(*name));
-        changes.removed = gone.cloned().collect();
-        changes
-    }
-
     /// Whether anything is other than before.
     pub const fn is_any(&self) -> bool {
         !self.loaded.is_empty() || !self.removed.is_empty()
-    }
-}
-
-/// Names for faults, shortened if there are many. `what` is their kind.
-pub fn listed<'a>(what: &str, names: impl ExactSizeIterator<Item = &'a str>) -> String {
-    const SHOWN: usize = 16;
-    let more = names.len().saturating_sub(SHOWN);
-    let names: Vec<&str> = names.take(SHOWN).collect();
-    match (names.as_slice(), more) {
-        ([], _) => format!("nothing: no {what} is loaded"),
-        (names, 0) => names.join(", "),
-        (names, more) => format!(
-            "{}, and {more} more (see the list of {what}s)",
-            names.join(", ")
-        ),
     }
 }
 
@@ -105,7 +169,7 @@ pub struct Found {
     pub name: String,
     pub source: Source,
     /// Its text: JSON, or lines; or why it cannot be read.
-    text: Result<String, String>,
+    pub(super) text: Result<String, String>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -115,6 +179,8 @@ pub struct Places<'a> {
     /// The folder, if there is one.
     pub folder: Option<&'a Path>,
     pub endings: &'static [&'static str],
+    /// The endings of files that are rasters, unless a document has the same name: then it says how to read them.
+    pub rasters: &'static [&'static str],
     /// The most bytes of a file.
     pub most_bytes: u64,
 }
@@ -129,15 +195,19 @@ impl Places<'_> {
         };
         let mut all: Vec<Found> = self.named.iter().map(section).collect();
         if let Some(folder) = self.folder {
-            let files = files_with(folder, self.endings).map_err(|detail| NamedError {
+            let listed = files_of(folder).map_err(|error| NamedError {
                 source_name: format!("folder {}", folder.display()),
-                detail,
+                detail: error.to_string(),
             })?;
-            all.extend(files.into_iter().map(|path| Found {
-                name: (path.file_stem().unwrap_or_default().to_string_lossy()).into_owned(),
-                text: read(&path, self.most_bytes),
-                source: Source::File(path),
-            }));
+            let of = |endings: &'static [&str]| {
+                let is_of = move |path: &&PathBuf| has_ending(path, endings);
+                listed.iter().filter(is_of)
+            };
+            let is_named = |raster: &&PathBuf| {
+                of(self.endings).all(|document| document.file_stem() != raster.file_stem())
+            };
+            let files = of(self.endings).chain(of(self.rasters).filter(is_named));
+            all.extend(files.map(|path| Found::of_file(path, self.rasters, self.most_bytes)));
         }
         Ok(all)
     }
@@ -161,65 +231,59 @@ impl Places<'_> {
                 (None, Ok(text)) => check(&found, text),
                 (None, Err(detail)) => Err(detail.clone()),
             };
-            let checked = checked.map_err(|detail| NamedError {
-                source_name: found.source.to_string(),
-                detail,
-            });
+            let checked = checked.map_err(|detail| found.error(detail));
             all.push((found, checked));
         }
         Ok(all)
     }
-
-    /// Checks every document by itself. A refused document leaves its earlier version in place.
-    pub fn over<T>(
-        &self,
-        before: &BTreeMap<String, Arc<T>>,
-        digest: impl Fn(&T) -> String,
-        check: impl Fn(&Found, &str) -> Result<T, String>,
-    ) -> Result<Over<T>, NamedError> {
-        let (mut after, mut refused) = (BTreeMap::new(), vec![]);
-        for (found, checked) in self.each(check)? {
-            match checked {
-                Ok(new) => drop(after.insert(found.name, Arc::new(new))),
-                Err(error) => {
-                    let old = before.get(&found.name);
-                    refused.push((error, old.map(|old| digest(old))));
-                    if let Some(old) = old {
-                        after.entry(found.name).or_insert_with(|| Arc::clone(old));
-                    }
-                }
-            }
-        }
-        Ok((after, refused))
-    }
 }
 
-pub type Over<T> = (BTreeMap<String, Arc<T>>, Vec<Refused<NamedError>>);
-
-/// The files of a folder with one of some endings, in the order of their names.
-fn files_with(folder: &Path, endings: &[&str]) -> Result<Vec<PathBuf>, String> {
-    let listed = || -> io::Result<Vec<PathBuf>> {
-        fs::read_dir(folder)?
-            .map(|entry| Ok(entry?.path()))
-            .collect()
-    };
-    let mut paths = listed().map_err(|error| error.to_string())?;
-    paths.retain(|path| {
-        let ending = path.extension().and_then(|ending| ending.to_str());
-        ending.is_some_and(|ending| endings.contains(&ending))
-    });
+/// All files of a folder, in the order of their names.
+pub(super) fn files_of(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let paths = fs::read_dir(folder)?.map(|entry| Ok(entry?.path()));
+    let mut paths = paths.collect::<io::Result<Vec<_>>>()?;
     paths.sort();
     Ok(paths)
 }
 
-/// The text of a file; of TOML as JSON.
-fn read(path: &Path, most: u64) -> Result<String, String> {
-    let text = bounded_file::read_text(path, most).map_err(|error| error.to_string())?;
-    if path.extension().is_none_or(|ending| ending != "toml") {
-        return Ok(text);
-    }
-    let table: toml::Table = text
-        .parse()
-        .map_err(|error: toml::de::Error| error.to_string())?;
+/// TOML as JSON.
+pub(super) fn json_of(text: &str) -> Result<String, String> {
+    let table = text
+        .parse::<toml::Table>()
+        .map_err(|error| error.to_string())?;
     serde_json::to_string(&table).map_err(|error| error.to_string())
+}
+
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| endings.contains(&ending))
+}
+
+impl Found {
+    /// A file: its text, of TOML as JSON, of a raster the field of its pixels.
+    pub(super) fn of_file(path: &Path, rasters: &[&str], most: u64) -> Self {
+        let part = |part: Option<&std::ffi::OsStr>| {
+            part.unwrap_or_default().to_string_lossy().into_owned()
+        };
+        let read = || bounded_file::read_text(path, most).map_err(|error| error.to_string());
+        Self {
+            name: part(path.file_stem()),
+            source: Source::File(path.into()),
+            text: if has_ending(path, rasters) {
+                let file = part(path.file_name());
+                Ok(serde_json::json!({ "raster": { "file": file } }).to_string())
+            } else if has_ending(path, &["toml"]) {
+                read().and_then(|text| json_of(&text))
+            } else {
+                read()
+            },
+        }
+    }
+
+    pub(super) fn error(&self, detail: impl Into<String>) -> NamedError {
+        NamedError {
+            source_name: self.source.to_string(),
+            detail: detail.into(),
+        }
+    }
 }

@@ -89,17 +89,13 @@ impl Serving {
 
 impl Reload {
     /// Adds documents that were not taken.
-    pub fn refuse<E: std::fmt::Display>(
-        &mut self,
-        refused: Vec<Refused<E>>,
-        source: impl Fn(&E) -> String,
-    ) {
-        self.refused
-            .extend(refused.into_iter().map(|(error, serving)| Refusal {
-                source: source(&error),
-                detail: error.to_string(),
-                serving,
-            }));
+    pub fn refuse(&mut self, refused: Vec<Refused>) {
+        let refusals = refused.into_iter().map(|(error, serving)| Refusal {
+            detail: error.to_string(),
+            source: error.source_name,
+            serving,
+        });
+        self.refused.extend(refusals);
     }
 
     /// Adds a file or a folder that was not taken.
@@ -123,10 +119,10 @@ impl Catalog {
     pub fn reload_names(self, names: &Config, reload: &mut Reload) -> Self {
         let (fields, changes, refused) = self.fields.reload(&names.fields);
         reload.fields = changes;
-        reload.refuse(refused, |error| error.source_name.clone());
+        reload.refuse(refused);
         let (lists, changes, refused) = self.except.reload(&names.except);
         reload.except = changes;
-        reload.refuse(refused, |error| error.source_name.clone());
+        reload.refuse(refused);
         self.with_fields(fields).with_except(lists)
     }
 

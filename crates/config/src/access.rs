@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::{Limits, NETWORKS, Networks, range::out_of_range};
+use super::{NETWORKS, Networks, some};
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -22,7 +22,7 @@ pub struct Access {
 impl Access {
     /// The file with keys, if there is one.
     pub fn keys_file(&self) -> Option<&Path> {
-        Some(self.keys_file.as_path()).filter(|file| !file.as_os_str().is_empty())
+        some(&self.keys_file)
     }
 
     pub fn has_keys(&self) -> bool {
@@ -34,14 +34,12 @@ impl Access {
         self.has_keys() && !self.anonymous
     }
 
-    pub(super) fn faults(&self) -> Vec<String> {
+    pub(super) fn fault(&self) -> Option<String> {
         let proxies = &self.trusted_proxies;
-        let fault = Networks::read(proxies).err().map(|part| {
-            format!(
-                "access.trusted_proxies = {proxies:?}: {part:?} is not one; allowed: {NETWORKS}"
-            )
-        });
-        fault.into_iter().collect()
+        let part = Networks::read(proxies).err()?;
+        Some(format!(
+            "access.trusted_proxies = {proxies:?}: {part:?} is not one; allowed: {NETWORKS}"
+        ))
     }
 }
 
@@ -55,16 +53,6 @@ pub struct Rate {
     pub max_clients: usize,
 }
 
-impl Rate {
-    pub(super) fn faults(&self) -> Vec<String> {
-        out_of_range!(self, "rate",
-            points_per_second: 0.0..=1e15,
-            burst_points: 0.0..=1e15,
-            max_clients: 64.0..=1e7,
-        )
-    }
-}
-
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AddressLimits {
@@ -74,15 +62,4 @@ pub struct AddressLimits {
     pub max_streams: usize,
     /// Bytes that its requests and answers hold.
     pub max_bytes_in_flight: usize,
-}
-
-impl AddressLimits {
-    pub(super) fn faults(&self, limits: &Limits) -> Vec<String> {
-        out_of_range!(self, "per_address",
-            max_connections: 1.0..=1e6,
-            max_requests: 1.0..=1e6,
-            max_streams: 1.0..=1e6,
-            max_bytes_in_flight: limits.least_bytes() as f64..=1e15,
-        )
-    }
 }

@@ -1,5 +1,4 @@
-//! Settings: every one has a default in `strew.toml`, a meaning there, and a range beside its
-//! field.
+//! Settings: every one has a default in `strew.toml`, a meaning there, and a range in `validate`.
 //!
 //! Layers, the later the stronger: defaults, a file, the environment, flags. They are merged as
 //! TOML by `layers` and read into [`Config`] once; the result is checked as a whole, and no
@@ -8,10 +7,7 @@
 //!
 //! Depends on no other crate of Strew. Everything that has a setting may depend on it.
 
-#![allow(
-    missing_docs,
-    reason = "an internal crate: names say what its items are"
-)]
+#![allow(missing_docs, reason = "internal: names say what items are")]
 
 mod access;
 pub mod bounded_file;
@@ -24,12 +20,14 @@ mod loaded;
 mod memory;
 pub mod name;
 mod networks;
-mod range;
 mod reports;
 mod server;
 mod validate;
 
-use std::{path::PathBuf, time::Duration};
+use std::{
+    path::{Path, PathBuf},
+    time::Duration,
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -80,4 +78,9 @@ impl Config {
 /// Seconds of a setting as a duration; settings are checked to be within range before.
 pub fn seconds(value: f64) -> Duration {
     Duration::try_from_secs_f64(value).unwrap_or(Duration::MAX)
+}
+
+/// A file or folder, unless it is empty.
+fn some(path: &Path) -> Option<&Path> {
+    Some(path).filter(|path| !path.as_os_str().is_empty())
 }

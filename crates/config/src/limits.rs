@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::range::{DAY, out_of_range};
-
 /// The most that a query may request, and that answers may hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -58,22 +56,6 @@ impl Limits {
     pub(super) const fn least_bytes(&self) -> usize {
         4 * self.block_bytes + (19 << 20) + self.max_body_bytes
     }
-
-    pub(super) fn faults(&self) -> Vec<String> {
-        out_of_range!(self, "limits",
-            memory_bytes: 0.0..=1e15,
-            max_points: 1.0..=1e15,
-            max_rows: 1.0..=1e12,
-            max_vertices: 3.0..=1e8,
-            max_body_bytes: 1024.0..=f64::from(1 << 30),
-            max_requests: 1.0..=1e6,
-            max_bytes_in_flight: self.least_bytes() as f64..=1e15,
-            max_streams: 1.0..=1e6,
-            // gRPC clients refuse messages above 4 MiB, and ours stay below 1 MiB.
-            block_bytes: 4096.0..=f64::from(512 << 10),
-            cache_bytes: 0.0..=1e15,
-        )
-    }
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -83,21 +65,9 @@ pub struct Reload {
     pub watch_seconds: f64,
 }
 
-impl Reload {
-    pub(super) fn faults(&self) -> Vec<String> {
-        out_of_range!(self, "reload", watch_seconds: 0.0..=DAY)
-    }
-}
-
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Workers {
     /// Threads that make points; 0 for one per core.
     pub threads: usize,
-}
-
-impl Workers {
-    pub(super) fn faults(&self) -> Vec<String> {
-        out_of_range!(self, "workers", threads: 0.0..=1024.0)
-    }
 }

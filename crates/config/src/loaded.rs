@@ -7,7 +7,7 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use super::range::out_of_range;
+use super::some;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -20,7 +20,6 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// The folder, if there is one.
     pub fn folder(&self) -> Option<&Path> {
         some(&self.folder)
     }
@@ -40,7 +39,6 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// The folder, if there is one.
     pub fn folder(&self) -> Option<&Path> {
         some(&self.folder)
     }
@@ -55,7 +53,6 @@ pub struct Worlds {
 }
 
 impl Worlds {
-    /// The folder, if there is one.
     pub fn folder(&self) -> Option<&Path> {
         some(&self.folder)
     }
@@ -75,17 +72,7 @@ pub struct Except {
 }
 
 impl Except {
-    /// The folder, if there is one.
     pub fn folder(&self) -> Option<&Path> {
         some(&self.folder)
     }
-
-    pub(super) fn faults(&self) -> Vec<String> {
-        out_of_range!(self, "except", max_ids: 0.0..=1e8)
-    }
-}
-
-/// A folder, unless it is empty.
-fn some(folder: &Path) -> Option<&Path> {
-    Some(folder).filter(|folder| !folder.as_os_str().is_empty())
 }

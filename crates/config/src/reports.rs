@@ -4,8 +4,6 @@ use std::{net::Ipv6Addr, path::PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::range::{DAY, HOUR, SECOND, out_of_range};
-
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Http {
@@ -25,7 +23,7 @@ impl Http {
     }
 
     pub(super) fn faults(&self) -> Vec<String> {
-        let mut faults = out_of_range!(self, "http", cache_seconds: 0.0..=365.0 * DAY);
+        let mut faults = vec![];
         let origins = &self.cors_origins;
         let wrong = self.origins().find(|origin| !is_origin(origin));
         if let Some(origin) = wrong.filter(|_| origins.trim() != "*") {
@@ -98,16 +96,13 @@ pub struct Log {
 }
 
 impl Log {
-    pub(super) fn faults(&self) -> Vec<String> {
+    pub(super) fn fault(&self) -> Option<String> {
         let filter = &self.filter;
-        let error = wrong_filter(filter);
-        let fault = error.map(|error| {
-            format!(
-                "log.filter = {filter:?}; allowed: a level (error, warn, info, debug, trace) or levels \
-                 by module (info,strew=debug): {error}"
-            )
-        });
-        fault.into_iter().collect()
+        let error = wrong_filter(filter)?;
+        Some(format!(
+            "log.filter = {filter:?}; allowed: a level (error, warn, info, debug, trace) or levels \
+             by module (info,strew=debug): {error}"
+        ))
     }
 }
 
@@ -151,18 +146,8 @@ pub struct Telemetry {
 }
 
 impl Telemetry {
-    pub(super) fn faults(&self) -> Vec<String> {
-        let mut faults = out_of_range!(self, "telemetry",
-            sample_ratio: 0.0..=1.0,
-            max_queued_spans: 1.0..=1e6,
-            export_timeout_seconds: 0.1 * SECOND..=HOUR,
-        );
-        faults.extend(self.fault());
-        faults
-    }
-
-    /// Describes the fault of the address, if it has one.
-    fn fault(&self) -> Option<String> {
+    /// The fault of the address, if it has one.
+    pub(super) fn fault(&self) -> Option<String> {
         let endpoint = &self.otlp_endpoint;
         if endpoint.is_empty() {
             return None;

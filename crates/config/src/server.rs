@@ -7,10 +7,7 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use super::{
-    listen,
-    range::{DAY, HOUR, SECOND, out_of_range},
-};
+use super::listen;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -43,26 +40,6 @@ pub struct Server {
     pub min_bytes_per_second: f64,
 }
 
-impl Server {
-    pub(super) fn faults(&self) -> Vec<String> {
-        out_of_range!(self, "server",
-            max_connections: 1.0..=1e6,
-            header_read_timeout_seconds: 0.1 * SECOND..=HOUR,
-            // Below 8192 the HTTP library refuses; 16 MiB a connection is more than any head needs.
-            max_header_bytes: 8192.0..=f64::from(16 << 20),
-            max_requests_per_connection: 1.0..=1e6,
-            http2_keepalive_seconds: SECOND..=HOUR,
-            idle_connection_seconds: 0.1 * SECOND..=DAY,
-            body_read_timeout_seconds: 0.1 * SECOND..=HOUR,
-            first_byte_seconds: 0.1 * SECOND..=HOUR,
-            ready_within_seconds: 0.1 * SECOND..=HOUR,
-            max_stream_seconds: 0.1 * SECOND..=365.0 * DAY,
-            stalled_reader_seconds: 0.1 * SECOND..=DAY,
-            min_bytes_per_second: 0.0..=1e9,
-        )
-    }
-}
-
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Admin {
@@ -77,10 +54,9 @@ impl Admin {
         text.map(listen::read).transpose()
     }
 
-    pub(super) fn faults(&self) -> Vec<String> {
-        let error = self.address().err();
-        let fault = error.map(|error| format!("admin.listen: {error}, or nothing"));
-        fault.into_iter().collect()
+    pub(super) fn fault(&self) -> Option<String> {
+        let error = self.address().err()?;
+        Some(format!("admin.listen: {error}, or nothing"))
     }
 }
 
@@ -108,21 +84,16 @@ impl Tls {
         !self.certificate.as_os_str().is_empty()
     }
 
-    pub(super) fn faults(&self) -> Vec<String> {
-        let Self {
-            certificate,
-            key,
-            client_ca,
-        } = self;
-        let [has_certificate, has_key, has_clients] =
-            [certificate, key, client_ca].map(|path| !path.as_os_str().is_empty());
-        if has_certificate == has_key && (has_key || !has_clients) {
-            return vec![];
-        }
-        vec![format!(
-            "tls.certificate = {certificate:?}, tls.key = {key:?}, tls.client_ca = {client_ca:?}; \
-             allowed: none of them, the first two, or all"
-        )]
+    pub(super) fn fault(&self) -> Option<String> {
+        let all = [&self.certificate, &self.key, &self.client_ca];
+        let [certificate, key, clients] = all.map(|path| !path.as_os_str().is_empty());
+        let [a, b, c] = all;
+        (certificate != key || clients && !key).then(|| {
+            format!(
+                "tls.certificate = {a:?}, tls.key = {b:?}, tls.client_ca = {c:?}; allowed: none of \
+                 them, the first two, or all"
+            )
+        })
     }
 
     pub fn proves_clients(&self) -> bool {
@@ -137,13 +108,4 @@ pub struct Shutdown {
     pub notice_seconds: f64,
     /// How long open streams may then go on, in seconds.
     pub drain_seconds: f64,
-}
-
-impl Shutdown {
-    pub(super) fn faults(&self) -> Vec<String> {
-        out_of_range!(self, "shutdown",
-            notice_seconds: 0.0..=DAY,
-            drain_seconds: 0.0..=DAY,
-        )
-    }
 }

@@ -4,10 +4,7 @@
 //! valid has [`Fault`]s, each with the field, its value and what is allowed: [`Checked`] and [`Together`] collect all
 //! of them, so that a client needs one round to learn them all. Depends on no other crate of Strew.
 
-#![allow(
-    missing_docs,
-    reason = "an internal crate: names say what its items are"
-)]
+#![allow(missing_docs, reason = "internal: names say what items are")]
 
 mod denied;
 mod error;

@@ -5,8 +5,6 @@
 
 use std::fmt::Write as _;
 
-use crate::stripped;
-
 #[derive(Debug)]
 pub struct Joined {
     pub html: String,
@@ -16,6 +14,30 @@ pub struct Joined {
 
 const STYLE: &str = "<link rel=\"stylesheet\" href=\"/page/";
 const SCRIPT: &str = "<script type=\"module\" src=\"/page/";
+
+/// A page with its fragments, markup that pages share: a line such as `<!-- pages.html -->` stands for the text of that
+/// file. Links of a fragment to the page itself, which is at `path`, say that they are.
+pub fn whole(path: &str, html: &str, parts: &[(&str, &str)]) -> Result<String, String> {
+    let mut text = String::new();
+    for line in html.lines() {
+        let Some(name) = fragment(line) else {
+            text += line;
+            text.push('\n');
+            continue;
+        };
+        let found = parts.iter().find(|(part, _)| *part == name);
+        let (_, fragment) = found.ok_or_else(|| format!("there is no fragment {name}"))?;
+        let own = format!("<a href=\"{path}\"");
+        let marked = format!("{own} aria-current=\"page\"");
+        text += &fragment.replace(&own, &marked);
+    }
+    Ok(text)
+}
+
+fn fragment(line: &str) -> Option<&str> {
+    let name = line.trim().strip_prefix("<!-- ")?.strip_suffix(" -->")?;
+    name.ends_with(".html").then_some(name)
+}
 
 /// Joins the parts that a page names; the two files are to be served as `/page/joined/NAME.js` and `.css`.
 ///
@@ -31,7 +53,7 @@ pub fn joined(name: &str, html: &str, parts: &[(&str, &str)]) -> Result<Joined, 
                 lines.push(format!("{STYLE}joined/{name}.css\">"));
             }
             let text = text_of(parts, part)?;
-            style += &stripped::style(text).map_err(|fault| format!("{part}: {fault}"))?;
+            style += &bare(text).map_err(|fault| format!("{part}: {fault}"))?;
             style.push('\n');
         } else if let Some(part) = named(line, SCRIPT) {
             let mut modules = Modules {
@@ -67,6 +89,29 @@ fn text_of<'a>(parts: &[(&str, &'a str)], name: &str) -> Result<&'a str, String>
         .ok_or_else(|| format!("there is no part {name}"))
 }
 
+/// A script or a style without comments on lines of their own, indentation and empty lines, which are a quarter of it. A
+/// text over several lines may lose some of these, too: in the pages those are shaders.
+fn bare(text: &str) -> Result<String, String> {
+    let (mut bare, mut is_comment) = (vec![], false);
+    for line in text.lines().map(str::trim) {
+        let has_end = line.contains("*/");
+        // Code after a comment stays, with it.
+        let begins = line.starts_with("/*") && (!has_end || line.ends_with("*/"));
+        let is_of_comment = is_comment || begins;
+        if is_comment && has_end && !line.ends_with("*/") {
+            return Err(format!("code behind a comment: {line}"));
+        }
+        is_comment = is_of_comment && !has_end;
+        if !is_of_comment && !line.is_empty() && !line.starts_with("//") {
+            bare.push(line);
+        }
+    }
+    match is_comment {
+        true => Err("a comment without an end".into()),
+        false => Ok(bare.join("\n")),
+    }
+}
+
 /// The modules that are joined so far.
 struct Modules<'a> {
     parts: &'a [(&'a str, &'a str)],
@@ -86,7 +131,7 @@ impl Modules<'_> {
         }
         self.open.push(name.to_owned());
         let (body, exports) = self.body(name)?;
-        let body = stripped::script(&body).map_err(|fault| format!("{name}: {fault}"))?;
+        let body = bare(&body).map_err(|fault| format!("{name}: {fault}"))?;
         self.open.pop();
         let known = format!("$module{}", self.done.len());
         self.done.push(name.to_owned());
@@ -212,12 +257,23 @@ mod tests {
         );
         assert_eq!(joined.html.lines().count(), 3);
         let script = joined.script;
-        let expected = "// c.js\nconst $module0=(()=>{\nfunction one(){}\nreturn{one};\n})();\n\
-            // b.js\nconst $module1=(()=>{\nconst{one}=$module0;\nconst two=2;\nasync function other(){}\n\
+        let expected = "// c.js\nconst $module0=(()=>{\nfunction one() {}\nreturn{one};\n})();\n\
+            // b.js\nconst $module1=(()=>{\nconst { one } = $module0;\nconst two = 2;\nasync function other() {}\n\
             return{two,other};\n})();\n\
-            // in/main.js\nconst $module2=(()=>{\nconst{two:deux,one}=$module1;\nconst c=$module0;\n\
+            // in/main.js\nconst $module2=(()=>{\nconst { two: deux,  one } = $module1;\nconst c = $module0;\n\
             one(deux);\nreturn{};\n})();\n";
         assert_eq!(script, expected);
+    }
+
+    #[test]
+    fn comments_on_lines_of_their_own_and_indentation_go() {
+        let text =
+            "// A.\n\n  let a = 1; // one\n/** B\n *  C. */\n/* D */\n  /** E */ b(\"// \");\n";
+        assert_eq!(
+            bare(text).as_deref(),
+            Ok("let a = 1; // one\n/** E */ b(\"// \");")
+        );
+        assert!(bare("/* a").is_err() && bare("/* a\n */ b();").is_err());
     }
 
     #[test]
@@ -237,5 +293,18 @@ mod tests {
             ];
             assert!(joined("x", HTML, &parts).is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn a_line_becomes_the_fragment_and_its_link_to_the_page_is_marked() {
+        let parts = [("nav.html", "<a href=\"/\">A</a>\n<a href=\"/b\">B</a>\n")];
+        let page = "<p>\n  <!-- nav.html -->\n<!-- no fragment -->\n";
+        assert_eq!(
+            whole("/b", page, &parts).as_deref(),
+            Ok(
+                "<p>\n<a href=\"/\">A</a>\n<a href=\"/b\" aria-current=\"page\">B</a>\n<!-- no fragment -->\n"
+            )
+        );
+        assert!(whole("/", "<!-- other.html -->", &parts).is_err());
     }
 }

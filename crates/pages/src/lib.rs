@@ -3,25 +3,19 @@
 //! It is a macro and not a build script, because an edit of a page then compiles the program's main file and links it,
 //! and nothing else.
 
-#![allow(
-    missing_docs,
-    reason = "an internal crate: names say what its items are"
-)]
+#![allow(missing_docs, reason = "internal: names say what items are")]
 
-mod fragments;
 mod joined;
-mod packed;
-mod stripped;
 
 use std::{
-    fs, io,
+    fs,
+    io::{self, Write as _},
     path::{Path, PathBuf},
 };
 
 use proc_macro::{Literal, TokenStream};
 
-use joined::joined;
-use packed::packed;
+use joined::{joined, whole};
 
 /// `parts!("page/files")`: the files of a folder of the package and of those below it, as an array of
 /// `(name, plain, zstd, gzip)`: a `&str` and three `&[u8]`, of which the last two are empty for pictures.
@@ -76,7 +70,7 @@ fn embedded(folder: &str) -> Result<String, String> {
             format!("/{name}")
         };
         let html = std::str::from_utf8(content).map_err(|error| error.to_string())?;
-        let html = fragments::whole(&path, html, &texts)?;
+        let html = whole(&path, html, &texts)?;
         let page = joined(name, &html, &texts)?;
         items += &item(&file.name, page.html.as_bytes())?;
         items += &item(&format!("joined/{name}.js"), page.script.as_bytes())?;
@@ -94,11 +88,9 @@ fn embedded(folder: &str) -> Result<String, String> {
 
 fn item(name: &str, plain: &[u8]) -> Result<String, String> {
     let is_picture = std::str::from_utf8(plain).is_err();
-    let [zstd, gzip] = if is_picture {
-        [vec![], vec![]]
-    } else {
-        let packed = packed(plain).map_err(|error| format!("{name}: {error}"))?;
-        [packed.zstd, packed.gzip]
+    let [zstd, gzip] = match is_picture {
+        true => [vec![], vec![]],
+        false => packed(plain).map_err(|error| format!("{name}: {error}"))?,
     };
     let [plain, zstd, gzip] = [plain, &zstd, &gzip].map(Literal::byte_string);
     Ok(format!("({name:?}, {plain}, {zstd}, {gzip}),"))
@@ -124,4 +116,14 @@ fn read(folder: &Path, name: &str, files: &mut Vec<File>) -> io::Result<()> {
         }
     }
     Ok(())
+}
+
+/// A text in zstd and gzip, at the highest levels, which are too slow for a request or a start: about a second for a
+/// megabyte.
+fn packed(text: &[u8]) -> io::Result<[Vec<u8>; 2]> {
+    /// The highest level that needs no more than 8 MiB in browsers (RFC 9659).
+    const ZSTD: i32 = 19;
+    let mut gzip = flate2::write::GzEncoder::new(vec![], flate2::Compression::best());
+    gzip.write_all(text)?;
+    Ok([zstd::bulk::compress(text, ZSTD)?, gzip.finish()?])
 }

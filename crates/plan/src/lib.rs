@@ -6,10 +6,7 @@
 //! calling thread: the bindings use it. Depends on the query, the catalog and the encoders; knows no async runtime, no
 //! cache and no protocol.
 
-#![allow(
-    missing_docs,
-    reason = "an internal crate: names say what its items are"
-)]
+#![allow(missing_docs, reason = "internal: names say what items are")]
 
 mod amount_in_space;
 mod attributes;

@@ -59,7 +59,7 @@ impl Assets {
         let after = after.reload_names(&names, &mut reload);
         let (worlds, changes, refused) = self.worlds.reload(&names.worlds, &after);
         reload.worlds = changes;
-        reload.refuse(refused, |error| error.source_name.clone());
+        reload.refuse(refused);
         (Self::from(after).with_worlds(worlds), reload)
     }
 }

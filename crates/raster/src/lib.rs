@@ -6,10 +6,7 @@
 //!
 //! Depends on the core alone, for its flags that stop long work. Knows no field and no query.
 
-#![allow(
-    missing_docs,
-    reason = "an internal crate: names say what its items are"
-)]
+#![allow(missing_docs, reason = "internal: names say what items are")]
 
 #[cfg(feature = "tiff")]
 mod chunks;

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use strew_access::{Quota, Usage};
+use crate::access::{Quota, Usage};
 use strew_catalog::sent::Sender;
 use strew_error::{Denied, Error};
 

@@ -36,14 +36,6 @@ pub struct CacheState {
     pub bytes: u64,
 }
 
-impl std::fmt::Debug for Samplers {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Samplers")
-            .field("bytes", &self.ready.weighted_size())
-            .finish()
-    }
-}
-
 impl Samplers {
     /// An empty cache that holds at most this many bytes.
     pub(super) fn new(bytes: u64) -> Self {

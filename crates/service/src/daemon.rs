@@ -4,12 +4,12 @@
 //! streams hold their share of memory to the end. A program that embeds the service without any of this uses a
 //! [`Library`](strew_plan::Library).
 
-use std::{path::PathBuf, sync::Arc};
+use std::{fmt, path::PathBuf, sync::Arc};
 
+use crate::access::Caller;
 use arc_swap::ArcSwap;
 use bytes::Bytes;
 use futures_util::{Stream, StreamExt as _};
-use strew_access::Caller;
 use strew_catalog::{
     Entry, Ready, Reload,
     except::NamedList,
@@ -36,7 +36,6 @@ use crate::{
 };
 
 /// Everything a front end needs. Cheap to share behind an [`Arc`].
-#[derive(Debug)]
 pub struct Service {
     assets: ArcSwap<Assets>,
     limits: Limits,
@@ -47,6 +46,12 @@ pub struct Service {
     points_in_flight: PointsInFlight,
     budget: Budget,
     pub(super) workers: Workers,
+}
+
+impl fmt::Debug for Service {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Service")
+    }
 }
 
 impl Service {

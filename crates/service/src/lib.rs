@@ -5,13 +5,11 @@
 //! requests and answers, [`Streams`] the streams, and every work has an owner and an end. It draws
 //! figures of patterns, masks and portraits.
 //!
-//! Depends on plans and all below them, and on access. The only library with an async runtime; knows no protocol.
+//! Depends on plans and all below them. The only library with an async runtime; knows no protocol.
 
-#![allow(
-    missing_docs,
-    reason = "an internal crate: names say what its items are"
-)]
+#![allow(missing_docs, reason = "internal: names say what items are")]
 
+pub mod access;
 pub mod budget;
 pub mod cache;
 mod daemon;

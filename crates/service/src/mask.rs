@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use strew_access::Caller;
+use crate::access::Caller;
 use strew_catalog::{Catalog, Entry};
 use strew_core::server::Stop;
 use strew_error::{Checked, Error, Fault, Together as _};

@@ -9,7 +9,7 @@ use std::{
     collections::HashMap,
     fs,
     path::{Path, PathBuf},
-    sync::{Arc, Mutex, PoisonError},
+    sync::Arc,
     time::Duration,
 };
 
@@ -17,6 +17,7 @@ use futures_util::{
     FutureExt as _,
     future::{BoxFuture, Shared, WeakShared},
 };
+use parking_lot::Mutex;
 use strew_catalog::{
     Ready,
     mix::{Made, make},
@@ -77,14 +78,6 @@ const MOST_KEPT: usize = 256;
 const ROOM: usize = 8 << 20;
 const ROOM_BY_BLOCK: usize = 6 << 10;
 
-impl std::fmt::Debug for Mixes {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Mixes")
-            .field("folder", &self.folder)
-            .finish_non_exhaustive()
-    }
-}
-
 impl Mixes {
     /// Mixes that are kept beside the tables they are of, and in a folder.
     pub(super) fn new(samplers: Samplers, budget: Budget, folder: Option<PathBuf>) -> Self {
@@ -141,7 +134,7 @@ impl Mixes {
 
     fn begin(&self, plain: &Ready, what: &Made, workers: &Workers) -> Result<Making, Error> {
         let name = name(plain, what);
-        let mut making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut making = self.making.lock();
         making.retain(|_, begun| begun.making.upgrade().is_some());
         if let Some(begun) = making.get(&name).and_then(|begun| begun.making.upgrade()) {
             return Ok(begun);
@@ -162,13 +155,11 @@ impl Mixes {
         let begun = owner.clone().scope(work).boxed().shared();
         let weak = begun.downgrade();
         if let Some(weak) = weak {
-            making.insert(
-                name,
-                Begun {
-                    making: weak,
-                    owner,
-                },
-            );
+            let begun_now = Begun {
+                making: weak,
+                owner,
+            };
+            making.insert(name, begun_now);
         }
         Ok(begun)
     }

@@ -58,14 +58,6 @@ pub(super) struct Portraits {
     made: Cache<String, Arc<Portrait>>,
 }
 
-impl std::fmt::Debug for Portraits {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Portraits")
-            .field("made", &self.made.entry_count())
-            .finish()
-    }
-}
-
 impl Portraits {
     pub(super) fn new() -> Self {
         Self {

@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use strew_access::Caller;
+use crate::access::Caller;
 use strew_catalog::wanted;
 use strew_core::server::Stop;
 use strew_error::Error;

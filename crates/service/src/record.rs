@@ -6,20 +6,20 @@
 
 use std::{
     sync::{
-        Arc, Mutex, OnceLock, PoisonError,
+        Arc, OnceLock,
         atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering},
     },
     time::Duration,
 };
 
-use strew_access::Caller;
+use parking_lot::Mutex;
 use strew_catalog::field::Allowance;
 use strew_core::server::Stop;
 use strew_encode::{Answer, EncodeError};
 use strew_error::{Error, Kind};
 use strew_plan::Lane;
 
-use crate::{Budget, Held, PointsInFlight, promise::Promise, work::Clock};
+use crate::{Budget, Held, PointsInFlight, access::Caller, promise::Promise, work::Clock};
 
 tokio::task_local! {
     static CURRENT: Arc<Record>;
@@ -104,7 +104,7 @@ impl Record {
         let Some(record) = Self::current() else {
             return Ok(());
         };
-        let mut held = record.held.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut held = record.held.lock();
         match &mut *held {
             Some(held) => held.grow(bytes),
             none => {

@@ -10,13 +10,14 @@
 use std::{
     collections::VecDeque,
     pin::Pin,
-    sync::{Arc, Mutex, MutexGuard, PoisonError, Weak},
+    sync::{Arc, Weak},
     task::{Context, Poll, Waker},
     time::{Duration, Instant},
 };
 
+use crate::access::{OneOf, Place, Quota};
 use futures_util::{FutureExt as _, Stream};
-use strew_access::{OneOf, Place, Quota};
+use parking_lot::Mutex;
 use strew_error::Error;
 use tokio_util::sync::{CancellationToken, WaitForCancellationFutureOwned};
 
@@ -179,10 +180,6 @@ where
     }
 }
 
-fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
-    shared.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 /// A maker under way on a worker. If it is dropped there, making a block has failed.
 struct Turn<I: Iterator> {
     maker: Option<Maker<I>>,
@@ -203,7 +200,7 @@ impl<I: Iterator> Turn<I> {
             };
             // A finished maker is dropped after the lock is released.
             let mut over = None;
-            let mut shared = lock(&shared);
+            let mut shared = shared.lock();
             match item {
                 Some(item) => shared.ready.push_back(item),
                 None => {
@@ -232,7 +229,7 @@ impl<I: Iterator> Drop for Turn<I> {
         };
         drop(maker);
         if let Some(shared) = self.shared.upgrade() {
-            let mut shared = lock(&shared);
+            let mut shared = shared.lock();
             shared.end = Some(Err(Interrupted::Failed));
             shared.wake();
         }
@@ -254,7 +251,7 @@ where
             self.shared = None;
             return Poll::Ready(Some(Err(Interrupted::Shutdown)));
         }
-        let mut shared = lock(&all);
+        let mut shared = all.lock();
         let item = shared.ready.pop_front();
         if item.is_none() {
             if let Some(end) = shared.end {

@@ -15,10 +15,7 @@
 //! (`env!("CARGO_BIN_EXE_strew")`). Functions that return no `Result` panic when something fails,
 //! which is what a test wants.
 
-#![allow(
-    missing_docs,
-    reason = "an internal crate: names say what its items are"
-)]
+#![allow(missing_docs, reason = "internal: names say what items are")]
 
 pub mod certificates;
 pub mod daemon;

@@ -5,9 +5,9 @@ mod walk;
 
 use std::sync::Arc;
 
-use strew_access::Caller;
 use strew_core::server::Stop;
 use strew_error::Error;
+use strew_service::access::Caller;
 use strew_service::{Held, Service, charge_reading};
 
 use super::codec::Raw;

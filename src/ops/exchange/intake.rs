@@ -18,9 +18,9 @@ use std::{
 use bytes::Bytes;
 use http_body::{Body as HttpBody, Frame, SizeHint};
 use parking_lot::Mutex;
-use strew_access::{InUse, OneOf, Quota, Usage};
 use strew_config::{Config, seconds};
 use strew_error::Error;
+use strew_service::access::{InUse, OneOf, Quota, Usage};
 use strew_service::{Budget, Held, Record};
 use tokio::{
     sync::Notify,

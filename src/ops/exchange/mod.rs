@@ -32,9 +32,9 @@ use open::OpenExchanges;
 use progress::Terms;
 use reply::{Exchange, Permits};
 use report::{Asked, Report};
-use strew_access::{Gate, Usage};
 use strew_config::{Server, seconds};
 use strew_error::{Denied, Error};
+use strew_service::access::{Gate, Usage};
 use strew_service::{Budget, Record};
 use tokio::time::Instant;
 

@@ -20,7 +20,7 @@ use std::{
 use bytes::Bytes;
 use http_body::{Body as HttpBody, Frame, SizeHint};
 use parking_lot::Mutex;
-use strew_access::InUse;
+use strew_service::access::InUse;
 use strew_service::{Budget, Held, Interrupted, Record};
 use tokio::time::{Instant, Sleep, sleep_until};
 

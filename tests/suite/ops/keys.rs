@@ -3,7 +3,7 @@
 use std::{fs, path::Path, process::Output};
 
 use strew::grpc::proto::{ListProfilesRequest, point_service_client::PointServiceClient};
-use strew_access::Hashed;
+use strew_service::access::Hashed;
 use strew_testkit::{http1, tables::write, wait::until};
 use tonic::{Code, Request};
 use tonic_health::pb::{HealthCheckRequest, health_client::HealthClient};

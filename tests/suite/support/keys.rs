@@ -1,6 +1,6 @@
 //! API keys: entries of a key file, and requests that present a key.
 
-use strew_access::Hashed;
+use strew_service::access::Hashed;
 use strew_testkit::http1;
 
 use super::daemon::Daemon;

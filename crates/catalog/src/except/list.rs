@@ -3,7 +3,7 @@
 //! A list is text, an id a line: `12:-3`, or `trees/12:-3` for a point of a layer. What follows `#` is a comment. Or
 //! it is an object of JSON with these ids: `{"ids": ["12:-3"]}`.
 
-use std::{borrow::Cow, collections::BTreeMap, iter, mem::size_of, sync::Arc};
+use std::{borrow::Cow, collections::BTreeMap, iter, mem::size_of, ops::Deref, sync::Arc};
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -13,7 +13,7 @@ use strew_error::Fault;
 
 use super::Ids;
 use crate::{
-    named::{self, Changes, NamedError, Places, Refused},
+    named::{self, Loaded, NamedError, Names, Places, Reread},
     sent::{Sendable, Sender, Sent},
     wanted,
 };
@@ -23,7 +23,7 @@ const MOST_LAYERS: usize = 1000;
 /// The lists that are loaded, by name, and those that were sent.
 #[derive(Clone, Debug, Default)]
 pub struct Lists {
-    entries: BTreeMap<String, Arc<NamedList>>,
+    entries: Names<NamedList>,
     sent: Arc<Sent<NamedList>>,
     most: usize,
 }
@@ -60,45 +60,31 @@ impl Lists {
             sent: Arc::new(Sent::new(settings.max_sent_bytes)),
             ..Self::default()
         };
-        let (lists, _, refused) = empty.reload(settings);
-        match refused.into_iter().next() {
-            Some((error, _)) => Err(error),
-            None => Ok(lists),
-        }
+        named::all_of(empty.reload(settings))
     }
 
-    /// The lists after reading all documents again, the changes, and the refused documents. A refused document leaves
-    /// its earlier list in place.
-    pub fn reload(&self, settings: &Settings) -> (Self, Changes, Vec<Refused<NamedError>>) {
-        let digest = |list: &NamedList| list.digest.clone();
+    pub fn reload(&self, settings: &Settings) -> Reread<Self> {
         let places = Places {
             section: "except",
             named: &settings.named,
             folder: settings.folder(),
             endings: &["txt"],
+            rasters: &[],
             // A line has up to 110 bytes.
             most_bytes: settings.max_ids as u64 * 110,
         };
-        let read = places.over(&self.entries, digest, |found, text| {
+        let (entries, refused) = self.entries.read(&places, |found, text| {
             let list = NamedList::read(text, settings.max_ids);
             let list = list.map_err(|fault| fault.to_string())?;
             let name = found.name.clone();
             Ok(NamedList { name, ..list })
         });
-        let (sent, most) = (self.sent.clone(), settings.max_ids);
-        let (after, refused) = match read {
-            Ok((entries, refused)) => (
-                Self {
-                    entries,
-                    sent,
-                    most,
-                },
-                refused,
-            ),
-            // All of them stay.
-            Err(error) => (self.clone(), vec![(error, None)]),
+        let changes = self.entries.changes_to(&entries);
+        let after = Self {
+            entries,
+            sent: self.sent.clone(),
+            most: settings.max_ids,
         };
-        let changes = Changes::between(&self.entries, &after.entries, digest);
         (after, changes, refused)
     }
 
@@ -127,15 +113,21 @@ impl Lists {
             Fault::new("ids", "", detail, allowed)
         })
     }
+}
 
-    /// All lists that are loaded, by name.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Arc<NamedList>> {
-        self.entries.values()
+impl Deref for Lists {
+    type Target = Names<NamedList>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.entries
     }
+}
 
-    /// The names, for faults.
-    pub fn names(&self) -> String {
-        named::listed("list", self.entries.keys().map(String::as_str))
+impl Loaded for NamedList {
+    const KIND: &'static str = "list";
+
+    fn digest(&self) -> String {
+        self.digest.clone()
     }
 }
 

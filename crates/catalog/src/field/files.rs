@@ -1,7 +1,7 @@
 //! The files of fields: which there are, and whether they have changed.
 
 use std::{
-    fs, io,
+    fs,
     path::{Path, PathBuf},
 };
 
@@ -10,41 +10,10 @@ use strew_core::server::Stop;
 use strew_raster::{Image, RasterError};
 
 use super::Document;
-
-const DOCUMENTS: [&str; 2] = ["json", "toml"];
-const RASTERS: [&str; 4] = ["png", "tif", "tiff", "npy"];
+use crate::named::files_of;
 
 /// Files up to this size are compared by content.
 const COMPARED: u64 = 4 << 20;
-
-fn has_ending(path: &Path, endings: &[&str]) -> bool {
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    ending.is_some_and(|ending| endings.contains(&ending))
-}
-
-/// The files of a folder that are fields, documents first, in the order of their names. A raster with the
-/// name of a document belongs to it.
-pub(super) fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, String> {
-    let listed = all(folder).map_err(|error| error.to_string())?;
-    let of = |endings: &'static [&str]| listed.iter().filter(move |path| has_ending(path, endings));
-    let documents: Vec<&PathBuf> = of(&DOCUMENTS).collect();
-    let rasters = of(&RASTERS).filter(|raster| {
-        !documents
-            .iter()
-            .any(|document| document.file_stem() == raster.file_stem())
-    });
-    Ok(documents.iter().copied().chain(rasters).cloned().collect())
-}
-
-/// All files of a folder, in the order of their names.
-fn all(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    let mut paths = vec![];
-    for entry in fs::read_dir(folder)? {
-        paths.push(entry?.path());
-    }
-    paths.sort();
-    Ok(paths)
-}
 
 /// The longest world file: six numbers.
 const WORLD_BYTES: u64 = 4096;
@@ -146,7 +115,7 @@ const fn place(_: &fs::Metadata) -> u64 {
 
 pub fn stamp_of(folder: Option<&Path>) -> Stamp {
     let mut stamp = Stamp::default();
-    let files = folder.and_then(|folder| all(folder).ok());
+    let files = folder.and_then(|folder| files_of(folder).ok());
     for path in files.unwrap_or_default() {
         stamp.add(&path);
     }
@@ -157,7 +126,8 @@ pub fn stamp_of(folder: Option<&Path>) -> Stamp {
 pub fn stamp(settings: &strew_config::Fields) -> Stamp {
     let mut stamp = stamp_of(settings.folder());
     for (name, table) in &settings.named {
-        if let Ok(document) = super::read_toml(name, table) {
+        let text = serde_json::to_string(table).unwrap_or_default();
+        if let Ok(document) = super::read_json(name, &text) {
             of_document(&document, &mut |file| stamp.add_raster(Path::new(file)));
         }
     }

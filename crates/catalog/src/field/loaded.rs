@@ -9,7 +9,7 @@ use std::{
     cell::{Cell, RefCell},
     collections::BTreeMap,
     io::BufReader,
-    path::{Path, PathBuf},
+    path::Path,
     sync::Arc,
 };
 
@@ -22,12 +22,11 @@ use strew_raster::{Image, Limits, MOST_SIDE, Meaning, Place, RasterError};
 
 use super::{
     Allowance, Document, Sources, build,
-    document::Pixels,
     files::{self, Stamp},
     named::NamedField,
     read,
 };
-use crate::named::{self, Changes, Refused, Source};
+use crate::named::{self, Checked, Found, NamedError, Names, Places, Refused, Reread, Source};
 
 const DOCUMENT_BYTES: u64 = 4 << 20;
 
@@ -37,265 +36,172 @@ const EMBEDDED: &[(&str, &str)] = &[
     ("portrait", include_str!("../../fields/portrait.toml")),
 ];
 
-/// Why fields cannot be loaded.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("the field {source_name} is not valid: {detail}")]
-pub struct FieldError {
-    pub source_name: String,
-    pub detail: String,
-}
+const RASTERS: &[&str] = &["png", "tif", "tiff", "npy"];
 
-#[derive(Clone, Debug, Default)]
-pub struct Fields {
-    entries: BTreeMap<String, Arc<NamedField>>,
-}
+pub type Fields = Names<NamedField>;
 
 impl Fields {
-    pub fn load(settings: &Settings) -> Result<Self, FieldError> {
-        let (fields, refused) = Self::default().read(settings);
-        match refused.into_iter().next() {
-            Some((error, _)) => Err(error),
-            None => Ok(fields),
-        }
+    pub fn load(settings: &Settings) -> Result<Self, NamedError> {
+        named::all_of(Self::default().reload(settings))
     }
 
-    /// The fields after reading all documents again, the changes, and the refused documents, each with the digest of
-    /// the field that stays in its place.
-    pub fn reload(&self, settings: &Settings) -> (Self, Changes, Vec<Refused<FieldError>>) {
-        let (after, refused) = self.read(settings);
-        let changes = Changes::between(&self.entries, &after.entries, NamedField::digest);
+    pub fn reload(&self, settings: &Settings) -> Reread<Self> {
+        let places = Places {
+            section: "fields",
+            named: &settings.named,
+            folder: settings.folder(),
+            endings: &["json", "toml"],
+            rasters: RASTERS,
+            most_bytes: DOCUMENT_BYTES,
+        };
+        let (after, refused) = match places.each(parse) {
+            Ok(all) => self.build(all, settings),
+            // All of the folder stays.
+            Err(error) => (self.clone(), vec![(error, None)]),
+        };
+        let changes = self.changes_to(&after);
         (after, changes, refused)
-    }
-
-    pub fn get(&self, name: &str) -> Option<&Arc<NamedField>> {
-        self.entries.get(name)
-    }
-
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Arc<NamedField>> {
-        self.entries.values()
     }
 
     /// Adds a field, in the place of one of the same name.
     pub fn insert(&mut self, field: NamedField) {
-        self.entries.insert(field.name.clone(), Arc::new(field));
+        self.0.insert(field.name.clone(), Arc::new(field));
     }
 
-    /// The names, for faults: not all of a long list.
-    pub fn names(&self) -> String {
-        named::listed("field", self.entries.keys().map(String::as_str))
-    }
-
-    /// Reads all documents. A refused document leaves its earlier field in place.
-    fn read(&self, settings: &Settings) -> (Self, Vec<Refused<FieldError>>) {
-        let mut refused = vec![];
-        let mut open: Vec<Unbuilt> = vec![];
-        let base = settings.folder().unwrap_or(Path::new("."));
-        let mut after = Self::default();
-        if settings.embedded {
-            after.insert_embedded();
+    /// Builds the fields of all documents. A refused document leaves its earlier field in place.
+    fn build(&self, all: Vec<Checked<Document>>, settings: &Settings) -> (Self, Vec<Refused>) {
+        let mut after = match settings.embedded {
+            true => embedded(),
+            false => Self::default(),
+        };
+        let (mut waiting, mut refused) = (vec![], vec![]);
+        let mut refuse = |after: &mut Self, name: &str, error| {
+            refused.push((error, self.digest(name)));
+            if let Some(old) = self.get(name) {
+                after.0.insert(name.into(), old.clone());
+            }
+        };
+        for (found, document) in all {
+            match document {
+                Ok(document) => waiting.push((found, document)),
+                Err(error) => refuse(&mut after, &found.name, error),
+            }
         }
-        for (name, table) in &settings.named {
-            let source = Source::Config("fields", name.clone());
-            let document = read::read_toml(&format!("fields.{name}"), table);
-            let document = document.map_err(|faults| super::listed(&faults));
-            open.push(Unbuilt::new(name.clone(), source, document, Path::new(".")));
-        }
-        if let Some(folder) = settings.folder() {
-            match files::of_folder(folder) {
-                Ok(paths) => open.extend(
-                    paths
-                        .into_iter()
-                        .map(|path| Unbuilt::of_file(path, base, None)),
-                ),
-                Err(detail) => {
-                    let source_name = format!("folder {}", folder.display());
-                    refused.push((
-                        FieldError {
-                            source_name,
-                            detail,
-                        },
-                        None,
-                    ));
-                    // All of the folder stays.
-                    return (self.clone(), refused);
+        let mut room = settings.max_bytes;
+        let folder = settings.folder().unwrap_or(Path::new("."));
+        // Documents may name other fields, in any order: those that do not yet are built first, and those of which
+        // others are missing last.
+        while !waiting.is_empty() {
+            let is_ready = |(_, document): &(Found, Document)| {
+                names(document).all(|name| after.get(name).is_some())
+            };
+            let (mut ready, mut later): (Vec<_>, _) = waiting.into_iter().partition(is_ready);
+            if ready.is_empty() {
+                (ready, later) = (later, vec![]);
+            }
+            for (found, document) in ready {
+                let base = match found.source {
+                    Source::File(_) => folder,
+                    _ => Path::new("."),
+                };
+                match self.kept_or_built(&found, document, base, &after, room) {
+                    Ok(built) => {
+                        room = room.saturating_sub(built.bytes);
+                        after.0.insert(found.name, built);
+                    }
+                    Err(error) => refuse(&mut after, &found.name, error),
                 }
             }
-        }
-        let mut seen: BTreeMap<String, String> = BTreeMap::new();
-        open.retain(|field| match seen.get(&field.name) {
-            Some(first) => {
-                let detail = format!("{first} has the name `{}`, too: keep one", field.name);
-                refused.push((field.error(detail), self.digest(&field.name)));
-                false
-            }
-            None => {
-                seen.insert(field.name.clone(), field.source.to_string());
-                true
-            }
-        });
-        let mut room = settings.max_bytes;
-        // Documents may name other fields, in any order: those that do not yet are built first.
-        loop {
-            let before = open.len();
-            open = open
-                .into_iter()
-                .filter_map(|field| self.settle(field, &mut after, &mut room, &mut refused, false))
-                .collect();
-            if open.len() == before {
-                break;
-            }
-        }
-        for field in open {
-            let _ = self.settle(field, &mut after, &mut room, &mut refused, true);
+            waiting = later;
         }
         (after, refused)
     }
 
-    fn insert_embedded(&mut self) {
-        for &(name, text) in EMBEDDED {
-            let table = text.parse::<toml::Table>().ok();
-            let document = table.and_then(|table| read::read_toml("field", &table).ok());
-            let document = document.ok_or_else(|| "the built-in field does not read".into());
-            let field = Unbuilt::new(name.into(), Source::Embedded, document, Path::new(""));
-            if let Ok(field) = field.build(self, 0, Stamp::default()) {
-                self.insert(field);
-            }
-        }
-    }
-
-    fn digest(&self, name: &str) -> Option<String> {
-        self.entries.get(name).map(|field| field.digest())
-    }
-
-    /// Builds a field, keeps it, or refuses it; `None` if it is done. A field that names others that are not
-    /// there yet waits, unless it is the last chance.
-    fn settle(
+    /// The field of a document; the one before, if nothing of it has changed.
+    fn kept_or_built(
         &self,
-        field: Unbuilt,
-        after: &mut Self,
-        room: &mut usize,
-        refused: &mut Vec<Refused<FieldError>>,
-        is_last: bool,
-    ) -> Option<Unbuilt> {
-        let waits = match &field.document {
-            Ok(document) => !is_last && names(document).any(|name| after.get(name).is_none()),
-            Err(_) => false,
-        };
-        if waits {
-            return Some(field);
-        }
-        let old = self.entries.get(&field.name);
-        let stamp = field.stamp();
-        let unchanged = old.filter(|old| {
-            let is_alone = names(&old.document).next().is_none();
-            is_alone && old.source == field.source && old.stamp == stamp
-        });
-        let built = match unchanged {
-            Some(old) if field.document.as_ref() == Ok(&old.document) => Ok(Arc::clone(old)),
-            _ => field.build(after, *room, stamp).map(Arc::new),
-        };
-        match built {
-            Ok(built) => {
-                *room = room.saturating_sub(built.bytes);
-                after.entries.insert(built.name.clone(), built);
-            }
-            Err(detail) => {
-                refused.push((field.error(detail), old.map(|old| old.digest())));
-                if let Some(old) = old {
-                    after.entries.insert(old.name.clone(), Arc::clone(old));
-                }
-            }
-        }
-        None
-    }
-}
-
-/// A field that is read, but not built.
-struct Unbuilt {
-    name: String,
-    source: Source,
-    document: Result<Document, String>,
-    base: PathBuf,
-}
-
-impl Unbuilt {
-    fn new(name: String, source: Source, document: Result<Document, String>, base: &Path) -> Self {
-        let document = match is_name(&name) {
-            true => document,
-            false => Err(format!("`{name}` is no name; allowed: {ALLOWED}")),
-        };
-        Self {
-            name,
-            source,
-            document,
-            base: base.into(),
-        }
-    }
-
-    /// The field of a file, named after it, unless another name is there for names that fields cannot have.
-    fn of_file(path: PathBuf, base: &Path, other: Option<&str>) -> Self {
-        let part = |part: Option<&std::ffi::OsStr>| {
-            part.unwrap_or_default().to_string_lossy().into_owned()
-        };
-        let (mut name, file) = (part(path.file_stem()), part(path.file_name()));
-        if let Some(other) = other.filter(|_| !is_name(&name)) {
-            name = other.into();
-        }
-        let text = |path: &Path| {
-            bounded_file::read_text(path, DOCUMENT_BYTES).map_err(|error| error.to_string())
-        };
-        let listed = |faults| super::listed(&faults);
-        let document = match part(path.extension()).as_str() {
-            "json" => text(&path).and_then(|text| read::read_json("field", &text).map_err(listed)),
-            "toml" => text(&path).and_then(|text| {
-                let table = text
-                    .parse()
-                    .map_err(|error: toml::de::Error| error.to_string())?;
-                read::read_toml("field", &table).map_err(listed)
-            }),
-            _ => Ok(Document::Raster(Box::new(Pixels {
-                file: Some(file),
-                ..Pixels::default()
-            }))),
-        };
-        Self::new(name, Source::File(path), document, base)
-    }
-
-    fn error(&self, detail: String) -> FieldError {
-        FieldError {
-            source_name: self.source.to_string(),
-            detail,
-        }
-    }
-
-    fn stamp(&self) -> Stamp {
+        found: &Found,
+        document: Document,
+        base: &Path,
+        fields: &Self,
+        room: usize,
+    ) -> Result<Arc<NamedField>, NamedError> {
         let mut stamp = Stamp::default();
-        if let Ok(document) = &self.document {
-            files::of_document(document, &mut |file| {
-                stamp.add_raster(&self.base.join(file))
-            });
+        files::of_document(&document, &mut |file| stamp.add_raster(&base.join(file)));
+        let old = self.get(&found.name).filter(|old| {
+            let is_same = old.document == document && old.source == found.source;
+            is_same && old.stamp == stamp && names(&document).next().is_none()
+        });
+        match old {
+            Some(old) => Ok(old.clone()),
+            None => built(found, document, base, fields, room, stamp).map(Arc::new),
         }
-        stamp
     }
+}
 
-    fn build(&self, fields: &Fields, room: usize, stamp: Stamp) -> Result<NamedField, String> {
-        let document = self.document.clone()?;
-        let field = match &self.source {
-            Source::Config(_, name) => format!("fields.{name}"),
-            Source::File(_) | Source::Embedded => "field".into(),
+/// The built-in fields. A test builds them.
+fn embedded() -> Fields {
+    let mut fields = Fields::default();
+    for &(name, text) in EMBEDDED {
+        let found = Found {
+            name: name.into(),
+            source: Source::Embedded,
+            text: named::json_of(text),
         };
-        let (spec, bytes, bbox, epsg) = of_files(&field, &document, &self.base, fields, room)?;
-        Ok(NamedField {
-            name: self.name.clone(),
-            source: self.source.clone(),
-            document,
-            spec,
-            bytes,
-            bbox,
-            epsg,
-            stamp,
-        })
+        let document = found
+            .text
+            .as_ref()
+            .ok()
+            .and_then(|text| parse(&found, text).ok());
+        let field = document.map(|document| {
+            built(
+                &found,
+                document,
+                Path::new(""),
+                &fields,
+                0,
+                Stamp::default(),
+            )
+        });
+        if let Some(Ok(field)) = field {
+            fields.insert(field);
+        }
     }
+    fields
+}
+
+/// The path of a field in faults.
+fn path_of(source: &Source) -> String {
+    match source {
+        Source::Config(_, name) => format!("fields.{name}"),
+        Source::File(_) | Source::Embedded => "field".into(),
+    }
+}
+
+fn parse(found: &Found, text: &str) -> Result<Document, String> {
+    read::read_json(&path_of(&found.source), text).map_err(|faults| super::listed(&faults))
+}
+
+fn built(
+    found: &Found,
+    document: Document,
+    base: &Path,
+    fields: &Fields,
+    room: usize,
+    stamp: Stamp,
+) -> Result<NamedField, NamedError> {
+    let of_files = of_files(&path_of(&found.source), &document, base, fields, room);
+    let (spec, bytes, bbox, epsg) = of_files.map_err(|detail| found.error(detail))?;
+    Ok(NamedField {
+        name: found.name.clone(),
+        source: found.source.clone(),
+        document,
+        spec,
+        bytes,
+        bbox,
+        epsg,
+        stamp,
+    })
 }
 
 /// The field of a document that may name files and fields, with the memory, the box and the plane of its pixels. `room`
@@ -336,14 +242,17 @@ fn of_files(
 }
 
 /// The field of a file that a command names: a document or a raster. A document may name others in its folder.
-pub fn from_file(path: &Path, fields: &Fields) -> Result<NamedField, FieldError> {
+pub fn from_file(path: &Path, fields: &Fields) -> Result<NamedField, NamedError> {
     let base = path.parent().unwrap_or(Path::new(""));
-    let field = Unbuilt::of_file(path.into(), base, Some("file"));
-    let is_known = |name: &str| fields.get(name).is_some();
-    let has_others = (field.document.as_ref()).is_ok_and(|document| !names(document).all(is_known));
+    let mut found = Found::of_file(path, RASTERS, DOCUMENT_BYTES);
+    if !is_name(&found.name) {
+        found.name = "file".into();
+    }
+    let text = found.text.clone().map_err(|detail| found.error(detail))?;
+    let document = parse(&found, &text).map_err(|detail| found.error(detail))?;
     let mut all = fields.clone();
-    if has_others {
-        let (beside, _) = Fields::default().read(&Settings {
+    if !names(&document).all(|name| fields.get(name).is_some()) {
+        let (beside, ..) = Fields::default().reload(&Settings {
             embedded: false,
             folder: match base.as_os_str().is_empty() {
                 true => Path::new(".").into(),
@@ -353,12 +262,11 @@ pub fn from_file(path: &Path, fields: &Fields) -> Result<NamedField, FieldError>
             max_sent_bytes: 0,
             named: BTreeMap::new(),
         });
-        for (name, other) in beside.entries {
-            all.entries.entry(name).or_insert(other);
+        for (name, other) in beside.0 {
+            all.0.entry(name).or_insert(other);
         }
     }
-    let built = field.build(&all, usize::MAX, Stamp::default());
-    built.map_err(|detail| field.error(detail))
+    built(&found, document, base, &all, usize::MAX, Stamp::default())
 }
 
 /// The least and the greatest height in a file of numbers: the ground of a command is at the height that it says. None
@@ -383,11 +291,23 @@ pub fn from_document(
     name: &str,
     document: Document,
     fields: &Fields,
-) -> Result<NamedField, FieldError> {
-    let source = Source::Config("fields", name.into());
-    let field = Unbuilt::new(name.into(), source, Ok(document), Path::new(""));
-    let built = field.build(fields, usize::MAX, Stamp::default());
-    built.map_err(|detail| field.error(detail))
+) -> Result<NamedField, NamedError> {
+    let found = Found {
+        name: name.into(),
+        source: Source::Config("fields", name.into()),
+        text: Ok(String::new()),
+    };
+    if !is_name(name) {
+        return Err(found.error(format!("`{name}` is no name; allowed: {ALLOWED}")));
+    }
+    built(
+        &found,
+        document,
+        Path::new(""),
+        fields,
+        usize::MAX,
+        Stamp::default(),
+    )
 }
 
 pub(super) fn read_file(

@@ -23,10 +23,10 @@ pub use files::{Stamp, stamp, stamp_of};
 
 pub use build::build;
 pub use document::Document;
-pub use loaded::{FieldError, Fields, from_document, from_file, heights};
+pub use loaded::{Fields, from_document, from_file, heights};
 pub use named::NamedField;
 pub use picture::SIDE;
-pub use read::{read_json, read_toml};
+pub use read::read_json;
 pub use sources::{Allowance, MOST_PIXELS, ReadFile, Sources};
 
 use strew_error::Faults;

@@ -3,7 +3,10 @@
 use strew_core::field::FieldSpec;
 
 use super::{Document, files::Stamp};
-use crate::{named::Source, sent::Sendable};
+use crate::{
+    named::{Loaded, Source},
+    sent::Sendable,
+};
 
 #[derive(Clone, Debug)]
 pub struct NamedField {
@@ -55,6 +58,14 @@ impl NamedField {
     /// Its digest, in hexadecimal.
     pub fn digest(&self) -> String {
         self.spec.digest().to_string()
+    }
+}
+
+impl Loaded for NamedField {
+    const KIND: &'static str = "field";
+
+    fn digest(&self) -> String {
+        self.digest()
     }
 }
 

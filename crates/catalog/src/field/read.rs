@@ -1,6 +1,6 @@
 //! Reading documents of fields, with faults that name their path.
 
-use serde::{Deserialize as _, Deserializer};
+use serde::Deserializer;
 use serde_path_to_error::Segment;
 use strew_error::{Fault, Faults};
 
@@ -28,27 +28,14 @@ pub fn read_json(path: &str, text: &str) -> Result<Document, Faults> {
     Ok(document)
 }
 
-/// Reads TOML: a table with one member.
-pub fn read_toml(path: &str, table: &toml::Table) -> Result<Document, Faults> {
-    let value = toml::Value::Table(table.clone());
-    let text = table.to_string();
-    read(path, &text, value)
-}
-
-fn read<'de, D: Deserializer<'de>>(
+fn read<'de>(
     path: &str,
     text: &str,
-    deserializer: D,
-) -> Result<Document, Faults>
-where
-    D::Error: std::fmt::Display,
-{
-    let mut track = serde_path_to_error::Track::new();
-    let tracked = serde_path_to_error::Deserializer::new(deserializer, &mut track);
-    let read = Document::deserialize(tracked);
-    read.map_err(|error| {
+    deserializer: impl Deserializer<'de, Error = serde_json::Error>,
+) -> Result<Document, Faults> {
+    serde_path_to_error::deserialize(deserializer).map_err(|error| {
         let mut place = path.to_owned();
-        for segment in track.path().iter() {
+        for segment in error.path().iter() {
             match segment {
                 Segment::Seq { index } => place += &format!("[{index}]"),
                 Segment::Map { key } => place += &format!(".{key}"),
@@ -56,7 +43,7 @@ where
                 Segment::Unknown => {}
             }
         }
-        fault(&place, text, &error.to_string())
+        fault(&place, text, &error.inner().to_string())
     })
 }
 

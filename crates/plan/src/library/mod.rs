@@ -16,8 +16,9 @@ use std::{
 
 use strew_catalog::{
     Catalog, CatalogError, Entry, Ready,
-    field::{self, Allowance, Document, FieldError, Fields, NamedField},
+    field::{self, Allowance, Document, Fields, NamedField},
     mix::{self, Made},
+    named::NamedError,
     sent::Sender,
 };
 #[cfg(feature = "shipped")]
@@ -61,7 +62,7 @@ pub enum Unavailable {
     Catalog(#[from] CatalogError),
     /// A built-in field cannot be read.
     #[error(transparent)]
-    Field(#[from] FieldError),
+    Field(#[from] NamedError),
 }
 
 /// The most pixels that a query of a program may include: a program has them in memory anyway.

@@ -1,14 +1,14 @@
 //! Worlds as documents, with their checked drafts and digests.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::{ops::Deref, sync::Arc};
 
-use strew_catalog::named::{self, Source};
+use strew_catalog::named::{Loaded, Names, Source};
 
 use crate::{draft::Draft, set::Set};
 
 #[derive(Clone, Debug, Default)]
 pub struct Worlds {
-    pub(super) entries: BTreeMap<String, Arc<World>>,
+    pub(super) entries: Names<World>,
     pub(super) most_vertices: usize,
 }
 
@@ -26,16 +26,18 @@ pub struct World {
     pub digest: String,
 }
 
-impl Worlds {
-    pub fn get(&self, name: &str) -> Option<&Arc<World>> {
-        self.entries.get(name)
-    }
+impl Deref for Worlds {
+    type Target = Names<World>;
 
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Arc<World>> {
-        self.entries.values()
+    fn deref(&self) -> &Self::Target {
+        &self.entries
     }
+}
 
-    pub fn names(&self) -> String {
-        named::listed("world", self.entries.keys().map(String::as_str))
+impl Loaded for World {
+    const KIND: &'static str = "world";
+
+    fn digest(&self) -> String {
+        self.digest.clone()
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use strew_catalog::{
     Catalog,
-    named::{Changes, Checked, Found, NamedError, Places, Refused},
+    named::{self, Checked, Found, NamedError, Names, Places, Reread},
 };
 use strew_config::Worlds as Settings;
 use strew_error::{Error, Fault};
@@ -24,6 +24,7 @@ fn places(settings: &Settings) -> Places<'_> {
         named: &settings.named,
         folder: settings.folder(),
         endings: &["json", "toml"],
+        rasters: &[],
         most_bytes: 4 << 20,
     }
 }
@@ -49,32 +50,17 @@ impl Worlds {
             most_vertices,
             ..Self::default()
         };
-        let (worlds, _, refused) = none.reload(settings, catalog);
-        match refused.into_iter().next() {
-            Some((error, _)) => Err(error),
-            None => Ok(worlds),
-        }
+        named::all_of(none.reload(settings, catalog))
     }
 
-    /// The worlds after reading all documents again, the changes, and the refused documents. A refused document leaves
-    /// its earlier world in place.
-    pub fn reload(
-        &self,
-        settings: &Settings,
-        catalog: &Catalog,
-    ) -> (Self, Changes, Vec<Refused<NamedError>>) {
-        let digest = |world: &World| world.digest.clone();
+    pub fn reload(&self, settings: &Settings, catalog: &Catalog) -> Reread<Self> {
+        let places = places(settings);
         let before = self.over(catalog);
-        let read = places(settings).over(&before.entries, digest, |found, json| {
+        let (entries, refused) = (before.entries).read(&places, |found, json| {
             check(found, json, catalog, self.most_vertices)
         });
-        let (after, refused) = match read {
-            Ok((entries, refused)) => (Self { entries, ..*self }, refused),
-            // All of them stay.
-            Err(error) => (before, vec![(error, None)]),
-        };
-        let changes = Changes::between(&self.entries, &after.entries, digest);
-        (after, changes, refused)
+        let changes = self.entries.changes_to(&entries);
+        (Self { entries, ..*self }, changes, refused)
     }
 
     /// These worlds over other tables and fields, with new digests. Worlds that do not fit the new ones keep their
@@ -91,7 +77,7 @@ impl Worlds {
             (name.clone(), Arc::new(renewed))
         };
         Self {
-            entries: self.entries.iter().map(renewed).collect(),
+            entries: Names(self.entries.0.iter().map(renewed).collect()),
             ..*self
         }
     }

@@ -1,8 +1,8 @@
 //! Clusters of pattern points: their shapes and how often each occurs.
 
+use crate::access::Caller;
 use schemars::JsonSchema;
 use serde::Serialize;
-use strew_access::Caller;
 use strew_core::{
     Alpha, ErrorKind,
     map::{Clusters, Shape},

@@ -1,6 +1,6 @@
 //! Figures of patterns: the drawings of `strew_forge::figure` behind checked parameters.
 
-use strew_access::Caller;
+use crate::access::Caller;
 use strew_core::{Alpha, server::Stop};
 use strew_error::{Checked, Error, Fault, Together as _};
 use strew_forge::figure::{self, Drawing, FigureError};

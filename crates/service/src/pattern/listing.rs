@@ -5,8 +5,8 @@
 
 use std::{io::Write as _, ops::Range, sync::Arc};
 
+use crate::access::Caller;
 use bytes::Bytes;
-use strew_access::Caller;
 use strew_core::{PointId, pattern::Arrangement};
 use strew_encode::{Json, write_number};
 use strew_error::{Error, integer::Long};
@@ -129,14 +129,6 @@ struct Occurrences {
     batch: usize,
 }
 
-impl std::fmt::Debug for Occurrences {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Occurrences")
-            .field("batch", &self.batch)
-            .finish_non_exhaustive()
-    }
-}
-
 impl Occurrences {
     fn occurrence(&self, (x, y): (i64, i64)) -> Result<Occurrence, Error> {
         let Some(placed) = &self.placed else {
@@ -176,7 +168,6 @@ impl Iterator for Occurrences {
     }
 }
 
-#[derive(Debug)]
 pub struct Text {
     list: List,
     head: Vec<u8>,

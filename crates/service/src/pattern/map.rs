@@ -1,8 +1,8 @@
 //! Neighborhood maps of any half-width: blocks, refinement, neighbors, growth.
 
+use crate::access::Caller;
 use schemars::JsonSchema;
 use serde::Serialize;
-use strew_access::Caller;
 use strew_core::{Alpha, Map, server::Stop};
 use strew_error::{Error, Fault, Together as _};
 use strew_plan::Lane;

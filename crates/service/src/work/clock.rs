@@ -1,9 +1,8 @@
 //! The clock of a request, which stands still while its work waits for a turn.
 
-use std::{
-    sync::{Mutex, MutexGuard, PoisonError},
-    time::{Duration, Instant},
-};
+use std::time::{Duration, Instant};
+
+use parking_lot::Mutex;
 
 #[derive(Debug, Default)]
 pub struct Clock(Mutex<Waited>);
@@ -19,29 +18,25 @@ struct Waited {
 impl Clock {
     /// How long the request has waited so far.
     pub fn waited(&self) -> Duration {
-        let waited = self.lock();
+        let waited = self.0.lock();
         waited.before + waited.since.map_or(Duration::ZERO, |since| since.elapsed())
     }
 
     pub(super) fn wait(&self) {
-        let mut waited = self.lock();
+        let mut waited = self.0.lock();
         waited.waiting += 1;
         waited.since.get_or_insert_with(Instant::now);
     }
 
     /// Some of its work waits no longer.
     pub(super) fn go_on(&self) {
-        let mut waited = self.lock();
+        let mut waited = self.0.lock();
         waited.waiting -= 1;
         if waited.waiting == 0
             && let Some(since) = waited.since.take()
         {
             waited.before += since.elapsed();
         }
-    }
-
-    fn lock(&self) -> MutexGuard<'_, Waited> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -55,9 +50,9 @@ mod tests {
         clock.wait();
         clock.wait();
         clock.go_on();
-        assert!(clock.lock().since.is_some());
+        assert!(clock.0.lock().since.is_some());
         clock.go_on();
         let waited = clock.waited();
-        assert!(clock.lock().since.is_none() && clock.waited() == waited);
+        assert!(clock.0.lock().since.is_none() && clock.waited() == waited);
     }
 }

@@ -5,11 +5,13 @@
 
 use std::{
     sync::{
-        Arc, Mutex, MutexGuard, PoisonError,
+        Arc,
         mpsc::{Sender, channel},
     },
     thread,
 };
+
+use parking_lot::Mutex;
 
 use super::shift::{Shift, lower_priority};
 
@@ -46,7 +48,7 @@ impl Crew {
     /// Does work that has its turn, on a thread of the shift's priority. If there is no thread, the work is dropped.
     pub(super) fn work(&self, shift: Arc<Shift>, job: Box<dyn FnOnce() + Send>) {
         let is_long = shift.is_long();
-        let idle = lock(&self.0.idle[usize::from(is_long)]).pop();
+        let idle = self.0.idle[usize::from(is_long)].lock().pop();
         let thread = match idle.map_or_else(|| start(is_long), Ok) {
             Ok(thread) => thread,
             Err(error) => {
@@ -74,7 +76,7 @@ impl Task {
             crew,
         } = self;
         let turn = shift.run(job);
-        let mut idle = lock(&crew.0.idle[usize::from(shift.is_long())]);
+        let mut idle = crew.0.idle[usize::from(shift.is_long())].lock();
         if idle.len() < crew.0.most_idle {
             idle.push(thread);
         }
@@ -101,8 +103,4 @@ fn start(is_long: bool) -> std::io::Result<Sender<Task>> {
         }
     })?;
     Ok(sender)
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

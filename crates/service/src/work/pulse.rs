@@ -3,11 +3,9 @@
 //! A daemon whose workers are stuck still answers what needs none of them. So it hands them a piece of work every
 //! second, as a client would, and looks at how long that takes.
 
-use std::{
-    sync::{Mutex, MutexGuard, PoisonError},
-    time::{Duration, Instant},
-};
+use std::time::{Duration, Instant};
 
+use parking_lot::Mutex;
 use strew_plan::Lane;
 use tokio::sync::watch::Sender;
 
@@ -25,7 +23,7 @@ impl Pulse {
     /// whether it is done in time.
     pub async fn beat(&self, workers: Workers, bound: Duration, in_time: Sender<bool>) {
         loop {
-            *self.begun() = Some(Instant::now());
+            *self.0.lock() = Some(Instant::now());
             let beat = workers.take_turn(Lane::Short, |_| ());
             tokio::pin!(beat);
             if tokio::time::timeout(bound, &mut beat).await.is_err() {
@@ -33,17 +31,14 @@ impl Pulse {
                 let _ = beat.await;
                 in_time.send_replace(true);
             }
-            *self.begun() = None;
+            *self.0.lock() = None;
             tokio::time::sleep(PACE).await;
         }
     }
 
     pub fn is_within(&self, bound: Duration) -> bool {
-        self.begun().is_none_or(|begun| begun.elapsed() <= bound)
-    }
-
-    fn begun(&self) -> MutexGuard<'_, Option<Instant>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        let begun = *self.0.lock();
+        begun.is_none_or(|begun| begun.elapsed() <= bound)
     }
 }
 

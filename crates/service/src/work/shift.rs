@@ -11,12 +11,13 @@ use std::{
     cell::RefCell,
     panic::{AssertUnwindSafe, catch_unwind},
     sync::{
-        Arc, Condvar, LazyLock, Mutex, MutexGuard, PoisonError,
+        Arc, LazyLock,
         atomic::{AtomicU64, Ordering},
     },
     time::{Duration, Instant},
 };
 
+use parking_lot::{Condvar, Mutex};
 use strew_core::server::Stop;
 use strew_plan::Lane;
 
@@ -55,7 +56,7 @@ pub(super) fn stop() -> Stop {
 pub(super) fn charge() {
     CURRENT.with_borrow(|current| {
         if let Some(shift) = current {
-            shift.charge(&mut shift.lock());
+            shift.charge(&mut shift.state.lock());
         }
     });
 }
@@ -122,12 +123,12 @@ impl Shift {
     }
 
     pub(super) fn is_long(&self) -> bool {
-        self.lock().lane != Lane::Short
+        self.state.lock().lane != Lane::Short
     }
 
     /// The work has a turn.
     pub(super) fn take(&self, turn: Turn) {
-        let mut state = self.lock();
+        let mut state = self.state.lock();
         self.due_in(match state.lane {
             Lane::Short => Some(SHORT),
             Lane::Long => Some(LONG),
@@ -140,7 +141,7 @@ impl Shift {
     /// Runs the work, in its turn, on the calling thread. Returns the turn that it has at the end.
     pub(super) fn run(self: &Arc<Self>, job: Box<dyn FnOnce() + Send>) -> Option<Turn> {
         {
-            let mut state = self.lock();
+            let mut state = self.state.lock();
             state.begun = processor_time();
             state.charged = state.begun;
         }
@@ -150,20 +151,20 @@ impl Shift {
             tracing::error!("a worker panicked");
         }
         CURRENT.set(None);
-        self.charge(&mut self.lock());
+        self.charge(&mut self.state.lock());
         self.end()
     }
 
     /// The result is not wanted any more, so the work does not wait for another turn. It keeps the one that it
     /// has until it notices: abandoned work must not run beside the next.
     pub(super) fn leave(&self) {
-        self.lock().is_over = true;
+        self.state.lock().is_over = true;
         self.changed.notify_all();
     }
 
     /// There is no more work to do. Returns the turn.
     pub(super) fn end(&self) -> Option<Turn> {
-        let mut state = self.lock();
+        let mut state = self.state.lock();
         state.is_over = true;
         state.turn.take()
     }
@@ -177,7 +178,7 @@ impl Shift {
 
     #[cold]
     fn give_way(self: &Arc<Self>) {
-        let mut state = self.lock();
+        let mut state = self.state.lock();
         let address = self.owner.address();
         let long = self.lanes.turns(Lane::Long);
         self.charge(&mut state);
@@ -212,10 +213,7 @@ impl Shift {
             long.give_way(turn, address, paused);
         }
         let waits = |state: &mut State| state.turn.is_none() && !state.is_over;
-        let _state = self
-            .changed
-            .wait_while(self.lock(), waits)
-            .unwrap_or_else(PoisonError::into_inner);
+        self.changed.wait_while(&mut self.state.lock(), waits);
     }
 
     /// Charges the owner for the processor time since this was done last.
@@ -233,17 +231,13 @@ impl Shift {
         let due = time.map_or(u64::MAX, |time| now() + nanoseconds(time));
         self.due.store(due, Ordering::Relaxed);
     }
-
-    fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
 }
 
 struct Paused(Arc<Shift>);
 
 impl Waiter for Paused {
     fn is_wanted(&self) -> bool {
-        !self.0.lock().is_over
+        !self.0.state.lock().is_over
     }
 
     fn begin(self: Box<Self>, turn: Turn) {

@@ -2,9 +2,10 @@
 
 use std::{
     collections::{HashMap, VecDeque},
-    fmt,
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    sync::Arc,
 };
+
+use parking_lot::Mutex;
 
 pub(super) trait Waiter: Send {
     fn is_wanted(&self) -> bool;
@@ -13,10 +14,8 @@ pub(super) trait Waiter: Send {
 }
 
 /// A number of places that addresses take in turns. Cheap to clone.
-#[derive(Clone, Debug)]
-pub(super) struct Turns {
-    state: Arc<Mutex<State>>,
-}
+#[derive(Clone)]
+pub(super) struct Turns(Arc<Mutex<State>>);
 
 struct State {
     free: usize,
@@ -24,15 +23,6 @@ struct State {
     waiting: HashMap<usize, VecDeque<Box<dyn Waiter>>>,
     /// The addresses that wait, the next one first.
     order: VecDeque<usize>,
-}
-
-impl fmt::Debug for State {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("State")
-            .field("free", &self.free)
-            .field("order", &self.order)
-            .finish_non_exhaustive()
-    }
 }
 
 impl State {
@@ -55,7 +45,6 @@ impl State {
 }
 
 /// A place; goes to the next waiter when dropped.
-#[derive(Debug)]
 pub(super) struct Turn(Turns);
 
 impl Turns {
@@ -65,14 +54,12 @@ impl Turns {
             waiting: HashMap::new(),
             order: VecDeque::new(),
         };
-        Self {
-            state: Arc::new(Mutex::new(state)),
-        }
+        Self(Arc::new(Mutex::new(state)))
     }
 
     /// Begins work of an address as soon as it has a place, after all other work of the address.
     pub(super) fn take(&self, address: usize, waiter: Box<dyn Waiter>) {
-        let mut state = self.lock();
+        let mut state = self.0.lock();
         if state.free > 0 {
             state.free -= 1;
             drop(state);
@@ -90,7 +77,7 @@ impl Turns {
     /// Gives a place to others, and goes on when it is the turn of the address again: after all other addresses,
     /// before all other work of its own.
     pub(super) fn give_way(&self, turn: Turn, address: usize, waiter: Box<dyn Waiter>) {
-        let mut state = self.lock();
+        let mut state = self.0.lock();
         let queue = state.waiting.entry(address).or_default();
         queue.push_front(waiter);
         state.order.retain(|&other| other != address);
@@ -100,18 +87,14 @@ impl Turns {
     }
 
     pub(super) fn is_wanted_by_others(&self, address: usize) -> bool {
-        self.lock().order.iter().any(|&other| other != address)
-    }
-
-    fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        self.0.lock().order.iter().any(|&other| other != address)
     }
 }
 
 impl Drop for Turn {
     fn drop(&mut self) {
         let next = {
-            let mut state = self.0.lock();
+            let mut state = self.0.0.lock();
             let next = state.next();
             if next.is_none() {
                 state.free += 1;
@@ -204,7 +187,7 @@ mod tests {
             turn = next;
         }
         drop(turn);
-        assert_eq!(scene.turns.lock().free, 1);
+        assert_eq!(scene.turns.0.lock().free, 1);
     }
 
     #[test]

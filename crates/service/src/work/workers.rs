@@ -1,7 +1,6 @@
 //! Handing work over: in which lane it takes its turn, and how its result comes back.
 
 use std::{
-    fmt,
     num::NonZero,
     sync::{Arc, atomic::Ordering},
     thread,
@@ -25,16 +24,6 @@ use super::{
 pub struct Workers {
     crew: Crew,
     lanes: Arc<Lanes>,
-    threads: usize,
-}
-
-impl fmt::Debug for Workers {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let threads = self.threads;
-        f.debug_struct("Workers")
-            .field("threads", &threads)
-            .finish()
-    }
 }
 
 impl Workers {
@@ -49,7 +38,6 @@ impl Workers {
                 Lane::Long => (threads / 2).max(1),
                 Lane::Making => 1,
             }),
-            threads,
         }
     }
 
@@ -189,7 +177,7 @@ impl<F: FnOnce() + Send + 'static> Waiter for Piece<F> {
 mod tests {
     use std::{sync::mpsc, time::Instant};
 
-    use strew_access::{Caller, Gate, Usage};
+    use crate::access::{Caller, Gate, Usage};
     use strew_config::Layers;
 
     use super::*;

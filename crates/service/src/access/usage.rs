@@ -8,11 +8,12 @@ use std::{
     collections::HashMap,
     net::IpAddr,
     sync::{
-        Arc, Mutex, MutexGuard, PoisonError, Weak,
+        Arc, Weak,
         atomic::{AtomicUsize, Ordering},
     },
 };
 
+use parking_lot::Mutex;
 use strew_config::AddressLimits;
 use strew_error::Denied;
 
@@ -202,19 +203,16 @@ impl Usage {
 
 impl Drop for Usage {
     fn drop(&mut self) {
-        let Some((address, table)) = &self.address else {
-            return;
-        };
-        let Some(table) = table.upgrade() else {
-            return;
-        };
-        let mut all = table.lock();
-        // Another may have taken its place since the last handle was gone.
-        if all
-            .get(address)
-            .is_some_and(|usage| usage.strong_count() == 0)
-        {
-            all.remove(address);
+        let place = self.address.as_ref();
+        if let Some((address, table)) = place.and_then(|(at, table)| Some((at, table.upgrade()?))) {
+            // Another may have taken its place since the last handle was gone.
+            let mut all = table.lock();
+            if all
+                .get(address)
+                .is_some_and(|usage| usage.strong_count() == 0)
+            {
+                all.remove(address);
+            }
         }
     }
 }
@@ -232,16 +230,7 @@ impl Drop for InUse {
     }
 }
 
-#[derive(Debug, Default)]
-struct Table {
-    usages: Mutex<HashMap<IpAddr, Weak<Usage>>>,
-}
-
-impl Table {
-    fn lock(&self) -> MutexGuard<'_, HashMap<IpAddr, Weak<Usage>>> {
-        self.usages.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
+type Table = Mutex<HashMap<IpAddr, Weak<Usage>>>;
 
 /// The usage of every address that uses something.
 #[derive(Debug)]

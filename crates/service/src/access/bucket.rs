@@ -5,11 +5,9 @@
 //! rest: so on average no client exceeds the rate, and every answer within the server's limits is
 //! possible.
 
-use std::{
-    sync::{Mutex, PoisonError},
-    time::{Duration, Instant},
-};
+use std::time::{Duration, Instant};
 
+use parking_lot::Mutex;
 use strew_error::{Level, Rate, Short};
 
 #[derive(Debug)]
@@ -67,7 +65,7 @@ impl Bucket {
     }
 
     fn with<T>(&self, now: Instant, act: impl FnOnce(Rate, &mut f64) -> T) -> T {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut state = self.state.lock();
         // Requests meet here in another order than their clocks were read.
         let passed = now.saturating_duration_since(state.at).as_secs_f64();
         state.at = state.at.max(now);

@@ -6,10 +6,11 @@
 use std::{
     collections::HashMap,
     net::{IpAddr, Ipv6Addr},
-    sync::{Arc, Mutex, PoisonError},
+    sync::Arc,
     time::Instant,
 };
 
+use parking_lot::Mutex;
 use strew_error::Rate;
 
 use super::bucket::Bucket;
@@ -33,7 +34,7 @@ impl Clients {
 
     pub(super) fn bucket(&self, address: IpAddr, now: Instant) -> Arc<Bucket> {
         let client = client(address);
-        let mut buckets = self.buckets.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut buckets = self.buckets.lock();
         if let Some(bucket) = buckets.get(&client) {
             return bucket.clone();
         }
@@ -97,7 +98,7 @@ mod tests {
             .expect("full");
         for i in 1000..11_000 {
             let _ = clients.bucket(address(i), now).take(1.0, 0.0, now);
-            assert!(clients.buckets.lock().expect("whole").len() <= 64);
+            assert!(clients.buckets.lock().len() <= 64);
         }
         assert!(clients.bucket(debtor, now).take(1.0, 0.0, now).is_err());
         // A bucket that is full again need not be kept.
@@ -105,7 +106,7 @@ mod tests {
         for i in 0..60 {
             clients.bucket(address(i), later);
         }
-        assert!(clients.buckets.lock().expect("whole").len() <= 64);
+        assert!(clients.buckets.lock().len() <= 64);
     }
 
     #[test]

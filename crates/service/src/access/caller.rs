@@ -2,12 +2,13 @@
 
 use std::{
     sync::{
-        Arc, Mutex, MutexGuard, PoisonError,
+        Arc,
         atomic::{AtomicUsize, Ordering},
     },
     time::{Duration, Instant},
 };
 
+use parking_lot::{Mutex, MutexGuard};
 use strew_error::{Denied, Level};
 
 use super::{InUse, Quota, Usage, bucket::Bucket};
@@ -155,8 +156,7 @@ impl Caller {
     }
 
     fn spent(&self) -> Option<MutexGuard<'_, Spent>> {
-        let spent = self.spent.as_ref()?;
-        Some(spent.lock().unwrap_or_else(PoisonError::into_inner))
+        Some(self.spent.as_ref()?.lock())
     }
 
     pub fn level(&self) -> Option<Level> {

@@ -3,12 +3,7 @@
 //! REST and gRPC pass the key and the address of a request to [`Gate::admit`], which returns the
 //! [`Caller`]. It travels with the request and decides what is allowed. Nothing here knows a protocol.
 //!
-//! Depends on the settings and the words of refusals; the service charges a [`Caller`] and counts what it uses.
-
-#![allow(
-    missing_docs,
-    reason = "an internal crate: names say what its items are"
-)]
+//! Depends on the settings and the words of refusals alone.
 
 mod address;
 mod bucket;
@@ -21,15 +16,13 @@ mod usage;
 use std::{net::IpAddr, sync::Arc, time::Instant};
 
 use arc_swap::ArcSwap;
-use strew_config as config;
-use strew_config::{Access as Settings, AddressLimits, Networks};
+use strew_config::{self as config, Access as Settings, AddressLimits, Networks};
+use strew_error::{Denied, Rate};
 
 pub use caller::{Caller, Place};
 pub use keys::KeysError;
 pub use secret::{Hashed, new_key};
 pub use usage::{InUse, OneOf, Quota, Usage};
-
-use strew_error::{Denied, Rate};
 
 use clients::Clients;
 use keys::Keys;

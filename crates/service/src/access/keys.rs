@@ -13,7 +13,7 @@
 
 use std::{
     io,
-    path::{Path, PathBuf},
+    path::PathBuf,
     sync::{Arc, atomic::AtomicUsize},
     time::Instant,
 };
@@ -117,7 +117,12 @@ impl Keys {
         let none = Self::default();
         let known = before.unwrap_or(&none);
         if let Some(path) = settings.keys_file() {
-            match keys.add_file(path, common, known) {
+            let text = bounded_file::read_text(path, MAX_BYTES).map_err(|error| {
+                let path = path.into();
+                KeysError::Unreadable { path, error }
+            });
+            let place = path.display().to_string();
+            match text.and_then(|text| keys.add(&place, &text, common, known)) {
                 Err(error) if before.is_some() && error.leaves_none() => {}
                 read => read?,
             }
@@ -126,20 +131,6 @@ impl Keys {
             keys.add("access.keys", &settings.keys, common, known)?;
         }
         Ok(keys)
-    }
-
-    fn add_file(
-        &mut self,
-        path: &Path,
-        common: Option<Rate>,
-        before: &Self,
-    ) -> Result<(), KeysError> {
-        let text = bounded_file::read_text(path, MAX_BYTES);
-        let text = text.map_err(|error| KeysError::Unreadable {
-            path: path.into(),
-            error,
-        })?;
-        self.add(&path.display().to_string(), &text, common, before)
     }
 
     fn add(
@@ -154,55 +145,83 @@ impl Keys {
             error: Box::new(error),
         })?;
         if document.key.is_empty() {
-            return Err(KeysError::Empty {
-                place: place.into(),
-            });
+            let place = place.into();
+            return Err(KeysError::Empty { place });
         }
         for written in document.key {
-            let key = self.check(written, common, before);
-            let key = key.map_err(|fault| fault.at(place))?;
-            self.keys.push(key);
+            self.keys.push(self.check(place, &written, common, before)?);
         }
         Ok(())
     }
 
-    fn check(&self, written: Written, common: Option<Rate>, before: &Self) -> Result<Key, Fault> {
+    fn check(
+        &self,
+        place: &str,
+        written: &Written,
+        common: Option<Rate>,
+        before: &Self,
+    ) -> Result<Key, KeysError> {
         let name: Arc<str> = written.name.as_str().into();
-        let fault = |field, value: String, allowed| Fault {
+        let (speed, burst) = (written.points_per_second, written.burst_points);
+        let within = |value: Option<f64>, least| value.is_none_or(|v| (least..=1e15).contains(&v));
+        let fault = |field, value: String, allowed| KeysError::Field {
+            place: place.into(),
             name: written.name.clone(),
             field,
             value,
             allowed,
         };
+        let text = |text: &str| format!("{text:?}");
+        let number = |value: Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
         if !is_name(&name) || self.named(&name).is_some() {
-            return Err(fault("name", format!("{name:?}"), NAME));
+            return Err(fault("name", text(&name), NAME));
         }
-        let hash = Hashed::read(&written.hash)
-            .ok_or_else(|| fault("hash", format!("{:?}", written.hash), HASH))?;
-        if self.keys.iter().any(|key| key.hash == hash) {
-            return Err(fault("hash", format!("{:?}", written.hash), OTHER_HASH));
-        }
-        if let Some(0) = written.max_points {
-            return Err(fault("max_points", "0".into(), FROM_ONE));
-        }
-        if let Some(0) = written.max_streams {
-            return Err(fault("max_streams", "0".into(), FROM_ONE));
-        }
-        let in_range = |value: f64| (1e-3..=1e15).contains(&value);
-        if let Some(value) = written.points_per_second.filter(|value| !in_range(*value)) {
-            return Err(fault("points_per_second", value.to_string(), RATE));
-        }
-        if let Some(value) = written.burst_points {
-            if !(1.0..=1e15).contains(&value) {
-                return Err(fault("burst_points", value.to_string(), BURST));
+        let Some(hash) = Hashed::read(&written.hash) else {
+            return Err(fault("hash", text(&written.hash), HASH));
+        };
+        for (holds, field, value, allowed) in [
+            (
+                self.keys.iter().all(|key| key.hash != hash),
+                "hash",
+                text(&written.hash),
+                "another hash for each key",
+            ),
+            (
+                written.max_points != Some(0),
+                "max_points",
+                "0".into(),
+                FROM_ONE,
+            ),
+            (
+                written.max_streams != Some(0),
+                "max_streams",
+                "0".into(),
+                FROM_ONE,
+            ),
+            (
+                within(speed, 1e-3),
+                "points_per_second",
+                number(speed),
+                "a number from 0.001 to 1e15",
+            ),
+            (
+                within(burst, 1.0),
+                "burst_points",
+                number(burst),
+                "a number from 1 to 1e15",
+            ),
+            (
+                burst.is_none() || speed.is_some(),
+                "burst_points",
+                number(burst),
+                "only beside points_per_second",
+            ),
+        ] {
+            if !holds {
+                return Err(fault(field, value, allowed));
             }
-            if written.points_per_second.is_none() {
-                return Err(fault("burst_points", value.to_string(), WITH_RATE));
-            }
         }
-        let own = written
-            .points_per_second
-            .map(|per_second| Rate::new(per_second, written.burst_points));
+        let own = speed.map(|per_second| Rate::new(per_second, burst));
         let before = before.named(&name);
         let open = before.map_or_else(Arc::default, |key| key.open.clone());
         let bucket = own.or(common).map(|rate| {
@@ -251,30 +270,7 @@ impl Keys {
 const NAME: &str =
     "1 to 64 ASCII letters, digits, _, - and ., not dots alone, another name for each key";
 const HASH: &str = "64 hexadecimal digits, as `strew key new NAME` prints them";
-const OTHER_HASH: &str = "another hash for each key";
 const FROM_ONE: &str = "an integer from 1 on";
-const RATE: &str = "a number from 0.001 to 1e15";
-const BURST: &str = "a number from 1 to 1e15";
-const WITH_RATE: &str = "only beside points_per_second";
-
-struct Fault {
-    name: String,
-    field: &'static str,
-    value: String,
-    allowed: &'static str,
-}
-
-impl Fault {
-    fn at(self, place: &str) -> KeysError {
-        KeysError::Field {
-            place: place.into(),
-            name: self.name,
-            field: self.field,
-            value: self.value,
-            allowed: self.allowed,
-        }
-    }
-}
 
 #[cfg(test)]
 mod tests {
@@ -301,7 +297,7 @@ mod tests {
              points_per_second = 10\n[[key]]\nname = 'b'\nhash = '{other_hash}'\nadmin = true\n"
         );
         let keys = read(&text, &Keys::default()).expect("valid");
-        let all = crate::Quota::new(9);
+        let all = super::super::Quota::new(9);
         let a = keys.find(secret.as_bytes()).expect("known");
         assert_eq!((a.name(), a.max_points(9)), (Some("a"), 5));
         assert!(a.must_be_admin().is_err() && a.level().is_some());
