@@ -8,10 +8,10 @@ use strew_query::{Resolved, Token, groups, parts};
 
 use super::{
     Failure, config,
+    failure::Source,
     flags::{Counted, Parted},
     output,
     query::QueryArgs,
-    refusal::Source,
 };
 
 /// Flags of `strew count`.
@@ -30,7 +30,6 @@ struct Document {
     query: Resolved,
 }
 
-/// Counts.
 pub(super) fn count(args: &CountArgs) -> Result<(), Failure> {
     let config = args.query.settings.merged(config::Uses::QUERIES)?;
     let planned = args.query.plan(&config)?.planned;

@@ -7,12 +7,11 @@ use strew_query::{Nearest, ResolvedSet, Set, Values};
 
 use super::{
     Failure, config,
+    failure::Source,
     fields::FieldArgs,
     flags::{Flags, Near, Single, Takes},
     output,
-    refusal::Source,
 };
-use crate::cli::config::Load as _;
 
 /// A set without a region.
 #[derive(Debug, clap::Args)]
@@ -41,7 +40,6 @@ pub(super) struct PointArgs {
     set: SetArgs<Single>,
 }
 
-/// Flags of `strew nearest`.
 pub(super) type NearestArgs = SetArgs<Near>;
 
 #[derive(Serialize)]
@@ -63,12 +61,11 @@ impl<T: Takes> SetArgs<T> {
             true => self.flags.values_in_space(T::IN_SPACE),
             false => self.flags.values(),
         };
-        let catalog = self.field.load(&mut values, config.tables()?)?;
+        let catalog = self.field.load(&mut values, config::tables(&config)?)?;
         Ok((values, catalog))
     }
 }
 
-/// Prints a point.
 pub(super) fn point(args: &PointArgs) -> Result<(), Failure> {
     let (values, catalog) = args.set.load()?;
     let set = Set::single(&values, &catalog);
@@ -83,7 +80,6 @@ pub(super) fn point(args: &PointArgs) -> Result<(), Failure> {
     output::print_json([point])
 }
 
-/// Prints the points near a place.
 pub(super) fn nearest(args: &NearestArgs) -> Result<(), Failure> {
     let (values, catalog) = args.load()?;
     let near = Nearest::of_set(&values, &catalog);

@@ -17,13 +17,11 @@ use strew_query::{
 
 use super::{
     Failure, config,
-    fields::FieldArgs,
-    fields::StrataArgs,
-    flags::{Flags, Takes, WHERE, flag},
-    refusal::Source,
+    failure::{Source, flag},
+    fields::{FieldArgs, StrataArgs},
+    flags::{Flags, Takes, WHERE},
     refuse,
 };
-use crate::cli::config::Load as _;
 
 /// A query with a region: by flags, or whole in a file.
 #[derive(Debug, clap::Args)]
@@ -62,8 +60,6 @@ pub(super) struct QueryArgs<T: Takes> {
     pub(super) settings: config::Args,
 }
 
-/// A valid query with its plan.
-#[derive(Debug)]
 pub(super) struct PlannedQuery {
     pub(super) draft: Draft,
     pub(super) options: Options,
@@ -74,14 +70,15 @@ pub(super) struct PlannedQuery {
 }
 
 impl<T: Takes> QueryArgs<T> {
-    /// The query, checked and planned.
     pub(super) fn plan(&self, config: &Config) -> Result<PlannedQuery, Failure> {
         let crs = self.defined()?;
         let (mut draft, source) = self.read(crs.as_ref())?;
-        let catalog = self.field.load(&mut draft.values, config.tables()?)?;
+        let catalog = self
+            .field
+            .load(&mut draft.values, config::tables(config)?)?;
         let (draft, catalog) = self.strata.split(draft, self.features()?, catalog)?;
-        let catalog = config.with_worlds(catalog)?;
-        let planned = config.planned(&draft, &catalog);
+        let catalog = config::with_worlds(config, catalog)?;
+        let planned = config::planned(config, &draft, &catalog);
         let (planned, options) = planned.map_err(|error| source.refused(error))?;
         // The parts of a split may be sent to servers that do not have the world.
         let filled = draft.filled(&catalog.worlds);
@@ -95,7 +92,6 @@ impl<T: Takes> QueryArgs<T> {
         })
     }
 
-    /// The parameters of a query in a file.
     fn in_file(&self) -> &'static [Group] {
         if self.space {
             return groups::SPACE_QUERY;
@@ -219,7 +215,6 @@ impl<T: Takes> QueryArgs<T> {
         read.map_err(|faults| source.refused(faults.into()))
     }
 
-    /// A region that is no parameter.
     fn region(&self) -> Result<Option<RegionDraft>, Failure> {
         let shapes = self
             .flags
@@ -264,7 +259,6 @@ fn chunk(text: &str) -> Result<RegionDraft, Failure> {
     chunk_of(text, read(), allowed)
 }
 
-/// A chunk of space.
 fn cube(text: &str) -> Result<RegionDraft, Failure> {
     let read = || {
         let [size, x, y, z] = text.split('/').collect::<Vec<_>>().try_into().ok()?;
@@ -287,7 +281,6 @@ fn chunk_of(text: &str, shape: Option<ShapeDraft>, allowed: &str) -> Result<Regi
     })
 }
 
-/// The bytes of a file, or of standard input.
 fn read_file(flag: &str, path: &Path) -> Result<Vec<u8>, Failure> {
     let read = if path == Path::new("-") {
         let mut bytes = vec![];
@@ -299,7 +292,6 @@ fn read_file(flag: &str, path: &Path) -> Result<Vec<u8>, Failure> {
     read.map_err(Failure::Usage)
 }
 
-/// The sets of a planned query, in a few words.
 pub(super) fn described(planned: &Planned) -> String {
     let sets = planned.query.sets.iter().zip(&planned.sets);
     let one = |(set, planned): (&Set, &PlannedSet)| {
@@ -319,7 +311,6 @@ pub(super) fn described(planned: &Planned) -> String {
             planned.entry.digest
         )
     };
-    /// The most sets that a line describes.
     const SOME: usize = 4;
     let mut words: Vec<String> = sets.take(SOME).map(one).collect();
     if let more @ 1.. = planned.sets.len().saturating_sub(SOME) {

@@ -3,17 +3,19 @@
 //! A connection hands each request to the outermost step. A step does its part, has the next one answer, and may change
 //! the answer on its way back. The last one is axum's router of all paths, of REST and of gRPC.
 
-use std::sync::Arc;
+use std::{any::Any, panic::AssertUnwindSafe, sync::Arc};
 
 use axum::Router;
+use futures_util::FutureExt as _;
 use strew_access::Gate;
+use strew_error::Error;
 use tower::{Service as _, ServiceBuilder};
 
 use super::{
     calls::Calls,
     exchange::{Client, Exchanges, Inbound, Intake},
     gate::{Admission, GateLayer},
-    panics::Panics,
+    metrics::Metrics,
     step::{Layered, Next, Step},
 };
 use crate::{
@@ -22,14 +24,12 @@ use crate::{
     rest::{Finish, Preferences, Routes},
 };
 
-/// The steps around the router.
 pub(super) type Steps =
     Layered<Exchanges, Layered<Finish, Layered<Panics, Layered<Calls, Layered<Bounds, Router>>>>>;
 
 /// The bounds on requests that are taken on; none for administrators.
 type Bounds = Option<Intake>;
 
-/// The parts of the steps.
 pub(super) struct Stack {
     pub(super) exchanges: Exchanges,
     pub(super) finish: Finish,
@@ -42,7 +42,6 @@ pub(super) struct Stack {
 }
 
 impl Stack {
-    /// All steps, from the head of a request to its answer.
     pub(super) fn steps(self) -> Steps {
         let panics = Panics(self.exchanges.metrics.clone());
         let calls = Calls(self.calls.is_some());
@@ -113,4 +112,26 @@ impl Next<Inbound> for Router {
         let answered = self.clone().call(request).await;
         answered.unwrap_or_else(|never| match never {})
     }
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Panics(pub(super) Arc<Metrics>);
+
+impl Step<Inbound> for Panics {
+    async fn answer(&self, inbound: Box<Inbound>, next: &impl Next<Inbound>) -> Response {
+        let dialect = inbound.client.dialect;
+        let answer = AssertUnwindSafe(next.answer(inbound)).catch_unwind().await;
+        answer.unwrap_or_else(|panic| {
+            self.0.panics.inc();
+            tracing::error!(panic = said(&*panic), "a handler panicked");
+            let error = Error::Internal("the request could not be answered");
+            dialect.refusal(&error)
+        })
+    }
+}
+
+fn said(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    text.unwrap_or("no text")
 }

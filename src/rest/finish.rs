@@ -17,7 +17,6 @@ use super::{
 };
 use crate::body::{Request, Response};
 
-/// The last step of every answer.
 #[derive(Clone, Debug)]
 pub struct Finish {
     origins: Origins,
@@ -27,8 +26,6 @@ pub struct Finish {
     service: Arc<Service>,
 }
 
-/// What the last step must know of a request.
-#[derive(Debug)]
 pub struct Preferences {
     is_head: bool,
     origin: Option<HeaderValue>,
@@ -36,8 +33,6 @@ pub struct Preferences {
 }
 
 impl Preferences {
-    /// Those of a request.
-    #[must_use]
     pub fn of(request: &Request) -> Self {
         let headers = request.headers();
         Self {
@@ -51,7 +46,6 @@ impl Preferences {
 impl Finish {
     /// Answers that are private are not kept by caches that several clients share. On loopback requests for foreign
     /// hosts are refused.
-    #[must_use]
     pub fn new(
         config: &Config,
         is_private: bool,
@@ -70,7 +64,6 @@ impl Finish {
     }
 
     /// Why a request is refused in the words of its protocol, before anything else is done: it is for a foreign host.
-    #[must_use]
     pub fn misdirected(&self, request: &Request) -> Option<Error> {
         // Requests without one host are refused later.
         self.hosts
@@ -79,20 +72,17 @@ impl Finish {
     }
 
     /// The answer to a preflight of a browser, which is complete.
-    #[must_use]
     pub fn preflight(&self, request: &Request) -> Option<Response> {
         origin::preflight(&self.origins, request.method(), request.headers())
     }
 
     /// Why a request is refused whatever it asks for: by its head.
-    #[must_use]
     pub fn refusal(&self, request: &Request) -> Option<Response> {
         too_long(request, self.head_bytes)
             .or_else(|| wrong_host(request))
             .or_else(|| foreign(&self.origins, &self.hosts, request))
     }
 
-    /// Puts onto an answer what all have.
     pub async fn finish(&self, preferences: &Preferences, response: &mut Response) {
         let origin = preferences.origin.as_ref();
         origin::allow(&self.origins, origin, response.headers_mut());
@@ -113,7 +103,6 @@ impl Finish {
     }
 }
 
-/// The lines of one header.
 fn picked(headers: &HeaderMap, name: &HeaderName) -> HeaderMap {
     if !headers.contains_key(name) {
         return HeaderMap::new();
@@ -135,7 +124,6 @@ fn wrong_host(request: &Request) -> Option<Response> {
     is_wrong.then(|| Problem::of_status(StatusCode::BAD_REQUEST, detail()))
 }
 
-/// The refusal of a request of a page that may not send it, before its body is read.
 fn foreign(origins: &Origins, hosts: &Hosts, request: &Request) -> Option<Response> {
     let detail = origin::refusal(origins, hosts, request)?;
     Some(Problem::of_status(StatusCode::FORBIDDEN, detail))

@@ -64,13 +64,10 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
 }
 
 /// The whole HTTP/1.1 response to a client whose connection is refused.
-#[must_use]
 pub fn no_place(error: &Error) -> Vec<u8> {
     Problem::last_words(error)
 }
 
-/// The answer to a request to a gRPC method that is no call.
-#[must_use]
 pub fn not_a_call(request: &Request) -> Response {
     let detail = format!(
         "`{}` is a gRPC method; allowed: POST with the content type application/grpc or \
@@ -80,8 +77,6 @@ pub fn not_a_call(request: &Request) -> Response {
     Problem::of_status(StatusCode::UNSUPPORTED_MEDIA_TYPE, detail)
 }
 
-/// The answer to a gRPC call over an HTTP that cannot carry it.
-#[must_use]
 pub fn needs_http2(request: &Request) -> Response {
     let detail = format!(
         "`{}` is a gRPC method; allowed: gRPC over HTTP/2, gRPC-Web over any HTTP",
@@ -90,12 +85,8 @@ pub fn needs_http2(request: &Request) -> Response {
     Problem::of_status(StatusCode::HTTP_VERSION_NOT_SUPPORTED, detail)
 }
 
-/// All that a port answers by REST.
-#[derive(Debug)]
 pub struct Routes {
-    /// What is let in with a key, where keys are required.
     pub gated: Router,
-    /// What everyone is let in to.
     pub open: Router,
     /// Answers requests to other paths.
     pub paths: Paths,
@@ -106,8 +97,6 @@ pub struct Routes {
 pub struct Paths(Arc<str>);
 
 impl Paths {
-    /// The answer to an unknown path.
-    #[must_use]
     pub fn nothing(&self, path: &str) -> Response {
         not_found(path, &self.0)
     }
@@ -116,10 +105,6 @@ impl Paths {
 impl Routes {
     /// The routes of these endpoints, of their description and of the pages, which name `public_url` as their own
     /// address if it is not empty; and `more`, which are not described.
-    ///
-    /// # Panics
-    /// For two endpoints of one path.
-    #[must_use]
     pub fn new(
         mut endpoints: Vec<Endpoint>,
         more: &[Endpoint],
@@ -128,14 +113,14 @@ impl Routes {
     ) -> Self {
         endpoints.extend(page::endpoints(pages, public_url));
         endpoints.push(page::description(&endpoints));
-        let paths: Vec<&str> = endpoints.iter().map(Endpoint::path).collect();
+        let paths: Vec<&str> = endpoints.iter().map(|endpoint| endpoint.path).collect();
         let paths = Paths(paths.join(", ").into());
         endpoints.extend(page::icon(pages));
         let of = |is_open| {
             let all = endpoints.iter().chain(more);
-            let all = all.filter(|endpoint| endpoint.is_open() == is_open);
+            let all = all.filter(|endpoint| endpoint.is_open == is_open);
             all.fold(Router::new(), |router, endpoint| {
-                router.route(endpoint.path(), endpoint.answers())
+                router.route(endpoint.path, endpoint.answers())
             })
         };
         Self {

@@ -73,7 +73,6 @@ impl Rate {
     }
 }
 
-/// The problem type of a kind of error.
 pub(super) fn urn(kind: Kind) -> String {
     format!("urn:strew:problem:{}", kind.slug())
 }
@@ -114,7 +113,6 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// An error as a whole response.
     pub(super) fn response(error: &'a Error) -> Response {
         Record::refuse(error.kind());
         let mut response = Self::new(error).into_response();
@@ -199,7 +197,6 @@ pub(super) fn is_bare(response: &Response) -> bool {
     content_type.is_none_or(|of| of.as_bytes().starts_with(b"text/plain"))
 }
 
-/// The problem in place of a bare error.
 pub(super) async fn instead(response: Response) -> Response {
     let status = response.status();
     let (parts, body) = response.into_parts();
@@ -218,18 +215,14 @@ pub(super) async fn instead(response: Response) -> Response {
 }
 
 /// An error on its way to the client, as a problem.
-#[derive(Debug)]
 pub struct Refused(pub Error);
 
 impl Refused {
-    /// The answer.
-    #[must_use]
     pub fn response(&self) -> Response {
         Problem::response(&self.0)
     }
 }
 
-/// Errors that become problems.
 macro_rules! refused {
     ($($error:ty),+) => {
         $(impl From<$error> for Refused {
@@ -281,7 +274,6 @@ fn available(path: &str, paths: &str) -> String {
     nearest.chain(all).collect::<Vec<_>>().join(", ")
 }
 
-/// The answer to a method that a path does not take.
 pub(super) fn wrong_method(method: &Method, uri: &Uri, allowed: &str) -> Response {
     let path = uri.path();
     let is_query = path == "/v1/points" && method == Method::POST;

@@ -26,7 +26,6 @@ const KEPT: [u32; 6] = [2, 4, 8, 16, 32, 64];
 const THINNED_SIDE: f64 = 30.0;
 const SHARED_SIDE: f64 = 40.0;
 
-/// The figures of a table as JSON.
 pub(super) fn document(args: &Subjects, table: &Table) -> Result<Value, Failure> {
     let side = match args.window_points {
         None => SIDE,
@@ -105,7 +104,6 @@ pub(super) fn document(args: &Subjects, table: &Table) -> Result<Value, Failure>
     }))
 }
 
-/// The twins to measure, with their points.
 fn twins(args: &Subjects, table: &Table) -> Result<Vec<(Twin, SpacePoints)>, Failure> {
     let points = |twin: Twin| Some((twin, SpacePoints::of_twin(table, twin)?));
     if args.twin.is_empty() {

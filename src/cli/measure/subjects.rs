@@ -23,7 +23,6 @@ pub(super) struct Subjects {
     pub(super) places_seed: u64,
 }
 
-/// A place in space: three numbers joined by commas.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner(pub(super) [f64; 3]);
 

@@ -33,11 +33,10 @@ use crate::{
     ops::{
         dialect::Dialect,
         step::{Next, Step},
-        throttle::LogThrottle,
+        telemetry::LogThrottle,
     },
 };
 
-/// The bounds that all requests share. Cheap to clone.
 #[derive(Clone, Debug)]
 pub(in crate::ops) struct Intake {
     shared: Arc<Shared>,
@@ -68,7 +67,6 @@ impl Intake {
 }
 
 impl Step<Inbound> for Intake {
-    /// Answers a request within the bounds, or refuses it.
     async fn answer(&self, mut inbound: Box<Inbound>, next: &impl Next<Inbound>) -> Response {
         let (shared, dialect) = (&*self.shared, inbound.client.dialect);
         let answered = match inbound.refused.take() {
@@ -170,8 +168,6 @@ impl Shared {
     }
 }
 
-/// A body that is being received.
-#[derive(Debug)]
 struct Receiving {
     /// The memory of the body so far, held until there is an answer.
     held: Mutex<Held>,
@@ -183,8 +179,6 @@ struct Receiving {
     done: Notify,
 }
 
-/// The places for requests.
-#[derive(Debug)]
 struct Permits {
     all: Arc<Quota>,
     address: Arc<Usage>,
@@ -203,7 +197,6 @@ impl Permits {
 }
 
 impl Receiving {
-    /// Takes a place for the request, unless it has one.
     fn take_permit(&self) -> Result<(), Error> {
         let Some(permits) = &self.permits else {
             return Ok(());
@@ -222,7 +215,6 @@ const AT_ONCE: usize = 64 << 10;
 /// The bytes of a health check that are taken although the budget is used up: it names a service.
 const PROBE_BODY: usize = 1 << 10;
 
-/// The body of a request: in time, and within the budget.
 struct LimitedBody {
     body: Body,
     deadline: Pin<Box<Sleep>>,
@@ -231,7 +223,6 @@ struct LimitedBody {
     dialect: Dialect,
     /// The bytes that were read since the reader last waited.
     at_once: usize,
-    /// The bytes that do not count.
     free: usize,
 }
 
