@@ -18,15 +18,6 @@ use super::{
     output,
 };
 
-const TITLES: [&str; 6] = [
-    "profile",
-    "points in",
-    "alpha",
-    "map",
-    "blocks",
-    "joint kinds",
-];
-
 fn cells(entry: &Entry, catalog: &Catalog) -> [String; 6] {
     [
         entry.key.profile.to_string(),
@@ -41,21 +32,23 @@ fn cells(entry: &Entry, catalog: &Catalog) -> [String; 6] {
 pub(super) fn profiles(args: &config::Args) -> Result<(), Failure> {
     let catalog = config::tables(&args.merged(config::Uses::LOADED)?)?;
     let tables = catalog.entries().chain(catalog.in_space());
-    let tables = tables.map(|entry| cells(entry, &catalog));
-    let rows: Vec<[String; 6]> = [TITLES.map(String::from)]
-        .into_iter()
-        .chain(tables)
-        .collect();
+    let titles = [
+        "profile",
+        "points in",
+        "alpha",
+        "map",
+        "blocks",
+        "joint kinds",
+    ];
+    let mut rows = vec![titles.map(String::from)];
+    rows.extend(tables.map(|entry| cells(entry, &catalog)));
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
-    let widths = [0, 1, 2, 3, 4, 5].map(|column| width(column).unwrap_or(0));
+    let widths: [_; 6] = std::array::from_fn(|column| width(column).unwrap_or(0));
     let mut text = String::new();
     for row in &rows {
-        let cells = row
-            .iter()
-            .zip(widths)
-            .map(|(cell, width)| format!("{cell:width$}"));
-        let line: Vec<String> = cells.collect();
-        text += line.join("  ").trim_end();
+        let cells = row.iter().zip(widths);
+        let cells = cells.map(|(cell, width)| format!("{cell:width$}"));
+        text += cells.collect::<Vec<_>>().join("  ").trim_end();
         text.push('\n');
     }
     output::print(&text)

@@ -1,9 +1,8 @@
 //! `strew point` and `strew nearest`: finds points by id and near a place.
 
-use serde::Serialize;
 use strew_catalog::Catalog;
-use strew_plan::{Found, Placed};
-use strew_query::{Nearest, ResolvedSet, Set, Values};
+use strew_plan::Placed;
+use strew_query::{Nearest, Set, Values};
 
 use super::{
     Failure, config,
@@ -12,6 +11,7 @@ use super::{
     flags::{Flags, Near, Single, Takes},
     output,
 };
+use crate::rest::{One, Several};
 
 /// A set without a region.
 #[derive(Debug, clap::Args)]
@@ -41,18 +41,6 @@ pub(super) struct PointArgs {
 }
 
 pub(super) type NearestArgs = SetArgs<Near>;
-
-#[derive(Serialize)]
-struct One {
-    point: Found,
-    query: ResolvedSet,
-}
-
-#[derive(Serialize)]
-struct Several {
-    neighbors: Vec<Found>,
-    query: ResolvedSet,
-}
 
 impl<T: Takes> SetArgs<T> {
     fn load(&self) -> Result<(Values, Catalog), Failure> {

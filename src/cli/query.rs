@@ -239,42 +239,28 @@ impl<T: Takes> QueryArgs<T> {
             let read = read_region(&bytes);
             return Ok(Some(read.map_err(|fault| source.refused(fault.into()))?));
         }
-        let chunk = |text| match self.space {
-            true => cube(text),
-            false => chunk(text),
-        };
+        let chunk = |text| chunk(text, self.space);
         self.chunk.as_deref().map(chunk).transpose()
     }
 }
 
-fn chunk(text: &str) -> Result<RegionDraft, Failure> {
+fn chunk(text: &str, in_space: bool) -> Result<RegionDraft, Failure> {
     let read = || {
-        let [size, x, y] = text.split('/').collect::<Vec<_>>().try_into().ok()?;
-        Some(ShapeDraft::Chunk(
-            size.parse().ok()?,
-            [x.parse().ok()?, y.parse().ok()?],
-        ))
+        let (size, cells) = text.split_once('/')?;
+        let (size, cells) = (size.parse().ok()?, cells.split('/').map(str::parse));
+        match *cells.collect::<Result<Vec<i64>, _>>().ok()? {
+            [x, y] if !in_space => Some(ShapeDraft::Chunk(size, [x, y])),
+            [x, y, z] if in_space => Some(ShapeDraft::Volume(VolumeDraft::Chunk(size, [x, y, z]))),
+            _ => None,
+        }
     };
-    let allowed = "SIZE/CX/CY, a size above 0 and two integers, such as 64/-3/2";
-    chunk_of(text, read(), allowed)
-}
-
-fn cube(text: &str) -> Result<RegionDraft, Failure> {
-    let read = || {
-        let [size, x, y, z] = text.split('/').collect::<Vec<_>>().try_into().ok()?;
-        Some(ShapeDraft::Volume(VolumeDraft::Chunk(
-            size.parse().ok()?,
-            [x.parse().ok()?, y.parse().ok()?, z.parse().ok()?],
-        )))
+    let allowed = match in_space {
+        true => "SIZE/CX/CY/CZ, a size above 0 and three integers, such as 64/-3/2/0",
+        false => "SIZE/CX/CY, a size above 0 and two integers, such as 64/-3/2",
     };
-    let allowed = "SIZE/CX/CY/CZ, a size above 0 and three integers, such as 64/-3/2/0";
-    chunk_of(text, read(), allowed)
-}
-
-fn chunk_of(text: &str, shape: Option<ShapeDraft>, allowed: &str) -> Result<RegionDraft, Failure> {
-    let shape = shape.ok_or_else(|| {
-        Failure::Usage(anyhow!("--chunk {text}: not a chunk; allowed: {allowed}"))
-    })?;
+    let Some(shape) = read() else {
+        refuse!("--chunk {text}: not a chunk; allowed: {allowed}");
+    };
     Ok(RegionDraft {
         path: "chunk".into(),
         shape,

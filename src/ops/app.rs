@@ -30,37 +30,32 @@ pub(super) type Steps =
 /// The bounds on requests that are taken on; none for administrators.
 type Bounds = Option<Intake>;
 
-pub(super) struct Stack {
-    pub(super) exchanges: Exchanges,
-    pub(super) finish: Finish,
-    pub(super) routes: Routes,
-    /// Calls of gRPC; none at the address of administrators.
-    pub(super) calls: Option<grpc::Calls>,
-    pub(super) intake: Option<Intake>,
-    /// The keys that are required; at the address of administrators everyone is one.
-    pub(super) gate: Option<Arc<Gate>>,
-}
-
-impl Stack {
-    pub(super) fn steps(self) -> Steps {
-        let panics = Panics(self.exchanges.metrics.clone());
-        let calls = Calls(self.calls.is_some());
-        let router = router(self.routes, self.calls, self.gate);
-        ServiceBuilder::new()
-            // Names the request and counts it against its client's address. The answer leaves through it, so that each
-            // byte is counted until the socket has it, and there is one report of all: it is outermost.
-            .layer(self.exchanges.layer())
-            // Requests for foreign hosts, of foreign pages and with heads too long go no further. All answers, also
-            // refusals of the steps below, get what browsers and caches need, and are compressed.
-            .layer(self.finish.layer())
-            // A panic below is one request's, and is answered.
-            .layer(panics.layer())
-            // Calls of web pages become calls as all others, and the deadline of a call begins.
-            .layer(calls.layer())
-            // The number of requests at once, the bytes of their bodies, and the time to the head of an answer.
-            .layer(self.intake.layer())
-            .service(router)
-    }
+/// All steps, from the head of a request to its answer. At the address of administrators there are no calls and no bounds,
+/// and everyone is one.
+pub(super) fn steps(
+    exchanges: Exchanges,
+    finish: Finish,
+    routes: Routes,
+    calls: Option<grpc::Calls>,
+    (intake, gate): (Bounds, Option<Arc<Gate>>),
+) -> Steps {
+    let panics = Panics(exchanges.metrics.clone());
+    let has_calls = Calls(calls.is_some());
+    let router = router(routes, calls, gate);
+    ServiceBuilder::new()
+        // Names the request and counts it against its client's address. The answer leaves through it, so that each
+        // byte is counted until the socket has it, and there is one report of all: it is outermost.
+        .layer(exchanges.layer())
+        // Requests for foreign hosts, of foreign pages and with heads too long go no further. All answers, also
+        // refusals of the steps below, get what browsers and caches need, and are compressed.
+        .layer(finish.layer())
+        // A panic below is one request's, and is answered.
+        .layer(panics.layer())
+        // Calls of web pages become calls as all others, and the deadline of a call begins.
+        .layer(has_calls.layer())
+        // The number of requests at once, the bytes of their bodies, and the time to the head of an answer.
+        .layer(intake.layer())
+        .service(router)
 }
 
 /// All paths. What is not open to everyone is behind the gate; unknown paths are open.

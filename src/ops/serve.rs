@@ -12,7 +12,7 @@ use strew_service::{Service, Workers};
 use tokio_util::task::AbortOnDropHandle;
 
 use super::{
-    app::Stack,
+    app,
     connections::{Connections, Front},
     exchange::{self, Exchanges, Intake},
     health::{self, Readiness},
@@ -239,16 +239,11 @@ impl App {
             terms: exchange::terms(&self.config.server),
         };
         let intake = || Intake::new(&self.config, self.service.budget().clone());
-        let stack = Stack {
-            exchanges: exchanges.clone(),
-            finish,
-            routes: Routes::new(endpoints, more, &self.pages, &self.config.http.public_url),
-            calls,
-            intake: is_for_all.then(intake),
-            gate: is_for_all.then(|| self.gate.clone()),
-        };
+        let gate = is_for_all.then(|| self.gate.clone());
+        let bounds = (is_for_all.then(intake), gate);
+        let routes = Routes::new(endpoints, more, &self.pages, &self.config.http.public_url);
         Front {
-            steps: stack.steps(),
+            steps: app::steps(exchanges.clone(), finish, routes, calls, bounds),
             exchanges,
         }
     }

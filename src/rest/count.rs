@@ -93,11 +93,11 @@ pub(super) fn counts(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
 
 /// The exact number of points of a query.
 #[derive(Serialize, JsonSchema)]
-struct Count {
+pub struct Count {
     /// The number of points.
-    count: Long<u128>,
+    pub count: Long<u128>,
     /// The query with everything filled in.
-    query: Resolved,
+    pub query: Resolved,
 }
 
 async fn counted(
@@ -149,21 +149,22 @@ pub(super) fn parts_of(service: &Arc<Service>, dimension: Dimension) -> Endpoint
 
 /// A query in parts.
 #[derive(Serialize, JsonSchema)]
-struct Split {
+pub struct Split {
     /// The number of points of all parts.
-    count: Long<u128>,
+    pub count: Long<u128>,
     /// The parts in their order.
-    parts: Vec<Part>,
+    pub parts: Vec<Piece>,
 }
 
 /// A part of a query.
 #[derive(Serialize, JsonSchema)]
-struct Part {
+#[schemars(rename = "Part")]
+pub struct Piece {
     /// The number of points of the part.
-    count: Long<u64>,
+    pub count: Long<u64>,
     /// The body of POST /v1/points:query, in space of POST /v1/space/points, that requests it.
     #[schemars(with = "AnyQuery")]
-    query: Map<String, Value>,
+    pub query: Map<String, Value>,
 }
 
 /// The bytes of a part besides the body: a cursor, a limit, a count.
@@ -185,7 +186,7 @@ async fn split(
     let bytes = places.len().saturating_mul(size + PART_BYTES);
     let _held = service.hold(bytes.saturating_mul(3))?;
     let write = move |_: &Service, _: &Stop| {
-        let part = |(token, count): (Token, u64)| Part {
+        let part = |(token, count): (Token, u64)| Piece {
             count: Long(count),
             query: draft.part(&token, count).to_body(),
         };

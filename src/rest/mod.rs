@@ -31,12 +31,14 @@ use strew_service::Service;
 use crate::body::{Request, Response};
 use api::Endpoint;
 pub use context::{Context, Posted, Sent};
+pub use count::{Count, Piece, Split};
 pub use document::{JSON, file, json, momentary};
 pub use finish::{Finish, Preferences};
 pub use named::world_document;
 pub use page::{Page, Pages, Part};
 pub use problem::Refused;
 use problem::{Problem, not_found};
+pub use single::{One, Several};
 
 /// The endpoints of REST, without their description.
 pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {

@@ -233,70 +233,58 @@ fn map(service: &Arc<Service>) -> Endpoint {
     Endpoint::only("/v1/pattern/map", service.clone(), operation, get)
 }
 
-/// A figure as it is described: itself, its paths as a drawing and as pixels, their names for programs, a few words,
-/// the rest of its address.
-type Described = (
-    Figure,
-    [&'static str; 2],
-    [&'static str; 2],
-    &'static str,
-    &'static str,
-);
-
-const FIGURES: [Described; 4] = [
+/// The figures, with their names, a few words and the rest of the address of an example.
+const FIGURES: [(Figure, &str, &str, &str); 4] = [
     (
         Figure::Index,
-        [
-            "/v1/pattern/figures/index.svg",
-            "/v1/pattern/figures/index.png",
-        ],
-        ["getIndexFigure", "getIndexPicture"],
+        "Index",
         "A figure of the pattern, the index torus and the set region",
         "alpha=sqrt(3)&window=32",
     ),
     (
         Figure::Arrangement,
-        [
-            "/v1/pattern/figures/arrangement.svg",
-            "/v1/pattern/figures/arrangement.png",
-        ],
-        ["getArrangementFigure", "getArrangementPicture"],
+        "Arrangement",
         "A figure of an arrangement, its image and its margin",
         "offsets=2,1+3,3",
     ),
     (
         Figure::Clusters,
-        [
-            "/v1/pattern/figures/clusters.svg",
-            "/v1/pattern/figures/clusters.png",
-        ],
-        ["getClustersFigure", "getClustersPicture"],
+        "Clusters",
         "A figure of clusters in the plane and in the set region",
         "alpha=sqrt(3)&distance=2&window=32",
     ),
     (
         Figure::Map,
-        ["/v1/pattern/figures/map.svg", "/v1/pattern/figures/map.png"],
-        ["getMapFigure", "getMapPicture"],
+        "Map",
         "A figure of a neighborhood map, a block's neighbors and the growth with R",
         "radius=20&block=3,8",
     ),
 ];
 
-fn figure(service: &Arc<Service>, described: Described, format: Format) -> Endpoint {
-    let (figure, paths, ids, summary, query) = described;
-    let (number, content, ending, more) = match format {
-        Format::Svg => (0, schemas::text as schemas::Content, "svg", ""),
-        Format::Png => (1, schemas::any as schemas::Content, "png", "&size=800"),
+fn figure(
+    service: &Arc<Service>,
+    (figure, name, summary, query): (Figure, &str, &'static str, &str),
+    format: Format,
+) -> Endpoint {
+    let (of, content, ending, more) = match format {
+        Format::Svg => ("Figure", schemas::text as schemas::Content, "svg", ""),
+        Format::Png => (
+            "Picture",
+            schemas::any as schemas::Content,
+            "png",
+            "&size=800",
+        ),
     };
+    // There are eight, for as long as the program runs.
+    let path = format!("/v1/pattern/figures/{}.{ending}", name.to_lowercase()).leak();
     let content_type = format.content_type();
     let answers = api::Answer::file("The figure.", content_type, content).or_unchanged();
     let operation = Operation {
-        id: ids[number],
+        id: format!("get{name}{of}").leak(),
         summary,
         about: "As strew figure draws it, for any α.",
         parameters: figure.groups(format),
-        example: format!("'{}?{query}{more}' -o figure.{ending}", paths[number]),
+        example: format!("'{path}?{query}{more}' -o figure.{ending}"),
         ..Operation::new(Tag::Patterns, answers)
     };
     let get = move |State(service): Shared, context: Context| async move {
@@ -307,5 +295,5 @@ fn figure(service: &Arc<Service>, described: Described, format: Format) -> Endpo
         };
         Ok::<_, Refused>(context.answer(content_type, &(), pin!(make)).await?)
     };
-    Endpoint::only(paths[number], service.clone(), operation, get)
+    Endpoint::only(path, service.clone(), operation, get)
 }

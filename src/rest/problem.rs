@@ -10,8 +10,7 @@ use strew_service::Record;
 use crate::body::{Body, Response};
 
 /// Why there is no answer (RFC 9457).
-#[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "Problem")]
+#[derive(Default, Debug, Serialize, JsonSchema)]
 pub(super) struct Problem<'a> {
     /// The type of the problem.
     #[schemars(extend("enum" = types()))]
@@ -142,13 +141,8 @@ impl<'a> Problem<'a> {
             title: status.canonical_reason().unwrap_or("An error"),
             status: status.as_u16(),
             detail,
-            errors: &[],
-            count: None,
-            limit: None,
-            pinned: None,
-            loaded: None,
-            rate: None,
             request_id: request_id(),
+            ..Problem::default()
         };
         problem.into_response()
     }

@@ -113,21 +113,21 @@ pub(super) fn nearest(service: &Arc<Service>, dimension: Dimension) -> Endpoint 
 /// A point by its id.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "PointById")]
-struct One {
+pub struct One {
     /// The point.
-    point: Found,
+    pub point: Found,
     /// The set of points with everything filled in.
-    query: ResolvedSet,
+    pub query: ResolvedSet,
 }
 
 /// The points nearest to a place.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "Neighbors")]
-struct Several {
+pub struct Several {
     /// The points, nearest first.
-    neighbors: Vec<Found>,
+    pub neighbors: Vec<Found>,
     /// The set of points with everything filled in.
-    query: ResolvedSet,
+    pub query: ResolvedSet,
 }
 
 fn freshness(context: &Context, set: &Set) -> Freshness {

@@ -1,7 +1,6 @@
 //! `strew measure`: the figures and curves of a table, of a region, or of a file of points.
 
 mod space;
-mod subjects;
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +17,7 @@ use strew_forge::{
 use strew_plan::library::measured::document;
 use strew_query::{Draft, parameters::BBOX};
 
-use self::subjects::Subjects;
+use super::measure::space::Subjects;
 use super::{
     Failure, config,
     failure::Source,
@@ -207,18 +206,9 @@ impl Args {
                 |twin: &Twin| twin.points() >= 70_225 && twin.is_uniform() && !seen.contains(twin);
             return Ok(table.map().twins().filter(large).take(2).collect());
         }
-        let read = |text: &String| {
-            let twin = text
-                .split_once('/')
-                .and_then(|(p, q)| Twin::new(p.parse().ok()?, q.parse().ok()?));
-            match twin {
-                Some(twin) if u128::from(twin.points()) <= MAX_POINTS => Ok(twin),
-                Some(twin) => bail!(
-                    "--twin {text} has {} points; at most {MAX_POINTS} are measured",
-                    twin.points()
-                ),
-                None => bail!("--twin is `{text}`; allowed: coprime integers p/q with q < p < 2q"),
-            }
+        let read = |&twin: &Twin| match u128::from(twin.points()) {
+            0..=MAX_POINTS => Ok(twin),
+            points => bail!("--twin {twin} has {points} points; at most {MAX_POINTS} are measured"),
         };
         self.subjects.twin.iter().map(read).collect()
     }

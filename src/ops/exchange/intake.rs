@@ -37,13 +37,11 @@ use crate::{
     },
 };
 
-#[derive(Clone, Debug)]
-pub(in crate::ops) struct Intake {
-    shared: Arc<Shared>,
-}
+/// The bounds that all requests share. Cheap to clone.
+#[derive(Clone)]
+pub(in crate::ops) struct Intake(Arc<Bounds>);
 
-#[derive(Debug)]
-struct Shared {
+struct Bounds {
     places: Arc<Quota>,
     budget: Budget,
     body: Duration,
@@ -53,28 +51,25 @@ struct Shared {
 
 impl Intake {
     pub(in crate::ops) fn new(config: &Config, budget: Budget) -> Self {
-        let server = &config.server;
-        Self {
-            shared: Arc::new(Shared {
-                places: Arc::new(Quota::new(config.limits.max_requests)),
-                budget,
-                body: seconds(server.body_read_timeout_seconds),
-                first_byte: seconds(server.first_byte_seconds),
-                refused: LogThrottle::default(),
-            }),
-        }
+        Self(Arc::new(Bounds {
+            places: Arc::new(Quota::new(config.limits.max_requests)),
+            budget,
+            body: seconds(config.server.body_read_timeout_seconds),
+            first_byte: seconds(config.server.first_byte_seconds),
+            refused: LogThrottle::default(),
+        }))
     }
 }
 
 impl Step<Inbound> for Intake {
     async fn answer(&self, mut inbound: Box<Inbound>, next: &impl Next<Inbound>) -> Response {
-        let (shared, dialect) = (&*self.shared, inbound.client.dialect);
+        let (bounds, dialect) = (&*self.0, inbound.client.dialect);
         let answered = match inbound.refused.take() {
             Some(error) => Err(error),
-            None => shared.answer(inbound, next).await,
+            None => bounds.answer(inbound, next).await,
         };
         answered.unwrap_or_else(|error| {
-            if let Some(times) = shared.refused.record() {
+            if let Some(times) = bounds.refused.record() {
                 tracing::warn!(%error, times, "a request is refused");
             }
             dialect.refusal(&error)
@@ -82,7 +77,7 @@ impl Step<Inbound> for Intake {
     }
 }
 
-impl Shared {
+impl Bounds {
     async fn answer(
         &self,
         mut inbound: Box<Inbound>,

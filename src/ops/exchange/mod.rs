@@ -32,7 +32,7 @@ pub(super) use intake::Intake;
 pub(super) use progress::Fate;
 use progress::{OpenExchanges, Terms};
 use reply::{Exchange, Permits};
-use report::{Asked, Report};
+use report::Report;
 use strew_access::{Gate, Usage};
 use strew_config::{Server, seconds};
 use strew_error::{Denied, Error};
@@ -145,15 +145,9 @@ impl Step<Inbound> for Exchanges {
         let is_head = *inbound.request.method() == Method::HEAD;
         let usage = inbound.client.usage.clone();
         let budget = self.budget.of_address(usage.clone());
-        let report = {
-            let asked = Asked {
-                request: &inbound.request,
-                protocol: dialect.protocol(),
-                peer: inbound.from.peer,
-                start: now,
-            };
-            Report::start(&self.metrics, self.spans.as_ref(), budget.clone(), &asked)
-        };
+        let asked = (dialect.protocol(), inbound.from.peer);
+        let reported = (&self.metrics, self.spans.as_ref());
+        let report = Report::start(reported, budget.clone(), &inbound.request, asked, now);
         let record = report.record().clone();
 
         let is_probe = PROBES.contains(&inbound.request.uri().path());

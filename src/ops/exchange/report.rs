@@ -53,27 +53,16 @@ pub(super) struct Report {
     counted: u64,
 }
 
-pub(super) struct Asked<'a> {
-    pub(super) request: &'a Request,
-    pub(super) protocol: Protocol,
-    pub(super) peer: SocketAddr,
-    pub(super) start: Instant,
-}
-
 /// The bytes of an address that go into the log.
 const LONGEST: usize = 500;
 
 impl Report {
     pub(super) fn start(
-        metrics: &Arc<Metrics>,
-        spans: Option<&Spans>,
+        (metrics, spans): (&Arc<Metrics>, Option<&Spans>),
         budget: Budget,
-        &Asked {
-            request,
-            protocol,
-            peer,
-            start,
-        }: &Asked<'_>,
+        request: &Request,
+        (protocol, client): (Protocol, SocketAddr),
+        start: Instant,
     ) -> Self {
         let begins_one = || spans.is_some_and(Spans::begins_one);
         let identity = Identity::of(request.headers(), begins_one);
@@ -86,7 +75,7 @@ impl Report {
             start,
             method: request.method().clone(),
             address: request.uri().path_and_query().cloned(),
-            client: peer,
+            client,
             status: None,
             stand: Stand::Open,
             expected: None,

@@ -76,11 +76,14 @@ macro_rules! from_table {
 from_table! {
     PointsQuery = "PointsQuery", |generator| {
         refer(generator);
-        points_query()
+        let about = "Which points, which part of them, and in which format: a region with one set of \
+                     points, or with layers.";
+        query(groups::QUERY, groups::SET, PLANE, about)
     };
     CountQuery = "CountQuery", |generator| {
         refer(generator);
-        count_query()
+        let about = "Which points: a region with one set of points, or with layers.";
+        query(groups::COUNTED, groups::SET, PLANE, about)
     };
     AnyQuery = "AnyQuery", |generator| json!({
         "description": "A query for points of the plane or in space.",
@@ -92,10 +95,11 @@ from_table! {
     SpaceQuery = "SpaceQuery", |generator| {
         of::<VolumeSchema>(generator);
         of::<SpaceLayer>(generator);
-        space_query()
+        let about = "Which points in space: a region with one set of points, or with layers.";
+        query(groups::SPACE_QUERY, groups::SPACE_SET, ("Volume", "SpaceLayer"), about)
     };
-    Layer = "Layer", |_| layer();
-    SpaceLayer = "SpaceLayer", |_| space_layer();
+    Layer = "Layer", |_| layer_of(groups::SET, "Region");
+    SpaceLayer = "SpaceLayer", |_| layer_of(groups::SPACE_SET, "Volume");
 }
 
 /// Defines what queries refer to.
@@ -290,31 +294,6 @@ fn features() -> Value {
 
 /// The schemas of regions and layers of the plane.
 const PLANE: (&str, &str) = ("Region", "Layer");
-
-pub(super) fn points_query() -> Value {
-    let about = "Which points, which part of them, and in which format: a region with one set of \
-                 points, or with layers.";
-    query(groups::QUERY, groups::SET, PLANE, about)
-}
-
-pub(super) fn count_query() -> Value {
-    let about = "Which points: a region with one set of points, or with layers.";
-    query(groups::COUNTED, groups::SET, PLANE, about)
-}
-
-pub(super) fn space_query() -> Value {
-    let about = "Which points in space: a region with one set of points, or with layers.";
-    let of_space = ("Volume", "SpaceLayer");
-    query(groups::SPACE_QUERY, groups::SPACE_SET, of_space, about)
-}
-
-pub(super) fn layer() -> Value {
-    layer_of(groups::SET, "Region")
-}
-
-pub(super) fn space_layer() -> Value {
-    layer_of(groups::SPACE_SET, "Volume")
-}
 
 fn layer_of(set: &'static [Group], region: &str) -> Value {
     let mut properties = members(set);
