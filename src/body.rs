@@ -5,10 +5,8 @@ use std::sync::Arc;
 pub use axum::{BoxError, body::Body};
 use strew_service::Held;
 
-/// A request.
 pub type Request = http::Request<Body>;
 
-/// An answer.
 pub type Response = http::Response<Body>;
 
 /// The memory of an answer that is there as a whole, among its extensions.

@@ -6,6 +6,11 @@
 //!
 //! Everything else is in the crates beside it: `strew-service` answers queries, `strew-plan` is what programs embed.
 
+#![allow(
+    missing_docs,
+    reason = "a program: a name that says enough needs no sentence"
+)]
+
 pub mod body;
 pub mod cli;
 pub mod grpc;

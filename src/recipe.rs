@@ -4,7 +4,6 @@
 
 use strew_query::{Group, Parameter, Shape};
 
-/// A parameter of no query.
 pub(crate) static ADDED: Parameter = Parameter {
     name: "added",
     about: "Made for a test.",

@@ -41,9 +41,8 @@ impl Host {
         let layers = Layers::new().expect("the defaults");
         let config = layers.finish().expect("valid");
         let block_bytes = config.limits.block_bytes;
-        let app = App::new(config).expect("tables and threads");
-        let endpoints = endpoints(app.service(), block_bytes);
-        let app = app.with_endpoints(endpoints);
+        let mut app = App::new(config).expect("tables and threads");
+        app.more = endpoints(app.service(), block_bytes);
         let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
         let address = listener.local_addr().expect("bound");
         let runtime = tokio::runtime::Builder::new_multi_thread()

@@ -20,11 +20,7 @@ use strew_query::{
     parameters::{ATTRIBUTES, FIELD, TERRAIN},
 };
 
-use super::{
-    Failure,
-    config::{self, Load as _},
-    output::write,
-};
+use super::{Failure, config, output::write};
 
 /// Flags of `strew completions`.
 #[derive(Debug, clap::Args)]
@@ -55,7 +51,6 @@ pub(super) fn completions(args: &CompletionsArgs) -> Result<(), Failure> {
     write(None, &script)
 }
 
-/// Writes manual pages.
 pub(super) fn man(args: &ManArgs, command: clap::Command) -> Result<(), Failure> {
     let Some(folder) = &args.out_dir else {
         return write(None, &page(command)?);
@@ -110,7 +105,6 @@ fn matching(text: &str, words: &[String], is_list: bool) -> Vec<CompletionCandid
         .collect()
 }
 
-/// The known values.
 fn words(parameter: &Parameter) -> Vec<String> {
     let owned = |words: &[&str]| words.iter().map(|&word| word.to_owned()).collect();
     match parameter.shape {
@@ -139,7 +133,7 @@ fn loaded(parameter: &Parameter) -> Option<Vec<String>> {
         return None;
     }
     let config = config::Args::default().merged(config::Uses::ALL).ok()?;
-    let catalog = config.tables().ok()?;
+    let catalog = config::tables(&config).ok()?;
     let of_tables = |name: fn(&strew_catalog::Entry) -> String| -> Vec<String> {
         let names: BTreeSet<String> = catalog.entries().map(|entry| name(entry)).collect();
         names.into_iter().collect()
@@ -149,7 +143,7 @@ fn loaded(parameter: &Parameter) -> Option<Vec<String>> {
         "alpha" => of_tables(|entry| entry.key.alpha.to_string()),
         "map" => of_tables(|entry| entry.key.size.to_string()),
         "world" => {
-            let catalog = config.with_worlds(catalog).ok()?;
+            let catalog = config::with_worlds(&config, catalog).ok()?;
             let worlds = catalog.worlds.iter();
             worlds.map(|world| world.name.clone()).collect()
         }

@@ -8,12 +8,9 @@ use std::{
 
 use flate2::write::GzEncoder;
 
-/// A way to compress an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Compression {
-    /// By gzip: `.gz`.
     Gzip,
-    /// By zstd: `.zst`.
     Zstd,
 }
 
@@ -29,7 +26,6 @@ impl Compression {
         Some((compression, Path::new(stem)))
     }
 
-    /// The ending of names of compressed files.
     pub(super) const fn ending(self) -> &'static str {
         match self {
             Self::Gzip => "gz",
@@ -37,7 +33,6 @@ impl Compression {
         }
     }
 
-    /// Compresses a whole file.
     pub(super) fn pack(self, bytes: &[u8]) -> io::Result<Vec<u8>> {
         match self {
             Self::Gzip => {
@@ -49,7 +44,6 @@ impl Compression {
         }
     }
 
-    /// Reverses [`pack`](Self::pack).
     pub(super) fn unpack(self, bytes: &[u8]) -> io::Result<Vec<u8>> {
         match self {
             Self::Gzip => {
@@ -75,7 +69,6 @@ pub(super) fn names(
     [(plain.to_owned(), None)].into_iter().chain(packed)
 }
 
-/// A writer, with or without a compressor.
 pub(super) enum Sink {
     Plain(Box<dyn Write + Send>),
     Gzip(GzEncoder<Box<dyn Write + Send>>),

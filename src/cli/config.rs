@@ -16,22 +16,16 @@ use super::{Failure, output};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Uses(&'static [&'static [&'static str]]);
 
-/// Things that are loaded by name.
 const NAMED: &[&str] = &["tables.", "fields.", "except."];
 const LISTS: &[&str] = &["limits.max_points"];
 const PLANS: &[&str] = &["worlds.", "limits.max_rows", "limits.max_vertices"];
 const BLOCKS: &[&str] = &["limits.block_bytes", "workers.threads"];
 
 impl Uses {
-    /// All settings, for daemons.
     pub(crate) const ALL: Self = Self(&[&[""]]);
-    /// For commands that load things by name.
     pub(crate) const LOADED: Self = Self(&[NAMED]);
-    /// For commands that list.
     pub(crate) const LISTS: Self = Self(&[NAMED, LISTS]);
-    /// For commands that plan queries.
     pub(crate) const QUERIES: Self = Self(&[NAMED, LISTS, PLANS]);
-    /// For commands that make points.
     pub(crate) const POINTS: Self = Self(&[NAMED, LISTS, PLANS, BLOCKS]);
 }
 
@@ -62,13 +56,11 @@ pub(crate) struct Served {
 }
 
 impl Served {
-    /// The merged settings.
     pub(crate) fn merged(&self) -> Result<Config, Failure> {
         let merged = self.settings.merge(Uses::ALL, self.listen.as_deref());
         merged.map_err(Failure::usage)
     }
 
-    /// As [`Args::must_be_unused`].
     pub(crate) fn must_be_unused(&self, why: &str) -> Result<(), Failure> {
         let listen = self.listen.as_ref().map(|_| "--listen");
         self.settings.must_be_unused(listen, why)
@@ -118,7 +110,6 @@ impl Args {
     }
 }
 
-/// Prints the merged settings.
 pub(super) fn run(args: &Served) -> Result<(), Failure> {
     let text = args
         .merged()?
@@ -127,52 +118,34 @@ pub(super) fn run(args: &Served) -> Result<(), Failure> {
     output::print(&text)
 }
 
-/// The loading of what settings name.
-pub(super) trait Load {
-    /// The tables.
-    fn catalog(&self) -> Result<Catalog, Failure>;
-
-    /// The tables, fields and lists.
-    fn tables(&self) -> Result<Catalog, Failure>;
-
-    /// The fields.
-    fn loaded_fields(&self) -> Result<Fields, Failure>;
-
-    /// Adds the worlds.
-    fn with_worlds(&self, catalog: Catalog) -> Result<Assets, Failure>;
-
-    /// Checks and plans a query.
-    fn planned(&self, draft: &Draft, assets: &Assets) -> Result<(Planned, Options), Error>;
+/// The tables.
+pub(super) fn catalog(config: &Config) -> Result<Catalog, Failure> {
+    let tables = &config.tables;
+    Catalog::preloading(tables.preload_bytes, tables.embedded, tables.folder())
+        .map_err(Failure::usage)
 }
 
-impl Load for Config {
-    fn catalog(&self) -> Result<Catalog, Failure> {
-        let tables = &self.tables;
-        Catalog::preloading(tables.preload_bytes, tables.embedded, tables.folder())
-            .map_err(Failure::usage)
-    }
+/// The tables, fields and lists.
+pub(super) fn tables(config: &Config) -> Result<Catalog, Failure> {
+    let lists = Lists::load(&config.except).map_err(Failure::usage)?;
+    let fields = Fields::load(&config.fields).map_err(Failure::usage)?;
+    Ok(catalog(config)?.with_fields(fields).with_except(lists))
+}
 
-    fn tables(&self) -> Result<Catalog, Failure> {
-        let catalog = self.catalog()?;
-        let lists = Lists::load(&self.except).map_err(Failure::usage)?;
-        Ok(catalog
-            .with_fields(self.loaded_fields()?)
-            .with_except(lists))
-    }
+/// Adds the worlds.
+pub(super) fn with_worlds(config: &Config, catalog: Catalog) -> Result<Assets, Failure> {
+    let worlds = Worlds::load(&config.worlds, &catalog, config.limits.max_vertices);
+    Ok(Assets::from(catalog).with_worlds(worlds.map_err(Failure::usage)?))
+}
 
-    fn loaded_fields(&self) -> Result<Fields, Failure> {
-        Fields::load(&self.fields).map_err(Failure::usage)
-    }
-
-    fn with_worlds(&self, catalog: Catalog) -> Result<Assets, Failure> {
-        let worlds = Worlds::load(&self.worlds, &catalog, self.limits.max_vertices);
-        Ok(Assets::from(catalog).with_worlds(worlds.map_err(Failure::usage)?))
-    }
-
-    fn planned(&self, draft: &Draft, assets: &Assets) -> Result<(Planned, Options), Error> {
-        let (query, options) = draft.check(assets, self.limits.max_vertices)?;
-        Ok((Planned::at_once(query, &self.limits)?, options))
-    }
+/// Checks and plans a query.
+pub(super) fn planned(
+    config: &Config,
+    draft: &Draft,
+    assets: &Assets,
+) -> Result<(Planned, Options), Error> {
+    let (query, options) = draft.check(assets, config.limits.max_vertices)?;
+    Ok((Planned::at_once(query, &config.limits)?, options))
 }
 
 /// A pool of this number of threads; 0 for one per core.

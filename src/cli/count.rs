@@ -1,18 +1,17 @@
 //! `strew count`: the number of points of a query, exactly, without making them; and `strew split`: its parts, each a
 //! query for `strew sample --query -`.
 
-use serde::Serialize;
-use serde_json::{Map, Value};
 use strew_error::integer::Long;
-use strew_query::{Resolved, Token, groups, parts};
+use strew_query::{Token, groups, parts};
 
 use super::{
     Failure, config,
+    failure::Source,
     flags::{Counted, Parted},
     output,
     query::QueryArgs,
-    refusal::Source,
 };
+use crate::rest::{Count, Piece, Split};
 
 /// Flags of `strew count`.
 #[derive(Debug, clap::Args)]
@@ -24,20 +23,13 @@ pub(super) struct CountArgs {
     query: QueryArgs<Counted>,
 }
 
-#[derive(Serialize)]
-struct Document {
-    count: Long<u128>,
-    query: Resolved,
-}
-
-/// Counts.
 pub(super) fn count(args: &CountArgs) -> Result<(), Failure> {
     let config = args.query.settings.merged(config::Uses::QUERIES)?;
     let planned = args.query.plan(&config)?.planned;
     let count = planned.count();
     if args.json {
         let query = planned.resolved();
-        return output::print_json([Document {
+        return output::print_json([Count {
             count: Long(count),
             query,
         }]);
@@ -55,34 +47,25 @@ pub(super) struct SplitArgs {
     query: QueryArgs<Parted>,
 }
 
-#[derive(Serialize)]
-struct Parts {
-    count: u128,
-    parts: Vec<Part>,
-}
-
-#[derive(Serialize)]
-struct Part {
-    count: u64,
-    query: Map<String, Value>,
-}
-
 /// Prints the parts, a query a line.
 pub(super) fn split(args: &SplitArgs) -> Result<(), Failure> {
     let config = args.query.settings.merged(config::Uses::QUERIES)?;
     let parts = parts(&args.query.flags.values_of(groups::SPLIT));
     let parts = parts.map_err(|faults| Source::Flags.refused(faults.into()))?;
     let ask = args.query.plan(&config)?;
-    let part = |(token, count): (Token, u64)| Part {
-        count,
+    let part = |(token, count): (Token, u64)| Piece {
+        count: Long(count),
         query: ask.draft.part(&token, count).to_body(),
     };
     let count = ask.planned.count();
     let split = ask.planned.split(parts);
     let split = split.map_err(|error| ask.source.refused(error))?;
-    let parts: Vec<Part> = split.into_iter().map(part).collect();
+    let parts: Vec<Piece> = split.into_iter().map(part).collect();
     if args.json {
-        return output::print_json([Parts { count, parts }]);
+        return output::print_json([Split {
+            count: Long(count),
+            parts,
+        }]);
     }
     output::print_json(parts.into_iter().map(|part| part.query))
 }

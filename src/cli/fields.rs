@@ -54,7 +54,6 @@ pub(super) struct FieldArgs {
     white: Option<f64>,
 }
 
-/// The name of a field from the flags.
 const OWN: &str = "file";
 
 impl FieldArgs {

@@ -13,16 +13,13 @@ use strew_query::{
 
 use super::completions;
 
-/// Which parameters a command takes.
 pub(super) trait Takes: fmt::Debug + Send + Sync + 'static {
-    /// By their groups.
     const GROUPS: &'static [Group];
     /// Those of a request about points in space, if there is one.
     const IN_SPACE: &'static [Group] = &[];
     /// Defaults that differ from those of the parameters.
     const DEFAULTS: &'static [(&'static Parameter, &'static str)] = &[];
 
-    /// Whether it takes a parameter.
     fn takes(parameter: &Parameter) -> bool {
         Self::GROUPS.contains(&parameter.group)
     }
@@ -41,7 +38,6 @@ pub(super) trait Takes: fmt::Debug + Send + Sync + 'static {
     }
 }
 
-/// Declares commands by their groups of parameters, and by the exceptions.
 macro_rules! takes {
     ($($(#[$doc:meta])* $name:ident = $groups:expr $(, in space $space:expr)? $(, $takes:expr)?;)+) => {$(
         $(#[$doc])*
@@ -69,7 +65,6 @@ takes! {
     Counted = groups::COUNT, |parameter| {
         *parameter == BALL || groups::COUNT.contains(&parameter.group)
     };
-    /// A query and a number of parts.
     Parted = groups::POINTS, |parameter| {
         parameter.group == Group::Split || Answered::takes(parameter)
     };
@@ -77,7 +72,6 @@ takes! {
     Single = groups::SINGLE, in space groups::SPACE_SET;
     /// A table whose periods are listed, as for `GET /v1/periods`.
     Listed = groups::PERIODS;
-    /// A table.
     Tabled = groups::TABLES;
     /// A set and a place, as for `GET /v1/nearest`.
     Near = groups::NEAREST, in space groups::SPACE_NEAREST;
@@ -94,7 +88,6 @@ takes! {
             || [&TABLE, &FIELD].contains(&parameter);
         *parameter == BBOX || Measured::GROUPS.contains(&parameter.group) && !others
     };
-    /// An arrangement, as for `GET /v1/pattern/arrangements`.
     Arranged = groups::ARRANGEMENT;
 }
 
@@ -112,7 +105,6 @@ impl Takes for Stippled {
     }
 }
 
-/// The given flags of the parameters that `T` takes.
 #[derive(Debug)]
 pub(super) struct Flags<T> {
     given: Vec<(&'static Parameter, String)>,
@@ -133,7 +125,6 @@ impl<T: Takes> Flags<T> {
 }
 
 impl<T> Flags<T> {
-    /// The given flags of some groups as values.
     pub(super) fn values_of(&self, groups: &'static [Group]) -> Values {
         let mut values = Values::new(groups, "");
         for (parameter, text) in &self.given {
@@ -156,27 +147,19 @@ impl<T> Flags<T> {
         values
     }
 
-    /// The given parameters.
     pub(super) fn given(&self) -> impl Iterator<Item = &'static Parameter> {
         self.given.iter().map(|(parameter, _)| *parameter)
     }
 
-    /// The given parameters with their texts.
     pub(super) fn texts(&self) -> impl Iterator<Item = (&'static Parameter, &str)> {
         self.given
             .iter()
             .map(|(parameter, text)| (*parameter, text.as_str()))
     }
 
-    /// Whether a parameter is given.
     pub(super) fn has(&self, wanted: &Parameter) -> bool {
         self.given().any(|parameter| parameter == wanted)
     }
-}
-
-/// The flag of a parameter.
-pub(super) fn flag(name: &str) -> String {
-    format!("--{}", name.replace('_', "-"))
 }
 
 /// The title under which `--help` lists the parameters of a group.
@@ -191,7 +174,6 @@ const fn heading(group: Group) -> &'static str {
     }
 }
 
-/// The title of the flags that say where.
 pub(super) const WHERE: &str = "Where";
 
 /// The meaning and the default of a flag that differ from those of its parameter.
@@ -283,7 +265,6 @@ fn argument(parameter: &'static Parameter, default: Option<&'static str>) -> Arg
         .allow_hyphen_values(parameter.group == Group::Arrangement)
 }
 
-/// The value in the usage of a flag.
 fn value_name(parameter: &Parameter) -> String {
     match parameter.shape {
         Shape::Numbers(names) => names.join(",").to_uppercase().replace('_', ""),

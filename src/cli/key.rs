@@ -34,7 +34,6 @@ pub(super) struct New {
     points_per_second: Option<f64>,
 }
 
-/// Runs a command.
 pub(super) fn run(command: &Command) -> Result<(), Failure> {
     let Command::New(new) = command;
     if !is_name(&new.name) {

@@ -12,22 +12,11 @@ use strew_query::{
 };
 
 use super::{
-    Failure,
-    config::{self, Load as _},
+    Failure, config,
+    failure::Source,
     flags::{Flags, Listed},
     output,
-    refusal::Source,
 };
-
-/// The titles of the columns.
-const TITLES: [&str; 6] = [
-    "profile",
-    "points in",
-    "alpha",
-    "map",
-    "blocks",
-    "joint kinds",
-];
 
 fn cells(entry: &Entry, catalog: &Catalog) -> [String; 6] {
     [
@@ -40,25 +29,26 @@ fn cells(entry: &Entry, catalog: &Catalog) -> [String; 6] {
     ]
 }
 
-/// Prints the tables.
 pub(super) fn profiles(args: &config::Args) -> Result<(), Failure> {
-    let catalog = args.merged(config::Uses::LOADED)?.tables()?;
+    let catalog = config::tables(&args.merged(config::Uses::LOADED)?)?;
     let tables = catalog.entries().chain(catalog.in_space());
-    let tables = tables.map(|entry| cells(entry, &catalog));
-    let rows: Vec<[String; 6]> = [TITLES.map(String::from)]
-        .into_iter()
-        .chain(tables)
-        .collect();
+    let titles = [
+        "profile",
+        "points in",
+        "alpha",
+        "map",
+        "blocks",
+        "joint kinds",
+    ];
+    let mut rows = vec![titles.map(String::from)];
+    rows.extend(tables.map(|entry| cells(entry, &catalog)));
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
-    let widths = [0, 1, 2, 3, 4, 5].map(|column| width(column).unwrap_or(0));
+    let widths: [_; 6] = std::array::from_fn(|column| width(column).unwrap_or(0));
     let mut text = String::new();
     for row in &rows {
-        let cells = row
-            .iter()
-            .zip(widths)
-            .map(|(cell, width)| format!("{cell:width$}"));
-        let line: Vec<String> = cells.collect();
-        text += line.join("  ").trim_end();
+        let cells = row.iter().zip(widths);
+        let cells = cells.map(|(cell, width)| format!("{cell:width$}"));
+        text += cells.collect::<Vec<_>>().join("  ").trim_end();
         text.push('\n');
     }
     output::print(&text)
@@ -76,10 +66,9 @@ pub(super) struct PeriodsArgs {
     settings: config::Args,
 }
 
-/// Prints the periods, one a line.
 pub(super) fn periods(args: &PeriodsArgs) -> Result<(), Failure> {
     let config = args.settings.merged(config::Uses::LOADED)?;
-    let found = Periods::of(&args.flags.values(), &config.tables()?);
+    let found = Periods::of(&args.flags.values(), &config::tables(&config)?);
     let found = found.map_err(|error| Source::Flags.refused(error))?;
     if args.json {
         return output::print_json([found]);
@@ -96,7 +85,6 @@ pub(super) enum Worlds {
     Check(config::Args),
 }
 
-/// Lists or checks worlds.
 pub(super) fn worlds(command: &Worlds) -> Result<(), Failure> {
     match command {
         Worlds::List(args) => list(&args.merged(config::Uses::QUERIES)?),
@@ -105,12 +93,11 @@ pub(super) fn worlds(command: &Worlds) -> Result<(), Failure> {
 }
 
 fn list(config: &Config) -> Result<(), Failure> {
-    let catalog = config.with_worlds(config.tables()?)?;
+    let catalog = config::with_worlds(config, config::tables(config)?)?;
     let lines: Vec<String> = catalog.worlds.iter().map(|world| line(world)).collect();
     output::print(&lines.concat())
 }
 
-/// A world in one line.
 fn line(world: &World) -> String {
     let line = format!(
         "{}  {}  {}",
@@ -123,7 +110,7 @@ fn line(world: &World) -> String {
 
 /// Prints the valid worlds, and fails with the faults of the others.
 fn check(config: &Config) -> Result<(), Failure> {
-    let assets = Assets::from(config.tables()?);
+    let assets = Assets::from(config::tables(config)?);
     let each = query::Worlds::each(&config.worlds, &assets, config.limits.max_vertices)
         .map_err(Failure::usage)?;
     let (mut good, mut wrong) = (String::new(), vec![]);

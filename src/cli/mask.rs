@@ -12,13 +12,12 @@ use strew_query::chosen;
 
 use super::{
     Failure, config,
+    failure::Source,
     flags::{Flags, Tabled},
     output::{self, Output, must_not_be_terminal},
     pattern::encoded,
-    refusal::Source,
     refuse,
 };
-use crate::cli::config::Load as _;
 
 /// Flags of `strew mask`.
 #[derive(Debug, clap::Args)]
@@ -44,12 +43,11 @@ pub(super) struct Args {
     settings: config::Args,
 }
 
-/// Makes a mask.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let is_array = is_array(args.output.as_deref())?;
     must_not_be_terminal(args.output.as_deref(), "a PNG")?;
     let config = args.settings.merged(config::Uses::LOADED)?;
-    let catalog = config.tables()?;
+    let catalog = config::tables(&config)?;
     let ready = chosen(&args.table.values(), &catalog).and_then(|entry| Ready::load(&entry));
     let ready = ready.map_err(|error| Source::Flags.refused(error))?;
     let mut output = Output::open(args.output.as_deref())?;

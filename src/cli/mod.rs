@@ -4,7 +4,6 @@ mod completions;
 mod compression;
 mod config;
 mod count;
-mod examples;
 mod export;
 mod failure;
 mod fields;
@@ -21,7 +20,6 @@ mod point;
 mod probe;
 mod progress;
 mod query;
-mod refusal;
 mod sample;
 mod serve;
 mod signals;
@@ -30,7 +28,7 @@ mod table;
 
 use std::{ffi::OsString, process::ExitCode};
 
-use clap::{CommandFactory as _, Parser, Subcommand};
+use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use clap_complete::CompleteEnv;
 
 use crate::rest::Pages;
@@ -47,73 +45,54 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Serve points over REST and gRPC on one port.
-    #[command(after_long_help = examples::SERVE)]
     Serve(config::Served),
     /// Write the points of a region to a file or standard output, without a server.
-    #[command(after_long_help = examples::SAMPLE)]
     Sample(sample::Args),
     /// Write a world as a folder of chunks, which any static server can serve.
-    #[command(after_long_help = examples::EXPORT)]
     Export(export::Args),
     /// Turn a picture into dots.
-    #[command(after_long_help = examples::STIPPLE)]
     Stipple(stipple::Args),
     /// Count the points of a query, exactly, without making them.
-    #[command(after_long_help = examples::COUNT)]
     Count(count::CountArgs),
     /// Find a point by its id.
-    #[command(after_long_help = examples::POINT)]
     Point(point::PointArgs),
     /// List the sizes of periodic sets.
-    #[command(after_long_help = examples::PERIODS)]
     Periods(lists::PeriodsArgs),
     /// Find the points nearest to a place.
-    #[command(after_long_help = examples::NEAREST)]
     Nearest(point::NearestArgs),
     /// Split a query into parts for parallel readers.
-    #[command(after_long_help = examples::SPLIT)]
     Split(count::SplitArgs),
     /// Find out whether an arrangement of points occurs in a pattern, how often, and where.
-    #[command(after_long_help = examples::ARRANGEMENT)]
     Arrangement(pattern::ArrangementArgs),
     /// Draw a figure of an AA pattern: its index space, an arrangement, clusters, a neighborhood map.
-    #[command(subcommand, after_long_help = examples::FIGURE)]
+    #[command(subcommand)]
     Figure(pattern::Figure),
     /// Make a tileable threshold mask for dithering.
-    #[command(after_long_help = examples::MASK)]
     Mask(mask::Args),
     /// Make a table and judge it.
-    #[command(after_long_help = examples::FORGE)]
     Forge(forge::Args),
     /// Measure a table, the points of a region, or a file of points.
-    #[command(after_long_help = examples::MEASURE)]
     Measure(measure::Args),
     /// Inspect, check, export and import tables.
-    #[command(subcommand, after_long_help = examples::TABLE)]
+    #[command(subcommand)]
     Table(table::Command),
     /// Make keys for clients.
-    #[command(subcommand, after_long_help = examples::KEY)]
+    #[command(subcommand)]
     Key(key::Command),
     /// Ask a running daemon whether it is ready: exit code 0 if so, 1 if not.
-    #[command(after_long_help = examples::PROBE)]
     Probe(probe::Args),
     /// Print the merged settings.
-    #[command(after_long_help = examples::CONFIG)]
     Config(config::Served),
     /// List the loaded tables: profiles, α, sizes of maps.
-    #[command(after_long_help = examples::PROFILES)]
     Profiles(config::Args),
     /// List and check worlds: queries that the settings describe by name.
-    #[command(subcommand, after_long_help = examples::WORLDS)]
+    #[command(subcommand)]
     Worlds(lists::Worlds),
     /// Print the table of parameters as types for programs, or as documentation.
-    #[command(after_long_help = examples::PARAMETERS)]
     Parameters(parameters::Args),
     /// Print a script that lets a shell complete commands and flags.
-    #[command(after_long_help = examples::COMPLETIONS)]
     Completions(completions::CompletionsArgs),
     /// Write manual pages.
-    #[command(after_long_help = examples::MAN)]
     Man(completions::ManArgs),
     /// Print the version, as `--version` does.
     #[command(hide = true)]
@@ -123,11 +102,12 @@ enum Command {
 /// The exit code after an interrupt, as shells have it.
 const INTERRUPTED: u8 = 130;
 
-/// Runs the program, whose daemon serves these pages.
 pub fn main(pages: fn() -> Pages) -> ExitCode {
     // Shells run the program with COMPLETE=SHELL to complete a line.
-    CompleteEnv::with_factory(Cli::command).complete();
-    let done = match Cli::parse_from(joined(&built(), std::env::args_os())).command {
+    CompleteEnv::with_factory(command).complete();
+    let given = command().get_matches_from(joined(&built(), std::env::args_os()));
+    let cli = Cli::from_arg_matches(&given).unwrap_or_else(|error| error.exit());
+    let done = match cli.command {
         Command::Serve(args) => serve::run(&args, pages),
         Command::Sample(args) => sample::run(&args),
         Command::Export(args) => export::run(&args),
@@ -150,8 +130,8 @@ pub fn main(pages: fn() -> Pages) -> ExitCode {
         Command::Worlds(command) => lists::worlds(&command),
         Command::Parameters(args) => parameters::run(&args),
         Command::Completions(args) => completions::completions(&args),
-        Command::Man(args) => completions::man(&args, Cli::command()),
-        Command::Version => output::print(&Cli::command().render_version()),
+        Command::Man(args) => completions::man(&args, command()),
+        Command::Version => output::print(&command().render_version()),
     };
     let (error, code) = match done {
         Ok(()) => return ExitCode::SUCCESS,
@@ -166,9 +146,26 @@ pub fn main(pages: fn() -> Pages) -> ExitCode {
     ExitCode::from(code)
 }
 
+/// Examples of commands, a line each, which end their long help.
+const EXAMPLES: &str = include_str!("examples.txt");
+
+fn command() -> clap::Command {
+    Cli::command().mut_subcommands(|command| {
+        let name = command.get_name();
+        let own = EXAMPLES
+            .lines()
+            .filter(|line| line.split(' ').nth(1) == Some(name));
+        let text: String = own.map(|line| format!("\n  {line}")).collect();
+        match text.is_empty() {
+            true => command,
+            false => command.after_long_help(format!("Examples:{text}")),
+        }
+    })
+}
+
 /// The commands, whose flags know what they take.
 fn built() -> clap::Command {
-    let mut command = Cli::command();
+    let mut command = command();
     command.build();
     command
 }
@@ -270,5 +267,34 @@ mod tests {
         ];
         let line = ["strew"].iter().chain(&line).map(OsString::from);
         assert!(Cli::try_parse_from(joined(&command, line)).is_ok());
+    }
+
+    /// The words of a line; quotes hold one together, and what follows > or | is not ours.
+    fn words(line: &str) -> Vec<String> {
+        let line = line.split(['>', '|']).next().unwrap_or_default();
+        let parts = line.split('"').enumerate();
+        let words = parts.flat_map(|(i, part)| match i % 2 {
+            1 => vec![part.to_owned()],
+            _ => part.split_whitespace().map(Into::into).collect(),
+        });
+        words.collect()
+    }
+
+    #[test]
+    fn every_command_has_examples_that_it_accepts() {
+        let commands = built();
+        let shown = commands
+            .get_subcommands()
+            .filter(|command| !command.is_hide_set());
+        for command in shown {
+            let help = command.get_after_long_help().map(ToString::to_string);
+            let help = help.unwrap_or_else(|| panic!("{} has no examples", command.get_name()));
+            for line in help.lines().skip(1) {
+                let given = joined(&built(), words(line).into_iter().map(OsString::from));
+                let taken = built().try_get_matches_from(given);
+                let taken = taken.unwrap_or_else(|error| panic!("{line}: {error}"));
+                assert_eq!(taken.subcommand_name(), Some(command.get_name()), "{line}");
+            }
+        }
     }
 }

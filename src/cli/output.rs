@@ -26,7 +26,6 @@ pub(super) struct Output {
     pending: Option<Pending>,
 }
 
-/// A file that is not complete.
 struct Pending {
     file: File,
     incomplete: Incomplete,
@@ -96,7 +95,6 @@ impl Output {
     }
 }
 
-/// Opens a file for writing.
 fn open(path: &Path) -> anyhow::Result<(File, Option<Pending>)> {
     // A link stays one.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
@@ -141,7 +139,6 @@ pub(super) fn must_not_be_terminal(path: Option<&Path>, what: &str) -> Result<()
     Ok(())
 }
 
-/// Refuses to replace a file without `--force`.
 pub(super) fn must_be_new(path: &Path, force: bool) -> Result<(), Failure> {
     if path.exists() && !force {
         refuse!("{} exists; --force replaces it", path.display());
@@ -154,14 +151,12 @@ pub(super) fn check(path: &Path) -> anyhow::Result<()> {
     Output::open(Some(path)).map(drop)
 }
 
-/// Writes all of an output: a file, or standard output.
 pub(super) fn write(path: Option<&Path>, bytes: &[u8]) -> Result<(), Failure> {
     let mut output = Output::open(path)?;
     output.write(bytes)?;
     Ok(output.finish()?)
 }
 
-/// Writes a text to standard output.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     write(None, text.as_bytes())
 }

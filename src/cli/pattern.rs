@@ -14,11 +14,10 @@ use strew_query::{Value, patterns::OFFSETS};
 use strew_service::pattern::{ArrangementQuery, Listing};
 
 use super::{
-    Failure,
-    config::{self, Load as _},
+    Failure, config,
+    failure::Source,
     flags::{Arranged, Flags},
     output::{self, Output},
-    refusal::Source,
     refuse,
 };
 
@@ -31,12 +30,11 @@ pub(super) struct ArrangementArgs {
     settings: config::Args,
 }
 
-/// Prints the facts, or the occurrences.
 pub(super) fn arrangement(args: &ArrangementArgs) -> Result<(), Failure> {
     let refused = |error: Error| Source::Flags.refused(error);
     let config = args.settings.merged(config::Uses::LISTS)?;
-    let query =
-        ArrangementQuery::check(&args.flags.values(), &config.tables()?).map_err(refused)?;
+    let query = ArrangementQuery::check(&args.flags.values(), &config::tables(&config)?)
+        .map_err(refused)?;
     let facts = query.facts();
     let Some(list) = query.list else {
         return output::print_json([facts]);
@@ -117,7 +115,6 @@ pub(super) enum Figure {
 /// A list that is one value of a flag.
 type Pairs = Box<[(i64, i64)]>;
 
-/// Reads pairs of integers.
 fn pairs(text: &str) -> Result<Pairs, String> {
     let numbers = OFFSETS.shape.read(text)?;
     let Value::Numbers(numbers) = numbers else {
@@ -128,7 +125,6 @@ fn pairs(text: &str) -> Result<Pairs, String> {
     Ok(pairs.map(|pair| (pair[0] as i64, pair[1] as i64)).collect())
 }
 
-/// Reads the intervals of a block.
 fn block(text: &str) -> Result<[usize; 2], String> {
     let read = || {
         let (column, row) = text.split_once(',')?;
@@ -151,7 +147,6 @@ pub(super) struct Common {
     size: u32,
 }
 
-/// Draws a figure.
 pub(super) fn draw(command: &Figure) -> Result<(), Failure> {
     let (common, drawing) = match command {
         Figure::Index { common, window } => (common, figure::index(common.alpha, *window)),

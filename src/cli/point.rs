@@ -1,18 +1,17 @@
 //! `strew point` and `strew nearest`: finds points by id and near a place.
 
-use serde::Serialize;
 use strew_catalog::Catalog;
-use strew_plan::{Found, Placed};
-use strew_query::{Nearest, ResolvedSet, Set, Values};
+use strew_plan::Placed;
+use strew_query::{Nearest, Set, Values};
 
 use super::{
     Failure, config,
+    failure::Source,
     fields::FieldArgs,
     flags::{Flags, Near, Single, Takes},
     output,
-    refusal::Source,
 };
-use crate::cli::config::Load as _;
+use crate::rest::{One, Several};
 
 /// A set without a region.
 #[derive(Debug, clap::Args)]
@@ -41,20 +40,7 @@ pub(super) struct PointArgs {
     set: SetArgs<Single>,
 }
 
-/// Flags of `strew nearest`.
 pub(super) type NearestArgs = SetArgs<Near>;
-
-#[derive(Serialize)]
-struct One {
-    point: Found,
-    query: ResolvedSet,
-}
-
-#[derive(Serialize)]
-struct Several {
-    neighbors: Vec<Found>,
-    query: ResolvedSet,
-}
 
 impl<T: Takes> SetArgs<T> {
     fn load(&self) -> Result<(Values, Catalog), Failure> {
@@ -63,12 +49,11 @@ impl<T: Takes> SetArgs<T> {
             true => self.flags.values_in_space(T::IN_SPACE),
             false => self.flags.values(),
         };
-        let catalog = self.field.load(&mut values, config.tables()?)?;
+        let catalog = self.field.load(&mut values, config::tables(&config)?)?;
         Ok((values, catalog))
     }
 }
 
-/// Prints a point.
 pub(super) fn point(args: &PointArgs) -> Result<(), Failure> {
     let (values, catalog) = args.set.load()?;
     let set = Set::single(&values, &catalog);
@@ -83,7 +68,6 @@ pub(super) fn point(args: &PointArgs) -> Result<(), Failure> {
     output::print_json([point])
 }
 
-/// Prints the points near a place.
 pub(super) fn nearest(args: &NearestArgs) -> Result<(), Failure> {
     let (values, catalog) = args.load()?;
     let near = Nearest::of_set(&values, &catalog);

@@ -162,7 +162,6 @@ fn listener(listen: SocketAddr, is_tls: bool) -> Result<Uri, Failure> {
     ))
 }
 
-/// An error of a connection in words that say what to do.
 fn explained(error: ureq::Error, timeout: Duration) -> anyhow::Error {
     match error {
         ureq::Error::Timeout(_) => anyhow!("no answer within {timeout:?}"),
@@ -188,7 +187,6 @@ fn explained(error: ureq::Error, timeout: Duration) -> anyhow::Error {
 }
 
 impl Args {
-    /// The TLS for an address; none for http.
     fn tls(&self, address: &Uri) -> anyhow::Result<Tls> {
         if address.scheme_str() == Some("http") {
             let flags = [
@@ -239,7 +237,6 @@ impl Args {
     }
 }
 
-/// The most bytes of a file with certificates or a key.
 const MOST_BYTES: u64 = 4 << 20;
 
 fn read(flag: &str, path: &Path) -> anyhow::Result<Vec<u8>> {
@@ -256,7 +253,6 @@ fn of(flag: &str, path: &Path, problem: &str) -> anyhow::Error {
 #[derive(Debug)]
 struct Tls(Option<(Arc<ClientConfig>, ServerName<'static>)>);
 
-/// An encrypted connection.
 struct Encrypted {
     buffers: LazyBuffers,
     stream: StreamOwned<ClientConnection, TransportAdapter>,

@@ -10,7 +10,6 @@ use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 /// The interval between lines where there is no terminal.
 const EVERY: Duration = Duration::from_secs(10);
 
-/// Shows progress on standard error.
 pub(super) struct Progress {
     bar: Option<ProgressBar>,
     what: &'static str,
@@ -57,7 +56,6 @@ impl Progress {
         self
     }
 
-    /// Shows that `done` units are done, with a note.
     pub(super) fn reach(&mut self, done: u64, note: &str) {
         if let Some(bar) = &self.bar {
             if !note.is_empty() {
@@ -84,7 +82,6 @@ impl Progress {
         )
     }
 
-    /// Removes the bar. The work is over, done or not.
     pub(super) fn finish(self) {
         if let Some(bar) = self.bar {
             bar.finish_and_clear();

@@ -17,13 +17,11 @@ use strew_query::{
 
 use super::{
     Failure, config,
-    fields::FieldArgs,
-    fields::StrataArgs,
-    flags::{Flags, Takes, WHERE, flag},
-    refusal::Source,
+    failure::{Source, flag},
+    fields::{FieldArgs, StrataArgs},
+    flags::{Flags, Takes, WHERE},
     refuse,
 };
-use crate::cli::config::Load as _;
 
 /// A query with a region: by flags, or whole in a file.
 #[derive(Debug, clap::Args)]
@@ -62,8 +60,6 @@ pub(super) struct QueryArgs<T: Takes> {
     pub(super) settings: config::Args,
 }
 
-/// A valid query with its plan.
-#[derive(Debug)]
 pub(super) struct PlannedQuery {
     pub(super) draft: Draft,
     pub(super) options: Options,
@@ -74,14 +70,15 @@ pub(super) struct PlannedQuery {
 }
 
 impl<T: Takes> QueryArgs<T> {
-    /// The query, checked and planned.
     pub(super) fn plan(&self, config: &Config) -> Result<PlannedQuery, Failure> {
         let crs = self.defined()?;
         let (mut draft, source) = self.read(crs.as_ref())?;
-        let catalog = self.field.load(&mut draft.values, config.tables()?)?;
+        let catalog = self
+            .field
+            .load(&mut draft.values, config::tables(config)?)?;
         let (draft, catalog) = self.strata.split(draft, self.features()?, catalog)?;
-        let catalog = config.with_worlds(catalog)?;
-        let planned = config.planned(&draft, &catalog);
+        let catalog = config::with_worlds(config, catalog)?;
+        let planned = config::planned(config, &draft, &catalog);
         let (planned, options) = planned.map_err(|error| source.refused(error))?;
         // The parts of a split may be sent to servers that do not have the world.
         let filled = draft.filled(&catalog.worlds);
@@ -95,7 +92,6 @@ impl<T: Takes> QueryArgs<T> {
         })
     }
 
-    /// The parameters of a query in a file.
     fn in_file(&self) -> &'static [Group] {
         if self.space {
             return groups::SPACE_QUERY;
@@ -219,7 +215,6 @@ impl<T: Takes> QueryArgs<T> {
         read.map_err(|faults| source.refused(faults.into()))
     }
 
-    /// A region that is no parameter.
     fn region(&self) -> Result<Option<RegionDraft>, Failure> {
         let shapes = self
             .flags
@@ -244,50 +239,34 @@ impl<T: Takes> QueryArgs<T> {
             let read = read_region(&bytes);
             return Ok(Some(read.map_err(|fault| source.refused(fault.into()))?));
         }
-        let chunk = |text| match self.space {
-            true => cube(text),
-            false => chunk(text),
-        };
+        let chunk = |text| chunk(text, self.space);
         self.chunk.as_deref().map(chunk).transpose()
     }
 }
 
-fn chunk(text: &str) -> Result<RegionDraft, Failure> {
+fn chunk(text: &str, in_space: bool) -> Result<RegionDraft, Failure> {
     let read = || {
-        let [size, x, y] = text.split('/').collect::<Vec<_>>().try_into().ok()?;
-        Some(ShapeDraft::Chunk(
-            size.parse().ok()?,
-            [x.parse().ok()?, y.parse().ok()?],
-        ))
+        let (size, cells) = text.split_once('/')?;
+        let (size, cells) = (size.parse().ok()?, cells.split('/').map(str::parse));
+        match *cells.collect::<Result<Vec<i64>, _>>().ok()? {
+            [x, y] if !in_space => Some(ShapeDraft::Chunk(size, [x, y])),
+            [x, y, z] if in_space => Some(ShapeDraft::Volume(VolumeDraft::Chunk(size, [x, y, z]))),
+            _ => None,
+        }
     };
-    let allowed = "SIZE/CX/CY, a size above 0 and two integers, such as 64/-3/2";
-    chunk_of(text, read(), allowed)
-}
-
-/// A chunk of space.
-fn cube(text: &str) -> Result<RegionDraft, Failure> {
-    let read = || {
-        let [size, x, y, z] = text.split('/').collect::<Vec<_>>().try_into().ok()?;
-        Some(ShapeDraft::Volume(VolumeDraft::Chunk(
-            size.parse().ok()?,
-            [x.parse().ok()?, y.parse().ok()?, z.parse().ok()?],
-        )))
+    let allowed = match in_space {
+        true => "SIZE/CX/CY/CZ, a size above 0 and three integers, such as 64/-3/2/0",
+        false => "SIZE/CX/CY, a size above 0 and two integers, such as 64/-3/2",
     };
-    let allowed = "SIZE/CX/CY/CZ, a size above 0 and three integers, such as 64/-3/2/0";
-    chunk_of(text, read(), allowed)
-}
-
-fn chunk_of(text: &str, shape: Option<ShapeDraft>, allowed: &str) -> Result<RegionDraft, Failure> {
-    let shape = shape.ok_or_else(|| {
-        Failure::Usage(anyhow!("--chunk {text}: not a chunk; allowed: {allowed}"))
-    })?;
+    let Some(shape) = read() else {
+        refuse!("--chunk {text}: not a chunk; allowed: {allowed}");
+    };
     Ok(RegionDraft {
         path: "chunk".into(),
         shape,
     })
 }
 
-/// The bytes of a file, or of standard input.
 fn read_file(flag: &str, path: &Path) -> Result<Vec<u8>, Failure> {
     let read = if path == Path::new("-") {
         let mut bytes = vec![];
@@ -299,7 +278,6 @@ fn read_file(flag: &str, path: &Path) -> Result<Vec<u8>, Failure> {
     read.map_err(Failure::Usage)
 }
 
-/// The sets of a planned query, in a few words.
 pub(super) fn described(planned: &Planned) -> String {
     let sets = planned.query.sets.iter().zip(&planned.sets);
     let one = |(set, planned): (&Set, &PlannedSet)| {
@@ -319,7 +297,6 @@ pub(super) fn described(planned: &Planned) -> String {
             planned.entry.digest
         )
     };
-    /// The most sets that a line describes.
     const SOME: usize = 4;
     let mut words: Vec<String> = sets.take(SOME).map(one).collect();
     if let more @ 1.. = planned.sets.len().saturating_sub(SOME) {

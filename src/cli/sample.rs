@@ -56,7 +56,6 @@ pub(super) fn encoding_of(output: Option<&Path>) -> Result<Encoding, Failure> {
     })
 }
 
-/// Writes the points.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.query.settings.merged(Uses::POINTS)?;
     let output = Target::open(args.output.as_deref())?;
@@ -107,7 +106,6 @@ fn check_packing(args: &Args, encoding: Encoding) -> Result<(), Failure> {
     }
 }
 
-/// Refuses a binary format on a terminal.
 fn check_terminal(args: &Args, encoding: Encoding) -> Result<(), Failure> {
     match encoding.is_text() {
         true => Ok(()),
@@ -242,7 +240,6 @@ where
     }
 }
 
-/// Tiles with their points, in reused buffers.
 struct Filled<F: Scalars> {
     tiles: Vec<Tile>,
     buffers: Vec<(Vec<F::Item>, usize)>,
@@ -260,7 +257,6 @@ where
         }
     }
 
-    /// Takes the next tiles and fills them.
     fn fill(&mut self, plan: &Plan, tiles: &mut (impl Iterator<Item = Tile> + Send)) {
         self.tiles.clear();
         self.tiles.extend(tiles.take(self.buffers.len()));

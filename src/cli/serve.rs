@@ -10,11 +10,10 @@ use strew_config::LogOutput;
 
 use super::{Failure, config};
 use crate::{
-    ops::{App, ServeError, exposure, files, memory, shutdown, telemetry},
+    ops::{App, memory, shutdown, startup, telemetry},
     rest::Pages,
 };
 
-/// Serves until a signal comes.
 pub(super) fn run(args: &config::Served, pages: fn() -> Pages) -> Result<(), Failure> {
     let mut config = args.merged()?;
     telemetry::start(&config.log).context("log.filter")?;
@@ -29,14 +28,14 @@ pub(super) fn run(args: &config::Served, pages: fn() -> Pages) -> Result<(), Fai
         .admin
         .address()
         .map_err(|problem| anyhow!("admin.listen: {problem}"))?;
-    for warning in [exposure::warning(&config), exposure::readable_keys(&config)]
+    for warning in [startup::warning(&config), startup::readable_keys(&config)]
         .into_iter()
         .flatten()
     {
         tracing::warn!("{warning}");
     }
     let wanted = config.server.max_connections;
-    if let Some(room) = files::make_room(wanted) {
+    if let Some(room) = startup::make_room(wanted) {
         tracing::warn!(
             wanted,
             room,
@@ -45,23 +44,13 @@ pub(super) fn run(args: &config::Served, pages: fn() -> Pages) -> Result<(), Fai
     }
     let scheme = if config.tls.is_on() { "https" } else { "http" };
     let announced = (config.log.output == LogOutput::Stderr).then_some(scheme);
-    let app = App::new(config).map_err(|error| match error {
-        ServeError::Catalog(_)
-        | ServeError::Tls(_)
-        | ServeError::Keys(_)
-        | ServeError::Named(_)
-        | ServeError::Spans(_) => Failure::Usage(error.into()),
-        _ => Failure::Other(error.into()),
-    })?;
+    let mut app = App::new(config).map_err(Failure::Usage)?;
     if app.service().catalog().entries().next().is_none() {
         tracing::warn!("no table is loaded: every query will be refused");
     }
     let listener = bind(listen)?;
-    let app = app.with_pages(pages());
-    let app = match admin {
-        Some(address) => app.with_admin(bind(address)?),
-        None => app,
-    };
+    app.pages = pages();
+    app.admin = admin.map(bind).transpose()?;
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .enable_all()
         .build()
@@ -86,7 +75,7 @@ fn bind(listen: SocketAddr) -> anyhow::Result<TcpListener> {
 }
 
 async fn serve(
-    app: App,
+    mut app: App,
     listener: TcpListener,
     announced: Option<&str>,
     threads: usize,
@@ -95,13 +84,13 @@ async fn serve(
     // Listen for signals before announcing the address.
     let stop = shutdown::Signals::new().context("cannot listen for signals")?;
     let hangups = shutdown::Hangups::new().context("cannot listen for signals")?;
+    app.hangups = Some(hangups);
     if let Some(scheme) = announced {
         announce(scheme, address, app.admin_address())
             .context("cannot write to standard output")?;
     }
     let tables = app.service().catalog().entries().count();
     tracing::info!(%address, tables, threads, "serving");
-    let app = app.with_hangups(hangups);
     let broken = app.run(listener, stop.first_then_exit()).await?;
     if broken > 0 {
         tracing::warn!(broken, "stopped; some streams were broken off");

@@ -3,16 +3,16 @@
 use std::{
     path::{Path, PathBuf},
     sync::{
-        Arc, Mutex, MutexGuard, Once, PoisonError,
+        Arc, Once,
         atomic::{AtomicBool, Ordering},
         mpsc,
     },
 };
 
-/// The state that a signal acts on.
+use parking_lot::{Mutex, MutexGuard};
+
 #[derive(Debug, Default)]
 struct State {
-    /// The incomplete files.
     incomplete: Vec<PathBuf>,
     /// Set by the first signal, for work that stops in good order. The second signal ends the command.
     stop: Option<Arc<AtomicBool>>,
@@ -24,7 +24,7 @@ static STATE: Mutex<State> = Mutex::new(State {
 });
 
 fn state() -> MutexGuard<'static, State> {
-    STATE.lock().unwrap_or_else(PoisonError::into_inner)
+    STATE.lock()
 }
 
 /// Returns a flag that the first signal sets, instead of ending the command.
@@ -36,7 +36,6 @@ pub(super) fn stop_flag() -> Arc<AtomicBool> {
 }
 
 /// A file that a signal removes.
-#[derive(Debug)]
 pub(super) struct Incomplete(PathBuf);
 
 impl Incomplete {

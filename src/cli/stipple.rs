@@ -18,14 +18,13 @@ use strew_raster::{Image, Limits};
 
 use super::{
     Failure, config,
+    failure::Source,
     flags::{Flags, Stippled},
     must_be_within,
     output::Output as Target,
-    refusal::Source,
     refuse,
     sample::{encoding_of, write},
 };
-use crate::cli::config::Load as _;
 
 /// Flags of `strew stipple`.
 #[derive(Debug, clap::Args)]
@@ -71,10 +70,8 @@ pub(super) struct Args {
     settings: config::Args,
 }
 
-/// The name of the picture's field.
 const PICTURE: &str = "picture";
 
-/// Writes the dots.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.settings.merged(config::Uses::POINTS)?;
     must_be_within("--gamma", args.gamma, [0.01, 100.0])?;
@@ -84,9 +81,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let output = Target::open(args.output.as_deref())?;
     let image = read(&args.image)?;
     let [width, height] = image.size;
-    let mut fields = config.loaded_fields()?;
+    let catalog = config::tables(&config)?;
+    let mut fields = catalog.fields().clone();
     fields.insert(NamedField::of_spec(PICTURE, darkness(&image, args)?));
-    let catalog = config.tables()?.with_fields(fields);
+    let catalog = catalog.with_fields(fields);
     let mut values = args.flags.values();
     let bbox = vec![0.0, 0.0, width as f64, height as f64];
     values.add_value(&parameters::BBOX, Value::Numbers(bbox));
@@ -100,7 +98,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
     let longer = u32::try_from(width.max(height)).unwrap_or(u32::MAX);
     let size = args.size.unwrap_or_else(|| longer.clamp(512, MOST_SIZE));
-    let planned = config.planned(&Draft::of(values), &catalog.into());
+    let planned = config::planned(&config, &Draft::of(values), &catalog.into());
     let (planned, options) = planned.map_err(|error| refused(args, error))?;
     let encoding = options.encoding.unwrap_or(encoding);
     let looks = options.output(encoding).map(|mut looks| {
@@ -117,7 +115,6 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     })
 }
 
-/// Errors of the query in the words of this command.
 fn refused(args: &Args, error: strew_error::Error) -> Failure {
     if let Some(fault) = error.faults().iter().find(|fault| fault.field == "count") {
         let (detail, allowed) = (&fault.detail, &fault.allowed);

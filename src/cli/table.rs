@@ -15,7 +15,6 @@ use strew_core::{
 use strew_forge::ForgeError;
 
 use super::{Failure, config, output, refuse};
-use crate::cli::config::Load as _;
 
 /// Commands about tables.
 #[derive(Debug, Subcommand)]
@@ -109,7 +108,6 @@ pub(super) struct Which {
     settings: config::Args,
 }
 
-/// Runs one of the commands.
 pub(super) fn run(command: &Command) -> Result<(), Failure> {
     match command {
         Command::Show(args) => show(args),
@@ -127,7 +125,7 @@ impl Which {
             return Ok(vec![(file.display().to_string(), table)]);
         }
         let config = self.settings.merged(config::Uses::LOADED)?;
-        let catalog = config.catalog()?;
+        let catalog = config::catalog(&config)?;
         let meant = |entry: &Entry| {
             self.profile
                 .as_ref()
@@ -160,7 +158,6 @@ impl Which {
     }
 }
 
-/// Reads and checks a table file; the error names it.
 fn read(file: &Path) -> anyhow::Result<AnyTable> {
     // A file that is no table, or cannot be read, is that of the plane's reader, whose errors are complete.
     let is_regular = std::fs::metadata(file).is_ok_and(|found| found.is_file());
@@ -180,62 +177,32 @@ fn in_space(file: &Path) -> anyhow::Result<Option<strew_core::space::Table>> {
     }
 }
 
-/// A table of either kind.
 enum AnyTable {
     Plane(Table),
     Space(strew_core::space::Table),
 }
 
-impl AnyTable {
-    fn map(&self) -> &Map {
-        match self {
-            Self::Plane(table) => table.map(),
-            Self::Space(table) => table.map(),
+/// What a table of either kind has.
+macro_rules! of_either {
+    ($($name:ident: $type:ty = |$table:ident| $value:expr;)+) => {
+        impl AnyTable {
+            $(fn $name(&self) -> $type {
+                match self {
+                    Self::Plane($table) => $value,
+                    Self::Space($table) => $value,
+                }
+            })+
         }
-    }
+    };
+}
 
-    fn profile(&self) -> &str {
-        match self {
-            Self::Plane(table) => table.profile(),
-            Self::Space(table) => table.profile(),
-        }
-    }
-
-    fn provenance(&self) -> &Provenance {
-        match self {
-            Self::Plane(table) => table.provenance(),
-            Self::Space(table) => table.provenance(),
-        }
-    }
-
-    fn digest(&self) -> Digest {
-        match self {
-            Self::Plane(table) => table.digest(),
-            Self::Space(table) => table.digest(),
-        }
-    }
-
-    fn to_bytes(&self) -> Vec<u8> {
-        match self {
-            Self::Plane(table) => table.to_bytes(),
-            Self::Space(table) => table.to_bytes(),
-        }
-    }
-
-    fn has_ranks(&self) -> bool {
-        match self {
-            Self::Plane(table) => table.ranks().is_some(),
-            Self::Space(table) => table.ranks().is_some(),
-        }
-    }
-
-    /// The dimensions of its points.
-    const fn dimensions(&self) -> u32 {
-        match self {
-            Self::Plane(_) => 2,
-            Self::Space(_) => 3,
-        }
-    }
+of_either! {
+    map: &Map = |table| table.map();
+    profile: &str = |table| table.profile();
+    provenance: &Provenance = |table| table.provenance();
+    digest: Digest = |table| table.digest();
+    to_bytes: Vec<u8> = |table| table.to_bytes();
+    has_ranks: bool = |table| table.ranks().is_some();
 }
 
 fn show(which: &Which) -> Result<(), Failure> {
@@ -263,7 +230,10 @@ fn describe(text: &mut String, place: &str, table: &AnyTable) -> std::fmt::Resul
         text,
         "  map        R = {}, {n} intervals, {} blocks",
         map.radius(),
-        n.pow(table.dimensions())
+        match table {
+            AnyTable::Plane(_) => n.pow(2),
+            AnyTable::Space(_) => n.pow(3),
+        }
     )?;
     writeln!(text, "  bytes      {}", table.to_bytes().len())?;
     writeln!(text, "  digest     {}", table.digest())?;

@@ -3,9 +3,11 @@
 //! A connection hands each request to the outermost step. A step does its part, has the next one answer, and may change
 //! the answer on its way back. The last one is axum's router of all paths, of REST and of gRPC.
 
-use std::sync::Arc;
+use std::{any::Any, panic::AssertUnwindSafe, sync::Arc};
 
 use axum::Router;
+use futures_util::FutureExt as _;
+use strew_error::Error;
 use strew_service::access::Gate;
 use tower::{Service as _, ServiceBuilder};
 
@@ -13,7 +15,7 @@ use super::{
     calls::Calls,
     exchange::{Client, Exchanges, Inbound, Intake},
     gate::{Admission, GateLayer},
-    panics::Panics,
+    metrics::Metrics,
     step::{Layered, Next, Step},
 };
 use crate::{
@@ -22,46 +24,38 @@ use crate::{
     rest::{Finish, Preferences, Routes},
 };
 
-/// The steps around the router.
 pub(super) type Steps =
     Layered<Exchanges, Layered<Finish, Layered<Panics, Layered<Calls, Layered<Bounds, Router>>>>>;
 
 /// The bounds on requests that are taken on; none for administrators.
 type Bounds = Option<Intake>;
 
-/// The parts of the steps.
-pub(super) struct Stack {
-    pub(super) exchanges: Exchanges,
-    pub(super) finish: Finish,
-    pub(super) routes: Routes,
-    /// Calls of gRPC; none at the address of administrators.
-    pub(super) calls: Option<grpc::Calls>,
-    pub(super) intake: Option<Intake>,
-    /// The keys that are required; at the address of administrators everyone is one.
-    pub(super) gate: Option<Arc<Gate>>,
-}
-
-impl Stack {
-    /// All steps, from the head of a request to its answer.
-    pub(super) fn steps(self) -> Steps {
-        let panics = Panics(self.exchanges.metrics.clone());
-        let calls = Calls(self.calls.is_some());
-        let router = router(self.routes, self.calls, self.gate);
-        ServiceBuilder::new()
-            // Names the request and counts it against its client's address. The answer leaves through it, so that each
-            // byte is counted until the socket has it, and there is one report of all: it is outermost.
-            .layer(self.exchanges.layer())
-            // Requests for foreign hosts, of foreign pages and with heads too long go no further. All answers, also
-            // refusals of the steps below, get what browsers and caches need, and are compressed.
-            .layer(self.finish.layer())
-            // A panic below is one request's, and is answered.
-            .layer(panics.layer())
-            // Calls of web pages become calls as all others, and the deadline of a call begins.
-            .layer(calls.layer())
-            // The number of requests at once, the bytes of their bodies, and the time to the head of an answer.
-            .layer(self.intake.layer())
-            .service(router)
-    }
+/// All steps, from the head of a request to its answer. At the address of administrators there are no calls and no bounds,
+/// and everyone is one.
+pub(super) fn steps(
+    exchanges: Exchanges,
+    finish: Finish,
+    routes: Routes,
+    calls: Option<grpc::Calls>,
+    (intake, gate): (Bounds, Option<Arc<Gate>>),
+) -> Steps {
+    let panics = Panics(exchanges.metrics.clone());
+    let has_calls = Calls(calls.is_some());
+    let router = router(routes, calls, gate);
+    ServiceBuilder::new()
+        // Names the request and counts it against its client's address. The answer leaves through it, so that each
+        // byte is counted until the socket has it, and there is one report of all: it is outermost.
+        .layer(exchanges.layer())
+        // Requests for foreign hosts, of foreign pages and with heads too long go no further. All answers, also
+        // refusals of the steps below, get what browsers and caches need, and are compressed.
+        .layer(finish.layer())
+        // A panic below is one request's, and is answered.
+        .layer(panics.layer())
+        // Calls of web pages become calls as all others, and the deadline of a call begins.
+        .layer(has_calls.layer())
+        // The number of requests at once, the bytes of their bodies, and the time to the head of an answer.
+        .layer(intake.layer())
+        .service(router)
 }
 
 /// All paths. What is not open to everyone is behind the gate; unknown paths are open.
@@ -113,4 +107,26 @@ impl Next<Inbound> for Router {
         let answered = self.clone().call(request).await;
         answered.unwrap_or_else(|never| match never {})
     }
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Panics(pub(super) Arc<Metrics>);
+
+impl Step<Inbound> for Panics {
+    async fn answer(&self, inbound: Box<Inbound>, next: &impl Next<Inbound>) -> Response {
+        let dialect = inbound.client.dialect;
+        let answer = AssertUnwindSafe(next.answer(inbound)).catch_unwind().await;
+        answer.unwrap_or_else(|panic| {
+            self.0.panics.inc();
+            tracing::error!(panic = said(&*panic), "a handler panicked");
+            let error = Error::Internal("the request could not be answered");
+            dialect.refusal(&error)
+        })
+    }
+}
+
+fn said(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    text.unwrap_or("no text")
 }

@@ -57,7 +57,6 @@ impl Step<Inbound> for Calls {
     }
 }
 
-/// Answers a call in the time that it allows.
 async fn in_time(inbound: Box<Inbound>, next: &impl Next<Inbound>) -> Response {
     let is_of_page = inbound.client.dialect != Dialect::Grpc;
     let mut response = match Deadline::of(inbound.request.headers()) {

@@ -26,20 +26,19 @@ use tokio_util::{sync::CancellationToken, task::TaskTracker};
 use super::{
     app::Steps,
     exchange::{Exchanges, Fate, From},
-    guarded::{FirstWords, WriteTimeout},
-    peer::Peer,
+    guarded::Guarded,
     step::Next as _,
-    throttle::LogThrottle,
+    telemetry::LogThrottle,
     tls::Tls,
 };
 use crate::{body::Body, rest};
 
-/// Takes connections and serves them. Cheap to clone.
 #[derive(Clone)]
 pub(super) struct Connections {
     shared: Arc<Shared>,
 }
 
+#[derive(Debug)]
 struct Shared {
     http: Builder<TokioExecutor>,
     tls: Option<Tls>,
@@ -60,7 +59,6 @@ struct Shared {
     ended: CancellationToken,
 }
 
-/// The times that connections wait.
 #[derive(Clone, Copy, Debug)]
 struct Patience {
     opening: Duration,
@@ -70,7 +68,6 @@ struct Patience {
 
 /// The most connections beyond the limit that are answered 503 at once; others are just closed.
 const REFUSALS_AT_ONCE: usize = 64;
-/// The time that a refusal may take.
 const REFUSAL_TIME: Duration = Duration::from_secs(1);
 /// The wait after the system refused a connection.
 const OUT_OF_FILES: Duration = Duration::from_millis(50);
@@ -111,7 +108,6 @@ impl Connections {
         }
     }
 
-    /// Takes connections until [`close`](Self::close).
     pub(super) async fn take(&self, listener: TcpListener, front: Arc<Front>) {
         let shared = &self.shared;
         loop {
@@ -133,7 +129,6 @@ impl Connections {
         }
     }
 
-    /// Gives a connection a place, or refuses it.
     fn place(&self, stream: TcpStream, peer: SocketAddr, front: &Arc<Front>) {
         let shared = self.shared.clone();
         match shared.places_of(peer) {
@@ -167,12 +162,10 @@ impl Connections {
         self.shared.running.close();
     }
 
-    /// Waits until the last connection has ended.
     pub(super) async fn closed(&self) {
         self.shared.running.wait().await;
     }
 
-    /// Ends every connection now.
     pub(super) fn end(&self) {
         self.shared.ended.cancel();
     }
@@ -195,7 +188,7 @@ impl Shared {
         let _ = stream.set_nodelay(true);
         #[cfg(any(target_os = "android", target_os = "linux"))]
         let _ = socket2::SockRef::from(&stream).set_tcp_notsent_lowat(UNSENT);
-        let stream = WriteTimeout::new(stream, self.patience.stalled);
+        let stream = Guarded::new(stream).taking_within(self.patience.stalled);
         match &self.tls {
             None => self.converse(stream, peer, front).await,
             Some(tls) => {
@@ -206,7 +199,7 @@ impl Shared {
                     () = self.closing.cancelled() => return,
                 };
                 match shaken {
-                    Ok(Ok(stream)) => self.converse(stream, peer, front).await,
+                    Ok(Ok(stream)) => self.converse(Guarded::new(stream), peer, front).await,
                     Ok(Err(error)) => self.no_handshake(peer, &error.to_string()),
                     Err(_) => self.no_handshake(peer, "it took too long"),
                 }
@@ -223,14 +216,14 @@ impl Shared {
         }
     }
 
-    async fn converse<S>(&self, stream: S, peer: SocketAddr, front: Arc<Front>)
+    async fn converse<S>(&self, stream: Guarded<S>, peer: SocketAddr, front: Arc<Front>)
     where
         S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
     {
-        let from = front.exchanges.from(Peer(peer));
+        let from = front.exchanges.from(peer);
         let open = from.open.clone();
         let service = Answers { front, from };
-        let stream = TokioIo::new(FirstWords::new(stream, self.patience.opening));
+        let stream = TokioIo::new(stream.opening_within(self.patience.opening));
         let connection = self.http.serve_connection(stream, service);
         tokio::pin!(connection);
         let mut is_closing = false;
@@ -292,13 +285,11 @@ fn http(settings: &Server) -> Builder<TokioExecutor> {
     builder
 }
 
-/// The service that all connections share.
 pub(super) struct Front {
     pub(super) exchanges: Exchanges,
     pub(super) steps: Steps,
 }
 
-/// Answers the requests of one connection.
 struct Answers {
     front: Arc<Front>,
     from: From,
@@ -328,7 +319,6 @@ fn is_of_the_client(error: &io::Error) -> bool {
 /// Tells a client that there is no place, and hears it out: a socket that is closed with words
 /// unread takes back what was said.
 async fn refuse(mut stream: TcpStream, error: Error) -> io::Result<()> {
-    /// No more is heard.
     const HEARD: u64 = 1 << 16;
     stream.write_all(&rest::no_place(&error)).await?;
     stream.shutdown().await?;

@@ -13,30 +13,24 @@ use crate::{
     rest::Refused,
 };
 
-/// The protocol of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Dialect {
     /// Everything that is not a call.
     Rest,
-    /// gRPC.
     Grpc,
     /// gRPC-Web, whose trailers are a part of the body.
     GrpcWeb,
-    /// gRPC-Web in Base64.
     GrpcWebText,
 }
 
 /// Why an answer ends before it is complete.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Ending {
-    /// The daemon breaks it off.
     Interrupted(Interrupted),
-    /// The deadline of the client is over.
     Deadline(grpc::Deadline),
 }
 
 impl Ending {
-    /// The trailers of a call that ends so.
     fn trailers(self) -> Option<HeaderMap> {
         match self {
             Self::Interrupted(why) => grpc::interrupted(why),
@@ -44,7 +38,6 @@ impl Ending {
         }
     }
 
-    /// The code of a call that ends so.
     pub(super) fn code(self) -> Option<u32> {
         self.trailers().as_ref().and_then(grpc_code)
     }
@@ -58,7 +51,6 @@ impl Ending {
     }
 }
 
-/// The code of a call that has ended.
 pub(super) fn grpc_code(headers: &HeaderMap) -> Option<u32> {
     headers.get(grpc::GRPC_STATUS)?.to_str().ok()?.parse().ok()
 }
@@ -79,12 +71,10 @@ impl Dialect {
         }
     }
 
-    /// Whether it is a call.
     pub(super) const fn is_call(self) -> bool {
         !matches!(self, Self::Rest)
     }
 
-    /// The protocol as metrics and logs name it.
     pub(super) const fn protocol(self) -> Protocol {
         match self {
             Self::Rest => Protocol::Rest,
@@ -92,7 +82,6 @@ impl Dialect {
         }
     }
 
-    /// An error as a whole answer.
     pub(super) fn refusal(self, error: &Error) -> Response {
         if self.is_call() {
             grpc::refusal(error)

@@ -29,17 +29,14 @@ const API_KEY: HeaderName = HeaderName::from_static("x-api-key");
 const RATE_LIMIT: HeaderName = HeaderName::from_static("ratelimit");
 const RATE_LIMIT_POLICY: HeaderName = HeaderName::from_static("ratelimit-policy");
 
-/// Who is let in.
 #[derive(Clone, Debug)]
 pub(super) enum Admission {
-    /// As keys and addresses say.
     Gate(Arc<Gate>),
     /// Everyone, as an administrator.
     Admins,
 }
 
 impl Admission {
-    /// The caller of a request, if it is let in.
     fn caller(&self, client: &Client, headers: &HeaderMap) -> Result<Caller, Denied> {
         match self {
             Self::Gate(gate) => {
@@ -72,7 +69,6 @@ impl<S> Layer<S> for GateLayer {
     }
 }
 
-/// A service behind the gate.
 #[derive(Clone, Debug)]
 pub(super) struct Gated<S> {
     admission: Admission,

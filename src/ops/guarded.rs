@@ -28,27 +28,67 @@ fn too_late(what: &'static str) -> io::Error {
     io::Error::new(io::ErrorKind::TimedOut, what)
 }
 
-/// A socket whose client must send its first bytes soon, and is read in small parts.
-#[derive(Debug)]
-pub(super) struct FirstWords<S> {
+/// A socket that is read in small parts, and whose client may be bound: to send its first bytes soon, and to take
+/// something now and then, while there is something to take.
+pub(super) struct Guarded<S> {
     stream: S,
     read: usize,
     /// Set until the client has sent enough, or has been answered.
-    deadline: Option<Pin<Box<Sleep>>>,
+    opening: Option<Pin<Box<Sleep>>>,
+    /// The time for which the receiver may take nothing.
+    patience: Option<Duration>,
+    /// Made when the socket is full for the first time.
+    full: Option<Pin<Box<Sleep>>>,
+    is_full: bool,
 }
 
-impl<S> FirstWords<S> {
-    /// A socket whose client has this time for its first bytes.
-    pub(super) fn new(stream: S, patience: Duration) -> Self {
+impl<S> Guarded<S> {
+    pub(super) fn new(stream: S) -> Self {
         Self {
             stream,
             read: 0,
-            deadline: Some(Box::pin(sleep(patience))),
+            opening: None,
+            patience: None,
+            full: None,
+            is_full: false,
+        }
+    }
+
+    /// With this time for the first bytes of the client.
+    pub(super) fn opening_within(mut self, time: Duration) -> Self {
+        self.opening = Some(Box::pin(sleep(time)));
+        self
+    }
+
+    /// With this time for which the receiver may take nothing.
+    pub(super) fn taking_within(mut self, time: Duration) -> Self {
+        self.patience = Some(time);
+        self
+    }
+
+    /// The result of a write, unless the socket has been full for too long.
+    fn moved<T>(
+        &mut self,
+        cx: &mut Context<'_>,
+        polled: Poll<io::Result<T>>,
+    ) -> Poll<io::Result<T>> {
+        let (Some(patience), Poll::Pending) = (self.patience, &polled) else {
+            self.is_full = false;
+            return polled;
+        };
+        let full = self.full.get_or_insert_with(|| Box::pin(sleep(patience)));
+        if !self.is_full {
+            full.as_mut().reset(Instant::now() + patience);
+            self.is_full = true;
+        }
+        match full.as_mut().poll(cx) {
+            Poll::Ready(()) => Poll::Ready(Err(too_late("the receiver takes nothing"))),
+            Poll::Pending => Poll::Pending,
         }
     }
 }
 
-impl<S: AsyncRead + Unpin> AsyncRead for FirstWords<S> {
+impl<S: AsyncRead + Unpin> AsyncRead for Guarded<S> {
     fn poll_read(
         mut self: Pin<&mut Self>,
         cx: &mut Context<'_>,
@@ -58,119 +98,27 @@ impl<S: AsyncRead + Unpin> AsyncRead for FirstWords<S> {
         let mut room = buffer.limit(AT_ONCE);
         let polled = poll_read_buf(Pin::new(&mut self.stream), cx, &mut room);
         let read = buffer.filled().len() - before;
-        if let Some(deadline) = &mut self.deadline {
-            match &polled {
-                Poll::Pending => {
-                    if deadline.as_mut().poll(cx).is_ready() {
-                        return Poll::Ready(Err(too_late("the client says nothing")));
-                    }
+        if let Some(opening) = &mut self.opening {
+            if polled.is_ready() {
+                self.read += read;
+                if self.read >= OPENING {
+                    self.opening = None;
                 }
-                Poll::Ready(_) => {
-                    self.read += read;
-                    if self.read >= OPENING {
-                        self.deadline = None;
-                    }
-                }
+            } else if opening.as_mut().poll(cx).is_ready() {
+                return Poll::Ready(Err(too_late("the client says nothing")));
             }
         }
         polled.map_ok(|_| ())
     }
 }
 
-impl<S: AsyncWrite + Unpin> AsyncWrite for FirstWords<S> {
+impl<S: AsyncWrite + Unpin> AsyncWrite for Guarded<S> {
     fn poll_write(
         mut self: Pin<&mut Self>,
         cx: &mut Context<'_>,
         bytes: &[u8],
     ) -> Poll<io::Result<usize>> {
-        self.deadline = None;
-        Pin::new(&mut self.stream).poll_write(cx, bytes)
-    }
-
-    fn poll_write_vectored(
-        mut self: Pin<&mut Self>,
-        cx: &mut Context<'_>,
-        slices: &[io::IoSlice<'_>],
-    ) -> Poll<io::Result<usize>> {
-        self.deadline = None;
-        Pin::new(&mut self.stream).poll_write_vectored(cx, slices)
-    }
-
-    fn is_write_vectored(&self) -> bool {
-        self.stream.is_write_vectored()
-    }
-
-    fn poll_flush(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.stream).poll_flush(cx)
-    }
-
-    fn poll_shutdown(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.stream).poll_shutdown(cx)
-    }
-}
-
-/// A socket whose receiver must take something now and then, while there is something to take.
-#[derive(Debug)]
-pub(super) struct WriteTimeout<S> {
-    stream: S,
-    patience: Duration,
-    /// Made when the socket is full for the first time.
-    deadline: Option<Pin<Box<Sleep>>>,
-    is_full: bool,
-}
-
-impl<S> WriteTimeout<S> {
-    /// A socket whose receiver may take nothing for this time.
-    pub(super) fn new(stream: S, patience: Duration) -> Self {
-        Self {
-            stream,
-            patience,
-            deadline: None,
-            is_full: false,
-        }
-    }
-
-    /// The result of a write, unless the socket has been full for too long.
-    fn moved<T>(
-        &mut self,
-        cx: &mut Context<'_>,
-        polled: Poll<io::Result<T>>,
-    ) -> Poll<io::Result<T>> {
-        if polled.is_ready() {
-            self.is_full = false;
-            return polled;
-        }
-        let patience = self.patience;
-        let deadline = self
-            .deadline
-            .get_or_insert_with(|| Box::pin(sleep(patience)));
-        if !self.is_full {
-            deadline.as_mut().reset(Instant::now() + patience);
-            self.is_full = true;
-        }
-        match deadline.as_mut().poll(cx) {
-            Poll::Ready(()) => Poll::Ready(Err(too_late("the receiver takes nothing"))),
-            Poll::Pending => Poll::Pending,
-        }
-    }
-}
-
-impl<S: AsyncRead + Unpin> AsyncRead for WriteTimeout<S> {
-    fn poll_read(
-        mut self: Pin<&mut Self>,
-        cx: &mut Context<'_>,
-        buffer: &mut ReadBuf<'_>,
-    ) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.stream).poll_read(cx, buffer)
-    }
-}
-
-impl<S: AsyncWrite + Unpin> AsyncWrite for WriteTimeout<S> {
-    fn poll_write(
-        mut self: Pin<&mut Self>,
-        cx: &mut Context<'_>,
-        bytes: &[u8],
-    ) -> Poll<io::Result<usize>> {
+        self.opening = None;
         let polled = Pin::new(&mut self.stream).poll_write(cx, bytes);
         self.moved(cx, polled)
     }
@@ -180,6 +128,7 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for WriteTimeout<S> {
         cx: &mut Context<'_>,
         slices: &[io::IoSlice<'_>],
     ) -> Poll<io::Result<usize>> {
+        self.opening = None;
         let polled = Pin::new(&mut self.stream).poll_write_vectored(cx, slices);
         self.moved(cx, polled)
     }

@@ -12,7 +12,6 @@ use axum::extract::State;
 use http::StatusCode;
 use schemars::JsonSchema;
 use serde::Serialize;
-use strew_error::Error;
 use strew_service::{Pulse, Service, Workers};
 use tokio::sync::watch;
 
@@ -43,12 +42,10 @@ impl Readiness {
         }
     }
 
-    /// Not ready from now on.
     pub fn close(&self) {
         self.is_closed.store(true, Ordering::Release);
     }
 
-    /// Whether requests are welcome.
     pub fn is_ready(&self) -> bool {
         !self.is_closed.load(Ordering::Acquire) && self.pulse.is_within(self.bound)
     }
@@ -72,50 +69,29 @@ impl Readiness {
     }
 }
 
-/// `/livez` and `/readyz`.
 pub fn endpoints(readiness: Readiness, service: Arc<Service>) -> Vec<Endpoint> {
-    let alive = operation::<Alive>(
-        "getLivez",
-        "Whether the daemon lives",
-        &[(200, "It lives.")],
-        "/livez",
-    );
-    let is_ready = operation::<Ready>(
-        "getReadyz",
-        "Whether the daemon takes requests",
-        &[
-            (200, "It takes requests."),
-            (
-                503,
-                "It is about to stop, or points wait too long for a worker.",
-            ),
-        ],
-        "/readyz",
-    );
-    vec![
-        Endpoint::only("/livez", (), alive, live).open(),
-        Endpoint::only("/readyz", (readiness, service), is_ready, ready).open(),
-    ]
-}
-
-fn operation<T: JsonSchema>(
-    id: &'static str,
-    summary: &'static str,
-    answers: &[(u16, &'static str)],
-    path: &str,
-) -> Operation {
-    let answer = |&(status, about)| Answer {
-        status,
-        ..Answer::json::<T>(about)
+    let lives = vec![Answer::json::<Alive>("It lives.")];
+    let takes = Answer::json::<Ready>("It takes requests.");
+    let about = "It is about to stop, or points wait too long for a worker.";
+    let takes_none = Answer {
+        status: 503,
+        about,
+        ..takes.clone()
     };
-    Operation {
+    let of = |id, summary, answers| Operation {
         id,
         summary,
         about: "For probes; never cached.",
         problems: vec![],
-        example: path.into(),
-        ..Operation::new(Tag::Operations, answers.iter().map(answer).collect())
-    }
+        ..Operation::new(Tag::Operations, answers)
+    };
+    let alive = of("getLivez", "Whether the daemon lives", lives);
+    let summary = "Whether the daemon takes requests";
+    let is_ready = of("getReadyz", summary, vec![takes, takes_none]);
+    vec![
+        Endpoint::only("/livez", (), alive, live).open(),
+        Endpoint::only("/readyz", (readiness, service), is_ready, ready).open(),
+    ]
 }
 
 /// That the daemon lives.
@@ -148,26 +124,16 @@ async fn ready(
     _: Context,
 ) -> Result<Response, Refused> {
     let ready = readiness.is_ready();
-    let status = if ready {
-        StatusCode::OK
-    } else {
-        StatusCode::SERVICE_UNAVAILABLE
-    };
-    let state = Ready {
+    let catalog = service.catalog();
+    let mut response = rest::json(&Ready {
         ready,
-        tables: {
-            let catalog = service.catalog();
-            catalog.entries().chain(catalog.in_space()).count()
-        },
+        tables: catalog.entries().chain(catalog.in_space()).count(),
         streams: service.streams().open(),
-    };
-    Ok(momentary(status, &state)?)
-}
-
-fn momentary(status: StatusCode, value: &impl Serialize) -> Result<Response, Error> {
-    let mut response = rest::momentary(rest::json(value)?);
-    *response.status_mut() = status;
-    Ok(response)
+    })?;
+    if !ready {
+        *response.status_mut() = StatusCode::SERVICE_UNAVAILABLE;
+    }
+    Ok(rest::momentary(response))
 }
 
 #[cfg(test)]

@@ -13,14 +13,11 @@ use std::{
 
 use http::{HeaderMap, HeaderName};
 
-/// The header of the id, in requests and answers.
 pub(super) const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 const TRACEPARENT: HeaderName = HeaderName::from_static("traceparent");
 
-/// The longest id that is taken over.
 const LONGEST: usize = 128;
 
-/// The names of one request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Identity {
     /// Its id: visible ASCII without quotes.
@@ -38,7 +35,6 @@ pub(super) struct Trace {
     pub(super) parent: Option<String>,
     /// Our span, 16 digits.
     pub(super) span: String,
-    /// Whether the client says that the trace is kept.
     pub(super) is_sampled: bool,
 }
 

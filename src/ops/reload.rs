@@ -1,5 +1,5 @@
 //! Reading tables, fields, worlds, keys and certificates again while the daemon serves: on SIGHUP, when files change, on
-//! request.
+//! the request of an administrator (`POST /v1/tables:reload`).
 //!
 //! Files are polled, because notifications of changes do not come through network volumes and the
 //! folders that orchestrators mount. They are compared by content, because times of change are too
@@ -15,25 +15,32 @@ use std::{
     time::Duration,
 };
 
+use axum::extract::State;
+use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
+use strew_catalog::{Refusal, Reload};
+use strew_error::{Error, Kind};
+use strew_service::Service;
+use strew_service::access::Gate;
 use tokio::sync::Mutex;
 
 use super::{metrics::Metrics, shutdown::Hangups, tls::Tls};
-pub use fingerprint::{Fingerprint, Watched};
-use strew_catalog::{Refusal, Reload};
-use strew_error::Error;
-use strew_service::Service;
-use strew_service::access::Gate;
+use crate::{
+    body::Response,
+    rest::{
+        Context, Refused,
+        api::{Answer, Endpoint, Operation, Tag},
+        json,
+    },
+};
 
-/// Why files are read again.
+pub use fingerprint::{Fingerprint, Watched};
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
-    /// SIGHUP.
     Signal,
-    /// A file has changed.
     Change,
-    /// An administrator requests it.
     Request,
 }
 
@@ -61,8 +68,6 @@ pub struct Done {
 /// The longest time that reading may take: a file system may hang.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Reads tables, keys and certificates again.
-#[derive(Debug)]
 pub struct Reloader {
     service: Arc<Service>,
     gate: Arc<Gate>,
@@ -71,9 +76,7 @@ pub struct Reloader {
     /// The fingerprint of the files before they were read for the first time.
     first: Fingerprint,
     metrics: Metrics,
-    /// Whether files are being read.
     is_reading: Arc<AtomicBool>,
-    /// The result of the last reload.
     last: Mutex<Done>,
 }
 
@@ -98,15 +101,10 @@ impl Reloader {
         }
     }
 
-    /// Whether there are files to watch.
     pub(super) fn has_files(&self) -> bool {
         !self.watched.is_empty()
     }
 
-    /// Reads everything again and logs the result.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if reading panicked or takes too long; then nothing has changed.
     pub async fn reload(&self, cause: Cause) -> Result<Done, Error> {
         let mut last = self.last.lock().await;
         let (service, gate, tls) = (self.service.clone(), self.gate.clone(), self.tls.clone());
@@ -302,4 +300,28 @@ fn log(cause: Cause, done: &Done, metrics: &Metrics) {
         keys = done.keys,
         "tables read again"
     );
+}
+
+pub(super) fn endpoint(reloader: Arc<Reloader>) -> Endpoint {
+    let operation = Operation {
+        method: Method::POST,
+        id: "reloadTables",
+        summary: "Read tables and keys again",
+        about: "For administrators: takes a key with admin = true, or the address of admin.listen. \
+                Valid files are served from then on. An invalid file is refused, and its previous \
+                content stays in use. Current answers are completed from the tables they began with.",
+        problems: vec![Kind::NotAllowed],
+        example: "/v1/tables:reload -X POST".into(),
+        ..Operation::new(Tag::Operations, vec![Answer::json::<Done>("The result.")])
+    };
+    Endpoint::only("/v1/tables:reload", reloader, operation, reload)
+}
+
+async fn reload(
+    State(reloader): State<Arc<Reloader>>,
+    context: Context,
+) -> Result<Response, Refused> {
+    context.caller.must_be_admin()?;
+    let reload = reloader.reload(Cause::Request).await?;
+    Ok(json(&reload)?)
 }

@@ -2,25 +2,25 @@
 
 use std::{io, net::TcpListener, sync::Arc, time::Duration};
 
-use strew_catalog::{Catalog, CatalogError, except::Lists, field::Fields, named::NamedError};
+use anyhow::Context as _;
+use strew_catalog::{Catalog, except::Lists, field::Fields};
 use strew_config as config;
 use strew_config::Config;
 use strew_query::{Assets, Worlds};
-use strew_service::access::{Gate, KeysError};
+use strew_service::access::Gate;
 use strew_service::{Service, Workers};
 use tokio_util::task::AbortOnDropHandle;
 
 use super::{
-    admin,
-    app::Stack,
+    app,
     connections::{Connections, Front},
     exchange::{self, Exchanges, Intake},
     health::{self, Readiness},
     metrics::{self, Metrics},
-    reload::{Reloader, Watched},
+    reload::{self, Reloader, Watched},
     shutdown::Hangups,
-    spans::{Collector, Spans, SpansError},
-    tls::{Tls, TlsError},
+    spans::{Collector, Spans},
+    tls::Tls,
     trim,
 };
 use crate::{
@@ -28,56 +28,30 @@ use crate::{
     rest::{self, Routes, api::Endpoint},
 };
 
-/// Why the daemon cannot start or go on.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ServeError {
-    /// The tables cannot be loaded.
-    #[error(transparent)]
-    Catalog(#[from] CatalogError),
-    /// The program was built wrongly.
-    #[error("cannot serve gRPC: {0}")]
-    Grpc(#[from] grpc::BuildError),
-    /// The certificates cannot be used.
-    #[error(transparent)]
-    Tls(#[from] TlsError),
-    /// The keys cannot be used.
-    #[error(transparent)]
-    Keys(#[from] KeysError),
-    /// A field, a world or a list of points cannot be used.
-    #[error(transparent)]
-    Named(#[from] NamedError),
-    /// Spans cannot be sent.
-    #[error(transparent)]
-    Spans(#[from] SpansError),
-    /// The socket does not work.
-    #[error("cannot serve: {0}")]
-    Socket(#[from] io::Error),
-}
-
 /// The time that streams have at a stop to send their last message to their readers.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// A daemon that is ready to serve.
-#[derive(Debug)]
 pub struct App {
     config: Config,
     service: Arc<Service>,
     gate: Arc<Gate>,
     reloader: Arc<Reloader>,
-    admin: Option<TcpListener>,
-    hangups: Option<Hangups>,
+    /// The socket of administrators.
+    pub admin: Option<TcpListener>,
+    /// Tables are read again whenever these come.
+    pub hangups: Option<Hangups>,
     tls: Option<Tls>,
     metrics: Metrics,
     collector: Option<Collector>,
     spans: Option<Spans>,
-    pages: rest::Pages,
-    more: Vec<Endpoint>,
+    pub pages: rest::Pages,
+    /// Further paths on the same port, which are not described.
+    pub more: Vec<Endpoint>,
 }
 
 impl App {
     /// Reads the certificates and keys, loads the tables and starts the workers.
-    pub fn new(config: Config) -> Result<Self, ServeError> {
+    pub fn new(config: Config) -> anyhow::Result<Self> {
         let watched = Watched::of(&config);
         // Before anything is read: what changes from here on is noticed.
         let first = watched.look();
@@ -133,36 +107,10 @@ impl App {
         })
     }
 
-    /// Serves these pages, too.
-    pub fn with_pages(mut self, pages: rest::Pages) -> Self {
-        self.pages = pages;
-        self
-    }
-
-    /// Serves further paths on the same port, which are not described.
-    pub fn with_endpoints(mut self, more: Vec<Endpoint>) -> Self {
-        self.more = more;
-        self
-    }
-
-    /// Lets administrators in on a socket of their own.
-    pub fn with_admin(mut self, listener: TcpListener) -> Self {
-        self.admin = Some(listener);
-        self
-    }
-
-    /// Reads its tables again whenever these come.
-    pub fn with_hangups(mut self, hangups: Hangups) -> Self {
-        self.hangups = Some(hangups);
-        self
-    }
-
-    /// Where administrators are let in.
     pub fn admin_address(&self) -> Option<std::net::SocketAddr> {
         self.admin.as_ref()?.local_addr().ok()
     }
 
-    /// What it serves.
     pub const fn service(&self) -> &Arc<Service> {
         &self.service
     }
@@ -173,7 +121,7 @@ impl App {
         mut self,
         listener: TcpListener,
         shutdown: impl Future<Output = ()>,
-    ) -> Result<usize, ServeError> {
+    ) -> anyhow::Result<usize> {
         let Some(collector) = self.collector.take() else {
             return self.serve(listener, shutdown).await;
         };
@@ -188,24 +136,25 @@ impl App {
         mut self,
         listener: TcpListener,
         shutdown: impl Future<Output = ()>,
-    ) -> Result<usize, ServeError> {
+    ) -> anyhow::Result<usize> {
         let _watch = self.watch();
         let readiness = Readiness::within(config::seconds(self.config.server.ready_within_seconds));
-        let (front, grpc_health) = self
-            .front(readiness.clone(), is_on_loopback(&listener))
-            .await?;
+        let (calls, grpc_health) = grpc::calls(self.service.clone())
+            .await
+            .context("cannot serve gRPC")?;
+        let front = self.front(readiness.clone(), &listener, Some(calls));
         let watch = readiness.clone();
         let watch = watch.watch(self.service.workers().clone(), grpc_health.clone());
         let _pulse = AbortOnDropHandle::new(tokio::spawn(watch));
         let trimming = trim::watch(self.service.budget().clone());
         let _trimming = AbortOnDropHandle::new(tokio::spawn(trimming));
-        let listener = asynchronous(listener)?;
+        let listener = asynchronous(listener).context("cannot serve")?;
         let handshakes = &self.metrics.failed_handshakes;
         let server = &self.config.server;
         let admins = Connections::new(server, self.tls.clone(), None, handshakes.clone());
         if let Some(listener) = self.admin.take() {
-            let front = self.admin_front(readiness.clone(), is_on_loopback(&listener));
-            let listener = asynchronous(listener)?;
+            let front = self.front(readiness.clone(), &listener, None);
+            let listener = asynchronous(listener).context("cannot serve")?;
             let admins = admins.clone();
             tokio::spawn(async move { admins.take(listener, Arc::new(front)).await });
         }
@@ -257,49 +206,29 @@ impl App {
         }))
     }
 
-    /// Both protocols, and health.
-    async fn front(
+    /// What answers on a socket: calls and all of REST, or without calls what administrators need.
+    fn front(
         &self,
         readiness: Readiness,
-        is_on_loopback: bool,
-    ) -> Result<(Front, grpc::Health), ServeError> {
-        let (calls, health) = grpc::calls(self.service.clone()).await?;
-        let mut endpoints = rest::endpoints(&self.service);
-        endpoints.extend(health::endpoints(readiness, self.service.clone()));
-        endpoints.push(admin::endpoint(self.reloader.clone()));
-        if self.config.metrics.enabled {
-            endpoints.push(self.metrics_endpoint());
-        }
-        let intake = Intake::new(&self.config, self.service.budget().clone());
-        let bounds = (Some(calls), Some(intake), Some(self.gate.clone()));
-        Ok((
-            self.answering(endpoints, &self.more, is_on_loopback, bounds),
-            health,
-        ))
-    }
-
-    /// What the address for administrators answers.
-    fn admin_front(&self, readiness: Readiness, is_on_loopback: bool) -> Front {
-        let mut endpoints = health::endpoints(readiness, self.service.clone());
-        endpoints.push(admin::endpoint(self.reloader.clone()));
-        if self.config.metrics.enabled {
-            endpoints.push(self.metrics_endpoint());
-        }
-        self.answering(endpoints, &[], is_on_loopback, (None, None, None))
-    }
-
-    fn answering(
-        &self,
-        endpoints: Vec<Endpoint>,
-        more: &[Endpoint],
-        is_on_loopback: bool,
-        (calls, intake, gate): (Option<grpc::Calls>, Option<Intake>, Option<Arc<Gate>>),
+        listener: &TcpListener,
+        calls: Option<grpc::Calls>,
     ) -> Front {
-        let routes = Routes::new(endpoints, more, &self.pages, &self.config.http.public_url);
+        let is_for_all = calls.is_some();
+        let mut endpoints = match is_for_all {
+            true => rest::endpoints(&self.service),
+            false => vec![],
+        };
+        endpoints.extend(health::endpoints(readiness, self.service.clone()));
+        endpoints.push(reload::endpoint(self.reloader.clone()));
+        if self.config.metrics.enabled {
+            let (metrics, service) = (self.metrics.clone(), self.service.clone());
+            endpoints.push(metrics::endpoint(metrics, service));
+        }
+        let more = if is_for_all { &self.more[..] } else { &[] };
         let finish = rest::Finish::new(
             &self.config,
             self.gate.settings().needs_key(),
-            is_on_loopback,
+            is_on_loopback(listener),
             self.service.clone(),
         );
         let exchanges = Exchanges {
@@ -309,22 +238,14 @@ impl App {
             budget: self.service.budget().clone(),
             terms: exchange::terms(&self.config.server),
         };
-        let stack = Stack {
-            exchanges: exchanges.clone(),
-            finish,
-            routes,
-            calls,
-            intake,
-            gate,
-        };
+        let intake = || Intake::new(&self.config, self.service.budget().clone());
+        let gate = is_for_all.then(|| self.gate.clone());
+        let bounds = (is_for_all.then(intake), gate);
+        let routes = Routes::new(endpoints, more, &self.pages, &self.config.http.public_url);
         Front {
-            steps: stack.steps(),
+            steps: app::steps(exchanges.clone(), finish, routes, calls, bounds),
             exchanges,
         }
-    }
-
-    fn metrics_endpoint(&self) -> rest::api::Endpoint {
-        metrics::endpoint(self.metrics.clone(), self.service.clone())
     }
 }
 

@@ -7,7 +7,6 @@ use std::io;
 const CUT_SHORT: i32 = 1;
 
 /// The signals, listened for from the moment this is made.
-#[derive(Debug)]
 pub struct Signals {
     #[cfg(unix)]
     terminate: tokio::signal::unix::Signal,
@@ -28,7 +27,6 @@ impl Signals {
         })
     }
 
-    /// Waits for the next one and returns its name.
     pub async fn next(&mut self) -> &'static str {
         #[cfg(unix)]
         tokio::select! {
@@ -55,14 +53,12 @@ impl Signals {
 }
 
 /// SIGHUP, listened for from the moment this is made; it never comes where there is none.
-#[derive(Debug)]
 pub struct Hangups {
     #[cfg(unix)]
     signal: tokio::signal::unix::Signal,
 }
 
 impl Hangups {
-    /// Starts to listen. Needs a tokio runtime.
     pub fn new() -> io::Result<Self> {
         #[cfg(unix)]
         use tokio::signal::unix::{SignalKind, signal};
@@ -72,7 +68,6 @@ impl Hangups {
         })
     }
 
-    /// Waits for the next one.
     pub async fn next(&mut self) {
         #[cfg(unix)]
         if self.signal.recv().await.is_some() {

@@ -5,19 +5,15 @@ use tower::{Layer, layer::layer_fn};
 
 use crate::body::Response;
 
-/// The next step inward.
 pub(super) trait Next<R>: Send + Sync {
-    /// The answer to a request.
     fn answer(&self, inbound: Box<R>) -> impl Future<Output = Response> + Send;
 }
 
-/// A step.
 pub(super) trait Step<R>: Sized + Send + Sync {
     /// The answer to a request, of which the next step answers what this one does not.
     fn answer(&self, inbound: Box<R>, next: &impl Next<R>)
     -> impl Future<Output = Response> + Send;
 
-    /// The step as a layer around others.
     fn layer<S>(self) -> impl Layer<S, Service = Layered<Self, S>>
     where
         Self: Clone,
@@ -29,7 +25,6 @@ pub(super) trait Step<R>: Sized + Send + Sync {
     }
 }
 
-/// A step that may be left out.
 impl<R: Send, T: Step<R>> Step<R> for Option<T> {
     async fn answer(&self, inbound: Box<R>, next: &impl Next<R>) -> Response {
         match self {
@@ -39,8 +34,6 @@ impl<R: Send, T: Step<R>> Step<R> for Option<T> {
     }
 }
 
-/// A step around others.
-#[derive(Debug)]
 pub(super) struct Layered<T, S> {
     step: T,
     inner: S,

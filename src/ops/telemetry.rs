@@ -1,10 +1,16 @@
 //! The log: on standard error by default, so that standard output stays for answers.
 //!
 //! As text for people or as JSON, an object a line, for programs that gather logs. Lines that a request causes have its
-//! id, however little is logged: it is looked up when there is a line to write.
+//! id, however little is logged: it is looked up when there is a line to write. Of events that may happen a thousand times
+//! a second there is one line an interval, with their number.
 
-use std::{fmt, io::IsTerminal as _};
+use std::{
+    fmt,
+    io::IsTerminal as _,
+    time::{Duration, Instant},
+};
 
+use parking_lot::Mutex;
 use strew_config::{Log, LogFormat, LogOutput};
 use strew_service::Record;
 use tracing::{Event, Subscriber};
@@ -62,7 +68,6 @@ pub fn start(log: &Log) -> Result<(), tracing_subscriber::filter::ParseError> {
     Ok(())
 }
 
-/// Lines with the id of their request.
 struct Named<F> {
     inner: F,
     is_json: bool,
@@ -106,5 +111,48 @@ where
             write!(writer, " {name}=\"{id}\"")?;
         }
         writer.write_char('\n')
+    }
+}
+
+const INTERVAL: Duration = Duration::from_secs(10);
+
+#[derive(Debug, Default)]
+pub(super) struct LogThrottle {
+    state: Mutex<State>,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    count: u64,
+    logged: Option<Instant>,
+}
+
+impl LogThrottle {
+    /// Records one event. Returns the number of events since the last line if it is time for
+    /// another.
+    pub(super) fn record(&self) -> Option<u64> {
+        let mut state = self.state.lock();
+        state.count += 1;
+        if state.logged.is_some_and(|at| at.elapsed() < INTERVAL) {
+            return None;
+        }
+        state.logged = Some(Instant::now());
+        Some(std::mem::take(&mut state.count))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_event_is_logged_and_the_next_are_counted() {
+        let throttle = LogThrottle::default();
+        assert_eq!(throttle.record(), Some(1));
+        assert_eq!([throttle.record(), throttle.record()], [None, None]);
+        let earlier = Instant::now().checked_sub(INTERVAL);
+        throttle.state.lock().logged = earlier;
+        let expected = if earlier.is_some() { 3 } else { 4 };
+        assert_eq!(throttle.record(), Some(expected));
     }
 }

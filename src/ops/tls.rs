@@ -3,11 +3,10 @@
 //! Certificates are read again by [`reload`](super::reload). New ones serve new connections; open
 //! connections go on with those they began with.
 
-mod expiry;
-
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
+    time::{Duration, SystemTime, UNIX_EPOCH},
 };
 
 use parking_lot::RwLock;
@@ -17,12 +16,9 @@ use rustls::{
     pki_types::{CertificateDer, PrivateKeyDer, pem::PemObject as _},
     server::{WebPkiClientVerifier, danger::ClientCertVerifier},
 };
+use strew_config::{Tls as Settings, bounded_file};
 use tokio_rustls::TlsAcceptor;
 
-pub use self::expiry::validity;
-use strew_config::{Tls as Settings, bounded_file};
-
-/// The fault of a certificate, or of a file of them.
 #[derive(Debug, thiserror::Error)]
 #[error("{setting} = {path:?}: {problem}")]
 pub struct TlsError {
@@ -32,35 +28,25 @@ pub struct TlsError {
 }
 
 impl TlsError {
-    /// The file.
     pub(super) fn path(&self) -> String {
         self.path.display().to_string()
     }
 }
 
-/// Speaks TLS with what was read last.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(super) struct Tls {
     settings: Settings,
     current: Arc<RwLock<Current>>,
 }
 
+#[derive(Debug)]
 struct Current {
     /// A hash of all files.
     content: blake3::Hash,
     config: Arc<ServerConfig>,
 }
 
-impl std::fmt::Debug for Tls {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Tls")
-            .field("settings", &self.settings)
-            .finish_non_exhaustive()
-    }
-}
-
 impl Tls {
-    /// Reads the files; `None` without TLS.
     pub(super) fn new(settings: &Settings) -> Result<Option<Self>, TlsError> {
         if !settings.is_on() {
             return Ok(None);
@@ -76,16 +62,12 @@ impl Tls {
         }))
     }
 
-    /// The acceptor of handshakes with the current certificate.
     pub(super) fn acceptor(&self) -> TlsAcceptor {
         let current = self.current.read();
         TlsAcceptor::from(current.config.clone())
     }
 
     /// Reads the files again; returns whether they have changed.
-    ///
-    /// # Errors
-    /// If they cannot be used; then those before stay.
     pub(super) fn reload(&self) -> Result<bool, TlsError> {
         let files = Files::read(&self.settings)?;
         let content = files.hash();
@@ -101,10 +83,8 @@ impl Tls {
     }
 }
 
-/// The most bytes of a file of certificates.
 const MAX_BYTES: u64 = 4 << 20;
 
-/// The contents of all files.
 struct Files {
     certificate: Vec<u8>,
     key: Vec<u8>,
@@ -154,7 +134,7 @@ impl Files {
         let provider = Arc::new(default_provider());
         let chain = certificates(&self.certificate).map_err(of_certificate)?;
         for certificate in &chain {
-            if let Some(warning) = expiry::warning(certificate) {
+            if let Some(warning) = warning(certificate) {
                 tracing::warn!(path = %settings.certificate.display(), "{warning}");
             }
         }
@@ -194,4 +174,112 @@ pub(crate) fn certificates(pem: &[u8]) -> Result<Vec<CertificateDer<'static>>, S
         return Err("it holds no certificate in PEM".into());
     }
     Ok(read)
+}
+
+/// A certificate that expires sooner than this is worth a warning.
+const SOON: u64 = 14 * DAY;
+const DAY: u64 = 86_400;
+
+fn warning(certificate: &[u8]) -> Option<String> {
+    let now = SystemTime::now().duration_since(UNIX_EPOCH);
+    let now = now.as_ref().map_or(0, Duration::as_secs);
+    let (_, end) = validity(certificate)?;
+    if end <= now {
+        let days = (now - end) / DAY;
+        return Some(format!("the certificate expired {days} days ago"));
+    }
+    let days = (end - now) / DAY;
+    (end - now < SOON).then(|| format!("the certificate expires in {days} days"))
+}
+
+/// The first and the last second of a certificate in DER, counted from 1970.
+pub fn validity(certificate: &[u8]) -> Option<(u64, u64)> {
+    const SEQUENCE: u8 = 0x30;
+    const VERSION: u8 = 0xA0;
+    let (_, certificate, _) = element(certificate)?;
+    let (_, mut fields, _) = element(certificate)?;
+    if fields.first() == Some(&VERSION) {
+        fields = element(fields)?.2;
+    }
+    // After the serial number, the algorithm and the issuer comes the validity.
+    for _ in 0..3 {
+        fields = element(fields)?.2;
+    }
+    let (tag, validity, _) = element(fields)?;
+    (tag == SEQUENCE).then_some(())?;
+    let (form, start, rest) = element(validity)?;
+    let start = time(form, start)?;
+    let (form, end, _) = element(rest)?;
+    Some((start, time(form, end)?))
+}
+
+/// The first element of some DER: its tag, its content, and what follows it.
+fn element(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
+    let (&tag, rest) = bytes.split_first()?;
+    let (&first, mut rest) = rest.split_first()?;
+    let mut length = usize::from(first);
+    if first & 0x80 != 0 {
+        let digits;
+        (digits, rest) = rest.split_at_checked(usize::from(first & 0x7F))?;
+        let fold = |length: usize, &digit: &u8| length.checked_mul(256)?.checked_add(digit.into());
+        length = digits.iter().try_fold(0, fold)?;
+    }
+    let (content, rest) = rest.split_at_checked(length)?;
+    Some((tag, content, rest))
+}
+
+/// A time as `YYMMDDHHMMSSZ` or `YYYYMMDDHHMMSSZ`, by its tag.
+fn time(form: u8, text: &[u8]) -> Option<u64> {
+    const UTC_TIME: u8 = 0x17;
+    let text = std::str::from_utf8(text).ok()?.strip_suffix('Z')?;
+    let (year, rest) = text.split_at_checked(if form == UTC_TIME { 2 } else { 4 })?;
+    let year: u64 = year.parse().ok()?;
+    let year = match form == UTC_TIME {
+        true if year < 50 => 2000 + year,
+        true => 1900 + year,
+        false => year,
+    };
+    let part = |i: usize| rest.get(2 * i..2 * i + 2)?.parse::<u64>().ok();
+    let (month, day) = (part(0)?, part(1)?);
+    let seconds = part(2)? * 3600 + part(3)? * 60 + part(4)?;
+    // Days of the civil calendar, with years that begin in March.
+    let (year, month) = if month > 2 {
+        (year, month - 3)
+    } else {
+        (year.checked_sub(1)?, month + 9)
+    };
+    let days = year * 365 + year / 4 - year / 100 + year / 400 + (month * 153 + 2) / 5 + day;
+    // 719,469 such days lie before 1970.
+    Some(days.checked_sub(719_469)? * DAY + seconds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_seconds_since_1970() {
+        for (form, text, expected) in [
+            (0x18, "19700101000000Z", 0),
+            (0x18, "20000229123456Z", 951_827_696),
+            (0x17, "491231235959Z", 2_524_607_999),
+            (0x17, "991231235959Z", 946_684_799),
+        ] {
+            assert_eq!(time(form, text.as_bytes()), Some(expected), "{text}");
+        }
+        assert_eq!(time(0x17, b"nonsense"), None);
+    }
+
+    #[test]
+    fn what_is_not_a_certificate_is_not_warned_about() {
+        for bytes in [
+            &b""[..],
+            &[0x30],
+            &[0x30, 0x84, 1],
+            &[0x30, 0xFF],
+            &[0x30; 100],
+        ] {
+            assert_eq!(warning(bytes), None);
+        }
+    }
 }

@@ -17,10 +17,8 @@ const KEEPS: bool = cfg!(all(
     not(feature = "jemalloc")
 ));
 
-/// The time between two looks.
 const PACE: Duration = Duration::from_secs(2);
 
-/// Looks at the memory until the task is dropped.
 pub(super) async fn watch(budget: Budget) {
     let mut kept = Kept::default();
     while KEEPS {
@@ -53,13 +51,11 @@ impl Kept {
         beyond - least > WORTH
     }
 
-    /// What can be returned has been.
     fn is_trimmed(&mut self, resident: u64, held: usize) {
         self.0 = Some(resident.saturating_sub(held as u64));
     }
 }
 
-/// Returns the pages of free memory to the system.
 fn trim() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     #[expect(unsafe_code, reason = "the C library has no safe interface")]

@@ -39,7 +39,6 @@ const WARNING: HeaderName = HeaderName::from_static("strew-warning");
 const NEXT: HeaderName = HeaderName::from_static("strew-next");
 const CURSOR: HeaderName = HeaderName::from_static("strew-cursor");
 
-/// The headers of an answer with points, and what they say.
 const HEADERS: [(&str, &str); 12] = [
     ("strew-count", "The exact number of points that follow."),
     (
@@ -140,7 +139,6 @@ struct Point {
     attributes: BTreeMap<String, serde_json::Value>,
 }
 
-/// The content types of points, with what they hold.
 fn contents() -> Vec<(&'static str, schemas::Content)> {
     let schema = |content_type| match content_type {
         "application/json" => schemas::of::<PointsDocument>,
@@ -151,7 +149,6 @@ fn contents() -> Vec<(&'static str, schemas::Content)> {
         .collect()
 }
 
-/// The problems that any answer with points can have.
 pub(super) fn problems() -> Vec<Kind> {
     vec![
         Kind::Invalid,
@@ -165,7 +162,6 @@ pub(super) fn problems() -> Vec<Kind> {
     ]
 }
 
-/// The answer with points, as the API describes it.
 pub(super) fn described() -> api::Answer {
     api::Answer {
         status: 200,
@@ -175,7 +171,6 @@ pub(super) fn described() -> api::Answer {
     }
 }
 
-/// Answers a query with its points.
 pub(super) async fn stream(
     service: &Service,
     context: &Context,
@@ -328,7 +323,6 @@ pub(super) fn freshness(
     Freshness::made(uri, headers, content_type, write).pinned(query.is_pinned())
 }
 
-/// The name under which an answer is saved.
 fn disposition(encoding: Encoding) -> HeaderValue {
     static KNOWN: LazyLock<Vec<(Encoding, HeaderValue)>> = LazyLock::new(|| {
         let made = |encoding: Encoding| {
@@ -362,7 +356,6 @@ fn table(digest: &str) -> Result<HeaderValue, Error> {
     })
 }
 
-/// The headers of an answer.
 fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<HeaderMap, Error> {
     let text = |text: &str| {
         HeaderValue::from_str(text).map_err(|_| Error::Internal("a header is not text"))

@@ -22,7 +22,6 @@ use crate::body::{Body, BoxError, Response, Whole};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Decided(pub(super) Option<Coding>);
 
-/// The coding that an answer gets.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Choice {
     coding: Coding,
@@ -53,7 +52,6 @@ pub(super) fn choose(accept: &HeaderMap, response: &mut Response) -> Option<Choi
 }
 
 impl Choice {
-    /// The answer in the coding.
     pub(super) async fn apply(
         self,
         is_head: bool,
@@ -102,14 +100,12 @@ impl Choice {
 /// Compressing less than a packet gains nothing.
 const SHORT: u64 = 1024;
 
-/// An empty body of unknown length.
 pub(super) fn unknown_length() -> Body {
     Body::from_stream(stream::empty::<
         Result<bytes::Bytes, std::convert::Infallible>,
     >())
 }
 
-/// A document, compressed at once.
 async fn whole_document(
     body: Body,
     length: u64,
@@ -178,7 +174,6 @@ async fn next_block(
 const ZSTD_LEVEL: i32 = 1;
 const GZIP_LEVEL: u32 = 2;
 
-/// A compressor under way.
 pub(super) enum Encoder {
     Zstd(zstd::stream::write::Encoder<'static, Vec<u8>>),
     Gzip(flate2::write::GzEncoder<Vec<u8>>),
@@ -195,7 +190,6 @@ impl Encoder {
         })
     }
 
-    /// A whole document, compressed.
     pub(super) fn whole(coding: Coding, plain: &[u8]) -> io::Result<Bytes> {
         let mut encoder = Self::new(coding)?;
         match &mut encoder {

@@ -10,7 +10,7 @@ use std::{
     sync::Arc,
 };
 
-use axum::extract::{FromRequest, FromRequestParts, MatchedPath, RawPathParams};
+use axum::extract::{FromRequest, FromRequestParts, MatchedPath, RawPathParams, State};
 use bytes::Bytes;
 use futures_util::StreamExt as _;
 use http::{HeaderMap, Method, StatusCode, Uri, header, request::Parts};
@@ -28,14 +28,11 @@ use super::{
 };
 use crate::body::{Body, Request, Response};
 
-/// A request without its body.
-#[derive(Debug)]
 pub struct Context {
     pub(crate) caller: Caller,
     pub(super) method: Method,
     pub(super) uri: Uri,
     pub(super) headers: HeaderMap,
-    /// The parameters in its path, in their order.
     pub(super) path: Vec<String>,
 }
 
@@ -45,7 +42,6 @@ impl Context {
         std::array::from_fn(|place| self.path.get(place).map_or("", String::as_str))
     }
 
-    /// The parameters of the address.
     pub(super) fn values(&self, groups: &'static [Group]) -> Values {
         parse_pairs(self.uri.query().unwrap_or_default(), groups)
     }
@@ -59,7 +55,6 @@ impl Context {
         Freshness::of(&self.uri, &self.headers, content_type, made_of)
     }
 
-    /// Makes an answer, unless the client has it.
     pub(super) async fn answer(
         &self,
         content_type: &'static str,
@@ -70,7 +65,6 @@ impl Context {
         freshness.answer(&self.headers, make).await
     }
 
-    /// Answers with a document, unless the client has it.
     pub(super) async fn document(
         &self,
         document: &(impl Serialize + Sync),
@@ -79,17 +73,19 @@ impl Context {
         self.answer(document::JSON, document, pin!(make)).await
     }
 
-    /// The error of a path that names nothing.
     pub(super) fn nothing(&self, available: String) -> Error {
         let path = self.uri.path().into();
         Error::NoSuchPath { path, available }
     }
 
-    /// The error of a path of this form with a name that is none of some.
     pub(super) fn nothing_named(&self, path: &str, names: &impl Display) -> Error {
         self.nothing(format!("{path}, where name is {names}"))
     }
 }
+
+/// The state of most handlers, and the answers of all.
+pub(super) type Shared = State<Arc<Service>>;
+pub(super) type Answered = Result<Response, Refused>;
 
 /// Takes all that the head of a request has: handlers have no other extractor after it.
 impl<S: Send + Sync> FromRequestParts<S> for Context {
@@ -113,15 +109,12 @@ impl<S: Send + Sync> FromRequestParts<S> for Context {
     }
 }
 
-/// A request with its body.
-#[derive(Debug)]
 pub struct Posted {
     pub(super) context: Context,
     pub(super) body: Bytes,
 }
 
 /// A request whose query is its body, and which has no parameters beside it.
-#[derive(Debug)]
 pub struct Sent {
     pub(super) context: Context,
     pub(super) body: Bytes,
@@ -156,7 +149,6 @@ impl FromRequest<Arc<Service>> for Sent {
     }
 }
 
-/// Reads a whole body.
 async fn whole_body(
     service: &Arc<Service>,
     headers: &HeaderMap,
@@ -186,7 +178,6 @@ async fn whole_body(
     }
 }
 
-/// Whether a body is gzip.
 fn is_packed(headers: &HeaderMap) -> Result<bool, Error> {
     let lines = headers.get_all(header::CONTENT_ENCODING).iter();
     let names: Vec<String> = lines

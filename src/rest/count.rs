@@ -20,12 +20,11 @@ use super::{
         self, Endpoint, Operation, Tag, either,
         schemas::{self, AnyQuery, CountQuery, PointsQuery, SpaceQuery},
     },
-    context::{Context, Posted, Sent, query_of_body},
+    context::{Answered, Context, Posted, Sent, Shared, query_of_body},
     document,
 };
 use crate::{body::Response, rest::Refused};
 
-/// The problems of counting.
 const PROBLEMS: [Kind; 5] = [
     Kind::Invalid,
     Kind::OtherTable,
@@ -34,7 +33,6 @@ const PROBLEMS: [Kind; 5] = [
     Kind::TooManyPoints,
 ];
 
-/// The path of counts of a dimension.
 pub(super) fn counts(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
     let path = either(dimension, ["/v1/count", "/v1/space/count"]);
     let parameters = either(dimension, [groups::COUNT, groups::SPACE_COUNT]);
@@ -79,14 +77,14 @@ pub(super) fn counts(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
         answers: vec![answers()],
         ..given.clone().posted(path, either(dimension, schemas), body)
     };
-    let get = move |State(service): State<Arc<Service>>, context: Context| async move {
+    let get = move |State(service): Shared, context: Context| async move {
         let draft = Draft::of(context.values(parameters));
         let (query, _) = service.check(&draft, &Stop::NEVER)?;
         let freshness = answer::freshness(&service, &context, &query, document::JSON);
         let make = pin!(counted(&service, &context, query));
         Ok::<_, Refused>(freshness.answer(&context.headers, make).await?)
     };
-    let post = move |State(service): State<Arc<Service>>, Sent { context, body }: Sent| async move {
+    let post = move |State(service): Shared, Sent { context, body }: Sent| async move {
         let (_, query, _) = query_of_body(&service, body, members).await?;
         Ok::<_, Refused>(counted(&service, &context, query).await?)
     };
@@ -95,11 +93,11 @@ pub(super) fn counts(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
 
 /// The exact number of points of a query.
 #[derive(Serialize, JsonSchema)]
-struct Count {
+pub struct Count {
     /// The number of points.
-    count: Long<u128>,
+    pub count: Long<u128>,
     /// The query with everything filled in.
-    query: Resolved,
+    pub query: Resolved,
 }
 
 async fn counted(
@@ -114,7 +112,6 @@ async fn counted(
     })
 }
 
-/// The path of parts of a dimension.
 pub(super) fn parts_of(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
     let path = either(dimension, ["/v1/points:split", "/v1/space/points:split"]);
     let members = either(dimension, [groups::QUERY, groups::SPACE_QUERY]);
@@ -141,7 +138,7 @@ pub(super) fn parts_of(service: &Arc<Service>, dimension: Dimension) -> Endpoint
     };
     let example = format!("'{path}?parts=2'");
     let operation = operation.posted(&example, either(dimension, schemas), body);
-    let post = move |State(service): State<Arc<Service>>, Posted { context, body }: Posted| async move {
+    let post = move |State(service): Shared, Posted { context, body }: Posted| async move {
         let parts = parts(&context.values(groups::SPLIT));
         let size = body.len();
         let (draft, query, _) = query_of_body(&service, body, members).await?;
@@ -152,21 +149,22 @@ pub(super) fn parts_of(service: &Arc<Service>, dimension: Dimension) -> Endpoint
 
 /// A query in parts.
 #[derive(Serialize, JsonSchema)]
-struct Split {
+pub struct Split {
     /// The number of points of all parts.
-    count: Long<u128>,
+    pub count: Long<u128>,
     /// The parts in their order.
-    parts: Vec<Part>,
+    pub parts: Vec<Piece>,
 }
 
 /// A part of a query.
 #[derive(Serialize, JsonSchema)]
-struct Part {
+#[schemars(rename = "Part")]
+pub struct Piece {
     /// The number of points of the part.
-    count: Long<u64>,
+    pub count: Long<u64>,
     /// The body of POST /v1/points:query, in space of POST /v1/space/points, that requests it.
     #[schemars(with = "AnyQuery")]
-    query: Map<String, Value>,
+    pub query: Map<String, Value>,
 }
 
 /// The bytes of a part besides the body: a cursor, a limit, a count.
@@ -180,7 +178,7 @@ async fn split(
     size: usize,
     draft: Draft,
     query: Box<Query>,
-) -> Result<Response, Refused> {
+) -> Answered {
     let planned = service.count(&context.caller, query).await?;
     let count = planned.count();
     let places = service.split(&context.caller, planned, parts).await?;
@@ -188,7 +186,7 @@ async fn split(
     let bytes = places.len().saturating_mul(size + PART_BYTES);
     let _held = service.hold(bytes.saturating_mul(3))?;
     let write = move |_: &Service, _: &Stop| {
-        let part = |(token, count): (Token, u64)| Part {
+        let part = |(token, count): (Token, u64)| Piece {
             count: Long(count),
             query: draft.part(&token, count).to_body(),
         };

@@ -15,10 +15,8 @@ use super::{
 };
 use crate::body::{Body, Response};
 
-/// The content type of JSON.
 pub const JSON: &str = "application/json";
 
-/// A document as an answer.
 pub fn json(document: &impl Serialize) -> Result<Response, Error> {
     Ok(file(written(document)?, JSON))
 }
@@ -38,7 +36,6 @@ pub fn momentary(mut response: Response) -> Response {
     response
 }
 
-/// A file as an answer.
 pub fn file(bytes: impl Into<Body>, content_type: &'static str) -> Response {
     let mut response = Response::new(bytes.into());
     // With what is put onto it later there are a dozen: a map that grows is filled anew.
@@ -49,24 +46,16 @@ pub fn file(bytes: impl Into<Body>, content_type: &'static str) -> Response {
 }
 
 /// A document that never changes. Compressed once, at the start or earlier, so that answering with it holds nothing but
-/// its place. Cheap to clone.
-#[derive(Clone, Debug)]
+/// its place.
 pub(super) struct Fixed {
-    inner: Arc<Inner>,
-}
-
-#[derive(Debug)]
-struct Inner {
     content_type: &'static str,
     digest: String,
     plain: Bytes,
-    /// In each coding.
     coded: Vec<(Coding, Bytes)>,
 }
 
 impl Fixed {
-    /// Compresses a document.
-    pub(super) fn new(content_type: &'static str, plain: Bytes) -> Self {
+    pub(super) fn new(content_type: &'static str, plain: Bytes) -> Arc<Self> {
         let coded = |coding| {
             let coded = Encoder::whole(coding, &plain).ok()?;
             Some((coding, coded))
@@ -75,39 +64,34 @@ impl Fixed {
         Self::coded(content_type, plain, coded)
     }
 
-    /// A document that is compressed already, in some codings.
     pub(super) fn coded(
         content_type: &'static str,
         plain: Bytes,
         coded: impl IntoIterator<Item = (Coding, Bytes)>,
-    ) -> Self {
-        Self {
-            inner: Arc::new(Inner {
-                content_type,
-                digest: blake3::hash(&plain).to_hex().to_string(),
-                coded: coded.into_iter().collect(),
-                plain,
-            }),
-        }
+    ) -> Arc<Self> {
+        Arc::new(Self {
+            content_type,
+            digest: blake3::hash(&plain).to_hex().to_string(),
+            coded: coded.into_iter().collect(),
+            plain,
+        })
     }
 
-    /// The document as an answer to a request.
     pub(super) fn answer(&self, uri: &Uri, headers: &HeaderMap) -> Response {
-        let inner = &*self.inner;
-        let freshness = Freshness::of(uri, headers, inner.content_type, &inner.digest);
+        let freshness = Freshness::of(uri, headers, self.content_type, &self.digest);
         let verdict = freshness.verdict(headers);
         if verdict != Verdict::Wanted {
             return freshness.instead(verdict);
         }
         let chosen = freshness.coding();
-        let coded = inner
+        let coded = self
             .coded
             .iter()
             .find(|(coding, _)| Some(*coding) == chosen);
-        let content = coded.map_or(&inner.plain, |(_, content)| content);
+        let content = coded.map_or(&self.plain, |(_, content)| content);
         let mut response = Response::new(Body::from(content.clone()));
         let headers = response.headers_mut();
-        let content_type = HeaderValue::from_static(inner.content_type);
+        let content_type = HeaderValue::from_static(self.content_type);
         headers.insert(header::CONTENT_TYPE, content_type);
         if let Some((coding, _)) = coded {
             let name = HeaderValue::from_static(coding.name());

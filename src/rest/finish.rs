@@ -17,7 +17,6 @@ use super::{
 };
 use crate::body::{Request, Response};
 
-/// The last step of every answer.
 #[derive(Clone, Debug)]
 pub struct Finish {
     origins: Origins,
@@ -27,8 +26,6 @@ pub struct Finish {
     service: Arc<Service>,
 }
 
-/// What the last step must know of a request.
-#[derive(Debug)]
 pub struct Preferences {
     is_head: bool,
     origin: Option<HeaderValue>,
@@ -36,7 +33,6 @@ pub struct Preferences {
 }
 
 impl Preferences {
-    /// Those of a request.
     pub fn of(request: &Request) -> Self {
         let headers = request.headers();
         Self {
@@ -87,7 +83,6 @@ impl Finish {
             .or_else(|| foreign(&self.origins, &self.hosts, request))
     }
 
-    /// Puts onto an answer what all have.
     pub async fn finish(&self, preferences: &Preferences, response: &mut Response) {
         let origin = preferences.origin.as_ref();
         origin::allow(&self.origins, origin, response.headers_mut());
@@ -108,7 +103,6 @@ impl Finish {
     }
 }
 
-/// The lines of one header.
 fn picked(headers: &HeaderMap, name: &HeaderName) -> HeaderMap {
     if !headers.contains_key(name) {
         return HeaderMap::new();
@@ -130,7 +124,6 @@ fn wrong_host(request: &Request) -> Option<Response> {
     is_wrong.then(|| Problem::of_status(StatusCode::BAD_REQUEST, detail()))
 }
 
-/// The refusal of a request of a page that may not send it, before its body is read.
 fn foreign(origins: &Origins, hosts: &Hosts, request: &Request) -> Option<Response> {
     let detail = origin::refusal(origins, hosts, request)?;
     Some(Problem::of_status(StatusCode::FORBIDDEN, detail))

@@ -88,12 +88,10 @@ impl Freshness {
         }
     }
 
-    /// The tag of the answer.
     pub(super) const fn tag(&self) -> &HeaderValue {
         &self.tag
     }
 
-    /// The coding of the answer, which its tag says.
     pub(super) const fn coding(&self) -> Option<Coding> {
         self.coding
     }
@@ -144,7 +142,6 @@ impl Freshness {
         }
     }
 
-    /// Puts what caches need onto an answer.
     pub(super) fn stamp(self, response: &mut Response) {
         response.headers_mut().insert(header::ETAG, self.tag);
         // Of another type than text no coding would be chosen later, either.
@@ -200,10 +197,8 @@ impl Freshness {
     }
 }
 
-/// What the conditions of a request make of its answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// It is wanted.
     Wanted,
     /// The client has it: 304.
     Same,
@@ -213,19 +208,14 @@ pub(super) enum Verdict {
     Failed,
 }
 
-/// What a list of tags is to ours.
+#[derive(Debug)]
 enum Listed {
-    /// There is no list.
     Absent,
-    /// It has ours.
     Ours,
-    /// It stands for any.
     Any,
-    /// It has none of ours.
     Other,
 }
 
-/// How long answers may be kept.
 #[derive(Clone, Debug)]
 pub(super) struct Keeping {
     pinned: HeaderValue,
@@ -263,10 +253,8 @@ impl Keeping {
     }
 }
 
-/// The unit of ranges.
 pub(super) const BYTES: HeaderValue = HeaderValue::from_static("bytes");
 
-/// A single range, as a client writes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wanted {
     /// From a byte on, up to one that is included.
@@ -312,7 +300,6 @@ impl Wanted {
     }
 }
 
-/// A range of the bytes of a stream.
 pub(super) fn cut(
     blocks: impl Stream<Item = Result<Bytes, Interrupted>>,
     mut range: Range<u64>,

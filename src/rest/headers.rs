@@ -6,14 +6,11 @@ use http::{
     header::{self, Entry},
 };
 
-/// A header that answers depend on.
 pub(super) const ACCEPT_ENCODING: HeaderValue = HeaderValue::from_static("accept-encoding");
-/// As [`ACCEPT_ENCODING`].
 pub(super) const ORIGIN: HeaderValue = HeaderValue::from_static("origin");
 /// What almost all answers with points depend on: the second is added to all answers.
 pub(super) const BOTH: HeaderValue = HeaderValue::from_static("accept, accept-encoding");
 
-/// Adds the name of a header.
 pub(super) fn vary(headers: &mut HeaderMap, name: HeaderValue) {
     let line = match headers.entry(header::VARY) {
         Entry::Vacant(line) => {

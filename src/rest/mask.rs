@@ -13,12 +13,11 @@ use strew_service::{
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
-    context::Context,
+    context::{Context, Shared},
     document,
 };
 use crate::{body::Response, rest::Refused};
 
-/// The paths of the mask and of its spectrum.
 pub(super) fn endpoints(service: &Arc<Service>) -> [Endpoint; 2] {
     let mask = Operation {
         id: "getMask",
@@ -43,7 +42,6 @@ pub(super) fn endpoints(service: &Arc<Service>) -> [Endpoint; 2] {
     ]
 }
 
-/// The path of a picture.
 fn drawn(
     drawn: Drawn,
     path: &'static str,
@@ -57,7 +55,7 @@ fn drawn(
     let (content_type, parameters) = (format.content_type(), operation.parameters);
     operation.answers = api::Answer::file(operation.summary, content_type, schema).or_unchanged();
     operation.problems.push(Kind::OtherTable);
-    let handler = move |State(service): State<Arc<Service>>, context: Context| async move {
+    let handler = move |State(service): Shared, context: Context| async move {
         let query = MaskQuery::check(&context.values(parameters), &service.catalog())?;
         let freshness = context.freshness(content_type, &query.entry.digest);
         let freshness = freshness.pinned(query.is_pinned);

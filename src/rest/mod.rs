@@ -31,12 +31,14 @@ use strew_service::Service;
 use crate::body::{Request, Response};
 use api::Endpoint;
 pub use context::{Context, Posted, Sent};
+pub use count::{Count, Piece, Split};
 pub use document::{JSON, file, json, momentary};
 pub use finish::{Finish, Preferences};
 pub use named::world_document;
 pub use page::{Page, Pages, Part};
 pub use problem::Refused;
 use problem::{Problem, not_found};
+pub use single::{One, Several};
 
 /// The endpoints of REST, without their description.
 pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
@@ -68,7 +70,6 @@ pub fn no_place(error: &Error) -> Vec<u8> {
     Problem::last_words(error)
 }
 
-/// The answer to a request to a gRPC method that is no call.
 pub fn not_a_call(request: &Request) -> Response {
     let detail = format!(
         "`{}` is a gRPC method; allowed: POST with the content type application/grpc or \
@@ -78,7 +79,6 @@ pub fn not_a_call(request: &Request) -> Response {
     Problem::of_status(StatusCode::UNSUPPORTED_MEDIA_TYPE, detail)
 }
 
-/// The answer to a gRPC call over an HTTP that cannot carry it.
 pub fn needs_http2(request: &Request) -> Response {
     let detail = format!(
         "`{}` is a gRPC method; allowed: gRPC over HTTP/2, gRPC-Web over any HTTP",
@@ -87,12 +87,8 @@ pub fn needs_http2(request: &Request) -> Response {
     Problem::of_status(StatusCode::HTTP_VERSION_NOT_SUPPORTED, detail)
 }
 
-/// All that a port answers by REST.
-#[derive(Debug)]
 pub struct Routes {
-    /// What is let in with a key, where keys are required.
     pub gated: Router,
-    /// What everyone is let in to.
     pub open: Router,
     /// Answers requests to other paths.
     pub paths: Paths,
@@ -103,8 +99,6 @@ pub struct Routes {
 pub struct Paths(Arc<str>);
 
 impl Paths {
-    /// The answer to an unknown path.
-    #[must_use]
     pub fn nothing(&self, path: &str) -> Response {
         not_found(path, &self.0)
     }
@@ -113,10 +107,6 @@ impl Paths {
 impl Routes {
     /// The routes of these endpoints, of their description and of the pages, which name `public_url` as their own
     /// address if it is not empty; and `more`, which are not described.
-    ///
-    /// # Panics
-    /// For two endpoints of one path.
-    #[must_use]
     pub fn new(
         mut endpoints: Vec<Endpoint>,
         more: &[Endpoint],
@@ -125,14 +115,14 @@ impl Routes {
     ) -> Self {
         endpoints.extend(page::endpoints(pages, public_url));
         endpoints.push(page::description(&endpoints));
-        let paths: Vec<&str> = endpoints.iter().map(Endpoint::path).collect();
+        let paths: Vec<&str> = endpoints.iter().map(|endpoint| endpoint.path).collect();
         let paths = Paths(paths.join(", ").into());
         endpoints.extend(page::icon(pages));
         let of = |is_open| {
             let all = endpoints.iter().chain(more);
-            let all = all.filter(|endpoint| endpoint.is_open() == is_open);
+            let all = all.filter(|endpoint| endpoint.is_open == is_open);
             all.fold(Router::new(), |router, endpoint| {
-                router.route(endpoint.path(), endpoint.answers())
+                router.route(endpoint.path, endpoint.answers())
             })
         };
         Self {

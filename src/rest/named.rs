@@ -17,13 +17,12 @@ use strew_query::{Draft, Parameter, Value, World, groups, parameters::WORLD};
 use strew_service::Service;
 
 use super::{
-    Refused, answer,
+    answer,
     api::{self, Endpoint, Operation, Tag, schemas},
-    context::{BODY_COPIES, Context, Sent},
+    context::{Answered, BODY_COPIES, Context, Sent, Shared},
     document,
     points::{self, COLUMN, ROW, SIZE},
 };
-use crate::body::Response;
 
 /// A thing in a path by its name.
 const fn name(about: &'static str, allowed: &'static str) -> Parameter {
@@ -55,7 +54,6 @@ fn of_one(tag: Tag, parameters: &'static [&'static Parameter], answer: api::Answ
     }
 }
 
-/// The path of lists of points.
 pub(super) fn except(service: &Arc<Service>) -> Endpoint {
     let answers = api::Answer::json::<ExceptLists<'_>>("The lists, sorted by name.");
     let listed = Operation {
@@ -116,14 +114,14 @@ impl<'a> ExceptList<'a> {
     }
 }
 
-async fn lists(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+async fn lists(State(service): Shared, context: Context) -> Answered {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let lists = catalog.except().iter().map(ExceptList::new).collect();
     Ok(context.document(&ExceptLists { lists }).await?)
 }
 
-async fn hold_list(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
+async fn hold_list(State(service): Shared, sent: Sent) -> Answered {
     let Sent { body, .. } = sent;
     let bytes = body.len();
     let hold = move |service: &Service, _: &Stop| service.hold_list(&body);
@@ -131,7 +129,6 @@ async fn hold_list(State(service): State<Arc<Service>>, sent: Sent) -> Result<Re
     Ok(document::json(&ExceptList::new(&held))?)
 }
 
-/// The paths of worlds.
 pub(super) fn worlds(service: &Arc<Service>) -> [Endpoint; 3] {
     let answers = api::Answer::json::<Worlds<'_>>("The list, sorted by name.");
     let listed = Operation {
@@ -220,10 +217,7 @@ pub fn world_document(world: &World) -> Result<Vec<u8>, Error> {
     document::written(&DescribedWorld::new(world)?)
 }
 
-async fn all_worlds(
-    State(service): State<Arc<Service>>,
-    context: Context,
-) -> Result<Response, Refused> {
+async fn all_worlds(State(service): Shared, context: Context) -> Answered {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let worlds = catalog.worlds.iter();
@@ -231,10 +225,7 @@ async fn all_worlds(
     Ok(context.document(&Worlds { worlds }).await?)
 }
 
-async fn one_world(
-    State(service): State<Arc<Service>>,
-    context: Context,
-) -> Result<Response, Refused> {
+async fn one_world(State(service): Shared, context: Context) -> Answered {
     let [name] = context.path();
     context.values(groups::NONE).read()?;
     let world = world(&service, name, &context)?;
@@ -242,10 +233,7 @@ async fn one_world(
     Ok(context.document(&described).await?)
 }
 
-async fn world_chunk(
-    State(service): State<Arc<Service>>,
-    context: Context,
-) -> Result<Response, Refused> {
+async fn world_chunk(State(service): Shared, context: Context) -> Answered {
     let [name, size, x, y] = context.path();
     world(&service, name, &context)?;
     let mut values = context.values(groups::WORLD_CHUNK);
@@ -254,7 +242,6 @@ async fn world_chunk(
     points::stream(&service, &context, &draft).await
 }
 
-/// The world of a path.
 fn world(service: &Service, name: &str, context: &Context) -> Result<Arc<World>, Error> {
     let worlds = &service.catalog().worlds;
     let nothing = || context.nothing_named("/v1/worlds/{name}", &worlds.names());
@@ -263,7 +250,6 @@ fn world(service: &Service, name: &str, context: &Context) -> Result<Arc<World>,
 
 const PNG: &str = "image/png";
 
-/// The paths of fields.
 pub(super) fn fields(service: &Arc<Service>) -> [Endpoint; 3] {
     let answers = api::Answer::json::<Fields<'_>>("The list, sorted by name.");
     let listed = Operation {
@@ -360,10 +346,7 @@ struct DescribedField<'a> {
     field: Document,
 }
 
-async fn all_fields(
-    State(service): State<Arc<Service>>,
-    context: Context,
-) -> Result<Response, Refused> {
+async fn all_fields(State(service): Shared, context: Context) -> Answered {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let fields = || catalog.fields().iter();
@@ -375,7 +358,7 @@ async fn all_fields(
     Ok(context.answer(document::JSON, &made_of, pin!(make)).await?)
 }
 
-async fn hold_field(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
+async fn hold_field(State(service): Shared, sent: Sent) -> Answered {
     let Sent { body, .. } = sent;
     let (bytes, budget) = (body.len(), service.own_budget());
     let read = move || {
@@ -389,10 +372,7 @@ async fn hold_field(State(service): State<Arc<Service>>, sent: Sent) -> Result<R
     Ok(document::json(&LoadedField::new(&held))?)
 }
 
-async fn one_field(
-    State(service): State<Arc<Service>>,
-    context: Context,
-) -> Result<Response, Refused> {
+async fn one_field(State(service): Shared, context: Context) -> Answered {
     let [name] = context.path();
     context.values(groups::NONE).read()?;
     let field = field(&service, name, &context)?;
@@ -403,10 +383,7 @@ async fn one_field(
     Ok(context.document(&described).await?)
 }
 
-async fn field_chunk(
-    State(service): State<Arc<Service>>,
-    context: Context,
-) -> Result<Response, Refused> {
+async fn field_chunk(State(service): Shared, context: Context) -> Answered {
     let [name, size, x, y] = context.path();
     context.values(groups::NONE).read()?;
     let field = field(&service, name, &context)?;
@@ -423,7 +400,6 @@ async fn field_chunk(
     Ok(context.answer(PNG, &digest, pin!(make)).await?)
 }
 
-/// The field of a path.
 fn field(service: &Service, name: &str, context: &Context) -> Result<Arc<NamedField>, Error> {
     let catalog = service.catalog();
     let nothing = || context.nothing_named("/v1/fields/{name}", &catalog.fields().names());

@@ -15,7 +15,6 @@ pub(super) struct Chosen {
 }
 
 impl Chosen {
-    /// A format that was requested by name.
     pub(super) const fn named(encoding: Encoding) -> Self {
         Self {
             encoding,
@@ -49,7 +48,6 @@ fn offered(media_type: &'static str, encoding: Encoding) -> Chosen {
     }
 }
 
-/// The content types that a client can be given, each once.
 pub(super) fn content_types() -> Vec<&'static str> {
     let named = Encoding::ALL.iter().copied().map(Encoding::content_type);
     let mut types = vec![];
@@ -97,7 +95,6 @@ pub(super) fn accepted(headers: &HeaderMap) -> Result<Chosen, Error> {
 }
 
 /// A media range with its quality in thousandths.
-#[derive(Debug)]
 struct Range<'a> {
     main: &'a str,
     sub: &'a str,
@@ -142,12 +139,10 @@ pub(super) fn split(element: &str) -> Option<(&str, u16)> {
     Some((name, quality))
 }
 
-/// The coding that compresses an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Coding {
     /// `zstd` (RFC 8878): smaller and several times as fast as gzip.
     Zstd,
-    /// `gzip` (RFC 1952).
     Gzip,
 }
 
@@ -162,7 +157,6 @@ impl Coding {
         }
     }
 
-    /// The suffix that the tag of a compressed answer has.
     pub(super) const fn suffix(self) -> &'static str {
         match self {
             Self::Zstd => "-zstd",
@@ -183,7 +177,6 @@ impl Coding {
         is_text(content_type)
     }
 
-    /// The coding of an answer of a content type to a request with these headers.
     pub(super) fn chosen(headers: &HeaderMap, content_type: &str) -> Option<Self> {
         if !headers.contains_key(header::ACCEPT_ENCODING) || !Self::is_for(content_type) {
             return None;
@@ -228,7 +221,6 @@ fn accepted_coding(element: &str) -> Option<(&str, u16)> {
     }
 }
 
-/// Whether content of a type is text, which compresses well.
 fn is_text(content_type: &str) -> bool {
     let media_type = content_type.split(';').next().unwrap_or_default().trim();
     let (_, sub) = media_type.split_once('/').unwrap_or_default();

@@ -19,12 +19,9 @@ use crate::body::{Body, Request, Response};
 
 const ALL: HeaderValue = HeaderValue::from_static("*");
 
-/// The origins whose pages may send requests.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Origins {
-    /// Every page.
     All,
-    /// Pages of these origins.
     Some(Vec<String>),
 }
 
@@ -41,7 +38,6 @@ impl Origins {
         Self::Some(origins.by_ref().collect())
     }
 
-    /// The origins that may read the answer to a page of an origin.
     fn allowed(&self, origin: &HeaderValue) -> Option<HeaderValue> {
         match self {
             Self::All => Some(ALL),
@@ -78,7 +74,6 @@ pub(super) fn refusal(origins: &Origins, hosts: &Hosts, request: &Request) -> Op
 /// The seconds for which a browser may keep the answer to a preflight request; browsers cut it.
 const REMEMBER: &str = "86400";
 
-/// The answer to a preflight request.
 pub(super) fn preflight(
     origins: &Origins,
     method: &Method,
@@ -126,7 +121,6 @@ pub(super) fn allow(origins: &Origins, origin: Option<&HeaderValue>, answer: &mu
     answer.insert(header::ACCESS_CONTROL_EXPOSE_HEADERS, ALL);
 }
 
-/// The names of a daemon.
 #[derive(Clone, Debug)]
 pub(super) struct Hosts {
     is_on_loopback: bool,
@@ -135,7 +129,6 @@ pub(super) struct Hosts {
 }
 
 impl Hosts {
-    /// Those of a daemon that listens on loopback or elsewhere.
     pub(super) fn new(public_url: &str, is_on_loopback: bool) -> Self {
         let public = public_url.split_once("://");
         Self {

@@ -13,24 +13,19 @@ use strew_query::Parameter;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
-    context::Context,
+    context::{Answered, Context},
     document::{Fixed, JSON},
     negotiate::Coding,
-    problem::Refused,
 };
-use crate::body::Response;
 
 /// The policy of pages: they may load their own parts and the answers of the daemon, and nothing inline.
 const POLICY: &str = "default-src 'none'; style-src 'self'; script-src 'self'; worker-src 'self'; \
                       connect-src 'self'; img-src 'self'; base-uri 'none'; form-action 'none'; \
                       frame-ancestors 'none'";
 
-/// The pages and their parts.
 #[derive(Clone, Debug, Default)]
 pub struct Pages {
-    /// The pages.
     pub pages: Vec<Page>,
-    /// Their parts.
     pub parts: Vec<Part>,
 }
 
@@ -39,26 +34,18 @@ pub struct Pages {
 pub struct Part {
     /// Its name below `/page/`, such as `docs/docs.css`.
     pub name: &'static str,
-    /// Its content.
     pub plain: &'static [u8],
     /// Its content, compressed by `zstd`; empty for a picture of pixels, as is `gzip`.
     pub zstd: &'static [u8],
-    /// Its content, compressed by `gzip`.
     pub gzip: &'static [u8],
 }
 
-/// A page.
 #[derive(Clone, Debug)]
 pub struct Page {
-    /// Its path.
     pub path: &'static str,
-    /// The name of its operation in the description of the API.
     pub id: &'static str,
-    /// The summary of that operation.
     pub summary: &'static str,
-    /// The description of that operation.
     pub about: &'static str,
-    /// Its text.
     pub html: &'static str,
 }
 
@@ -74,8 +61,7 @@ const DRAWING: &str = "image/svg+xml";
 const PICTURE: &str = "image/jpeg";
 
 impl Part {
-    /// The part, ready to send.
-    fn document(&self) -> Fixed {
+    fn document(&self) -> Arc<Fixed> {
         let coded = [(Coding::Zstd, self.zstd), (Coding::Gzip, self.gzip)];
         let coded = coded.into_iter().filter(|(_, content)| !content.is_empty());
         Fixed::coded(
@@ -86,7 +72,6 @@ impl Part {
     }
 }
 
-/// The content type of a part.
 fn content_type(name: &str) -> &'static str {
     match name.rsplit_once('.') {
         Some((_, "js")) => SCRIPT,
@@ -150,7 +135,6 @@ fn previewed(html: &str, public_url: &str) -> String {
         .collect()
 }
 
-/// Parts at a path, with the name of the operation and an example.
 fn parts_at(
     (path, id, example): (&'static str, &'static str, &str),
     parameters: &'static [&'static Parameter],
@@ -207,10 +191,9 @@ fn operation(
     }
 }
 
-/// The parts by their names, ready to send.
-type Parts = Arc<Vec<(&'static str, Fixed)>>;
+type Parts = Arc<Vec<(&'static str, Arc<Fixed>)>>;
 
-async fn one(State(parts): State<Parts>, context: Context) -> Result<Response, Refused> {
+async fn one(State(parts): State<Parts>, context: Context) -> Answered {
     let name = context.uri.path().trim_start_matches("/page/");
     let found = parts.iter().find(|(part, _)| *part == name);
     let (_, document) = found.ok_or_else(|| Error::NoSuchPath {
@@ -220,7 +203,7 @@ async fn one(State(parts): State<Parts>, context: Context) -> Result<Response, R
     fixed(State(document.clone()), context).await
 }
 
-async fn fixed(State(document): State<Fixed>, context: Context) -> Result<Response, Refused> {
+async fn fixed(State(document): State<Arc<Fixed>>, context: Context) -> Answered {
     let mut response = document.answer(&context.uri, &context.headers);
     for (name, value) in [
         (header::CONTENT_SECURITY_POLICY, POLICY),
@@ -240,7 +223,6 @@ async fn fixed(State(document): State<Fixed>, context: Context) -> Result<Respon
 const CROSS_ORIGIN_OPENER_POLICY: HeaderName =
     HeaderName::from_static("cross-origin-opener-policy");
 
-/// The path of the description of these endpoints, and of itself.
 pub(super) fn description(endpoints: &[Endpoint]) -> Endpoint {
     let answers = api::Answer::file("The document.", JSON, schemas::object).or_unchanged();
     let operation = Operation {
@@ -250,10 +232,10 @@ pub(super) fn description(endpoints: &[Endpoint]) -> Endpoint {
         problems: vec![],
         ..Operation::new(Tag::About, answers)
     };
-    let answer = async |State(document): State<Fixed>, context: Context| {
+    let answer = async |State(document): State<Arc<Fixed>>, context: Context| {
         document.answer(&context.uri, &context.headers)
     };
-    let with = |document: Fixed| {
+    let with = |document: Arc<Fixed>| {
         Endpoint::only("/openapi.json", document, operation.clone(), answer).open()
     };
     let own = with(Fixed::new(JSON, Bytes::new()));

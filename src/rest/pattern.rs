@@ -26,12 +26,11 @@ use super::{
         schemas::{self, ArrangementQuery as ArrangementBody},
     },
     coding::unknown_length,
-    context::{Context, Sent},
+    context::{Answered, Context, Sent, Shared},
     document,
 };
 use crate::body::{Body, Response};
 
-/// The paths.
 pub(super) fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
     let figures = FIGURES.into_iter().flat_map(|described| {
         [Format::Svg, Format::Png].map(|format| figure(service, described, format))
@@ -43,7 +42,6 @@ pub(super) fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
 const COUNT: HeaderName = HeaderName::from_static("strew-count");
 const NEXT: HeaderName = HeaderName::from_static("strew-next");
 
-/// The definition of an arrangement, for the description.
 const ABOUT: &str = "An arrangement is a point of the pattern with others at some offsets from it. It exists iff its image in \
      index space fits the set region, and the area of the margin that is left is the exact density of its \
      occurrences. In a box of the grid occurrences are counted in closed form, whatever its size; list returns \
@@ -78,7 +76,6 @@ fn arrangements(service: &Arc<Service>) -> Endpoint {
     Endpoint::only(path, service.clone(), given, get).with(service.clone(), posted, post)
 }
 
-/// The answer, with a list or without.
 fn described() -> api::Answer {
     api::Answer {
         status: 200,
@@ -94,7 +91,7 @@ fn described() -> api::Answer {
             ),
         ],
         contents: vec![
-            (document::JSON, schemas::of::<Answered>),
+            (document::JSON, schemas::of::<ArrangementAnswer>),
             ("application/x-ndjson", schemas::any),
             ("text/csv", schemas::text),
         ],
@@ -104,20 +101,18 @@ fn described() -> api::Answer {
 /// An arrangement, alone or with a list.
 #[derive(JsonSchema)]
 #[serde(untagged)]
-#[schemars(rename = "ArrangementAnswer")]
 #[allow(dead_code, reason = "only described")]
-enum Answered {
+enum ArrangementAnswer {
     /// Without a list.
     Facts(Facts),
     /// With list=json.
-    Listed(Listed),
+    Listed(ArrangementList),
 }
 
 /// An arrangement with its occurrences.
 #[derive(JsonSchema)]
-#[schemars(rename = "ArrangementList")]
 #[allow(dead_code, reason = "only described; a stream writes it")]
-struct Listed {
+struct ArrangementList {
     /// The arrangement.
     arrangement: Facts,
     /// The number of occurrences in the list.
@@ -139,7 +134,7 @@ struct Occurrence {
     places: Option<Vec<[f64; 2]>>,
 }
 
-async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+async fn get(State(service): Shared, context: Context) -> Answered {
     let query = ArrangementQuery::check(&context.values(groups::ARRANGEMENT), &service.catalog())?;
     let content_type = query
         .list
@@ -151,7 +146,7 @@ async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Re
     Ok(freshness.answer(&context.headers, pin!(make)).await?)
 }
 
-async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
+async fn post(State(service): Shared, sent: Sent) -> Answered {
     let Sent { context, body } = sent;
     let bytes = body.len();
     let read = move |service: &Service, _: &Stop| {
@@ -208,7 +203,7 @@ fn clusters(service: &Arc<Service>) -> Endpoint {
         example: "'/v1/pattern/clusters?alpha=sqrt(3)&distance=2&up_to=symmetry'".into(),
         ..Operation::new(Tag::Patterns, answers)
     };
-    let get = async |State(service): State<Arc<Service>>, context: Context| {
+    let get = async |State(service): Shared, context: Context| {
         let query = ClustersQuery::check(&context.values(groups::CLUSTERS))?;
         let make = service.clusters(&context.caller, query, move |found| {
             document::json(&query.document(found))
@@ -230,7 +225,7 @@ fn map(service: &Arc<Service>) -> Endpoint {
         example: "'/v1/pattern/map?alpha=sqrt(3)&radius=10&refined=20&block=3,4'".into(),
         ..Operation::new(Tag::Patterns, answers)
     };
-    let get = async |State(service): State<Arc<Service>>, context: Context| {
+    let get = async |State(service): Shared, context: Context| {
         let query = MapQuery::check(&context.values(groups::MAP))?;
         let make = service.map(&context.caller, query, |map| document::json(&map));
         Ok::<_, Refused>(context.answer(document::JSON, &(), pin!(make)).await?)
@@ -238,73 +233,61 @@ fn map(service: &Arc<Service>) -> Endpoint {
     Endpoint::only("/v1/pattern/map", service.clone(), operation, get)
 }
 
-/// A figure as it is described: itself, its paths as a drawing and as pixels, their names for programs, a few words,
-/// the rest of its address.
-type Described = (
-    Figure,
-    [&'static str; 2],
-    [&'static str; 2],
-    &'static str,
-    &'static str,
-);
-
-const FIGURES: [Described; 4] = [
+/// The figures, with their names, a few words and the rest of the address of an example.
+const FIGURES: [(Figure, &str, &str, &str); 4] = [
     (
         Figure::Index,
-        [
-            "/v1/pattern/figures/index.svg",
-            "/v1/pattern/figures/index.png",
-        ],
-        ["getIndexFigure", "getIndexPicture"],
+        "Index",
         "A figure of the pattern, the index torus and the set region",
         "alpha=sqrt(3)&window=32",
     ),
     (
         Figure::Arrangement,
-        [
-            "/v1/pattern/figures/arrangement.svg",
-            "/v1/pattern/figures/arrangement.png",
-        ],
-        ["getArrangementFigure", "getArrangementPicture"],
+        "Arrangement",
         "A figure of an arrangement, its image and its margin",
         "offsets=2,1+3,3",
     ),
     (
         Figure::Clusters,
-        [
-            "/v1/pattern/figures/clusters.svg",
-            "/v1/pattern/figures/clusters.png",
-        ],
-        ["getClustersFigure", "getClustersPicture"],
+        "Clusters",
         "A figure of clusters in the plane and in the set region",
         "alpha=sqrt(3)&distance=2&window=32",
     ),
     (
         Figure::Map,
-        ["/v1/pattern/figures/map.svg", "/v1/pattern/figures/map.png"],
-        ["getMapFigure", "getMapPicture"],
+        "Map",
         "A figure of a neighborhood map, a block's neighbors and the growth with R",
         "radius=20&block=3,8",
     ),
 ];
 
-fn figure(service: &Arc<Service>, described: Described, format: Format) -> Endpoint {
-    let (figure, paths, ids, summary, query) = described;
-    let (number, content, ending, more) = match format {
-        Format::Svg => (0, schemas::text as schemas::Content, "svg", ""),
-        Format::Png => (1, schemas::any as schemas::Content, "png", "&size=800"),
+fn figure(
+    service: &Arc<Service>,
+    (figure, name, summary, query): (Figure, &str, &'static str, &str),
+    format: Format,
+) -> Endpoint {
+    let (of, content, ending, more) = match format {
+        Format::Svg => ("Figure", schemas::text as schemas::Content, "svg", ""),
+        Format::Png => (
+            "Picture",
+            schemas::any as schemas::Content,
+            "png",
+            "&size=800",
+        ),
     };
+    // There are eight, for as long as the program runs.
+    let path = format!("/v1/pattern/figures/{}.{ending}", name.to_lowercase()).leak();
     let content_type = format.content_type();
     let answers = api::Answer::file("The figure.", content_type, content).or_unchanged();
     let operation = Operation {
-        id: ids[number],
+        id: format!("get{name}{of}").leak(),
         summary,
         about: "As strew figure draws it, for any α.",
         parameters: figure.groups(format),
-        example: format!("'{}?{query}{more}' -o figure.{ending}", paths[number]),
+        example: format!("'{path}?{query}{more}' -o figure.{ending}"),
         ..Operation::new(Tag::Patterns, answers)
     };
-    let get = move |State(service): State<Arc<Service>>, context: Context| async move {
+    let get = move |State(service): Shared, context: Context| async move {
         let query = FigureQuery::check(figure, &context.values(figure.groups(format)))?;
         let make = async {
             let file = service.figure(&context.caller, query, format).await?;
@@ -312,5 +295,5 @@ fn figure(service: &Arc<Service>, described: Described, format: Format) -> Endpo
         };
         Ok::<_, Refused>(context.answer(content_type, &(), pin!(make)).await?)
     };
-    Endpoint::only(paths[number], service.clone(), operation, get)
+    Endpoint::only(path, service.clone(), operation, get)
 }

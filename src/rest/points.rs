@@ -17,19 +17,18 @@ use super::{
         Endpoint, Operation, Tag, either,
         schemas::{self, PointsQuery, SpaceQuery},
     },
-    context::{Context, Sent, query_of_body},
+    context::{Answered, Context, Sent, Shared, query_of_body},
 };
-use crate::{body::Response, rest::Refused};
+use crate::rest::Refused;
 
-/// The paths of a dimension.
 pub(super) fn endpoints(service: &Arc<Service>, dimension: Dimension) -> Vec<Endpoint> {
     let parameters = either(dimension, [groups::POINTS, groups::SPACE_POINTS]);
     let members = either(dimension, [groups::QUERY, groups::SPACE_QUERY]);
-    let get = move |State(service): State<Arc<Service>>, context: Context| async move {
+    let get = move |State(service): Shared, context: Context| async move {
         let draft = Draft::of(context.values(parameters));
         stream(&service, &context, &draft).await
     };
-    let post = move |State(service): State<Arc<Service>>, Sent { context, body }: Sent| async move {
+    let post = move |State(service): Shared, Sent { context, body }: Sent| async move {
         let (_, query, options) = query_of_body(&service, body, members).await?;
         Ok::<_, Refused>(answer::stream(&service, &context, query, options).await?)
     };
@@ -51,12 +50,7 @@ pub(super) fn endpoints(service: &Arc<Service>, dimension: Dimension) -> Vec<End
     }
 }
 
-/// Answers a query of an address.
-pub(super) async fn stream(
-    service: &Service,
-    context: &Context,
-    draft: &Draft,
-) -> Result<Response, Refused> {
+pub(super) async fn stream(service: &Service, context: &Context, draft: &Draft) -> Answered {
     let (query, options) = service.check(draft, &Stop::NEVER)?;
     Ok(answer::stream(service, context, query, options).await?)
 }
@@ -181,7 +175,7 @@ fn chunk(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
         example: either(dimension, example).into(),
         ..Operation::new(Tag::of(dimension), answer::described().or_unchanged())
     };
-    let get = move |State(service): State<Arc<Service>>, context: Context| async move {
+    let get = move |State(service): Shared, context: Context| async move {
         let region = match dimension {
             Dimension::Plane => square(context.path()),
             Dimension::Space => cube(context.path()),
@@ -192,7 +186,6 @@ fn chunk(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
     Endpoint::only(either(dimension, path), service.clone(), operation, get)
 }
 
-/// The chunk of a path.
 pub(super) fn square([size, x, y]: [&str; 3]) -> Checked<RegionDraft> {
     let address = (SIZE.read(size), COLUMN.read(x), ROW.read(y));
     address.together().map(|(size, x, y)| RegionDraft {
@@ -201,7 +194,6 @@ pub(super) fn square([size, x, y]: [&str; 3]) -> Checked<RegionDraft> {
     })
 }
 
-/// The chunk of a path, in space.
 fn cube([size, x, y, z]: [&str; 4]) -> Checked<RegionDraft> {
     let address = (SIZE.read(size), COLUMN.read(x), ROW.read(y), LEVEL.read(z));
     address.together().map(|(size, x, y, z)| RegionDraft {

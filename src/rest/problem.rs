@@ -10,8 +10,7 @@ use strew_service::Record;
 use crate::body::{Body, Response};
 
 /// Why there is no answer (RFC 9457).
-#[derive(Debug, Serialize, JsonSchema)]
-#[schemars(rename = "Problem")]
+#[derive(Default, Debug, Serialize, JsonSchema)]
 pub(super) struct Problem<'a> {
     /// The type of the problem.
     #[schemars(extend("enum" = types()))]
@@ -73,7 +72,6 @@ impl Rate {
     }
 }
 
-/// The problem type of a kind of error.
 pub(super) fn urn(kind: Kind) -> String {
     format!("urn:strew:problem:{}", kind.slug())
 }
@@ -114,7 +112,6 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// An error as a whole response.
     pub(super) fn response(error: &'a Error) -> Response {
         Record::refuse(error.kind());
         let mut response = Self::new(error).into_response();
@@ -144,13 +141,8 @@ impl<'a> Problem<'a> {
             title: status.canonical_reason().unwrap_or("An error"),
             status: status.as_u16(),
             detail,
-            errors: &[],
-            count: None,
-            limit: None,
-            pinned: None,
-            loaded: None,
-            rate: None,
             request_id: request_id(),
+            ..Problem::default()
         };
         problem.into_response()
     }
@@ -199,7 +191,6 @@ pub(super) fn is_bare(response: &Response) -> bool {
     content_type.is_none_or(|of| of.as_bytes().starts_with(b"text/plain"))
 }
 
-/// The problem in place of a bare error.
 pub(super) async fn instead(response: Response) -> Response {
     let status = response.status();
     let (parts, body) = response.into_parts();
@@ -218,17 +209,14 @@ pub(super) async fn instead(response: Response) -> Response {
 }
 
 /// An error on its way to the client, as a problem.
-#[derive(Debug)]
 pub struct Refused(pub Error);
 
 impl Refused {
-    /// The answer.
     pub fn response(&self) -> Response {
         Problem::response(&self.0)
     }
 }
 
-/// Errors that become problems.
 macro_rules! refused {
     ($($error:ty),+) => {
         $(impl From<$error> for Refused {
@@ -280,7 +268,6 @@ fn available(path: &str, paths: &str) -> String {
     nearest.chain(all).collect::<Vec<_>>().join(", ")
 }
 
-/// The answer to a method that a path does not take.
 pub(super) fn wrong_method(method: &Method, uri: &Uri, allowed: &str) -> Response {
     let path = uri.path();
     let is_query = path == "/v1/points" && method == Method::POST;

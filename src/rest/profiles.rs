@@ -16,13 +16,11 @@ use strew_service::Service;
 use super::{
     Refused,
     api::{self, Endpoint, Operation, Tag, either, schemas},
-    context::Context,
+    context::{Answered, Context, Shared},
     document,
     freshness::Freshness,
 };
-use crate::body::Response;
 
-/// The list of a dimension.
 pub(super) fn list(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
     let summary = [
         "The noise profiles that are loaded",
@@ -43,7 +41,7 @@ pub(super) fn list(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
         about: either(dimension, about),
         ..Operation::new(either(dimension, [Tag::Profiles, Tag::Space]), answers)
     };
-    let get = move |State(service): State<Arc<Service>>, context: Context| async move {
+    let get = move |State(service): Shared, context: Context| async move {
         context.values(groups::NONE).read()?;
         let catalog = service.catalog();
         let made_of: Vec<&str> = catalog.digests().collect();
@@ -183,7 +181,6 @@ fn as_map<S: Serializer, T: Serialize>(
     map.end()
 }
 
-/// The paths of one profile: its curves and its picture.
 pub(super) fn one(service: &Arc<Service>) -> [Endpoint; 2] {
     let answer = "One noise profile with its curves";
     let answers = api::Answer::json::<ProfileCurves<'_>>(answer).or_unchanged();
@@ -230,8 +227,7 @@ const NAME: Parameter = Parameter {
     ..Parameter::PLAIN
 };
 
-/// The table of a profile with its measured curves.
-async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+async fn get(State(service): Shared, context: Context) -> Answered {
     let [name] = context.path();
     let (entry, freshness) = chosen(&service, name, &context, document::JSON)?;
     let make = async {
@@ -256,7 +252,7 @@ async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Re
     Ok(freshness.answer(&context.headers, pin!(make)).await?)
 }
 
-async fn svg(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
+async fn svg(State(service): Shared, context: Context) -> Answered {
     let [name] = context.path();
     let (entry, freshness) = chosen(&service, name, &context, SVG)?;
     let make = async {
@@ -363,7 +359,6 @@ where
     values: &'a [[f64; N]],
 }
 
-/// The path of the periods of a table.
 pub(super) fn periods(service: &Arc<Service>) -> Endpoint {
     let answers = api::Answer::json::<Periods>("The list.").or_unchanged();
     let operation = Operation {
@@ -375,7 +370,7 @@ pub(super) fn periods(service: &Arc<Service>) -> Endpoint {
         example: "'/v1/periods?periodic=20000&most=3'".into(),
         ..Operation::new(Tag::Profiles, answers)
     };
-    let get = async |State(service): State<Arc<Service>>, context: Context| {
+    let get = async |State(service): Shared, context: Context| {
         let periods = Periods::of(&context.values(groups::PERIODS), &service.catalog())?;
         let made_of = (&periods.alpha, periods.radius);
         let make = async { document::json(&periods) };

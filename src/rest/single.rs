@@ -13,7 +13,7 @@ use strew_service::Service;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, either},
-    context::Context,
+    context::{Context, Shared},
     document,
     freshness::Freshness,
 };
@@ -35,7 +35,6 @@ const SPACE_ID: Parameter = Parameter {
     ..ID
 };
 
-/// The path of points by id.
 pub(super) fn by_id(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
     let answers = api::Answer::json::<One>("The point.").or_unchanged();
     let example = [
@@ -56,7 +55,7 @@ pub(super) fn by_id(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
         example: either(dimension, example).into(),
         ..Operation::new(Tag::of(dimension), answers)
     };
-    let get = move |State(service): State<Arc<Service>>, context: Context| async move {
+    let get = move |State(service): Shared, context: Context| async move {
         let [id] = context.path();
         let set = Set::single(&context.values(parameters), &service.catalog())?;
         let freshness = freshness(&context, &set);
@@ -73,7 +72,6 @@ pub(super) fn by_id(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
     Endpoint::only(path, service.clone(), operation, get)
 }
 
-/// The path of the points near a place.
 pub(super) fn nearest(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
     let answers = api::Answer::json::<Several>("The points.").or_unchanged();
     let example = [
@@ -95,7 +93,7 @@ pub(super) fn nearest(service: &Arc<Service>, dimension: Dimension) -> Endpoint 
         example: either(dimension, example).into(),
         ..Operation::new(Tag::of(dimension), answers)
     };
-    let get = move |State(service): State<Arc<Service>>, context: Context| async move {
+    let get = move |State(service): Shared, context: Context| async move {
         let values = context.values(parameters);
         let (set, nearest) = Nearest::of_set(&values, &service.catalog())?;
         let freshness = freshness(&context, &set);
@@ -115,24 +113,23 @@ pub(super) fn nearest(service: &Arc<Service>, dimension: Dimension) -> Endpoint 
 /// A point by its id.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "PointById")]
-struct One {
+pub struct One {
     /// The point.
-    point: Found,
+    pub point: Found,
     /// The set of points with everything filled in.
-    query: ResolvedSet,
+    pub query: ResolvedSet,
 }
 
 /// The points nearest to a place.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "Neighbors")]
-struct Several {
+pub struct Several {
     /// The points, nearest first.
-    neighbors: Vec<Found>,
+    pub neighbors: Vec<Found>,
     /// The set of points with everything filled in.
-    query: ResolvedSet,
+    pub query: ResolvedSet,
 }
 
-/// The freshness of a document about single points of a set.
 fn freshness(context: &Context, set: &Set) -> Freshness {
     let made_of: Vec<&str> = set.digests().collect();
     let freshness = context.freshness(document::JSON, &made_of);

@@ -19,19 +19,17 @@ use super::{
 use crate::cli::{
     Failure,
     compression::{Compression, names},
-    config::Load as _,
+    config,
     progress::Progress,
     refuse,
 };
 
 /// The number of chunks that are made again, unless all are.
 const SAMPLE: usize = 100;
-/// The most faults that are named.
 const NAMED: usize = 20;
 /// The number of files between two lines of progress.
 const BATCH: usize = 256;
 
-/// The folder of the export to check.
 struct Tree<'a>(&'a Path);
 
 /// The faults, by the names of files.
@@ -97,7 +95,11 @@ fn made_again(
     faults: &mut Faults,
 ) -> Result<usize, Failure> {
     let spec = &manifest.export;
-    let maker = Maker::new(spec, &config.with_worlds(config.tables()?)?, config)?;
+    let maker = Maker::new(
+        spec,
+        &config::with_worlds(config, config::tables(config)?)?,
+        config,
+    )?;
     let (chunks, compressions) = (maker.grid.chunks(), spec.compressions());
     let number = if all { chunks } else { SAMPLE.min(chunks) };
     let picked = |k: usize| (2 * k + 1) * chunks / (2 * number);
@@ -173,7 +175,6 @@ impl Tree<'_> {
         Ok(())
     }
 
-    /// The digests of some files, `None` for an unreadable one.
     fn hash(&self, names: &[&String]) -> Vec<(String, Option<blake3::Hash>)> {
         let hash = |name: &&String| {
             let bytes = self.read(name).ok();

@@ -13,10 +13,8 @@ use super::{
     grid::{Grid, Place},
     spec::{Checked, Spec, chunk},
 };
-use crate::cli::{Failure, compression::Compression, refusal::Source, refuse};
+use crate::cli::{Failure, compression::Compression, failure::Source, refuse};
 
-/// Makes chunks.
-#[derive(Debug)]
 pub(super) struct Maker {
     pub(super) grid: Grid,
     levels: Vec<Checked>,
@@ -24,7 +22,6 @@ pub(super) struct Maker {
     config: Config,
 }
 
-/// The content of a chunk's file.
 #[derive(Clone, Debug)]
 pub(super) struct Chunk {
     pub(super) points: u64,
@@ -52,7 +49,6 @@ impl Maker {
         &self.levels[0].query
     }
 
-    /// Makes chunk number `i`.
     pub(super) fn make(&self, i: usize) -> Result<Chunk, Failure> {
         let place = self.grid.place(i);
         self.answer(place)

@@ -6,10 +6,10 @@ use std::{
     fs::{self, File, Metadata},
     io::{self, BufRead as _, BufReader, Write as _},
     path::{Path, PathBuf},
-    sync::{Mutex, PoisonError},
 };
 
 use anyhow::{Context as _, anyhow};
+use parking_lot::Mutex;
 
 use super::{
     chunks::{Chunk, Maker, variants},
@@ -25,18 +25,14 @@ use crate::cli::{
 /// The folder of an incomplete export: the spec, the journal, files under temporary names.
 pub(super) const WORK: &str = ".partial";
 
-/// A folder that is being written.
-#[derive(Debug)]
 pub(super) struct Folder {
     root: PathBuf,
     work: PathBuf,
     journal: Mutex<File>,
     compressions: Vec<Compression>,
-    /// Held while this process writes.
     _lock: File,
 }
 
-/// Whether the folder has all of the export.
 fn is_complete(root: &Path, spec: &Spec) -> Result<bool, Failure> {
     let Ok(bytes) = fs::read(root.join(MANIFEST)) else {
         return Ok(false);
@@ -55,10 +51,7 @@ fn other(root: &Path) -> Failure {
     ))
 }
 
-/// The state of a folder that is opened.
-#[derive(Debug)]
 pub(super) enum Found {
-    /// It is complete.
     Complete,
     /// It is empty, or holds chunks of an earlier run.
     Open(Folder, HashMap<usize, Record>),
@@ -163,7 +156,6 @@ impl Folder {
         Ok(done)
     }
 
-    /// Writes a chunk.
     pub(super) fn put(&self, i: usize, name: &str, chunk: Chunk) -> anyhow::Result<Record> {
         let mut record = Record {
             points: chunk.points,
@@ -175,7 +167,7 @@ impl Folder {
                 .push((blake3::hash(&bytes), bytes.len() as u64));
             self.file(&format!("{name}{ending}"), &bytes)?;
         }
-        let mut journal = self.journal.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut journal = self.journal.lock();
         let noted = journal.write_all(record.line(i).as_bytes());
         noted.with_context(|| format!("cannot write {}", self.work.display()))?;
         Ok(record)
@@ -219,7 +211,6 @@ impl Folder {
             .with_context(|| format!("cannot remove {}", self.work.display()))
     }
 
-    /// Waits until the disk holds all files.
     #[cfg(target_os = "linux")]
     fn sync(&self) -> anyhow::Result<()> {
         let all = File::open(&self.root).and_then(|root| Ok(rustix::fs::syncfs(root)?));

@@ -16,19 +16,14 @@ const MOST_CHUNKS: usize = 10_000_000;
 /// A level of detail: chunks that are 2ᵏ times as wide, with the share 4⁻ᵏ of the points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Level {
-    /// The side of its chunks.
     pub(super) size: f64,
-    /// The share of the points.
     pub(super) lod: f64,
     /// The query of addresses, which the daemon needs for the same answer.
     pub(super) query: String,
-    /// The columns of its chunks.
     pub(super) columns: [i64; 2],
-    /// The rows of its chunks.
     pub(super) rows: [i64; 2],
 }
 
-/// A chunk: its level, column and row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Place {
     pub(super) level: usize,
@@ -38,7 +33,6 @@ pub(super) struct Place {
 /// All chunks, in the order of levels, columns and rows.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Grid {
-    /// The beginning of paths.
     path: String,
     pub(super) levels: Vec<Level>,
 }
@@ -96,13 +90,11 @@ impl Level {
         [self.columns, self.rows].map(|[first, end]| first..end)
     }
 
-    /// The number of chunks.
     pub(super) fn chunks(&self) -> u128 {
         let [columns, rows] = self.ranges().map(|range| range.end.abs_diff(range.start));
         u128::from(columns) * u128::from(rows)
     }
 
-    /// The box of all chunks.
     pub(super) fn bbox(&self) -> [f64; 4] {
         let at = |cell: i64| cell as f64 * self.size;
         [
@@ -114,11 +106,9 @@ impl Level {
     }
 }
 
-/// The greatest column or row of chunks.
 const FARTHEST: f64 = (1u64 << 52) as f64;
 
 impl Grid {
-    /// The chunks of some levels, in a world or without one.
     pub(super) fn new(world: Option<&str>, levels: Vec<Level>) -> Result<Self, Failure> {
         let grid = Self {
             path: match world {
@@ -136,7 +126,6 @@ impl Grid {
         }
     }
 
-    /// The number of chunks.
     pub(super) fn chunks(&self) -> usize {
         self.levels
             .iter()
@@ -144,7 +133,6 @@ impl Grid {
             .sum()
     }
 
-    /// Chunk number `i`.
     pub(super) fn place(&self, mut i: usize) -> Place {
         for (number, level) in self.levels.iter().enumerate() {
             let chunks = level.chunks() as usize;
@@ -167,7 +155,6 @@ impl Grid {
         &self.path
     }
 
-    /// The folder of a level's chunks.
     pub(super) fn folder(&self, level: &Level) -> String {
         format!("{}/{}", self.path, level.size)
     }

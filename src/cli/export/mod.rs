@@ -12,14 +12,12 @@ mod spec;
 use std::{
     io,
     path::{Path, PathBuf},
-    sync::{
-        Mutex, PoisonError,
-        atomic::{AtomicUsize, Ordering},
-    },
+    sync::atomic::{AtomicUsize, Ordering},
 };
 
 use anyhow::anyhow;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use parking_lot::Mutex;
 use rayon::prelude::*;
 use strew_config::Config;
 use strew_query::Assets;
@@ -40,7 +38,6 @@ use super::{
     refuse,
     signals::stop_flag,
 };
-use crate::cli::config::Load as _;
 
 /// Flags of `strew export`: a query, its chunks, and the output.
 #[derive(Debug, clap::Args)]
@@ -79,7 +76,6 @@ pub(super) struct Args {
     settings: config::Args,
 }
 
-/// The parts of an export.
 struct Job<'a> {
     spec: Spec,
     maker: Maker,
@@ -87,7 +83,6 @@ struct Job<'a> {
     args: &'a Args,
 }
 
-/// Exports, or checks an export.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.settings.merged(config::Uses::POINTS)?;
     let threads = args
@@ -120,7 +115,7 @@ fn export(args: &Args, config: &Config) -> Result<(), Failure> {
         }
         _ => {}
     }
-    let catalog = config.with_worlds(config.tables()?)?;
+    let catalog = config::with_worlds(config, config::tables(config)?)?;
     let shape = Shape {
         size,
         levels: args.levels,
@@ -139,7 +134,6 @@ fn export(args: &Args, config: &Config) -> Result<(), Failure> {
     }
 }
 
-/// Whether a name is that of a zip file.
 fn is_zip(path: &Path) -> bool {
     path.extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("zip"))
@@ -148,10 +142,7 @@ fn is_zip(path: &Path) -> bool {
 impl Job<'_> {
     /// Reports the cost. Fails if the disk has no room for it.
     fn cost(&self, done: usize, place: Option<&Path>) -> Result<(), Failure> {
-        let mut cost = Cost::of(&self.maker, &self.spec, done)?;
-        if let Some(place) = place {
-            cost = cost.written_to(place);
-        }
+        let cost = Cost::of(&self.maker, &self.spec, done)?;
         if !self.args.quiet {
             eprintln!("{}", cost.line());
             if done > 0 {
@@ -197,16 +188,13 @@ impl Job<'_> {
                 }
                 let record = folder.put(i, &self.name(i), self.maker.make(i)?)?;
                 let reached = count.fetch_add(1, Ordering::Relaxed) + 1;
-                if let Ok(mut progress) = progress.try_lock() {
+                if let Some(mut progress) = progress.try_lock() {
                     progress.reach(reached as u64, "");
                 }
                 Ok((i, record))
             });
         let made: Result<Vec<(usize, Record)>, Failure> = made.collect();
-        progress
-            .into_inner()
-            .unwrap_or_else(PoisonError::into_inner)
-            .finish();
+        progress.into_inner().finish();
         let count = count.into_inner();
         done.extend(made.map_err(|failure| no_room(failure, count, chunks))?);
         let mut records: Vec<(usize, Record)> = done.into_iter().collect();
@@ -274,7 +262,6 @@ fn with_advice(failure: Failure, advice: &str) -> Failure {
     Failure::Other(anyhow!("{error:#}; {advice}"))
 }
 
-/// Reads compressions by name; `None` for none.
 fn packing() -> impl TypedValueParser<Value = Option<Compression>> {
     PossibleValuesParser::new(["none", "gz", "zst"]).map(|name| match &*name {
         "gz" => Some(Compression::Gzip),

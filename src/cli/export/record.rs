@@ -22,7 +22,6 @@ pub(super) const MANIFEST: &str = "manifest.json";
 /// The digests of all other files, as `b3sum` writes them.
 pub(super) const DIGESTS: &str = "files.b3";
 
-/// A written chunk.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Record {
     pub(super) points: u64,
@@ -31,7 +30,6 @@ pub(super) struct Record {
 }
 
 impl Record {
-    /// A line of a journal.
     pub(super) fn line(&self, i: usize) -> String {
         let mut line = format!("{i} {}", self.points);
         for (digest, length) in &self.files {
@@ -54,24 +52,18 @@ impl Record {
     }
 }
 
-/// The options and the content of an export.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Manifest {
-    /// The options that decide its bytes.
     pub(super) export: Spec,
-    /// The path of a chunk, as the daemon has it.
     pub(super) path: String,
     /// For formats without names in them: the columns.
     pub(super) columns: Option<serde_json::Value>,
-    /// The sums of each level.
     pub(super) levels: Vec<Total>,
-    /// The sums of all levels.
     pub(super) total: Total,
     /// The digest of the list of digests.
     pub(super) files: String,
 }
 
-/// Sums over chunks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Total {
     pub(super) chunks: u64,
@@ -161,7 +153,6 @@ fn digests(spec: &Spec, maker: &Maker, records: &[Record], files: &[(String, Vec
 }
 
 impl Manifest {
-    /// Reads a manifest.
     pub(super) fn read(bytes: &[u8]) -> anyhow::Result<Self> {
         let manifest: Self = serde_json::from_slice(bytes)
             .map_err(|error| anyhow!("{MANIFEST} is no manifest of an export: {error}"))?;

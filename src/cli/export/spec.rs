@@ -15,7 +15,7 @@ use strew_query::{
 };
 
 use super::grid::{Grid, Level};
-use crate::cli::{Failure, compression::Compression, flags::Flags, refusal::Source, refuse};
+use crate::cli::{Failure, compression::Compression, failure::Source, flags::Flags, refuse};
 
 /// The characters that need no escaping in addresses or in the settings of servers.
 const PLAIN: &AsciiSet = &NON_ALPHANUMERIC
@@ -25,33 +25,25 @@ const PLAIN: &AsciiSet = &NON_ALPHANUMERIC
     .remove(b',')
     .remove(b':');
 
-/// The options of an export.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Spec {
     /// The versions of the program and of the algorithm, on which the bytes depend.
     pub(super) strew: String,
     pub(super) algorithm: u32,
-    /// The world.
     pub(super) world: Option<WorldName>,
-    /// The digests of the tables, fields and lists that points depend on.
     pub(super) digests: Vec<String>,
     /// The parameters of addresses without `lod`.
     pub(super) query: String,
-    /// The format of the files and its content type.
     pub(super) format: String,
     pub(super) content_type: String,
-    /// The exported box.
     pub(super) bbox: [f64; 4],
-    /// The endings of compressed files beside the plain ones.
     pub(super) compressed: Vec<String>,
     /// The setting `limits.block_bytes`, in formats whose bytes depend on it; else none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) block_bytes: Option<usize>,
-    /// Levels of detail.
     pub(super) levels: Vec<Level>,
 }
 
-/// A world and its digest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct WorldName {
@@ -59,7 +51,6 @@ pub(super) struct WorldName {
     pub(super) digest: String,
 }
 
-/// The checked query of a level's chunks.
 #[derive(Clone, Debug)]
 pub(super) struct Checked {
     pub(super) query: Query,
@@ -73,12 +64,10 @@ pub(super) struct Checked {
 pub(super) struct Shape {
     pub(super) size: f64,
     pub(super) levels: u32,
-    /// The compressions, if flags name them.
     pub(super) compressed: Option<Vec<Compression>>,
 }
 
 impl Spec {
-    /// The spec of some flags.
     pub(super) fn new<T>(
         flags: &Flags<T>,
         shape: &Shape,
@@ -175,13 +164,11 @@ impl Spec {
         })
     }
 
-    /// Its chunks.
     pub(super) fn grid(&self) -> Result<Grid, Failure> {
         let world = self.world.as_ref().map(|world| world.name.as_str());
         Grid::new(world, self.levels.clone())
     }
 
-    /// The compressions of files beside the plain ones.
     pub(super) fn compressions(&self) -> Vec<Compression> {
         let all = [Compression::Gzip, Compression::Zstd];
         let is_wanted =
@@ -237,7 +224,6 @@ fn blocks(encoding: Encoding, config: &Config) -> Option<usize> {
     (encoding == Encoding::Arrow).then_some(config.limits.block_bytes)
 }
 
-/// The box of the flags.
 fn bbox<T>(flags: &Flags<T>) -> Result<[f64; 4], Failure> {
     let values = flags.values_of(groups::POINTS);
     let region = RegionDraft::of(&values).map_err(|faults| Source::Flags.refused(faults.into()))?;
@@ -282,7 +268,6 @@ fn check(
         .map_err(|error| Source::Flags.refused(error))
 }
 
-/// The region of a chunk.
 pub(super) fn chunk(size: f64, at: [i64; 2]) -> RegionDraft {
     RegionDraft {
         path: "chunk".into(),

@@ -50,7 +50,6 @@ enum Task {
     Mix(MixArgs),
 }
 
-/// Makes the table or kinds.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let Args { work, steps, .. } = args;
     match &args.task {
@@ -59,7 +58,6 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// The most bytes of a file with a curve.
 const MAX_TARGET_BYTES: u64 = 1 << 20;
 
 /// The half-width R of the map of a table of the plane.
@@ -119,7 +117,6 @@ impl TableArgs {
     }
 }
 
-/// Makes a table of the plane, or of points in space.
 fn table(
     args: &TableArgs,
     steps: Option<u32>,
@@ -174,7 +171,6 @@ fn table(
     Checkpoints::remove(&kept)
 }
 
-/// Announces the work, and whether it can succeed.
 fn announce(path: &Path, prospect: &Prospect, estimate: &Estimate) {
     eprintln!(
         "forging {}: {} blocks, {} steps over {} pairs, judged on {} points; about {:.0} s",
@@ -221,7 +217,6 @@ fn job_in_space(
     })
 }
 
-/// Makes a table.
 fn run_in_space(job: &SpaceJob, work: &Work, checkpoints: &Checkpoints) -> Result<(), Failure> {
     let usual = table_file_name(job.profile.name(), job.alpha, job.radius);
     let path = work.path(&usual)?;
@@ -268,7 +263,6 @@ impl Made for strew_core::space::Table {
     }
 }
 
-/// Announces the work.
 fn announce_in_space(path: &Path, estimate: &SpaceEstimate, threads: usize) {
     eprintln!(
         "forging {}: {} blocks, {} steps, judged on {} points; about {:.0} s on {threads} threads",
@@ -313,7 +307,6 @@ impl MixArgs {
         job
     }
 
-    /// The table to make kinds for.
     fn of(&self) -> Result<Table, Failure> {
         let path = Path::new(&self.table);
         let is_file = path.exists() || path.components().count() > 1 || path.extension().is_some();
@@ -345,7 +338,6 @@ impl MixArgs {
     }
 }
 
-/// Makes the mix.
 fn make_mix(args: &MixArgs) -> Result<(), Failure> {
     let (table, job, work) = (args.of()?, args.job(), &args.work);
     let path = work.path(&mix_file_name(&table, &job))?;

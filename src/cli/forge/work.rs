@@ -5,13 +5,14 @@ use std::{
     fs, io,
     path::{Path, PathBuf},
     sync::{
-        Arc, Mutex, PoisonError,
+        Arc,
         atomic::{AtomicBool, Ordering},
     },
     time::{Duration, Instant},
 };
 
 use anyhow::{Context as _, anyhow};
+use parking_lot::Mutex;
 use strew_core::{Table, table::Figures};
 use strew_forge::{Checkpoint, Complaint, ForgeError, Stage, Watch, gravest, write_table};
 
@@ -52,12 +53,10 @@ impl Work {
         Ok(path)
     }
 
-    /// The threads to work on.
     pub(super) fn pool(&self) -> anyhow::Result<rayon::ThreadPool> {
         config::pool(self.threads)
     }
 
-    /// The number of threads.
     pub(super) fn threads(&self) -> usize {
         match self.threads {
             0 => std::thread::available_parallelism().map_or(1, usize::from),
@@ -117,7 +116,6 @@ impl Work {
         Ok(text)
     }
 
-    /// Shows the measurements of each point set.
     pub(super) fn show(&self, figures: &[Figures]) {
         for figures in figures.iter().filter(|_| !self.quiet) {
             let values = figures.values.iter();
@@ -128,7 +126,6 @@ impl Work {
     }
 }
 
-/// A table that was made.
 pub(super) trait Made {
     /// Writes its file. Returns its digest.
     fn write(&self, path: &Path) -> Result<String, ForgeError>;
@@ -160,7 +157,6 @@ pub(super) struct Checkpoints {
 }
 
 impl Checkpoints {
-    /// The checkpoint of a table, beside it.
     pub(super) fn path(table: &Path) -> PathBuf {
         let mut name = table.as_os_str().to_owned();
         name.push(".checkpoint");
@@ -196,7 +192,6 @@ impl Checkpoints {
         }
     }
 
-    /// Watches the work, and writes checkpoints.
     pub(super) fn watcher(&self, checkpoint: &Path, work: &Work) -> Watcher {
         let every = Duration::from_secs(self.checkpoint_every);
         Watcher::new(checkpoint, every, work.quiet)
@@ -224,13 +219,11 @@ pub(super) struct Watcher {
     kept: Mutex<Kept>,
 }
 
-/// The state of the checkpoint's file.
 struct Kept {
     /// When it was written, or the work began.
     at: Instant,
     /// Whether it holds the latest checkpoint.
     good: bool,
-    /// Whether the user was warned that it cannot be written.
     warned: bool,
 }
 
@@ -252,24 +245,22 @@ impl Watcher {
         }
     }
 
-    /// Removes the bar at the end of the work.
     pub(super) fn finish(&self) {
-        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut shown = self.shown.lock();
         if let Some((_, progress)) = shown.take() {
             progress.finish();
         }
     }
 
-    /// Whether the file holds the latest checkpoint.
     pub(super) fn has_kept(&self) -> bool {
-        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let kept = self.kept.lock();
         kept.good
     }
 }
 
 impl Watch for Watcher {
     fn progress(&self, now: &strew_forge::Progress) {
-        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut shown = self.shown.lock();
         if shown.as_ref().is_none_or(|(stage, _)| *stage != now.stage) {
             if let Some((_, last)) = shown.take() {
                 last.finish();
@@ -294,13 +285,13 @@ impl Watch for Watcher {
     }
 
     fn wants_checkpoint(&self) -> bool {
-        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let kept = self.kept.lock();
         kept.at.elapsed() >= self.every
     }
 
     fn checkpoint(&self, checkpoint: &Checkpoint) {
         let written = checkpoint.write(&self.path);
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut kept = self.kept.lock();
         kept.good = written.is_ok();
         kept.at = Instant::now();
         if let (Err(error), false) = (written, kept.warned) {

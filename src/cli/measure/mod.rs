@@ -1,7 +1,6 @@
 //! `strew measure`: the figures and curves of a table, of a region, or of a file of points.
 
 mod space;
-mod subjects;
 
 use std::path::{Path, PathBuf};
 
@@ -18,17 +17,16 @@ use strew_forge::{
 use strew_plan::library::measured::document;
 use strew_query::{Draft, parameters::BBOX};
 
-use self::subjects::Subjects;
+use super::measure::space::Subjects;
 use super::{
     Failure, config,
+    failure::Source,
     flags::{Flags, Measured},
     must_be_within,
     output::Output,
     query::described,
-    refusal::Source,
     refuse,
 };
-use crate::cli::config::Load as _;
 
 /// Flags of `strew measure`. It measures a table file (`--table`), a file of points (`--points`), or,
 /// without either, the points of a query as for `strew sample`.
@@ -74,7 +72,6 @@ pub(super) struct Args {
 /// The largest set that is measured: its spectrum takes some gigabytes at ν = 4.
 const MAX_POINTS: u128 = 4_000_000;
 
-/// Measures.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     must_be_within("--nu-max", args.resolution().nu_max, [0.5, 8.0])?;
     must_be_within("--ring-width", args.resolution().ring_width, [0.0, 0.5])?;
@@ -145,7 +142,6 @@ fn in_space(file: &Path) -> Result<Option<strew_core::space::Table>, Failure> {
     Ok(strew_forge::space::read_table(file).map_err(anyhow::Error::from)?)
 }
 
-/// A set to be measured.
 enum Subject {
     Torus(String, bool, Torus),
     Window(String, Window),
@@ -198,7 +194,6 @@ impl Args {
         }
     }
 
-    /// The box: min x, min y, max x, max y.
     fn corners(&self) -> anyhow::Result<[f64; 4]> {
         let bbox = self.flags.values().require(&BBOX);
         bbox.map_err(|faults| anyhow!("{}", Error::from(faults)))
@@ -211,24 +206,14 @@ impl Args {
                 |twin: &Twin| twin.points() >= 70_225 && twin.is_uniform() && !seen.contains(twin);
             return Ok(table.map().twins().filter(large).take(2).collect());
         }
-        let read = |text: &String| {
-            let twin = text
-                .split_once('/')
-                .and_then(|(p, q)| Twin::new(p.parse().ok()?, q.parse().ok()?));
-            match twin {
-                Some(twin) if u128::from(twin.points()) <= MAX_POINTS => Ok(twin),
-                Some(twin) => bail!(
-                    "--twin {text} has {} points; at most {MAX_POINTS} are measured",
-                    twin.points()
-                ),
-                None => bail!("--twin is `{text}`; allowed: coprime integers p/q with q < p < 2q"),
-            }
+        let read = |&twin: &Twin| match u128::from(twin.points()) {
+            0..=MAX_POINTS => Ok(twin),
+            points => bail!("--twin {twin} has {points} points; at most {MAX_POINTS} are measured"),
         };
         self.subjects.twin.iter().map(read).collect()
     }
 }
 
-/// The corner and the side of a square box.
 fn square([min_x, min_y, max_x, max_y]: [f64; 4]) -> anyhow::Result<([f64; 2], f64)> {
     let (width, height) = (max_x - min_x, max_y - min_y);
     if (width / height - 1.0).abs() > 1e-9 {
@@ -237,9 +222,7 @@ fn square([min_x, min_y, max_x, max_y]: [f64; 4]) -> anyhow::Result<([f64; 2], f
     Ok(([min_x, min_y], width))
 }
 
-/// Compares the sets of several seeds.
 fn compared(plan: &Plan, side: f64, density: f64, seeds: u64) -> anyhow::Result<Value> {
-    /// Patches of each set that are looked for.
     const PATCHES: usize = 64;
     let Placement { seed, .. } = plan.placement();
     let sets = (0..seeds).map(|i| {
@@ -285,8 +268,8 @@ type Compared = (Report, Option<Target>, Option<Value>);
 
 fn of_query(args: &Args) -> Result<Compared, Failure> {
     let config = args.settings.merged(config::Uses::QUERIES)?;
-    let catalog = config.tables()?;
-    let planned = config.planned(&Draft::of(args.flags.values()), &catalog.into());
+    let catalog = config::tables(&config)?;
+    let planned = config::planned(&config, &Draft::of(args.flags.values()), &catalog.into());
     let (planned, _) = planned.map_err(|error| Source::Flags.refused(error))?;
     let (corner, side) = square(planned.query.region.bbox()).map_err(Failure::Usage)?;
     if planned.count() > MAX_POINTS || planned.count() < 100 {

@@ -1,4 +1,5 @@
-//! `strew measure` of a table of points in space: twins, served windows plain and seeded, thinned sets, pairs of seeds.
+//! What is measured of a table: twins, and windows at seeds and places; and `strew measure` of a table of points in space:
+//! twins, served windows plain and seeded, thinned sets, pairs of seeds.
 
 use anyhow::anyhow;
 use serde_json::{Map, Value, json};
@@ -11,7 +12,6 @@ use strew_forge::space::{
     unseen_twins,
 };
 
-use super::subjects::{Corner, Subjects};
 use crate::cli::{Failure, refuse};
 
 /// The least and the greatest number of points of a set. The spectrum of the largest takes 400 MB.
@@ -26,7 +26,6 @@ const KEPT: [u32; 6] = [2, 4, 8, 16, 32, 64];
 const THINNED_SIDE: f64 = 30.0;
 const SHARED_SIDE: f64 = 40.0;
 
-/// The figures of a table as JSON.
 pub(super) fn document(args: &Subjects, table: &Table) -> Result<Value, Failure> {
     let side = match args.window_points {
         None => SIDE,
@@ -105,7 +104,6 @@ pub(super) fn document(args: &Subjects, table: &Table) -> Result<Value, Failure>
     }))
 }
 
-/// The twins to measure, with their points.
 fn twins(args: &Subjects, table: &Table) -> Result<Vec<(Twin, SpacePoints)>, Failure> {
     let points = |twin: Twin| Some((twin, SpacePoints::of_twin(table, twin)?));
     if args.twin.is_empty() {
@@ -113,24 +111,18 @@ fn twins(args: &Subjects, table: &Table) -> Result<Vec<(Twin, SpacePoints)>, Fai
         let all = unseen_twins(table.map(), least).take_while(|twin| twin.t().pow(3) <= POINTS[1]);
         return Ok(all.filter_map(points).take(number).collect());
     }
-    let read = |text: &String| {
-        let twin = text
-            .split_once('/')
-            .and_then(|(p, q)| Twin::new(p.parse().ok()?, q.parse().ok()?));
-        let Some(twin) = twin else {
-            refuse!("--twin is `{text}`; allowed: coprime integers p/q with q < p < 2q");
-        };
+    let read = |&twin: &Twin| {
         if !is_uniform_in_space(twin) {
             refuse!(
-                "--twin {text}: its points are on a sublattice; allowed in space: p - q odd and q even"
+                "--twin {twin}: its points are on a sublattice; allowed in space: p - q odd and q even"
             );
         }
         let count = u128::from(twin.t()).pow(3);
         if count > u128::from(POINTS[1]) {
             let most = POINTS[1];
-            refuse!("--twin {text} has {count} points; at most {most} are measured in space");
+            refuse!("--twin {twin} has {count} points; at most {most} are measured in space");
         }
-        let other = || anyhow!("--twin {text} has another map than the table's alpha");
+        let other = || anyhow!("--twin {twin} has another map than the table's alpha");
         points(twin).ok_or_else(|| Failure::Usage(other()))
     };
     args.twin.iter().map(read).collect()
@@ -152,4 +144,52 @@ fn shown(report: &SpaceReport) -> Value {
         "figures": values,
         "radial": { "columns": ["nu", "power", "anisotropy_db"], "rings": shells },
     })
+}
+
+/// Flags of the sets of a table.
+#[derive(Debug, clap::Args)]
+#[group(skip)]
+pub(super) struct Subjects {
+    /// With --table: a twin p/q; may be repeated [default: the first unseen ones with 70,225 points
+    /// or more].
+    #[arg(long, value_name = "P/Q", requires = "table", value_parser = twin)]
+    pub(super) twin: Vec<Twin>,
+    /// With --table: the approximate number of points of a window [default: 80000; in space 314432].
+    #[arg(long, value_name = "N", requires = "table")]
+    pub(super) window_points: Option<u64>,
+    /// With --table: the seed of a window; may be repeated. In the plane it chooses a place, by default 1 and
+    /// 2; in space it is that of the set, by default 0, which is the plain set, 1 and 2.
+    #[arg(long, value_name = "SEED", requires = "table")]
+    pub(super) window_seed: Vec<u64>,
+    /// With --table of points in space: the least corner of the windows, in mean spacings [default: 0,0,0].
+    #[arg(long, value_name = "X,Y,Z", requires = "table")]
+    pub(super) window_at: Option<Corner>,
+    /// With --table of points in space: the seed of the 60 places whose small windows show a local lattice.
+    #[arg(long, value_name = "SEED", requires = "table", default_value_t = 12)]
+    pub(super) places_seed: u64,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner(pub(super) [f64; 3]);
+
+fn twin(text: &str) -> Result<Twin, String> {
+    let twin =
+        { text.split_once('/') }.and_then(|(p, q)| Twin::new(p.parse().ok()?, q.parse().ok()?));
+    twin.ok_or_else(|| "allowed: coprime integers p/q with q < p < 2q".into())
+}
+
+impl std::str::FromStr for Corner {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Vec<f64> = text
+            .split(',')
+            .map_while(|v| v.trim().parse().ok())
+            .filter(|v: &f64| v.abs() <= 1e6)
+            .collect();
+        match <[f64; 3]>::try_from(numbers) {
+            Ok(at) if text.split(',').count() == 3 => Ok(Self(at)),
+            _ => Err("allowed: three numbers X,Y,Z from -1000000 to 1000000".into()),
+        }
+    }
 }

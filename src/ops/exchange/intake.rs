@@ -33,18 +33,15 @@ use crate::{
     ops::{
         dialect::Dialect,
         step::{Next, Step},
-        throttle::LogThrottle,
+        telemetry::LogThrottle,
     },
 };
 
 /// The bounds that all requests share. Cheap to clone.
-#[derive(Clone, Debug)]
-pub(in crate::ops) struct Intake {
-    shared: Arc<Shared>,
-}
+#[derive(Clone)]
+pub(in crate::ops) struct Intake(Arc<Bounds>);
 
-#[derive(Debug)]
-struct Shared {
+struct Bounds {
     places: Arc<Quota>,
     budget: Budget,
     body: Duration,
@@ -54,29 +51,25 @@ struct Shared {
 
 impl Intake {
     pub(in crate::ops) fn new(config: &Config, budget: Budget) -> Self {
-        let server = &config.server;
-        Self {
-            shared: Arc::new(Shared {
-                places: Arc::new(Quota::new(config.limits.max_requests)),
-                budget,
-                body: seconds(server.body_read_timeout_seconds),
-                first_byte: seconds(server.first_byte_seconds),
-                refused: LogThrottle::default(),
-            }),
-        }
+        Self(Arc::new(Bounds {
+            places: Arc::new(Quota::new(config.limits.max_requests)),
+            budget,
+            body: seconds(config.server.body_read_timeout_seconds),
+            first_byte: seconds(config.server.first_byte_seconds),
+            refused: LogThrottle::default(),
+        }))
     }
 }
 
 impl Step<Inbound> for Intake {
-    /// Answers a request within the bounds, or refuses it.
     async fn answer(&self, mut inbound: Box<Inbound>, next: &impl Next<Inbound>) -> Response {
-        let (shared, dialect) = (&*self.shared, inbound.client.dialect);
+        let (bounds, dialect) = (&*self.0, inbound.client.dialect);
         let answered = match inbound.refused.take() {
             Some(error) => Err(error),
-            None => shared.answer(inbound, next).await,
+            None => bounds.answer(inbound, next).await,
         };
         answered.unwrap_or_else(|error| {
-            if let Some(times) = shared.refused.record() {
+            if let Some(times) = bounds.refused.record() {
                 tracing::warn!(%error, times, "a request is refused");
             }
             dialect.refusal(&error)
@@ -84,7 +77,7 @@ impl Step<Inbound> for Intake {
     }
 }
 
-impl Shared {
+impl Bounds {
     async fn answer(
         &self,
         mut inbound: Box<Inbound>,
@@ -170,8 +163,6 @@ impl Shared {
     }
 }
 
-/// A body that is being received.
-#[derive(Debug)]
 struct Receiving {
     /// The memory of the body so far, held until there is an answer.
     held: Mutex<Held>,
@@ -183,8 +174,6 @@ struct Receiving {
     done: Notify,
 }
 
-/// The places for requests.
-#[derive(Debug)]
 struct Permits {
     all: Arc<Quota>,
     address: Arc<Usage>,
@@ -203,7 +192,6 @@ impl Permits {
 }
 
 impl Receiving {
-    /// Takes a place for the request, unless it has one.
     fn take_permit(&self) -> Result<(), Error> {
         let Some(permits) = &self.permits else {
             return Ok(());
@@ -222,7 +210,6 @@ const AT_ONCE: usize = 64 << 10;
 /// The bytes of a health check that are taken although the budget is used up: it names a service.
 const PROBE_BODY: usize = 1 << 10;
 
-/// The body of a request: in time, and within the budget.
 struct LimitedBody {
     body: Body,
     deadline: Pin<Box<Sleep>>,
@@ -231,7 +218,6 @@ struct LimitedBody {
     dialect: Dialect,
     /// The bytes that were read since the reader last waited.
     at_once: usize,
-    /// The bytes that do not count.
     free: usize,
 }
 

@@ -7,12 +7,15 @@
 //! the time to the head of the answer.
 
 mod intake;
-mod open;
 mod progress;
 mod reply;
 mod report;
 
-use std::{net::IpAddr, pin::pin, sync::Arc};
+use std::{
+    net::{IpAddr, SocketAddr},
+    pin::pin,
+    sync::Arc,
+};
 
 use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
 use http_body::Body as _;
@@ -21,24 +24,21 @@ use super::{
     dialect::Dialect,
     identity::REQUEST_ID,
     metrics::Metrics,
-    peer::Peer,
     spans::Spans,
     step::{Next, Step},
 };
 use crate::body::{Body, Request, Response};
 pub(super) use intake::Intake;
-pub(super) use open::Fate;
-use open::OpenExchanges;
-use progress::Terms;
+pub(super) use progress::Fate;
+use progress::{OpenExchanges, Terms};
 use reply::{Exchange, Permits};
-use report::{Asked, Report};
+use report::Report;
 use strew_config::{Server, seconds};
 use strew_error::{Denied, Error};
 use strew_service::access::{Gate, Usage};
 use strew_service::{Budget, Record};
 use tokio::time::Instant;
 
-/// The state that all exchanges share. Cheap to clone.
 #[derive(Clone, Debug)]
 pub(super) struct Exchanges {
     pub(super) metrics: Arc<Metrics>,
@@ -59,27 +59,23 @@ pub(super) struct Client {
     pub(super) usage: Arc<Usage>,
     /// A health check is answered whatever else is in progress.
     pub(super) is_probe: bool,
-    /// The protocol that it speaks.
     pub(super) dialect: Dialect,
 }
 
 /// Where the requests of a connection come from, and the exchanges that are open on it. Cheap to clone.
 #[derive(Clone, Debug)]
 pub(super) struct From {
-    pub(super) peer: Peer,
-    /// The address of the other end, and what that uses.
+    pub(super) peer: SocketAddr,
     address: IpAddr,
     usage: Arc<Usage>,
     pub(super) open: Arc<OpenExchanges>,
 }
 
 /// A request on its way through the steps. On the heap: what waits for an answer then moves it as a pointer.
-#[derive(Debug)]
 pub(super) struct Inbound {
     pub(super) request: Request,
     pub(super) client: Client,
     from: From,
-    /// Why the intake should refuse it.
     pub(super) refused: Option<Error>,
 }
 
@@ -93,7 +89,6 @@ const PROBES: [&str; 4] = [
 
 const FORWARDED_FOR: HeaderName = HeaderName::from_static("x-forwarded-for");
 
-/// The terms of answers, from the settings.
 pub(super) fn terms(server: &Server) -> Terms {
     Terms {
         patience: seconds(server.stalled_reader_seconds),
@@ -103,9 +98,8 @@ pub(super) fn terms(server: &Server) -> Terms {
 }
 
 impl Exchanges {
-    /// The state that the requests of a connection share.
-    pub(super) fn from(&self, peer: Peer) -> From {
-        let address = peer.0.ip().to_canonical();
+    pub(super) fn from(&self, peer: SocketAddr) -> From {
+        let address = peer.ip().to_canonical();
         From {
             usage: self.gate.usage(address),
             address,
@@ -114,7 +108,6 @@ impl Exchanges {
         }
     }
 
-    /// A request that begins its way.
     pub(super) fn inbound(&self, from: From, request: Request) -> Box<Inbound> {
         Box::new(Inbound {
             client: self.client(&from, request.headers()),
@@ -147,21 +140,14 @@ impl Exchanges {
 }
 
 impl Step<Inbound> for Exchanges {
-    /// Answers a request; the answer leaves through its exchange.
     async fn answer(&self, mut inbound: Box<Inbound>, next: &impl Next<Inbound>) -> Response {
         let (dialect, now) = (inbound.client.dialect, Instant::now());
         let is_head = *inbound.request.method() == Method::HEAD;
         let usage = inbound.client.usage.clone();
         let budget = self.budget.of_address(usage.clone());
-        let report = {
-            let asked = Asked {
-                request: &inbound.request,
-                protocol: dialect.protocol(),
-                peer: inbound.from.peer,
-                start: now,
-            };
-            Report::start(&self.metrics, self.spans.as_ref(), budget.clone(), &asked)
-        };
+        let asked = (dialect.protocol(), inbound.from.peer);
+        let reported = (&self.metrics, self.spans.as_ref());
+        let report = Report::start(reported, budget.clone(), &inbound.request, asked, now);
         let record = report.record().clone();
 
         let is_probe = PROBES.contains(&inbound.request.uri().path());
@@ -227,7 +213,6 @@ fn announce_length(response: &mut Response, is_head: bool) {
     }
 }
 
-/// A refusal without a body.
 fn bare(dialect: Dialect, error: &Error) -> Response {
     if dialect.is_call() {
         return dialect.refusal(error);

@@ -10,7 +10,6 @@
 //! what makes the answer.
 
 use std::{
-    fmt,
     mem::take,
     pin::Pin,
     sync::Arc,
@@ -25,8 +24,7 @@ use strew_service::{Budget, Held, Interrupted, Record};
 use tokio::time::{Instant, Sleep, sleep_until};
 
 use super::{
-    open::{Entry, Timed},
-    progress::{Progress, Terms},
+    progress::{Entry, Progress, Terms, Timed},
     report::Report,
 };
 use crate::{
@@ -38,20 +36,17 @@ use crate::{
 /// The most bytes of a frame of a whole document: its share of the budget comes back with each.
 const FRAME: usize = 64 << 10;
 
-/// A request and its answer.
 pub(super) struct Exchange {
     state: Mutex<State>,
     budget: Budget,
     dialect: Dialect,
     /// The most time, if the client set a limit as well.
     end: Mutex<End>,
-    /// Its place among the exchanges of the connection.
     entry: Entry,
     _permits: Permits,
 }
 
 /// The places that are free again when an exchange is over.
-#[derive(Debug)]
 pub(super) struct Permits {
     pub(super) _request: InUse,
     pub(super) _probe: Option<InUse>,
@@ -74,7 +69,6 @@ struct State {
     whole: Option<Arc<Held>>,
     /// Why it was broken off, until the client has been sent that.
     unreported: Option<Ending>,
-    /// When it was broken off.
     broken: Option<Instant>,
     /// Bytes that left and have not been written.
     in_flight: usize,
@@ -82,14 +76,7 @@ struct State {
     reader: Option<Waker>,
 }
 
-impl fmt::Debug for Exchange {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Exchange").finish_non_exhaustive()
-    }
-}
-
 impl Exchange {
-    /// An exchange that begins.
     pub(super) fn new(
         report: Report,
         dialect: Dialect,
@@ -208,7 +195,6 @@ impl Timed for Exchange {
     }
 }
 
-/// The body of every answer.
 pub(super) struct Reply {
     exchange: Arc<Exchange>,
     end: End,
@@ -223,7 +209,6 @@ impl Reply {
 }
 
 impl State {
-    /// A frame that leaves.
     fn leave(&mut self, exchange: &Arc<Exchange>, mut bytes: Bytes, now: Instant) -> Frame<Bytes> {
         let held = match &self.whole {
             Some(whole) => {
@@ -349,7 +334,6 @@ impl Drop for Reply {
     }
 }
 
-/// Bytes that have left and are not written yet.
 struct InFlight {
     bytes: Bytes,
     exchange: Arc<Exchange>,

@@ -19,13 +19,11 @@ use crate::{
         dialect::{Ending, grpc_code},
         identity::{Identity, Trace},
         metrics::{Broken, Metrics, NO_FORMAT, NO_ROUTE, Protocol},
-        peer::Peer,
         spans::{Answered, Spans},
         telemetry::ACCESS,
     },
 };
 
-/// The state of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stand {
     Open,
@@ -34,7 +32,6 @@ enum Stand {
 }
 
 /// The facts about a request and its answer; reported when dropped.
-#[derive(Debug)]
 pub(super) struct Report {
     metrics: Arc<Metrics>,
     spans: Option<Spans>,
@@ -56,28 +53,16 @@ pub(super) struct Report {
     counted: u64,
 }
 
-/// What a report begins with.
-pub(super) struct Asked<'a> {
-    pub(super) request: &'a Request,
-    pub(super) protocol: Protocol,
-    pub(super) peer: Peer,
-    pub(super) start: Instant,
-}
-
 /// The bytes of an address that go into the log.
 const LONGEST: usize = 500;
 
 impl Report {
     pub(super) fn start(
-        metrics: &Arc<Metrics>,
-        spans: Option<&Spans>,
+        (metrics, spans): (&Arc<Metrics>, Option<&Spans>),
         budget: Budget,
-        &Asked {
-            request,
-            protocol,
-            peer,
-            start,
-        }: &Asked<'_>,
+        request: &Request,
+        (protocol, client): (Protocol, SocketAddr),
+        start: Instant,
     ) -> Self {
         let begins_one = || spans.is_some_and(Spans::begins_one);
         let identity = Identity::of(request.headers(), begins_one);
@@ -90,7 +75,7 @@ impl Report {
             start,
             method: request.method().clone(),
             address: request.uri().path_and_query().cloned(),
-            client: peer.0,
+            client,
             status: None,
             stand: Stand::Open,
             expected: None,
@@ -103,22 +88,18 @@ impl Report {
         }
     }
 
-    /// The record that the answering code writes about the request.
     pub(super) const fn record(&self) -> &Arc<Record> {
         &self.record
     }
 
-    /// All of the answer has left.
     pub(super) fn whole(&mut self) {
         self.stand = Stand::Whole;
     }
 
-    /// What makes the answer fails before it is complete.
     pub(super) fn broken_off(&mut self) {
         self.stand = Stand::BrokenOff(Broken::Server);
     }
 
-    /// The answer is cut before it is complete.
     pub(super) fn cut(&mut self, why: Ending) {
         self.stand = Stand::BrokenOff(why.by());
         if let (Protocol::Grpc, Some(code)) = (self.protocol, why.code()) {
@@ -126,7 +107,6 @@ impl Report {
         }
     }
 
-    /// The last frame of a call leaves, with its status.
     pub(super) fn trailers(&mut self, frame: &Frame<Bytes>) {
         if let Some(code) = frame.trailers_ref().and_then(grpc_code) {
             self.record.ended(code);
@@ -134,7 +114,6 @@ impl Report {
         self.stand = Stand::Whole;
     }
 
-    /// The head of the answer is made.
     pub(super) fn head(&mut self, response: &Response) {
         self.status = Some(response.status());
         if self.protocol == Protocol::Grpc
@@ -157,7 +136,6 @@ impl Report {
         }
     }
 
-    /// A part of the body goes out.
     pub(super) fn part(&mut self, bytes: usize, now: Instant) {
         let bytes = bytes as u64;
         if self.first_byte.is_none() && bytes > 0 {
@@ -184,7 +162,6 @@ impl Report {
         self.counted = points;
     }
 
-    /// Who broke the answer off, if it is incomplete.
     fn broken(&self) -> Option<Broken> {
         match self.stand {
             Stand::Open => Some(Broken::Client),
@@ -316,7 +293,6 @@ impl Drop for Report {
     }
 }
 
-/// With the digits that mean something.
 fn milliseconds(seconds: f64) -> f64 {
     (seconds * 1e6).round() / 1e3
 }

@@ -4,7 +4,6 @@
 //! formats; kinds of errors. Figures that the service and the system keep themselves (caches, streams, tables, memory) are
 //! read at each scrape, in `scrape`.
 
-mod process;
 mod scrape;
 
 use std::{sync::Arc, time::SystemTime};
@@ -18,10 +17,8 @@ use prometheus::{
 };
 use strew_error::Kind;
 
-pub(super) use process::resident;
-pub(super) use scrape::endpoint;
+pub(super) use scrape::{endpoint, resident};
 
-/// The protocols, as labels name them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Protocol {
     /// Everything but calls.
@@ -33,7 +30,6 @@ pub(super) enum Protocol {
 impl Protocol {
     const ALL: [Self; 2] = [Self::Rest, Self::Grpc];
 
-    /// The label.
     pub(super) const fn name(self) -> &'static str {
         match self {
             Self::Rest => "rest",
@@ -45,14 +41,12 @@ impl Protocol {
 /// The side that ended an answer early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Broken {
-    /// The reader went away.
     Client,
     /// The daemon broke it off: a stop, a deadline, a fault.
     Server,
 }
 
 impl Broken {
-    /// The label.
     pub(super) const fn name(self) -> &'static str {
         match self {
             Self::Client => "client",
@@ -68,7 +62,6 @@ const BUCKETS: [f64; 17] = [
     60.0, 300.0,
 ];
 
-/// Points and bytes of answers in a format, and their latencies.
 #[derive(Debug)]
 struct OfFormat {
     protocol: Protocol,
@@ -83,7 +76,6 @@ pub(super) const NO_FORMAT: &str = "none";
 /// The route of requests to unknown paths.
 pub(super) const NO_ROUTE: &str = "none";
 
-/// A daemon's metrics. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct Metrics {
     registry: Registry,
@@ -100,11 +92,8 @@ pub struct Metrics {
     first_byte: HistogramVec,
     whole: HistogramVec,
     reloads: IntCounterVec,
-    /// Files that a reload refused.
     pub(super) refused_tables: IntCounter,
-    /// Requests that failed because of a bug.
     pub(super) panics: IntCounter,
-    /// TLS handshakes that failed.
     pub(super) failed_handshakes: IntCounter,
     #[cfg(feature = "otlp")]
     spans: IntCounterVec,
@@ -202,12 +191,10 @@ impl Default for Metrics {
 }
 
 impl Metrics {
-    /// The number of requests that are being answered.
     pub(super) const fn in_flight(&self, protocol: Protocol) -> &IntGauge {
         &self.in_flight[protocol as usize]
     }
 
-    /// Adds points and bytes that answers in a format were made of.
     pub(super) fn made(&self, protocol: Protocol, format: &'static str, points: u64, bytes: u64) {
         let of = self.of_format(protocol, format);
         of.points.inc_by(points);
@@ -245,12 +232,10 @@ impl Metrics {
         self.rejected.with_label_values(&[protocol.name(), reason])
     }
 
-    /// The counter of answers that ended early.
     pub(super) fn broken(&self, protocol: Protocol, by: Broken) -> IntCounter {
         self.broken.with_label_values(&[protocol.name(), by.name()])
     }
 
-    /// The counter of requests of a route with an outcome.
     pub(super) fn requests(
         &self,
         protocol: Protocol,
@@ -262,7 +247,6 @@ impl Metrics {
         self.requests.with_label_values(&labels)
     }
 
-    /// The counter of reloads with a cause.
     pub(super) fn reloads(&self, cause: &str) -> IntCounter {
         self.reloads.with_label_values(&[cause])
     }

@@ -1,53 +1,37 @@
-//! `GET /metrics`: the counters, and the figures of the moment.
+//! `GET /metrics`: the counters, and the figures of the moment: of the service, and on Linux of the process.
 
-use std::{sync::Arc, time::UNIX_EPOCH};
+use std::{fs, sync::Arc, time::UNIX_EPOCH};
 
 use axum::extract::State;
 use prometheus::{Counter, Gauge, Opts, Registry, TextEncoder, core::Collector};
 use strew_service::Service;
 
-use super::{Metrics, process::Process};
-use crate::body::Response;
+use super::Metrics;
 use crate::rest::{
-    self, Context, Refused,
+    self, Context,
     api::{Answer, Endpoint, Operation, Tag, schemas},
 };
 
-/// The format of Prometheus.
 const CONTENT_TYPE: &str = "text/plain; version=0.0.4; charset=utf-8";
 
-/// The path.
 pub(in crate::ops) fn endpoint(metrics: Metrics, service: Arc<Service>) -> Endpoint {
+    let answer = "The metrics in Prometheus' text format.";
+    let answers = vec![Answer::file(answer, CONTENT_TYPE, schemas::text)];
     let operation = Operation {
         id: "getMetrics",
         summary: "Metrics for Prometheus",
         about: "Counts, gauges and latencies of this process; never cached. docs/operations.md \
                 explains them.",
         problems: vec![],
-        example: "/metrics".into(),
-        ..Operation::new(
-            Tag::Operations,
-            vec![Answer::file(
-                "The metrics in Prometheus' text format.",
-                CONTENT_TYPE,
-                schemas::text,
-            )],
-        )
+        ..Operation::new(Tag::Operations, answers)
     };
-    let state = (metrics, service);
-    Endpoint::only("/metrics", state, operation, get)
-}
-
-async fn get(
-    State((metrics, service)): State<(Metrics, Arc<Service>)>,
-    _: Context,
-) -> Result<Response, Refused> {
-    let text = metrics.scrape(&service).await;
-    Ok(rest::momentary(rest::file(text, CONTENT_TYPE)))
+    let get = async |State((metrics, service)): State<(Metrics, Arc<Service>)>, _: Context| {
+        rest::momentary(rest::file(metrics.scrape(&service).await, CONTENT_TYPE))
+    };
+    Endpoint::only("/metrics", (metrics, service), operation, get)
 }
 
 impl Metrics {
-    /// All metrics as text.
     async fn scrape(&self, service: &Service) -> String {
         let mut families = self.registry.gather();
         families.extend(self.now(service).await.gather());
@@ -65,48 +49,42 @@ impl Metrics {
             let gauge = Gauge::with_opts(labeled(name, help, labels));
             put(&now, gauge, |gauge| gauge.set(value));
         };
-        let counter = |name, help, labels: &[Label<'_>], value| {
-            let counter = Counter::with_opts(labeled(name, help, labels));
-            put(&now, counter, |counter| counter.inc_by(value));
-        };
-
-        let cache = service.cache().await;
-        for (name, help, value) in [
+        let (cache, workers, process) = (service.cache().await, service.workers(), Process::now());
+        let counters = [
             (
                 "strew_sampler_cache_hits_total",
                 "Requested tables that were ready",
-                cache.hits,
+                Some(cache.hits as f64),
             ),
             (
                 "strew_sampler_cache_misses_total",
                 "Requested tables that had to be loaded",
-                cache.misses,
+                Some(cache.misses as f64),
             ),
             (
                 "strew_table_loads_total",
                 "Requested tables whose files were read for the request: those beyond tables.preload_bytes",
-                cache.loads,
+                Some(cache.loads as f64),
             ),
-        ] {
-            counter(name, help, &[], value as f64);
-        }
-        counter(
-            "strew_work_moved_total",
-            "Short work that took too long and went on as long work: its price was too low",
-            &[],
-            service.workers().moved() as f64,
-        );
-        let process = Process::now();
-        if let Some(seconds) = process.cpu {
-            counter(
+            (
+                "strew_work_moved_total",
+                "Short work that took too long and went on as long work: its price was too low",
+                Some(workers.moved() as f64),
+            ),
+            (
                 "process_cpu_seconds_total",
                 "Processor time used",
-                &[],
-                seconds,
-            );
+                process.cpu,
+            ),
+        ];
+        for (name, help, value) in counters {
+            let counter = Counter::with_opts(labeled(name, help, &[]));
+            if let Some(value) = value {
+                put(&now, counter, |counter| counter.inc_by(value));
+            }
         }
         let started = self.started.duration_since(UNIX_EPOCH).ok();
-        for (name, help, value) in [
+        let gauges = [
             (
                 "strew_sampler_cache_bytes",
                 "Memory of the tables that are ready",
@@ -125,7 +103,7 @@ impl Metrics {
             (
                 "strew_work_short_seconds_max",
                 "The longest processor time of short work before it ended or became long work",
-                Some(service.workers().longest_short().as_secs_f64()),
+                Some(workers.longest_short().as_secs_f64()),
             ),
             (
                 "strew_points_in_flight",
@@ -144,17 +122,19 @@ impl Metrics {
                 "When the process began, in seconds since 1970",
                 started.map(|since| since.as_secs_f64()),
             ),
-        ] {
+        ];
+        for (name, help, value) in gauges {
             if let Some(value) = value {
                 gauge(name, help, &[], value);
             }
         }
         let catalog = service.catalog();
         for entry in catalog.entries().chain(catalog.in_space()) {
+            let (alpha, size) = (entry.key.alpha.to_string(), entry.key.size.to_string());
             let labels = [
                 ("profile", &*entry.key.profile),
-                ("alpha", &entry.key.alpha.to_string()),
-                ("map", &entry.key.size.to_string()),
+                ("alpha", &alpha),
+                ("map", &size),
                 ("digest", &entry.digest),
             ];
             gauge(
@@ -164,12 +144,10 @@ impl Metrics {
                 1.0,
             );
         }
+        let revision = option_env!("STREW_BUILD_REVISION").unwrap_or("unknown");
         let build = [
             ("version", env!("CARGO_PKG_VERSION")),
-            (
-                "revision",
-                option_env!("STREW_BUILD_REVISION").unwrap_or("unknown"),
-            ),
+            ("revision", revision),
             ("algorithm", &strew_core::ALGORITHM_VERSION.to_string()),
         ];
         gauge("strew_build_info", "The program that runs", &build, 1.0);
@@ -177,7 +155,6 @@ impl Metrics {
     }
 }
 
-/// A label and its value.
 type Label<'a> = (&'static str, &'a str);
 
 fn labeled(name: &str, help: &str, labels: &[Label<'_>]) -> Opts {
@@ -194,5 +171,68 @@ fn put<M: Collector + Clone + 'static>(
     if let Ok(metric) = metric {
         set(&metric);
         let _ = now.register(Box::new(metric));
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Process {
+    /// Resident memory in bytes.
+    memory: Option<f64>,
+    /// Processor time in seconds.
+    cpu: Option<f64>,
+    threads: Option<f64>,
+    files: Option<f64>,
+}
+
+/// Ticks per second in `/proc`, on every Linux that Rust supports.
+const TICKS: f64 = 100.0;
+
+impl Process {
+    fn now() -> Self {
+        let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+        Self {
+            memory: of(&status, MEMORY).map(|kibibytes| kibibytes * 1024.0),
+            cpu: cpu(),
+            threads: of(&status, "Threads:"),
+            files: fs::read_dir("/proc/self/fd")
+                .ok()
+                .map(|all| all.count() as f64),
+        }
+    }
+}
+
+/// Resident memory in bytes; 0 where it is not known.
+pub(in crate::ops) fn resident() -> u64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    of(&status, MEMORY).map_or(0, |kibibytes| kibibytes as u64 * 1024)
+}
+
+/// The line of resident memory, in KiB.
+const MEMORY: &str = "VmRSS:";
+
+fn of(status: &str, name: &str) -> Option<f64> {
+    let rest = status.lines().find_map(|line| line.strip_prefix(name))?;
+    rest.split_whitespace().next()?.parse().ok()
+}
+
+fn cpu() -> Option<f64> {
+    let stat = fs::read_to_string("/proc/self/stat").ok()?;
+    // The name of the program comes first, in parentheses, and may hold blanks.
+    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    let ticks = |at: usize| -> Option<f64> { fields.get(at)?.parse().ok() };
+    Some((ticks(11)? + ticks(12)?) / TICKS)
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_are_read() {
+        let now = Process::now();
+        assert!(now.memory.is_some_and(|bytes| bytes > 1e6));
+        assert!(now.threads.is_some_and(|threads| threads > 0.0));
+        assert!(now.files.is_some_and(|files| files > 2.0));
+        assert!(now.cpu.is_some());
     }
 }

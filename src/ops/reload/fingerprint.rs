@@ -12,17 +12,14 @@ use strew_catalog::field::{self, Stamp};
 use strew_config::{Config, bounded_file};
 use strew_core::table::MAX_FILE_BYTES;
 
-/// The files that are watched.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Watched {
-    /// The settings.
     config: Arc<Config>,
     /// The configuration, keys and certificates.
     files: Vec<PathBuf>,
 }
 
 impl Watched {
-    /// The files that the settings name.
     pub fn of(config: &Config) -> Self {
         let files = config.access.keys_file().into_iter();
         Self {
@@ -33,7 +30,6 @@ impl Watched {
         }
     }
 
-    /// The settings.
     pub(super) fn config(&self) -> &Config {
         &self.config
     }

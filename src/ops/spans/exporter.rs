@@ -1,27 +1,38 @@
-//! The exporter of a program with the feature `otlp`.
+//! The exporter of a program with the feature `otlp`. The SDK's own tracer is not used, as requests are watched and named
+//! already (`exchange`, `identity`), nor its batches, which do not say how many spans they drop.
 //!
-//! The SDK's own tracer is not used, as requests are watched and named already (`observe`, `identity`);
-//! its exporter is.
+//! Names of attributes are those of OpenTelemetry's semantic conventions where these have one, and begin with `strew.`
+//! elsewhere.
 
-use std::{sync::Arc, time::Duration};
+use std::{
+    sync::Arc,
+    time::{Duration, SystemTime},
+};
 
-use opentelemetry::KeyValue;
+use opentelemetry::{
+    InstrumentationScope, KeyValue, SpanId, TraceFlags, TraceId, Value,
+    trace::{SpanContext, SpanKind, Status, TraceState},
+};
 use opentelemetry_otlp::{
     SpanExporter, WithExportConfig as _, WithTonicConfig as _,
     tonic_types::transport::{Certificate, ClientTlsConfig},
 };
 use opentelemetry_sdk::{
     Resource,
-    trace::{SpanData, SpanExporter as _},
+    trace::{SpanData, SpanEvents, SpanExporter as _, SpanLinks},
 };
 use prometheus::IntCounter;
-use strew_config as config;
-use strew_config::{Telemetry as Settings, bounded_file};
+use strew_config::{self as config, Telemetry as Settings, bounded_file};
 use tokio::sync::mpsc;
 use tokio_util::{sync::CancellationToken, task::AbortOnDropHandle};
 
 use super::{Answered, SpansError};
-use crate::ops::{identity, metrics::Metrics, throttle::LogThrottle, tls::certificates};
+use crate::ops::{
+    identity,
+    metrics::{Broken, Metrics},
+    telemetry::LogThrottle,
+    tls::certificates,
+};
 
 /// The most spans of one message: some 0.5 MB, where collectors take 4 MiB.
 const MOST: usize = 512;
@@ -29,15 +40,12 @@ const MOST: usize = 512;
 /// The time that the first span of a message waits for more.
 const DELAY: Duration = Duration::from_secs(1);
 
-/// A collector that has not been spoken to yet.
-#[derive(Debug)]
 pub(in crate::ops) struct Collector {
     settings: Settings,
     ca: Option<Vec<u8>>,
 }
 
 impl Collector {
-    /// Reads what is needed; `None` without a collector.
     pub(in crate::ops) fn new(settings: &Settings) -> Result<Option<Self>, SpansError> {
         if settings.otlp_endpoint.is_empty() {
             return Ok(None);
@@ -99,7 +107,6 @@ impl Collector {
     }
 }
 
-/// The most bytes of a file with certificates.
 const MOST_BYTES: u64 = 4 << 20;
 
 fn read_authorities(settings: &Settings) -> Result<Vec<u8>, SpansError> {
@@ -122,7 +129,6 @@ fn resource(service_name: &str) -> Resource {
         .build()
 }
 
-/// Takes spans of requests that have ended. Cheap to clone.
 #[derive(Clone, Debug)]
 pub(in crate::ops) struct Spans {
     sender: mpsc::Sender<SpanData>,
@@ -156,8 +162,6 @@ impl Spans {
     }
 }
 
-/// The task that sends.
-#[derive(Debug)]
 pub(in crate::ops) struct Sending {
     stop: CancellationToken,
     task: AbortOnDropHandle<()>,
@@ -228,4 +232,116 @@ async fn gather(queue: &mut mpsc::Receiver<SpanData>, batch: &mut Vec<SpanData>)
     };
     let _ = tokio::time::timeout(DELAY, more).await;
     true
+}
+
+impl Answered<'_> {
+    /// The span of a request that ended just now; `None` if its trace is not kept.
+    fn span(&self) -> Option<SpanData> {
+        if !self.trace.is_sampled {
+            return None;
+        }
+        let trace_id = TraceId::from_hex(&self.trace.trace).ok()?;
+        let of_span = |text: &str| SpanId::from_hex(text).ok();
+        let parent = self.trace.parent.as_deref().and_then(of_span);
+        let end = SystemTime::now();
+        let total = Duration::try_from_secs_f64(self.total).unwrap_or_default();
+        Some(SpanData {
+            span_context: SpanContext::new(
+                trace_id,
+                of_span(&self.trace.span)?,
+                TraceFlags::SAMPLED,
+                false,
+                TraceState::NONE,
+            ),
+            parent_span_id: parent.unwrap_or(SpanId::INVALID),
+            parent_span_is_remote: parent.is_some(),
+            span_kind: SpanKind::Server,
+            name: self.name().into(),
+            // The clock of the day may be set meanwhile; how long it took is measured by another.
+            start_time: end.checked_sub(total).unwrap_or(end),
+            end_time: end,
+            attributes: self.attributes(),
+            dropped_attributes_count: 0,
+            events: SpanEvents::default(),
+            links: SpanLinks::default(),
+            status: self.outcome(),
+            instrumentation_scope: InstrumentationScope::builder("strew")
+                .with_version(env!("CARGO_PKG_VERSION"))
+                .build(),
+        })
+    }
+
+    fn name(&self) -> String {
+        match (self.call, self.route) {
+            (Some(call), _) => call.trim_start_matches('/').into(),
+            (None, Some(route)) => format!("{} {route}", self.method),
+            (None, None) => self.method.into(),
+        }
+    }
+
+    /// Whether it is our fault that it did not end well.
+    fn outcome(&self) -> Status {
+        let is_ours = match self.code {
+            // UNKNOWN, DEADLINE_EXCEEDED, UNIMPLEMENTED, INTERNAL, UNAVAILABLE, DATA_LOSS.
+            Some(code) => matches!(code, 2 | 4 | 12 | 13 | 14 | 15),
+            None => self.status.is_some_and(|status| status >= 500),
+        };
+        if is_ours || self.broken == Some(Broken::Server) {
+            Status::error(self.reason.unwrap_or("broken off"))
+        } else {
+            Status::Unset
+        }
+    }
+
+    fn attributes(&self) -> Vec<KeyValue> {
+        let (path, query) = match self.address.split_once('?') {
+            Some((path, query)) => (path, Some(query)),
+            None => (self.address, None),
+        };
+        let call = self.call.and_then(|call| call[1..].split_once('/'));
+        let text = |value: Option<&str>| value.map(|value| Value::from(value.to_owned()));
+        let number = |value: u64| Some(Value::I64(i64::try_from(value).unwrap_or(i64::MAX)));
+        let pairs = [
+            ("http.request.method", text(Some(self.method))),
+            ("http.route", text(self.route.filter(|_| call.is_none()))),
+            (
+                "http.response.status_code",
+                self.status.and_then(|status| number(status.into())),
+            ),
+            ("http.response.body.size", number(self.bytes)),
+            ("url.path", text(Some(path))),
+            ("url.query", text(query)),
+            (
+                "network.peer.address",
+                text(self.client.map(|peer| peer.ip().to_string()).as_deref()),
+            ),
+            (
+                "network.peer.port",
+                self.client.and_then(|peer| number(peer.port().into())),
+            ),
+            ("rpc.system", text(call.map(|_| "grpc"))),
+            ("rpc.service", text(call.map(|(service, _)| service))),
+            ("rpc.method", text(call.map(|(_, method)| method))),
+            (
+                "rpc.grpc.status_code",
+                self.code.and_then(|code| number(code.into())),
+            ),
+            ("error.type", text(self.reason)),
+            ("strew.request_id", text(Some(self.request_id))),
+            ("strew.format", text(self.format)),
+            ("strew.points", number(self.points)),
+            (
+                "strew.broken",
+                text(self.broken.map(|broken| broken.name())),
+            ),
+            (
+                "strew.first_byte_seconds",
+                Some(Value::F64(self.first_byte)),
+            ),
+        ];
+        let known = pairs.into_iter();
+        known
+            .filter_map(|(key, value)| Some(KeyValue::new(key, value?)))
+            .collect()
+    }
 }

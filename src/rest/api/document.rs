@@ -15,7 +15,6 @@ const ABOUT: &str = "Strew scatters points: any region of an unbounded plane, at
                      Errors are problem documents (RFC 9457). Text answers come with gzip or zstd \
                      if the client accepts it.";
 
-/// The problems that any request can have.
 const EVERYWHERE: [Kind; 4] = [
     Kind::NoSuchMethod,
     Kind::Busy,
@@ -23,10 +22,8 @@ const EVERYWHERE: [Kind; 4] = [
     Kind::Internal,
 ];
 
-/// The problems that the gate answers with.
 const AT_THE_GATE: [Kind; 2] = [Kind::Unauthenticated, Kind::TooFast];
 
-/// The parts of the document that operations refer to.
 struct Components {
     generator: SchemaGenerator,
     /// By section, then by name.
@@ -49,7 +46,6 @@ impl Components {
     }
 }
 
-/// The document of some endpoints.
 pub(in crate::rest) fn document<'a>(endpoints: impl IntoIterator<Item = &'a Endpoint>) -> Value {
     let mut components = Components {
         generator: schemas::generator(),
@@ -59,15 +55,15 @@ pub(in crate::rest) fn document<'a>(endpoints: impl IntoIterator<Item = &'a Endp
     let answers = example_answers();
     for endpoint in endpoints {
         let mut item = Map::new();
-        for operation in endpoint.operations() {
+        for operation in &endpoint.operations {
             let method = operation.method.as_str().to_lowercase();
-            let mut described = described(operation, endpoint.is_open(), &mut components);
+            let mut described = described(operation, endpoint.is_open, &mut components);
             if let Some(example) = answers.get(operation.id) {
                 put_example(example, &mut described["responses"]);
             }
             item.insert(method, described);
         }
-        paths.insert(endpoint.path().into(), Value::Object(item));
+        paths.insert(endpoint.path.into(), Value::Object(item));
     }
     let sections = &mut components.sections;
     let schemas = components.generator.take_definitions(true);
@@ -179,7 +175,6 @@ fn parameter_in(
     (parameter.name, described)
 }
 
-/// An answer. One that has no content is shared.
 fn answered(answer: &Answer, components: &mut Components) -> Value {
     let mut described = json!({ "description": answer.about });
     for &(name, about) in &answer.headers {
@@ -195,7 +190,6 @@ fn answered(answer: &Answer, components: &mut Components) -> Value {
     described
 }
 
-/// The kinds of problems by status, each once.
 fn by_status(problems: Vec<Kind>) -> BTreeMap<u16, Vec<Kind>> {
     let mut by_status = BTreeMap::<_, Vec<_>>::new();
     for kind in problems {
@@ -207,7 +201,6 @@ fn by_status(problems: Vec<Kind>) -> BTreeMap<u16, Vec<Kind>> {
     by_status
 }
 
-/// The problems of one status.
 fn refused(kinds: &[Kind], components: &mut Components) -> Value {
     let text = |kind: &Kind| format!("{} (`{}`)", kind.wire().title, problem::urn(*kind));
     let texts: Vec<String> = kinds.iter().map(text).collect();
@@ -223,12 +216,10 @@ fn refused(kinds: &[Kind], components: &mut Components) -> Value {
 /// Answers by the names of operations: documents, and text as strings.
 const ANSWERS: &str = include_str!("examples.json");
 
-/// All example answers.
 fn example_answers() -> Map<String, Value> {
     serde_json::from_str(ANSWERS).expect("the example answers are a JSON object")
 }
 
-/// Puts the example answer of an operation where its answers are described.
 fn put_example(example: &Value, responses: &mut Value) {
     let media_type = if example.is_string() {
         "text/csv"

@@ -1,7 +1,7 @@
 //! The description of REST: an [`Endpoint`] is a path with its handlers and their
 //! description, so that nothing is routed that `/openapi.json` does not describe.
 //!
-//! To add a path, write a module with `pub(super) fn endpoint(service) -> Endpoint` and list it in
+//! To add a path, write a function that returns its endpoint and list it in
 //! [`rest::endpoints`](super::endpoints).
 
 mod document;
@@ -26,32 +26,25 @@ use super::problem::{Problem, wrong_method};
 
 pub(super) use document::document;
 
-/// A path that answers, and what it answers.
 #[derive(Clone, Debug)]
 pub struct Endpoint {
-    path: &'static str,
+    pub(super) path: &'static str,
     operations: Vec<Operation>,
-    is_open: bool,
-    /// What answers its methods.
+    /// Whether everyone is let in.
+    pub(super) is_open: bool,
     answers: MethodRouter,
 }
 
-/// One method of a path.
 #[derive(Clone, Debug)]
 pub struct Operation {
     /// GET (which answers HEAD, too) or POST.
     pub method: Method,
     /// A name for programs, in camel case.
     pub id: &'static str,
-    /// A summary in a few words.
     pub summary: &'static str,
-    /// The description below the summary.
     pub about: &'static str,
-    /// The subject that the operation belongs to.
     pub tag: Tag,
-    /// The parameters of the path, in its order.
     pub path_parameters: &'static [&'static Parameter],
-    /// The parameters of the query.
     pub parameters: &'static [Group],
     /// The JSON Schema of the body of a request, if it has one, and a body that is in order on the built-in tables.
     pub body: Option<(Content, Value)>,
@@ -64,20 +57,16 @@ pub struct Operation {
     pub example: String,
 }
 
-/// Makes the list of subjects, each with its name and its description.
 macro_rules! tags {
     ($($tag:ident: $name:literal, $about:literal;)+) => {
-        /// The subjects of operations.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Tag {
             $(#[doc = $about] $tag,)+
         }
 
         impl Tag {
-            /// All of them, in their order.
             pub const ALL: &[Self] = &[$(Self::$tag),+];
 
-            /// The name and the description of the subject.
             pub const fn words(self) -> (&'static str, &'static str) {
                 match self {
                     $(Self::$tag => ($name, $about),)+
@@ -99,7 +88,6 @@ tags! {
 }
 
 impl Tag {
-    /// The subject of the points of a dimension.
     pub(super) fn of(dimension: Dimension) -> Self {
         either(dimension, [Self::Points, Self::Space])
     }
@@ -108,9 +96,7 @@ impl Tag {
 /// An answer that is not a problem.
 #[derive(Clone, Debug)]
 pub struct Answer {
-    /// Its status.
     pub status: u16,
-    /// Its description.
     pub about: &'static str,
     /// Its headers by name, with what they say.
     pub headers: Vec<(&'static str, &'static str)>,
@@ -119,12 +105,10 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// A JSON document of a type.
     pub fn json<T: JsonSchema>(about: &'static str) -> Self {
         Self::file(about, "application/json", schemas::of::<T>)
     }
 
-    /// A file of a media type.
     pub fn file(about: &'static str, media_type: &'static str, schema: Content) -> Self {
         Self {
             status: 200,
@@ -190,7 +174,6 @@ pub(super) fn either<T>(dimension: Dimension, [plane, space]: [T; 2]) -> T {
 }
 
 impl Endpoint {
-    /// A path with one operation and its handler.
     pub fn only<S, T>(
         path: &'static str,
         state: S,
@@ -204,7 +187,6 @@ impl Endpoint {
         Self::new(path).with(state, operation, handle)
     }
 
-    /// A path without operations yet.
     pub fn new(path: &'static str) -> Self {
         Self {
             path,
@@ -214,10 +196,6 @@ impl Endpoint {
         }
     }
 
-    /// With one more operation, and the handler that answers it.
-    ///
-    /// # Panics
-    /// For a method that HTTP does not define, or that the path has already.
     pub fn with<S, T>(
         mut self,
         state: S,
@@ -243,21 +221,6 @@ impl Endpoint {
         self
     }
 
-    /// Whether everyone is let in.
-    pub const fn is_open(&self) -> bool {
-        self.is_open
-    }
-
-    /// The path, with its parameters in braces.
-    pub const fn path(&self) -> &'static str {
-        self.path
-    }
-
-    /// Its operations.
-    pub fn operations(&self) -> &[Operation] {
-        &self.operations
-    }
-
     /// What answers requests to the path. Methods that it does not take are answered with a problem.
     pub(super) fn answers(&self) -> MethodRouter {
         let allowed = self.allowed();
@@ -269,7 +232,6 @@ impl Endpoint {
         self.answers.clone().fallback(refuse)
     }
 
-    /// The methods that it takes, with commas.
     fn allowed(&self) -> String {
         let methods = self
             .operations

@@ -13,59 +13,43 @@ use strew_query::{
     rules::{self, Condition, RULES},
 };
 
-/// A rule between parameters.
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "rule", rename_all = "kebab-case")]
 pub(super) enum Rule {
     /// Exactly one of some parameters must be given.
     ExactlyOneOf {
-        /// Their names.
         parameters: Vec<&'static str>,
         /// A parameter with which none of them needs to be given.
         #[serde(skip_serializing_if = "Option::is_none")]
         unless: Option<&'static str>,
     },
     /// At most one of some parameters may be given.
-    AtMostOneOf {
-        /// Their names.
-        parameters: Vec<&'static str>,
-    },
+    AtMostOneOf { parameters: Vec<&'static str> },
     /// A parameter may only be given if another has one of some values (of a list: among its items).
     OnlyWith {
-        /// The parameter.
         parameter: &'static str,
-        /// The other one.
         other: &'static str,
-        /// Its values.
         values: Vec<&'static str>,
     },
     /// A parameter may only be given if one of some others is, with one of some values (of a list: among its
     /// items; of an empty list: any).
     OnlyWithOneOf {
-        /// The parameter.
         parameter: &'static str,
-        /// The others.
         others: Vec<Other>,
     },
     /// A parameter may not be given beside some others.
     NotWith {
-        /// The parameter.
         parameter: &'static str,
-        /// The others.
         others: Vec<&'static str>,
     },
     /// A value of a list needs another parameter.
     Needs {
-        /// The list.
         parameter: &'static str,
-        /// The value.
         value: &'static str,
-        /// The other parameter.
         needs: &'static str,
     },
 }
 
-/// A parameter with some values.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Other {
     parameter: &'static str,
@@ -90,7 +74,6 @@ pub(super) fn is_first_of_its_kind(parameter: &Parameter) -> bool {
     !is_alternative(parameter.group) || same.next().is_some_and(|first| *first == parameter)
 }
 
-/// The rules of a request that takes some groups.
 pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
     let names = |wanted: &[Group]| -> Vec<&'static str> {
         let taken = parameters_of(groups).filter(|parameter| wanted.contains(&parameter.group));
@@ -200,7 +183,6 @@ fn join(rules: &mut Vec<Rule>, rule: Rule) {
     rules.push(rule);
 }
 
-/// A rule of the table for a request that takes some groups.
 fn published(rule: &rules::Rule, groups: &'static [Group]) -> Option<Rule> {
     let is_taken = |parameter: &Parameter| groups.contains(&parameter.group);
     let parameter = Some(rule.parameter)
@@ -261,7 +243,6 @@ pub(super) fn at(parameter: &str, rules: &[Rule]) -> String {
 }
 
 impl Rule {
-    /// The parameter that it is about, if it is one.
     const fn parameter(&self) -> Option<&'static str> {
         match self {
             Self::ExactlyOneOf { .. } | Self::AtMostOneOf { .. } => None,

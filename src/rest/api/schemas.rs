@@ -26,50 +26,35 @@ pub(super) fn generator() -> SchemaGenerator {
     settings.into_generator()
 }
 
-/// The schema of a type.
 pub(in crate::rest) fn of<T: JsonSchema>(generator: &mut SchemaGenerator) -> Schema {
     generator.subschema_for::<T>()
 }
 
-/// The schema of text.
 pub fn text(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "string" })
 }
 
-/// The schema of anything.
 pub fn any(_: &mut SchemaGenerator) -> Schema {
     json_schema!({})
 }
 
-/// The schema of any object.
 pub fn object(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "object" })
 }
 
-/// The body of `POST /v1/points:query`.
-#[derive(Debug)]
 pub(in crate::rest) struct PointsQuery;
 
-/// The body of `POST /v1/count`.
-#[derive(Debug)]
 pub(in crate::rest) struct CountQuery;
 
-/// The body of requests about points in space.
-#[derive(Debug)]
 pub(in crate::rest) struct SpaceQuery;
 
 /// A body of one kind or the other.
-#[derive(Debug)]
 pub(in crate::rest) struct AnyQuery;
 
-/// The body of `POST /v1/pattern/arrangements`.
-#[derive(Debug)]
 pub(in crate::rest) struct ArrangementQuery;
 
-/// A layer of the plane.
 struct Layer;
 
-/// A layer in space.
 struct SpaceLayer;
 
 /// Schemas that are made of the table of parameters.
@@ -91,11 +76,14 @@ macro_rules! from_table {
 from_table! {
     PointsQuery = "PointsQuery", |generator| {
         refer(generator);
-        points_query()
+        let about = "Which points, which part of them, and in which format: a region with one set of \
+                     points, or with layers.";
+        query(groups::QUERY, groups::SET, PLANE, about)
     };
     CountQuery = "CountQuery", |generator| {
         refer(generator);
-        count_query()
+        let about = "Which points: a region with one set of points, or with layers.";
+        query(groups::COUNTED, groups::SET, PLANE, about)
     };
     AnyQuery = "AnyQuery", |generator| json!({
         "description": "A query for points of the plane or in space.",
@@ -107,10 +95,11 @@ from_table! {
     SpaceQuery = "SpaceQuery", |generator| {
         of::<VolumeSchema>(generator);
         of::<SpaceLayer>(generator);
-        space_query()
+        let about = "Which points in space: a region with one set of points, or with layers.";
+        query(groups::SPACE_QUERY, groups::SPACE_SET, ("Volume", "SpaceLayer"), about)
     };
-    Layer = "Layer", |_| layer();
-    SpaceLayer = "SpaceLayer", |_| space_layer();
+    Layer = "Layer", |_| layer_of(groups::SET, "Region");
+    SpaceLayer = "SpaceLayer", |_| layer_of(groups::SPACE_SET, "Volume");
 }
 
 /// Defines what queries refer to.
@@ -120,7 +109,6 @@ fn refer(generator: &mut SchemaGenerator) {
     of::<Layer>(generator);
 }
 
-/// A reference to a schema of the document.
 pub(super) fn reference(name: &str) -> Value {
     json!({ "$ref": format!("#/components/schemas/{name}") })
 }
@@ -289,7 +277,6 @@ fn query(
     })
 }
 
-/// The schema of features.
 fn features() -> Value {
     let property = |about: &str| json!({ "type": "string", "description": about });
     json!({
@@ -307,36 +294,6 @@ fn features() -> Value {
 
 /// The schemas of regions and layers of the plane.
 const PLANE: (&str, &str) = ("Region", "Layer");
-
-/// A query for points.
-pub(super) fn points_query() -> Value {
-    let about = "Which points, which part of them, and in which format: a region with one set of \
-                 points, or with layers.";
-    query(groups::QUERY, groups::SET, PLANE, about)
-}
-
-/// A query for a count.
-pub(super) fn count_query() -> Value {
-    let about = "Which points: a region with one set of points, or with layers.";
-    query(groups::COUNTED, groups::SET, PLANE, about)
-}
-
-/// A query in space.
-pub(super) fn space_query() -> Value {
-    let about = "Which points in space: a region with one set of points, or with layers.";
-    let of_space = ("Volume", "SpaceLayer");
-    query(groups::SPACE_QUERY, groups::SPACE_SET, of_space, about)
-}
-
-/// One of several sets of points of the plane.
-pub(super) fn layer() -> Value {
-    layer_of(groups::SET, "Region")
-}
-
-/// One of several sets of points in space.
-pub(super) fn space_layer() -> Value {
-    layer_of(groups::SPACE_SET, "Volume")
-}
 
 fn layer_of(set: &'static [Group], region: &str) -> Value {
     let mut properties = members(set);

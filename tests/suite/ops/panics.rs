@@ -31,9 +31,8 @@ async fn a_panic_fails_one_request_only() {
         .with((), operation(Method::GET), panics)
         .with((), operation(Method::POST), panics)
         .open();
-    let app = App::new(layers.finish().expect("settings"))
-        .expect("tables")
-        .with_endpoints(vec![endpoint]);
+    let mut app = App::new(layers.finish().expect("settings")).expect("tables");
+    app.more = vec![endpoint];
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let address = listener.local_addr().expect("an address");
     let (stop, stopped) = tokio::sync::oneshot::channel::<()>();

@@ -1,4 +1,5 @@
-//! Warnings at the start: who can reach the daemon, and who can read its keys.
+//! What is looked at before the daemon starts: who can reach it, who can read its keys, and whether the system allows it
+//! as many open files, and so connections, as it needs.
 
 use strew_config::Config;
 
@@ -50,4 +51,44 @@ pub fn warning(config: &Config) -> Option<String> {
              access.keys_file or tls.client_ca, or put a proxy in front that does"
         )
     })
+}
+
+/// Files that are no connections: tables, the log, the runtime's own.
+const OTHERS: u64 = 64;
+
+/// Raises the limit on open files as far as `connections` need and the system allows. Returns the number of
+/// connections that there is room for, if that is less.
+pub fn make_room(connections: usize) -> Option<u64> {
+    let wanted = u64::try_from(connections)
+        .unwrap_or(u64::MAX)
+        .saturating_add(OTHERS);
+    let allowed = raise(wanted);
+    (allowed < wanted).then(|| allowed.saturating_sub(OTHERS))
+}
+
+/// The limit after an attempt to have it at `wanted`.
+#[cfg(unix)]
+fn raise(wanted: u64) -> u64 {
+    use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+    let Rlimit { current, maximum } = getrlimit(Resource::Nofile);
+    let Some(now) = current else {
+        return u64::MAX;
+    };
+    let possible = maximum.map_or(wanted, |most| most.min(wanted));
+    if possible <= now {
+        return now;
+    }
+    let raised = Rlimit {
+        current: Some(possible),
+        maximum,
+    };
+    match setrlimit(Resource::Nofile, raised) {
+        Ok(()) => possible,
+        Err(_) => now,
+    }
+}
+
+#[cfg(not(unix))]
+fn raise(_wanted: u64) -> u64 {
+    u64::MAX
 }
