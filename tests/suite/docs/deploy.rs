@@ -33,7 +33,9 @@ fn every_setting_in_the_files_exists() {
         "deploy/stack.yaml",
         "deploy/helm/strew/templates/deployment.yaml",
     ] {
-        for variable in variables(&text(path)) {
+        // STREW_CONFIG names a file.
+        let variables = variables(&text(path)).into_iter();
+        for variable in variables.filter(|variable| variable != "STREW_CONFIG") {
             seen += 1;
             let is_it = |section: &str, key: &str| {
                 variable == format!("STREW_{}_{}", section.to_uppercase(), key.to_uppercase())
@@ -45,7 +47,7 @@ fn every_setting_in_the_files_exists() {
             assert!(is_known, "{path}: there is no setting {variable}");
         }
     }
-    assert!(seen >= 6, "only {seen} settings were checked");
+    assert!(seen >= 4, "only {seen} settings were checked");
 }
 
 #[test]
@@ -65,6 +67,7 @@ fn the_images_get_all_sources_and_a_health_check() {
             "USER 65532",
             "\"probe\", \"--ready\"",
             "org.opencontainers.image.revision",
+            "container.toml /etc/strew/container.toml",
         ] {
             assert!(text.contains(part), "{path} has no {part}");
         }
