@@ -13,11 +13,9 @@ use crate::{
     parquet,
 };
 use crate::{
-    blocks::{Blocks, Nothing},
-    coordinates::Coordinates,
+    blocks::{Blocks, EncodeError, Nothing},
     csv,
     encoding::Encoding,
-    error::EncodeError,
     geojson, glb,
     head::Head,
     json, legend,
@@ -26,7 +24,7 @@ use crate::{
     output::Output,
     packed::{Pairs, Triples},
     part::Part,
-    place::Place,
+    place::{Coordinates, Place},
     ply, png,
     pose::Pose,
     posed,

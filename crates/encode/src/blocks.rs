@@ -1,10 +1,9 @@
-//! The blocks of an answer.
+//! The blocks of an answer, and why it may not be made to its end.
 
 use std::fmt;
 
 use bytes::Bytes;
-
-use crate::error::EncodeError;
+use strew_error::Error;
 
 /// A maker of the blocks of an answer.
 pub(super) trait Blocks: fmt::Debug + Send {
@@ -25,5 +24,25 @@ impl Blocks for Nothing {
 
     fn points(&self) -> u64 {
         0
+    }
+}
+
+/// An answer that could not be made to its end: a bug, for what can be refused is refused before.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the answer cannot be encoded: {0}")]
+pub struct EncodeError(pub String);
+
+impl EncodeError {
+    /// For something that has failed.
+    pub fn of(error: impl fmt::Display) -> Self {
+        Self(error.to_string())
+    }
+}
+
+impl From<EncodeError> for Error {
+    /// Logs the reason, which is not for clients.
+    fn from(error: EncodeError) -> Self {
+        tracing::error!(%error);
+        Self::Internal("the answer cannot be encoded")
     }
 }

@@ -74,7 +74,7 @@ mod tests {
     use strew_core::Point;
 
     use super::*;
-    use crate::height::Height;
+    use crate::place::Height;
 
     #[test]
     fn ids_can_be_read_back() {

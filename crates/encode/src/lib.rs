@@ -15,23 +15,18 @@ mod canvas;
 mod chunks;
 #[cfg(feature = "columnar")]
 mod columnar;
-mod coordinates;
 mod crs;
 mod csv;
 #[cfg(feature = "columnar")]
 mod definitions;
 mod encoding;
-mod error;
 #[cfg(feature = "columnar")]
-mod footer;
 mod geojson;
 mod glb;
 mod head;
-mod height;
 mod ids;
 mod json;
 pub mod legend;
-mod mark;
 mod members;
 mod ndjson;
 mod npy;
@@ -54,7 +49,6 @@ pub mod rows;
 #[cfg(test)]
 mod sample_rows;
 pub mod schema;
-mod shift;
 mod source;
 mod svg;
 mod text;
@@ -63,19 +57,16 @@ mod within;
 mod writer;
 
 pub use answer::{Answer, Plain};
+pub use blocks::EncodeError;
 pub use buffer::Pool;
-pub use coordinates::Coordinates;
 pub use crs::{CRS, Crs};
 pub use encoding::Encoding;
-pub use error::EncodeError;
 pub use head::{Head, Json, Tables};
-pub use height::{Height, Located};
-pub use mark::Mark;
 pub use number::{Digits, write_number};
 pub use output::{DEFAULT_SIZE, MOST_DECIMALS, Output, ZSTD_LEVEL};
 pub use packed::{Packed, Pairs, Scalars, Triples, to_little_endian};
 pub use part::{Attributes, Part};
-pub use place::Place;
+pub use place::{Coordinates, Height, Located, Mark, Place};
 pub use pose::ROTATION as POSE_ROTATION;
 pub use rows::{Batch, Row, Rows};
 pub use schema::{Column, Kind, LAYER, Schema, Values, Z as POSE_Z};

@@ -6,11 +6,8 @@ use std::{fmt, sync::Arc};
 use strew_core::{Blocks, F32, Offsets, Point, space};
 
 use super::{
-    coordinates::Coordinates,
-    height::{Height, Located},
-    place::Place,
+    place::{Coordinates, Height, Located, Place, Shift},
     schema::{Column, Kind, Schema, Values},
-    shift::Shift,
 };
 use crate::source::{Source, Walk};
 

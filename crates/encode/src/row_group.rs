@@ -12,7 +12,7 @@ use strew_core::Point;
 
 use super::{
     EncodeError,
-    height::Height,
+    place::Height,
     rows::Batch,
     schema::{Kind, Schema, Values},
 };

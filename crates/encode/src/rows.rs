@@ -14,10 +14,7 @@ use super::{
     schema::{Schema, Values},
 };
 use crate::{
-    coordinates::Coordinates,
-    height::{Height, Located},
-    mark::Mark,
-    place::Place,
+    place::{Coordinates, Height, Located, Mark, Place},
     within::Within,
 };
 

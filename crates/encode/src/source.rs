@@ -12,10 +12,7 @@ use strew_core::{
     space,
 };
 
-use crate::{
-    height::{Height, Located},
-    mark::Mark,
-};
+use crate::place::{Height, Located, Mark};
 
 /// Planned points: their exact number is known, and none is made yet.
 pub trait Source: fmt::Debug + Send + Sync {

@@ -12,7 +12,7 @@ use super::{
     EncodeError,
     blocks::Blocks,
     buffer::Pool,
-    height::Height,
+    place::Height,
     rows::{Row, Rows},
     writer::Writer,
 };
