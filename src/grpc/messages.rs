@@ -5,8 +5,7 @@ use std::sync::Arc;
 use strew_core::{ALGORITHM_VERSION, F32, F64};
 use strew_encode as encode;
 use strew_encode::{
-    Batch, Coordinates, Encoding as Format, Mark, Output, Pairs, Rows, Values, id_text,
-    schema::Kind,
+    Batch, Encoding as Format, Mark, Output, Pairs, Rows, Values, id_text, schema::Kind,
 };
 use strew_error::Error;
 use strew_plan::Planned;
@@ -60,7 +59,7 @@ impl Messages {
             ..Output::new(format)
         };
         let parts = planned.parts()?;
-        let coordinates = Coordinates::of(&output, || encode::Part::corner(&parts));
+        let coordinates = output.coordinates(|| encode::Part::corner(&parts));
         let rows = Rows::new(parts, coordinates);
         let heads: Vec<ColumnHead> = own_columns(&rows).iter().map(head).collect();
         let header = StreamHeader {

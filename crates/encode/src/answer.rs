@@ -24,7 +24,7 @@ use crate::{
     output::Output,
     packed::{Pairs, Triples},
     part::Part,
-    place::{Coordinates, Place},
+    place::Place,
     ply, png,
     pose::Pose,
     posed,
@@ -87,7 +87,7 @@ impl Answer {
         output: &Output,
         block_bytes: usize,
     ) -> Result<Self, Error> {
-        let coordinates = Coordinates::of(output, || Part::corner(&parts));
+        let coordinates = output.coordinates(|| Part::corner(&parts));
         let count = parts.iter().map(|part| part.plan.count()).sum();
         let frame = Frame::new(&parts, output.size).with_dots(output.dot, &parts);
         let parts = match output.encoding {

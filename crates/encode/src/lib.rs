@@ -49,6 +49,7 @@ pub mod rows;
 #[cfg(test)]
 mod sample_rows;
 pub mod schema;
+mod shift;
 mod source;
 mod svg;
 mod text;

@@ -1,6 +1,10 @@
 //! How an answer is to look: the format and its options.
 
-use crate::{crs::Crs, encoding::Encoding, place::Place};
+use crate::{
+    crs::Crs,
+    encoding::Encoding,
+    place::{Coordinates, Place},
+};
 
 /// The default longer side of a picture, in pixels.
 pub const DEFAULT_SIZE: u32 = 512;
@@ -35,6 +39,17 @@ pub struct Output {
 }
 
 impl Output {
+    /// The coordinates of an answer whose parts have a lower `corner`.
+    pub fn coordinates(&self, corner: impl FnOnce() -> Place) -> Coordinates {
+        match (self.encoding, self.relative_to) {
+            (encoding, origin) if encoding.is_near() => {
+                Coordinates::Near(origin.unwrap_or_else(corner))
+            }
+            (encoding, Some(origin)) if !encoding.is_picture() => Coordinates::Relative(origin),
+            _ => Coordinates::World,
+        }
+    }
+
     /// A format without further wishes.
     #[must_use]
     pub const fn new(encoding: Encoding) -> Self {

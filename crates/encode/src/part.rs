@@ -6,8 +6,9 @@ use std::{fmt, sync::Arc};
 use strew_core::{Blocks, F32, Offsets, Point, space};
 
 use super::{
-    place::{Coordinates, Height, Located, Place, Shift},
+    place::{Coordinates, Height, Located, Place},
     schema::{Column, Kind, Schema, Values},
+    shift::Shift,
 };
 use crate::source::{Source, Walk};
 
