@@ -11,8 +11,8 @@ use strew_encode::Crs;
 use strew_error::Faults;
 use strew_plan::{Planned, PlannedSet};
 use strew_query::{
-    BALL, Draft, Feature, Group, Options, RegionDraft, Set, ShapeDraft, Value, Values, VolumeDraft,
-    groups, of, parameters::CRS, read_body, read_features, read_region,
+    BALL, Draft, Feature, Group, Options, RegionDraft, Set, ShapeDraft, Value, Values, groups, of,
+    parameters::CRS, read_body, read_features, read_region,
 };
 
 use super::{
@@ -268,10 +268,8 @@ fn chunk(text: &str) -> Result<RegionDraft, Failure> {
 fn cube(text: &str) -> Result<RegionDraft, Failure> {
     let read = || {
         let [size, x, y, z] = text.split('/').collect::<Vec<_>>().try_into().ok()?;
-        Some(ShapeDraft::Volume(VolumeDraft::Chunk(
-            size.parse().ok()?,
-            [x.parse().ok()?, y.parse().ok()?, z.parse().ok()?],
-        )))
+        let at = [x.parse().ok()?, y.parse().ok()?, z.parse().ok()?];
+        Some(ShapeDraft::Cube(size.parse().ok()?, at))
     };
     let allowed = "SIZE/CX/CY/CZ, a size above 0 and three integers, such as 64/-3/2/0";
     chunk_of(text, read(), allowed)

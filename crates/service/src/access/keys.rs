@@ -33,10 +33,8 @@ use super::{
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum KeysError {
-    /// The file cannot be read.
     #[error("cannot read access.keys_file {}: {error}", path.display())]
     Unreadable { path: PathBuf, error: io::Error },
-    /// It is not such TOML.
     #[error("{place} holds no keys in TOML: {error}")]
     Syntax {
         place: String,
@@ -50,7 +48,6 @@ pub enum KeysError {
         value: String,
         allowed: &'static str,
     },
-    /// Keys are required, and there are none: every request would be refused.
     #[error("{place} holds no key; make one with `strew key new NAME`")]
     Empty { place: String },
 }
