@@ -267,7 +267,6 @@ fn libraries_print_nothing() {
     for room in [
         "crates/core/src",
         "crates/forge/src",
-        "crates/access/src",
         "crates/catalog/src",
         "crates/encode/src",
         "crates/plan/src",

@@ -7,8 +7,6 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use super::some;
-
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tables {
@@ -66,4 +64,9 @@ impl Except {
     pub fn folder(&self) -> Option<&Path> {
         some(&self.folder)
     }
+}
+
+/// A file or folder, unless it is empty.
+pub(super) fn some(path: &Path) -> Option<&Path> {
+    Some(path).filter(|path| !path.as_os_str().is_empty())
 }
