@@ -269,7 +269,6 @@ fn libraries_print_nothing() {
     for room in [
         "crates/core/src",
         "crates/forge/src",
-        "crates/access/src",
         "crates/catalog/src",
         "crates/encode/src",
         "crates/plan/src",

@@ -11,8 +11,8 @@ use strew_encode::Crs;
 use strew_error::Faults;
 use strew_plan::{Planned, PlannedSet};
 use strew_query::{
-    BALL, Draft, Feature, Group, Options, RegionDraft, Set, ShapeDraft, Value, Values, VolumeDraft,
-    groups, of, parameters::CRS, read_body, read_features, read_region,
+    BALL, Draft, Feature, Group, Options, RegionDraft, Set, ShapeDraft, Value, Values, groups, of,
+    parameters::CRS, read_body, read_features, read_region,
 };
 
 use super::{
@@ -250,7 +250,7 @@ fn chunk(text: &str, in_space: bool) -> Result<RegionDraft, Failure> {
         let (size, cells) = (size.parse().ok()?, cells.split('/').map(str::parse));
         match *cells.collect::<Result<Vec<i64>, _>>().ok()? {
             [x, y] if !in_space => Some(ShapeDraft::Chunk(size, [x, y])),
-            [x, y, z] if in_space => Some(ShapeDraft::Volume(VolumeDraft::Chunk(size, [x, y, z]))),
+            [x, y, z] if in_space => Some(ShapeDraft::Cube(size, [x, y, z])),
             _ => None,
         }
     };

@@ -2,7 +2,7 @@
 
 use strew_encode::Place;
 use strew_error::{Checked, Fault};
-use strew_query::{MOST_LEVELS, RegionDraft, Rings, ShapeDraft, VolumeDraft};
+use strew_query::{MOST_LEVELS, RegionDraft, Rings, ShapeDraft};
 
 use super::proto::{
     Ball, BoundingBox, Chunk, Circle, Combined, Cube, Cuboid, Polygon, Polygons, Position, Prism,
@@ -63,8 +63,7 @@ pub(super) fn draft(region: &Region, path: &str, depth: usize) -> Checked<Region
         Some(Shape::Ball(ball)) => ("ball", self::ball(*ball)),
         Some(Shape::Prism(prism)) => ("prism", self::prism(prism)),
         Some(Shape::Cube(Cube { size, x, y, z })) => {
-            let cube = VolumeDraft::Chunk(*size, [*x, *y, *z]);
-            ("cube", ShapeDraft::Volume(cube))
+            ("cube", ShapeDraft::Cube(*size, [*x, *y, *z]))
         }
         Some(Shape::Combined(combined)) => {
             let path = format!("{path}.combined");
@@ -88,20 +87,17 @@ fn bbox(b: BoundingBox) -> ShapeDraft {
 
 fn cuboid(b: Cuboid) -> ShapeDraft {
     let corners = [b.min_x, b.min_y, b.min_z, b.max_x, b.max_y, b.max_z];
-    ShapeDraft::Volume(VolumeDraft::Box(corners))
+    ShapeDraft::Cuboid(corners)
 }
 
 fn ball(ball: Ball) -> ShapeDraft {
     let Position { x, y, z } = ball.center.unwrap_or_default();
-    ShapeDraft::Volume(VolumeDraft::Ball(
-        [x, y, z.unwrap_or_default()],
-        ball.radius,
-    ))
+    ShapeDraft::Ball([x, y, z.unwrap_or_default()], ball.radius)
 }
 
 fn prism(prism: &Prism) -> ShapeDraft {
     let base = prism.base.as_ref().map(rings).unwrap_or_default();
-    ShapeDraft::Volume(VolumeDraft::Prism(base, [prism.bottom, prism.top]))
+    ShapeDraft::Prism(base, [prism.bottom, prism.top])
 }
 
 fn circle(circle: Circle) -> ShapeDraft {

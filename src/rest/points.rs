@@ -8,7 +8,7 @@ use serde_json::json;
 use strew_catalog::Dimension;
 use strew_core::server::Stop;
 use strew_error::{Checked, Together as _};
-use strew_query::{Draft, Group, Parameter, RegionDraft, Shape, ShapeDraft, VolumeDraft, groups};
+use strew_query::{Draft, Group, Parameter, RegionDraft, Shape, ShapeDraft, groups};
 use strew_service::Service;
 
 use super::{
@@ -198,6 +198,6 @@ fn cube([size, x, y, z]: [&str; 4]) -> Checked<RegionDraft> {
     let address = (SIZE.read(size), COLUMN.read(x), ROW.read(y), LEVEL.read(z));
     address.together().map(|(size, x, y, z)| RegionDraft {
         path: "chunk".into(),
-        shape: ShapeDraft::Volume(VolumeDraft::Chunk(size, [x, y, z])),
+        shape: ShapeDraft::Cube(size, [x, y, z]),
     })
 }

@@ -7,7 +7,7 @@ use std::ffi::c_char;
 use ::strew_plan::{Found, Library};
 use strew_core::space::PointId;
 use strew_error::Error;
-use strew_query::{RegionDraft, ShapeDraft, VolumeDraft};
+use strew_query::{RegionDraft, ShapeDraft};
 
 use crate::{
     coordinates::{fill, fill_f32, fill_ids, origin_of},
@@ -60,7 +60,7 @@ pub unsafe extern "C" fn strew_space_plan_chunk(
     let read = |text: &str| {
         Ok(Library::read_in_space(text)?.within(Ok(RegionDraft {
             path: "chunk".into(),
-            shape: ShapeDraft::Volume(VolumeDraft::Chunk(size, [x, y, z])),
+            shape: ShapeDraft::Cube(size, [x, y, z]),
         })))
     };
     // SAFETY: as the caller promises.

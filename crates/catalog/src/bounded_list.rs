@@ -1,10 +1,10 @@
-//! Lists that are counted while they are read, so that a long one takes no memory.
+//! Lists that are counted while they are read, so that a long one takes no memory, and end once they are not
+//! wanted any more.
 
-use std::{fmt, marker::PhantomData, ops::RangeInclusive};
+use std::{cell::RefCell, fmt, marker::PhantomData, ops::RangeInclusive};
 
 use serde::de::{Deserialize, Deserializer, Error as _, IgnoredAny, SeqAccess, Visitor};
-
-use crate::wanted;
+use strew_core::server::Stop;
 
 /// Reads a list of a number of elements, called `what`.
 pub fn list<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
@@ -38,7 +38,7 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for List<T> {
         let what = self.what;
         let mut all = vec![];
         while all.len() < most {
-            wanted::look(all.len()).map_err(A::Error::custom)?;
+            look(all.len()).map_err(A::Error::custom)?;
             match elements.next_element()? {
                 Some(element) => all.push(element),
                 None if all.len() < least => {
@@ -52,7 +52,7 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for List<T> {
         }
         let mut count = most;
         while elements.next_element::<IgnoredAny>()?.is_some() {
-            wanted::look(count).map_err(A::Error::custom)?;
+            look(count).map_err(A::Error::custom)?;
             count += 1;
         }
         if count > most {
@@ -64,10 +64,42 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for List<T> {
     }
 }
 
+// Parsers call readers without a place for a flag, so the thread that reads has it.
+thread_local! {
+    static STOP: RefCell<Stop> = const { RefCell::new(Stop::NEVER) };
+}
+
+/// Elements of a list between two looks: some ten microseconds.
+const OFTEN: usize = 256;
+
+/// Runs a reader, which ends with an error once the flag is raised.
+pub fn until<T>(stop: &Stop, read: impl FnOnce() -> T) -> T {
+    struct Before(Stop);
+
+    impl Drop for Before {
+        fn drop(&mut self) {
+            STOP.replace(std::mem::take(&mut self.0));
+        }
+    }
+
+    let _before = Before(STOP.replace(stop.clone()));
+    read()
+}
+
+/// Looks before every few elements of a list.
+pub(crate) fn look(element: usize) -> Result<(), &'static str> {
+    if !element.is_multiple_of(OFTEN) {
+        return Ok(());
+    }
+    let stop = STOP.with_borrow(Stop::clone);
+    match stop.is_raised() {
+        true => Err("not wanted any more"),
+        false => Ok(()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use strew_core::server::Stop;
-
     use super::*;
 
     #[test]
@@ -75,7 +107,7 @@ mod tests {
         let stop = Stop::new();
         let read = || {
             let mut json = serde_json::Deserializer::from_str("[1, 2, 3]");
-            wanted::until(&stop, || list::<_, u8>(&mut json, 0..=9, "numbers")).is_ok()
+            until(&stop, || list::<_, u8>(&mut json, 0..=9, "numbers")).is_ok()
         };
         assert!(read());
         stop.raise();

@@ -6,7 +6,6 @@
 //! is read by the first query that needs it. Ready samplers are made of either by the cache.
 
 use std::{
-    cell::{Cell, RefCell},
     collections::BTreeMap,
     fs,
     path::{Path, PathBuf},
@@ -23,12 +22,12 @@ use strew_core::{
 use strew_error::{Checked, Error};
 
 use crate::{
-    dimension::Dimension,
     entry::Entry,
     error::CatalogError,
     except::Lists,
     field::{self, Allowance, Document, Fields, NamedField},
-    key::{Key, MixKey, Source},
+    key::{Dimension, Key, MixKey, Source},
+    named::files_of,
     offer::Offer,
     patterns::Patterns,
     sent::Sent,
@@ -171,20 +170,12 @@ impl Catalog {
         pixels: usize,
         allowance: Allowance<'_>,
     ) -> (Checked<FieldSpec>, Built) {
-        let sources = field::Sources {
-            named: &|name| {
-                self.field(name)
-                    .map(|field| (field.spec.clone(), field.epsg))
-            },
-            names: &|| self.fields.names(),
-            files: None,
-            allowance,
-            refused: RefCell::new(None),
-            pixels: Cell::new(pixels),
-            frame: Cell::new(None),
-            epsg: Cell::new(None),
-            bytes: Cell::new(0),
+        let named = |name: &str| {
+            let field = self.field(name)?;
+            Some((field.spec.clone(), field.epsg))
         };
+        let names = || self.fields.names();
+        let sources = field::Sources::new(&named, &names, allowance, pixels);
         let spec = field::build(path, document, &sources);
         let built = Built {
             left: sources.pixels.get(),
@@ -317,16 +308,10 @@ impl Preload {
 
 /// The `*.strew` files of a folder, in the order of their names.
 pub(crate) fn table_files(folder: &Path) -> Result<Vec<PathBuf>, CatalogError> {
-    let problem = |error| CatalogError::Folder {
+    let mut files = files_of(folder).map_err(|error| CatalogError::Folder {
         path: folder.into(),
         error,
-    };
-    let mut files = fs::read_dir(folder)
-        .map_err(problem)?
-        .map(|entry| entry.map(|entry| entry.path()))
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(problem)?;
+    })?;
     files.retain(|file| file.extension().is_some_and(|e| e == "strew"));
-    files.sort();
     Ok(files)
 }

@@ -8,13 +8,10 @@ use super::{Key, Source};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CatalogError {
-    /// The folder cannot be listed.
     #[error("cannot list the tables folder {}: {error}", path.display())]
     Folder { path: PathBuf, error: io::Error },
-    /// A file cannot be read.
     #[error("cannot read the table {}: {error}", path.display())]
     File { path: PathBuf, error: io::Error },
-    /// A file is not a valid table.
     #[error("the table {source_name} is not valid: {error}")]
     Table {
         source_name: Source,

@@ -4,8 +4,6 @@ use std::{cmp::Ordering, fmt, path::PathBuf, sync::Arc};
 
 use strew_core::{Alpha, map::Size};
 
-use crate::dimension::Dimension;
-
 /// The key of a table. Those of the plane come first, then all are in the order of their names, then
 /// of their numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -86,5 +84,30 @@ impl fmt::Display for Source {
             Self::Memory(number) => write!(f, "table {number} in memory"),
             Self::Pattern => f.write_str("derived from alpha"),
         }
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Dimension {
+    #[default]
+    Plane,
+    Space,
+}
+
+impl Dimension {
+    pub const fn axes(self) -> u32 {
+        match self {
+            Self::Plane => 2,
+            Self::Space => 3,
+        }
+    }
+}
+
+impl fmt::Display for Dimension {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Plane => "plane",
+            Self::Space => "space",
+        })
     }
 }

@@ -9,7 +9,6 @@
 
 pub mod bounded_list;
 mod catalog;
-mod dimension;
 mod entry;
 mod error;
 pub mod except;
@@ -19,17 +18,13 @@ pub mod mix;
 pub mod named;
 mod offer;
 mod patterns;
-mod ready;
 mod reload;
 pub mod sent;
-pub mod wanted;
 
 pub use catalog::{Built, Catalog};
-pub use dimension::Dimension;
-pub use entry::Entry;
+pub use entry::{Entry, Ready};
 pub use error::CatalogError;
-pub use key::{Key, MixKey, Source};
+pub use key::{Dimension, Key, MixKey, Source};
 pub use offer::Offer;
 pub use patterns::{MAX_PATTERN_RADIUS, PATTERN};
-pub use ready::Ready;
 pub use reload::{Refusal, Reload, Serving};

@@ -4,18 +4,14 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::{NETWORKS, Networks, some};
+use super::{NETWORKS, Networks, loaded::some};
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Access {
-    /// A file with keys; empty for none.
     pub keys_file: PathBuf,
-    /// Keys in the same form as in the file; empty for none.
     pub keys: String,
-    /// Whether clients without a key are admitted although there are keys.
     pub anonymous: bool,
-    /// The proxies whose `X-Forwarded-For` is trusted.
     pub trusted_proxies: String,
 }
 
@@ -46,9 +42,7 @@ impl Access {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rate {
-    /// Points per second; 0 for no limit.
     pub points_per_second: f64,
-    /// The burst allowed after a pause; 0 means ten seconds' worth.
     pub burst_points: f64,
     pub max_clients: usize,
 }
@@ -57,9 +51,7 @@ pub struct Rate {
 #[serde(deny_unknown_fields)]
 pub struct AddressLimits {
     pub max_connections: usize,
-    /// Requests, from their head to the last byte of the answer.
     pub max_requests: usize,
     pub max_streams: usize,
-    /// Bytes that its requests and answers hold.
     pub max_bytes_in_flight: usize,
 }

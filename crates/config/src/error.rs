@@ -5,19 +5,16 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConfigError {
-    /// The file cannot be read.
     #[error("cannot read the configuration file {}: {error}", path.display())]
     Unreadable {
         path: PathBuf,
         error: std::io::Error,
     },
-    /// The file is not TOML.
     #[error("{source_name} is not valid TOML: {error}")]
     Syntax {
         source_name: String,
         error: Box<toml::de::Error>,
     },
-    /// A key that does not exist.
     #[error(
         "{source_name}: there is no setting `{key}`; {}",
         suggestion(suggestions)
@@ -37,7 +34,6 @@ pub enum ConfigError {
     },
     #[error("{}", each_on_a_line(.0))]
     Several(Vec<ConfigError>),
-    /// A flag that is not of the form `key=value`.
     #[error("--set {text}: expected key=value, for example limits.max_points=1000")]
     Assignment { text: String },
     #[error("`{key}` is set twice, by {first} and by {second}; allowed: one of them")]
@@ -48,7 +44,6 @@ pub enum ConfigError {
         /// The second one.
         second: String,
     },
-    /// A flag for a setting that a command does not use.
     #[error(
         "{source_name}: `{key}` has no effect on this command; allowed: {}",
         list(used)

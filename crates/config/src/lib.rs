@@ -24,10 +24,7 @@ mod reports;
 mod server;
 mod validate;
 
-use std::{
-    path::{Path, PathBuf},
-    time::Duration,
-};
+use std::{path::PathBuf, time::Duration};
 
 use serde::{Deserialize, Serialize};
 
@@ -78,9 +75,4 @@ impl Config {
 /// Seconds of a setting as a duration; settings are checked to be within range before.
 pub fn seconds(value: f64) -> Duration {
     Duration::try_from_secs_f64(value).unwrap_or(Duration::MAX)
-}
-
-/// A file or folder, unless it is empty.
-fn some(path: &Path) -> Option<&Path> {
-    Some(path).filter(|path| !path.as_os_str().is_empty())
 }

@@ -7,12 +7,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Http {
-    /// The origins of pages that may send requests: `*` for all, or origins separated by spaces or
-    /// commas.
     pub cors_origins: String,
-    /// How long an answer may be kept that a restart with other tables could change, in seconds.
     pub cache_seconds: u32,
-    /// The address of the pages as seen from outside, such as `https://points.example`; empty if it is unknown.
     pub public_url: String,
 }
 
@@ -125,7 +121,6 @@ pub enum LogOutput {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Metrics {
-    /// Whether `/metrics` is served.
     pub enabled: bool,
 }
 
@@ -133,15 +128,11 @@ pub struct Metrics {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Telemetry {
-    /// The collector's address; empty for none.
     pub otlp_endpoint: String,
-    /// A PEM file with the authorities that vouch for the collector, for `https`.
     pub otlp_ca: PathBuf,
     pub service_name: String,
-    /// The share of requests without a trace of their own that begin one.
     pub sample_ratio: f64,
     pub max_queued_spans: usize,
-    /// How long sending may take, in seconds.
     pub export_timeout_seconds: f64,
 }
 

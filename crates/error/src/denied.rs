@@ -1,16 +1,13 @@
-//! The reasons for which the gate refuses a request.
+//! The reasons for which the gate refuses a request, and rates of points.
 
-use crate::rate::Short;
+use std::time::Duration;
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Denied {
-    /// A key is needed, and there is none.
     #[error("this server needs a key: send `Authorization: Bearer KEY` or `x-api-key: KEY`")]
     NoKey,
-    /// The key is not known.
     #[error("this server does not know the key: request another from its administrator")]
     WrongKey,
-    /// The request is for a host that is not this daemon's: a page may have turned its name to this machine.
     #[error(
         "the request is for the host `{host}`, and a daemon on loopback answers for addresses, names without a \
          dot and the host of http.public_url alone"
@@ -31,7 +28,6 @@ pub enum Denied {
     TooManyStreams { limit: usize },
     #[error("{limit} {what} of this address are in use, the limit: try again later")]
     Address { what: &'static str, limit: usize },
-    /// The client's address uses all that it may use without leaving others less than itself.
     #[error(
         "this server has {limit} {what} for all clients, and an address uses no more of them than are left: \
          try again later"
@@ -66,4 +62,44 @@ impl Denied {
             _ => None,
         }
     }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rate {
+    /// Points per second, above 0.
+    pub points_per_second: f64,
+    /// The burst allowed after a pause, at least 1.
+    pub burst_points: f64,
+}
+
+impl Rate {
+    /// The burst of a rate that names none, in seconds.
+    const REST: f64 = 10.0;
+
+    /// A rate with its burst, or with that of ten seconds.
+    pub fn new(points_per_second: f64, burst_points: Option<f64>) -> Self {
+        let burst = burst_points.unwrap_or(points_per_second * Self::REST);
+        Self {
+            points_per_second,
+            burst_points: burst.max(1.0),
+        }
+    }
+}
+
+/// The points left in a bucket, and when it will be full.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    pub rate: Rate,
+    /// The points left; 0 while the bucket owes some.
+    pub left: u64,
+    /// The time until it is full.
+    pub full_in: Duration,
+}
+
+/// A bucket holds too little.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Short {
+    pub level: Level,
+    /// The time until the same request is let through, if no other comes first.
+    pub wait: Duration,
 }

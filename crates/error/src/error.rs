@@ -9,10 +9,8 @@ use crate::{denied::Denied, fault::Fault, faults::Faults, secret::without_keys};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The query is not valid; every fault that was found.
     #[error("{}", joined(.0.as_slice()))]
     Invalid(Faults),
-    /// The region holds more points than one answer may have.
     #[error(
         "the region holds {count} points, and this server returns at most {limit} in one answer: \
          request a smaller region, fewer points, or pages with limit and cursor"
@@ -23,19 +21,16 @@ pub enum Error {
          this server allows {limit}: request a smaller region, a wider spacing, or a box with warp=off"
     )]
     TooManyRows { rows: u128, limit: u64 },
-    /// The query is longer than queries may be.
     #[error(
         "the body is longer than {limit} bytes, the limit of this server: send fewer vertices or \
          regions"
     )]
     BodyTooLarge { limit: usize },
-    /// Another table would answer than the one that the query pins.
     #[error(
         "the query names the table {pinned}, but {loaded} would answer: leave out `table`, or load \
          that table"
     )]
     OtherTable { pinned: String, loaded: String },
-    /// The world that the query names is another one than the one that it pins.
     #[error(
         "the query names the world {name} of the digest {pinned}, but this server's is {loaded}: leave out \
          `world_digest`, or request what that world has become"
@@ -45,17 +40,14 @@ pub enum Error {
         pinned: String,
         loaded: String,
     },
-    /// The table is loaded, but its file cannot be read.
     #[error("the table of {table} cannot be read now: its file is gone, has changed or is damaged")]
     TableUnreadable { table: String },
     #[error("`Accept: {accept}` names no available format; available: {available}")]
     NotAcceptable { accept: String, available: String },
-    /// The set has no point with that id.
     #[error("this set has no point `{}`", without_keys(id))]
     NoSuchPoint { id: String },
     #[error("nothing is at `{}`; available: {available}", without_keys(path))]
     NoSuchPath { path: String, available: String },
-    /// The path does not take that method.
     #[error(
         "`{}` does not take the method {method}; allowed: {allowed}",
         without_keys(path)
@@ -71,15 +63,12 @@ pub enum Error {
     Busy { limit: usize },
     #[error("{limit} connections are open, the limit of this server: try again later")]
     TooManyConnections { limit: usize },
-    /// The server has reached its limit of requests at once.
     #[error("{limit} requests are being answered, the limit of this server: try again later")]
     TooManyRequests { limit: usize },
-    /// The server has reached its limit of labels of kinds, including those in the queue.
     #[error("{limit} kinds are being made, the limit of this server: try again later")]
     TooManyMixes { limit: usize },
     #[error("requests and answers hold {limit} bytes, the limit of this server: try again later")]
     TooManyBytes { limit: usize },
-    /// The request needs more memory at once than this server ever has for it.
     #[error(
         "this takes {needed} bytes at once, and {setting} = {limit} on this server, which its operator can raise"
     )]
@@ -89,27 +78,21 @@ pub enum Error {
         limit: usize,
         setting: &'static str,
     },
-    /// The body has a coding that is not read.
     #[error("`Content-Encoding: {coding}` is not read; allowed: gzip, or none")]
     UnknownCoding { coding: String },
-    /// The body took longer to come than it may.
     #[error("the body did not arrive within {seconds} seconds")]
     BodyTooSlow { seconds: String },
-    /// The answer took longer than it may.
     #[error(
         "there was no answer within {seconds} seconds: try again later, or request a smaller region"
     )]
     TimeOver { seconds: String },
-    /// The kinds of the query were still being made when the time for the answer was over.
     #[error(
         "labels of these kinds are being made, once, which takes longer than the {seconds} seconds of an answer: \
          try again in {} seconds", self.retry_seconds().unwrap_or(1)
     )]
     KindsInTheMaking { seconds: String },
-    /// The server is about to stop.
     #[error("the server is shutting down: try again later, or elsewhere")]
     ShuttingDown,
-    /// A fault of the server's own; the log has more.
     #[error("an internal error: {0}")]
     Internal(&'static str),
 }

@@ -11,16 +11,10 @@ mod error;
 mod fault;
 pub mod faults;
 pub mod integer;
-mod number;
-mod rate;
 mod secret;
-mod unknown;
 
-pub use denied::Denied;
+pub use denied::{Denied, Level, Rate, Short};
 pub use error::{Error, Kind};
-pub use fault::Fault;
+pub use fault::{Fault, number, unknown};
 pub use faults::{Checked, Faults, Together, all};
-pub use number::number;
-pub use rate::{Level, Rate, Short};
 pub use secret::{KEY_PREFIX, without_keys};
-pub use unknown::unknown;

@@ -8,7 +8,6 @@
 
 #![allow(missing_docs, reason = "internal: names say what items are")]
 
-mod amount_in_space;
 mod attributes;
 pub mod effort;
 mod head;

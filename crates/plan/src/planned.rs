@@ -10,7 +10,6 @@ use strew_error::{Error, integer::Long};
 use strew_query::{Amount, Query, Resolved, ResolvedSet, Set, Token, other_kinds};
 
 use crate::{
-    amount_in_space,
     attributes::PointAttributes,
     planned_set::PlannedSet,
     planner::Planner,
@@ -57,9 +56,9 @@ impl Placed {
         let table = set
             .space()
             .ok_or(Error::Internal("a set of the plane in space"))?;
-        let (points, density) = amount_in_space::placed(&set, table)?;
+        let (points, density) = resolve::in_space(&set, table)?;
         let spacing = points.placement().spacing;
-        let least = amount_in_space::least_distance(&set, &points, 0.0);
+        let least = resolve::least_distance_in_space(&set, &points, 0.0);
         Ok(Self {
             resolved: set.resolved(&[], density, spacing, least, (&[], &[])),
             attributes: points

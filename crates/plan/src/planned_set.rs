@@ -7,7 +7,7 @@ use strew_core::{Region, Spacing, space::SpaceSet};
 use strew_encode::Source;
 use strew_query::{KindDistance, Set};
 
-use crate::{amount_in_space, effort};
+use crate::{effort, resolve};
 
 #[derive(Clone, Debug)]
 pub(super) enum Least {
@@ -66,7 +66,7 @@ impl PlannedSet {
     pub(super) fn least_distance(&self, set: &Set) -> f64 {
         match &self.least_distance {
             Least::Known(least) => *least,
-            Least::InSpace(points, reach) => amount_in_space::least_distance(set, points, *reach),
+            Least::InSpace(points, reach) => resolve::least_distance_in_space(set, points, *reach),
         }
     }
 

@@ -1,9 +1,12 @@
-//! Amounts of points on their tables, without a region.
+//! Amounts of points on their tables, without a region, and the distances that points keep.
 
 use strew_catalog::Ready;
-use strew_core::{ErrorKind, LeastDistance, Spacing};
+use strew_core::{
+    ErrorKind, LeastDistance, Spacing,
+    space::{self, SpaceSet},
+};
 use strew_error::{Error, number};
-use strew_query::{Amount, KindDistance, Parameter, Set, parameters};
+use strew_query::{Amount, KindDistance, Set, parameters};
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Resolved {
@@ -12,42 +15,85 @@ pub(super) enum Resolved {
     Count(u64),
 }
 
-pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Resolved, Error> {
-    let fault = |parameter: &Parameter, value: f64, detail: String| {
+/// What the amount of a set means: with the spacings of a density and of a least distance, and the density of a spacing.
+fn resolved(
+    set: &Set,
+    of_density: impl Fn(f64) -> Result<Spacing, strew_core::Error>,
+    for_distance: impl Fn(f64) -> Result<Spacing, strew_core::Error>,
+    density: impl Fn(Spacing) -> f64,
+) -> Result<Resolved, Error> {
+    let (parameter, value, spacing) = match set.amount {
+        Amount::Density(value) => (&parameters::DENSITY, value, of_density(value)),
+        Amount::Spacing(value) => (&parameters::SPACING, value, Spacing::new(value)),
+        Amount::MinDistance(value) => (&parameters::MIN_DISTANCE, value, for_distance(value)),
+        Amount::Count(count) => return Ok(Resolved::Count(count)),
+    };
+    let spacing = spacing.map_err(|error| {
+        let detail = match error.kind() {
+            ErrorKind::NoLeastDistance => {
+                format!("profile `{}`: {}", set.entry.key.profile, error.problem())
+            }
+            _ => error.to_string(),
+        };
         set.fault(parameter.name, value, detail, parameter.allowed())
+    })?;
+    let density = match set.amount {
+        Amount::Density(density) => density,
+        _ => density(spacing),
     };
-    let wrong = |parameter, value: f64| {
-        move |error: strew_core::Error| fault(parameter, value, error.to_string())
+    Ok(Resolved::Known(spacing, density))
+}
+
+pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Resolved, Error> {
+    if let Amount::MinDistance(distance) = set.amount
+        && set.moves()
+        && set.field.is_some()
+    {
+        let detail = "not with a field: points settle";
+        let allowed = "density, spacing or count; or settle=0";
+        return Err(set.fault(parameters::MIN_DISTANCE.name, distance, detail, allowed));
+    }
+    let for_distance = |distance| ready.table.least_distance().spacing_for(distance, set.warp);
+    resolved(set, Spacing::from_density, for_distance, |spacing| {
+        spacing.density()
+    })
+}
+
+/// The set of some points in space at the spacing that its amount means, and its density.
+pub(super) fn in_space(set: &Set, table: &space::Table) -> Result<(SpaceSet, f64), Error> {
+    let of_density = |density| {
+        let placed = SpaceSet::new(table.clone()).density(density)?;
+        Ok(placed.placement().spacing)
     };
+    let for_distance = |distance| table.least_distance().spacing_for(distance, set.warp);
+    match resolved(set, of_density, for_distance, |spacing| {
+        spacing.get().powi(-3)
+    })? {
+        Resolved::Known(spacing, density) => Ok((set.points_in_space(table, spacing)?, density)),
+        Resolved::Count(count) => {
+            let allowed = "density, spacing or min_distance";
+            Err(set.fault(
+                parameters::COUNT.name,
+                count,
+                "not for points in space",
+                allowed,
+            ))
+        }
+    }
+}
+
+/// The distance that the coordinates of a set in space within ±`reach` keep.
+pub(super) fn least_distance_in_space(set: &Set, points: &SpaceSet, reach: f64) -> f64 {
+    // Each coordinate is rounded by at most half a unit in its last place.
+    let rounding = 2.0 * 3f64.sqrt() * reach * f64::EPSILON;
+    kept(set, (points.least_distance() - rounding).max(0.0))
+}
+
+/// A least distance; where one is requested, no more: the spacing is a little wider than this takes.
+fn kept(set: &Set, least: f64) -> f64 {
     match set.amount {
-        Amount::Density(density) => {
-            let spacing =
-                Spacing::from_density(density).map_err(wrong(&parameters::DENSITY, density))?;
-            Ok(Resolved::Known(spacing, density))
-        }
-        Amount::Spacing(value) => {
-            let spacing = Spacing::new(value).map_err(wrong(&parameters::SPACING, value))?;
-            Ok(Resolved::Known(spacing, spacing.density()))
-        }
-        Amount::MinDistance(distance) if set.moves() && set.field.is_some() => {
-            let detail = "not with a field: points settle";
-            let allowed = "density, spacing or count; or settle=0";
-            Err(set.fault(parameters::MIN_DISTANCE.name, distance, detail, allowed))
-        }
-        Amount::MinDistance(distance) => {
-            let least = ready.table.least_distance();
-            let spacing = least.spacing_for(distance, set.warp).map_err(|error| {
-                let detail = match error.kind() {
-                    ErrorKind::NoLeastDistance => {
-                        format!("profile `{}`: {}", set.entry.key.profile, error.problem())
-                    }
-                    _ => error.to_string(),
-                };
-                fault(&parameters::MIN_DISTANCE, distance, detail)
-            })?;
-            Ok(Resolved::Known(spacing, spacing.density()))
-        }
-        Amount::Count(count) => Ok(Resolved::Count(count)),
+        Amount::MinDistance(distance) => least.min(distance),
+        _ => least,
     }
 }
 
@@ -77,12 +123,7 @@ pub(super) fn least_distance(set: &Set, ready: &Ready, spacing: Spacing, reach: 
     let only = only.filter(|_| !set.moves());
     let of_kind = only.and_then(|(_, kind)| ready.table.least_distance_of(*kind, *kind));
     let least = of_kind.unwrap_or_else(|| ready.table.least_distance());
-    let least = least.reported(spacing, set.warp, reach);
-    match set.amount {
-        // The spacing is a little wider than this takes.
-        Amount::MinDistance(distance) => least.min(distance),
-        _ => least,
-    }
+    kept(set, least.reported(spacing, set.warp, reach))
 }
 
 /// The distances that the points of each two kinds keep from each other, of a kind and itself, too: the names in their

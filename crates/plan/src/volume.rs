@@ -11,8 +11,8 @@ use strew_error::{Error, number};
 use strew_query::{QueryVolume, Set};
 
 use crate::{
-    PlannedSet, amount_in_space::placed, effort, planned_set::Least, planner::Planner,
-    resolve::check_reach,
+    PlannedSet, effort, planned_set::Least, planner::Planner, resolve::check_reach,
+    resolve::in_space as placed,
 };
 
 impl Planner<'_> {

@@ -6,10 +6,10 @@ use strew_error::{Checked, Fault, Faults, Together as _, all, unknown};
 
 use super::{
     Kinds, Values,
+    kinds::variants,
     parameters::{ATTRIBUTES, SCALE_RANGE, SCALE_RANGES, VARIANTS},
     rules,
     space::SPACE_ATTRIBUTES,
-    variants::variants,
 };
 
 pub(super) fn check(values: &Values, kinds: Option<&Kinds>) -> Checked<Attributes> {

@@ -6,6 +6,7 @@ use serde_json::{Map, Value as Json};
 use strew_catalog::{Catalog, Dimension, Entry, field::Allowance};
 use strew_encode::Encoding;
 use strew_error::{Checked, Error, Fault, Together as _, faults::all, unknown};
+use strew_raster::Price;
 
 use crate::{
     Options, Query, QueryRegion, Set, Window,
@@ -19,13 +20,13 @@ use crate::{
         BBOX, CRS, CURSOR, DECIMALS, EXCEPT, FORMAT, LIMIT, LOD, OFFSET, ONLY, PARTS, PERIODIC,
         SEED, SIZE, SUMMARY, WORLD, WORLD_DIGEST,
     },
-    region::{REGION, RegionDraft},
+    region::RegionDraft,
+    region_check::{REGION, VOLUME},
     set_check::lod,
     table,
     text::parse_pairs,
     value::Value,
     values::Values,
-    volume::VOLUME,
 };
 
 #[derive(Clone, Debug, PartialEq)]
@@ -390,4 +391,23 @@ fn hold_heights(sets: &[Set], region: &QueryRegion) -> Checked<()> {
     let allowed = "a region in which all pixels have heights, or a terrain whose gaps are filled";
     let path = format!("{}{}", set.path, crate::parameters::TERRAIN.name);
     Err(Fault::new(&path, name.unwrap_or_default(), detail, allowed).into())
+}
+
+impl Draft {
+    pub fn price(&self) -> Price {
+        let layers = self.layers.iter().flatten().map(|layer| &layer.values);
+        let all = [&self.values].into_iter().chain(layers);
+        all.map(Values::price).sum()
+    }
+}
+
+impl Values {
+    pub fn price(&self) -> Price {
+        let of = |value: &Value| match value {
+            Value::Field(field) => field.price(),
+            Value::Fields(fields) => fields.iter().map(|(_, field)| field.price()).sum(),
+            _ => Price::default(),
+        };
+        self.given().map(|(_, value)| of(value)).sum()
+    }
 }

@@ -15,7 +15,7 @@ use crate::{
     parameters::{EXCEPT, FIELD, PARAMETERS, SEED, TERRAIN, VARIANT_FIELDS, WARP},
     period::{Period, PeriodEcho},
     query::Query,
-    region::QueryRegion,
+    region_check::QueryRegion,
     schema::schema,
     set::Set,
     shape::Shape,

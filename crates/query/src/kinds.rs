@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use strew_catalog::{Catalog, Entry, MixKey, Ready, field::Document, mix::Made};
-use strew_core::{Field, PointSet, VaryingKinds, table::Shares};
+use strew_core::{Field, PointSet, Variants, VaryingKinds, table::Shares};
 use strew_error::{Checked, Error, Fault, Faults, Together as _, all, unknown};
 
 use super::{
@@ -12,7 +12,6 @@ use super::{
     parameters::{ONLY, SPREAD, VARIANT_FIELDS, VARIANTS},
     rules,
     spread::Spread,
-    variants::variants,
 };
 
 #[derive(Clone, Debug, PartialEq)]
@@ -205,6 +204,16 @@ impl Kinds {
 pub fn other_kinds(error: strew_core::Error) -> Error {
     tracing::error!(%error, "a table has other kinds");
     Error::Internal("a table has other kinds")
+}
+
+/// The variants among some values, if there are any.
+pub(crate) fn variants(values: &Values) -> Checked<Option<Variants>> {
+    let Some(pairs) = values.get::<Vec<(String, f64)>>(&VARIANTS)? else {
+        return Ok(None);
+    };
+    let variants = Variants::new(pairs.iter().map(|(name, weight)| (name.as_str(), *weight)));
+    let fault = |error: strew_core::Error| values.fault(&VARIANTS, error.to_string()).into();
+    variants.map(Some).map_err(fault)
 }
 
 #[cfg(test)]

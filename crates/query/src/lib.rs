@@ -7,10 +7,7 @@
 //! echoes and identities are loops over them. [`Worlds`] are queries that are described once. Depends on the catalog,
 //! the names of formats and the words of faults; plans nothing.
 
-#![allow(
-    missing_docs,
-    reason = "an internal crate: names say what its items are"
-)]
+#![allow(missing_docs, reason = "internal: names say what items are")]
 
 mod amount;
 mod assets;
@@ -36,13 +33,11 @@ pub mod parameters;
 pub mod patterns;
 mod period;
 mod plane;
-mod price;
 mod query;
 #[cfg(test)]
 mod recipe;
 mod region;
-mod resolved;
-mod rings;
+mod region_check;
 pub mod rules;
 mod schema;
 mod set;
@@ -55,8 +50,6 @@ mod terrain;
 mod text;
 mod value;
 mod values;
-mod variants;
-mod volume;
 pub mod world;
 
 pub use amount::Amount;
@@ -79,8 +72,8 @@ pub use options::Options;
 pub use parameter::{Group, Parameter, groups};
 pub use period::{Period, PeriodEcho, Periods};
 pub use query::{Named, Query, Window};
-pub use region::{QueryRegion, RegionDraft, ShapeDraft};
-pub use rings::Rings;
+pub use region::{RegionDraft, Rings, ShapeDraft};
+pub use region_check::{QueryRegion, QueryVolume};
 pub use schema::{NAME, TITLE, schema};
 pub use set::Set;
 pub use shape::Shape;
@@ -91,5 +84,4 @@ pub use terrain::Terrain;
 pub use text::parse_pairs;
 pub use value::Value;
 pub use values::Values;
-pub use volume::{QueryVolume, VolumeDraft};
 pub use world::{World, Worlds};

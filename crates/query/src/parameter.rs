@@ -238,3 +238,18 @@ impl Parameter {
             .map_or_else(|| self.shape.allowed(), Into::into)
     }
 }
+
+/// An entry of a table: its name, its group, and what differs from [`Parameter::PLAIN`] or another entry.
+macro_rules! parameter {
+    (@base) => { $crate::parameter::Parameter::PLAIN };
+    (@base $base:expr) => { $base };
+    ($name:literal of $group:ident { $($field:ident: $value:expr,)* $(..$base:expr)? }) => {
+        $crate::parameter::Parameter {
+            name: $name,
+            group: $crate::parameter::Group::$group,
+            $($field: $value,)*
+            ..$crate::parameter::parameter!(@base $($base)?)
+        }
+    };
+}
+pub(crate) use parameter;

@@ -9,7 +9,7 @@ use strew_error::{Checked, Error, Fault, Together as _};
 use crate::{
     amount::Amount,
     parameters::{MOST, PERIODIC},
-    region::QueryRegion,
+    region_check::QueryRegion,
     rules, table,
     values::Values,
 };

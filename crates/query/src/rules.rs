@@ -52,6 +52,15 @@ const fn rule(parameter: &'static Parameter, condition: Condition) -> Rule {
     }
 }
 
+const fn without(
+    parameter: &'static Parameter,
+    other: &'static Parameter,
+    words: &'static str,
+    allowed: Option<&'static str>,
+) -> Rule {
+    rule(parameter, Condition::Without(other, words, allowed))
+}
+
 const EVEN: &[&str] = &[Spread::Even.name(), Spread::Joint.name()];
 
 const GROUND: Condition =
@@ -60,73 +69,42 @@ const SCALED: Condition = Condition::With(
     &[other(&ATTRIBUTES, &["scale"])],
     "has no effect without the attribute scale",
 );
-const AMOUNT: &str = "density or spacing, from which the side follows";
+const VARIED: Condition = Condition::With(
+    &[
+        other(&ATTRIBUTES, &["variant"]),
+        other(&SPREAD, EVEN),
+        other(&SCALE_RANGES, &[]),
+    ],
+    "has no effect without the attribute variant",
+);
+const SPREAD_EVENLY: Condition =
+    Condition::With(&[other(&SPREAD, EVEN)], "has no effect with spread chance");
+const EVEN_ALONE: Condition = Condition::With(
+    &[other(&SPREAD, &[Spread::Even.name()])],
+    "needs spread even",
+);
+const AMOUNT: Option<&str> = Some("density or spacing, from which the side follows");
+const NO_COUNT: Option<&str> = Some("density, spacing or min_distance");
+const REPEATS: &str = "not with periodic: shares that vary do not repeat";
+const REMAIN: &str = "not with except: the excepted points decide how many remain";
+const COPIES: &str = "not with except: a point of a period is in all of its copies";
 
 /// All rules, in the order in which they are published.
 pub static RULES: &[Rule] = &[
-    rule(
-        &PERIODIC,
-        Condition::Without(&MIN_DISTANCE, "not with periodic", Some(AMOUNT)),
-    ),
-    rule(
-        &PERIODIC,
-        Condition::Without(&COUNT, "not with periodic", Some(AMOUNT)),
-    ),
-    rule(
-        &PERIODIC,
-        Condition::Without(
-            &VARIANT_FIELDS,
-            "not with periodic: shares that vary do not repeat",
-            None,
-        ),
-    ),
-    rule(
-        &EXCEPT,
-        Condition::Without(
-            &COUNT,
-            "not with except: the excepted points decide how many remain",
-            Some("density, spacing or min_distance"),
-        ),
-    ),
-    rule(
-        &EXCEPT,
-        Condition::Without(
-            &PERIODIC,
-            "not with except: a point of a period is in all of its copies",
-            Some("a region"),
-        ),
-    ),
+    without(&PERIODIC, &MIN_DISTANCE, "not with periodic", AMOUNT),
+    without(&PERIODIC, &COUNT, "not with periodic", AMOUNT),
+    without(&PERIODIC, &VARIANT_FIELDS, REPEATS, None),
+    without(&EXCEPT, &COUNT, REMAIN, NO_COUNT),
+    without(&EXCEPT, &PERIODIC, COPIES, Some("a region")),
     rule(&SCALE_RANGE, SCALED),
     rule(&SCALE_RANGES, SCALED),
-    rule(
-        &SCALE_RANGE,
-        Condition::Without(&SCALE_RANGES, "not beside scale_range", None),
-    ),
+    without(&SCALE_RANGE, &SCALE_RANGES, "not beside scale_range", None),
     rule(&HEIGHTS, GROUND),
     rule(&NORMALS, GROUND),
     rule(&ALIGN, GROUND),
-    rule(
-        &VARIANTS,
-        Condition::With(
-            &[
-                other(&ATTRIBUTES, &["variant"]),
-                other(&SPREAD, EVEN),
-                other(&SCALE_RANGES, &[]),
-            ],
-            "has no effect without the attribute variant",
-        ),
-    ),
-    rule(
-        &ONLY,
-        Condition::With(&[other(&SPREAD, EVEN)], "has no effect with spread chance"),
-    ),
-    rule(
-        &VARIANT_FIELDS,
-        Condition::With(
-            &[other(&SPREAD, &[Spread::Even.name()])],
-            "needs spread even",
-        ),
-    ),
+    rule(&VARIANTS, VARIED),
+    rule(&ONLY, SPREAD_EVENLY),
+    rule(&VARIANT_FIELDS, EVEN_ALONE),
     rule(&SPREAD, Condition::Needs(Spread::Even.name(), &VARIANTS)),
     rule(&SPREAD, Condition::Needs(Spread::Joint.name(), &VARIANTS)),
     rule(&ATTRIBUTES, Condition::Needs("variant", &VARIANTS)),

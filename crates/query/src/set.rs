@@ -10,8 +10,8 @@ use strew_core::{
 use strew_error::{Error, Fault};
 
 use crate::{
-    amount::Amount, field::SetField, kinds::Kinds, period::Period, region::QueryRegion,
-    resolved::Resolved, terrain::Terrain,
+    amount::Amount, field::SetField, kinds::Kinds, parameter::Parameter, parameters::PARAMETERS,
+    period::Period, region_check::QueryRegion, terrain::Terrain, value::Value, values::Values,
 };
 
 /// A set of points: a table laid into the world.
@@ -177,4 +177,33 @@ impl Set {
     pub fn is_part(&self) -> bool {
         self.share() < 1.0 || self.field.is_some()
     }
+}
+
+/// The values of a set with everything filled in.
+pub(crate) type Resolved = Vec<(&'static Parameter, Value)>;
+
+/// The given values that answers echo. Fields are there by their names; others are known by their digests.
+pub(crate) fn resolved_of(values: &Values) -> Resolved {
+    let echoed = values.given().filter(|(parameter, _)| parameter.is_echoed);
+    let named = echoed.filter_map(|(parameter, value)| Some((parameter, value.named()?)));
+    named.collect()
+}
+
+/// Replaces values, or removes them, and puts all in the order of the table.
+pub(crate) fn replace_in(
+    all: &mut Resolved,
+    others: impl IntoIterator<Item = (&'static Parameter, Option<Value>)>,
+) {
+    for (parameter, value) in others {
+        let known = all.iter().position(|(known, _)| *known == parameter);
+        match (known, value) {
+            (Some(place), Some(value)) => all[place].1 = value,
+            (Some(place), None) => drop(all.remove(place)),
+            (None, value) => all.extend(value.map(|value| (parameter, value))),
+        }
+    }
+    all.sort_by_cached_key(|(parameter, _)| {
+        let mut table = PARAMETERS.iter();
+        table.position(|known| known == parameter)
+    });
 }

@@ -14,8 +14,7 @@ use crate::{
         SETTLE, SPREAD, WARP,
     },
     period::Period,
-    resolved,
-    set::Set,
+    set::{Resolved, Set, replace_in, resolved_of},
     table, terrain,
     value::Value,
     values::Values,
@@ -71,13 +70,13 @@ impl Set {
             terrain,
             region: None,
             clear_of: vec![],
-            given: resolved::of(values),
+            given: resolved_of(values),
         }))
     }
 
     /// The values of its parameters in the order of the table: with those that the query omits or expresses by other
     /// parameters, and without those that change nothing. Answers echo them, and its identity has them.
-    pub(crate) fn values(&self) -> resolved::Resolved {
+    pub(crate) fn values(&self) -> Resolved {
         let text = |text: &str| Some(Value::Text(text.into()));
         let key = &self.entry.key;
         let attributes = self.attributes.as_slice();
@@ -138,7 +137,7 @@ impl Set {
             ),
         ];
         let mut values = self.given.clone();
-        resolved::replace(&mut values, filled);
+        replace_in(&mut values, filled);
         values
     }
 

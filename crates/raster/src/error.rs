@@ -21,25 +21,20 @@ pub enum RasterError {
         height: u64,
         limits: Limits,
     },
-    /// Its format has kinds that are not read.
     #[error("{found}; allowed: {allowed}")]
     Unsupported {
         found: String,
         allowed: &'static str,
     },
-    /// It would take far more work than its pixels are worth.
     #[error("it has {found}; allowed: {allowed}")]
     Wasteful { found: String, allowed: String },
-    /// It breaks the rules of its format, or ends early.
     #[error("the {format} is damaged or truncated: {detail}")]
     Damaged {
         format: &'static str,
         detail: String,
     },
-    /// Reading stopped because the result was no longer wanted.
     #[error("it was not read to its end")]
     Stopped,
-    /// A pixel is no number.
     #[error("the pixel in column {x}, row {y} is {value}; allowed: finite numbers")]
     NotFinite {
         /// Its column, from 0.

@@ -2,6 +2,8 @@
 
 use std::io::Cursor;
 
+use ::png::{BitDepth::*, ColorType::*};
+
 use super::*;
 
 const SMALL: Limits = Limits {
@@ -11,6 +13,11 @@ const SMALL: Limits = Limits {
 
 fn read(bytes: &[u8]) -> Result<Image, RasterError> {
     Image::from_bytes(bytes, Meaning::Data, SMALL, &Stop::default())
+}
+
+fn read_as(bytes: &[u8], meaning: Meaning) -> Image {
+    let read = Image::from_bytes(bytes, meaning, SMALL, &Stop::default());
+    read.expect("a raster")
 }
 
 fn refusal(bytes: &[u8]) -> String {
@@ -52,74 +59,61 @@ fn gray() -> &'static [u8] {
 
 #[test]
 fn one_channel_of_a_png_is_taken_as_it_is() {
-    use ::png::{BitDepth, ColorType};
-    let image = read(&png(
-        [3, 1],
-        ColorType::Grayscale,
-        BitDepth::Eight,
-        &[0, 7, 255],
-    ));
-    let image = image.expect("gray");
-    assert_eq!((image.size, image.place), ([3, 1], Place::Unknown));
-    assert_eq!(image.samples, Samples::U8(vec![0, 7, 255]));
-    let image = read(&png(
-        [1, 2],
-        ColorType::Grayscale,
-        BitDepth::Sixteen,
-        &[1, 2, 255, 255],
-    ));
-    assert_eq!(image.expect("deep").samples, Samples::U16(vec![258, 65535]));
-    // Four pixels of one bit each.
-    let image = read(&png(
-        [4, 1],
-        ColorType::Grayscale,
-        BitDepth::One,
-        &[0b1010_0000],
-    ));
-    assert_eq!(
-        image.expect("bits").samples,
-        Samples::U8(vec![255, 0, 255, 0])
-    );
-    // Transparency multiplies.
-    let gray = png(
-        [2, 1],
-        ColorType::GrayscaleAlpha,
-        BitDepth::Eight,
-        &[200, 255, 200, 51],
-    );
-    let image = read(&gray).expect("gray");
-    assert_eq!(image.samples, Samples::U8(vec![200, 40]));
-    assert_eq!(image.missing, None);
+    for (size, color, depth, data, samples) in [
+        (
+            [3, 1],
+            Grayscale,
+            Eight,
+            &[0, 7, 255][..],
+            Samples::U8(vec![0, 7, 255]),
+        ),
+        (
+            [1, 2],
+            Grayscale,
+            Sixteen,
+            &[1, 2, 255, 255],
+            Samples::U16(vec![258, 65535]),
+        ),
+        // Four pixels of one bit each.
+        (
+            [4, 1],
+            Grayscale,
+            One,
+            &[0b1010_0000],
+            Samples::U8(vec![255, 0, 255, 0]),
+        ),
+        // Transparency multiplies.
+        (
+            [2, 1],
+            GrayscaleAlpha,
+            Eight,
+            &[200, 255, 200, 51],
+            Samples::U8(vec![200, 40]),
+        ),
+    ] {
+        let image = read(&png(size, color, depth, data)).expect("gray");
+        let size = size.map(|side| side as usize);
+        assert_eq!((image.size, image.place), (size, Place::Unknown));
+        assert_eq!((image.samples, image.missing), (samples, None));
+    }
     // What is wholly transparent is missing, but not from a picture's paper.
-    let clear = png(
-        [2, 1],
-        ColorType::GrayscaleAlpha,
-        BitDepth::Eight,
-        &[200, 0, 7, 255],
-    );
+    let clear = png([2, 1], GrayscaleAlpha, Eight, &[200, 0, 7, 255]);
     assert_eq!(read(&clear).expect("gray").missing, Some(vec![true, false]));
-    let on_paper = Image::from_bytes(&clear, Meaning::Picture, SMALL, &Stop::default());
-    assert_eq!(on_paper.expect("a picture").missing, None);
+    assert_eq!(read_as(&clear, Meaning::Picture).missing, None);
 }
 
 #[test]
 fn colors_become_linear_light() {
-    use ::png::{BitDepth, ColorType};
     let colors = [255, 255, 255, 0, 0, 0, 255, 0, 0, 188, 188, 188];
-    let image = read(&png([4, 1], ColorType::Rgb, BitDepth::Eight, &colors)).expect("colors");
+    let image = read(&png([4, 1], Rgb, Eight, &colors)).expect("colors");
     // 188 of 255 is half of the light.
     assert_eq!(image.samples, Samples::U16(vec![65535, 0, 13933, 32957]));
-    let gray = png([1, 1], ColorType::Grayscale, BitDepth::Eight, &[188]);
-    let as_picture =
-        Image::from_bytes(&gray, Meaning::Picture, SMALL, &Stop::default()).expect("a picture");
-    assert_eq!(as_picture.samples, Samples::U16(vec![32957]));
+    let gray = png([1, 1], Grayscale, Eight, &[188]);
+    let as_picture = read_as(&gray, Meaning::Picture).samples;
+    assert_eq!(as_picture, Samples::U16(vec![32957]));
     // Pictures lie on white paper; a mask lets nothing through.
-    let clear = png([1, 1], ColorType::Rgba, BitDepth::Eight, &[9, 9, 9, 0]);
-    let of = |meaning| {
-        Image::from_bytes(&clear, meaning, SMALL, &Stop::default())
-            .expect("clear")
-            .samples
-    };
+    let clear = png([1, 1], Rgba, Eight, &[9, 9, 9, 0]);
+    let of = |meaning| read_as(&clear, meaning).samples;
     assert_eq!(of(Meaning::Picture), Samples::U16(vec![65535]));
     assert_eq!(of(Meaning::Data), Samples::U16(vec![0]));
 }
@@ -132,16 +126,14 @@ fn arrays_have_their_types_and_shapes() {
             .flat_map(|v| v.to_le_bytes())
             .collect::<Vec<_>>()
     };
-    let image = read(&npy("<f4", "False", "1, 2", &floats(&[0.5, -3.0]))).expect("floats");
-    assert_eq!(
-        (image.size, image.samples),
-        ([2, 1], Samples::F32(vec![0.5, -3.0]))
-    );
-    let image = read(&npy("<u2", "False", "2, 1", &[1, 0, 0, 1])).expect("words");
-    assert_eq!(
-        (image.size, image.samples),
-        ([1, 2], Samples::U16(vec![1, 256]))
-    );
+    let array = |descr, shape, data: &[u8]| {
+        let image = read(&npy(descr, "False", shape, data)).expect("an array");
+        (image.size, image.samples)
+    };
+    let expected = ([2, 1], Samples::F32(vec![0.5, -3.0]));
+    assert_eq!(array("<f4", "1, 2", &floats(&[0.5, -3.0])), expected);
+    let expected = ([1, 2], Samples::U16(vec![1, 256]));
+    assert_eq!(array("<u2", "2, 1", &[1, 0, 0, 1]), expected);
     let image = read(&npy("|b1", "False", "1, 2", &[0, 1])).expect("truth");
     assert_eq!(image.samples, Samples::U8(vec![0, 255]));
     assert!(image.is_sharp);
@@ -153,12 +145,8 @@ fn arrays_have_their_types_and_shapes() {
         let image = read(file).expect("written by NumPy");
         assert_eq!((image.size, &image.samples), ([4, 3], &expected));
     }
-    let bare = Image::read_floats(
-        Cursor::new(seed!("floats.f32")),
-        [4, 3],
-        SMALL,
-        &Stop::default(),
-    );
+    let file = Cursor::new(seed!("floats.f32"));
+    let bare = Image::read_floats(file, [4, 3], SMALL, &Stop::default());
     assert_eq!(bare.expect("as long").samples, expected);
 }
 
@@ -212,13 +200,9 @@ fn what_is_truncated_is_damaged_wherever_it_ends() {
         // The last bytes of a PNG and of some TIFFs do not affect the pixels.
         for end in 0..file.len() - 40 {
             let error = read(&file[..end]).expect_err("truncated");
-            let is_told = matches!(
-                error,
-                RasterError::Damaged { .. }
-                    | RasterError::Unknown(_)
-                    | RasterError::Unsupported { .. }
-            );
-            assert!(is_told, "{end}: {error}");
+            use RasterError::{Damaged, Unknown, Unsupported};
+            let is_named = matches!(error, Damaged { .. } | Unknown(_) | Unsupported { .. });
+            assert!(is_named, "{end}: {error}");
         }
     }
     for file in [
@@ -239,8 +223,7 @@ fn what_is_truncated_is_damaged_wherever_it_ends() {
 
 #[test]
 fn headers_are_checked_before_memory_is_taken() {
-    use ::png::{BitDepth, ColorType};
-    let mut wide = png([4, 1], ColorType::Grayscale, BitDepth::Eight, &[0; 4]);
+    let mut wide = png([4, 1], Grayscale, Eight, &[0; 4]);
     wide[16..20].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff]);
     let crc = crc(&wide[12..29]);
     wide[29..33].copy_from_slice(&crc.to_be_bytes());
@@ -267,27 +250,18 @@ fn crc(bytes: &[u8]) -> u32 {
 }
 
 #[test]
-fn what_is_not_read_is_told() {
+fn what_is_not_read_is_named() {
+    let array = |descr, order, shape| npy(descr, order, shape, &[0; 4]);
+    let infinite = [[0; 8], 1e300_f64.to_le_bytes()].concat();
     for (file, expected) in [
-        (npy(">f4", "False", "1, 1", &[0; 4]), "an array of type >f4"),
-        (
-            npy("<f4", "True", "1, 1", &[0; 4]),
-            "an array in Fortran order",
-        ),
-        (
-            npy("<f4", "False", "1, 1, 1", &[0; 4]),
-            "an array of 3 dimensions",
-        ),
-        (npy("<f4", "False", "x", &[0; 4]), "the array is damaged"),
+        (array(">f4", "False", "1, 1"), "an array of type >f4"),
+        (array("<f4", "True", "1, 1"), "an array in Fortran order"),
+        (array("<f4", "False", "1, 1, 1"), "an array of 3 dimensions"),
+        (array("<f4", "False", "x"), "the array is damaged"),
         (b"GIF89a".to_vec(), "it is of no known format"),
         (vec![], "it is of no known format"),
         (
-            npy(
-                "<f8",
-                "False",
-                "2, 1",
-                &[[0; 8], 1e300_f64.to_le_bytes()].concat(),
-            ),
+            npy("<f8", "False", "2, 1", &infinite),
             "the pixel in column 0, row 1 is inf; allowed: finite numbers",
         ),
     ] {
@@ -337,7 +311,6 @@ impl Seek for Leaving<'_> {
 
 #[test]
 fn decoding_ends_soon_after_it_is_not_wanted_any_more() {
-    use ::png::{BitDepth, ColorType};
     // Noise, which is hardly compressed.
     let noise: Vec<u8> = (0..512 * 512_u32)
         .map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8 ^ (i >> 3) as u8)
@@ -347,7 +320,7 @@ fn decoding_ends_soon_after_it_is_not_wanted_any_more() {
         .flat_map(|v| f32::from(*v).to_le_bytes())
         .collect();
     for file in [
-        png([512, 512], ColorType::Grayscale, BitDepth::Eight, &noise),
+        png([512, 512], Grayscale, Eight, &noise),
         npy("<f4", "False", "512, 512", &floats),
         npy("|u1", "False", "512, 512", &noise),
     ] {
@@ -420,11 +393,10 @@ fn what_pngs_hold_besides_their_pixels_is_not_inflated() {
 /// An indexed PNG of 2 bits: black, red and white, of which red is transparent.
 #[test]
 fn a_palette_is_light_or_its_indices() {
-    use ::png::{BitDepth, ColorType};
     let mut file = vec![];
     let mut encoder = ::png::Encoder::new(&mut file, 3, 1);
-    encoder.set_color(ColorType::Indexed);
-    encoder.set_depth(BitDepth::Two);
+    encoder.set_color(Indexed);
+    encoder.set_depth(Two);
     encoder.set_palette(vec![0, 0, 0, 255, 0, 0, 255, 255, 255]);
     encoder.set_trns(vec![255, 0, 255]);
     let mut writer = encoder.write_header().expect("a header");
@@ -433,14 +405,13 @@ fn a_palette_is_light_or_its_indices() {
     let image = read(&file).expect("a palette");
     assert_eq!(image.samples, Samples::U16(vec![65535, 0, 0]));
     assert_eq!(image.missing, Some(vec![false, false, true]));
-    let image = Image::from_bytes(&file, Meaning::Numbers, SMALL, &Stop::default());
-    let image = image.expect("indices");
+    let image = read_as(&file, Meaning::Numbers);
     assert_eq!(image.samples, Samples::U8(vec![2, 0, 0]));
     assert_eq!(image.missing, Some(vec![false, false, true]));
     // Gray of 4 bits, as GDAL has it.
-    let gray = png([2, 1], ColorType::Grayscale, BitDepth::Four, &[0x3f]);
-    let image = Image::from_bytes(&gray, Meaning::Numbers, SMALL, &Stop::default());
-    assert_eq!(image.expect("gray").samples, Samples::U8(vec![3, 15]));
+    let gray = png([2, 1], Grayscale, Four, &[0x3f]);
+    let image = read_as(&gray, Meaning::Numbers);
+    assert_eq!(image.samples, Samples::U8(vec![3, 15]));
     assert_eq!(
         read(&gray).expect("gray").samples,
         Samples::U8(vec![51, 255])

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use crate::access::Caller;
-use strew_catalog::wanted;
+use strew_catalog::bounded_list::until;
 use strew_core::server::Stop;
 use strew_error::Error;
 use strew_plan::Lane;
@@ -51,7 +51,7 @@ impl Service {
             return Ok(job(self, &Stop::NEVER));
         };
         let (service, record) = (self.clone(), Record::current());
-        let job = move |stop: &Stop| wanted::until(stop, || job(&service, stop));
+        let job = move |stop: &Stop| until(stop, || job(&service, stop));
         let job = move |stop: &Stop| Record::within(record, || job(stop));
         self.workers.take_turn(lane, job).await
     }

@@ -26,7 +26,6 @@ use crate::{Held, Owner, Workers};
 /// Why a stream broke off. Its reader must see that it is incomplete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Interrupted {
-    /// The server stops and does not wait any longer.
     #[error("the server is shutting down; the stream is incomplete")]
     Shutdown,
     #[error("the client read nothing for too long; the stream is incomplete")]

@@ -13,9 +13,9 @@ use strew_error::Fault;
 
 use super::Ids;
 use crate::{
+    bounded_list::look,
     named::{self, Loaded, NamedError, Names, Places, Reread},
     sent::{Sendable, Sender, Sent},
-    wanted,
 };
 
 const MOST_LAYERS: usize = 1000;
@@ -149,12 +149,12 @@ impl NamedList {
             })?;
             check_count(section.ids.len(), most)?;
             for (i, Item(item)) in section.ids.iter().enumerate() {
-                wanted::look(i).map_err(not_wanted)?;
+                look(i).map_err(not_wanted)?;
                 list.add(item, || format!("ids[{i}]"))?;
             }
         } else {
             for (i, (item, rest)) in lines(text).enumerate() {
-                wanted::look(i).map_err(not_wanted)?;
+                look(i).map_err(not_wanted)?;
                 if item.is_empty() {
                     continue;
                 }

@@ -5,13 +5,7 @@
 //! field is read and checked once, at the start or when the folder is read again; one whose files are
 //! unchanged is kept as it is.
 
-use std::{
-    cell::{Cell, RefCell},
-    collections::BTreeMap,
-    io::BufReader,
-    path::Path,
-    sync::Arc,
-};
+use std::{collections::BTreeMap, io::BufReader, path::Path, sync::Arc};
 
 use strew_config::{
     Fields as Settings, bounded_file,
@@ -216,20 +210,14 @@ fn of_files(
     let read = |file: &str, meaning, size: Option<[usize; 2]>| {
         read_file(&base.join(file), meaning, size, room)
     };
+    let named = |name: &str| {
+        let field = fields.get(name)?;
+        Some((field.spec.clone(), field.epsg))
+    };
+    let names = || fields.names();
     let sources = Sources {
-        allowance: Allowance::UNLIMITED,
-        refused: RefCell::new(None),
-        named: &|name| {
-            fields
-                .get(name)
-                .map(|field| (field.spec.clone(), field.epsg))
-        },
-        names: &|| fields.names(),
         files: Some(&read),
-        pixels: Cell::new(room),
-        frame: Cell::new(None),
-        epsg: Cell::new(None),
-        bytes: Cell::new(0),
+        ..Sources::new(&named, &names, Allowance::UNLIMITED, room)
     };
     let spec = build(path, document, &sources).map_err(|faults| super::listed(&faults))?;
     let taken = sources.bytes.get();

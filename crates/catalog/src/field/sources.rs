@@ -52,7 +52,27 @@ pub struct Sources<'a> {
     pub bytes: Cell<usize>,
 }
 
-impl Sources<'_> {
+impl<'a> Sources<'a> {
+    /// Sources without files, of which documents may hold this number of pixels.
+    pub fn new(
+        named: &'a dyn Fn(&str) -> Option<Known>,
+        names: &'a dyn Fn() -> String,
+        allowance: Allowance<'a>,
+        pixels: usize,
+    ) -> Self {
+        Self {
+            named,
+            names,
+            files: None,
+            allowance,
+            refused: RefCell::new(None),
+            pixels: Cell::new(pixels),
+            frame: Cell::new(None),
+            epsg: Cell::new(None),
+            bytes: Cell::new(0),
+        }
+    }
+
     /// Takes what decoding pixels takes, also if nothing comes of it.
     pub(super) fn take(&self, path: &str, price: Price) -> Checked<()> {
         self.go_on(path)?;

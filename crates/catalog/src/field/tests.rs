@@ -1,6 +1,6 @@
 //! The grammar: what it reads, what it makes, and the paths of what is wrong.
 
-use std::cell::{Cell, RefCell};
+use std::cell::Cell;
 
 use strew_core::{Field as _, field::FieldSpec};
 use strew_error::{Checked, Error};
@@ -9,17 +9,12 @@ use strew_raster::Price;
 use super::*;
 
 fn sources(pixels: usize) -> Sources<'static> {
-    Sources {
-        named: &|name| (name == "half").then(|| (FieldSpec::constant(0.5).expect("a share"), None)),
-        names: &|| "half".into(),
-        files: None,
-        allowance: Allowance::UNLIMITED,
-        refused: RefCell::new(None),
-        pixels: Cell::new(pixels),
-        frame: Cell::new(None),
-        epsg: Cell::new(None),
-        bytes: Cell::new(0),
-    }
+    Sources::new(
+        &|name| (name == "half").then(|| (FieldSpec::constant(0.5).expect("a share"), None)),
+        &|| "half".into(),
+        Allowance::UNLIMITED,
+        pixels,
+    )
 }
 
 fn made(json: &str) -> Checked<FieldSpec> {

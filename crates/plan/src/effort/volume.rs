@@ -10,7 +10,7 @@ use strew_core::{
 use strew_encode::Source;
 use strew_query::{Query, Set};
 
-use crate::amount_in_space::placed;
+use crate::resolve::in_space as placed;
 
 /// The nanoseconds that counting takes for each square of a spacing's side on the surface, without and with warp.
 const SURFACE: f64 = 350.0;

@@ -54,13 +54,10 @@ pub struct Library {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unavailable {
-    /// The built-in settings cannot be read.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// A table cannot be read.
     #[error(transparent)]
     Catalog(#[from] CatalogError),
-    /// A built-in field cannot be read.
     #[error(transparent)]
     Field(#[from] NamedError),
 }

@@ -55,19 +55,17 @@ pub fn read_features(bytes: &[u8], [id, count]: [Option<&str>; 2]) -> Checked<Ve
 fn features(json: &RawValue, names: [Option<&str>; 2]) -> Checked<Vec<Feature>> {
     let wrong = |detail: String| Fault::new("features.of", shown(json), detail, COLLECTION);
     let object = Object::read(json).map_err(wrong)?;
-    let member = |name: &str| {
-        object
-            .members()
-            .find(|(known, _)| *known == name)
-            .map(|(_, json)| json)
-    };
-    if member("type").map(RawValue::get) != Some(r#""FeatureCollection""#) {
+    if object.get("type").map(RawValue::get) != Some(r#""FeatureCollection""#) {
         return Err(wrong("is no FeatureCollection".into()).into());
     }
-    let crs = member("crs").and_then(|json| serde_json::from_str(json.get()).ok());
+    let crs = object
+        .get("crs")
+        .and_then(|json| serde_json::from_str(json.get()).ok());
     let crs = crs.map(|member| Crs::of_geojson(&member));
     let crs = crs.transpose().map_err(wrong)?.flatten();
-    let list = member("features").ok_or_else(|| wrong("has no array `features`".into()))?;
+    let list = object
+        .get("features")
+        .ok_or_else(|| wrong("has no array `features`".into()))?;
     let list = elements(list, MOST_FEATURES, "features").map_err(wrong)?;
     let mut all: Vec<Feature> = vec![];
     let mut counted = None;
@@ -113,22 +111,15 @@ fn feature(
     let path = format!("features[{i}]");
     let wrong = |detail: String| Fault::new(&path, shown(json), detail, COLLECTION);
     let object = Object::read(json).map_err(wrong)?;
-    let member = |name: &str| {
-        object
-            .members()
-            .find(|(known, _)| *known == name)
-            .map(|(_, json)| json)
-    };
     let is_there = |json: &&RawValue| json.get() != "null";
-    let properties = member("properties").filter(is_there).map(Object::read);
+    let properties = object.get("properties").filter(is_there).map(Object::read);
     let properties = properties.transpose().map_err(wrong)?;
     let field = |name: &str| format!("{path}.properties.{name}");
     let property = |name: &str| {
-        let mut all = properties.iter().flat_map(Object::members);
-        let found = all.find(|(known, _)| *known == name)?;
-        Some(found.1.get()).filter(|text| *text != "null")
+        let found = properties.as_ref()?.get(name).filter(is_there)?;
+        Some(found.get())
     };
-    let Some(geometry) = member("geometry").filter(is_there) else {
+    let Some(geometry) = object.get("geometry").filter(is_there) else {
         return Ok(None);
     };
     let (polygons, own): (Vec<Rings>, _) = polygons_or_none(geometry).map_err(wrong)?;

@@ -4,13 +4,10 @@
 //! value and says what is allowed. Nothing is built that the query does not need, and reading stops once
 //! there are as many faults as are reported.
 
-mod any;
 mod features;
-mod forms;
 mod geojson;
 pub(crate) mod object;
 mod region;
-mod volume;
 
 use serde_json::value::RawValue;
 use strew_catalog::Dimension;
@@ -22,11 +19,8 @@ use super::{
 };
 use object::{Object, of_text, parse, shown};
 
-pub use any::AnyRegionSchema;
 pub use features::read_features;
-use forms::Forms;
-pub use region::{RegionSchema, read_region};
-pub use volume::VolumeSchema;
+pub use region::{AnyRegionSchema, RegionSchema, VolumeSchema, read_region};
 
 const LAYERS: &str = "an array of 1 to 16 layers, or of 1000 that differ in name, region, amount, seed and field alone: objects with a name and a set of points each";
 /// The form of `clear_of`.
@@ -48,8 +42,8 @@ pub fn read_body(bytes: &[u8], groups: &'static [Group]) -> Checked<Draft> {
         }
         match name {
             "region" => {
-                let forms = Forms::of(draft.values.dimension());
-                draft.region = region::read(json, "region", 0, &mut listed, forms).map(Some);
+                let dimension = draft.values.dimension();
+                draft.region = region::read(json, "region", 0, &mut listed, dimension).map(Some);
             }
             "features" if draft.values.dimension() == Dimension::Plane => features = Some(json),
             "layers" => draft.layers = layers(json, &mut listed, draft.values.dimension()),
@@ -147,8 +141,8 @@ fn layer(
     for (name, json) in object.members() {
         match name {
             "region" => {
-                let (path, forms) = (format!("{path}.region"), Forms::of(dimension));
-                let read = region::read(json, &path, 0, listed, forms);
+                let path = format!("{path}.region");
+                let read = region::read(json, &path, 0, listed, dimension);
                 layer.region = read.map(Some);
             }
             "name" => {

@@ -35,6 +35,11 @@ impl<'a> Object<'a> {
             .map_err(|error| text_of(&error))
     }
 
+    pub(super) fn get(&self, name: &str) -> Option<&'a RawValue> {
+        let found = self.members().find(|(known, _)| *known == name);
+        found.map(|(_, json)| json)
+    }
+
     pub(super) fn members(&self) -> impl Iterator<Item = (&str, &'a RawValue)> {
         self.members
             .iter()

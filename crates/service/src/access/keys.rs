@@ -19,11 +19,10 @@ use std::{
 };
 
 use serde::Deserialize;
-use strew_config::{bounded_file, name::is_name};
+use strew_config::{Access as Settings, bounded_file, name::is_name};
 use strew_error::Rate;
 
 use super::{
-    Settings,
     bucket::Bucket,
     caller::{Caller, Places},
     secret::Hashed,
@@ -33,10 +32,8 @@ use super::{
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum KeysError {
-    /// The file cannot be read.
     #[error("cannot read access.keys_file {}: {error}", path.display())]
     Unreadable { path: PathBuf, error: io::Error },
-    /// It is not such TOML.
     #[error("{place} holds no keys in TOML: {error}")]
     Syntax {
         place: String,
@@ -50,7 +47,6 @@ pub enum KeysError {
         value: String,
         allowed: &'static str,
     },
-    /// Keys are required, and there are none: every request would be refused.
     #[error("{place} holds no key; make one with `strew key new NAME`")]
     Empty { place: String },
 }
@@ -297,7 +293,7 @@ mod tests {
              points_per_second = 10\n[[key]]\nname = 'b'\nhash = '{other_hash}'\nadmin = true\n"
         );
         let keys = read(&text, &Keys::default()).expect("valid");
-        let all = super::super::Quota::new(9);
+        let all = super::super::usage::Quota::new(9);
         let a = keys.find(secret.as_bytes()).expect("known");
         assert_eq!((a.name(), a.max_points(9)), (Some("a"), 5));
         assert!(a.must_be_admin().is_err() && a.level().is_some());

@@ -1,5 +1,0 @@
-//! Numbers in words for clients.
-
-pub fn number(value: f64) -> String {
-    zmij::Buffer::new().format(value).into()
-}
