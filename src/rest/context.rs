@@ -144,7 +144,7 @@ impl FromRequest<Arc<Service>> for Sent {
         }
         let Posted { context, body } = Posted::from_request(request, service).await?;
         charge_reading(&context.caller, body.len())
-            .map_err(|error| Refused(error.into()).response())?;
+            .map_err(|error| Refused(error).response())?;
         Ok(Self { context, body })
     }
 }

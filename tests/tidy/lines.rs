@@ -9,7 +9,7 @@ use super::files;
 
 /// A part, the endings of its files, and the most lines that it may have.
 const CEILINGS: &[(&str, &[&str], usize)] = &[
-    ("src", &["rs"], 22_664),
+    ("src", &["rs"], 22_487),
     ("crates/access", &["rs"], 1501),
     ("crates/bevy", &["rs"], 1423),
     ("crates/catalog", &["rs"], 5310),
