@@ -282,7 +282,7 @@ mod tests {
 
     #[test]
     fn every_command_has_examples_that_it_accepts() {
-        let commands = built();
+        let commands = command();
         let shown = commands
             .get_subcommands()
             .filter(|command| !command.is_hide_set());
