@@ -13,7 +13,6 @@ use clap_complete::{
     engine::{ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter as _},
     env::Shells,
 };
-use strew_catalog::Catalog;
 use strew_encode::Encoding;
 use strew_query::{
     Parameter, Shape,
@@ -147,13 +146,10 @@ fn loaded(parameter: &Parameter) -> Option<Vec<String>> {
             let worlds = catalog.worlds.iter();
             worlds.map(|world| world.name.clone()).collect()
         }
-        _ => field_names(&catalog),
+        _ => { catalog.fields().iter() }
+            .map(|field| field.name.clone())
+            .collect(),
     })
-}
-
-fn field_names(catalog: &Catalog) -> Vec<String> {
-    let fields = catalog.fields().iter();
-    fields.map(|field| field.name.clone()).collect()
 }
 
 #[cfg(test)]

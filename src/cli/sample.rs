@@ -70,7 +70,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         Some(encoding) => encoding,
         None => encoding_of(args.output.as_deref())?,
     };
-    check_terminal(args, encoding)?;
+    if !encoding.is_text() {
+        must_not_be_terminal(args.output.as_deref(), encoding.name())?;
+    }
     check_packing(args, encoding)?;
     let looks = options.output(encoding).map(|looks| Output {
         relative_to: planned.query.region.corner,
@@ -103,13 +105,6 @@ fn check_packing(args: &Args, encoding: Encoding) -> Result<(), Failure> {
              whole; allowed: a name that ends in .parquet, with --zstd LEVEL",
             path.display()
         ),
-    }
-}
-
-fn check_terminal(args: &Args, encoding: Encoding) -> Result<(), Failure> {
-    match encoding.is_text() {
-        true => Ok(()),
-        false => must_not_be_terminal(args.output.as_deref(), encoding.name()),
     }
 }
 

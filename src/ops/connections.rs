@@ -33,16 +33,14 @@ use super::{
 };
 use crate::{body::Body, rest};
 
-#[derive(Clone)]
+/// Takes connections and serves them.
 pub(super) struct Connections {
-    shared: Arc<Shared>,
-}
-
-#[derive(Debug)]
-struct Shared {
     http: Builder<TokioExecutor>,
     tls: Option<Tls>,
-    patience: Patience,
+    /// The times for the first bytes of a client, without a request, and for taking something.
+    opening: Duration,
+    idle: Duration,
+    stalled: Duration,
     places: Arc<Quota>,
     /// Places for refusals in progress.
     telling: Arc<Semaphore>,
@@ -57,13 +55,6 @@ struct Shared {
     closing: CancellationToken,
     /// Connections end.
     ended: CancellationToken,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Patience {
-    opening: Duration,
-    idle: Duration,
-    stalled: Duration,
 }
 
 /// The most connections beyond the limit that are answered 503 at once; others are just closed.
@@ -83,16 +74,13 @@ impl Connections {
         gate: Option<Arc<Gate>>,
         handshakes: IntCounter,
     ) -> Self {
-        let limit = settings.max_connections;
-        let shared = Shared {
+        Self {
             http: http(settings),
             tls,
-            patience: Patience {
-                opening: seconds(settings.header_read_timeout_seconds),
-                idle: seconds(settings.idle_connection_seconds),
-                stalled: seconds(settings.stalled_reader_seconds),
-            },
-            places: Arc::new(Quota::new(limit)),
+            opening: seconds(settings.header_read_timeout_seconds),
+            idle: seconds(settings.idle_connection_seconds),
+            stalled: seconds(settings.stalled_reader_seconds),
+            places: Arc::new(Quota::new(settings.max_connections)),
             telling: Arc::new(Semaphore::new(REFUSALS_AT_ONCE)),
             gate,
             refused: LogThrottle::default(),
@@ -102,25 +90,21 @@ impl Connections {
             running: TaskTracker::new(),
             closing: CancellationToken::new(),
             ended: CancellationToken::new(),
-        };
-        Self {
-            shared: Arc::new(shared),
         }
     }
 
-    pub(super) async fn take(&self, listener: TcpListener, front: Arc<Front>) {
-        let shared = &self.shared;
+    pub(super) async fn take(self: Arc<Self>, listener: TcpListener, front: Arc<Front>) {
         loop {
             let taken = tokio::select! {
                 biased;
-                () = shared.closing.cancelled() => return,
+                () = self.closing.cancelled() => return,
                 taken = listener.accept() => taken,
             };
             match taken {
                 Ok((stream, peer)) => self.place(stream, peer, &front),
                 Err(error) if is_of_the_client(&error) => {}
                 Err(error) => {
-                    if let Some(times) = shared.failed.record() {
+                    if let Some(times) = self.failed.record() {
                         tracing::error!(%error, times, "no connection can be taken");
                     }
                     tokio::time::sleep(OUT_OF_FILES).await;
@@ -129,25 +113,23 @@ impl Connections {
         }
     }
 
-    fn place(&self, stream: TcpStream, peer: SocketAddr, front: &Arc<Front>) {
-        let shared = self.shared.clone();
-        match shared.places_of(peer) {
+    fn place(self: &Arc<Self>, stream: TcpStream, peer: SocketAddr, front: &Arc<Front>) {
+        match self.places_of(peer) {
             Ok(places) => {
-                let front = front.clone();
-                let running = shared.running.clone();
-                running.spawn(async move {
-                    shared.serve(stream, peer, front).await;
+                let (this, front) = (self.clone(), front.clone());
+                self.running.spawn(async move {
+                    this.serve(stream, peer, front).await;
                     drop(places);
                 });
             }
             Err(error) => {
-                if let Some(times) = shared.refused.record() {
+                if let Some(times) = self.refused.record() {
                     tracing::warn!(%peer, %error, times, "connections are refused");
                 }
                 // Before a handshake nothing can be said in TLS.
-                let telling = shared.telling.clone().try_acquire_owned();
-                if let (None, Ok(telling)) = (&shared.tls, telling) {
-                    shared.running.spawn(async move {
+                let telling = self.telling.clone().try_acquire_owned();
+                if let (None, Ok(telling)) = (&self.tls, telling) {
+                    self.running.spawn(async move {
                         let _ = tokio::time::timeout(REFUSAL_TIME, refuse(stream, error)).await;
                         drop(telling);
                     });
@@ -158,24 +140,19 @@ impl Connections {
 
     /// Takes no more connections; those that are open end with their last answer.
     pub(super) fn close(&self) {
-        self.shared.closing.cancel();
-        self.shared.running.close();
+        self.closing.cancel();
+        self.running.close();
     }
 
     pub(super) async fn closed(&self) {
-        self.shared.running.wait().await;
+        self.running.wait().await;
     }
 
     pub(super) fn end(&self) {
-        self.shared.ended.cancel();
+        self.ended.cancel();
     }
-}
-
-/// A place among all connections, and one among those of the address.
-type Places = (OneOf, Option<InUse>);
-
-impl Shared {
-    fn places_of(&self, peer: SocketAddr) -> Result<Places, Error> {
+    /// A place among all connections, and one among those of the address.
+    fn places_of(&self, peer: SocketAddr) -> Result<(OneOf, Option<InUse>), Error> {
         let usage = self.gate.as_ref().map(|gate| gate.usage(peer.ip()));
         let of_address = usage.map(|usage| usage.connection(&self.places));
         let limit = self.places.limit();
@@ -188,12 +165,12 @@ impl Shared {
         let _ = stream.set_nodelay(true);
         #[cfg(any(target_os = "android", target_os = "linux"))]
         let _ = socket2::SockRef::from(&stream).set_tcp_notsent_lowat(UNSENT);
-        let stream = Guarded::new(stream).taking_within(self.patience.stalled);
+        let stream = Guarded::new(stream).taking_within(self.stalled);
         match &self.tls {
             None => self.converse(stream, peer, front).await,
             Some(tls) => {
                 let handshake = tls.acceptor().accept(stream);
-                let handshake = tokio::time::timeout(self.patience.opening, handshake);
+                let handshake = tokio::time::timeout(self.opening, handshake);
                 let shaken = tokio::select! {
                     shaken = handshake => shaken,
                     () = self.closing.cancelled() => return,
@@ -223,17 +200,13 @@ impl Shared {
         let from = front.exchanges.from(peer);
         let open = from.open.clone();
         let service = Answers { front, from };
-        let stream = TokioIo::new(stream.opening_within(self.patience.opening));
+        let stream = TokioIo::new(stream.opening_within(self.opening));
         let connection = self.http.serve_connection(stream, service);
         tokio::pin!(connection);
         let mut is_closing = false;
         loop {
             // A connection that is to end is not idle, whatever it waits for.
-            let idle = if is_closing {
-                Duration::MAX
-            } else {
-                self.patience.idle
-            };
+            let idle = if is_closing { Duration::MAX } else { self.idle };
             tokio::select! {
                 ended = connection.as_mut() => {
                     if let Err(error) = ended {
@@ -243,7 +216,7 @@ impl Shared {
                 }
                 () = self.ended.cancelled() => return,
                 () = self.closing.cancelled(), if !is_closing => {}
-                fate = open.decided(idle, self.patience.stalled, is_closing) => if fate == Fate::Close {
+                fate = open.decided(idle, self.stalled, is_closing) => if fate == Fate::Close {
                     // A goodbye would wait for the answers that the client leaves untouched.
                     tracing::debug!(%peer, "the client takes none of its answers");
                     return;

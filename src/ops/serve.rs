@@ -152,19 +152,17 @@ impl App {
         let handshakes = &self.metrics.failed_handshakes;
         let server = &self.config.server;
         let admins = Connections::new(server, self.tls.clone(), None, handshakes.clone());
+        let admins = Arc::new(admins);
         if let Some(listener) = self.admin.take() {
             let front = self.front(readiness.clone(), &listener, None);
             let listener = asynchronous(listener).context("cannot serve")?;
-            let admins = admins.clone();
-            tokio::spawn(async move { admins.take(listener, Arc::new(front)).await });
+            tokio::spawn(admins.clone().take(listener, Arc::new(front)));
         }
         let _admins = EndOnDrop(admins);
         let gate = Some(self.gate.clone());
         let connections = Connections::new(server, self.tls.clone(), gate, handshakes.clone());
-        let taking = tokio::spawn({
-            let connections = connections.clone();
-            async move { connections.take(listener, Arc::new(front)).await }
-        });
+        let connections = Arc::new(connections);
+        let taking = tokio::spawn(connections.clone().take(listener, Arc::new(front)));
         shutdown.await;
         readiness.close();
         grpc_health.set(false).await;
@@ -250,7 +248,7 @@ impl App {
 }
 
 /// Connections that end with the daemon.
-struct EndOnDrop(Connections);
+struct EndOnDrop(Arc<Connections>);
 
 impl Drop for EndOnDrop {
     fn drop(&mut self) {

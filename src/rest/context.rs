@@ -143,8 +143,7 @@ impl FromRequest<Arc<Service>> for Sent {
             return Err(Refused(fault.into()).response());
         }
         let Posted { context, body } = Posted::from_request(request, service).await?;
-        charge_reading(&context.caller, body.len())
-            .map_err(|error| Refused(error.into()).response())?;
+        charge_reading(&context.caller, body.len()).map_err(|error| Refused(error).response())?;
         Ok(Self { context, body })
     }
 }

@@ -80,7 +80,11 @@ impl Finish {
     pub fn refusal(&self, request: &Request) -> Option<Response> {
         too_long(request, self.head_bytes)
             .or_else(|| wrong_host(request))
-            .or_else(|| foreign(&self.origins, &self.hosts, request))
+            .or_else(|| {
+                // Before its body is read.
+                let detail = origin::refusal(&self.origins, &self.hosts, request)?;
+                Some(Problem::of_status(StatusCode::FORBIDDEN, detail))
+            })
     }
 
     pub async fn finish(&self, preferences: &Preferences, response: &mut Response) {
@@ -122,11 +126,6 @@ fn wrong_host(request: &Request) -> Option<Response> {
     let is_wrong = request.version() == Version::HTTP_11 && hosts != 1;
     let detail = || format!("it has {hosts} lines `Host`; allowed: exactly one");
     is_wrong.then(|| Problem::of_status(StatusCode::BAD_REQUEST, detail()))
-}
-
-fn foreign(origins: &Origins, hosts: &Hosts, request: &Request) -> Option<Response> {
-    let detail = origin::refusal(origins, hosts, request)?;
-    Some(Problem::of_status(StatusCode::FORBIDDEN, detail))
 }
 
 /// The refusal of a request whose head is too long. (What is much too long never gets here: the

@@ -15,7 +15,12 @@ use strew_core::ALGORITHM_VERSION;
 use strew_error::Error;
 use strew_service::Interrupted;
 
-use super::{coding::Decided, headers, negotiate::Coding, problem::Problem};
+use super::{
+    coding::Decided,
+    headers,
+    negotiate::{self, Coding},
+    problem::Problem,
+};
 use crate::body::{Body, Response};
 
 /// The tag of an answer and what else caches need, known before the answer is made.
@@ -82,7 +87,7 @@ impl Freshness {
         Self {
             tag: HeaderValue::from_bytes(&tag).unwrap_or(HeaderValue::from_static("\"\"")),
             coding,
-            is_text: Coding::is_for(content_type),
+            is_text: negotiate::is_text(content_type),
             pinned: false,
             negotiated: false,
         }

@@ -172,13 +172,8 @@ impl Coding {
         }
     }
 
-    /// Whether any coding is for answers of a content type: text compresses well.
-    pub(super) fn is_for(content_type: &str) -> bool {
-        is_text(content_type)
-    }
-
     pub(super) fn chosen(headers: &HeaderMap, content_type: &str) -> Option<Self> {
-        if !headers.contains_key(header::ACCEPT_ENCODING) || !Self::is_for(content_type) {
+        if !headers.contains_key(header::ACCEPT_ENCODING) || !is_text(content_type) {
             return None;
         }
         let lines: Vec<String> = headers
@@ -221,7 +216,8 @@ fn accepted_coding(element: &str) -> Option<(&str, u16)> {
     }
 }
 
-fn is_text(content_type: &str) -> bool {
+/// Whether content of a type is text, which compresses well.
+pub(super) fn is_text(content_type: &str) -> bool {
     let media_type = content_type.split(';').next().unwrap_or_default().trim();
     let (_, sub) = media_type.split_once('/').unwrap_or_default();
     media_type.starts_with("text/")

@@ -105,7 +105,7 @@ fn export(args: &Args, config: &Config) -> Result<(), Failure> {
         None if !args.dry_run => {
             refuse!("a place to write is missing: use --output DIR, or --dry-run")
         }
-        Some(root) if is_zip(root) => {
+        Some(root) if { root.extension() }.is_some_and(|end| end.eq_ignore_ascii_case("zip")) => {
             let (zip, folder) = (root.display(), root.with_extension(""));
             let folder = folder.display();
             refuse!(
@@ -134,11 +134,6 @@ fn export(args: &Args, config: &Config) -> Result<(), Failure> {
     }
 }
 
-fn is_zip(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("zip"))
-}
-
 impl Job<'_> {
     /// Reports the cost. Fails if the disk has no room for it.
     fn cost(&self, done: usize, place: Option<&Path>) -> Result<(), Failure> {
@@ -162,8 +157,11 @@ impl Job<'_> {
     }
 
     fn to_folder(&self, root: &Path) -> Result<(), Failure> {
+        // The existing chunks are not counted yet.
+        let advice = "make room, and the same command resumes there";
+        let to_open = |failure| with_advice(failure, advice);
         let (folder, mut done) =
-            match Folder::open(root, &self.spec, &self.maker).map_err(no_room_to_open)? {
+            match Folder::open(root, &self.spec, &self.maker).map_err(to_open)? {
                 folder::Found::Complete => return self.nothing_to_do(root),
                 folder::Found::Open(folder, done) => (folder, done),
             };
@@ -196,13 +194,13 @@ impl Job<'_> {
         let made: Result<Vec<(usize, Record)>, Failure> = made.collect();
         progress.into_inner().finish();
         let count = count.into_inner();
-        done.extend(made.map_err(|failure| no_room(failure, count, chunks))?);
+        done.extend(made.map_err(|failure| with_advice(failure, &cost::go_on(count, chunks)))?);
         let mut records: Vec<(usize, Record)> = done.into_iter().collect();
         records.sort_unstable_by_key(|(i, _)| *i);
         let records: Vec<Record> = records.into_iter().map(|(_, record)| record).collect();
         let documents = documents(&self.spec, &self.maker, &self.catalog, &records)?;
         let finished = folder.finish(&documents);
-        finished.map_err(|failure| no_room(failure.into(), count, chunks))?;
+        finished.map_err(|failure| with_advice(failure.into(), &cost::go_on(count, chunks)))?;
         self.report(root, &records);
         Ok(())
     }
@@ -239,15 +237,6 @@ fn stopped(done: usize, chunks: usize) -> Failure {
 }
 
 /// Adds advice if the disk is full, or a quota or a limit of files is reached.
-fn no_room(failure: Failure, done: usize, chunks: usize) -> Failure {
-    with_advice(failure, &cost::go_on(done, chunks))
-}
-
-/// Adds advice before the existing chunks are counted.
-fn no_room_to_open(failure: Failure) -> Failure {
-    with_advice(failure, "make room, and the same command resumes there")
-}
-
 fn with_advice(failure: Failure, advice: &str) -> Failure {
     use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
     let Failure::Other(error) = failure else {
