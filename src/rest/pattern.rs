@@ -1,7 +1,10 @@
 //! `/v1/pattern/…`: what is known of the pattern of any α, without a table: arrangements (facts, counts and lists of
 //! occurrences), shapes of clusters, neighborhood maps, figures.
 
-use std::{pin::pin, sync::Arc};
+use std::{
+    pin::pin,
+    sync::{Arc, LazyLock},
+};
 
 use axum::extract::State;
 use futures_util::StreamExt as _;
@@ -32,9 +35,12 @@ use super::{
 use crate::body::{Body, Response};
 
 pub(super) fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
-    let figures = FIGURES.into_iter().flat_map(|described| {
-        [Format::Svg, Format::Png].map(|format| figure(service, described, format))
-    });
+    let figures = FIGURES
+        .into_iter()
+        .flat_map(|described| [Format::Svg, Format::Png].map(|format| (described, format)));
+    let figures = figures.zip(&*NAMED);
+    let figures =
+        figures.map(|((described, format), named)| figure(service, described, format, named));
     let all = [arrangements(service), clusters(service), map(service)];
     all.into_iter().chain(figures).collect()
 }
@@ -261,26 +267,31 @@ const FIGURES: [(Figure, &str, &str, &str); 4] = [
     ),
 ];
 
+/// The path of each figure as SVG and as PNG, and the id of its operation.
+static NAMED: LazyLock<Vec<[String; 2]>> = LazyLock::new(|| {
+    let named = |(_, name, ..): (Figure, &str, &str, &str)| {
+        [("svg", "Figure"), ("png", "Picture")].map(|(ending, of)| {
+            let path = format!("/v1/pattern/figures/{}.{ending}", name.to_lowercase());
+            [path, format!("get{name}{of}")]
+        })
+    };
+    FIGURES.into_iter().flat_map(named).collect()
+});
+
 fn figure(
     service: &Arc<Service>,
-    (figure, name, summary, query): (Figure, &str, &'static str, &str),
+    (figure, _, summary, query): (Figure, &str, &'static str, &str),
     format: Format,
+    [path, id]: &'static [String; 2],
 ) -> Endpoint {
-    let (of, content, ending, more) = match format {
-        Format::Svg => ("Figure", schemas::text as schemas::Content, "svg", ""),
-        Format::Png => (
-            "Picture",
-            schemas::any as schemas::Content,
-            "png",
-            "&size=800",
-        ),
+    let (content, ending, more) = match format {
+        Format::Svg => (schemas::text as schemas::Content, "svg", ""),
+        Format::Png => (schemas::any as schemas::Content, "png", "&size=800"),
     };
-    // There are eight, for as long as the program runs.
-    let path = format!("/v1/pattern/figures/{}.{ending}", name.to_lowercase()).leak();
     let content_type = format.content_type();
     let answers = api::Answer::file("The figure.", content_type, content).or_unchanged();
     let operation = Operation {
-        id: format!("get{name}{of}").leak(),
+        id,
         summary,
         about: "As strew figure draws it, for any α.",
         parameters: figure.groups(format),

@@ -264,7 +264,7 @@ fn nanoseconds(time: Duration) -> u64 {
 }
 
 /// The processor time of the calling thread; where the system does not count it, the time on the clock.
-fn processor_time() -> Duration {
+pub(super) fn processor_time() -> Duration {
     #[cfg(unix)]
     {
         let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
