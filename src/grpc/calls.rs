@@ -38,7 +38,6 @@ const SERVICES: [(&str, &str); 4] = [
 ];
 
 /// The route of a path, as metrics and logs name it: a method of the contract, or any of a service.
-#[must_use]
 pub fn route(path: &str) -> Option<&'static str> {
     let is_of = |(prefix, _): &&(&str, &str)| path.len() > prefix.len() && path.starts_with(prefix);
     let (prefix, any) = SERVICES.iter().find(is_of)?;

@@ -51,13 +51,11 @@ impl Deadline {
     }
 
     /// When the call must be over.
-    #[must_use]
     pub const fn end(&self) -> Instant {
         self.end
     }
 
     /// The trailers of an answer that is not complete at its deadline.
-    #[must_use]
     pub fn trailers(&self) -> Option<HeaderMap> {
         status::trailers(&status::too_late(self.allowed))
     }

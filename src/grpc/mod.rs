@@ -38,7 +38,6 @@ use crate::body::{Body, Response};
 const NAMES: usize = 4 << 10;
 
 /// The name of a code, as the protocol writes it.
-#[must_use]
 pub const fn code_name(code: u32) -> &'static str {
     match code {
         0 => "OK",
@@ -65,9 +64,6 @@ pub const fn code_name(code: u32) -> &'static str {
 pub type BuildError = tonic_reflection::server::Error;
 
 /// The calls of gRPC, with reflection and health, and the handle that reports to health checks when the daemon stops.
-///
-/// # Errors
-/// Never, unless the program was built wrongly.
 pub async fn calls(service: Arc<Service>) -> Result<(Calls, Health), BuildError> {
     let (reporter, health) = tonic_health::server::health_reporter();
     let serving = tonic_health::ServingStatus::Serving;
@@ -111,31 +107,26 @@ impl Health {
 }
 
 /// The answer to a call that is not let in, or that cannot be answered at all.
-#[must_use]
 pub fn refusal(error: &Error) -> Response {
     broken(error).into_http::<Body>()
 }
 
 /// An error as what a call ends with.
-#[must_use]
 pub fn broken(error: &Error) -> Status {
     status::status(error)
 }
 
 /// The end of a call whose client broke it off.
-#[must_use]
 pub fn left() -> Status {
     Status::cancelled("the call broke off before the end of its message")
 }
 
 /// The trailers of a stream that is not complete.
-#[must_use]
 pub fn interrupted(why: Interrupted) -> Option<HeaderMap> {
     status::trailers(&status::interrupted(why))
 }
 
 /// Trailers as the last data of a gRPC-Web body, in Base64 if that is text.
-#[must_use]
 pub fn web_trailers(trailers: &HeaderMap, is_text: bool) -> Bytes {
     /// The flag of a frame that holds trailers.
     const TRAILERS: u8 = 0x80;

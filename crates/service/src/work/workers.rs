@@ -175,9 +175,8 @@ impl<F: FnOnce() + Send + 'static> Waiter for Piece<F> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::mpsc;
-
     use crate::access::{Caller, Gate, Usage};
+    use std::sync::mpsc;
     use strew_config::Layers;
 
     use super::{super::shift::processor_time, *};
@@ -284,7 +283,6 @@ mod tests {
             let (workers, caller) = (workers.clone(), admitted().expect("let in"));
             record().scope(async move {
                 Record::of(&caller);
-                // Of the processor: other programs may have it meanwhile.
                 let job = move |stop: &Stop| {
                     let start = processor_time();
                     while processor_time() - start < time && !stop.is_raised() {}
