@@ -29,9 +29,10 @@ fn state() -> MutexGuard<'static, State> {
 
 /// Returns a flag that the first signal sets, instead of ending the command.
 pub(super) fn stop_flag() -> Arc<AtomicBool> {
-    listen();
+    // Before signals are heard: one that came in between would end the command without a word.
     let stop = Arc::new(AtomicBool::new(false));
     state().stop = Some(stop.clone());
+    listen();
     stop
 }
 

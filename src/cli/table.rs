@@ -182,7 +182,7 @@ enum AnyTable {
     Space(strew_core::space::Table),
 }
 
-/// What a table of either kind has.
+/// A property of a table of either kind.
 macro_rules! of_either {
     ($($name:ident: $type:ty = |$table:ident| $value:expr;)+) => {
         impl AnyTable {

@@ -17,39 +17,24 @@ use crate::body::{Body, Request, Response};
 /// The name of the service of the contract.
 pub(super) const NAME: &str = "strew.v1.PointService";
 
-/// The paths of the services, that of the contract first, the others in the order of [`Calls`]; what follows is a method.
-const SERVICES: [(&str, &str); 4] = [
-    (
-        "/strew.v1.PointService/",
-        "/strew.v1.PointService/{*method}",
-    ),
-    (
-        "/grpc.health.v1.Health/",
-        "/grpc.health.v1.Health/{*method}",
-    ),
-    (
-        "/grpc.reflection.v1.ServerReflection/",
-        "/grpc.reflection.v1.ServerReflection/{*method}",
-    ),
-    (
-        "/grpc.reflection.v1alpha.ServerReflection/",
-        "/grpc.reflection.v1alpha.ServerReflection/{*method}",
-    ),
+/// The paths of the services, that of the contract first, the others in the order of [`Calls`].
+const SERVICES: [&str; 4] = [
+    "/strew.v1.PointService/{*method}",
+    "/grpc.health.v1.Health/{*method}",
+    "/grpc.reflection.v1.ServerReflection/{*method}",
+    "/grpc.reflection.v1alpha.ServerReflection/{*method}",
 ];
 
 /// The route of a path, as metrics and logs name it: a method of the contract, or any of a service.
 pub fn route(path: &str) -> Option<&'static str> {
-    let is_of = |(prefix, _): &&(&str, &str)| path.len() > prefix.len() && path.starts_with(prefix);
-    let (prefix, any) = SERVICES.iter().find(is_of)?;
-    match *prefix == SERVICES[0].0 {
-        true => Some(
-            METHODS
-                .into_iter()
-                .find(|known| *known == path)
-                .unwrap_or(any),
-        ),
-        false => Some(any),
-    }
+    let is_of = |any: &&str| {
+        let method = any.strip_suffix("{*method}");
+        let method = method.and_then(|service| path.strip_prefix(service));
+        method.is_some_and(|method| !method.is_empty())
+    };
+    let any = SERVICES.into_iter().find(is_of)?;
+    let known = METHODS.into_iter().find(|known| *known == path);
+    Some(known.unwrap_or(any))
 }
 
 /// The answer to a method that does not exist.
@@ -93,7 +78,7 @@ impl Calls {
                 }
             }
         };
-        router.route_service(SERVICES[0].1, service_fn(answer))
+        router.route_service(SERVICES[0], service_fn(answer))
     }
 
     /// A router with health and reflection.
@@ -117,5 +102,5 @@ where
         .map_request(|request: Request| request.map(TonicBody::new))
         .map_response(|response: http::Response<TonicBody>| response.map(Body::new))
         .service(service);
-    Router::new().route_service(SERVICES[place].1, service)
+    Router::new().route_service(SERVICES[place], service)
 }

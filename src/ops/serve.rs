@@ -204,7 +204,7 @@ impl App {
         }))
     }
 
-    /// What answers on a socket: calls and all of REST, or without calls what administrators need.
+    /// The steps for a socket: calls and all of REST, or without calls the paths of administrators.
     fn front(
         &self,
         readiness: Readiness,

@@ -8,7 +8,7 @@ use http::{
 
 pub(super) const ACCEPT_ENCODING: HeaderValue = HeaderValue::from_static("accept-encoding");
 pub(super) const ORIGIN: HeaderValue = HeaderValue::from_static("origin");
-/// What almost all answers with points depend on: the second is added to all answers.
+/// `Vary` of almost all answers with points; all answers get the second name.
 pub(super) const BOTH: HeaderValue = HeaderValue::from_static("accept, accept-encoding");
 
 pub(super) fn vary(headers: &mut HeaderMap, name: HeaderValue) {

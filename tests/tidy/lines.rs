@@ -19,7 +19,7 @@ const CEILINGS: &[(&str, &[&str], usize)] = &[
     ("crates/forge", &["rs"], 20_766),
     ("crates/pages", &["rs"], 439),
     ("crates/plan", &["rs"], 4170),
-    ("crates/proto", &["rs"], 367),
+    ("crates/proto", &["rs"], 343),
     ("crates/query", &["rs"], 8738),
     ("crates/raster", &["rs"], 2976),
     ("crates/service", &["rs"], 5977),

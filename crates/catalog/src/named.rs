@@ -48,7 +48,7 @@ pub fn all_of<S>((state, _, refused): Reread<S>) -> Result<S, NamedError> {
 
 /// A document that is loaded.
 pub trait Loaded: Clone {
-    /// What it is called in lists of names.
+    /// Its noun, such as field, in lists of names.
     const KIND: &'static str;
 
     /// All that it means, in hexadecimal.

@@ -1,7 +1,7 @@
 //! The formats of an answer: one table of all that is known of them. Beside its row, a format has a file that writes it
 //! and an arm in [`Answer`](crate::Answer).
 
-/// What is known of a format.
+/// A format.
 struct Format {
     /// The name in queries.
     name: &'static str,
@@ -14,7 +14,7 @@ struct Format {
     traits: Traits,
 }
 
-/// What holds for some formats.
+/// Properties that some formats have.
 #[derive(Clone, Copy)]
 struct Traits {
     /// Browsers show an answer by themselves instead of saving it.

@@ -20,7 +20,6 @@ mod csv;
 #[cfg(feature = "columnar")]
 mod definitions;
 mod encoding;
-#[cfg(feature = "columnar")]
 mod geojson;
 mod glb;
 mod head;

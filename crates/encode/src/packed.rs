@@ -8,7 +8,7 @@ use strew_core::{Cursor, F32, F64, Format, Plan, space};
 
 use super::{EncodeError, blocks::Blocks, buffer::Pool};
 
-/// What fills buffers with the coordinates of points.
+/// A source of the coordinates of points, which fills buffers.
 pub trait Fill: Debug + Send {
     /// The coordinates of a point.
     type Point: Pod + Default + Debug + Send;

@@ -15,7 +15,7 @@ pub(super) enum Resolved {
     Count(u64),
 }
 
-/// What the amount of a set means: with the spacings of a density and of a least distance, and the density of a spacing.
+/// The meaning of a set's amount: with the spacings of a density and of a least distance, and the density of a spacing.
 fn resolved(
     set: &Set,
     of_density: impl Fn(f64) -> Result<Spacing, strew_core::Error>,

@@ -165,7 +165,7 @@ impl Operation {
     }
 }
 
-/// What belongs to a dimension, of the plane's and of space's.
+/// The plane's or space's of two.
 pub(super) fn either<T>(dimension: Dimension, [plane, space]: [T; 2]) -> T {
     match dimension {
         Dimension::Plane => plane,

@@ -2,27 +2,24 @@
 
 use std::error::Error;
 
+use heck::ToSnakeCase as _;
 use prost_types::FileDescriptorSet;
 use tonic_build::{
     CodeGenBuilder,
     manual::{Method, Service},
 };
 
-use super::shapes::words;
-
 /// The code of the server, and the paths of its methods.
 pub fn code(descriptors: &FileDescriptorSet) -> Result<String, Box<dyn Error>> {
     let mut services = descriptors.file.iter().flat_map(|file| &file.service);
     let service = services.next().ok_or("the contract has no service")?;
-    let (mut made, mut paths) = (
-        Service::builder().package("strew.v1").name(service.name()),
-        vec![],
-    );
+    let made = Service::builder().package("strew.v1");
+    let (mut made, mut paths) = (made.name(service.name()), vec![]);
     for method in &service.method {
         let message = |name: &str| name.replace(".strew.v1.", "crate::grpc::proto::");
         let raw = format!("crate::grpc::codec::Raw<{}>", message(method.input_type()));
         let built = Method::builder()
-            .name(words(method.name()).to_lowercase())
+            .name(method.name().to_snake_case())
             .route_name(method.name())
             .input_type(raw)
             .output_type(message(method.output_type()))

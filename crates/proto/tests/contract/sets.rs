@@ -2,6 +2,7 @@
 
 use std::{error::Error, fmt::Write as _};
 
+use heck::ToUpperCamelCase as _;
 use prost_types::{
     FileDescriptorSet,
     field_descriptor_proto::{Label, Type},
@@ -55,7 +56,7 @@ pub fn code(descriptors: &FileDescriptorSet) -> Result<String, Box<dyn Error>> {
             other => return Err(format!("PointSet.{name}: no value is a {other:?}").into()),
         };
         let (found, put) = if in_oneof {
-            let variant = camel_case(name);
+            let variant = name.to_upper_camel_case();
             (
                 format!("if let Some(Amount::{variant}(v)) = &set.amount"),
                 format!("amount = Some(Amount::{variant}({into}))"),
@@ -82,13 +83,4 @@ pub fn code(descriptors: &FileDescriptorSet) -> Result<String, Box<dyn Error>> {
         "fn fields(set: &PointSet) -> Vec<(&'static str, Value)> {{ let mut values = vec![]; {read} values }}\n\
          fn put(set: &mut PointSet, name: &str, value: Value) {{ match (name, value) {{ {write} _ => {{}} }} }}\n"
     ))
-}
-
-/// `min_distance` as `MinDistance`.
-fn camel_case(name: &str) -> String {
-    let upper = |word: &str| {
-        let (first, rest) = word.split_at(word.len().min(1));
-        first.to_uppercase() + rest
-    };
-    name.split('_').map(upper).collect()
 }

@@ -3,6 +3,7 @@
 
 use std::{error::Error, fmt::Write as _};
 
+use heck::ToSnakeCase as _;
 use prost_types::{
     DescriptorProto, FieldDescriptorProto, FileDescriptorSet,
     field_descriptor_proto::{Label, Type},
@@ -15,17 +16,14 @@ pub fn code(descriptors: &FileDescriptorSet) -> Result<String, Box<dyn Error>> {
     for message in files().flat_map(|file| &file.message_type) {
         known.push((format!(".strew.v1.{}", message.name()), message));
         for inner in &message.nested_type {
-            known.push((
-                format!(".strew.v1.{}.{}", message.name(), inner.name()),
-                inner,
-            ));
+            let name = format!(".strew.v1.{}.{}", message.name(), inner.name());
+            known.push((name, inner));
         }
     }
     let find = |name: &str| -> Result<&DescriptorProto, String> {
         let found = known.iter().find(|(known, _)| known == name);
-        found
-            .map(|(_, message)| *message)
-            .ok_or_else(|| format!("no message {name}"))
+        let message = found.map(|(_, message)| *message);
+        message.ok_or_else(|| format!("no message {name}"))
     };
     let methods = files()
         .flat_map(|file| &file.service)
@@ -39,10 +37,7 @@ pub fn code(descriptors: &FileDescriptorSet) -> Result<String, Box<dyn Error>> {
     let mut shaped = String::new();
     for (i, name) in wanted.iter().enumerate() {
         let name = rust_type(find(name)?)?;
-        writeln!(
-            shaped,
-            "impl Shaped for {name} {{ const SHAPE: usize = {i}; }}"
-        )?;
+        shaped += &format!("impl Shaped for {name} {{ const SHAPE: usize = {i}; }}");
     }
     let (mut shapes, mut most, mut i) = (String::new(), 0, 0);
     while let Some(name) = wanted.get(i).cloned() {
@@ -78,13 +73,11 @@ pub fn code(descriptors: &FileDescriptorSet) -> Result<String, Box<dyn Error>> {
 
 /// The place of a message in the table.
 fn place(wanted: &mut Vec<String>, name: &str) -> usize {
-    wanted
-        .iter()
-        .position(|known| known == name)
-        .unwrap_or_else(|| {
-            wanted.push(name.to_owned());
-            wanted.len() - 1
-        })
+    let known = wanted.iter().position(|known| known == name);
+    known.unwrap_or_else(|| {
+        wanted.push(name.to_owned());
+        wanted.len() - 1
+    })
 }
 
 /// The kind of memory that a field holds; `None` for a number, which takes none beside the message.
@@ -108,20 +101,8 @@ fn limit(message: &DescriptorProto, field: &FieldDescriptorProto) -> String {
     if field.label() != Label::Repeated {
         return "most::ONCE".into();
     }
-    let name = format!("{}_{}", words(message.name()), field.name());
+    let name = format!("{}_{}", message.name().to_snake_case(), field.name());
     format!("most::{}", name.to_uppercase())
-}
-
-/// A name in camel case as words joined by underscores.
-pub fn words(name: &str) -> String {
-    let mut words = String::new();
-    for (i, letter) in name.chars().enumerate() {
-        if i > 0 && letter.is_uppercase() {
-            words.push('_');
-        }
-        words.push(letter);
-    }
-    words
 }
 
 /// The type that a message is decoded to: of a map's entry a pair.

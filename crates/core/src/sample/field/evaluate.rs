@@ -68,7 +68,7 @@ impl FieldSpec {
 }
 
 impl FieldSpec {
-    /// Whether a place of a box may be in a missing pixel: there the share is 0, whatever is made of the pixels. True
+    /// Whether a box may have a place in a missing pixel, where the share is always 0. True
     /// also for a box less than a pixel beside one.
     ///
     /// ```
