@@ -1,6 +1,6 @@
 //! The services of gRPC on the common port, and where a path leads.
 
-use std::{convert::Infallible, fmt, sync::Arc};
+use std::{convert::Infallible, sync::Arc};
 
 use axum::Router;
 use strew_service::Service;
@@ -32,8 +32,8 @@ pub fn route(path: &str) -> Option<&'static str> {
         let method = method.and_then(|service| path.strip_prefix(service));
         method.is_some_and(|method| !method.is_empty())
     };
-    let any = SERVICES.into_iter().find(is_of)?;
-    let known = METHODS.into_iter().find(|known| *known == path);
+    let any = SERVICES.iter().find(is_of)?;
+    let known = METHODS.iter().find(|known| **known == path);
     Some(known.unwrap_or(any))
 }
 
@@ -44,17 +44,11 @@ pub fn unimplemented() -> Response {
 }
 
 /// The services of gRPC. Cheap to clone.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Calls {
     pub(super) service: Arc<Service>,
     /// All but that of the contract.
     pub(super) others: [Router; SERVICES.len() - 1],
-}
-
-impl fmt::Debug for Calls {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Calls")
-    }
 }
 
 impl Calls {

@@ -38,10 +38,7 @@ impl Deadline {
         Ok(end.map(|end| Self { allowed, end }))
     }
 
-    /// The answer to a call, if its head comes in time.
-    ///
-    /// # Errors
-    /// DEADLINE_EXCEEDED if not.
+    /// The answer to a call, if its head comes in time; DEADLINE_EXCEEDED if not.
     pub async fn answer<B>(
         self,
         call: impl Future<Output = Response<B>>,

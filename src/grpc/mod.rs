@@ -27,6 +27,7 @@ use tonic_health::server::HealthReporter;
 pub use calls::{Calls, route, unimplemented};
 use calls::{NAME, routed};
 pub use deadline::Deadline;
+pub use status::status;
 use strew_error::Error;
 pub use strew_proto as proto;
 use strew_service::{Interrupted, Service};
@@ -74,24 +75,18 @@ pub async fn calls(service: Arc<Service>) -> Result<(Calls, Health), BuildError>
             .register_encoded_file_descriptor_set(tonic_types::pb::FILE_DESCRIPTOR_SET)
             .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
     };
+    let (v1, v1alpha) = (reflection().build_v1()?, reflection().build_v1alpha()?);
     let others = [
         routed(1, health.max_decoding_message_size(NAMES)),
-        routed(2, reflection().build_v1()?.max_decoding_message_size(NAMES)),
-        routed(
-            3,
-            reflection()
-                .build_v1alpha()?
-                .max_decoding_message_size(NAMES),
-        ),
+        routed(2, v1.max_decoding_message_size(NAMES)),
+        routed(3, v1alpha.max_decoding_message_size(NAMES)),
     ];
-    Ok((Calls { service, others }, Health { reporter }))
+    Ok((Calls { service, others }, Health(reporter)))
 }
 
 /// Sets what the standard health service reports.
 #[derive(Clone, Debug)]
-pub struct Health {
-    reporter: HealthReporter,
-}
+pub struct Health(HealthReporter);
 
 impl Health {
     /// Reports from now on whether the service is served.
@@ -101,19 +96,14 @@ impl Health {
             false => tonic_health::ServingStatus::NotServing,
         };
         for service in ["", NAME] {
-            self.reporter.set_service_status(service, state).await;
+            self.0.set_service_status(service, state).await;
         }
     }
 }
 
 /// The answer to a call that is not let in, or that cannot be answered at all.
 pub fn refusal(error: &Error) -> Response {
-    broken(error).into_http::<Body>()
-}
-
-/// An error as what a call ends with.
-pub fn broken(error: &Error) -> Status {
-    status::status(error)
+    status(error).into_http::<Body>()
 }
 
 /// The end of a call whose client broke it off.

@@ -59,9 +59,8 @@ impl Points {
             answer(&caller, decoded).await
         };
         let answered: Result<A, Error> = answered.await;
-        answered
-            .map(Response::new)
-            .map_err(|error| status::status(&error))
+        let response = answered.map(Response::new);
+        response.map_err(|error| status::status(&error))
     }
 
     /// A request with its checked query.

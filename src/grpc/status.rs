@@ -12,7 +12,7 @@ use tonic_types::{ErrorDetails, StatusExt as _};
 const RETRY: Duration = Duration::from_secs(1);
 
 /// An error as a status.
-pub(super) fn status(error: &Error) -> Status {
+pub fn status(error: &Error) -> Status {
     Record::refuse(error.kind());
     let mut details = ErrorDetails::new();
     details.set_error_info(reason(error.kind()), DOMAIN, facts(error));

@@ -93,7 +93,7 @@ impl Dialect {
     /// An error as the reader of the request's body finds it, in the place of the rest.
     pub(super) fn broken(self, error: Error) -> BoxError {
         if self.is_call() {
-            grpc::broken(&error).into()
+            grpc::status(&error).into()
         } else {
             Box::new(error)
         }

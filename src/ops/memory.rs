@@ -1,8 +1,9 @@
 //! The memory that the system allows this process, to which limits are fitted at the start.
 //!
-//! Linux bounds a container by control groups (version 2): each group of the path from the process up to the root may have
-//! a limit, and the least one counts. Inside a container the path may begin at the container's own group or at the root of
-//! the machine, depending on namespaces: `/proc/self/mountinfo` says where the groups that can be seen begin.
+//! Linux bounds a container by control groups, of which there are two versions: each group of the path from the
+//! process up to the root may have a limit, and the least one counts. Inside a container the path may begin at the
+//! container's own group or at the root of the machine, depending on namespaces: `/proc/self/mountinfo` says where the
+//! groups that can be seen begin.
 
 use std::{
     fs,
@@ -18,7 +19,8 @@ struct Memory {
 }
 
 const MACHINE: &str = "the machine";
-const CONTAINER: &str = "the container (cgroup v2)";
+const V1: &str = "the container (cgroup v1)";
+const V2: &str = "the container (cgroup v2)";
 
 /// Lowers the limits of memory to what there is, and logs which ones.
 pub fn fit(config: &mut Config) {
@@ -60,42 +62,64 @@ impl Memory {
     fn of(root: &Path) -> Option<Self> {
         let machine = read(root, "proc/meminfo").and_then(|text| total(&text));
         let machine = machine.map(|bytes| Self { bytes, of: MACHINE });
-        let levels = group(root).into_iter().flat_map(|folder| {
-            let levels = folder.ancestors().map(Path::to_owned);
-            levels
-                .take_while(|level| level.starts_with(root))
-                .collect::<Vec<_>>()
-        });
-        let groups = levels.filter_map(|level| {
-            let text = fs::read_to_string(level.join("memory.max")).ok()?;
-            // It is `max` for no limit.
-            let bytes = text.trim().parse().ok()?;
+        let groups = groups(root).into_iter().filter_map(|(folder, file, of)| {
+            let levels = folder
+                .ancestors()
+                .take_while(|level| level.starts_with(root));
+            let limits = levels.filter_map(|level| {
+                let text = fs::read_to_string(level.join(file)).ok()?;
+                // Version 2 writes `max` for no limit, version 1 a number beyond all memory.
+                text.trim().parse().ok()
+            });
             Some(Self {
-                bytes,
-                of: CONTAINER,
+                bytes: limits.min()?,
+                of,
             })
         });
         groups.chain(machine).min_by_key(|memory| memory.bytes)
     }
 }
 
-fn group(root: &Path) -> Option<PathBuf> {
-    let paths = read(root, "proc/self/cgroup")?;
-    let path = paths.lines().find_map(|line| line.strip_prefix("0::"))?;
-    let mounts = read(root, "proc/self/mountinfo")?;
-    let (begins, place) = mounts.lines().find_map(mount)?;
-    let below = Path::new(path).strip_prefix(begins);
-    let place = root.join(place.strip_prefix('/').unwrap_or(place));
-    Some(place.join(below.unwrap_or(Path::new(""))))
+/// The folders of this process's groups, each with the name of the file of its limit.
+fn groups(root: &Path) -> Vec<(PathBuf, &'static str, &'static str)> {
+    let paths = read(root, "proc/self/cgroup").unwrap_or_default();
+    let mounts = read(root, "proc/self/mountinfo").unwrap_or_default();
+    let mut found = vec![];
+    for line in paths.lines() {
+        // `0::/path` in version 2, `4:memory:/path` in version 1.
+        let mut parts = line.splitn(3, ':').skip(1);
+        let (Some(controllers), Some(path)) = (parts.next(), parts.next()) else {
+            continue;
+        };
+        let (kind, file, of) = match controllers {
+            "" => ("cgroup2", "memory.max", V2),
+            some if has(some, "memory") => ("cgroup", "memory.limit_in_bytes", V1),
+            _ => continue,
+        };
+        let mount = mounts.lines().find_map(|line| mount(line, kind));
+        if let Some((begins, place)) = mount {
+            let below = Path::new(path).strip_prefix(begins);
+            let below = below.unwrap_or(Path::new(""));
+            let place = root.join(place.strip_prefix('/').unwrap_or(place));
+            found.push((place.join(below), file, of));
+        }
+    }
+    found
 }
 
-/// The group that is mounted, and where, if a line of `mountinfo` mounts groups.
-fn mount(line: &str) -> Option<(&str, &str)> {
+fn has(list: &str, name: &str) -> bool {
+    list.split(',').any(|one| one == name)
+}
+
+/// The group that is mounted, and where, if a line of `mountinfo` mounts the groups of memory of a kind.
+fn mount<'a>(line: &'a str, kind: &str) -> Option<(&'a str, &'a str)> {
     let (left, right) = line.split_once(" - ")?;
+    let mut right = right.split(' ');
+    let is_kind = right.next()? == kind;
+    let options = right.nth(1)?;
+    let has_memory = kind == "cgroup2" || has(options, "memory");
     let mut left = left.split(' ').skip(3);
-    right
-        .starts_with("cgroup2 ")
-        .then_some((left.next()?, left.next()?))
+    (is_kind && has_memory).then_some((left.next()?, left.next()?))
 }
 
 fn total(text: &str) -> Option<u64> {
@@ -158,6 +182,23 @@ mod tests {
             ("sys/fs/cgroup/memory.max", "67108864\n"),
         ];
         assert_eq!(memory(&within), Some((64, "the container (cgroup v2)")));
+    }
+
+    #[test]
+    fn a_group_of_version_1_bounds_the_memory() {
+        let mounts = "31 30 0:27 /docker/abc /sys/fs/cgroup/cpu ro - cgroup cgroup rw,cpu\n\
+                      32 30 0:28 /docker/abc /sys/fs/cgroup/memory ro master:9 - cgroup cgroup rw,memory\n\
+                      33 30 0:29 / /sys/fs/cgroup/unified ro - cgroup2 cgroup2 rw\n";
+        let limits = [
+            MACHINE,
+            ("proc/self/mountinfo", mounts),
+            (
+                "proc/self/cgroup",
+                "5:cpu:/docker/abc\n4:memory:/docker/abc\n0::/docker/abc\n",
+            ),
+            ("sys/fs/cgroup/memory/memory.limit_in_bytes", "134217728\n"),
+        ];
+        assert_eq!(memory(&limits), Some((128, "the container (cgroup v1)")));
     }
 
     #[test]
