@@ -32,8 +32,8 @@ pub fn route(path: &str) -> Option<&'static str> {
         let method = method.and_then(|service| path.strip_prefix(service));
         method.is_some_and(|method| !method.is_empty())
     };
-    let any = SERVICES.iter().find(is_of)?;
-    let known = METHODS.iter().find(|known| **known == path);
+    let any = SERVICES.iter().copied().find(is_of)?;
+    let known = METHODS.iter().copied().find(|known| *known == path);
     Some(known.unwrap_or(any))
 }
 
