@@ -9,7 +9,7 @@ use tonic::Status;
 
 use super::status;
 
-const HEADER: &str = "grpc-timeout";
+const HEADER: HeaderName = HeaderName::from_static("grpc-timeout");
 
 /// The form of a timeout.
 const ALLOWED: &str = "1 to 8 digits and a unit: H, M, S, m, u or n";
@@ -27,11 +27,11 @@ impl Deadline {
     /// # Errors
     /// INVALID_ARGUMENT for one that is not written as the protocol does.
     pub fn of(headers: &HeaderMap) -> Result<Option<Self>, Status> {
-        let Some(value) = headers.get(HeaderName::from_static(HEADER)) else {
+        let Some(value) = headers.get(HEADER) else {
             return Ok(None);
         };
         let text = String::from_utf8_lossy(value.as_bytes());
-        let fault = || status::faulty_metadata(HEADER, &text, ALLOWED);
+        let fault = || status::faulty_metadata(HEADER.as_str(), &text, ALLOWED);
         let allowed = read(&text).ok_or_else(fault)?;
         // Beyond what a clock can hold is as good as never.
         let end = Instant::now().checked_add(allowed);

@@ -54,11 +54,11 @@ impl Points {
         answer: impl AsyncFnOnce(&Caller, Decoded<M>) -> Result<A, Error>,
     ) -> Answer<A> {
         let caller = request.extensions_mut().remove().unwrap_or_default();
-        let answered = async {
-            let (decoded, _held) = request.into_inner().decoded(&self.service, &caller).await?;
-            answer(&caller, decoded).await
+        let decoded = request.into_inner().decoded(&self.service, &caller);
+        let answered = match decoded.await {
+            Ok((decoded, _held)) => answer(&caller, decoded).await,
+            Err(error) => Err(error),
         };
-        let answered: Result<A, Error> = answered.await;
         let response = answered.map(Response::new);
         response.map_err(|error| status::status(&error))
     }
