@@ -52,27 +52,28 @@ pub struct QueryVolume {
 }
 
 impl QueryRegion {
-    /// The lower corner of the box around it, and the upper one.
-    fn ends(&self) -> [Vec<f64>; 2] {
+    /// The lower corner of the box around it, and the upper one; in the plane the third coordinates are 0.
+    fn ends(&self) -> [[f64; 3]; 2] {
         match &self.volume {
-            Some(volume) => [volume.bounds.min().into(), volume.bounds.max().into()],
-            None => [self.bounds.min().into(), self.bounds.max().into()],
+            Some(volume) => [volume.bounds.min(), volume.bounds.max()],
+            None => [self.bounds.min(), self.bounds.max()].map(|[x, y]| [x, y, 0.0]),
         }
     }
 
     /// The coordinates of the box around it: the lower corner, then the upper one.
     pub fn corners(&self) -> Vec<f64> {
-        self.ends().concat()
+        let (axes, [min, max]) = (2 + usize::from(self.volume.is_some()), self.ends());
+        [&min[..axes], &max[..axes]].concat()
     }
 
-    fn sides(&self) -> Vec<f64> {
-        let [min, max] = self.ends();
-        min.iter().zip(max).map(|(min, max)| max - min).collect()
+    fn sides(&self) -> impl Iterator<Item = f64> {
+        let (axes, [min, max]) = (2 + usize::from(self.volume.is_some()), self.ends());
+        (0..axes).map(move |axis| max[axis] - min[axis])
     }
 
     /// The area of the box around it, or in space its volume.
     pub fn measure(&self) -> f64 {
-        self.sides().iter().product()
+        self.sides().product()
     }
 
     /// min x, min y, max x, max y of the box around it.
@@ -83,13 +84,10 @@ impl QueryRegion {
 
     /// The largest absolute coordinate of an answer, which a chunk's are not far from.
     pub fn reach(&self) -> f64 {
-        let numbers = match self.corner {
-            Some(_) => self.sides(),
-            None => self.corners(),
-        };
-        numbers
-            .iter()
-            .fold(0.0, |most, number| number.abs().max(most))
+        match self.corner {
+            Some(_) => self.sides().map(f64::abs).fold(0.0, f64::max),
+            None => (self.ends().into_iter().flatten().map(f64::abs)).fold(0.0, f64::max),
+        }
     }
 
     /// The area that lies in both regions.
