@@ -29,7 +29,7 @@ use super::{
 /// The processor time that short work may take in all.
 const SHORT: Duration = Duration::from_millis(50);
 /// How long long work goes on while others wait.
-const LONG: Duration = Duration::from_millis(200);
+const LONG: Duration = Duration::from_millis(10);
 /// Work that may give way looks as often as this whether others wait, and is charged for its time.
 const AGAIN: Duration = Duration::from_millis(5);
 
