@@ -162,80 +162,36 @@ impl Error {
     }
 
     /// The cause, for programs that react to it.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, PointId};
-    ///
-    /// let error = "1:2:3".parse::<PointId>().unwrap_err();
-    /// assert_eq!(error.kind(), ErrorKind::PointId);
-    /// ```
     #[must_use]
     pub fn kind(&self) -> ErrorKind {
         self.0.kind
     }
 
     /// The name of what was wrong: `spacing`, `min_x`, `ring 2`.
-    ///
-    /// ```
-    /// use strew_core::Region;
-    ///
-    /// let error = Region::new([0.0, 0.0], [10.0, -1.0]).unwrap_err();
-    /// assert_eq!(error.field(), "max_y");
-    /// ```
     #[must_use]
     pub fn field(&self) -> &str {
         &self.0.field
     }
 
     /// The value it had, as text. Long texts are cut.
-    ///
-    /// ```
-    /// use strew_core::Keep;
-    ///
-    /// assert_eq!(Keep::new(1.5).unwrap_err().value(), "1.5");
-    /// ```
     #[must_use]
     pub fn value(&self) -> &str {
         &self.0.value
     }
 
     /// The problem with the value; empty where [`allowed`](Self::allowed) says it all.
-    ///
-    /// ```
-    /// use strew_core::{Variants, Warp};
-    ///
-    /// let error = "oak,birch,oak".parse::<Variants>().unwrap_err();
-    /// assert_eq!(error.problem(), "listed twice");
-    /// assert_eq!(Warp::new(3.0).unwrap_err().problem(), "");
-    /// ```
     #[must_use]
     pub fn problem(&self) -> &str {
         &self.0.problem
     }
 
     /// The allowed values: `a number from 1e-100 to 1e100`.
-    ///
-    /// ```
-    /// use strew_core::Warp;
-    ///
-    /// assert_eq!(Warp::new(3.0).unwrap_err().allowed(), "a number from 0 (off) to 2");
-    /// ```
     #[must_use]
     pub fn allowed(&self) -> &str {
         &self.0.allowed
     }
 
     /// The limit as a number, for the [kinds](ErrorKind) that document one.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let rocks = PointSet::new(table).spacing(2.0)?;
-    /// let error = rocks.clone().clear_of(&rocks, 100.0).unwrap_err();
-    /// assert_eq!((error.kind(), error.limit()), (ErrorKind::Clearance, Some(32.0)));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn limit(&self) -> Option<f64> {
         self.0.limit

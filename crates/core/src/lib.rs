@@ -71,6 +71,7 @@ mod parts;
 pub mod pattern;
 mod sample;
 pub mod server;
+mod shape;
 mod sort;
 pub mod space;
 mod stop;
@@ -80,13 +81,13 @@ pub use error::{Error, ErrorKind};
 pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
 pub use sample::{
-    Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column,
-    Cursor, Exact, F32, F64, Field, Format, Keep, Kind, Kinds, LATTICE_LIMIT, LeastDistance,
-    Member, Members, Neighbor, Offsets, Place, Placement, Plan, Point, PointId, PointSet, Points,
-    Polygon, Raster, Region, ScaleRange, Seed, Settle, Spacing, Tile, UniformNumber, VariantScales,
-    Variants, VaryingKinds, Warp,
+    Attribute, Attributes, Backend, Blocks, BoundAttributes, Clearance, Column, Cursor, Exact, F32,
+    F64, Field, Format, Keep, Kind, Kinds, LATTICE_LIMIT, LeastDistance, Member, Members, Neighbor,
+    Offsets, Place, Placement, Plan, Point, PointId, PointSet, Points, Raster, ScaleRange, Seed,
+    Settle, Spacing, Tile, UniformNumber, VariantScales, Variants, VaryingKinds, Warp,
 };
 pub use sample::{PeriodicBlocks, PeriodicPlan, PeriodicSet};
+pub use shape::{Area, Circle, Polygon, Region, Shape};
 pub use table::Table;
 
 /// The version of the algorithm that turns a table, a density, a seed and a lattice address into a point,

@@ -53,12 +53,6 @@ impl Stop {
     pub const NEVER: Self = Self { flag: None };
 
     /// A flag that is not raised and can be.
-    ///
-    /// ```
-    /// use strew_core::server::Stop;
-    ///
-    /// assert!(!Stop::new().is_raised());
-    /// ```
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -93,15 +87,6 @@ impl Stop {
     }
 
     /// Raises the flag and all its clones. Does nothing to the default one.
-    ///
-    /// ```
-    /// use strew_core::server::Stop;
-    ///
-    /// let (stop, never) = (Stop::new(), Stop::default());
-    /// stop.raise();
-    /// never.raise();
-    /// assert!(stop.is_raised() && !never.is_raised());
-    /// ```
     pub fn raise(&self) {
         if let Some(flag) = &self.flag {
             flag.is_raised.store(true, Ordering::Relaxed);
@@ -115,20 +100,6 @@ impl Stop {
     }
 
     /// Whether the flag is raised.
-    ///
-    /// ```
-    /// use strew_core::server::Stop;
-    ///
-    /// let stop = Stop::new();
-    /// let mut steps = 0;
-    /// while !stop.is_raised() {
-    ///     steps += 1;
-    ///     if steps == 3 {
-    ///         stop.raise();
-    ///     }
-    /// }
-    /// assert_eq!(steps, 3);
-    /// ```
     #[must_use]
     pub fn is_raised(&self) -> bool {
         self.flag.as_ref().is_some_and(|flag| {

@@ -65,14 +65,6 @@ impl Clusters {
     /// # Errors
     /// [`ErrorKind::Clusters`] if `distance` is out of range, unless 1 ≤ `most` ≤ [`MAX_POINTS`](Self::MAX_POINTS), and
     /// if clusters of that number of points reach farther than a map of half-width [`MAX_RADIUS`](super::MAX_RADIUS).
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, map::Clusters};
-    ///
-    /// let error = Clusters::new("sqrt(3)".parse()?, 0.5, 16).unwrap_err();
-    /// assert_eq!((error.kind(), error.field()), (ErrorKind::Clusters, "distance"));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(alpha: Alpha, distance: f64, most: usize) -> Result<Self, Error> {
         Self::until(alpha, distance, most, &Stop::default())
     }
@@ -187,43 +179,18 @@ impl Clusters {
 
     /// The shapes of at most [`most`](Self::most) points, by the number of their points and then by density,
     /// densest first. Shapes of one [class](Shape::class) follow one another.
-    ///
-    /// ```
-    /// use strew_core::map::Clusters;
-    ///
-    /// let clusters = Clusters::new("(5-sqrt(3))/2".parse()?, 2.3, 16)?;
-    /// assert!(clusters.shapes().is_sorted_by_key(|shape| shape.points().len()));
-    /// assert!(clusters.shapes().is_sorted_by_key(|shape| shape.class()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn shapes(&self) -> &[Shape] {
         &self.shapes
     }
 
     /// The number of shapes up to the symmetries of the square.
-    ///
-    /// ```
-    /// use strew_core::map::Clusters;
-    ///
-    /// // Single points, pairs along x, pairs along y, and squares.
-    /// let clusters = Clusters::new("sqrt(3)".parse()?, 2.0, 16)?;
-    /// assert_eq!((clusters.shapes().len(), clusters.classes()), (4, 3));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn classes(&self) -> usize {
         self.classes
     }
 
     /// The largest size of clusters that are distinguished, in points.
-    ///
-    /// ```
-    /// use strew_core::map::Clusters;
-    ///
-    /// assert_eq!(Clusters::new("(5-sqrt(3))/2".parse()?, 2.3, 16)?.most(), 16);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn most(&self) -> usize {
         self.most
@@ -231,13 +198,6 @@ impl Clusters {
 
     /// The share of points in clusters of more than [`most`](Self::most) points, from 0 to 1. It is 1 where
     /// the neighbor distance joins the whole pattern.
-    ///
-    /// ```
-    /// use strew_core::map::Clusters;
-    ///
-    /// assert_eq!(Clusters::new("(5-sqrt(3))/2".parse()?, 12.0, 16)?.larger_share(), 1.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn larger_share(&self) -> f64 {
         let side = u128::from(self.map.alpha().set_side());
@@ -247,15 +207,6 @@ impl Clusters {
     }
 
     /// The map that separates the shapes: each block belongs to one shape.
-    ///
-    /// ```
-    /// use strew_core::map::Clusters;
-    ///
-    /// let clusters = Clusters::new("(5-sqrt(3))/2".parse()?, 2.3, 16)?;
-    /// let n = clusters.map().intervals();
-    /// assert!(clusters.shape_of([n / 2, n / 2]).is_some_and(|shape| shape < clusters.shapes().len()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn map(&self) -> &Map {
         &self.map

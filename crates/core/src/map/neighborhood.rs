@@ -41,15 +41,6 @@ impl Map {
     ///
     /// # Errors
     /// [`ErrorKind::MapSize`](crate::ErrorKind::MapSize) if `radius` is greater than [`MAX_RADIUS`](super::MAX_RADIUS).
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, Map};
-    ///
-    /// let map = Map::new("sqrt(3)".parse()?, 49)?;
-    /// assert_eq!(map.intervals(), 73);
-    /// assert_eq!(Map::new(map.alpha(), 5000).unwrap_err().kind(), ErrorKind::MapSize);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(alpha: Alpha, radius: u32) -> Result<Self, Error> {
         check_radius(radius)?;
         let side = alpha.set_side();
@@ -76,72 +67,30 @@ impl Map {
     }
 
     /// The α of the pattern.
-    ///
-    /// ```
-    /// use strew_core::Map;
-    ///
-    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
-    /// assert_eq!(map.alpha().to_string(), "(5-sqrt(3))/2");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn alpha(&self) -> Alpha {
         self.alpha
     }
 
     /// The half-width as a named size.
-    ///
-    /// ```
-    /// use strew_core::{Map, map::Size};
-    ///
-    /// assert_eq!(Map::new("sqrt(3)".parse()?, 49)?.size(), Size::S);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn size(&self) -> Size {
         Size::of_radius(self.radius)
     }
 
     /// The half-width R, in grid units.
-    ///
-    /// ```
-    /// use strew_core::Map;
-    ///
-    /// assert_eq!(Map::new("sqrt(3)".parse()?, 49)?.radius(), 49);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn radius(&self) -> u32 {
         self.radius
     }
 
     /// n, the number of intervals per axis.
-    ///
-    /// ```
-    /// use strew_core::Map;
-    ///
-    /// // n grows in proportion to R: about 1.27·R for this α.
-    /// let alpha = "(5-sqrt(3))/2".parse()?;
-    /// for (radius, intervals) in [(20, 27), (49, 63), (100, 129), (200, 255)] {
-    ///     assert_eq!(Map::new(alpha, radius)?.intervals(), intervals);
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn intervals(&self) -> usize {
         self.bounds.len() - 1
     }
 
     /// The n − 1 thresholds inside (0, t), ascending, in units of 2⁻⁶⁴.
-    ///
-    /// ```
-    /// use strew_core::Map;
-    ///
-    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
-    /// assert_eq!(map.thresholds().len(), 62);
-    /// assert!(map.thresholds().is_sorted());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn thresholds(&self) -> &[u64] {
         &self.bounds[1..self.bounds.len() - 1]
@@ -204,18 +153,6 @@ impl Map {
     ///
     /// # Errors
     /// [`ErrorKind::MapSize`](crate::ErrorKind::MapSize) if `radius` is greater than [`MAX_RADIUS`](super::MAX_RADIUS).
-    ///
-    /// ```
-    /// use strew_core::Map;
-    ///
-    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
-    /// let (finer, parents) = map.refine(100)?;
-    /// for (i, &parent) in parents.iter().enumerate() {
-    ///     let (part, whole) = (finer.interval(i), map.interval(parent));
-    ///     assert!(whole.start <= part.start && part.end <= whole.end);
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn refine(&self, radius: u32) -> Result<(Self, Vec<usize>), Error> {
         let finer = Self::new(self.alpha, radius.max(self.radius))?;
         let parents = finer.bounds[..finer.intervals()]

@@ -37,31 +37,12 @@ impl Shape {
     }
 
     /// The points of a cluster, row by row, from its first.
-    ///
-    /// ```
-    /// use strew_core::map::Clusters;
-    ///
-    /// let clusters = Clusters::new("(5-sqrt(3))/2".parse()?, 2.3, 16)?;
-    /// assert!(clusters.shapes().iter().all(|shape| shape.points().is_sorted_by_key(|&(x, y)| (y, x))));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn points(&self) -> &[(i64, i64)] {
         &self.points
     }
 
     /// The number of the shape's class under the eight symmetries of the square, from 0.
-    ///
-    /// ```
-    /// use strew_core::map::Clusters;
-    ///
-    /// let clusters = Clusters::new("(5-sqrt(3))/2".parse()?, 2.3, 16)?;
-    /// // The pattern has these symmetries, so shapes of one class have the same density.
-    /// for pair in clusters.shapes().windows(2).filter(|pair| pair[0].class() == pair[1].class()) {
-    ///     assert_eq!(pair[0].area(), pair[1].area());
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn class(&self) -> usize {
         self.class
@@ -69,32 +50,12 @@ impl Shape {
 
     /// The number of clusters of this shape for each grid point of the plane, times 2¹²⁸: the area of
     /// index space that holds their first points, exactly.
-    ///
-    /// ```
-    /// use strew_core::map::Clusters;
-    ///
-    /// let clusters = Clusters::new("(5-sqrt(3))/2".parse()?, 2.3, 16)?;
-    /// for shape in clusters.shapes() {
-    ///     // The points of a cluster also occur as parts of larger ones.
-    ///     assert!(shape.area() <= shape.arrangement().area());
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn area(&self) -> u128 {
         self.area
     }
 
     /// The number of clusters of this shape for each grid point of the plane.
-    ///
-    /// ```
-    /// use strew_core::map::Clusters;
-    ///
-    /// let clusters = Clusters::new("1.75".parse()?, 1.0, 4)?;
-    /// // No two points are side by side, so all clusters are single points: (3/8)² of the grid.
-    /// assert_eq!(clusters.shapes()[0].density(), 9.0 / 64.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn density(&self) -> f64 {
         const UNIT: f64 = 1.0 / 18_446_744_073_709_551_616.0;
@@ -102,14 +63,6 @@ impl Shape {
     }
 
     /// The share of the pattern's points that belong to clusters of this shape, from 0 to 1.
-    ///
-    /// ```
-    /// use strew_core::map::Clusters;
-    ///
-    /// let clusters = Clusters::new("1.75".parse()?, 1.0, 4)?;
-    /// assert_eq!(clusters.shapes()[0].share_of_points(), 1.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn share_of_points(&self) -> f64 {
         let side = u128::from(self.alpha.set_side());

@@ -55,25 +55,12 @@ impl Size {
     pub const L: Self = Self(200);
 
     /// The size of a map of half-width R, in grid units. Values above [`MAX_RADIUS`] have a size but no map.
-    ///
-    /// ```
-    /// use strew_core::map::Size;
-    ///
-    /// assert_eq!(Size::of_radius(49), Size::S);
-    /// assert_eq!(Size::of_radius(50).to_string(), "r50");
-    /// ```
     #[must_use]
     pub const fn of_radius(radius: u32) -> Self {
         Self(radius)
     }
 
     /// The half-width R, in grid units.
-    ///
-    /// ```
-    /// use strew_core::map::Size;
-    ///
-    /// assert_eq!([Size::S, Size::M, Size::L].map(Size::radius), [49, 100, 200]);
-    /// ```
     #[must_use]
     pub const fn radius(self) -> u32 {
         self.0

@@ -27,14 +27,6 @@ pub(super) const MAX_Q: u64 = 1 << 24;
 
 impl Twin {
     /// The twin p/q, or `None` unless q < p < 2q, p and q have no common factor, and q ≤ 2²⁴.
-    ///
-    /// ```
-    /// use strew_core::map::Twin;
-    ///
-    /// assert!(Twin::new(7, 4).is_some());
-    /// // A common factor, and ratios of 2 and above.
-    /// assert_eq!([Twin::new(14, 8), Twin::new(8, 4), Twin::new(9, 4)], [None; 3]);
-    /// ```
     #[must_use]
     pub fn new(p: u64, q: u64) -> Option<Self> {
         let coprime = |mut a: u64, mut b: u64| {
@@ -47,84 +39,36 @@ impl Twin {
     }
 
     /// The numerator of α' = p/q.
-    ///
-    /// ```
-    /// use strew_core::map::Twin;
-    ///
-    /// assert_eq!(Twin::new(183, 112).map(Twin::p), Some(183));
-    /// ```
     #[must_use]
     pub const fn p(self) -> u64 {
         self.p
     }
 
     /// The denominator of α' = p/q.
-    ///
-    /// ```
-    /// use strew_core::map::Twin;
-    ///
-    /// assert_eq!(Twin::new(183, 112).map(Twin::q), Some(112));
-    /// ```
     #[must_use]
     pub const fn q(self) -> u64 {
         self.q
     }
 
     /// t = p − q: the side of the set region in units of 1/(2q).
-    ///
-    /// ```
-    /// use strew_core::map::Twin;
-    ///
-    /// assert_eq!(Twin::new(183, 112).map(Twin::t), Some(71));
-    /// ```
     #[must_use]
     pub const fn t(self) -> u64 {
         self.p - self.q
     }
 
     /// r = 2q − p. A twin is often named by t/r.
-    ///
-    /// ```
-    /// use strew_core::map::Twin;
-    ///
-    /// let twin = Twin::new(183, 112).expect("reduced and between 1 and 2");
-    /// assert_eq!(twin.r(), 41);
-    /// // α = (5−√3)/2 has t/r = √3.
-    /// assert!((twin.t() as f64 / twin.r() as f64 - 3f64.sqrt()).abs() < 4e-4);
-    /// ```
     #[must_use]
     pub const fn r(self) -> u64 {
         2 * self.q - self.p
     }
 
     /// The period along both axes, in grid units.
-    ///
-    /// ```
-    /// use strew_core::{Alpha, Pattern, map::Twin};
-    ///
-    /// let twin = Twin::new(7, 4).expect("reduced and between 1 and 2");
-    /// let pattern = Pattern::new(Alpha::from_fraction(twin.p(), twin.q())?);
-    /// let period = twin.period() as i64;
-    /// for x in 0..period {
-    ///     assert_eq!(pattern.contains(x, 1), pattern.contains(x + period, 1 - period));
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn period(self) -> u64 {
         2 * self.q
     }
 
     /// The number of points in a period.
-    ///
-    /// ```
-    /// use strew_core::{Alpha, Pattern, map::Twin};
-    ///
-    /// let twin = Twin::new(7, 4).expect("reduced and between 1 and 2");
-    /// let pattern = Pattern::new(Alpha::from_fraction(twin.p(), twin.q())?);
-    /// assert_eq!(pattern.count(0..8, 0..8), u128::from(twin.points()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn points(self) -> u64 {
         self.t() * self.t()
@@ -133,13 +77,6 @@ impl Twin {
     /// Whether every block holds points in proportion to its area: true if p and q differ in parity,
     /// as the period's grid points then have each index pair once. With both odd, dX and dY always
     /// have the same parity, and a block of one unit may be empty.
-    ///
-    /// ```
-    /// use strew_core::map::Twin;
-    ///
-    /// assert_eq!(Twin::new(183, 112).map(Twin::is_uniform), Some(true));
-    /// assert_eq!(Twin::new(5, 3).map(Twin::is_uniform), Some(false));
-    /// ```
     #[must_use]
     pub const fn is_uniform(self) -> bool {
         (self.p + self.q) % 2 == 1

@@ -33,70 +33,30 @@ const ALLOWED: &str = "a decimal (1.75), a fraction (183/112) or a quadratic irr
 
 impl Alpha {
     /// α/2 in units of 2⁻⁶⁴: the step of the index torus along an axis. Its top bit is set.
-    ///
-    /// ```
-    /// use strew_core::Alpha;
-    ///
-    /// let alpha: Alpha = "1.5".parse()?;
-    /// assert_eq!(alpha.half(), 3 << 62);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn half(self) -> u64 {
         self.half
     }
 
     /// t = (α − 1)/2 in units of 2⁻⁶⁴: the side of the set region.
-    ///
-    /// ```
-    /// use strew_core::Alpha;
-    ///
-    /// let alpha: Alpha = "1.5".parse()?;
-    /// assert_eq!(alpha.set_side(), 1 << 62);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn set_side(self) -> u64 {
         self.half - (1 << 63)
     }
 
     /// The nearest `f64` to the fixed-point α.
-    ///
-    /// ```
-    /// use strew_core::Alpha;
-    ///
-    /// assert_eq!("7/4".parse::<Alpha>()?.to_f64(), 1.75);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn to_f64(self) -> f64 {
         self.half as f64 * (1.0 / (1u64 << 63) as f64)
     }
 
     /// The nearest `f64` to the fixed-point t.
-    ///
-    /// ```
-    /// use strew_core::Alpha;
-    ///
-    /// // t² is the density of the pattern in the grid, so its mean spacing is 1/t grid units.
-    /// let alpha: Alpha = "1.5".parse()?;
-    /// assert_eq!(alpha.set_side_f64(), 0.25);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn set_side_f64(self) -> f64 {
         self.set_side() as f64 * (0.5 / (1u64 << 63) as f64)
     }
 
     /// p and q if α is the fraction p/q, reduced; `None` if it is irrational.
-    ///
-    /// ```
-    /// use strew_core::Alpha;
-    ///
-    /// assert_eq!("1.9".parse::<Alpha>()?.fraction(), Some((19, 10)));
-    /// assert_eq!("sqrt(3)".parse::<Alpha>()?.fraction(), None);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn fraction(self) -> Option<(u64, u64)> {
         self.exact.fraction()

@@ -54,15 +54,6 @@ impl Arrangement {
     /// # Errors
     /// [`ErrorKind::Arrangement`] for more than [`MAX_OFFSETS`](Self::MAX_OFFSETS) offsets, and for one
     /// beyond ±[`MAX_OFFSET`](Self::MAX_OFFSET), whose position is in the [field](Error::field).
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, Pattern, pattern::Arrangement};
-    ///
-    /// let pattern = Pattern::new("1.6".parse()?);
-    /// let error = Arrangement::new(pattern, &[(2, 0), (0, i64::MAX)]).unwrap_err();
-    /// assert_eq!((error.kind(), error.field()), (ErrorKind::Arrangement, "offsets[1]"));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(pattern: Pattern, offsets: &[(i64, i64)]) -> Result<Self, Error> {
         if offsets.len() > Self::MAX_OFFSETS {
             let value = alloc::format!("a list of {}", offsets.len());
@@ -97,28 +88,12 @@ impl Arrangement {
     }
 
     /// The pattern in which the arrangement is seen.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::Arrangement};
-    ///
-    /// let pattern = Pattern::new("1.6".parse()?);
-    /// assert_eq!(Arrangement::new(pattern, &[])?.pattern(), pattern);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn pattern(&self) -> Pattern {
         self.pattern
     }
 
     /// The offsets, as they were listed.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::Arrangement};
-    ///
-    /// let pair = Arrangement::new(Pattern::new("1.6".parse()?), &[(2, 0)])?;
-    /// assert_eq!(pair.offsets(), [(2, 0)]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn offsets(&self) -> &[(i64, i64)] {
         &self.offsets
@@ -126,15 +101,6 @@ impl Arrangement {
 
     /// The shift of each offset in index space: how far its point lies from p there, in units of 2⁻⁶⁴, from
     /// −½ to ½.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::Arrangement};
-    ///
-    /// // At α = 1.5 a step of 2 along x moves dX by −½ and leaves dY.
-    /// let pair = Arrangement::new(Pattern::new("1.5".parse()?), &[(2, 0)])?;
-    /// assert_eq!(pair.shifts().collect::<Vec<_>>(), [[i64::MIN, 0]]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn shifts(&self) -> impl Iterator<Item = [i64; 2]> {
         self.offsets.iter().map(|&o| shift(self.pattern, o))
     }
@@ -178,15 +144,6 @@ impl Arrangement {
     }
 
     /// Whether the arrangement occurs anywhere, which it does iff its image fits the set region.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::Arrangement};
-    ///
-    /// let pattern = Pattern::new("1.75".parse()?);
-    /// assert!(Arrangement::new(pattern, &[(2, 0)])?.exists());
-    /// assert!(!Arrangement::new(pattern, &[(2, 0), (-2, 0)])?.exists());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn exists(&self) -> bool {
         self.margin().is_some()
@@ -194,15 +151,6 @@ impl Arrangement {
 
     /// The number of occurrences for each grid point of the plane, times 2¹²⁸: the area of the margin,
     /// exactly.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::Arrangement};
-    ///
-    /// let pair = Arrangement::new(Pattern::new("1.75".parse()?), &[(2, 0)])?;
-    /// // 1/8 · 3/8
-    /// assert_eq!(pair.area(), 3 << 122);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn area(&self) -> u128 {
         self.margin().map_or(0, |[x, y]| {
@@ -211,14 +159,6 @@ impl Arrangement {
     }
 
     /// The number of occurrences for each grid point of the plane: [`area`](Self::area) as the nearest `f64`.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::Arrangement};
-    ///
-    /// let pair = Arrangement::new(Pattern::new("1.75".parse()?), &[(2, 0)])?;
-    /// assert_eq!(pair.density(), 3.0 / 64.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn density(&self) -> f64 {
         const UNIT: f64 = 1.0 / 18_446_744_073_709_551_616.0;
@@ -226,15 +166,6 @@ impl Arrangement {
     }
 
     /// The share of points at which the arrangement occurs, from 0 to 1.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::Arrangement};
-    ///
-    /// let pattern = Pattern::new("1.75".parse()?);
-    /// assert_eq!(Arrangement::new(pattern, &[])?.frequency(), 1.0);
-    /// assert_eq!(Arrangement::new(pattern, &[(2, 0)])?.frequency(), 1.0 / 3.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn frequency(&self) -> f64 {
         let side = self.pattern.alpha().set_side();
@@ -270,14 +201,6 @@ impl Arrangement {
 
     /// The number of occurrences at the places of a box of the grid, exactly: eight floor sums, whatever the
     /// size of the box. An inverted range is empty.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::Arrangement};
-    ///
-    /// let pair = Arrangement::new(Pattern::new("1.75".parse()?), &[(2, 0)])?;
-    /// assert_eq!(pair.count(0..1 << 40, 0..1 << 40), 3 << 74);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn count(&self, x: Range<i64>, y: Range<i64>) -> u128 {
         let of_class = |class| {

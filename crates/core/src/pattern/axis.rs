@@ -59,12 +59,6 @@ impl Class {
     ];
 
     /// The class of a lattice address.
-    ///
-    /// ```
-    /// use strew_core::pattern::Class;
-    ///
-    /// assert_eq!(Class::of(-3, 8), Class { x: 1, y: 0 });
-    /// ```
     #[must_use]
     pub const fn of(x: i64, y: i64) -> Self {
         Self {
@@ -74,12 +68,6 @@ impl Class {
     }
 
     /// The position in [`Class::ALL`].
-    ///
-    /// ```
-    /// use strew_core::pattern::Class;
-    ///
-    /// assert!(Class::ALL.iter().enumerate().all(|(i, class)| class.ordinal() == i));
-    /// ```
     #[must_use]
     pub const fn ordinal(self) -> usize {
         self.x as usize + 2 * self.y as usize
@@ -176,17 +164,6 @@ impl AxisSet {
     }
 
     /// The number of members in `range`: a floor sum, O(log).
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::{Axis, Class}};
-    ///
-    /// let pattern = Pattern::new("sqrt(3)".parse()?);
-    /// let columns = pattern.axis_set(Axis::X, Class { x: 0, y: 0 });
-    /// // Half of the coordinates are even, and a share t of these belong to the set.
-    /// let count = columns.count(0..1_000_000_000_000);
-    /// assert!((count as f64 / 5e11 - pattern.alpha().set_side_f64()).abs() < 1e-10);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn count(&self, range: Range<i64>) -> u64 {
         let candidates = self.candidates(&range);
@@ -218,16 +195,6 @@ impl AxisSet {
 
     /// Member number `k` (from 0) among those ≥ `from`, or `None` if `i64` holds fewer. A bisection on
     /// [`count`](Self::count).
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::{Axis, Class}};
-    ///
-    /// let columns = Pattern::new("sqrt(3)".parse()?).axis_set(Axis::X, Class { x: 0, y: 0 });
-    /// let at = columns.select(0, 1_000_000).expect("far from the end");
-    /// assert!(columns.contains(at));
-    /// assert_eq!(columns.count(0..at), 1_000_000);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn select(&self, from: i64, k: u64) -> Option<i64> {
         let need = k.checked_add(1)?;
@@ -270,15 +237,6 @@ impl AxisSet {
 
     /// The members in `range`, ascending. Each step costs a comparison: a rotation returns to an
     /// interval after one of at most three gaps (the three-gap theorem).
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::{Axis, Class}};
-    ///
-    /// let columns = Pattern::new("sqrt(3)".parse()?).axis_set(Axis::X, Class { x: 0, y: 0 });
-    /// let by_test = (-50..50).filter(|&v| columns.contains(v));
-    /// assert!(columns.iter(-50..50).eq(by_test));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn iter(&self, range: Range<i64>) -> impl Iterator<Item = i64> + use<> {
         let (set, gaps) = (*self, Gaps::new(self.step(), self.width));
         let mut next = set.first(range.start).filter(|&v| v < range.end);

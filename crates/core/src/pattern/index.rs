@@ -63,15 +63,6 @@ pub struct Pattern {
 
 impl Pattern {
     /// The pattern whose lattice origin has the index (0, 0).
-    ///
-    /// ```
-    /// use strew_core::Pattern;
-    ///
-    /// let pattern = Pattern::new("sqrt(3)".parse()?);
-    /// assert_eq!(pattern.index(0, 0), (0, 0));
-    /// assert!(pattern.contains(0, 0));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn new(alpha: Alpha) -> Self {
         Self::with_origin(alpha, IndexOrigin { x: 0, y: 0 })
@@ -94,13 +85,6 @@ impl Pattern {
     }
 
     /// The number α.
-    ///
-    /// ```
-    /// use strew_core::Pattern;
-    ///
-    /// assert_eq!(Pattern::new("sqrt(3)".parse()?).alpha().to_string(), "sqrt(3)");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn alpha(&self) -> Alpha {
         self.alpha
@@ -147,18 +131,6 @@ impl Pattern {
     }
 
     /// Whether a lattice point belongs to the pattern: dX < t and dY < t (paper, Eq. 4).
-    ///
-    /// ```
-    /// use strew_core::Pattern;
-    ///
-    /// let pattern = Pattern::new("sqrt(3)".parse()?);
-    /// let mark = |x, y| if pattern.contains(x, y) { 'o' } else { '.' };
-    /// let row = |y| (0..16).map(|x| mark(x, y)).collect::<String>();
-    /// assert_eq!(row(2), ".....o.o.....o..");
-    /// assert_eq!(row(4), "................");
-    /// assert_eq!(row(6), "o.....o.......o.");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn contains(&self, x: i64, y: i64) -> bool {
         let (index_x, index_y) = self.index(x, y);
@@ -246,15 +218,6 @@ impl Pattern {
     }
 
     /// The number of points in a half-open lattice box, in O(log).
-    ///
-    /// ```
-    /// use strew_core::Pattern;
-    ///
-    /// let pattern = Pattern::new("sqrt(3)".parse()?);
-    /// let row = |y| (0..50).filter(|&x| pattern.contains(x, y)).count() as u128;
-    /// assert_eq!(pattern.count(0..50, 0..20), (0..20).map(row).sum::<u128>());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn count(&self, x: Range<i64>, y: Range<i64>) -> u128 {
         Class::ALL

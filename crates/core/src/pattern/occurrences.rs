@@ -15,15 +15,6 @@ impl Arrangement {
     /// The places of a box of the grid at which the arrangement occurs, in the order in which the sampler
     /// lists points: bands of 1024 columns that begin at multiples of 1024, ascending; in a band, rows; in
     /// a row, columns. Bands without occurrences are skipped.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::Arrangement};
-    ///
-    /// let pair = Arrangement::new(Pattern::new("1.75".parse()?), &[(2, 0)])?;
-    /// let listed = pair.occurrences(-70..50, 0..90).count();
-    /// assert_eq!(listed as u128, pair.count(-70..50, 0..90));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn occurrences(
         &self,
         x: Range<i64>,

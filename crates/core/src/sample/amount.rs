@@ -3,13 +3,13 @@
 use alloc::collections::VecDeque;
 
 use super::{
-    area::{Area, Region},
     lattice::{Grade, Lattice, Placement, Spacing},
     near::Mask,
     plan::Plan,
 };
 use crate::{
     error::{Error, ErrorKind, number},
+    shape::{Area, Region},
     stop::Stop,
 };
 

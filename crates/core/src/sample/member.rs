@@ -45,48 +45,18 @@ impl Member {
     }
 
     /// The stable id, which finds the point again in the same set.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).seed(7);
-    /// let member = set.nearest([10.0, 3.0], 1)?[0].member;
-    /// assert_eq!(set.point(member.id()), Some(member));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn id(&self) -> PointId {
         self.point.id
     }
 
     /// The place, in world coordinates.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Region, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let chunk = Region::chunk(64.0, [3, -2])?;
-    /// let set = PointSet::new(table);
-    /// assert!(set.within(chunk)?.iter().all(|member| chunk.contains(member.at())));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn at(&self) -> [f64; 2] {
         self.point.at()
     }
 
     /// Id and coordinates.
-    ///
-    /// ```
-    /// use strew_core::{Point, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).chunk(10.0, [0, 0])?;
-    /// let points: Vec<Point> = plan.iter().map(|member| member.point()).collect();
-    /// assert_eq!(points, plan.to_vec());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn point(&self) -> Point {
         self.point
@@ -111,18 +81,6 @@ impl Member {
 
     /// The attribute `scale`: a factor, uniform in a range, both ends included. An empty range returns its
     /// end.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).seed(7);
-    /// let member = set.nearest([10.0, 3.0], 1)?[0].member;
-    /// // The place in the range is the point's own, whatever the range.
-    /// let (half, whole) = (member.scale(0.0..=0.5), member.scale(0.0..=1.0));
-    /// assert_eq!(2.0 * half, whole);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn scale(&self, range: RangeInclusive<f64>) -> f64 {
         between(*range.start(), *range.end(), self.hash(Attribute::SCALE))
@@ -130,18 +88,6 @@ impl Member {
 
     /// The attribute `variant`: the name of one of several things, chosen with a probability in proportion
     /// to its weight.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table, Variants};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).seed(7);
-    /// let kinds: Variants = "oak:3,birch:1".parse()?;
-    /// let trees = set.chunk(100.0, [0, 0])?;
-    /// let oaks = trees.iter().filter(|tree| tree.variant(&kinds) == "oak").count();
-    /// assert!((0.74..0.76).contains(&(oaks as f64 / trees.count() as f64)));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn variant<'v>(&self, variants: &'v Variants) -> &'v str {
         let index = variants.pick(self.hash(Attribute::VARIANT));

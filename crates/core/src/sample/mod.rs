@@ -4,7 +4,7 @@
 //!
 //! 1. `seed` and `warp`: which piece of the pattern, and how the plane is sheared;
 //! 2. `lattice`: which addresses have points, and where in the world these are;
-//! 3. `area` and `near`: the parts of the plane in which points are requested, and the points near a place;
+//! 3. `near`: the points near a place (the parts of the plane in which points are requested are in `shape`);
 //! 4. `settle`: where points end that settle; `sieve` and `scope`: what the points of a request satisfy;
 //! 5. `count`: how many there are, without making them;
 //! 6. `kernel` and `walk`: making them, row by row, in blocks;
@@ -15,7 +15,6 @@
 //! 11. `periodic`: one exact period of a set that tiles the plane.
 
 mod amount;
-mod area;
 mod attribute;
 mod count;
 mod cursor;
@@ -54,7 +53,6 @@ pub(crate) mod space {
 }
 
 pub use crate::stop::Stop;
-pub use area::{Area, Circle, Polygon, Region};
 pub use attribute::{
     Attribute, Attributes, BoundAttributes, Column, Kinds, ScaleRange, UniformNumber,
     VariantScales, Variants,

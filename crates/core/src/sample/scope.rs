@@ -1,10 +1,8 @@
 //! Scopes: the part of a lattice that a plan covers.
 
-use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::{
-    area::{Area, CORNERS, Chunk, Region},
     field::constant,
     lattice::{BAND_WIDTH, LATTICE_LIMIT, Lattice, Multiple, Span},
     near::Mask,
@@ -13,6 +11,7 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorKind, exponential, number},
+    shape::{Area, Chunk, Region},
     stop::Stop,
 };
 
@@ -71,7 +70,7 @@ impl Corner {
     }
 
     /// The exact corner of a chunk.
-    fn of_chunk(lattice: &Lattice, Chunk { size, at }: Chunk) -> Self {
+    fn of_chunk(lattice: &Lattice, Chunk { size, at }: Chunk<2>) -> Self {
         let multiples = at.map(|index| Multiple::new(lattice.step, size, index));
         Self {
             at: at.map(|index| index as f64 * size),
@@ -84,7 +83,7 @@ impl Corner {
 
 /// The fixed-point coordinates of the points of an area along both axes: of its chunks exactly, of
 /// everything else by the reported coordinates. The bounds of the area are within the lattice's limit.
-fn bounds(lattice: &Lattice, chunks: &[Chunk], rest: Option<&Area>) -> [Range<i128>; 2] {
+fn bounds(lattice: &Lattice, chunks: &[Chunk<2>], rest: Option<&Area>) -> [Range<i128>; 2] {
     let common = |a: Range<i128>, b: Range<i128>| a.start.max(b.start)..a.end.min(b.end);
     let of_box = rest.and_then(Area::bounds).map(|region| {
         let side = |i: usize| {
@@ -107,34 +106,7 @@ fn bounds(lattice: &Lattice, chunks: &[Chunk], rest: Option<&Area>) -> [Range<i1
     all.unwrap_or([0..0, 0..0])
 }
 
-/// The chunks of which an area is the intersection with [`beside_chunks`]. Membership of a chunk is exact, which
-/// reported coordinates cannot decide, so integers decide these and coordinates the rest.
-fn chunks(area: &Area) -> Vec<Chunk> {
-    match area {
-        Area::Region(region) => region.as_chunk().into_iter().collect(),
-        Area::AllOf(areas) => areas.iter().flat_map(chunks).collect(),
-        _ => Vec::new(),
-    }
-}
-
-/// The area without the restriction to its [`chunks`]; `None` if nothing else restricts
-/// it.
-fn beside_chunks(area: &Area) -> Option<Area> {
-    match area {
-        Area::Region(region) if region.as_chunk().is_some() => None,
-        Area::AllOf(areas) => {
-            let mut rest: Vec<Area> = areas.iter().filter_map(beside_chunks).collect();
-            if rest.len() > 1 {
-                Some(Area::AllOf(rest))
-            } else {
-                rest.pop()
-            }
-        }
-        other => Some(other.clone()),
-    }
-}
-
-/// The area with its [`chunks`] as boxes that hold every point of them by its reported
+/// The area with its [chunks](Area::chunks) as boxes that hold every point of them by its reported
 /// coordinates, and a little more.
 fn around_chunks(area: &Area) -> Area {
     match area {
@@ -178,8 +150,7 @@ impl Scope {
             Error::new(ErrorKind::Unbounded, field, value, "within a box")
         })?;
         let limit = lattice.limit();
-        let ([min_x, min_y], [max_x, max_y]) = (region.min(), region.max());
-        for (name, value) in CORNERS.into_iter().zip([min_x, min_y, max_x, max_y]) {
+        for (name, value) in region.bounds() {
             if value.abs() > limit {
                 let allowed = alloc::format!(
                     "within ±{} with this spacing, where f64 coordinates still keep \
@@ -190,8 +161,9 @@ impl Scope {
                 return Err(error.because("too far from the origin").with_limit(limit));
             }
         }
-        let (chunks, rest) =
-            area.map_or_else(Default::default, |area| (chunks(area), beside_chunks(area)));
+        let (chunks, rest) = area.map_or_else(Default::default, |area| {
+            (area.chunks(), area.beside_chunks())
+        });
         let [x, y] = spans(lattice, bounds(lattice, &chunks, rest.as_ref()));
         let piece = [x.all.clone(), y.all.clone()];
         let share = lattice

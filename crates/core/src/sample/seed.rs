@@ -17,16 +17,6 @@ pub struct Seed(pub u64);
 
 impl Seed {
     /// The index of the lattice origin.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, Seed, pattern::IndexOrigin};
-    ///
-    /// assert_eq!(Seed(0).origin(), IndexOrigin::default());
-    /// // The pattern that a set of seed 7 consists of.
-    /// let pattern = Pattern::with_origin("sqrt(3)".parse()?, Seed(7).origin());
-    /// assert_eq!(pattern.index(0, 0), (Seed(7).origin().x, Seed(7).origin().y));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn origin(self) -> IndexOrigin {
         if self.0 == 0 {

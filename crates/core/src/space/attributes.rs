@@ -59,16 +59,6 @@ impl BoundAttributes {
 
     /// One column per attribute, and four for a rotation, with one value per id. An id without a point has values as
     /// well; its rank is the greatest.
-    ///
-    /// ```
-    /// use strew_core::{Attributes, space::{PointId, SpaceSet, Table}};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// let rank = set.attributes(&Attributes::new(vec!["rank".parse()?])?)?;
-    /// let columns = rank.columns([PointId { x: 0, y: 0, z: 0 }]);
-    /// assert_eq!(columns[0].numbers(), Some(&[set.rank(PointId { x: 0, y: 0, z: 0 })][..]));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn columns(&self, ids: impl IntoIterator<Item = PointId>) -> Vec<Column> {
         let ids: Vec<PointId> = ids.into_iter().collect();

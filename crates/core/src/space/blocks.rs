@@ -125,15 +125,6 @@ impl<F: Format> Blocks<F> {
 
     /// Fills a slice with the next points. Returns the number of points written: less than the slice holds only at the
     /// end.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [0, 0, 0])?;
-    /// let mut all = vec![[0.0; 3]; 1000];
-    /// assert_eq!(plan.blocks_f64().fill(&mut all) as u128, plan.count());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn fill(&mut self, out: &mut [F::Item]) -> usize {
         let most = usize::try_from(self.left)
             .unwrap_or(usize::MAX)

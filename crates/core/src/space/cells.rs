@@ -7,8 +7,8 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::{
+    Volume,
     scope::{Scope, State, common},
-    volume::Volume,
 };
 
 /// The bits of the side of a cell.

@@ -10,11 +10,11 @@
 use alloc::{collections::BTreeMap, sync::Arc, vec, vec::Vec};
 
 use super::{
+    Region, Volume,
     batch::Batch,
     lattice::{Lattice, fixed},
     mask::{ClearOf, Mask},
     scope::Scope,
-    volume::{Region, Volume},
     walk::{Walk, few},
 };
 use crate::stop::Stop;

@@ -4,13 +4,13 @@ use alloc::{sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
 use super::{
+    Volume,
     batch::Batch,
     clearance::Clearance,
     closed,
     columns::{COLUMN_BITS, columns},
     scope::{Scope, State},
     sieve::Sifted,
-    volume::Volume,
     walk::{Walk, few},
 };
 use crate::table::FRACTION_BITS;

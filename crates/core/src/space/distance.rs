@@ -39,14 +39,6 @@ pub struct LeastDistance {
 impl Table {
     /// The least distance between any two points of the table's sets. The first call looks at the pairs of blocks that can
     /// meet near each other.
-    ///
-    /// ```
-    /// use strew_core::space::Table;
-    ///
-    /// let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 5, "pattern")?;
-    /// assert!((table.least_distance().relative() - 0.489).abs() < 1e-3);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn least_distance(&self) -> LeastDistance {
         LeastDistance {
@@ -64,15 +56,6 @@ impl LeastDistance {
     const MARGIN: f64 = 1e-6;
 
     /// δ_min: the distance without warp in units of that of the densest packing, (√2/N)^⅓; at most 1.
-    ///
-    /// ```
-    /// use strew_core::{Warp, space::Table};
-    ///
-    /// let least = Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?.least_distance();
-    /// let densest = 2f64.powf(1.0 / 6.0);
-    /// assert!((least.relative() * densest - least.with_warp(Warp::OFF)).abs() < 1e-12);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn relative(&self) -> f64 {
         self.with_warp(Warp::OFF) / DENSEST
@@ -81,18 +64,6 @@ impl LeastDistance {
     /// The guaranteed distance in mean spacings, for a strength of the warp and every seed. Without warp it is
     /// attained. With warp it is a bound: the table's distance divided by the largest factor by which the warp shrinks
     /// distances.
-    ///
-    /// ```
-    /// use strew_core::{Warp, space::{SpaceSet, Table}};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?;
-    /// let least = table.least_distance().with_warp(Warp::ON);
-    /// let near = SpaceSet::new(table).seed(7).nearest([5.0; 3], 2)?;
-    /// let [a, b] = [near[0].point.at(), near[1].point.at()];
-    /// let squared: f64 = (0..3).map(|i| (a[i] - b[i]) * (a[i] - b[i])).sum();
-    /// assert!(squared.sqrt() >= least);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn with_warp(&self, warp: Warp) -> f64 {
         let Stretch3 { factor, slack } = Stretch3::of(warp);

@@ -2,10 +2,7 @@
 
 use alloc::{sync::Arc, vec::Vec};
 
-use super::{
-    lattice::Lattice,
-    volume::{Region, Volume},
-};
+use super::{Region, Volume, lattice::Lattice};
 use crate::error::{Error, ErrorKind, number};
 
 /// The conditions on the points of a set beside its share.

@@ -14,7 +14,7 @@
 //! ```
 //!
 //! `pattern` and `symmetry` have the pattern, `table` the vectors, `warp` the shears, `lattice` which addresses have
-//! points and where; `volume` the parts of space, `scope` what of a lattice is requested, `mask` what narrows a set.
+//! points and where; `scope` what of a lattice is requested, `mask` what narrows a set.
 //! `walk` makes points row by row or batch by batch from `columns` of planes, `cells` and `template`s; `sieve` leaves out
 //! those that `clearance` finds too near other sets; `closed` and `count` count them. `plan` is a request made ready,
 //! `windows` are its parts, and `blocks` writes its points in a `format`; `attributes` are their further values.
@@ -47,7 +47,6 @@ mod sieve;
 mod symmetry;
 mod table;
 mod template;
-mod volume;
 mod walk;
 mod warp;
 mod windows;
@@ -66,4 +65,10 @@ pub use set::SpaceSet;
 #[cfg(feature = "tables")]
 pub use shipped::BLUE;
 pub use table::Table;
-pub use volume::{Ball, Prism, Region, Volume};
+
+pub use crate::shape::{Prism, Volume};
+
+/// A half-open box in world coordinates.
+pub type Region = crate::Region<3>;
+/// A ball without its surface.
+pub type Ball = crate::shape::Ball<3>;

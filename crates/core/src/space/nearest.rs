@@ -3,13 +3,13 @@
 use alloc::{sync::Arc, vec::Vec};
 
 use super::{
+    Region, Volume,
     batch::Batch,
     lattice::{LATTICE_LIMIT, Lattice, fixed},
     mask::Mask,
     point::{Point, PointId},
     scope::Scope,
     sieve::Sifted,
-    volume::{Region, Volume},
 };
 use crate::{
     error::{Error, ErrorKind, number},

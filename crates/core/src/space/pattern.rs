@@ -45,16 +45,6 @@ pub(super) struct Visit {
 
 impl Pattern {
     /// The pattern whose lattice origin has the index `origin`, in units of 2⁻⁶⁴.
-    ///
-    /// ```
-    /// use strew_core::{Seed, space::Pattern};
-    ///
-    /// let alpha = "sqrt(3)".parse()?;
-    /// // The piece of the pattern that a seed chooses.
-    /// let pattern = Pattern::new(alpha, Pattern::origin(Seed(7)));
-    /// assert_eq!(pattern.index([0, 0, 0]), Pattern::origin(Seed(7)));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn new(alpha: Alpha, origin: [u64; 3]) -> Self {
         Self { alpha, origin }
@@ -79,13 +69,6 @@ impl Pattern {
     }
 
     /// The number α.
-    ///
-    /// ```
-    /// use strew_core::space::Pattern;
-    ///
-    /// assert_eq!(Pattern::new("sqrt(3)".parse()?, [0; 3]).alpha().to_string(), "sqrt(3)");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn alpha(&self) -> Alpha {
         self.alpha
@@ -109,16 +92,6 @@ impl Pattern {
     }
 
     /// Whether a lattice point belongs to the pattern.
-    ///
-    /// ```
-    /// use strew_core::space::Pattern;
-    ///
-    /// let pattern = Pattern::new("sqrt(3)".parse()?, [0; 3]);
-    /// let side = pattern.alpha().set_side();
-    /// let at = [4, -6, 10];
-    /// assert_eq!(pattern.contains(at), pattern.index(at).iter().all(|&d| d < side));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn contains(&self, at: [i64; 3]) -> bool {
         let side = self.alpha.set_side();
@@ -127,16 +100,6 @@ impl Pattern {
 
     /// The number of points in a half-open lattice box: eight products of three floor sums. The number must be below
     /// 2¹²⁸, as it is in boxes with sides up to 2⁴³.
-    ///
-    /// ```
-    /// use strew_core::space::Pattern;
-    ///
-    /// let pattern = Pattern::new("sqrt(3)".parse()?, [0; 3]);
-    /// let row = |y, z| (0..40).filter(|&x| pattern.contains([x, y, z])).count() as u128;
-    /// let all: u128 = (0..20).flat_map(|z| (0..30).map(move |y| row(y, z))).sum();
-    /// assert_eq!(pattern.count([0..40, 0..30, 0..20]), all);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn count(&self, ranges: [Range<i64>; 3]) -> u128 {
         let counts = [0, 1, 2].map(|axis| self.axis_counts(axis, &ranges[axis]));

@@ -3,6 +3,7 @@
 use alloc::{sync::Arc, vec, vec::Vec};
 
 use super::{
+    Region, Volume,
     batch::Batch,
     blocks::{Blocks, Members},
     count,
@@ -12,7 +13,6 @@ use super::{
     point::Point,
     scope::Scope,
     table::Table,
-    volume::{Region, Volume},
 };
 use crate::{F32, F64, Points, error::Error, stop::Stop};
 
@@ -84,14 +84,6 @@ impl Plan {
     }
 
     /// The number of points.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
-    /// assert!((7800..8200).contains(&plan.count()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn count(&self) -> u128 {
         self.window.count
@@ -126,62 +118,24 @@ impl Plan {
     }
 
     /// The points as `f32` triples relative to [`origin`](Self::origin), block by block.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [3, -2, 0])?;
-    /// let mut block = [[0f32; 3]; 10];
-    /// plan.blocks_f32().fill(&mut block);
-    /// assert!(block.iter().flatten().all(|offset| (0.0..4.0).contains(offset)));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn blocks_f32(&self) -> Blocks<F32> {
         self.blocks()
     }
 
     /// The points as `f64` triples in world coordinates, block by block.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [3, -2, 0])?;
-    /// let mut block = [[0f64; 3]; 10];
-    /// plan.blocks_f64().fill(&mut block);
-    /// assert_eq!(block[0], plan.to_vec()[0].at());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn blocks_f64(&self) -> Blocks<F64> {
         self.blocks()
     }
 
     /// The points with their ids, block by block.
-    ///
-    /// ```
-    /// use strew_core::space::{Point, SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [0, 0, 0])?;
-    /// let mut block = [Point::default(); 10];
-    /// plan.blocks_points().fill(&mut block);
-    /// assert_eq!(block[..], plan.to_vec()[..10]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn blocks_points(&self) -> Blocks<Points> {
         self.blocks()
     }
 
     /// The points, one by one.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [0, 0, 0])?;
-    /// assert!(plan.iter().all(|point| plan.region().contains(point.at())));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn iter(&self) -> Members {
         Members::new(self.blocks())
@@ -206,15 +160,6 @@ impl Plan {
     }
 
     /// A box around all points: the requested region, if that was a box.
-    ///
-    /// ```
-    /// use strew_core::space::{Region, SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// let chunk = Region::chunk(8.0, [3, -2, 0])?;
-    /// assert_eq!(set.within(chunk)?.region(), chunk);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn region(&self) -> Region {
         self.scope.region
@@ -222,14 +167,6 @@ impl Plan {
 
     /// The lower corner of the requested chunk, or else of the [region](Self::region), in world coordinates. `f32`
     /// coordinates are relative to it.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// assert_eq!(set.chunk(8.0, [3, -2, 0])?.origin(), [24.0, -16.0, 0.0]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn origin(&self) -> [f64; 3] {
         self.scope.corner.at
@@ -261,28 +198,12 @@ impl Plan {
     }
 
     /// The table of the set.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?;
-    /// assert_eq!(SpaceSet::new(table.clone()).chunk(8.0, [0, 0, 0])?.table(), &table);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn table(&self) -> &Table {
         &self.scope.lattice.table
     }
 
     /// Spacing, seed, warp and share of the set.
-    ///
-    /// ```
-    /// use strew_core::{Seed, space::{SpaceSet, Table}};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).seed(7);
-    /// assert_eq!(set.chunk(8.0, [0, 0, 0])?.placement().seed, Seed(7));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn placement(&self) -> Placement {
         self.scope.lattice.placement

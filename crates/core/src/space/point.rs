@@ -51,13 +51,6 @@ pub struct Point {
 
 impl Point {
     /// The world coordinates.
-    ///
-    /// ```
-    /// use strew_core::space::{Point, PointId};
-    ///
-    /// let point = Point { id: PointId { x: 4, y: 9, z: 0 }, x: 1.5, y: -2.0, z: 0.5 };
-    /// assert_eq!(point.at(), [1.5, -2.0, 0.5]);
-    /// ```
     #[must_use]
     pub const fn at(&self) -> [f64; 3] {
         [self.x, self.y, self.z]

@@ -1,16 +1,17 @@
 //! Scopes: the part of a lattice that a request covers.
 
-use alloc::{sync::Arc, vec::Vec};
+use alloc::sync::Arc;
 use core::ops::Range;
 
 use super::{
+    Region, Volume,
     lattice::{Lattice, fixed},
     mask::{ClearOf, Mask},
-    volume::{CORNERS, Chunk, Region, Volume},
 };
 use crate::{
     error::{Error, ErrorKind, number},
     sample::Multiple,
+    shape::Chunk,
     stop::Stop,
     table::FRACTION_BITS,
 };
@@ -78,7 +79,7 @@ impl Corner {
         }
     }
 
-    fn of_chunk(lattice: &Lattice, Chunk { size, at }: Chunk) -> Self {
+    fn of_chunk(lattice: &Lattice, Chunk { size, at }: Chunk<3>) -> Self {
         let multiples = at.map(|index| Multiple::new(lattice.step, size, index));
         Self {
             at: at.map(|index| index as f64 * size),
@@ -86,23 +87,6 @@ impl Corner {
             gap: multiples.map(|multiple| multiple.gap),
             extent: [size; 3],
         }
-    }
-}
-
-/// The volume without the restriction to its [chunks](Volume::chunks), which integers decide; `None` if nothing else
-/// restricts it.
-fn beside_chunks(volume: &Volume) -> Option<Volume> {
-    match volume {
-        Volume::Region(region) if region.as_chunk().is_some() => None,
-        Volume::AllOf(volumes) => {
-            let mut rest: Vec<Volume> = volumes.iter().filter_map(beside_chunks).collect();
-            if rest.len() > 1 {
-                Some(Volume::AllOf(rest))
-            } else {
-                rest.pop()
-            }
-        }
-        other => Some(other.clone()),
     }
 }
 
@@ -119,8 +103,7 @@ impl Scope {
             .bounds()
             .ok_or_else(|| Error::new(ErrorKind::Unbounded, "area", "unbounded", "within a box"))?;
         let limit = lattice.limit();
-        let corners = region.min().into_iter().chain(region.max());
-        for (name, value) in CORNERS.into_iter().zip(corners) {
+        for (name, value) in region.bounds() {
             if value.is_nan() || value.abs() > limit {
                 let allowed = alloc::format!(
                     "within ±{limit:e} with this spacing, where f64 coordinates still keep neighbors apart"
@@ -129,7 +112,7 @@ impl Scope {
                 return Err(error.because("too far from the origin").with_limit(limit));
             }
         }
-        let (chunks, rest) = (volume.chunks(), beside_chunks(volume));
+        let (chunks, rest) = (volume.chunks(), volume.beside_chunks());
         let bounds = bounds(lattice, &chunks, rest.as_ref());
         let corner = match chunks.last() {
             Some(chunk) => Corner::of_chunk(lattice, *chunk),
@@ -256,7 +239,7 @@ pub(super) fn common(a: &Range<i64>, b: &Range<i64>) -> Range<i64> {
 
 /// The fixed-point coordinates of the points of a volume: of its chunks exactly, of everything else by the reported
 /// coordinates. The bounds of the volume are within the lattice's limit.
-fn bounds(lattice: &Lattice, chunks: &[Chunk], rest: Option<&Volume>) -> [Range<i64>; 3] {
+fn bounds(lattice: &Lattice, chunks: &[Chunk<3>], rest: Option<&Volume>) -> [Range<i64>; 3] {
     let of_box = rest.and_then(Volume::bounds).map(|region| {
         [0, 1, 2].map(|axis| {
             let limit = lattice.limit();

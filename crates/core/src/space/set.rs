@@ -1,13 +1,13 @@
 //! The point set.
 
 use super::{
+    Region, Volume,
     cursor::Cursor,
     lattice::{Lattice, Placement},
     mask::{ClearOf, Mask},
     nearest,
     plan::Plan,
     table::Table,
-    volume::{Region, Volume},
 };
 use crate::{
     error::{Error, ErrorKind, number},
@@ -397,15 +397,6 @@ impl SpaceSet {
     }
 
     /// The distance that no two points of the set are nearer than, in world units; with warp it is a bound.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// let wider = set.clone().spacing(3.0)?;
-    /// assert!((wider.least_distance() - 3.0 * set.least_distance()).abs() < 1e-12);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn least_distance(&self) -> f64 {
         let Placement { spacing, warp, .. } = self.lattice.placement;
@@ -413,28 +404,12 @@ impl SpaceSet {
     }
 
     /// The table.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?;
-    /// assert_eq!(SpaceSet::new(table.clone()).table(), &table);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn table(&self) -> &Table {
         &self.lattice.table
     }
 
     /// Spacing, seed, warp and share.
-    ///
-    /// ```
-    /// use strew_core::{Seed, space::{SpaceSet, Table}};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).seed(7);
-    /// assert_eq!(set.placement().seed, Seed(7));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn placement(&self) -> Placement {
         self.lattice.placement

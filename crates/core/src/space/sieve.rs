@@ -4,13 +4,13 @@ use alloc::sync::Arc;
 use core::ops::Range;
 
 use super::{
+    Region, Volume,
     batch::Batch,
     clearance::Clearance,
     lattice::Lattice,
     mask::Mask,
     point::{Point, PointId},
     scope::Scope,
-    volume::{Region, Volume},
     walk::Walk,
 };
 use crate::{sample::Backend, stop::Stop};

@@ -113,17 +113,6 @@ impl Table {
     ///
     /// # Errors
     /// As [`new`](Self::new), and [`ErrorKind::MapSize`](crate::ErrorKind::MapSize) if `radius` is too large.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?;
-    /// let step = table.map().alpha().set_side_f64();
-    /// for point in SpaceSet::new(table).chunk(5.0, [0, 0, 0])? {
-    ///     assert!((point.x - point.id.x as f64 * step).abs() < 1e-12);
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn undisplaced(alpha: Alpha, radius: u32, profile: &str) -> Result<Self, Error> {
         let map = Map::new(alpha, radius)?;
         let vectors = vec![[0; 3]; map.intervals().pow(3)];
@@ -139,29 +128,12 @@ impl Table {
     /// # Errors
     /// One of the `Table…` kinds of [`ErrorKind`](crate::ErrorKind), `Alpha` or `MapSize`, naming the part of the file
     /// that is wrong.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, space::Table};
-    ///
-    /// let file = Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?.to_bytes();
-    /// let cut = Table::from_bytes(&file[..100]).unwrap_err();
-    /// assert_eq!(cut.kind(), ErrorKind::TableTruncated);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         let (parts, digest) = CubeParts::read(bytes)?;
         Ok(Self::checked(parts, digest))
     }
 
     /// The table as a file. Equal tables have equal bytes.
-    ///
-    /// ```
-    /// use strew_core::space::Table;
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?;
-    /// assert!(table.to_bytes().starts_with(b"\x89STREW\r\n"));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         self.0.parts.write()
@@ -192,82 +164,36 @@ impl Table {
     }
 
     /// The map whose intervals, the same along all axes, make the blocks.
-    ///
-    /// ```
-    /// use strew_core::space::Table;
-    ///
-    /// let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 16, "pattern")?;
-    /// assert_eq!(table.map().intervals(), 21);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn map(&self) -> &Map {
         &self.0.parts.map
     }
 
     /// The name of the noise profile: 1 to 32 characters of a-z, 0-9 and -.
-    ///
-    /// ```
-    /// use strew_core::space::Table;
-    ///
-    /// assert_eq!(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?.profile(), "pattern");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn profile(&self) -> &str {
         &self.0.parts.profile
     }
 
     /// All n³ vectors, in units of 2⁻¹² grid units; see [`new`](Self::new).
-    ///
-    /// ```
-    /// use strew_core::space::Table;
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?;
-    /// assert!(table.vectors().iter().all(|vector| *vector == [0; 3]));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn vectors(&self) -> &[[i16; 3]] {
         &self.0.parts.vectors
     }
 
     /// The history of the table: its making and its measurements.
-    ///
-    /// ```
-    /// use strew_core::space::Table;
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?;
-    /// assert_eq!(table.provenance().optimizer, "none");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn provenance(&self) -> &Provenance {
         &self.0.parts.provenance
     }
 
     /// The order in which blocks leave, if the table has one.
-    ///
-    /// ```
-    /// use strew_core::space::Table;
-    ///
-    /// assert!(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?.ranks().is_none());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn ranks(&self) -> Option<&Ranks> {
         self.0.parts.ranks.as_ref()
     }
 
     /// The BLAKE3 digest of the file without its last 32 bytes, which hold it. It names the table.
-    ///
-    /// ```
-    /// use strew_core::space::Table;
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?;
-    /// assert!(table.to_bytes().ends_with(table.digest().as_bytes()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn digest(&self) -> Digest {
         self.0.digest

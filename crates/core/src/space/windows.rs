@@ -11,42 +11,18 @@ use super::{
 
 impl Plan {
     /// The number of points of the whole request, of which the plan may be a window.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
-    /// assert_eq!(plan.window(50, Some(10)).total(), plan.count());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn total(&self) -> u128 {
         self.window.total
     }
 
     /// The number of points of the request that come before the plan's.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
-    /// assert_eq!(plan.window(50, None).window(5, None).offset(), 55);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn offset(&self) -> u128 {
         self.window.offset
     }
 
     /// Whether the plan is less than the whole request.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
-    /// assert!(plan.window(50, None).is_window() && !plan.is_window());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn is_window(&self) -> bool {
         self.window.count < self.window.total

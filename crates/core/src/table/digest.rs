@@ -18,17 +18,6 @@ pub struct Digest([u8; 32]);
 
 impl Digest {
     /// The BLAKE3 digest of `bytes`.
-    ///
-    /// ```
-    /// use strew_core::{Table, table::Digest};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let file = table.to_bytes();
-    /// // A table file ends with the digest of all before it.
-    /// let (body, digest) = file.split_last_chunk::<32>().expect("longer");
-    /// assert_eq!(Digest::of(body).as_bytes(), digest);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
         Self(*blake3::hash(bytes).as_bytes())
@@ -47,14 +36,6 @@ impl Digest {
     }
 
     /// The 32 bytes.
-    ///
-    /// ```
-    /// use strew_core::table::Digest;
-    ///
-    /// let digest: Digest = "0f".repeat(32).parse()?;
-    /// assert_eq!(digest.as_bytes(), &[0x0f; 32]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn as_bytes(&self) -> &[u8; 32] {
         &self.0

@@ -116,18 +116,6 @@ impl Table {
     /// # Errors
     /// As [`new`](Self::new), and [`ErrorKind::MapSize`](crate::ErrorKind::MapSize) if `radius` is too
     /// large.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let step = table.alpha().set_side_f64();
-    /// for member in PointSet::new(table).chunk(10.0, [0, 0])? {
-    ///     // Points are at their lattice addresses, in units of t mean spacings.
-    ///     assert!((member.at()[0] - member.id().x as f64 * step).abs() < 1e-12);
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn undisplaced(alpha: Alpha, radius: u32, profile: &str) -> Result<Self, Error> {
         let map = Map::new(alpha, radius)?;
         let blocks = map.intervals() * map.intervals();
@@ -143,120 +131,48 @@ impl Table {
     /// # Errors
     /// One of the `Table…` kinds, [`ErrorKind::Alpha`](crate::ErrorKind::Alpha) or
     /// [`ErrorKind::MapSize`](crate::ErrorKind::MapSize), naming the part of the file that is wrong.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let file = table.to_bytes();
-    /// assert_eq!(Table::from_bytes(&file)?.digest(), table.digest());
-    /// let cut = Table::from_bytes(&file[..100]).unwrap_err();
-    /// assert_eq!(cut.kind(), ErrorKind::TableTruncated);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         let (parts, digest) = file::read(bytes)?;
         Self::checked(parts, digest)
     }
 
     /// The table as a file. Equal tables have equal bytes.
-    ///
-    /// ```
-    /// use strew_core::Table;
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// assert!(table.to_bytes().starts_with(b"\x89STREW\r\n"));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         file::write(&self.0.parts)
     }
 
     /// The neighborhood map whose blocks the vectors belong to.
-    ///
-    /// ```
-    /// use strew_core::Table;
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// assert_eq!(table.map().radius(), 20);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn map(&self) -> &Map {
         &self.0.parts.map
     }
 
     /// The α of the pattern that the table displaces.
-    ///
-    /// ```
-    /// use strew_core::Table;
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// assert_eq!(table.alpha().to_string(), "sqrt(3)");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn alpha(&self) -> Alpha {
         self.map().alpha()
     }
 
     /// The name of the noise profile: 1 to 32 characters of a-z, 0-9 and -.
-    ///
-    /// ```
-    /// use strew_core::Table;
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// assert_eq!(table.profile(), "pattern");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn profile(&self) -> &str {
         &self.0.parts.profile
     }
 
     /// All n² vectors, row = interval of dY, column = interval of dX, in units of 2⁻²⁰ grid units.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table, table::to_grid_units};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table);
-    /// let [column, row] = set.block(set.nearest([0.0, 0.0], 1)?[0].member.id()).expect("a point");
-    /// let vector = set.table().displacements()[row * set.table().map().intervals() + column];
-    /// assert_eq!(vector.map(to_grid_units), [0.0, 0.0]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn displacements(&self) -> &[Displacement] {
         &self.0.parts.displacements
     }
 
     /// The history of the table: its making and its measurements.
-    ///
-    /// ```
-    /// use strew_core::Table;
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// assert_eq!(table.provenance().optimizer, "none");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn provenance(&self) -> &Provenance {
         &self.0.parts.provenance
     }
 
     /// The BLAKE3 digest of the file without its last 32 bytes, which hold it. It names the table.
-    ///
-    /// ```
-    /// use strew_core::Table;
-    ///
-    /// // Tables with equal content have equal digests, others have not.
-    /// let table = |profile| Table::undisplaced("sqrt(3)".parse()?, 20, profile);
-    /// assert_eq!(table("a")?.digest(), table("a")?.digest());
-    /// assert_ne!(table("a")?.digest(), table("b")?.digest());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn digest(&self) -> Digest {
         self.0.digest
@@ -264,26 +180,12 @@ impl Table {
 
     /// The order in which blocks leave when a set is thinned, or `None` if the table has none. Blocks
     /// then leave in a hashed order, which is no more even than a random choice.
-    ///
-    /// ```
-    /// use strew_core::Table;
-    ///
-    /// assert!(Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?.ranks().is_none());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn ranks(&self) -> Option<&Ranks> {
         self.0.parts.ranks.as_ref()
     }
 
     /// The kinds of the points of each block, or `None` if the table has none.
-    ///
-    /// ```
-    /// use strew_core::Table;
-    ///
-    /// assert!(Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?.mix().is_none());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn mix(&self) -> Option<&Mix> {
         self.0.parts.mix.as_ref()

@@ -75,16 +75,6 @@ impl Mix {
     /// # Errors
     /// [`ErrorKind::Table`] for a wrong number of labels, a label that is no kind, or labels so far from the
     /// shares that no block is large enough.
-    ///
-    /// ```
-    /// use strew_core::{Map, table::Mix};
-    ///
-    /// let map = Map::new("sqrt(3)".parse()?, 20)?;
-    /// let blocks = map.intervals() * map.intervals();
-    /// let error = Mix::new(&map, "1:1".parse()?, vec![2; blocks]).unwrap_err();
-    /// assert_eq!((error.field(), error.allowed()), ("mix", "labels from 0 to 1"));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(map: &Map, shares: Shares, labels: Vec<u8>) -> Result<Self, Error> {
         let refused = |value, allowed| Err(Error::new(ErrorKind::Table, "mix", value, allowed));
         let (n, kinds) = (map.intervals(), shares.kinds());
@@ -114,16 +104,6 @@ impl Mix {
     ///
     /// # Errors
     /// [`ErrorKind::Table`] if the map has too few blocks for the shares.
-    ///
-    /// ```
-    /// use strew_core::{Map, table::Mix};
-    ///
-    /// let map = Map::new("sqrt(3)".parse()?, 20)?;
-    /// let mix = Mix::scattered(&map, "1:3".parse()?)?;
-    /// let rare = mix.labels().iter().filter(|&&kind| kind == 0).count();
-    /// assert!((0.2..0.3).contains(&(rare as f64 / mix.labels().len() as f64)));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn scattered(map: &Map, shares: Shares) -> Result<Self, Error> {
         let n = map.intervals();
         let targets = targets(map, &shares);
@@ -143,45 +123,18 @@ impl Mix {
     }
 
     /// The shares of the kinds.
-    ///
-    /// ```
-    /// use strew_core::{Map, table::Mix};
-    ///
-    /// let map = Map::new("sqrt(3)".parse()?, 20)?;
-    /// let mix = Mix::scattered(&map, "3:1".parse()?)?;
-    /// assert_eq!(mix.shares().to_string(), "1:3");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn shares(&self) -> &Shares {
         &self.shares
     }
 
     /// The kind of each block, row by row. Of a [split](Self::splits) block, the kind of its first points.
-    ///
-    /// ```
-    /// use strew_core::{Map, table::Mix};
-    ///
-    /// let map = Map::new("sqrt(3)".parse()?, 20)?;
-    /// let mix = Mix::scattered(&map, "1:1:2".parse()?)?;
-    /// assert_eq!(mix.labels().len(), map.intervals() * map.intervals());
-    /// assert!(mix.labels().iter().all(|&kind| kind < 3));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn labels(&self) -> &[u8] {
         &self.labels
     }
 
     /// The blocks with points of two kinds: different blocks, fewer than there are kinds.
-    ///
-    /// ```
-    /// use strew_core::{Map, table::Mix};
-    ///
-    /// let map = Map::new("sqrt(3)".parse()?, 20)?;
-    /// assert!(Mix::scattered(&map, "1:3:10".parse()?)?.splits().len() < 3);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn splits(&self) -> &[Split] {
         &self.splits

@@ -69,15 +69,6 @@ const MAX_TEXT: usize = 1000;
 
 impl Figures {
     /// The figure with a name, or `None` if it was not measured.
-    ///
-    /// ```
-    /// use strew_core::table::Figures;
-    ///
-    /// let values = vec![("low_power".into(), 4e-6), ("delta_min".into(), 0.66)];
-    /// let figures = Figures { values, ..Figures::default() };
-    /// assert_eq!(figures.value("low_power"), Some(4e-6));
-    /// assert_eq!(figures.value("hue"), None);
-    /// ```
     #[must_use]
     pub fn value(&self, name: &str) -> Option<f64> {
         self.values

@@ -42,17 +42,6 @@ impl Ranks {
     ///
     /// # Errors
     /// [`ErrorKind::Table`] unless each position from 0 on occurs once.
-    ///
-    /// ```
-    /// use strew_core::{Table, table::Ranks};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let blocks = table.displacements().len() as u32;
-    /// // The last row of blocks leaves first.
-    /// let table = table.with_ranks(Ranks::new((0..blocks).collect())?)?;
-    /// assert!(table.ranks().is_some());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(positions: Vec<u32>) -> Result<Self, Error> {
         let mut seen = vec![false; positions.len()];
         for &position in &positions {
@@ -68,13 +57,6 @@ impl Ranks {
     }
 
     /// The position of each block, row by row; 0 is the block that leaves last.
-    ///
-    /// ```
-    /// use strew_core::table::Ranks;
-    ///
-    /// assert_eq!(Ranks::new(vec![1, 0])?.positions(), [1, 0]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn positions(&self) -> &[u32] {
         &self.positions

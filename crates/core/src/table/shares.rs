@@ -41,17 +41,6 @@ impl Shares {
     /// # Errors
     /// [`ErrorKind::Shares`] unless there are 2 to [`MAX_KINDS`](Self::MAX_KINDS) positive finite weights, each
     /// of at least 1/1024 of the sum once they are rounded.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, table::Shares};
-    ///
-    /// assert_eq!(Shares::new([0.75, 0.25])?.parts(), [1, 3]);
-    /// // No integers up to 1024 have the ratio of the golden section.
-    /// assert_eq!(Shares::new([1.0, 1.618_034])?.parts(), [391, 633]);
-    /// let error = Shares::new([1.0, 1e6]).unwrap_err();
-    /// assert_eq!((error.kind(), error.value()), (ErrorKind::Shares, "1"));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(weights: impl IntoIterator<Item = f64>) -> Result<Self, Error> {
         let mut more = weights.into_iter();
         let mut weights: Vec<f64> = more.by_ref().take(Self::MAX_KINDS).collect();
@@ -91,39 +80,18 @@ impl Shares {
     }
 
     /// The parts, ascending, in lowest terms: one for each kind.
-    ///
-    /// ```
-    /// use strew_core::table::Shares;
-    ///
-    /// assert_eq!("6:2".parse::<Shares>()?.parts(), [1, 3]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn parts(&self) -> &[u16] {
         &self.parts
     }
 
     /// The number of kinds.
-    ///
-    /// ```
-    /// use strew_core::table::Shares;
-    ///
-    /// assert_eq!("1:3:10".parse::<Shares>()?.kinds(), 3);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn kinds(&self) -> usize {
         self.parts.len()
     }
 
     /// The sum of the parts, at most [`MAX_TOTAL`](Self::MAX_TOTAL).
-    ///
-    /// ```
-    /// use strew_core::table::Shares;
-    ///
-    /// assert_eq!("1:3:10".parse::<Shares>()?.total(), 14);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn total(&self) -> u32 {
         self.parts.iter().map(|&part| u32::from(part)).sum()

@@ -74,14 +74,6 @@ fn hex([r, g, b]: Color) -> String {
 
 impl Drawing {
     /// The drawing as an SVG document.
-    ///
-    /// ```
-    /// use strew_forge::figure;
-    ///
-    /// let svg = figure::index("1.6".parse()?, 24)?.to_svg();
-    /// assert!(svg.ends_with("</svg>\n") && svg.contains("α = 8/5"));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn to_svg(&self) -> String {
         let (width, height) = (self.width, self.height);

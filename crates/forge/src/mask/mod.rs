@@ -48,17 +48,6 @@ impl Mask {
     ///
     /// # Errors
     /// [`MaskError`] if the size is out of range or the table has no periods.
-    ///
-    /// ```
-    /// use strew_core::Table;
-    /// use strew_forge::mask::Mask;
-    ///
-    /// let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// assert_eq!(Mask::new(&table, 24, 7)?, Mask::new(&table, 24, 7)?);
-    /// assert_ne!(Mask::new(&table, 24, 7)?, Mask::new(&table, 24, 8)?);
-    /// assert!(Mask::new(&table, 8, 7).is_err());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn new(table: &Table, size: u32, seed: u64) -> Result<Self, MaskError> {
         let Some(mask) = Self::new_while(table, size, seed, || true)? else {
             unreachable!("nothing stops it");
@@ -162,26 +151,12 @@ impl Mask {
     }
 
     /// The side in pixels.
-    ///
-    /// ```
-    /// use strew_forge::mask::Mask;
-    ///
-    /// assert_eq!(Mask::from_ranks(2, vec![0, 2, 3, 1])?.size(), 2);
-    /// # Ok::<(), strew_forge::mask::MaskError>(())
-    /// ```
     #[must_use]
     pub const fn size(&self) -> u32 {
         self.size
     }
 
     /// The rank of each pixel, row by row: each number below size² once.
-    ///
-    /// ```
-    /// use strew_forge::mask::Mask;
-    ///
-    /// assert_eq!(Mask::from_ranks(2, vec![0, 2, 3, 1])?.ranks(), [0, 2, 3, 1]);
-    /// # Ok::<(), strew_forge::mask::MaskError>(())
-    /// ```
     #[must_use]
     pub fn ranks(&self) -> &[u32] {
         &self.ranks

@@ -262,7 +262,7 @@ fn surface(volume: &Volume) -> f64 {
     match volume {
         Volume::AllOf(parts) | Volume::AnyOf(parts) => parts.iter().map(surface).sum(),
         Volume::Outside(part) => surface(part),
-        Volume::Prism(prism) => of_box(volume) * (1.0 + prism.vertices() as f64 / 64.0),
+        Volume::Outlined(prism) => of_box(volume) * (1.0 + prism.vertices() as f64 / 64.0),
         other => of_box(other),
     }
 }

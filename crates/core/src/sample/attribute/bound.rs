@@ -242,18 +242,6 @@ impl BoundAttributes {
     ///
     /// An id without a point has values as well; its rank is the greatest, 1 − 2⁻⁵³, and its kind
     /// the rarest.
-    ///
-    /// ```
-    /// use strew_core::{Attribute, Attributes, PointId, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let scale = Attributes::new(vec![Attribute::scale(0.8, 1.2)?])?;
-    /// let scale = PointSet::new(table).attributes(&scale)?;
-    /// let id = PointId { x: 4, y: 9 };
-    /// assert!(scale.value(0, id).is_some_and(|factor| (0.8..=1.2).contains(&factor)));
-    /// assert_eq!(scale.value(1, id), None);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn value(&self, i: usize, id: PointId) -> Option<f64> {
         let bound = self.list.get(i)?;

@@ -57,14 +57,6 @@ impl UniformNumber {
     ///
     /// # Errors
     /// [`ErrorKind::Attribute`] for any other.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, UniformNumber};
-    ///
-    /// assert_eq!(UniformNumber::new(16)?.get(), 16);
-    /// assert_eq!(UniformNumber::new(0).unwrap_err().kind(), ErrorKind::Attribute);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(n: u8) -> Result<Self, Error> {
         if (1..=Self::MAX).contains(&n) {
             Ok(Self(n))
@@ -75,13 +67,6 @@ impl UniformNumber {
     }
 
     /// The number, from 1 to 16.
-    ///
-    /// ```
-    /// use strew_core::UniformNumber;
-    ///
-    /// assert_eq!(UniformNumber::new(3)?.get(), 3);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn get(self) -> u8 {
         self.0
@@ -115,14 +100,6 @@ impl Attribute {
     ///
     /// # Errors
     /// As [`UniformNumber::new`].
-    ///
-    /// ```
-    /// use strew_core::Attribute;
-    ///
-    /// assert_eq!(Attribute::uniform(2)?, "u2".parse()?);
-    /// assert!(Attribute::uniform(17).is_err());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn uniform(n: u8) -> Result<Self, Error> {
         UniformNumber::new(n).map(Self::Uniform)
     }

@@ -35,15 +35,6 @@ impl Attributes {
     ///
     /// # Errors
     /// [`ErrorKind::Attribute`] if two have the same name.
-    ///
-    /// ```
-    /// use strew_core::{Attribute, Attributes};
-    ///
-    /// assert!(Attributes::new(vec!["u1".parse()?, "u2".parse()?]).is_ok());
-    /// let error = Attributes::new(vec![Attribute::Angle, Attribute::Angle]).unwrap_err();
-    /// assert_eq!((error.value(), error.problem()), ("angle", "listed twice"));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(list: Vec<Attribute>) -> Result<Self, Error> {
         for (i, attribute) in list.iter().enumerate() {
             if list[..i].iter().any(|a| a.name() == attribute.name()) {
@@ -57,15 +48,6 @@ impl Attributes {
     }
 
     /// The attributes in order.
-    ///
-    /// ```
-    /// use strew_core::{Attribute, Attributes};
-    ///
-    /// let attributes = Attributes::new(vec![Attribute::Angle, Attribute::Rank])?;
-    /// let names: Vec<&str> = attributes.as_slice().iter().map(Attribute::name).collect();
-    /// assert_eq!(names, ["angle", "rank"]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn as_slice(&self) -> &[Attribute] {
         &self.0

@@ -53,17 +53,6 @@ impl Kinds {
     /// # Errors
     /// [`ErrorKind::Variants`] as [`Variants::new`], [`ErrorKind::Shares`] as [`Shares::new`]: there are 2 to 32 kinds,
     /// each of at least 1/1024 of all points.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, Kinds, Variants};
-    ///
-    /// let trees = Kinds::even("oak:0.75,birch:0.25")?;
-    /// assert_eq!(trees.shares().to_string(), "1:3");
-    /// assert_eq!(Kinds::even(&Variants::new([("birch", 1.0), ("oak", 3.0)])?)?.shares(), trees.shares());
-    /// let error = Kinds::even("oak:1000000,birch").unwrap_err();
-    /// assert_eq!(error.kind(), ErrorKind::Shares);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn even(variants: impl TryInto<Variants, Error = Error>) -> Result<Self, Error> {
         Self::new(variants.try_into()?, false)
     }
@@ -102,55 +91,24 @@ impl Kinds {
     }
 
     /// Whether they are [joint](Self::joint) kinds.
-    ///
-    /// ```
-    /// use strew_core::Kinds;
-    ///
-    /// assert!(!Kinds::even("oak:3,birch")?.is_joint());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn is_joint(&self) -> bool {
         self.is_joint
     }
 
     /// The kinds as variants, in the order in which they were listed: that of the indices of a column.
-    ///
-    /// ```
-    /// use strew_core::{Kinds, Variants};
-    ///
-    /// let trees: Variants = "oak:3,birch".parse()?;
-    /// assert_eq!(Kinds::even(&trees)?.variants(), &trees);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn variants(&self) -> &Variants {
         &self.variants
     }
 
     /// The shares that the mix of a table must have.
-    ///
-    /// ```
-    /// use strew_core::Kinds;
-    ///
-    /// let trees = Kinds::even("oak:30,birch:10,bush:100")?;
-    /// assert_eq!(trees.shares().to_string(), "1:3:10");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn shares(&self) -> &Shares {
         &self.shares
     }
 
     /// The names in the order of their numbers, that of [`PointSet::kind_counts`](crate::PointSet::kind_counts).
-    ///
-    /// ```
-    /// use strew_core::Kinds;
-    ///
-    /// let trees = Kinds::even("oak:3,elm:1,birch:1")?;
-    /// assert_eq!(trees.names().collect::<Vec<_>>(), ["birch", "elm", "oak"]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn names(&self) -> impl ExactSizeIterator<Item = &str> {
         let name = |&index: &u32| self.variants.name(index).unwrap_or_default();
         self.indices.iter().map(name)

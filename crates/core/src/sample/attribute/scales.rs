@@ -28,15 +28,6 @@ impl ScaleRange {
     ///
     /// # Errors
     /// [`ErrorKind::Attribute`] unless 0 ≤ min ≤ max ≤ [`LIMIT`](Self::LIMIT).
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, ScaleRange};
-    ///
-    /// let range = ScaleRange::new(0.8, 1.2)?;
-    /// assert_eq!((range.min(), range.max()), (0.8, 1.2));
-    /// assert_eq!(ScaleRange::new(1.2, 0.8).unwrap_err().kind(), ErrorKind::Attribute);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(min: f64, max: f64) -> Result<Self, Error> {
         if 0.0 <= min && min <= max && max <= Self::LIMIT {
             Ok(Self { min, max })
@@ -53,26 +44,12 @@ impl ScaleRange {
     }
 
     /// The least scale, included.
-    ///
-    /// ```
-    /// use strew_core::ScaleRange;
-    ///
-    /// assert_eq!(ScaleRange::new(0.8, 1.2)?.min(), 0.8);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn min(self) -> f64 {
         self.min
     }
 
     /// The greatest scale, included.
-    ///
-    /// ```
-    /// use strew_core::ScaleRange;
-    ///
-    /// assert_eq!(ScaleRange::new(0.8, 1.2)?.max(), 1.2);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn max(self) -> f64 {
         self.max
@@ -172,15 +149,6 @@ impl VariantScales {
     }
 
     /// The ranges, in the order of the variants.
-    ///
-    /// ```
-    /// use strew_core::{ScaleRange, Variants};
-    ///
-    /// let range = ScaleRange::new(0.8, 1.2)?;
-    /// let scales = "oak:3,birch".parse::<Variants>()?.scales(vec![range; 2])?;
-    /// assert_eq!(scales.ranges().len(), 2);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn ranges(&self) -> &[ScaleRange] {
         &self.ranges

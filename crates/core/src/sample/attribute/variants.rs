@@ -89,40 +89,17 @@ impl Variants {
     }
 
     /// The number of variants.
-    ///
-    /// ```
-    /// use strew_core::Variants;
-    ///
-    /// assert_eq!("oak:3,birch".parse::<Variants>()?.count(), 2);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn count(&self) -> usize {
         self.entries.len()
     }
 
     /// The names, in order of the indices.
-    ///
-    /// ```
-    /// use strew_core::Variants;
-    ///
-    /// let trees: Variants = "oak:3,birch".parse()?;
-    /// assert_eq!(trees.names().collect::<Vec<_>>(), ["oak", "birch"]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.entries.iter().map(|entry| entry.name.as_str())
     }
 
     /// The names and weights, in order of the indices.
-    ///
-    /// ```
-    /// use strew_core::Variants;
-    ///
-    /// let trees: Variants = "oak:3,birch".parse()?;
-    /// assert_eq!(trees.weights().collect::<Vec<_>>(), [("oak", 3.0), ("birch", 1.0)]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn weights(&self) -> impl ExactSizeIterator<Item = (&str, f64)> {
         self.entries.iter().map(|e| (e.name.as_str(), e.weight))
     }

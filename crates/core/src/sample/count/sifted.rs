@@ -8,10 +8,10 @@ use super::tally::product;
 use crate::{
     pattern::Axis,
     sample::{
-        area::Area,
         lattice::{BAND_WIDTH, Columns, Lattice, PATCH_HEIGHT, Patch, PointId, PrefixCounts, Span},
         sieve::{LocalSieve, Run, STRIP_ROWS, Scale, Sieve},
     },
+    shape::Area,
     stop::Stop,
 };
 

@@ -1,7 +1,7 @@
 //! The cost of a look at a field, counted without a clock.
 
 use super::{FieldSpec, spec::Shape};
-use crate::sample::area::Region;
+use crate::shape::Region;
 
 /// A look at one octave of noise, in nanoseconds.
 const OCTAVE: f64 = 20.0;

@@ -1,6 +1,6 @@
 //! The trait of fields.
 
-use crate::sample::area::Region;
+use crate::shape::Region;
 
 /// A share of the points at each place: 1 keeps all, 0 none.
 ///

@@ -8,59 +8,28 @@ use super::{
     scale::{unit, widened},
     spec::{FieldSpec, Shape},
 };
-use crate::{sample::area::Region, table::Digest};
+use crate::{shape::Region, table::Digest};
 
 impl FieldSpec {
     /// The BLAKE3 digest of a canonical encoding of the description. Descriptions of one digest are equal.
-    ///
-    /// ```
-    /// use strew_core::field::FieldSpec;
-    ///
-    /// let of = |share| Ok::<_, strew_core::Error>(FieldSpec::constant(share)?.digest());
-    /// assert_eq!(of(0.5)?, of(0.5)?);
-    /// assert_ne!(of(0.5)?, of(0.25)?);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn digest(&self) -> Digest {
         self.digest
     }
 
     /// The number of shapes, those that join others included.
-    ///
-    /// ```
-    /// use strew_core::field::FieldSpec;
-    ///
-    /// assert_eq!(FieldSpec::constant(0.5)?.invert()?.parts(), 2);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn parts(&self) -> usize {
         self.parts
     }
 
     /// The depth to which shapes lie within others; 1 for a single one.
-    ///
-    /// ```
-    /// use strew_core::field::FieldSpec;
-    ///
-    /// assert_eq!(FieldSpec::constant(0.5)?.invert()?.depth(), 2);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn depth(&self) -> usize {
         self.depth
     }
 
     /// The number of vertices.
-    ///
-    /// ```
-    /// use strew_core::field::{FieldSpec, Marks};
-    ///
-    /// let wells = Marks::Points(vec![[0.0, 0.0], [9.0, 4.0]]);
-    /// assert_eq!(FieldSpec::distance(wells, [0.0, 1.0], [0.0, 1.0])?.vertices(), 2);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn vertices(&self) -> usize {
         self.vertices

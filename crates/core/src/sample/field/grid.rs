@@ -8,10 +8,8 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorKind},
-    sample::{
-        area::Region,
-        kernel::{Backend, PlainLoop, compiled_loop},
-    },
+    sample::kernel::{Backend, PlainLoop, compiled_loop},
+    shape::Region,
 };
 
 /// The values beyond the box of pixels.

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorKind},
-    sample::area::Region,
+    shape::Region,
 };
 
 /// The points, lines and outlines from which a field of [distance](super::FieldSpec::distance) is measured. They have

@@ -3,7 +3,7 @@
 //! All of it is off the path of grids without gaps, which know that they have none.
 
 use super::grid::{Edges, Grid};
-use crate::sample::area::Region;
+use crate::shape::Region;
 
 impl Grid {
     /// The mean of those pixels that are there, by their weights; none if all are there.

@@ -7,10 +7,10 @@ use super::{
 use crate::{
     error::{Error, ErrorKind, number},
     sample::{
-        area::Region,
         kernel::{Backend, PlainLoop, compiled_loop},
         seed::split_mix,
     },
+    shape::Region,
 };
 
 /// Smooth patches of a size, of no end and without a pattern: value noise.

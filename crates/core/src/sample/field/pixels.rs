@@ -73,14 +73,6 @@ impl Pixels {
     ///
     /// # Errors
     /// [`ErrorKind::Field`] unless there are whole rows, at least one.
-    ///
-    /// ```
-    /// use strew_core::field::Pixels;
-    ///
-    /// assert_eq!(Pixels::from_bytes(1, vec![0, 255])?.ends(), [0.0, 1.0]);
-    /// assert_eq!(Pixels::from_bytes(2, vec![1, 2, 3]).unwrap_err().field(), "pixels");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn from_bytes(width: usize, pixels: Vec<u8>) -> Result<Self, Error> {
         Self::new(width, Store::Bytes(pixels))
     }
@@ -219,26 +211,12 @@ impl Pixels {
     }
 
     /// The numbers of columns and rows.
-    ///
-    /// ```
-    /// use strew_core::field::Pixels;
-    ///
-    /// assert_eq!(Pixels::from_bytes(3, vec![0; 6])?.size(), [3, 2]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
         self.0.size
     }
 
     /// The memory taken, in bytes.
-    ///
-    /// ```
-    /// use strew_core::field::Pixels;
-    ///
-    /// assert!(Pixels::from_words(100, vec![0; 10_000])?.bytes() < 22_000);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn bytes(&self) -> usize {
         let bounds: usize = self.0.levels.iter().map(|level| level.ends.len()).sum();
@@ -247,13 +225,6 @@ impl Pixels {
     }
 
     /// The least and the greatest number, of pixels that are not missing.
-    ///
-    /// ```
-    /// use strew_core::field::Pixels;
-    ///
-    /// assert_eq!(Pixels::from_bytes(2, vec![51, 0, 0, 255])?.ends(), [0.0, 1.0]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn ends(&self) -> [f32; 2] {
         let last = self.0.levels.last().and_then(|level| level.ends.first());
@@ -261,15 +232,6 @@ impl Pixels {
     }
 
     /// The digest of the numbers and of how they stand in rows.
-    ///
-    /// ```
-    /// use strew_core::field::Pixels;
-    ///
-    /// let of = |width| Ok(Pixels::from_bytes(width, vec![1, 2, 3, 4])?.digest());
-    /// assert_eq!(of(2)?, of(2)?);
-    /// assert_ne!(of(2)?, of(4)?);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn digest(&self) -> Digest {
         self.0.digest

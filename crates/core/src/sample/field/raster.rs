@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorKind, number},
-    sample::area::Region,
+    shape::Region,
     stop::Stop,
     table::Digest,
 };
@@ -46,17 +46,6 @@ impl Raster {
     ///
     /// # Errors
     /// [`ErrorKind::Field`] unless there are whole rows, at least one, of shares from 0 to 1.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, Raster, Region};
-    ///
-    /// let unit = Region::new([0.0, 0.0], [1.0, 1.0])?;
-    /// assert!(Raster::new(unit, 2, vec![0.0, 0.5, 0.5, 1.0]).is_ok());
-    /// for bad in [vec![], vec![0.5], vec![0.5, f32::NAN], vec![0.5, 1.5]] {
-    ///     assert_eq!(Raster::new(unit, 2, bad).unwrap_err().kind(), ErrorKind::Field);
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(region: Region, width: usize, pixels: Vec<f32>) -> Result<Self, Error> {
         Self::of(region, Pixels::from_floats(width, pixels)?)
     }
@@ -207,14 +196,6 @@ impl Raster {
     }
 
     /// The pixels.
-    ///
-    /// ```
-    /// use strew_core::{Raster, Region};
-    ///
-    /// let raster = Raster::new(Region::chunk(64.0, [0, 0])?, 2, vec![0.0, 1.0])?;
-    /// assert_eq!(raster.pixels().size(), [2, 1]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn pixels(&self) -> &Pixels {
         &self.grid.pixels

@@ -198,16 +198,6 @@ impl FieldSpec {
     /// # Errors
     /// [`ErrorKind::Field`] unless the shares are from 0 to 1, the numbers finite, the distances in
     /// ascending order, and there are enough vertices and at most [`MAX_VERTICES`](Self::MAX_VERTICES).
-    ///
-    /// ```
-    /// use strew_core::{Field, field::{FieldSpec, Marks}};
-    ///
-    /// let square = vec![[0.0, 0.0], [40.0, 0.0], [40.0, 40.0], [0.0, 40.0]];
-    /// // A forest that thins out over the last 10 to its edge.
-    /// let forest = FieldSpec::distance(Marks::Polygons(vec![square]), [-10.0, 0.0], [1.0, 0.0])?;
-    /// assert_eq!([20.0, 5.0, -3.0].map(|x| forest.share([x, 20.0])), [1.0, 0.5, 0.0]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn distance(marks: Marks, distances: [f64; 2], shares: [f64; 2]) -> Result<Self, Error> {
         let vertices = marks.vertices();
         if vertices > Self::MAX_VERTICES {
@@ -237,13 +227,6 @@ impl FieldSpec {
     /// # Errors
     /// [`ErrorKind::Field`] unless the wavelength is from 10⁻¹⁰⁰ to 10¹⁰⁰, the octaves from 1 to 8, and the
     /// ends of the range from 0 to 1.
-    ///
-    /// ```
-    /// use strew_core::field::{FieldSpec, Noise};
-    ///
-    /// let noise = Noise { seed: 7, wavelength: 50.0, octaves: 9, range: [0.0, 1.0] };
-    /// assert_eq!(FieldSpec::noise(noise).unwrap_err().field(), "octaves");
-    /// ```
     pub fn noise(noise: Noise) -> Result<Self, Error> {
         noise.check()?;
         let mut canon = Canon::new("noise");
@@ -326,14 +309,6 @@ impl FieldSpec {
     /// # Errors
     /// [`ErrorKind::Field`] without a field, and beyond [`MAX_PARTS`](Self::MAX_PARTS),
     /// [`MAX_DEPTH`](Self::MAX_DEPTH) and [`MAX_VERTICES`](Self::MAX_VERTICES).
-    ///
-    /// ```
-    /// use strew_core::{Field, field::FieldSpec};
-    ///
-    /// let half = FieldSpec::constant(0.5)?;
-    /// assert_eq!(FieldSpec::multiply(vec![half.clone(), half])?.share([0.0, 0.0]), 0.25);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn multiply(parts: Vec<Self>) -> Result<Self, Error> {
         let canon = joined("multiply", &parts)?;
         Self::new(Shape::Multiply(parts), canon, 0)

@@ -6,7 +6,7 @@ use super::{
     pixels::Pixels,
     scale::{Slide, widened},
 };
-use crate::{error::Error, sample::area::Region, stop::Stop, table::Digest};
+use crate::{error::Error, shape::Region, stop::Stop, table::Digest};
 
 /// Heights of pixels over a box, for fields of [height](super::FieldSpec::height) and
 /// [slope](super::FieldSpec::slope).
@@ -33,14 +33,6 @@ impl Terrain {
     ///
     /// # Errors
     /// [`ErrorKind::Field`](crate::ErrorKind::Field) unless the box has an inside.
-    ///
-    /// ```
-    /// use strew_core::{Region, field::{Pixels, Terrain}};
-    ///
-    /// let heights = Pixels::from_floats(1, vec![400.0])?;
-    /// assert!(Terrain::new(Region::new([0.0, 0.0], [0.0, 1.0])?, heights).is_err());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(region: Region, heights: Pixels) -> Result<Self, Error> {
         Ok(Self {
             source: heights.digest(),
@@ -81,15 +73,6 @@ impl Terrain {
     }
 
     /// The digest of the heights, the box and the settings.
-    ///
-    /// ```
-    /// use strew_core::{Region, field::{Pixels, Terrain}};
-    ///
-    /// let heights = Pixels::from_floats(1, vec![400.0])?;
-    /// let terrain = Terrain::new(Region::chunk(9.0, [0, 0])?, heights)?;
-    /// assert_eq!(terrain.clone().digest(), terrain.digest());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn digest(&self) -> Digest {
         let mut canon = Canon::new("terrain");

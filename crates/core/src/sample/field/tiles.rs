@@ -9,10 +9,8 @@ use core::ops::Range;
 
 use crate::{
     pattern::{Axis, Class},
-    sample::{
-        area::Region,
-        lattice::{Columns, Grade, Lattice, Line, Patch, Span, places},
-    },
+    sample::lattice::{Columns, Grade, Lattice, Line, Patch, Span, places},
+    shape::Region,
     table::{FRACTION_BITS, fixed},
 };
 

@@ -57,14 +57,6 @@ macro_rules! has {
 
 impl Backend {
     /// The backends of this machine, the fastest last.
-    ///
-    /// ```
-    /// use strew_core::Backend;
-    ///
-    /// // Plain code runs everywhere.
-    /// assert_eq!(Backend::available().next(), Some(Backend::Scalar));
-    /// assert_eq!(Backend::available().last(), Some(Backend::best()));
-    /// ```
     pub fn available() -> impl DoubleEndedIterator<Item = Self> {
         let all = [
             Some(Self::Scalar),

@@ -49,17 +49,6 @@ pub struct Place {
 
 impl Place {
     /// The id of the point.
-    ///
-    /// ```
-    /// use strew_core::{Exact, Place, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).chunk(8.0, [3, -2])?;
-    /// let mut places = [Place::default(); 20];
-    /// plan.blocks::<Exact>().fill(&mut places);
-    /// assert!(plan.iter().zip(places).all(|(member, place)| member.id() == place.id()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn id(&self) -> PointId {
         self.id

@@ -3,10 +3,7 @@
 use alloc::sync::Arc;
 use core::fmt;
 
-use crate::{
-    parts::FIELDS,
-    sample::{area::Region, field::Field},
-};
+use crate::{parts::FIELDS, sample::field::Field, shape::Region};
 
 /// The shares of a field, times the share of the set.
 #[derive(Clone)]

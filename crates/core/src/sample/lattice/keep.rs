@@ -32,14 +32,6 @@ impl Keep {
     ///
     /// # Errors
     /// [`ErrorKind::Keep`] outside [`MIN`](Self::MIN) to 1 and for NaN.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, Keep};
-    ///
-    /// assert_eq!(Keep::new(1.0)?, Keep::ALL);
-    /// assert_eq!(Keep::new(0.0).unwrap_err().kind(), ErrorKind::Keep);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(share: f64) -> Result<Self, Error> {
         if (Self::MIN..=1.0).contains(&share) {
             Ok(Self(share))
@@ -55,14 +47,6 @@ impl Keep {
     }
 
     /// The share, from [`MIN`](Self::MIN) to 1.
-    ///
-    /// ```
-    /// use strew_core::Keep;
-    ///
-    /// assert_eq!(Keep::new(0.25)?.get(), 0.25);
-    /// assert_eq!(Keep::default().get(), 1.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn get(self) -> f64 {
         self.0

@@ -34,14 +34,6 @@ pub struct Placement {
 impl Placement {
     /// The default for a seed: all points, without warp for seed 0 and with [`Warp::ON`] for every
     /// other.
-    ///
-    /// ```
-    /// use strew_core::{Keep, Placement, Seed, Spacing, Warp};
-    ///
-    /// let placement = Placement::new(Spacing::ONE, Seed(7));
-    /// assert_eq!((placement.warp, placement.keep), (Warp::ON, Keep::ALL));
-    /// assert_eq!(Placement::new(Spacing::ONE, Seed(0)).warp, Warp::OFF);
-    /// ```
     #[must_use]
     pub const fn new(spacing: Spacing, seed: Seed) -> Self {
         Self {
@@ -114,13 +106,6 @@ impl Placement {
     }
 
     /// This placement with another warp.
-    ///
-    /// ```
-    /// use strew_core::{Placement, Seed, Spacing, Warp};
-    ///
-    /// let plain = Placement::new(Spacing::ONE, Seed(7)).with_warp(Warp::OFF);
-    /// assert_eq!((plain.seed, plain.warp), (Seed(7), Warp::OFF));
-    /// ```
     #[must_use]
     pub const fn with_warp(self, warp: Warp) -> Self {
         Self { warp, ..self }

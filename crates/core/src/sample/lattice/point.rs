@@ -50,13 +50,6 @@ pub struct Point {
 
 impl Point {
     /// The world coordinates.
-    ///
-    /// ```
-    /// use strew_core::{Point, PointId};
-    ///
-    /// let point = Point { id: PointId { x: 4, y: 9 }, x: 1.5, y: -2.0 };
-    /// assert_eq!(point.at(), [1.5, -2.0]);
-    /// ```
     #[must_use]
     pub const fn at(&self) -> [f64; 2] {
         [self.x, self.y]

@@ -45,14 +45,6 @@ impl Settle {
     ///
     /// # Errors
     /// [`ErrorKind::Settle`] above [`MAX_STEPS`](Self::MAX_STEPS).
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, Settle};
-    ///
-    /// assert_eq!(Settle::new(0)?, Settle::OFF);
-    /// assert_eq!(Settle::new(9).unwrap_err().kind(), ErrorKind::Settle);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(steps: u32) -> Result<Self, Error> {
         if steps <= Self::MAX_STEPS {
             Ok(Self {
@@ -66,29 +58,12 @@ impl Settle {
     }
 
     /// The number of steps of thinned sets and in fields.
-    ///
-    /// ```
-    /// use strew_core::Settle;
-    ///
-    /// assert_eq!(Settle::OFF.steps(), 0);
-    /// ```
     #[must_use]
     pub const fn steps(self) -> u32 {
         self.steps as u32
     }
 
     /// The number of steps of a set that keeps a share of the points, without a field: with all points at most one.
-    ///
-    /// ```
-    /// use strew_core::{Keep, Settle};
-    ///
-    /// let settle = Settle::new(2)?;
-    /// assert_eq!(settle.steps_at(Keep::ALL), 1);
-    /// assert_eq!(settle.steps_at(Keep::new(0.5)?), 2);
-    /// // Below the least share no point settles.
-    /// assert_eq!(settle.steps_at(Keep::new(1e-4)?), 0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn steps_at(self, keep: Keep) -> u32 {
         let settle = self.of_share(keep.get());

@@ -30,14 +30,6 @@ impl Spacing {
     ///
     /// # Errors
     /// [`ErrorKind::Spacing`] outside that range and for NaN.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, Spacing};
-    ///
-    /// assert_eq!(Spacing::new(2.5)?.get(), 2.5);
-    /// assert_eq!(Spacing::new(0.0).unwrap_err().kind(), ErrorKind::Spacing);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(spacing: f64) -> Result<Self, Error> {
         if (Self::MIN..=Self::MAX).contains(&spacing) {
             Ok(Self(spacing))
@@ -58,15 +50,6 @@ impl Spacing {
     ///
     /// # Errors
     /// [`ErrorKind::Density`] outside that range and for NaN.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, Spacing};
-    ///
-    /// // 100 points in every unit square are a tenth of a unit apart.
-    /// assert_eq!(Spacing::from_density(100.0)?.get(), 0.1);
-    /// assert_eq!(Spacing::from_density(-1.0).unwrap_err().kind(), ErrorKind::Density);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn from_density(density: f64) -> Result<Self, Error> {
         if (Self::MIN_DENSITY..=Self::MAX_DENSITY).contains(&density) {
             // Both operations round to nearest, so the spacing is the same on every machine. At the
@@ -87,25 +70,12 @@ impl Spacing {
     }
 
     /// The spacing in world units.
-    ///
-    /// ```
-    /// use strew_core::Spacing;
-    ///
-    /// assert_eq!(Spacing::ONE.get(), 1.0);
-    /// ```
     #[must_use]
     pub const fn get(self) -> f64 {
         self.0
     }
 
     /// The density in points per world unit squared.
-    ///
-    /// ```
-    /// use strew_core::Spacing;
-    ///
-    /// assert_eq!(Spacing::new(0.5)?.density(), 4.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn density(self) -> f64 {
         1.0 / (self.0 * self.0)

@@ -70,16 +70,6 @@ impl VaryingKinds {
     ///
     /// # Errors
     /// [`ErrorKind::Kinds`] unless there is one place for each kind, and a field in one of them.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, Table, VaryingKinds};
-    ///
-    /// let order = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let error = VaryingKinds::new(&order, "1:3".parse()?, vec![None, None]).unwrap_err();
-    /// assert_eq!(error.kind(), ErrorKind::Kinds);
-    /// assert!(error.to_string().contains("it must be a field for at least one kind"));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(
         order: &Table,
         shares: Shares,
@@ -106,17 +96,6 @@ impl VaryingKinds {
     }
 
     /// The parts of the kinds, which their fields multiply.
-    ///
-    /// ```
-    /// use std::sync::Arc;
-    /// use strew_core::{Table, VaryingKinds};
-    ///
-    /// let order = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let half = |_: [f64; 2]| 0.5;
-    /// let kinds = VaryingKinds::new(&order, "3:1".parse()?, vec![None, Some(Arc::new(half))])?;
-    /// assert_eq!(kinds.shares().to_string(), "1:3");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn shares(&self) -> &Shares {
         &self.shares

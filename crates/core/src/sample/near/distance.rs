@@ -139,17 +139,6 @@ impl LeastDistance {
 
     /// δ_min: the distance without warp in units of the hexagonal distance √(2/√3) at the same density;
     /// at most 1. Within a kind the density is that of the kind, between two kinds that of all points.
-    ///
-    /// ```
-    /// use strew_core::{Table, Warp};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let least = table.least_distance();
-    /// let hexagonal = (2.0 / 3f64.sqrt()).sqrt();
-    /// assert!((least.relative() * hexagonal - least.with_warp(Warp::OFF)).abs() < 1e-12);
-    /// assert!(least.relative() <= 1.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn relative(&self) -> f64 {
         self.relative_to_all() * libm::sqrt(self.share)
@@ -160,19 +149,6 @@ impl LeastDistance {
     ///
     /// Without warp it is attained. With warp it is a bound: the table's distance divided by the largest
     /// factor by which the warp shrinks distances.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table, Warp};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let least = table.least_distance().with_warp(Warp::ON);
-    /// // A seed other than 0 warps with strength 1, and the mean spacing is 1.
-    /// let set = PointSet::new(table).seed(7);
-    /// let near = set.nearest([5.0, 5.0], 2)?;
-    /// let [a, b] = [0, 1].map(|i| near[i].member.at());
-    /// assert!((a[0] - b[0]).hypot(a[1] - b[1]) >= least);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn with_warp(&self, warp: Warp) -> f64 {
         // All seeds have the same amplitudes.
@@ -208,19 +184,6 @@ impl LeastDistance {
     }
 
     /// Whether δ_min is at least [`MIN_RELATIVE`](Self::MIN_RELATIVE), at the density of all points.
-    ///
-    /// ```
-    /// use strew_core::{Table, table::Provenance};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// assert!(table.least_distance().is_useful());
-    /// // Random vectors of up to ±8 grid units bring some points together.
-    /// let random = |i: u32| (i.wrapping_mul(0x9e37_79b9) as i32) >> 8;
-    /// let vectors = (0..table.displacements().len() as u32).map(|i| [random(i), random(!i)]);
-    /// let white = Table::new(table.map().clone(), "white", vectors.collect(), Provenance::default())?;
-    /// assert!(!white.least_distance().is_useful());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn is_useful(&self) -> bool {
         self.relative_to_all() >= Self::MIN_RELATIVE
@@ -242,18 +205,6 @@ impl LeastDistance {
     /// [`ErrorKind::Distance`] unless the distance is a positive finite number,
     /// [`ErrorKind::NoLeastDistance`] if the table's distance is not [useful](Self::is_useful), and
     /// [`ErrorKind::Spacing`] if the spacing would leave [`Spacing`]'s range.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, Table, Warp};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let least = table.least_distance();
-    /// let [plain, warped] = [least.spacing_for(2.0, Warp::OFF)?, least.spacing_for(2.0, Warp::ON)?];
-    /// // The warp shrinks some distances, so the same guarantee takes more space.
-    /// assert!(warped > plain);
-    /// assert_eq!(least.spacing_for(0.0, Warp::ON).unwrap_err().kind(), ErrorKind::Distance);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn spacing_for(&self, distance: f64, warp: Warp) -> Result<Spacing, Error> {
         if !(distance.is_finite() && distance > 0.0) {
             let allowed = "a finite number greater than 0";

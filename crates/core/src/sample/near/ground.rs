@@ -46,7 +46,7 @@
 
 use alloc::{vec, vec::Vec};
 
-use crate::sample::area::Region;
+use crate::shape::Region;
 
 /// The most tiles of a piece. Where there would be more, the other set is so dense that searches are cheaper.
 const MOST_TILES: f64 = 4096.0;

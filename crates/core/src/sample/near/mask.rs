@@ -15,10 +15,8 @@ use super::{
 use crate::{
     error::{Error, ErrorKind, number},
     parts::CLEARANCE,
-    sample::{
-        area::{Area, Region},
-        lattice::{Lattice, Point},
-    },
+    sample::lattice::{Lattice, Point},
+    shape::{Area, Region},
 };
 
 /// The conditions on the places of a set's points.
@@ -300,14 +298,6 @@ impl Clearance {
     }
 
     /// The distance that is tested, in world units.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// assert_eq!(PointSet::new(table).clearance(2.0)?.distance(), 2.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn distance(&self) -> f64 {
         self.distance
@@ -319,19 +309,6 @@ impl Clearance {
     ///
     /// Nothing is near a place that is not finite, or whose surroundings leave the
     /// [limit](crate::PointSet::search_limit) of searches.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let trees = PointSet::new(table).spacing(5.0)?.seed(3);
-    /// let tree = trees.nearest([0.0, 0.0], 1)?[0].member;
-    /// let mut clearance = trees.clearance(0.1)?;
-    /// // Is there a tree at the place? One other than this?
-    /// assert!(clearance.is_any_near(tree.at(), |_| true));
-    /// assert!(!clearance.is_any_near(tree.at(), |other| other.id != tree.id()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn is_any_near(&mut self, at: [f64; 2], mut accept: impl FnMut(&Point) -> bool) -> bool {
         let Self {
             lattice,

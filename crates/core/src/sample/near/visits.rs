@@ -25,17 +25,6 @@ const OFTEN: usize = 16;
 
 impl Visits {
     /// A limit of `most` points, or of the number that any search may visit if that is smaller, until a flag is raised.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, PointSet, Table, server::{self, Stop, Visits}};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let rare = PointSet::new(table).keep(1e-4)?;
-    /// let few = Visits::new(1000, Stop::default());
-    /// let error = server::nearest(&rare, [0.0, 0.0], 5, None, &few).unwrap_err();
-    /// assert_eq!(error.kind(), ErrorKind::TooMany);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn new(most: usize, stop: Stop) -> Self {
         Self {
@@ -51,16 +40,6 @@ impl Visits {
     }
 
     /// The points that were visited.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table, server::{self, Stop, Visits}};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let visits = Visits::new(1000, Stop::default());
-    /// assert_eq!(server::nearest(&PointSet::new(table), [0.0, 0.0], 5, None, &visits)?.len(), 5);
-    /// assert!((5..200).contains(&visits.made()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn made(&self) -> usize {
         self.made.get()
@@ -76,15 +55,6 @@ impl Visits {
     }
 
     /// Whether the flag is raised.
-    ///
-    /// ```
-    /// use strew_core::server::{Stop, Visits};
-    ///
-    /// let stop = Stop::new();
-    /// let visits = Visits::new(1000, stop.clone());
-    /// stop.raise();
-    /// assert!(visits.is_stopped());
-    /// ```
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.stop.is_raised()

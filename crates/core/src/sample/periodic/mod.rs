@@ -77,17 +77,6 @@ impl PeriodicSet {
     /// # Errors
     /// [`ErrorKind::Period`] if the map has no period of that size up to [`MAX_POINTS`](Self::MAX_POINTS)
     /// points. A map has none at all if its thresholds coincide, as they do at small fractions α.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// assert_eq!(PeriodicSet::new(table.clone(), 1)?.len(), 5041);
-    /// assert_eq!(PeriodicSet::new(table.clone(), 5042)?.len(), 9409);
-    /// let error = PeriodicSet::new(table, 1 << 40).unwrap_err();
-    /// assert_eq!(error.kind(), ErrorKind::Period);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(table: Table, points: u64) -> Result<Self, Error> {
         let refused = |allowed| Error::new(ErrorKind::Period, "periodic", points, allowed);
         if points > Self::MAX_POINTS {
@@ -158,17 +147,6 @@ impl PeriodicSet {
     ///
     /// # Errors
     /// [`ErrorKind::Period`] unless it is a number from 10⁻¹⁰⁰ to 10¹⁰⁰.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?;
-    /// assert_eq!(tile.length(), 71.0);
-    /// assert_eq!(tile.clone().side(256.0)?.length(), 256.0);
-    /// assert!(tile.side(0.0).is_err());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn side(mut self, side: f64) -> Result<Self, Error> {
         if !(1e-100..=1e100).contains(&side) {
             let allowed = "a number from 1e-100 to 1e100";
@@ -181,17 +159,6 @@ impl PeriodicSet {
 
     /// The set of another seed. Unless a [warp](Self::warp) was chosen, it is off for seed 0 and on for all
     /// others.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?;
-    /// let first = |seed| tile.clone().seed(seed).iter().next().map(|p| p.at());
-    /// assert_eq!(first(7), first(7));
-    /// assert_ne!(first(7), first(8));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn seed(mut self, seed: u64) -> Self {
         self.seed = Seed(seed);
@@ -226,29 +193,12 @@ impl PeriodicSet {
 
     /// The twin whose period this is. Ids are lattice addresses from 0 up to its
     /// [`period`](Twin::period).
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?;
-    /// assert_eq!((tile.twin().to_string().as_str(), tile.twin().period()), ("183/112", 224));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn twin(&self) -> Twin {
         self.twin
     }
 
     /// The number of points in a period, before any [are left out](Self::count).
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// assert_eq!(PeriodicSet::new(table, 5000)?.len(), 5041);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "a period has points")]
     pub const fn len(&self) -> u64 {
@@ -256,30 +206,12 @@ impl PeriodicSet {
     }
 
     /// The side L of the period, in world units.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// // The mean spacing is L/√N.
-    /// let tile = PeriodicSet::new(table, 5000)?.side(142.0)?;
-    /// assert_eq!(tile.length() / (tile.len() as f64).sqrt(), 2.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn length(&self) -> f64 {
         self.side
     }
 
     /// The table whose vectors displace the points.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// assert_eq!(PeriodicSet::new(table.clone(), 5000)?.table(), &table);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn table(&self) -> &Table {
         &self.table
@@ -287,16 +219,6 @@ impl PeriodicSet {
 
     /// The points of a period, in the order of their ids: rows of the lattice, then columns. They are made one
     /// by one; memory does not grow with their number.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?.seed(7);
-    /// let ids: Vec<_> = tile.iter().map(|p| p.id()).collect();
-    /// assert!(ids.is_sorted_by_key(|id| (id.y, id.x)));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn iter(&self) -> impl Iterator<Item = Member> + use<> {
         self.rows(0..self.twin.period())
     }

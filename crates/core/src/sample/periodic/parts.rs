@@ -112,16 +112,6 @@ impl PeriodicSet {
 
     /// The rank of a point, from 0 to 1: its place in the order in which points leave when the set is thinned.
     /// The points of rank below a share are even at every share. `None` if no point has the id.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?;
-    /// let below = |share| tile.iter().filter(|p| tile.rank(p.id()) < Some(share)).count();
-    /// assert!((below(0.25) as f64 / 5041.0 - 0.25).abs() < 0.01);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn rank(&self, id: PointId) -> Option<f64> {
         let (_, index) = self.indices(id)?;
@@ -129,17 +119,6 @@ impl PeriodicSet {
     }
 
     /// The exact number of points of the set in a period.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?.seed(7);
-    /// assert_eq!(tile.count(), tile.len());
-    /// let few = tile.keep(0.1)?;
-    /// assert_eq!(few.count(), few.iter().count() as u64);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn count(&self) -> u64 {
         if self.has_all() {
@@ -168,14 +147,6 @@ impl PeriodicSet {
     }
 
     /// The mean spacing of all points of the period, L/√N.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// assert_eq!(PeriodicSet::new(table, 5000)?.side(142.0)?.spacing(), 2.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn spacing(&self) -> f64 {
         // N is t².
@@ -184,15 +155,6 @@ impl PeriodicSet {
 
     /// The least distance between any two points, in the period or across its seam, in world units: a guarantee,
     /// as [`PointSet::least_distance`](crate::PointSet::least_distance) is.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?.seed(7);
-    /// assert!((0.55..0.65).contains(&tile.least_distance()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn least_distance(&self) -> f64 {
         let of_kind = self.parts.kind;

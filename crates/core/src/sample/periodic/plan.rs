@@ -8,11 +8,11 @@ use super::PeriodicSet;
 use crate::{
     error::Error,
     sample::{
-        area::Region,
         attribute::{Attributes, BoundAttributes},
         cursor::Cursor,
         lattice::{Point, PointId},
     },
+    shape::Region,
     stop::Stop,
 };
 
@@ -125,102 +125,42 @@ impl PeriodicPlan {
     }
 
     /// The set whose period it is.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// assert_eq!(PeriodicSet::new(table, 5000)?.plan().set().length(), 71.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn set(&self) -> &PeriodicSet {
         &self.set
     }
 
     /// The exact number of points of the window.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// assert_eq!(PeriodicSet::new(table, 5000)?.plan().window(5000, Some(100)).count(), 41);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn count(&self) -> u128 {
         self.count as u128
     }
 
     /// The number of points of the whole period.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// assert_eq!(PeriodicSet::new(table, 5000)?.plan().window(0, Some(9)).total(), 5041);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn total(&self) -> u128 {
         self.total as u128
     }
 
     /// The number of points before the window.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// assert_eq!(PeriodicSet::new(table, 5000)?.plan().window(7, None).offset(), 7);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn offset(&self) -> u128 {
         self.offset as u128
     }
 
     /// Whether it is less than the whole period.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let plan = PeriodicSet::new(table, 5000)?.plan();
-    /// assert!(!plan.is_window() && plan.window(0, Some(5)).is_window());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn is_window(&self) -> bool {
         self.count < self.total
     }
 
     /// The box [0, L)².
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let plan = PeriodicSet::new(table, 5000)?.plan();
-    /// assert_eq!((plan.region().min(), plan.region().max()), ([0.0; 2], [71.0; 2]));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn region(&self) -> Region {
         Region::between([0.0; 2], [self.set.length(); 2])
     }
 
     /// The points after the first `offset`, at most `limit`.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let plan = PeriodicSet::new(table, 5000)?.plan();
-    /// let part = plan.window(100, Some(50)).window(10, None);
-    /// assert_eq!((part.offset(), part.count()), (110, 40));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn window(&self, offset: u128, limit: Option<u128>) -> Self {
         let small = |v: u128| u64::try_from(v).unwrap_or(u64::MAX);
@@ -251,16 +191,6 @@ impl PeriodicPlan {
     }
 
     /// The place of the first point after the window, if there is one.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?;
-    /// let next = tile.plan().window(0, Some(41)).next_cursor().expect("there are more");
-    /// assert_eq!(tile.resume(next).count(), 5000);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn next_cursor(&self) -> Option<Cursor> {
         self.cursor_after(self.count)
@@ -294,23 +224,6 @@ impl PeriodicPlan {
     }
 
     /// The points in blocks, in the order of the period: rows, then columns.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Point, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?.seed(7);
-    /// let (mut blocks, mut block, mut all) = (tile.plan().blocks(), [Point::default(); 100], vec![]);
-    /// loop {
-    ///     let filled = blocks.fill(&mut block);
-    ///     all.extend_from_slice(&block[..filled]);
-    ///     if filled == 0 {
-    ///         break;
-    ///     }
-    /// }
-    /// assert!(all.into_iter().eq(tile.iter().map(|p| p.point())));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn blocks(&self) -> PeriodicBlocks {
         PeriodicBlocks {
@@ -362,15 +275,6 @@ pub struct PeriodicBlocks {
 
 impl PeriodicBlocks {
     /// Fills a block with the next points and returns their number. A block is filled in part only at the end.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Point, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let plan = PeriodicSet::new(table, 5000)?.plan().window(0, Some(3));
-    /// assert_eq!(plan.blocks().fill(&mut [Point::default(); 8]), 3);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn fill(&mut self, out: &mut [Point]) -> usize {
         let mut filled = 0;
         while filled < out.len() && self.left > 0 {

@@ -7,7 +7,6 @@ mod windows;
 use alloc::{sync::Arc, vec, vec::Vec};
 
 use super::{
-    area::{Area, Region},
     attribute::{Attributes, BoundAttributes},
     kernel::{F32, F64, Format, Place, Points},
     lattice::{Keep, Lattice, Placement, Point, Spacing},
@@ -16,7 +15,12 @@ use super::{
     scope::Scope,
     walk::{Blocks, Counted, Tile, Window, format_of, tiles},
 };
-use crate::{error::Error, stop::Stop, table::Table};
+use crate::{
+    error::Error,
+    shape::{Area, Region},
+    stop::Stop,
+    table::Table,
+};
 
 /// The points of a set in an area: their exact number is known, the points come on demand, in a fixed
 /// order.
@@ -79,68 +83,24 @@ impl Plan {
     }
 
     /// The number of points.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Region, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// // Counted in closed form, in microseconds.
-    /// let plan = PointSet::new(table).within(Region::new([-5e8, -5e8], [5e8, 5e8])?)?;
-    /// assert!((plan.count() as f64 / 1e18 - 1.0).abs() < 1e-6);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn count(&self) -> u128 {
         self.window.count
     }
 
     /// The number of points, or `None` if it does not fit `usize`.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Region, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table);
-    /// let plan = set.within(Region::chunk(8.0, [0, 0])?)?;
-    /// assert_eq!(plan.len(), Some(plan.to_vec().len()));
-    /// // 10²⁰ points are more than memory can number.
-    /// assert_eq!(set.within(Region::chunk(1e10, [0, 0])?)?.len(), None);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn len(&self) -> Option<usize> {
         usize::try_from(self.count()).ok()
     }
 
     /// Whether there are no points.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Region, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table);
-    /// assert!(set.within(Region::new([5.0, 5.0], [5.0, 9.0])?)?.is_empty());
-    /// assert!(!set.chunk(8.0, [0, 0])?.is_empty());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.window.count == 0
     }
 
     /// The points, one by one.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).seed(7).chunk(8.0, [0, 0])?;
-    /// let tallest = plan.iter().max_by(|a, b| a.uniform(1).total_cmp(&b.uniform(1)));
-    /// assert!(tallest.is_some_and(|tree| tree.uniform(1) > 0.9));
-    /// // `for` works on a plan and on a reference to it.
-    /// assert!((&plan).into_iter().eq(plan.iter()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn iter(&self) -> Members {
         Members::new(self.blocks(), self.window.count, self.placement().seed)
@@ -193,52 +153,18 @@ impl Plan {
 
     /// The points as `f32` pairs relative to [`origin`](Self::origin), block by block; see
     /// [`blocks`](Self::blocks).
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).chunk(8.0, [3, -2])?;
-    /// let mut block = vec![[0f32; 2]; plan.len().expect("small")];
-    /// plan.blocks_f32().fill(&mut block);
-    /// let (offset, place) = (block[0], plan.to_vec()[0].at());
-    /// assert!((plan.origin()[0] + f64::from(offset[0]) - place[0]).abs() < 1e-5);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn blocks_f32(&self) -> Blocks<F32> {
         self.blocks()
     }
 
     /// The points as `f64` pairs in world coordinates, block by block; see [`blocks`](Self::blocks).
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).chunk(8.0, [3, -2])?;
-    /// let mut block = vec![[0f64; 2]; plan.len().expect("small")];
-    /// plan.blocks_f64().fill(&mut block);
-    /// assert_eq!(block[0], plan.to_vec()[0].at());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn blocks_f64(&self) -> Blocks<F64> {
         self.blocks()
     }
 
     /// The points with their ids, block by block; see [`blocks`](Self::blocks).
-    ///
-    /// ```
-    /// use strew_core::{Point, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table);
-    /// let mut block = [Point::default(); 10];
-    /// set.chunk(8.0, [3, -2])?.blocks_points().fill(&mut block);
-    /// assert!(block.iter().all(|point| set.point(point.id).is_some()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn blocks_points(&self) -> Blocks<Points> {
         self.blocks()
@@ -305,18 +231,6 @@ impl Plan {
     }
 
     /// A box around all points: the requested region, if that was a box.
-    ///
-    /// ```
-    /// use strew_core::{Circle, PointSet, Region, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table);
-    /// let chunk = Region::chunk(8.0, [3, -2])?;
-    /// assert_eq!(set.within(chunk)?.region(), chunk);
-    /// let around = set.within(Circle::new([0.0, 0.0], 5.0)?)?.region();
-    /// assert!(around.contains([-5.0, 0.0]) && !around.contains([-5.1, 0.0]));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn region(&self) -> Region {
         self.scope.region
@@ -325,45 +239,18 @@ impl Plan {
     /// The lower corner of the requested chunk, or else of the [region](Self::region), in world coordinates. [`F32`]
     /// coordinates and [`Offsets`](crate::Offsets) are relative to it; in a chunk to the exact corner, which this
     /// rounds to `f64`.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// assert_eq!(PointSet::new(table).chunk(8.0, [3, -2])?.origin(), [24.0, -16.0]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn origin(&self) -> [f64; 2] {
         self.scope.corner.at
     }
 
     /// The table of the set.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// assert_eq!(PointSet::new(table.clone()).chunk(8.0, [0, 0])?.table(), &table);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn table(&self) -> &Table {
         &self.scope.lattice.table
     }
 
     /// Spacing, seed, warp and share of the set.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Region, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let region = Region::chunk(8.0, [0, 0])?;
-    /// let spacing = PointSet::new(table).exactly(16, region)?.placement().spacing;
-    /// // Sixteen points in a square of side 8 are about 2 apart.
-    /// assert!((1.8..2.2).contains(&spacing.get()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn placement(&self) -> Placement {
         self.scope.lattice.placement

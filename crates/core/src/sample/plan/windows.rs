@@ -15,48 +15,18 @@ const AT_ONCE: u128 = 4096;
 
 impl Plan {
     /// The number of points of the whole request, of which the plan may be a window.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).chunk(20.0, [0, 0])?;
-    /// let page = plan.window(50, Some(10));
-    /// assert_eq!((page.count(), page.total()), (10, plan.count()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn total(&self) -> u128 {
         self.window.total
     }
 
     /// The number of points of the request that come before the plan's.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).chunk(20.0, [0, 0])?;
-    /// assert_eq!(plan.offset(), 0);
-    /// assert_eq!(plan.window(50, None).window(5, None).offset(), 55);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn offset(&self) -> u128 {
         self.window.offset
     }
 
     /// Whether the plan leaves out points of its request.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).chunk(20.0, [0, 0])?;
-    /// assert!(plan.window(0, Some(10)).is_window());
-    /// assert!(!plan.window(0, None).is_window());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn is_window(&self) -> bool {
         self.window.count < self.window.total

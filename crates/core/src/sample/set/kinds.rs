@@ -6,11 +6,11 @@ use super::PointSet;
 use crate::{
     error::{Error, ErrorKind, shown},
     sample::{
-        area::Area,
         attribute::Kinds,
         lattice::{Placement, Point, PointId, VaryingKinds, check_kind},
         plan::Plan,
     },
+    shape::Area,
     stop::Stop,
     table::{Shares, Table},
 };
@@ -93,21 +93,6 @@ impl PointSet {
     }
 
     /// The [named kinds](Self::kinds) of the set, if its kinds have names.
-    ///
-    /// ```
-    /// use strew_core::{Kinds, PointSet, Region, Table, table::{Mix, Ranks}};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// # let mix = Mix::scattered(table.map(), "1:3".parse()?)?;
-    /// # let ranks = Ranks::new((0..mix.labels().len() as u32).collect())?;
-    /// # let table = table.with_mix(mix, ranks)?;
-    /// let forest = PointSet::new(table).seed(7).kinds(Kinds::even("oak:3,birch:1")?)?;
-    /// let names = forest.named_kinds().expect("they have names").names();
-    /// for (name, count) in names.zip(forest.kind_counts(Region::chunk(64.0, [0, 0])?)?) {
-    ///     println!("{count} × {name}");
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn named_kinds(&self) -> Option<&Kinds> {
         self.named.as_ref()
@@ -224,14 +209,6 @@ impl PointSet {
     }
 
     /// The kind of [all points](Self::only) of the set, or `None` if it was not limited to one.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// assert_eq!(PointSet::new(table).kind(), None);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn kind(&self) -> Option<u8> {
         self.lattice.kind()

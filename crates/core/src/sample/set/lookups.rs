@@ -7,13 +7,13 @@ use crate::{
     error::Error,
     pattern::Arrangement,
     sample::{
-        area::Region,
         attribute::{Attributes, BoundAttributes},
         lattice::{Placement, Point, PointId},
         member::Member,
         near::{Clearance, LeastDistance, Visits, limits, search},
         settle::{Settler, weight},
     },
+    shape::Region,
 };
 
 /// A point of a set near a place, and its distance.
@@ -263,19 +263,6 @@ impl PointSet {
     /// origin, whatever the region. It is 0 for profiles that guarantee none.
     ///
     /// [`least_distance_within`](Self::least_distance_within) returns the guarantee farther out.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).spacing(4.0)?.seed(7);
-    /// for point in set.chunk(40.0, [0, 0])? {
-    ///     // The nearest is the point itself.
-    ///     let next = set.nearest(point.at(), 2)?[1];
-    ///     assert!(next.distance >= set.least_distance());
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn least_distance(&self) -> f64 {
         self.least_distance_within(0.0)
@@ -387,18 +374,6 @@ impl PointSet {
     }
 
     /// The largest absolute coordinate that a search may reach, in world units.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table);
-    /// let limit = set.search_limit();
-    /// assert!(set.around([limit - 10.0, 0.0], 10.0, 1000).is_ok());
-    /// let error = set.around([limit, 0.0], 10.0, 1000).unwrap_err();
-    /// assert_eq!((error.kind(), error.limit()), (ErrorKind::TooFar, Some(limit)));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn search_limit(&self) -> f64 {
         limits::limit(&self.lattice)

@@ -13,7 +13,6 @@ pub use lookups::Neighbor;
 use alloc::sync::Arc;
 
 use super::{
-    area::Area,
     attribute::Kinds,
     field::Field,
     lattice::{Keep, Lattice, Placement, Settle, Spacing},
@@ -21,7 +20,7 @@ use super::{
     seed::Seed,
     warp::Warp,
 };
-use crate::{error::Error, table::Table};
+use crate::{error::Error, shape::Area, table::Table};
 
 /// An unbounded set of points: a table at a spacing, with a seed and a warp.
 ///
@@ -386,30 +385,12 @@ impl PointSet {
     }
 
     /// The table.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// assert_eq!(PointSet::new(table).table().profile(), "pattern");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn table(&self) -> &Table {
         &self.lattice.table
     }
 
     /// Spacing, seed, warp and share.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Seed, Table, Warp};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let placement = PointSet::new(table).spacing(4.0)?.seed(7).placement();
-    /// assert_eq!((placement.spacing.get(), placement.seed), (4.0, Seed(7)));
-    /// assert_eq!(placement.warp, Warp::ON);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn placement(&self) -> Placement {
         self.lattice.placement

@@ -5,14 +5,8 @@ use core::ops::Range;
 use super::PointSet;
 use crate::{
     error::Error,
-    sample::{
-        amount,
-        area::{Area, Region},
-        cursor::Cursor,
-        field::candidates,
-        plan::Plan,
-        scope::Scope,
-    },
+    sample::{amount, cursor::Cursor, field::candidates, plan::Plan, scope::Scope},
+    shape::{Area, Region},
     stop::Stop,
 };
 
@@ -136,17 +130,6 @@ impl PointSet {
     }
 
     /// The largest absolute coordinate of a requested area, in world units: 2⁵² lattice units.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Region, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).spacing(0.001)?;
-    /// let limit = set.limit();
-    /// assert!(set.within(Region::new([limit - 1.0, 0.0], [limit, 1.0])?).is_ok());
-    /// assert!(set.within(Region::new([limit, 0.0], [2.0 * limit, 1.0])?).is_err());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn limit(&self) -> f64 {
         self.lattice.limit()

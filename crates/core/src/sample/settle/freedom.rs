@@ -11,9 +11,9 @@
 use alloc::vec::Vec;
 
 use super::LEAST_SHARE;
-use crate::sample::{
-    area::Region,
-    lattice::{Grade, Settle},
+use crate::{
+    sample::lattice::{Grade, Settle},
+    shape::Region,
 };
 
 /// Up to here a field counts as constant around a point.

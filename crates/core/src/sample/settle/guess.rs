@@ -3,7 +3,7 @@
 use alloc::{vec, vec::Vec};
 
 use super::reach::{Extent, Reach, whole_room};
-use crate::sample::{area::Region, lattice::Grade};
+use crate::{sample::lattice::Grade, shape::Region};
 
 /// The places along each axis of a box at which a field is looked at to guess how sparse it is.
 const SAMPLES: usize = 9;

@@ -49,10 +49,10 @@ use super::{
 };
 use crate::{
     sample::{
-        area::Region,
         kernel::Backend,
         lattice::{Lattice, PointId},
     },
+    shape::Region,
     table::FRACTION_BITS,
 };
 

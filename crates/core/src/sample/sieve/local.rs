@@ -48,10 +48,10 @@ use core::ops::Range;
 use crate::{
     pattern::Axis,
     sample::{
-        area::{Area, Near, Region, State, Stepper},
         lattice::{Lattice, PointId},
         near::Guard,
     },
+    shape::{Area, Near, Region, State, Stepper},
     table::FRACTION_BITS,
 };
 

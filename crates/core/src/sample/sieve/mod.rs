@@ -11,7 +11,7 @@
 //! 4. [`LocalSieve::runs`] turns stretches into [`Run`]s of lattice columns. Runs that pass are copied or
 //!    counted at full speed.
 //! 5. In other runs [`LocalSieve::passes`] tests each point, against the few edges that touch its stretch
-//!    where these are known (`area::Near`).
+//!    where these are known (`shape::Near`).
 
 mod local;
 mod scale;

@@ -5,10 +5,10 @@ use alloc::{sync::Arc, vec::Vec};
 use super::LocalSieve;
 use crate::{
     sample::{
-        area::Area,
         lattice::Lattice,
         near::{Guard, Mask},
     },
+    shape::Area,
     table::FRACTION_BITS,
 };
 

@@ -198,19 +198,6 @@ impl<F: Format> Blocks<F> {
 
     /// Writes the next points into `out`. Returns the number written; fewer than `out` holds, down to 0,
     /// only at the end.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Region, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).within(Region::new([0.0, 0.0], [100.0, 50.0])?)?;
-    /// let (mut blocks, mut block, mut total) = (plan.blocks_f64(), [[0.0; 2]; 512], 0);
-    /// while let filled @ 1.. = blocks.fill(&mut block) {
-    ///     total += filled;
-    /// }
-    /// assert_eq!(total as u128, plan.count());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn fill(&mut self, out: &mut [F::Item]) -> usize {
         let most = usize::try_from(self.left).map_or(out.len(), |left| left.min(out.len()));
         let out = &mut out[..most];

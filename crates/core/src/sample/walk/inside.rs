@@ -2,11 +2,13 @@
 
 use alloc::vec::Vec;
 
-use crate::sample::{
-    area::Area,
-    lattice::Lattice,
-    near::Guard,
-    settle::{Box2, Settled, Settler, common},
+use crate::{
+    sample::{
+        lattice::Lattice,
+        near::Guard,
+        settle::{Box2, Settled, Settler, common},
+    },
+    shape::Area,
 };
 
 /// The sides of the tiles that are compared with an outline as a whole, in bits of fixed-point units: 128 grid units.

@@ -47,17 +47,19 @@ use super::{
     strips::{PIECE, Rows},
     tile::Tile,
 };
-use crate::sample::{
-    area::Area,
-    count::count,
-    kernel::{Backend, Format},
-    lattice::{BAND_WIDTH, Found, PATCH_HEIGHT, PointId, clip_to_band, places_of},
-    near::Guard,
-    scope::Scope,
-    settle::{Box2, Placed, Settled, Settler, add_place, common, joined, widened},
-    sieve::Sieve,
-};
 use crate::table::fixed;
+use crate::{
+    sample::{
+        count::count,
+        kernel::{Backend, Format},
+        lattice::{BAND_WIDTH, Found, PATCH_HEIGHT, PointId, clip_to_band, places_of},
+        near::Guard,
+        scope::Scope,
+        settle::{Box2, Placed, Settled, Settler, add_place, common, joined, widened},
+        sieve::Sieve,
+    },
+    shape::Area,
+};
 
 /// About how far around a box points matter to those in it, in greatest moves, in sets without kinds.
 const MARGIN: i128 = 16;

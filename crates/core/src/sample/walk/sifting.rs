@@ -3,10 +3,12 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use crate::sample::{
-    area::Area,
-    lattice::PrefixCounts,
-    sieve::{LocalSieve, Run, STRIP_ROWS, Sieve},
+use crate::{
+    sample::{
+        lattice::PrefixCounts,
+        sieve::{LocalSieve, Run, STRIP_ROWS, Sieve},
+    },
+    shape::Area,
 };
 
 /// The state of a walk through a sieve.
@@ -110,7 +112,7 @@ mod tests {
     use core::cell::Cell;
 
     use super::*;
-    use crate::sample::area::Region;
+    use crate::shape::Region;
 
     #[test]
     fn bands_without_a_part_of_the_area_are_passed_over() {

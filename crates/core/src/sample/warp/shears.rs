@@ -43,14 +43,6 @@ impl Warp {
     ///
     /// # Errors
     /// [`ErrorKind::Warp`] outside 0 to [`MAX_STRENGTH`](Self::MAX_STRENGTH) and for NaN.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, Warp};
-    ///
-    /// assert_eq!((Warp::new(0.0)?, Warp::new(1.0)?), (Warp::OFF, Warp::ON));
-    /// assert_eq!(Warp::new(-0.1).unwrap_err().kind(), ErrorKind::Warp);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(strength: f64) -> Result<Self, Error> {
         if (0.0..=Self::MAX_STRENGTH).contains(&strength) {
             Ok(Self {
@@ -68,29 +60,12 @@ impl Warp {
     }
 
     /// The strength, a multiple of 1/256.
-    ///
-    /// ```
-    /// use strew_core::Warp;
-    ///
-    /// assert_eq!(Warp::ON.strength(), 1.0);
-    /// assert_eq!(Warp::new(0.3)?.strength(), 77.0 / 256.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn strength(self) -> f64 {
         f64::from(self.strength) / 256.0
     }
 
     /// Whether points stay where the table puts them.
-    ///
-    /// ```
-    /// use strew_core::Warp;
-    ///
-    /// assert!(Warp::OFF.is_off() && !Warp::ON.is_off());
-    /// // Rounding to 1/256 turns a tiny strength off.
-    /// assert!(Warp::new(0.001)?.is_off());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn is_off(self) -> bool {
         self.strength == 0

@@ -3,17 +3,14 @@
 //! A folder may hold thousands of tables. What each is found by stands in a few hundred bytes; the vectors are
 //! passed over.
 
-use alloc::{format, string::String, vec, vec::Vec};
+use alloc::{string::String, vec, vec::Vec};
 
 use super::{
-    layout::{
-        CUBE, DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, MAGIC, MAX_SECTIONS, MIX, check_size,
-    },
+    layout::{CUBE, DIGEST_BYTES, HEADER_BYTES, MIX, check_header},
     read::{HeadSection, read_prov, wrong},
-    wire::Reader,
 };
 use crate::{
-    error::{Error, ErrorKind},
+    error::Error,
     pattern::Alpha,
     table::{Digest, Provenance},
 };
@@ -62,24 +59,14 @@ impl Head {
     /// # Errors
     /// The errors of `at`; within, one of the `Table…` kinds or [`ErrorKind::Alpha`], naming the part of the file that
     /// is wrong.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, table::Head};
-    ///
-    /// let none = |_, _: &mut [u8]| Ok::<(), std::io::Error>(());
-    /// let error = Head::read(3, none)?.unwrap_err();
-    /// assert_eq!(error.kind(), ErrorKind::TableTruncated);
-    /// # Ok::<(), std::io::Error>(())
-    /// ```
     pub fn read<E>(
         bytes: u64,
         mut at: impl FnMut(u64, &mut [u8]) -> Result<(), E>,
     ) -> Result<Result<Self, Error>, E> {
-        let mut frame = [0; HEADER_BYTES];
-        if bytes >= (HEADER_BYTES + DIGEST_BYTES) as u64 {
-            at(0, &mut frame)?;
-        }
-        let sections = match check_frame(bytes, &frame) {
+        let mut header = [0; HEADER_BYTES];
+        let header = &mut header[..bytes.min(HEADER_BYTES as u64) as usize];
+        at(0, header)?;
+        let sections = match check_header(bytes, header) {
             Ok(sections) => sections,
             Err(error) => return Ok(Err(error)),
         };
@@ -154,48 +141,6 @@ impl Found {
     }
 }
 
-/// Checks magic, version and size. Returns the number of sections.
-fn check_frame(bytes: u64, frame: &[u8; HEADER_BYTES]) -> Result<u32, Error> {
-    const FILE: &str = "the table file";
-    check_size(bytes)?;
-    let long = |need: u64| format!("{need} bytes long");
-    let least = (HEADER_BYTES + DIGEST_BYTES) as u64;
-    if bytes < least {
-        let error = Error::new(ErrorKind::TableTruncated, FILE, long(bytes), long(least));
-        return Err(error.because("truncated"));
-    }
-    let (magic, rest) = frame.split_at(8);
-    if magic != MAGIC {
-        let value = format!("{magic:02x?} in its first 8 bytes");
-        let allowed = "89 'STREW' 0d 0a: this is not a Strew table";
-        return Err(Error::new(ErrorKind::Table, FILE, value, allowed));
-    }
-    let mut header = Reader::new(rest);
-    let mut number = |what| header.u32(what).map_err(|p| wrong(b"none", 8, p));
-    let version = number("the version")?;
-    if version != FORMAT_VERSION {
-        let allowed = format!("{FORMAT_VERSION}, the version this release reads");
-        let field = "the format version of the table file";
-        return Err(Error::new(ErrorKind::TableVersion, field, version, allowed));
-    }
-    let sections = number("the sections")?;
-    if sections > MAX_SECTIONS {
-        let allowed = format!("at most {MAX_SECTIONS}");
-        let field = "the number of sections of the table file";
-        return Err(Error::new(ErrorKind::Table, field, sections, allowed));
-    }
-    let stated = u64::from(number("the size")?) | u64::from(number("the size")?) << 32;
-    if bytes != stated {
-        let (kind, problem) = match bytes < stated {
-            true => (ErrorKind::TableTruncated, "truncated"),
-            false => (ErrorKind::Table, "oversized"),
-        };
-        let allowed = format!("{stated} bytes long, as its header states");
-        return Err(Error::new(kind, FILE, long(bytes), allowed).because(problem));
-    }
-    Ok(sections)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -232,12 +177,7 @@ mod tests {
         let file = table.to_bytes();
         for length in 0..file.len() {
             let (head, whole) = (read(&file[..length]), Table::from_bytes(&file[..length]));
-            let kind = head.expect_err("cut").kind();
-            // Of few bytes a whole reader looks at the magic first.
-            assert!(
-                kind == whole.expect_err("cut").kind() || length < 56,
-                "{length}"
-            );
+            assert_eq!(head.expect_err("cut"), whole.expect_err("cut"), "{length}");
         }
         for (at, byte) in [(0, 0), (8, 9), (12, 200), (16, 1), (24, b'X'), (28, 255)] {
             let mut bad = file.clone();

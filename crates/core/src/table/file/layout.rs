@@ -49,12 +49,58 @@ pub(super) fn check_size(bytes: u64) -> Result<(), Error> {
     if bytes <= MAX_FILE_BYTES {
         return Ok(());
     }
-    let value = format!("{bytes} bytes");
-    let allowed = format!("at most {MAX_FILE_BYTES} bytes");
-    Err(Error::new(
-        ErrorKind::TableTooLarge,
-        "the table file",
-        value,
-        allowed,
-    ))
+    let (value, allowed) = (
+        format!("{bytes} bytes"),
+        format!("at most {MAX_FILE_BYTES} bytes"),
+    );
+    let kind = ErrorKind::TableTooLarge;
+    Err(Error::new(kind, "the table file", value, allowed))
+}
+
+/// Checks size, magic and version of a file of `have` bytes that begins with `header`. Returns the number of sections.
+pub(super) fn check_header(have: u64, header: &[u8]) -> Result<u32, Error> {
+    const FILE: &str = "the table file";
+    let refused = |kind, allowed: String, problem| {
+        let error = Error::new(kind, FILE, format!("{have} bytes long"), allowed);
+        Err(error.because(problem))
+    };
+    check_size(have)?;
+    let long = |need: u64| format!("{need} bytes long");
+    let short = |need: u64| refused(ErrorKind::TableTruncated, long(need), "truncated");
+    let least = (HEADER_BYTES + DIGEST_BYTES) as u64;
+    let Some((magic, numbers)) = header.split_first_chunk() else {
+        return short(least);
+    };
+    if *magic != MAGIC {
+        let value = format!("{magic:02x?} in its first 8 bytes");
+        let allowed = "89 'STREW' 0d 0a: this is not a Strew table";
+        return Err(Error::new(ErrorKind::Table, FILE, value, allowed));
+    }
+    let (&[version, sections, low, high], []) = numbers.as_chunks() else {
+        return short(least);
+    };
+    let [version, sections] = [version, sections].map(u32::from_le_bytes);
+    if version != FORMAT_VERSION {
+        let problem = match version < FORMAT_VERSION {
+            true => "written by an older release",
+            false => "written by a newer release",
+        };
+        let allowed = format!("{FORMAT_VERSION}, the version this release reads");
+        let field = "the format version of the table file";
+        return Err(Error::new(ErrorKind::TableVersion, field, version, allowed).because(problem));
+    }
+    if sections > MAX_SECTIONS {
+        let allowed = format!("at most {MAX_SECTIONS}");
+        let field = "the number of sections of the table file";
+        return Err(Error::new(ErrorKind::Table, field, sections, allowed));
+    }
+    let stated = u64::from(u32::from_le_bytes(low)) | u64::from(u32::from_le_bytes(high)) << 32;
+    if have < stated.max(least) {
+        return short(stated.max(least));
+    }
+    if have > stated {
+        let allowed = format!("{}, as its header states", long(stated));
+        return refused(ErrorKind::Table, allowed, "oversized");
+    }
+    Ok(sections)
 }

@@ -4,10 +4,7 @@
 use alloc::{format, string::String, vec::Vec};
 
 use super::{
-    layout::{
-        BASE, CUBE, DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, MAGIC, MAX_SECTIONS, MIX, RANKS,
-        check_size, position_bytes,
-    },
+    layout::{BASE, CUBE, DIGEST_BYTES, HEADER_BYTES, MIX, RANKS, check_header, position_bytes},
     wire::Reader,
 };
 use crate::{
@@ -25,7 +22,6 @@ pub(crate) fn read(bytes: &[u8]) -> Result<(Parts, Digest), Error> {
 
 /// The sections of a file, and its digest.
 pub(super) fn sections(bytes: &[u8]) -> Result<(Sections<'_>, Digest), Error> {
-    check_size(bytes.len() as u64)?;
     // The digest of this very file. With optional sections that are skipped it is not the digest of the parts when they
     // are written again.
     let (sections, digest) = check_frame(bytes)?;
@@ -43,69 +39,19 @@ pub(super) fn sections(bytes: &[u8]) -> Result<(Sections<'_>, Digest), Error> {
     Ok((found, digest))
 }
 
-/// Checks magic, version, size and digest. Returns the number of sections, and the digest.
+/// Checks the header and the digest. Returns the number of sections, and the digest.
 fn check_frame(bytes: &[u8]) -> Result<(u32, Digest), Error> {
-    const FILE: &str = "the table file";
-    let have = bytes.len() as u64;
-    let least = (HEADER_BYTES + DIGEST_BYTES) as u64;
-    let truncated = |need: u64| {
-        let (value, allowed) = (format!("{have} bytes long"), format!("{need} bytes long"));
-        Error::new(ErrorKind::TableTruncated, FILE, value, allowed).because("truncated")
-    };
-    let short = || truncated(least);
-    let field = |at: usize, length: usize| bytes.get(at..at + length).ok_or_else(short);
-    let magic = field(0, 8)?;
-    if magic != MAGIC {
-        let value = format!("{magic:02x?} in its first 8 bytes");
-        let allowed = "89 'STREW' 0d 0a: this is not a Strew table";
-        return Err(Error::new(ErrorKind::Table, FILE, value, allowed));
-    }
-    let mut header = Reader::new(field(8, 16)?);
-    let mut number = || header.u32("header").map_err(|_| short());
-    let version = number()?;
-    if version != FORMAT_VERSION {
-        let problem = if version < FORMAT_VERSION {
-            "written by an older release"
-        } else {
-            "written by a newer release"
-        };
-        let allowed = format!("{FORMAT_VERSION}, the version this release reads");
-        let field = "the format version of the table file";
-        return Err(Error::new(ErrorKind::TableVersion, field, version, allowed).because(problem));
-    }
-    let sections = number()?;
-    let stated = u64::from(number()?) | u64::from(number()?) << 32;
-    if have < stated.max(least) {
-        return Err(truncated(stated.max(least)));
-    }
-    if have > stated {
-        let allowed = format!("{stated} bytes long, as its header states");
-        let error = Error::new(
-            ErrorKind::Table,
-            FILE,
-            format!("{have} bytes long"),
-            allowed,
-        );
-        return Err(error.because("oversized"));
-    }
+    let header = &bytes[..bytes.len().min(HEADER_BYTES)];
+    let sections = check_header(bytes.len() as u64, header)?;
     let (body, seal) = bytes.split_at(bytes.len() - DIGEST_BYTES);
     let computed = Digest::of(body);
     if computed.as_bytes() != seal {
         let mut digest = [0; DIGEST_BYTES];
         digest.copy_from_slice(seal);
         let allowed = format!("{}, as its last 32 bytes state", Digest::from_bytes(digest));
-        let error = Error::new(
-            ErrorKind::Table,
-            "the digest of the table file",
-            computed,
-            allowed,
-        );
+        let field = "the digest of the table file";
+        let error = Error::new(ErrorKind::Table, field, computed, allowed);
         return Err(error.because("the file is damaged"));
-    }
-    if sections > MAX_SECTIONS {
-        let allowed = format!("at most {MAX_SECTIONS}");
-        let field = "the number of sections of the table file";
-        return Err(Error::new(ErrorKind::Table, field, sections, allowed));
     }
     Ok((sections, computed))
 }

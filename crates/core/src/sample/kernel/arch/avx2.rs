@@ -5,27 +5,7 @@ use core::arch::x86_64::*;
 use super::super::lanes::{Lanes, PlainLoop, VectorLoop};
 use crate::sample::warp::{CELL_BITS, PatchShears};
 
-/// Runs a loop.
-///
-/// # Safety
-/// The machine has AVX2.
-#[target_feature(enable = "avx2")]
-pub(in super::super) unsafe fn run(work: &mut impl VectorLoop) -> usize {
-    // SAFETY: the machine has AVX2.
-    unsafe { work.run::<Avx2>() }
-}
-
-/// Runs plain code, compiled for these instructions.
-#[target_feature(enable = "avx2")]
-pub(in super::super) fn compiled<T>(work: impl FnOnce() -> T) -> T {
-    work()
-}
-
-/// Runs a long loop, compiled for these instructions.
-#[target_feature(enable = "avx2")]
-pub(in super::super) fn compiled_loop(work: &mut impl PlainLoop) {
-    work.run();
-}
+entries!(Avx2, "avx2");
 
 pub(in super::super) struct Avx2;
 
@@ -38,94 +18,38 @@ impl Lanes for Avx2 {
     type Doubles = [__m256d; 2];
     type Table = __m256;
 
-    #[inline(always)]
-    unsafe fn load_ints(from: *const i32) -> __m256i {
-        unsafe { _mm256_loadu_si256(from.cast()) }
-    }
-
-    #[inline(always)]
-    unsafe fn store_ints(to: *mut i32, v: __m256i) {
-        unsafe { _mm256_storeu_si256(to.cast(), v) }
-    }
-
-    #[inline(always)]
-    unsafe fn splat_int(v: i32) -> __m256i {
-        unsafe { _mm256_set1_epi32(v) }
-    }
-
-    #[inline(always)]
-    unsafe fn add_ints(a: __m256i, b: __m256i) -> __m256i {
-        unsafe { _mm256_add_epi32(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn sub_ints(a: __m256i, b: __m256i) -> __m256i {
-        unsafe { _mm256_sub_epi32(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn min_ints(a: __m256i, b: __m256i) -> __m256i {
-        unsafe { _mm256_min_epi32(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn max_ints(a: __m256i, b: __m256i) -> __m256i {
-        unsafe { _mm256_max_epi32(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn cells(v: __m256i) -> __m256i {
-        unsafe { _mm256_srai_epi32::<{ CELL_BITS as i32 }>(v) }
-    }
-
-    #[inline(always)]
-    unsafe fn places(v: __m256i) -> __m256i {
-        unsafe { _mm256_and_si256(v, _mm256_set1_epi32(PatchShears::CELL_MASK)) }
-    }
-
-    #[inline(always)]
-    unsafe fn load_singles(from: *const f32) -> __m256 {
-        unsafe { _mm256_loadu_ps(from) }
-    }
-
-    #[inline(always)]
-    unsafe fn splat_single(v: f32) -> __m256 {
-        unsafe { _mm256_set1_ps(v) }
-    }
-
-    #[inline(always)]
-    unsafe fn add_singles(a: __m256, b: __m256) -> __m256 {
-        unsafe { _mm256_add_ps(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn mul_singles(a: __m256, b: __m256) -> __m256 {
-        unsafe { _mm256_mul_ps(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn min_singles(a: __m256, b: __m256) -> __m256 {
-        unsafe { _mm256_min_ps(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn singles_of(v: __m256i) -> __m256 {
-        unsafe { _mm256_cvtepi32_ps(v) }
-    }
-
-    #[inline(always)]
-    unsafe fn truncate(v: __m256) -> __m256i {
-        unsafe { _mm256_cvttps_epi32(v) }
-    }
-
-    #[inline(always)]
-    unsafe fn table(from: *const f32) -> __m256 {
-        unsafe { _mm256_loadu_ps(from) }
-    }
-
-    #[inline(always)]
-    unsafe fn pick(table: __m256, places: __m256i) -> __m256 {
-        unsafe { _mm256_permutevar8x32_ps(table, places) }
+    operations! {
+        load_ints(from: *const i32) -> Self::Ints = _mm256_loadu_si256(from.cast());
+        splat_int(v: i32) -> Self::Ints = _mm256_set1_epi32(v);
+        add_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = _mm256_add_epi32(a, b);
+        sub_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = _mm256_sub_epi32(a, b);
+        min_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = _mm256_min_epi32(a, b);
+        max_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = _mm256_max_epi32(a, b);
+        cells(v: Self::Ints) -> Self::Ints = _mm256_srai_epi32::<{ CELL_BITS as i32 }>(v);
+        places(v: Self::Ints) -> Self::Ints =
+            _mm256_and_si256(v, _mm256_set1_epi32(PatchShears::CELL_MASK));
+        load_singles(from: *const f32) -> Self::Singles = _mm256_loadu_ps(from);
+        splat_single(v: f32) -> Self::Singles = _mm256_set1_ps(v);
+        add_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles = _mm256_add_ps(a, b);
+        mul_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles = _mm256_mul_ps(a, b);
+        min_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles = _mm256_min_ps(a, b);
+        singles_of(v: Self::Ints) -> Self::Singles = _mm256_cvtepi32_ps(v);
+        truncate(v: Self::Singles) -> Self::Ints = _mm256_cvttps_epi32(v);
+        table(from: *const f32) -> Self::Table = _mm256_loadu_ps(from);
+        pick(table: Self::Table, places: Self::Ints) -> Self::Singles =
+            _mm256_permutevar8x32_ps(table, places);
+        gather(from: *const f32, places: Self::Ints) -> Self::Singles =
+            _mm256_i32gather_ps::<4>(from, places);
+        load_doubles(from: *const f64) -> Self::Doubles =
+            [_mm256_loadu_pd(from), _mm256_loadu_pd(from.add(4))];
+        splat_double(v: f64) -> Self::Doubles = [_mm256_set1_pd(v); 2];
+        add_doubles(a: Self::Doubles, b: Self::Doubles) -> Self::Doubles =
+            [_mm256_add_pd(a[0], b[0]), _mm256_add_pd(a[1], b[1])];
+        mul_doubles(a: Self::Doubles, b: Self::Doubles) -> Self::Doubles =
+            [_mm256_mul_pd(a[0], b[0]), _mm256_mul_pd(a[1], b[1])];
+        offsets(from: *const i32, y: i32) -> Self::Doubles =
+            Self::doubles_of(Self::add_ints(Self::load_ints(from), Self::splat_int(y)));
+        store_ints(to: *mut i32, v: Self::Ints) = _mm256_storeu_si256(to.cast(), v);
     }
 
     #[inline(always)]
@@ -140,42 +64,12 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    unsafe fn gather(from: *const f32, places: __m256i) -> __m256 {
-        unsafe { _mm256_i32gather_ps::<4>(from, places) }
-    }
-
-    #[inline(always)]
-    unsafe fn load_doubles(from: *const f64) -> [__m256d; 2] {
-        unsafe { [_mm256_loadu_pd(from), _mm256_loadu_pd(from.add(4))] }
-    }
-
-    #[inline(always)]
-    unsafe fn splat_double(v: f64) -> [__m256d; 2] {
-        unsafe { [_mm256_set1_pd(v); 2] }
-    }
-
-    #[inline(always)]
-    unsafe fn add_doubles(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        unsafe { [_mm256_add_pd(a[0], b[0]), _mm256_add_pd(a[1], b[1])] }
-    }
-
-    #[inline(always)]
-    unsafe fn mul_doubles(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        unsafe { [_mm256_mul_pd(a[0], b[0]), _mm256_mul_pd(a[1], b[1])] }
-    }
-
-    #[inline(always)]
     unsafe fn doubles_of(v: __m256i) -> [__m256d; 2] {
         unsafe {
             let low = _mm256_cvtepi32_pd(_mm256_castsi256_si128(v));
             let high = _mm256_cvtepi32_pd(_mm256_extracti128_si256::<1>(v));
             [low, high]
         }
-    }
-
-    #[inline(always)]
-    unsafe fn offsets(from: *const i32, y: i32) -> [__m256d; 2] {
-        unsafe { Self::doubles_of(Self::add_ints(Self::load_ints(from), Self::splat_int(y))) }
     }
 
     #[inline(always)]

@@ -8,27 +8,7 @@ use crate::sample::{
     warp::{CELL_BITS, PatchShears},
 };
 
-/// Runs a loop.
-///
-/// # Safety
-/// The machine has AVX-512 F, VL and DQ, and AVX2.
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
-pub(in super::super) unsafe fn run(work: &mut impl VectorLoop) -> usize {
-    // SAFETY: the machine has the instructions.
-    unsafe { work.run::<Avx512>() }
-}
-
-/// Runs plain code, compiled for these instructions.
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
-pub(in super::super) fn compiled<T>(work: impl FnOnce() -> T) -> T {
-    work()
-}
-
-/// Runs a long loop, compiled for these instructions.
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
-pub(in super::super) fn compiled_loop(work: &mut impl PlainLoop) {
-    work.run();
-}
+entries!(Avx512, "avx512f,avx512vl,avx512dq,avx2");
 
 pub(in super::super) struct Avx512;
 
@@ -41,124 +21,45 @@ impl Lanes for Avx512 {
     type Doubles = [__m512d; 2];
     type Table = __m512;
 
-    #[inline(always)]
-    unsafe fn load_ints(from: *const i32) -> __m512i {
-        unsafe { _mm512_loadu_epi32(from) }
-    }
-
-    #[inline(always)]
-    unsafe fn store_ints(to: *mut i32, v: __m512i) {
-        unsafe { _mm512_storeu_epi32(to, v) }
-    }
-
-    #[inline(always)]
-    unsafe fn splat_int(v: i32) -> __m512i {
-        unsafe { _mm512_set1_epi32(v) }
-    }
-
-    #[inline(always)]
-    unsafe fn add_ints(a: __m512i, b: __m512i) -> __m512i {
-        unsafe { _mm512_add_epi32(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn sub_ints(a: __m512i, b: __m512i) -> __m512i {
-        unsafe { _mm512_sub_epi32(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn min_ints(a: __m512i, b: __m512i) -> __m512i {
-        unsafe { _mm512_min_epi32(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn max_ints(a: __m512i, b: __m512i) -> __m512i {
-        unsafe { _mm512_max_epi32(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn cells(v: __m512i) -> __m512i {
-        unsafe { _mm512_srai_epi32::<CELL_BITS>(v) }
-    }
-
-    #[inline(always)]
-    unsafe fn places(v: __m512i) -> __m512i {
-        unsafe { _mm512_and_si512(v, _mm512_set1_epi32(PatchShears::CELL_MASK)) }
-    }
-
-    #[inline(always)]
-    unsafe fn load_singles(from: *const f32) -> __m512 {
-        unsafe { _mm512_loadu_ps(from) }
-    }
-
-    #[inline(always)]
-    unsafe fn splat_single(v: f32) -> __m512 {
-        unsafe { _mm512_set1_ps(v) }
-    }
-
-    #[inline(always)]
-    unsafe fn add_singles(a: __m512, b: __m512) -> __m512 {
-        unsafe { _mm512_add_ps(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn mul_singles(a: __m512, b: __m512) -> __m512 {
-        unsafe { _mm512_mul_ps(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn min_singles(a: __m512, b: __m512) -> __m512 {
-        unsafe { _mm512_min_ps(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn singles_of(v: __m512i) -> __m512 {
-        unsafe { _mm512_cvtepi32_ps(v) }
-    }
-
-    #[inline(always)]
-    unsafe fn truncate(v: __m512) -> __m512i {
-        unsafe { _mm512_cvttps_epi32(v) }
-    }
-
-    #[inline(always)]
-    unsafe fn table(from: *const f32) -> __m512 {
-        unsafe { _mm512_loadu_ps(from) }
-    }
-
-    #[inline(always)]
-    unsafe fn pick(table: __m512, places: __m512i) -> __m512 {
-        unsafe { _mm512_permutexvar_ps(places, table) }
-    }
-
-    #[inline(always)]
-    unsafe fn pick_at_once(from: *const f32, places: __m512i) -> __m512 {
-        unsafe { Self::pick(Self::table(from), places) }
-    }
-
-    #[inline(always)]
-    unsafe fn gather(from: *const f32, places: __m512i) -> __m512 {
-        unsafe { _mm512_i32gather_ps::<4>(places, from) }
-    }
-
-    #[inline(always)]
-    unsafe fn load_doubles(from: *const f64) -> [__m512d; 2] {
-        unsafe { [_mm512_loadu_pd(from), _mm512_loadu_pd(from.add(8))] }
-    }
-
-    #[inline(always)]
-    unsafe fn splat_double(v: f64) -> [__m512d; 2] {
-        unsafe { [_mm512_set1_pd(v); 2] }
-    }
-
-    #[inline(always)]
-    unsafe fn add_doubles(a: [__m512d; 2], b: [__m512d; 2]) -> [__m512d; 2] {
-        unsafe { [_mm512_add_pd(a[0], b[0]), _mm512_add_pd(a[1], b[1])] }
-    }
-
-    #[inline(always)]
-    unsafe fn mul_doubles(a: [__m512d; 2], b: [__m512d; 2]) -> [__m512d; 2] {
-        unsafe { [_mm512_mul_pd(a[0], b[0]), _mm512_mul_pd(a[1], b[1])] }
+    operations! {
+        load_ints(from: *const i32) -> Self::Ints = _mm512_loadu_epi32(from);
+        splat_int(v: i32) -> Self::Ints = _mm512_set1_epi32(v);
+        add_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = _mm512_add_epi32(a, b);
+        sub_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = _mm512_sub_epi32(a, b);
+        min_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = _mm512_min_epi32(a, b);
+        max_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = _mm512_max_epi32(a, b);
+        cells(v: Self::Ints) -> Self::Ints = _mm512_srai_epi32::<CELL_BITS>(v);
+        places(v: Self::Ints) -> Self::Ints =
+            _mm512_and_si512(v, _mm512_set1_epi32(PatchShears::CELL_MASK));
+        load_singles(from: *const f32) -> Self::Singles = _mm512_loadu_ps(from);
+        splat_single(v: f32) -> Self::Singles = _mm512_set1_ps(v);
+        add_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles = _mm512_add_ps(a, b);
+        mul_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles = _mm512_mul_ps(a, b);
+        min_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles = _mm512_min_ps(a, b);
+        singles_of(v: Self::Ints) -> Self::Singles = _mm512_cvtepi32_ps(v);
+        truncate(v: Self::Singles) -> Self::Ints = _mm512_cvttps_epi32(v);
+        bits_of(v: Self::Singles) -> Self::Ints = _mm512_castps_si512(v);
+        table(from: *const f32) -> Self::Table = _mm512_loadu_ps(from);
+        pick(table: Self::Table, places: Self::Ints) -> Self::Singles =
+            _mm512_permutexvar_ps(places, table);
+        pick_at_once(from: *const f32, places: Self::Ints) -> Self::Singles =
+            Self::pick(Self::table(from), places);
+        gather(from: *const f32, places: Self::Ints) -> Self::Singles =
+            _mm512_i32gather_ps::<4>(places, from);
+        load_doubles(from: *const f64) -> Self::Doubles =
+            [_mm512_loadu_pd(from), _mm512_loadu_pd(from.add(8))];
+        splat_double(v: f64) -> Self::Doubles = [_mm512_set1_pd(v); 2];
+        add_doubles(a: Self::Doubles, b: Self::Doubles) -> Self::Doubles =
+            [_mm512_add_pd(a[0], b[0]), _mm512_add_pd(a[1], b[1])];
+        mul_doubles(a: Self::Doubles, b: Self::Doubles) -> Self::Doubles =
+            [_mm512_mul_pd(a[0], b[0]), _mm512_mul_pd(a[1], b[1])];
+        store_ints(to: *mut i32, v: Self::Ints) = _mm512_storeu_epi32(to, v);
+        two_tables(from: *const f32) -> [Self::Singles; 2] =
+            [_mm512_loadu_ps(from), _mm512_loadu_ps(from.add(16))];
+        load_places(from: *const u16) -> Self::Ints =
+            _mm512_cvtepu16_epi32(_mm256_loadu_si256(from.cast()));
+        compress(v: Self::Ints, mask: u32) -> Self::Ints =
+            _mm512_maskz_compress_epi32(mask as __mmask16, v);
     }
 
     #[inline(always)]
@@ -219,23 +120,8 @@ impl Lanes for Avx512 {
     const HAS_TRIPLES: bool = true;
 
     #[inline(always)]
-    unsafe fn two_tables(from: *const f32) -> [__m512; 2] {
-        unsafe { [_mm512_loadu_ps(from), _mm512_loadu_ps(from.add(16))] }
-    }
-
-    #[inline(always)]
-    unsafe fn load_places(from: *const u16) -> __m512i {
-        unsafe { _mm512_cvtepu16_epi32(_mm256_loadu_si256(from.cast())) }
-    }
-
-    #[inline(always)]
     unsafe fn pick_of_two([low, high]: [__m512; 2], places: __m512i) -> __m512 {
         unsafe { _mm512_permutex2var_ps(low, places, high) }
-    }
-
-    #[inline(always)]
-    unsafe fn bits_of(v: __m512) -> __m512i {
-        unsafe { _mm512_castps_si512(v) }
     }
 
     #[inline(always)]
@@ -244,11 +130,6 @@ impl Lanes for Avx512 {
             let above = _mm512_cmpge_epi32_mask(v, _mm512_set1_epi32(least));
             _mm512_mask_cmplt_epi32_mask(above, v, _mm512_set1_epi32(end)).into()
         }
-    }
-
-    #[inline(always)]
-    unsafe fn compress(v: __m512i, mask: u32) -> __m512i {
-        unsafe { _mm512_maskz_compress_epi32(mask as __mmask16, v) }
     }
 
     #[inline(always)]

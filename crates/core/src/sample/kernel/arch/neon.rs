@@ -39,95 +39,38 @@ impl Lanes for Neon {
     type Doubles = [float64x2_t; 2];
     type Table = uint8x16x2_t;
 
-    #[inline(always)]
-    unsafe fn load_ints(from: *const i32) -> int32x4_t {
-        unsafe { vld1q_s32(from) }
-    }
-
-    #[inline(always)]
-    unsafe fn store_ints(to: *mut i32, v: int32x4_t) {
-        unsafe { vst1q_s32(to, v) }
-    }
-
-    #[inline(always)]
-    unsafe fn splat_int(v: i32) -> int32x4_t {
-        unsafe { vdupq_n_s32(v) }
-    }
-
-    #[inline(always)]
-    unsafe fn add_ints(a: int32x4_t, b: int32x4_t) -> int32x4_t {
-        unsafe { vaddq_s32(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn sub_ints(a: int32x4_t, b: int32x4_t) -> int32x4_t {
-        unsafe { vsubq_s32(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn min_ints(a: int32x4_t, b: int32x4_t) -> int32x4_t {
-        unsafe { vminq_s32(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn max_ints(a: int32x4_t, b: int32x4_t) -> int32x4_t {
-        unsafe { vmaxq_s32(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn cells(v: int32x4_t) -> int32x4_t {
-        unsafe { vshrq_n_s32::<{ CELL_BITS as i32 }>(v) }
-    }
-
-    #[inline(always)]
-    unsafe fn places(v: int32x4_t) -> int32x4_t {
-        unsafe { vandq_s32(v, vdupq_n_s32(PatchShears::CELL_MASK)) }
-    }
-
-    #[inline(always)]
-    unsafe fn load_singles(from: *const f32) -> float32x4_t {
-        unsafe { vld1q_f32(from) }
-    }
-
-    #[inline(always)]
-    unsafe fn splat_single(v: f32) -> float32x4_t {
-        unsafe { vdupq_n_f32(v) }
-    }
-
-    #[inline(always)]
-    unsafe fn add_singles(a: float32x4_t, b: float32x4_t) -> float32x4_t {
-        unsafe { vaddq_f32(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn mul_singles(a: float32x4_t, b: float32x4_t) -> float32x4_t {
-        unsafe { vmulq_f32(a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn min_singles(a: float32x4_t, b: float32x4_t) -> float32x4_t {
+    operations! {
+        load_ints(from: *const i32) -> Self::Ints = vld1q_s32(from);
+        splat_int(v: i32) -> Self::Ints = vdupq_n_s32(v);
+        add_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = vaddq_s32(a, b);
+        sub_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = vsubq_s32(a, b);
+        min_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = vminq_s32(a, b);
+        max_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = vmaxq_s32(a, b);
+        cells(v: Self::Ints) -> Self::Ints = vshrq_n_s32::<{ CELL_BITS as i32 }>(v);
+        places(v: Self::Ints) -> Self::Ints = vandq_s32(v, vdupq_n_s32(PatchShears::CELL_MASK));
+        load_singles(from: *const f32) -> Self::Singles = vld1q_f32(from);
+        splat_single(v: f32) -> Self::Singles = vdupq_n_f32(v);
+        add_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles = vaddq_f32(a, b);
+        mul_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles = vmulq_f32(a, b);
         // Not `vminq_f32`, which orders the two zeros.
-        unsafe { vbslq_f32(vcltq_f32(a, b), a, b) }
-    }
-
-    #[inline(always)]
-    unsafe fn singles_of(v: int32x4_t) -> float32x4_t {
-        unsafe { vcvtq_f32_s32(v) }
-    }
-
-    #[inline(always)]
-    unsafe fn truncate(v: float32x4_t) -> int32x4_t {
-        unsafe { vcvtq_s32_f32(v) }
-    }
-
-    #[inline(always)]
-    unsafe fn table(from: *const f32) -> uint8x16x2_t {
-        unsafe { vld1q_u8_x2(from.cast()) }
-    }
-
-    #[inline(always)]
-    unsafe fn pick(table: uint8x16x2_t, places: int32x4_t) -> float32x4_t {
-        unsafe { vreinterpretq_f32_u8(vqtbl2q_u8(table, bytes(places))) }
+        min_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles =
+            vbslq_f32(vcltq_f32(a, b), a, b);
+        singles_of(v: Self::Ints) -> Self::Singles = vcvtq_f32_s32(v);
+        truncate(v: Self::Singles) -> Self::Ints = vcvtq_s32_f32(v);
+        table(from: *const f32) -> Self::Table = vld1q_u8_x2(from.cast());
+        pick(table: Self::Table, places: Self::Ints) -> Self::Singles =
+            vreinterpretq_f32_u8(vqtbl2q_u8(table, bytes(places)));
+        load_doubles(from: *const f64) -> Self::Doubles = [vld1q_f64(from), vld1q_f64(from.add(2))];
+        splat_double(v: f64) -> Self::Doubles = [vdupq_n_f64(v); 2];
+        add_doubles(a: Self::Doubles, b: Self::Doubles) -> Self::Doubles =
+            [vaddq_f64(a[0], b[0]), vaddq_f64(a[1], b[1])];
+        mul_doubles(a: Self::Doubles, b: Self::Doubles) -> Self::Doubles =
+            [vmulq_f64(a[0], b[0]), vmulq_f64(a[1], b[1])];
+        offsets(from: *const i32, y: i32) -> Self::Doubles =
+            Self::doubles_of(vaddq_s32(vld1q_s32(from), vdupq_n_s32(y)));
+        store_ints(to: *mut i32, v: Self::Ints) = vst1q_s32(to, v);
+        store_single_pairs(to: *mut [f32; 2], x: Self::Singles, y: Self::Singles) =
+            vst2q_f32(to.cast(), float32x4x2_t(x, y));
     }
 
     #[inline(always)]
@@ -136,26 +79,6 @@ impl Lanes for Neon {
             let table = vld1q_u8_x4(from.cast());
             vreinterpretq_f32_u8(vqtbl4q_u8(table, bytes(places)))
         }
-    }
-
-    #[inline(always)]
-    unsafe fn load_doubles(from: *const f64) -> [float64x2_t; 2] {
-        unsafe { [vld1q_f64(from), vld1q_f64(from.add(2))] }
-    }
-
-    #[inline(always)]
-    unsafe fn splat_double(v: f64) -> [float64x2_t; 2] {
-        unsafe { [vdupq_n_f64(v); 2] }
-    }
-
-    #[inline(always)]
-    unsafe fn add_doubles(a: [float64x2_t; 2], b: [float64x2_t; 2]) -> [float64x2_t; 2] {
-        unsafe { [vaddq_f64(a[0], b[0]), vaddq_f64(a[1], b[1])] }
-    }
-
-    #[inline(always)]
-    unsafe fn mul_doubles(a: [float64x2_t; 2], b: [float64x2_t; 2]) -> [float64x2_t; 2] {
-        unsafe { [vmulq_f64(a[0], b[0]), vmulq_f64(a[1], b[1])] }
     }
 
     #[inline(always)]
@@ -168,18 +91,8 @@ impl Lanes for Neon {
     }
 
     #[inline(always)]
-    unsafe fn offsets(from: *const i32, y: i32) -> [float64x2_t; 2] {
-        unsafe { Self::doubles_of(vaddq_s32(vld1q_s32(from), vdupq_n_s32(y))) }
-    }
-
-    #[inline(always)]
     unsafe fn narrow([low, high]: [float64x2_t; 2]) -> float32x4_t {
         unsafe { vcvt_high_f32_f64(vcvt_f32_f64(low), high) }
-    }
-
-    #[inline(always)]
-    unsafe fn store_single_pairs(to: *mut [f32; 2], x: float32x4_t, y: float32x4_t) {
-        unsafe { vst2q_f32(to.cast(), float32x4x2_t(x, y)) }
     }
 
     #[inline(always)]

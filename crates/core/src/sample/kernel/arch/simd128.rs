@@ -42,91 +42,34 @@ impl Lanes for Simd128 {
     type Doubles = [v128; 2];
     type Table = [v128; 2];
 
-    #[inline(always)]
-    unsafe fn load_ints(from: *const i32) -> v128 {
-        unsafe { v128_load(from.cast()) }
-    }
-
-    #[inline(always)]
-    unsafe fn store_ints(to: *mut i32, v: v128) {
-        unsafe { v128_store(to.cast(), v) }
-    }
-
-    #[inline(always)]
-    unsafe fn splat_int(v: i32) -> v128 {
-        i32x4_splat(v)
-    }
-
-    #[inline(always)]
-    unsafe fn add_ints(a: v128, b: v128) -> v128 {
-        i32x4_add(a, b)
-    }
-
-    #[inline(always)]
-    unsafe fn sub_ints(a: v128, b: v128) -> v128 {
-        i32x4_sub(a, b)
-    }
-
-    #[inline(always)]
-    unsafe fn min_ints(a: v128, b: v128) -> v128 {
-        i32x4_min(a, b)
-    }
-
-    #[inline(always)]
-    unsafe fn max_ints(a: v128, b: v128) -> v128 {
-        i32x4_max(a, b)
-    }
-
-    #[inline(always)]
-    unsafe fn cells(v: v128) -> v128 {
-        i32x4_shr(v, CELL_BITS)
-    }
-
-    #[inline(always)]
-    unsafe fn places(v: v128) -> v128 {
-        v128_and(v, i32x4_splat(PatchShears::CELL_MASK))
-    }
-
-    #[inline(always)]
-    unsafe fn load_singles(from: *const f32) -> v128 {
-        unsafe { v128_load(from.cast()) }
-    }
-
-    #[inline(always)]
-    unsafe fn splat_single(v: f32) -> v128 {
-        f32x4_splat(v)
-    }
-
-    #[inline(always)]
-    unsafe fn add_singles(a: v128, b: v128) -> v128 {
-        f32x4_add(a, b)
-    }
-
-    #[inline(always)]
-    unsafe fn mul_singles(a: v128, b: v128) -> v128 {
-        f32x4_mul(a, b)
-    }
-
-    #[inline(always)]
-    unsafe fn min_singles(a: v128, b: v128) -> v128 {
+    operations! {
+        load_ints(from: *const i32) -> Self::Ints = v128_load(from.cast());
+        splat_int(v: i32) -> Self::Ints = i32x4_splat(v);
+        add_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = i32x4_add(a, b);
+        sub_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = i32x4_sub(a, b);
+        min_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = i32x4_min(a, b);
+        max_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = i32x4_max(a, b);
+        cells(v: Self::Ints) -> Self::Ints = i32x4_shr(v, CELL_BITS);
+        places(v: Self::Ints) -> Self::Ints = v128_and(v, i32x4_splat(PatchShears::CELL_MASK));
+        load_singles(from: *const f32) -> Self::Singles = v128_load(from.cast());
+        splat_single(v: f32) -> Self::Singles = f32x4_splat(v);
+        add_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles = f32x4_add(a, b);
+        mul_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles = f32x4_mul(a, b);
         // `pmin(b, a)` is a if a < b, else b.
-        f32x4_pmin(b, a)
-    }
-
-    #[inline(always)]
-    unsafe fn singles_of(v: v128) -> v128 {
-        f32x4_convert_i32x4(v)
-    }
-
-    #[inline(always)]
-    unsafe fn truncate(v: v128) -> v128 {
-        i32x4_trunc_sat_f32x4(v)
-    }
-
-    #[inline(always)]
-    unsafe fn table(from: *const f32) -> [v128; 2] {
-        // SAFETY: as the caller ensures.
-        [0, 4].map(|k| unsafe { v128_load(from.add(k).cast()) })
+        min_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles = f32x4_pmin(b, a);
+        singles_of(v: Self::Ints) -> Self::Singles = f32x4_convert_i32x4(v);
+        truncate(v: Self::Singles) -> Self::Ints = i32x4_trunc_sat_f32x4(v);
+        table(from: *const f32) -> Self::Table = [0, 4].map(|k| v128_load(from.add(k).cast()));
+        load_doubles(from: *const f64) -> Self::Doubles =
+            [v128_load(from.cast()), v128_load(from.add(2).cast())];
+        splat_double(v: f64) -> Self::Doubles = [f64x2_splat(v); 2];
+        add_doubles(a: Self::Doubles, b: Self::Doubles) -> Self::Doubles =
+            [f64x2_add(a[0], b[0]), f64x2_add(a[1], b[1])];
+        mul_doubles(a: Self::Doubles, b: Self::Doubles) -> Self::Doubles =
+            [f64x2_mul(a[0], b[0]), f64x2_mul(a[1], b[1])];
+        offsets(from: *const i32, y: i32) -> Self::Doubles =
+            Self::doubles_of(i32x4_add(v128_load(from.cast()), i32x4_splat(y)));
+        store_ints(to: *mut i32, v: Self::Ints) = v128_store(to.cast(), v);
     }
 
     #[inline(always)]
@@ -146,34 +89,9 @@ impl Lanes for Simd128 {
     }
 
     #[inline(always)]
-    unsafe fn load_doubles(from: *const f64) -> [v128; 2] {
-        unsafe { [v128_load(from.cast()), v128_load(from.add(2).cast())] }
-    }
-
-    #[inline(always)]
-    unsafe fn splat_double(v: f64) -> [v128; 2] {
-        [f64x2_splat(v); 2]
-    }
-
-    #[inline(always)]
-    unsafe fn add_doubles(a: [v128; 2], b: [v128; 2]) -> [v128; 2] {
-        [f64x2_add(a[0], b[0]), f64x2_add(a[1], b[1])]
-    }
-
-    #[inline(always)]
-    unsafe fn mul_doubles(a: [v128; 2], b: [v128; 2]) -> [v128; 2] {
-        [f64x2_mul(a[0], b[0]), f64x2_mul(a[1], b[1])]
-    }
-
-    #[inline(always)]
     unsafe fn doubles_of(v: v128) -> [v128; 2] {
         let high = i32x4_shuffle::<2, 3, 2, 3>(v, v);
         [f64x2_convert_low_i32x4(v), f64x2_convert_low_i32x4(high)]
-    }
-
-    #[inline(always)]
-    unsafe fn offsets(from: *const i32, y: i32) -> [v128; 2] {
-        unsafe { Self::doubles_of(i32x4_add(v128_load(from.cast()), i32x4_splat(y))) }
     }
 
     #[inline(always)]

@@ -2,11 +2,8 @@
 
 use alloc::boxed::Box;
 
-use super::Region;
-use crate::{
-    error::{Error, ErrorKind, number},
-    sample::{Area, Polygon, Region as Rectangle},
-};
+use super::{Area, Polygon, Region};
+use crate::error::{Error, ErrorKind, number};
 
 /// An upright prism: a polygon, holes included, from a height (included) to another (excluded).
 ///
@@ -23,7 +20,7 @@ pub struct Prism {
     /// The polygon.
     base: Box<Area>,
     /// The box around it.
-    bounds: Region,
+    bounds: Region<3>,
 }
 
 impl Prism {
@@ -31,15 +28,6 @@ impl Prism {
     ///
     /// # Errors
     /// [`ErrorKind::Area`] unless both heights are finite and the second is at least the first.
-    ///
-    /// ```
-    /// use strew_core::{Polygon, space::Prism};
-    ///
-    /// let base = Polygon::new(&[[[0.0, 0.0], [9.0, 0.0], [0.0, 9.0]]])?;
-    /// let error = Prism::new(base, [2.0, 1.0]).unwrap_err();
-    /// assert_eq!((error.field(), error.value()), ("top", "1"));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(base: Polygon, heights: [f64; 2]) -> Result<Self, Error> {
         for (name, value) in ["bottom", "top"].into_iter().zip(heights) {
             if !value.is_finite() {
@@ -54,48 +42,24 @@ impl Prism {
         }
         let ([x, y], [end_x, end_y]) = (base.bounds().min(), base.bounds().max());
         Ok(Self {
-            base: Box::new(Area::Polygon(base)),
+            base: Box::new(Area::Outlined(base)),
             bounds: Region::between([x, y, bottom], [end_x, end_y, top]),
         })
     }
 
     /// A box around the prism, of its heights.
-    ///
-    /// ```
-    /// use strew_core::{Polygon, space::Prism};
-    ///
-    /// let base = Polygon::new(&[[[0.0, 0.0], [9.0, 0.0], [0.0, 8.0]]])?;
-    /// assert_eq!(Prism::new(base, [1.0, 2.0])?.bounds().max(), [9.0, 8.0, 2.0]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
-    pub const fn bounds(&self) -> Region {
+    pub const fn bounds(&self) -> Region<3> {
         self.bounds
     }
 
     /// The number of vertices of the polygon.
-    ///
-    /// ```
-    /// use strew_core::{Polygon, space::Prism};
-    ///
-    /// let base = Polygon::new(&[[[0.0, 0.0], [9.0, 0.0], [0.0, 9.0]]])?;
-    /// assert_eq!(Prism::new(base, [0.0, 1.0])?.vertices(), 3);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn vertices(&self) -> usize {
         self.base.vertices()
     }
 
     /// Whether a place lies inside.
-    ///
-    /// ```
-    /// use strew_core::{Polygon, space::Prism};
-    ///
-    /// let base = Polygon::new(&[[[0.0, 0.0], [9.0, 0.0], [0.0, 9.0]]])?;
-    /// assert!(Prism::new(base, [0.0, 1.0])?.contains([1.0, 1.0, 0.0]));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn contains(&self, [x, y, z]: [f64; 3]) -> bool {
         self.bounds.min()[2] <= z && z < self.bounds.max()[2] && self.base.contains([x, y])
@@ -103,7 +67,7 @@ impl Prism {
 
     /// The prism for points of a box, its upper sides included: whether all or none of them lie inside, or the part of
     /// the polygon that decides.
-    pub(super) fn focus(&self, within: &Region) -> Result<bool, Self> {
+    pub(super) fn focus(&self, within: &Region<3>) -> Result<bool, Self> {
         let (min, max) = (within.min(), within.max());
         let [bottom, top] = [self.bounds.min()[2], self.bounds.max()[2]];
         if max[2] < bottom || top <= min[2] {
@@ -111,7 +75,7 @@ impl Prism {
         }
         let near = self
             .base
-            .focus(&Rectangle::between([min[0], min[1]], [max[0], max[1]]));
+            .focus(&Region::between([min[0], min[1]], [max[0], max[1]]));
         let is_between = bottom <= min[2] && max[2] < top;
         match near.is_all_or_nothing() {
             Some(false) => Ok(false),

@@ -73,8 +73,8 @@ impl Area {
         };
         match self {
             Self::Region(region) => of_box(*region),
-            Self::Circle(circle) => circle.bounds().into_iter().for_each(of_box),
-            Self::Polygon(polygon) => {
+            Self::Ball(circle) => circle.bounds().into_iter().for_each(of_box),
+            Self::Outlined(polygon) => {
                 let sides = polygon.sides().filter_map(|side| clipped(side, within));
                 sides.for_each(visit);
             }

@@ -1,4 +1,7 @@
-//! Circles.
+//! Circles and balls.
+
+use alloc::format;
+use core::array::from_fn;
 
 use super::{
     Region,
@@ -6,8 +9,22 @@ use super::{
 };
 use crate::error::{Error, ErrorKind, number};
 
-/// A disk without its rim: the points nearer to the center than the radius, compared as squared
-/// distances in `f64`.
+/// A ball without its surface: the points nearer to the center than the radius, compared as squared distances in `f64`.
+///
+/// ```
+/// use strew_core::space::Ball;
+///
+/// let ball = Ball::new([10.0, 0.0, 0.0], 5.0)?;
+/// assert!(ball.contains([14.9, 0.0, 0.0]) && !ball.contains([10.0, 0.0, 5.0]));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball<const D: usize> {
+    center: [f64; D],
+    radius: f64,
+}
+
+/// A disk without its rim.
 ///
 /// ```
 /// use strew_core::Circle;
@@ -16,29 +33,16 @@ use crate::error::{Error, ErrorKind, number};
 /// assert!(circle.contains([14.9, 0.0]) && !circle.contains([15.0, 0.0]));
 /// # Ok::<(), strew_core::Error>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Circle {
-    center: [f64; 2],
-    radius: f64,
-}
+pub type Circle = Ball<2>;
 
-impl Circle {
-    /// The disk around a center, with a radius in world units.
+impl<const D: usize> Ball<D> {
+    /// The ball around a center, with a radius in world units.
     ///
     /// # Errors
     /// [`ErrorKind::Area`] if a number is not finite or the radius is not positive.
-    ///
-    /// ```
-    /// use strew_core::{Circle, ErrorKind};
-    ///
-    /// let circle = Circle::new([10.0, 0.0], 5.0)?;
-    /// assert_eq!((circle.center(), circle.radius()), ([10.0, 0.0], 5.0));
-    /// assert_eq!(Circle::new([10.0, 0.0], 0.0).unwrap_err().kind(), ErrorKind::Area);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn new(center: [f64; 2], radius: f64) -> Result<Self, Error> {
+    pub fn new(center: [f64; D], radius: f64) -> Result<Self, Error> {
         if let Some(&value) = center.iter().find(|value| !value.is_finite()) {
-            let value = alloc::format!("at {}", number(value));
+            let value = format!("at {}", number(value));
             return Err(Error::new(ErrorKind::Area, "center", value, "finite"));
         }
         if !(radius > 0.0 && radius.is_finite()) {
@@ -49,50 +53,26 @@ impl Circle {
     }
 
     /// The center, in world coordinates.
-    ///
-    /// ```
-    /// use strew_core::Circle;
-    ///
-    /// assert_eq!(Circle::new([10.0, 0.0], 5.0)?.center(), [10.0, 0.0]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
-    pub const fn center(&self) -> [f64; 2] {
+    pub const fn center(&self) -> [f64; D] {
         self.center
     }
 
     /// The radius, in world units.
-    ///
-    /// ```
-    /// use strew_core::Circle;
-    ///
-    /// assert_eq!(Circle::new([10.0, 0.0], 5.0)?.radius(), 5.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn radius(&self) -> f64 {
         self.radius
     }
 
     /// Whether a place lies inside. The rim does not.
-    ///
-    /// ```
-    /// use strew_core::Circle;
-    ///
-    /// let circle = Circle::new([0.0, 0.0], 5.0)?;
-    /// assert!(circle.contains([3.0, 3.9]));
-    /// // The rim is outside.
-    /// assert!(!circle.contains([3.0, 4.0]));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
-    pub fn contains(&self, p: [f64; 2]) -> bool {
-        let [dx, dy] = [p[0] - self.center[0], p[1] - self.center[1]];
-        dx * dx + dy * dy < self.radius * self.radius
+    pub fn contains(&self, p: [f64; D]) -> bool {
+        let squares = from_fn::<f64, D, _>(|i| (p[i] - self.center[i]) * (p[i] - self.center[i]));
+        squares.iter().sum::<f64>() < self.radius * self.radius
     }
 
-    /// A box around the disk, with room for rounding; `None` if its corners are not finite.
-    pub(super) fn bounds(&self) -> Option<Region> {
+    /// A box around it, with room for rounding; `None` if its corners are not finite.
+    pub(super) fn bounds(&self) -> Option<Region<D>> {
         let reach = self.radius * (1.0 + SLACK);
         let min = self.center.map(|c| (c - reach).next_down());
         let max = self.center.map(|c| (c + reach).next_up());
@@ -102,10 +82,10 @@ impl Circle {
     /// `Some(true)` if all points of a box, its upper sides included, lie inside, `Some(false)` if none
     /// does. Rounded differences, squares and sums are monotone, so the nearest and the farthest place
     /// of the box decide.
-    pub(super) fn within(&self, within: &Region) -> Option<bool> {
+    pub(super) fn within(&self, within: &Region<D>) -> Option<bool> {
         let (min, max) = (within.min(), within.max());
-        let nearest = [0, 1].map(|i| self.center[i].max(min[i]).min(max[i]));
-        let farthest = [0, 1].map(|i| {
+        let nearest = from_fn(|i| self.center[i].max(min[i]).min(max[i]));
+        let farthest = from_fn(|i| {
             let [a, b] = [min[i], max[i]].map(|v| (v - self.center[i]).abs());
             if a > b { min[i] } else { max[i] }
         });
@@ -117,7 +97,9 @@ impl Circle {
             None
         }
     }
+}
 
+impl Circle {
     /// The states of a strip y₀ ≤ y ≤ y₁ along x.
     pub(super) fn steps(&self, [y0, y1]: [f64; 2], steps: &mut Steps) {
         let [x, y] = self.center;

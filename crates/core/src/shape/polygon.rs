@@ -53,17 +53,6 @@ impl Polygon {
     /// # Errors
     /// [`ErrorKind::Area`] if there is no ring, a ring has fewer than three different vertices in a
     /// row, or a coordinate is not finite.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, Polygon};
-    ///
-    /// let ring = vec![[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]];
-    /// let mut closed = ring.clone();
-    /// closed.push(ring[0]);
-    /// assert_eq!(Polygon::new(&[&ring])?, Polygon::new(&[&closed])?);
-    /// assert_eq!(Polygon::new(&[&ring[..2]]).unwrap_err().kind(), ErrorKind::Area);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(rings: &[impl AsRef<[[f64; 2]]>]) -> Result<Self, Error> {
         if rings.is_empty() {
             let (value, allowed) = ("without a ring", "made of at least one");
@@ -129,45 +118,18 @@ impl Polygon {
     }
 
     /// The number of vertices of all rings. Repeated ones count once.
-    ///
-    /// ```
-    /// use strew_core::Polygon;
-    ///
-    /// let outer = [[0.0, 0.0], [9.0, 0.0], [0.0, 9.0]];
-    /// let hole = [[1.0, 1.0], [2.0, 1.0], [1.0, 2.0]];
-    /// assert_eq!(Polygon::new(&[outer, hole])?.vertices(), 6);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn vertices(&self) -> usize {
         self.vertices
     }
 
     /// The least box around all vertices.
-    ///
-    /// ```
-    /// use strew_core::Polygon;
-    ///
-    /// let bounds = Polygon::new(&[[[0.0, 0.0], [9.0, 2.0], [4.0, 7.0]]])?.bounds();
-    /// assert_eq!((bounds.min(), bounds.max()), ([0.0, 0.0], [9.0, 7.0]));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn bounds(&self) -> Region {
         Region::between(self.min, self.max)
     }
 
     /// Whether a place lies inside, decided exactly.
-    ///
-    /// ```
-    /// use strew_core::Polygon;
-    ///
-    /// let left = Polygon::new(&[[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]]])?;
-    /// let right = Polygon::new(&[[[0.0, 0.0], [4.0, 4.0], [0.0, 4.0]]])?;
-    /// // A place on the common edge belongs to one of the two.
-    /// assert!(left.contains([1.0, 1.0]) != right.contains([1.0, 1.0]));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn contains(&self, p: [f64; 2]) -> bool {
         self.is_in_beyond(p[1]) ^ is_odd(self.edges.iter(), p)

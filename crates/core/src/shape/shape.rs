@@ -1,0 +1,510 @@
+//! Shapes: boxes, balls and what polygons bound, combined.
+
+use alloc::{boxed::Box, vec::Vec};
+
+use super::{
+    Ball, Chunk, Polygon, Prism, Region,
+    steps::{State, Stepper, Steps},
+};
+
+/// A part of the plane ([`Area`]) or of space ([`Volume`]).
+///
+/// ```
+/// use strew_core::{Area, Circle, Polygon, Region};
+///
+/// let lake = Area::from(Circle::new([30.0, 30.0], 5.0)?);
+/// let land = Area::from(Polygon::new(&[[[0.0, 0.0], [100.0, 0.0], [0.0, 100.0]]])?);
+/// let dry = land.without([lake]);
+/// assert!(dry.contains([10.0, 10.0]) && !dry.contains([30.0, 31.0]));
+/// assert_eq!(dry.bounds(), Region::new([0.0, 0.0], [100.0, 100.0]).ok());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape<const D: usize, P> {
+    /// A half-open box.
+    Region(Region<D>),
+    /// A disk without its rim, or a ball without its surface.
+    Ball(Ball<D>),
+    /// A [`Polygon`] or a [`Prism`].
+    Outlined(P),
+    /// The union of several shapes.
+    AnyOf(Vec<Self>),
+    /// The intersection of several shapes; everything if there are none.
+    AllOf(Vec<Self>),
+    /// The complement of a shape.
+    Outside(Box<Self>),
+}
+
+/// A part of the plane: boxes, circles and polygons, combined.
+///
+/// ```
+/// use strew_core::{Area, Circle, Region};
+///
+/// let view = Area::from(Region::new([0.0, 0.0], [10.0, 10.0])?);
+/// let lit = view.and(Circle::new([0.0, 0.0], 5.0)?.into());
+/// assert!(lit.contains([1.0, 1.0]) && !lit.contains([-1.0, 1.0]));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+pub type Area = Shape<2, Polygon>;
+
+/// A part of space: boxes, balls and prisms, combined.
+///
+/// ```
+/// use strew_core::space::{Ball, Region, Volume};
+///
+/// let rock = Volume::from(Region::new([0.0; 3], [10.0; 3])?);
+/// let cave = rock.without([Ball::new([5.0; 3], 3.0)?.into()]);
+/// assert!(cave.contains([1.0; 3]) && !cave.contains([5.0; 3]));
+/// assert_eq!(cave.bounds(), Region::new([0.0; 3], [10.0; 3]).ok());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+pub type Volume = Shape<3, Prism>;
+
+/// What polygons bound: in the plane themselves, in space prisms over them.
+pub trait Outlined<const D: usize>: Clone {
+    /// Whether a place lies inside.
+    fn contains(&self, p: [f64; D]) -> bool;
+    /// A box around it.
+    fn bounds(&self) -> Region<D>;
+    /// The number of vertices.
+    fn vertices(&self) -> usize;
+    /// What it is for points of a box, its upper sides included: whether all or none of them lie inside, or the part
+    /// that decides.
+    fn focus(&self, within: &Region<D>) -> Result<bool, Self>;
+}
+
+macro_rules! outlined {
+    ($($part:ty: $dimension:literal)*) => {$(
+        impl Outlined<$dimension> for $part {
+            fn contains(&self, p: [f64; $dimension]) -> bool {
+                self.contains(p)
+            }
+
+            fn bounds(&self) -> Region<$dimension> {
+                self.bounds()
+            }
+
+            fn vertices(&self) -> usize {
+                self.vertices()
+            }
+
+            fn focus(&self, within: &Region<$dimension>) -> Result<bool, Self> {
+                self.focus(within)
+            }
+        }
+    )*};
+}
+
+outlined! { Polygon: 2 Prism: 3 }
+
+impl<const D: usize, P> From<Region<D>> for Shape<D, P> {
+    fn from(region: Region<D>) -> Self {
+        Self::Region(region)
+    }
+}
+
+impl<const D: usize, P> From<Ball<D>> for Shape<D, P> {
+    fn from(ball: Ball<D>) -> Self {
+        Self::Ball(ball)
+    }
+}
+
+impl From<Polygon> for Area {
+    fn from(polygon: Polygon) -> Self {
+        Self::Outlined(polygon)
+    }
+}
+
+impl From<Prism> for Volume {
+    fn from(prism: Prism) -> Self {
+        Self::Outlined(prism)
+    }
+}
+
+impl<const D: usize, P: Outlined<D>> Shape<D, P> {
+    /// The union of shapes: a single one itself, and nothing if there are none.
+    ///
+    /// ```
+    /// use strew_core::{Area, Circle, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table);
+    /// let [a, b] = [Circle::new([0.0, 0.0], 4.0)?, Circle::new([30.0, 5.0], 4.0)?];
+    /// let both = Area::any_of([a.into(), b.into()]);
+    /// assert_eq!(set.count(both)?, set.count(a)? + set.count(b)?);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn any_of(shapes: impl IntoIterator<Item = Self>) -> Self {
+        Self::only_or(shapes.into_iter().collect(), Self::AnyOf)
+    }
+
+    /// A single shape itself, or several together.
+    fn only_or(mut shapes: Vec<Self>, together: fn(Vec<Self>) -> Self) -> Self {
+        match shapes.pop() {
+            Some(only) if shapes.is_empty() => only,
+            last => {
+                shapes.extend(last);
+                together(shapes)
+            }
+        }
+    }
+
+    /// The intersection of two shapes.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        match (self, other) {
+            // A box again, which is counted in closed form.
+            (Self::Region(a), Self::Region(b)) if a.as_chunk().or(b.as_chunk()).is_none() => {
+                Self::Region(a.and(b))
+            }
+            (Self::Region(inner), Self::Region(outer))
+            | (Self::Region(outer), Self::Region(inner))
+                if outer.as_chunk().is_none() && outer.surrounds(&inner) =>
+            {
+                Self::Region(inner)
+            }
+            (Self::AllOf(mut shapes), other) => {
+                shapes.push(other);
+                Self::AllOf(shapes)
+            }
+            (shape, other) => Self::AllOf([shape, other].into()),
+        }
+    }
+
+    /// This shape without others.
+    #[must_use]
+    pub fn without(self, excluded: impl IntoIterator<Item = Self>) -> Self {
+        let excluded: Vec<Self> = excluded.into_iter().collect();
+        if excluded.is_empty() {
+            return self;
+        }
+        self.and(Self::Outside(Box::new(Self::any_of(excluded))))
+    }
+
+    /// Whether a place lies inside.
+    #[must_use]
+    pub fn contains(&self, p: [f64; D]) -> bool {
+        match self {
+            Self::Region(region) => region.contains(p),
+            Self::Ball(ball) => ball.contains(p),
+            Self::Outlined(part) => part.contains(p),
+            Self::AnyOf(shapes) => shapes.iter().any(|shape| shape.contains(p)),
+            Self::AllOf(shapes) => shapes.iter().all(|shape| shape.contains(p)),
+            Self::Outside(shape) => !shape.contains(p),
+        }
+    }
+
+    /// A box around the shape, or `None` if it is unbounded. The box of a shape that is plainly empty is empty.
+    #[must_use]
+    pub fn bounds(&self) -> Option<Region<D>> {
+        match self {
+            Self::Region(region) => Some(*region),
+            Self::Ball(ball) => ball.bounds(),
+            Self::Outlined(part) => Some(part.bounds()),
+            Self::AnyOf(shapes) => {
+                let mut all = shapes.iter().map(Self::bounds);
+                let Some(first) = all.next() else {
+                    return Some(Region::between([0.0; D], [0.0; D]));
+                };
+                all.try_fold(first?, |all, bounds| Some(all.around(&bounds?)))
+            }
+            Self::AllOf(shapes) => {
+                let bounded = shapes.iter().filter_map(Self::bounds);
+                bounded.reduce(|all, bounds| all.and(bounds))
+            }
+            Self::Outside(_) => None,
+        }
+    }
+
+    /// The number of vertices of all polygons in the shape.
+    ///
+    /// ```
+    /// use strew_core::{Area, Circle, Polygon};
+    ///
+    /// let field = Area::from(Polygon::new(&[[[0.0, 0.0], [9.0, 0.0], [0.0, 9.0]]])?);
+    /// let pond = Area::from(Circle::new([2.0, 2.0], 1.0)?);
+    /// assert_eq!(field.without([pond]).vertices(), 3);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn vertices(&self) -> usize {
+        match self {
+            Self::Region(_) | Self::Ball(_) => 0,
+            Self::Outlined(part) => part.vertices(),
+            Self::AnyOf(shapes) | Self::AllOf(shapes) => shapes.iter().map(Self::vertices).sum(),
+            Self::Outside(shape) => shape.vertices(),
+        }
+    }
+
+    /// The chunks of which this is the intersection with [`beside_chunks`](Self::beside_chunks). Membership of a chunk
+    /// is exact, which reported coordinates cannot decide, so integers decide these and coordinates the rest.
+    pub(crate) fn chunks(&self) -> Vec<Chunk<D>> {
+        match self {
+            Self::Region(region) => region.as_chunk().into_iter().collect(),
+            Self::AllOf(shapes) => shapes.iter().flat_map(Self::chunks).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The shape without the restriction to its [`chunks`](Self::chunks); `None` if nothing else restricts it.
+    pub(crate) fn beside_chunks(&self) -> Option<Self> {
+        match self {
+            Self::Region(region) if region.as_chunk().is_some() => None,
+            Self::AllOf(shapes) => {
+                let rest: Vec<Self> = shapes.iter().filter_map(Self::beside_chunks).collect();
+                (!rest.is_empty()).then(|| Self::only_or(rest, Self::AllOf))
+            }
+            other => Some(other.clone()),
+        }
+    }
+
+    /// The shape for points of a box, its upper sides included, reduced to what matters there.
+    pub(crate) fn focus(&self, within: &Region<D>) -> Self {
+        let focused = match self {
+            Self::Region(region) => region.within(within).ok_or_else(|| self.clone()),
+            Self::Ball(ball) => ball.within(within).ok_or_else(|| self.clone()),
+            Self::Outlined(part) => part.focus(within).map_err(Self::Outlined),
+            Self::AnyOf(shapes) => return Self::joined(shapes, within, false),
+            Self::AllOf(shapes) => return Self::joined(shapes, within, true),
+            Self::Outside(shape) => {
+                let near = shape.focus(within);
+                let state = near.is_all_or_nothing().map(|state| !state);
+                state.ok_or_else(|| Self::Outside(Box::new(near)))
+            }
+        };
+        focused.map_or_else(|near| near, Self::constant)
+    }
+
+    /// The intersection (`is_all`) or union of shapes in a box.
+    fn joined(shapes: &[Self], within: &Region<D>, is_all: bool) -> Self {
+        let mut near = Vec::with_capacity(shapes.len());
+        for shape in shapes {
+            let shape = shape.focus(within);
+            match shape.is_all_or_nothing() {
+                Some(state) if state != is_all => return Self::constant(state),
+                Some(_) => {}
+                None => near.push(shape),
+            }
+        }
+        Self::only_or(near, if is_all { Self::AllOf } else { Self::AnyOf })
+    }
+
+    /// Whether this is everything or nothing, as shapes are that were reduced to where all or none of them is.
+    pub(crate) const fn is_all_or_nothing(&self) -> Option<bool> {
+        match self {
+            Self::AllOf(shapes) if shapes.is_empty() => Some(true),
+            Self::AnyOf(shapes) if shapes.is_empty() => Some(false),
+            _ => None,
+        }
+    }
+
+    /// Everything or nothing.
+    const fn constant(state: bool) -> Self {
+        if state {
+            Self::AllOf(Vec::new())
+        } else {
+            Self::AnyOf(Vec::new())
+        }
+    }
+}
+
+impl Area {
+    /// The number of boxes, circles and edges that points are compared with.
+    pub(crate) fn parts(&self) -> usize {
+        match self {
+            Self::Region(_) | Self::Ball(_) => 1,
+            Self::Outlined(polygon) => polygon.sides().count(),
+            Self::AnyOf(areas) | Self::AllOf(areas) => areas.iter().map(Self::parts).sum(),
+            Self::Outside(area) => area.parts(),
+        }
+    }
+
+    /// The states of a strip y₀ ≤ y ≤ y₁ along x. After [`focus`](Self::focus) they hold within the box.
+    pub(crate) fn steps(&self, strip: [f64; 2], stepper: &mut Stepper) {
+        match self {
+            Self::Region(region) => stepper.steps.set_region(region, strip),
+            Self::Ball(circle) => circle.steps(strip, &mut stepper.steps),
+            Self::Outlined(polygon) => polygon.steps(strip, stepper),
+            Self::AnyOf(areas) => {
+                stepper.steps = joined(areas, strip, stepper, State::Out, State::max);
+            }
+            Self::AllOf(areas) => {
+                stepper.steps = joined(areas, strip, stepper, State::In, State::min);
+            }
+            Self::Outside(area) => {
+                area.steps(strip, stepper);
+                stepper.steps.invert();
+            }
+        }
+    }
+}
+
+/// The steps of several areas together, joined by halves: n areas take O(n log n).
+fn joined(
+    areas: &[Area],
+    strip: [f64; 2],
+    stepper: &mut Stepper,
+    empty: State,
+    join: fn(State, State) -> State,
+) -> Steps {
+    match areas {
+        [] => Steps::all(empty),
+        [area] => {
+            area.steps(strip, stepper);
+            core::mem::take(&mut stepper.steps)
+        }
+        areas => {
+            let (first, second) = areas.split_at(areas.len() / 2);
+            let [first, second] =
+                [first, second].map(|half| joined(half, strip, stepper, empty, join));
+            first.join(&second, join)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::shape::Circle;
+
+    fn coordinate() -> impl Strategy<Value = f64> {
+        prop_oneof![(-4i8..=4).prop_map(f64::from), -4.0..4.0f64]
+    }
+
+    fn point() -> impl Strategy<Value = [f64; 2]> {
+        [coordinate(), coordinate()]
+    }
+
+    fn any_area() -> impl Strategy<Value = Area> {
+        let region = (point(), point()).prop_map(|(a, b)| {
+            let pick = |f: fn(f64, f64) -> f64| [f(a[0], b[0]), f(a[1], b[1])];
+            Area::from(Region::new(pick(f64::min), pick(f64::max)).expect("ordered"))
+        });
+        let circle = (point(), 0.1..4.0f64)
+            .prop_map(|(center, radius)| Area::from(Circle::new(center, radius).expect("valid")));
+        let ring = || {
+            prop::collection::vec(point(), 3..7)
+                .prop_filter("different", |ring| Polygon::new(&[ring]).is_ok())
+        };
+        let polygon = prop::collection::vec(ring(), 1..3)
+            .prop_map(|rings| Area::from(Polygon::new(&rings).expect("valid")));
+        prop_oneof![region, circle, polygon].prop_recursive(3, 8, 3, |inner| {
+            prop_oneof![
+                prop::collection::vec(inner.clone(), 1..3).prop_map(Area::any_of),
+                (inner.clone(), inner.clone()).prop_map(|(a, b)| a.and(b)),
+                (inner.clone(), inner).prop_map(|(a, b)| a.without([b])),
+            ]
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn steps_and_focus_never_contradict_membership(
+            area in any_area(), y0 in coordinate(), height in 0.0..2.0f64,
+            ends in (coordinate(), coordinate()),
+            probes in prop::collection::vec((-5.0..5.0f64, 0.0..=1.0f64), 40),
+            exact in prop::collection::vec((coordinate(), 0.0..=1.0f64), 20),
+        ) {
+            let (strip, original) = ([y0, y0 + height], area.clone());
+            let (left, right) = (ends.0.min(ends.1), ends.0.max(ends.1));
+            let wide = Region::between([left - 1.0, y0 - 0.5], [right, strip[1]]);
+            let within = Region::between([left, y0], [right, strip[1]]);
+            let focused = area.focus(&wide).focus(&within);
+            let everywhere = Region::between([f64::NEG_INFINITY, y0], [f64::INFINITY, strip[1]]);
+            let whole = area.focus(&everywhere);
+            let mut stepper = Stepper::default();
+            for (area, looked_at) in [(&area, [-9.0, 9.0]), (&focused, [left, right]), (&whole, [-9.0, 9.0])] {
+                area.steps(strip, &mut stepper);
+                let steps = &stepper.steps;
+                for &(x, part) in probes.iter().chain(&exact) {
+                    let x = x.clamp(looked_at[0], looked_at[1]);
+                    let p = [x, (y0 + part * height).min(strip[1])];
+                    let inside = original.contains(p);
+                    prop_assert_eq!(area.contains(p), inside, "{:?} {:?}", p, area);
+                    // At a step itself both sides are undecided.
+                    let nearby = [x - 1e-9, x + 1e-9].map(|x| steps.at(x));
+                    if nearby == [State::In; 2] {
+                        prop_assert!(inside, "{p:?} {area:?}");
+                    } else if nearby == [State::Out; 2] {
+                        prop_assert!(!inside, "{p:?} {area:?}");
+                    }
+                }
+            }
+            if let Some(bounds) = area.bounds() {
+                for p in [[y0, y0], [y0, 0.5], [0.25, y0]] {
+                    prop_assert!(!area.contains(p) || bounds.contains(p), "{p:?} {area:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn combinations_of_nothing() {
+        let nothing = Area::any_of(vec![]);
+        assert!(!nothing.contains([0.0, 0.0]));
+        assert_eq!(nothing.bounds().map(|b| b.is_empty()), Some(true));
+        let square = Area::from(Region::new([0.0; 2], [1.0; 2]).expect("valid"));
+        assert_eq!(square.clone().without(vec![]), square);
+        assert_eq!(Area::Outside(Box::new(square)).bounds(), None);
+    }
+
+    fn place() -> impl Strategy<Value = [f64; 3]> {
+        [coordinate(), coordinate(), coordinate()]
+    }
+
+    fn corners() -> impl Strategy<Value = Region> {
+        (place(), place()).prop_map(|(a, b)| {
+            let pick = |f: fn(f64, f64) -> f64| [0, 1, 2].map(|i| f(a[i], b[i]));
+            Region::new(pick(f64::min), pick(f64::max)).expect("ordered")
+        })
+    }
+
+    fn any_volume() -> impl Strategy<Value = Volume> {
+        let ball = (place(), 0.1..4.0f64)
+            .prop_map(|(center, radius)| Volume::from(Ball::new(center, radius).expect("valid")));
+        let prism = prop::collection::vec([coordinate(), coordinate()], 3..7).prop_filter_map(
+            "different",
+            |ring| {
+                let prism = Prism::new(Polygon::new(&[ring]).ok()?, [-2.0, 1.5]).expect("ordered");
+                Some(Volume::from(prism))
+            },
+        );
+        prop_oneof![corners().prop_map(Volume::from), ball, prism].prop_recursive(
+            3,
+            8,
+            3,
+            |inner| {
+                prop_oneof![
+                    prop::collection::vec(inner.clone(), 1..3).prop_map(Volume::any_of),
+                    (inner.clone(), inner.clone()).prop_map(|(a, b)| a.and(b)),
+                    (inner.clone(), inner).prop_map(|(a, b)| a.without([b])),
+                ]
+            },
+        )
+    }
+
+    proptest! {
+        #[test]
+        fn focus_and_bounds_never_contradict_membership(
+            volume in any_volume(), within in corners(),
+            parts in prop::collection::vec(prop::array::uniform3(0.0..=1.0f64), 40),
+        ) {
+            let near = volume.focus(&within);
+            let bounds = volume.bounds();
+            for part in parts {
+                let p = [0, 1, 2].map(|i| {
+                    let (min, max) = (within.min()[i], within.max()[i]);
+                    (min + part[i] * (max - min)).min(max)
+                });
+                prop_assert_eq!(near.contains(p), volume.contains(p), "{:?}", p);
+                let around = bounds.is_none_or(|bounds| bounds.contains(p));
+                prop_assert!(around || !volume.contains(p), "{p:?}");
+            }
+        }
+    }
+}
