@@ -7,12 +7,13 @@ use std::{
 
 /// Types and traits that are public only because the sealed trait `Format` names them. They are not
 /// exported, and rustdoc does not show them.
-const SEALED: [&str; 10] = [
+const SEALED: [&str; 11] = [
     "Batch",
     "Double",
     "Emit",
     "Geometry",
     "Lanes",
+    "Outlined",
     "PatchShears",
     "Picks",
     "Row",
