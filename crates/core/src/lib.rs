@@ -76,19 +76,21 @@ mod sort;
 pub mod space;
 mod stop;
 pub mod table;
+mod window;
 
 pub use error::{Error, ErrorKind};
 pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
 pub use sample::{
-    Attribute, Attributes, Backend, Blocks, BoundAttributes, Clearance, Column, Cursor, Exact, F32,
-    F64, Field, Format, Keep, Kind, Kinds, LATTICE_LIMIT, LeastDistance, Member, Members, Neighbor,
+    Attribute, Attributes, Backend, Blocks, BoundAttributes, Clearance, Column, Exact, F32, F64,
+    Field, Format, Keep, Kind, Kinds, LATTICE_LIMIT, LeastDistance, Member, Members, Neighbor,
     Offsets, Place, Placement, Plan, Point, PointId, PointSet, Points, Raster, ScaleRange, Seed,
     Settle, Spacing, Tile, UniformNumber, VariantScales, Variants, VaryingKinds, Warp,
 };
 pub use sample::{PeriodicBlocks, PeriodicPlan, PeriodicSet};
 pub use shape::{Area, Circle, Polygon, Region, Shape};
 pub use table::Table;
+pub use window::Cursor;
 
 /// The version of the algorithm that turns a table, a density, a seed and a lattice address into a point,
 /// and that orders the points of a region. Any change of any output raises it.

@@ -26,6 +26,7 @@ use crate::{
     pattern::Alpha,
     sample::{Neighbor, PeriodicPlan, PeriodicSet, Plan, PointSet, Spacing},
     shape::{Area, Region},
+    window::Windowed as _,
 };
 
 pub use crate::sample::{Stop, Visits};
@@ -177,7 +178,7 @@ pub fn stopped_by(plan: Plan, stop: Stop) -> Plan {
 /// little longer than one.
 #[must_use]
 pub fn windows(plan: &Plan, offsets: &[u128]) -> Vec<Plan> {
-    plan.windows(offsets, plan.count())
+    plan.windows_at(offsets, plan.count())
 }
 
 /// The bytes of the points and places that counting has kept in a plan, beside its area.

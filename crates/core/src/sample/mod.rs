@@ -8,7 +8,7 @@
 //! 4. `settle`: where points end that settle; `sieve` and `scope`: what the points of a request satisfy;
 //! 5. `count`: how many there are, without making them;
 //! 6. `kernel` and `walk`: making them, row by row, in blocks;
-//! 7. `attribute` and `member`: the values that points have, one by one; `seek`, `cursor`: places in their order;
+//! 7. `attribute` and `member`: the values that points have, one by one; `seek`: places in their order;
 //! 8. `plan`: a request made ready; `amount`: one with an exact number of points;
 //! 9. `field`: sets whose density varies;
 //! 10. `set`: the [`PointSet`](crate::PointSet), whose methods are all of this;
@@ -17,7 +17,6 @@
 mod amount;
 mod attribute;
 mod count;
-mod cursor;
 mod field;
 mod kernel;
 mod lattice;
@@ -57,7 +56,6 @@ pub use attribute::{
     Attribute, Attributes, BoundAttributes, Column, Kinds, ScaleRange, UniformNumber,
     VariantScales, Variants,
 };
-pub use cursor::Cursor;
 pub use field::{Edges, Field, FieldSpec, Filter, Marks, Noise, Pixels, Raster, Terrain};
 pub use kernel::{Backend, Exact, F32, F64, Format, Offsets, Place, Points};
 pub use lattice::{Keep, LATTICE_LIMIT, Placement, Point, PointId, Settle, Spacing, VaryingKinds};

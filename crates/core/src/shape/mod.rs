@@ -28,5 +28,5 @@ pub use polygon::Polygon;
 pub use prism::Prism;
 pub(crate) use region::Chunk;
 pub use region::Region;
-pub use shape::{Area, Outlined, Shape, Volume};
+pub use shape::{Area, Shape, Volume};
 pub(crate) use steps::{Near, State, Stepper};

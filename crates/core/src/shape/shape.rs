@@ -457,7 +457,7 @@ mod tests {
         [coordinate(), coordinate(), coordinate()]
     }
 
-    fn corners() -> impl Strategy<Value = Region> {
+    fn corners() -> impl Strategy<Value = Region<3>> {
         (place(), place()).prop_map(|(a, b)| {
             let pick = |f: fn(f64, f64) -> f64| [0, 1, 2].map(|i| f(a[i], b[i]));
             Region::new(pick(f64::min), pick(f64::max)).expect("ordered")

@@ -4,8 +4,8 @@ use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
 use core::{marker::PhantomData, ops::Range};
 
 use super::{
+    Cursor,
     batch::Batch,
-    cursor::Cursor,
     format::{Format, write},
     point::{Point, PointId},
     scope::Scope,

@@ -10,7 +10,7 @@ use super::{
     warp::Shears3,
 };
 use crate::{
-    sample::{Keep, Seed, Spacing, Warp, space::PICKS},
+    sample::{Keep, Placement, space::PICKS},
     table::FRACTION_BITS,
 };
 
@@ -27,28 +27,6 @@ use crate::{
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 pub const LATTICE_LIMIT: i64 = 1 << 40;
-
-/// Spacing, seed, warp and share of a set in space.
-///
-/// ```
-/// use strew_core::{Seed, Warp, space::{SpaceSet, Table}};
-///
-/// let table = Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?;
-/// let placement = SpaceSet::new(table).spacing(2.0)?.seed(7).placement();
-/// assert_eq!((placement.spacing.get(), placement.seed, placement.warp), (2.0, Seed(7), Warp::ON));
-/// # Ok::<(), strew_core::Error>(())
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placement {
-    /// The mean spacing, in world units: density^−⅓.
-    pub spacing: Spacing,
-    /// The seed.
-    pub seed: Seed,
-    /// The strength of the warp.
-    pub warp: Warp,
-    /// The share of the points that is kept.
-    pub keep: Keep,
-}
 
 /// The points of a table at a placement.
 #[derive(Clone, Debug)]

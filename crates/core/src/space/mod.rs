@@ -29,7 +29,6 @@ mod clearance;
 mod closed;
 mod columns;
 mod count;
-mod cursor;
 mod distance;
 mod format;
 mod lattice;
@@ -53,10 +52,9 @@ mod windows;
 
 pub use attributes::BoundAttributes;
 pub use blocks::{Blocks, Members};
-pub use cursor::Cursor;
 pub use distance::LeastDistance;
 pub use format::Format;
-pub use lattice::{LATTICE_LIMIT, Placement};
+pub use lattice::LATTICE_LIMIT;
 pub use nearest::Neighbor;
 pub use pattern::Pattern;
 pub use plan::Plan;
@@ -68,6 +66,8 @@ pub use table::Table;
 
 pub use crate::shape::{Prism, Volume};
 
+/// A place in the order of a request's points.
+pub type Cursor = crate::Cursor<PointId>;
 /// A half-open box in world coordinates.
 pub type Region = crate::Region<3>;
 /// A ball without its surface.

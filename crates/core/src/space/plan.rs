@@ -8,13 +8,13 @@ use super::{
     blocks::{Blocks, Members},
     count,
     format::Format,
-    lattice::{Lattice, Placement},
+    lattice::Lattice,
     mask::Mask,
-    point::Point,
+    point::{Point, PointId},
     scope::Scope,
     table::Table,
 };
-use crate::{F32, F64, Points, error::Error, stop::Stop};
+use crate::{F32, F64, Placement, Points, error::Error, stop::Stop, window::Window};
 
 /// The points of a volume, counted exactly before the first is made.
 ///
@@ -32,19 +32,9 @@ use crate::{F32, F64, Points, error::Error, stop::Stop};
 #[derive(Clone, Debug)]
 pub struct Plan {
     pub(super) scope: Arc<Scope>,
-    pub(super) window: Window,
+    pub(super) window: Window<PointId>,
     /// All points of the request, if they are few.
     pub(super) kept: Option<Arc<Batch>>,
-}
-
-/// A part of a request's points.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Window {
-    /// The first point, unless that is the first of the request.
-    pub(super) start: Option<[i64; 3]>,
-    pub(super) offset: u128,
-    pub(super) count: u128,
-    pub(super) total: u128,
 }
 
 impl Plan {
@@ -70,15 +60,9 @@ impl Plan {
         if scope.stop.is_raised() {
             return Err(Stop::error());
         }
-        let window = Window {
-            start: None,
-            offset: 0,
-            count: total,
-            total,
-        };
         Ok(Self {
             scope,
-            window,
+            window: Window::whole(total),
             kept,
         })
     }
@@ -112,7 +96,7 @@ impl Plan {
                 let points = offset as usize..(offset + count) as usize;
                 Blocks::kept(self.scope.clone(), kept.clone(), points)
             }
-            None => Blocks::walk(self.scope.clone(), start, count),
+            None => Blocks::walk(self.scope.clone(), start.map(PointId::lattice), count),
         };
         blocks.of(offset, total)
     }

@@ -1,9 +1,8 @@
 //! The point set.
 
 use super::{
-    Region, Volume,
-    cursor::Cursor,
-    lattice::{Lattice, Placement},
+    Cursor, Region, Volume,
+    lattice::Lattice,
     mask::{ClearOf, Mask},
     nearest,
     plan::Plan,
@@ -11,7 +10,7 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorKind, number},
-    sample::{Keep, Placement as Planar, Seed, Spacing, Warp},
+    sample::{Keep, Placement, Seed, Spacing, Warp},
     stop::Stop,
 };
 
@@ -61,14 +60,8 @@ impl SpaceSet {
     /// ```
     #[must_use]
     pub fn new(table: Table) -> Self {
-        let placement = Placement {
-            spacing: Spacing::ONE,
-            seed: Seed(0),
-            warp: Warp::OFF,
-            keep: Keep::ALL,
-        };
         Self {
-            lattice: Lattice::new(table, placement),
+            lattice: Lattice::new(table, Placement::new(Spacing::ONE, Seed(0))),
             mask: Mask::default(),
             has_own_warp: false,
         }
@@ -189,7 +182,7 @@ impl SpaceSet {
     pub fn seed(self, seed: u64) -> Self {
         let seed = Seed(seed);
         let own = self.has_own_warp.then_some(self.lattice.placement.warp);
-        let warp = own.unwrap_or_else(|| Planar::default_warp(seed));
+        let warp = own.unwrap_or_else(|| Placement::default_warp(seed));
         self.replaced(|placement| Placement {
             seed,
             warp,

@@ -4,8 +4,8 @@
 //! keep clear of others are all made and tested.
 
 use strew_core::{
-    Warp,
-    space::{Placement, SpaceSet, Volume},
+    Placement, Warp,
+    space::{SpaceSet, Volume},
 };
 use strew_encode::Source;
 use strew_query::{Query, Set};

@@ -9,11 +9,11 @@ use crate::{
     error::Error,
     sample::{
         attribute::{Attributes, BoundAttributes},
-        cursor::Cursor,
         lattice::{Point, PointId},
     },
     shape::Region,
     stop::Stop,
+    window::{Cursor, Window, Windowed},
 };
 
 /// A period made ready: the exact number of its points, of which a window can be cut.
@@ -36,12 +36,8 @@ pub struct PeriodicPlan {
     set: PeriodicSet,
     /// The number of points before each row and after the last, if they are counted.
     before: Option<Arc<[u64]>>,
-    total: u64,
-    /// The number of points before the window.
-    offset: u64,
-    count: u64,
-    /// The start of the window: an address with no point of the window before it.
-    start: PointId,
+    /// Its start is an address with no point of the window before it.
+    window: Window<PointId>,
 }
 
 const ORIGIN: PointId = PointId { x: 0, y: 0 };
@@ -97,17 +93,38 @@ impl PeriodicSet {
     /// ```
     #[must_use]
     pub fn resume(&self, cursor: Cursor) -> PeriodicPlan {
-        let small = |v: u128| u64::try_from(v).unwrap_or(u64::MAX).min(self.len());
-        let total = small(cursor.total);
-        let offset = small(cursor.offset).min(total);
+        let total = cursor.total.min(self.len().into());
+        let offset = cursor.offset.min(total);
         PeriodicPlan {
             set: self.clone(),
             before: None,
-            total,
-            offset,
-            count: total - offset,
-            start: cursor.at,
+            window: Window {
+                start: Some(cursor.at),
+                offset,
+                count: total - offset,
+                total,
+            },
         }
+    }
+}
+
+impl Windowed for PeriodicPlan {
+    type Id = PointId;
+
+    fn part(&self) -> Window<PointId> {
+        self.window
+    }
+
+    fn with_part(&self, window: Window<PointId>) -> Self {
+        Self {
+            window,
+            ..self.clone()
+        }
+    }
+
+    fn locate(&self, numbers: &[u128]) -> Vec<Option<PointId>> {
+        let place = |k: &u128| Some(self.place(k.checked_sub(self.window.offset)? as u64));
+        numbers.iter().map(place).collect()
     }
 }
 
@@ -117,10 +134,7 @@ impl PeriodicPlan {
         Self {
             set: set.clone(),
             before: Some(before),
-            total,
-            offset: 0,
-            count: total,
-            start: ORIGIN,
+            window: Window::whole(total.into()),
         }
     }
 
@@ -133,25 +147,25 @@ impl PeriodicPlan {
     /// The exact number of points of the window.
     #[must_use]
     pub const fn count(&self) -> u128 {
-        self.count as u128
+        self.window.count
     }
 
     /// The number of points of the whole period.
     #[must_use]
     pub const fn total(&self) -> u128 {
-        self.total as u128
+        self.window.total
     }
 
     /// The number of points before the window.
     #[must_use]
     pub const fn offset(&self) -> u128 {
-        self.offset as u128
+        self.window.offset
     }
 
     /// Whether it is less than the whole period.
     #[must_use]
     pub const fn is_window(&self) -> bool {
-        self.count < self.total
+        self.window.count < self.window.total
     }
 
     /// The box [0, L)².
@@ -163,15 +177,7 @@ impl PeriodicPlan {
     /// The points after the first `offset`, at most `limit`.
     #[must_use]
     pub fn window(&self, offset: u128, limit: Option<u128>) -> Self {
-        let small = |v: u128| u64::try_from(v).unwrap_or(u64::MAX);
-        let skipped = small(offset).min(self.count);
-        let left = self.count - skipped;
-        Self {
-            offset: self.offset + skipped,
-            count: limit.map_or(left, |limit| small(limit).min(left)),
-            start: self.place(skipped),
-            ..self.clone()
-        }
+        self.window_from(offset, limit)
     }
 
     /// The place of the first point, if any is left.
@@ -187,32 +193,23 @@ impl PeriodicPlan {
     /// ```
     #[must_use]
     pub fn cursor(&self) -> Option<Cursor> {
-        self.cursor_after(0)
+        self.first_cursor()
     }
 
     /// The place of the first point after the window, if there is one.
     #[must_use]
     pub fn next_cursor(&self) -> Option<Cursor> {
-        self.cursor_after(self.count)
-    }
-
-    fn cursor_after(&self, number: u64) -> Option<Cursor> {
-        let offset = self.offset + number;
-        (offset < self.total).then(|| Cursor {
-            offset: offset.into(),
-            total: self.total.into(),
-            at: self.place(number),
-        })
+        self.cursor_after()
     }
 
     /// The place of a point, by its number in the window.
     fn place(&self, number: u64) -> PointId {
-        let mut walk = Walk::from(&self.set, self.start);
+        let mut walk = self.walk();
         let mut left = number;
         if let Some(before) = &self.before
             && number > 0
         {
-            let wanted = self.offset + number;
+            let wanted = self.window.offset as u64 + number;
             let y = before.partition_point(|&sum| sum <= wanted).max(1) - 1;
             left = wanted - before[y];
             walk = Walk { y: y as u64, i: 0 };
@@ -223,15 +220,20 @@ impl PeriodicPlan {
         walk.id(&self.set)
     }
 
+    /// The walk from the window's start on.
+    fn walk(&self) -> Walk {
+        Walk::from(&self.set, self.window.start.unwrap_or(ORIGIN))
+    }
+
     /// The points in blocks, in the order of the period: rows, then columns.
     #[must_use]
     pub fn blocks(&self) -> PeriodicBlocks {
         PeriodicBlocks {
-            walk: Walk::from(&self.set, self.start),
+            walk: self.walk(),
             set: self.set.clone(),
-            total: self.total,
-            offset: self.offset,
-            left: self.count,
+            total: self.window.total,
+            offset: self.window.offset,
+            left: self.window.count,
         }
     }
 
@@ -268,9 +270,9 @@ impl PeriodicPlan {
 pub struct PeriodicBlocks {
     set: PeriodicSet,
     walk: Walk,
-    total: u64,
-    offset: u64,
-    left: u64,
+    total: u128,
+    offset: u128,
+    left: u128,
 }
 
 impl PeriodicBlocks {
@@ -305,8 +307,8 @@ impl PeriodicBlocks {
     #[must_use]
     pub fn cursor(&self) -> Option<Cursor> {
         (self.offset < self.total).then(|| Cursor {
-            offset: self.offset.into(),
-            total: self.total.into(),
+            offset: self.offset,
+            total: self.total,
             at: self.walk.id(&self.set),
         })
     }

@@ -5,7 +5,8 @@ use alloc::vec::Vec;
 use super::Plan;
 use crate::{
     map::Map,
-    sample::{Area, F32, Format, Offsets, PointId, PointSet, Region},
+    sample::{F32, Format, Offsets, PointId, PointSet},
+    shape::{Area, Region},
     table::{Provenance, Table},
 };
 

@@ -9,17 +9,18 @@ use alloc::{sync::Arc, vec, vec::Vec};
 use super::{
     attribute::{Attributes, BoundAttributes},
     kernel::{F32, F64, Format, Place, Points},
-    lattice::{Keep, Lattice, Placement, Point, Spacing},
+    lattice::{Keep, Lattice, Placement, Point, PointId, Spacing},
     member::Members,
     near::Mask,
     scope::Scope,
-    walk::{Blocks, Counted, Tile, Window, format_of, tiles},
+    walk::{Blocks, Counted, Tile, format_of, tiles},
 };
 use crate::{
     error::Error,
     shape::{Area, Region},
     stop::Stop,
     table::Table,
+    window::Window,
 };
 
 /// The points of a set in an area: their exact number is known, the points come on demand, in a fixed
@@ -47,7 +48,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct Plan {
     scope: Arc<Scope>,
-    window: Window,
+    window: Window<PointId>,
     /// The results of counting.
     counted: Counted,
 }
@@ -72,12 +73,7 @@ impl Plan {
         }
         Ok(Self {
             scope,
-            window: Window {
-                start: None,
-                offset: 0,
-                count: counted.count,
-                total: counted.count,
-            },
+            window: Window::whole(counted.count),
             counted,
         })
     }

@@ -5,9 +5,10 @@ use core::ops::Range;
 use super::PointSet;
 use crate::{
     error::Error,
-    sample::{amount, cursor::Cursor, field::candidates, plan::Plan, scope::Scope},
+    sample::{amount, field::candidates, plan::Plan, scope::Scope},
     shape::{Area, Region},
     stop::Stop,
+    window::Cursor,
 };
 
 impl PointSet {

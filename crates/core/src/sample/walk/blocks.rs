@@ -62,25 +62,14 @@ use super::{
     settled::{Pieces, SettledWalk},
     tile::Tile,
 };
-use crate::sample::{
-    cursor::Cursor,
-    kernel::{Backend, Format},
-    lattice::PointId,
-    scope::Scope,
+use crate::{
+    sample::{
+        kernel::{Backend, Format},
+        lattice::PointId,
+        scope::Scope,
+    },
+    window::{Cursor, Window},
 };
-
-/// A part of the points of a scope: from a place on, up to a number.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Window {
-    /// The lattice address of the first point, unless that is the scope's first.
-    pub(crate) start: Option<PointId>,
-    /// The number of points before the window.
-    pub(crate) offset: u128,
-    /// The number of points of the window.
-    pub(crate) count: u128,
-    /// The number of points of the scope.
-    pub(crate) total: u128,
-}
 
 /// The points of a plan, or of one of its tiles, in order, in blocks of any size.
 ///
@@ -99,7 +88,7 @@ pub(crate) struct Window {
 pub struct Blocks<F: Format> {
     scope: Arc<Scope>,
     /// The part of the scope that is walked; `None` for a tile.
-    window: Option<Window>,
+    window: Option<Window<PointId>>,
     /// The number of points still to come.
     left: u128,
     walk: Walk<F>,
@@ -129,7 +118,7 @@ impl<F: Format> Walk<F> {
 
 impl<F: Format> Blocks<F> {
     /// The points of a window.
-    pub(crate) fn of_window(scope: Arc<Scope>, window: Window) -> Self {
+    pub(crate) fn of_window(scope: Arc<Scope>, window: Window<PointId>) -> Self {
         let walk = match Pieces::new(&scope) {
             Some(pieces) => Walk::Settled(Box::new(SettledWalk::from(pieces, window.start))),
             None => Walk::new(Bands::from(scope.clone(), window.start), window.start),
@@ -143,7 +132,7 @@ impl<F: Format> Blocks<F> {
     }
 
     /// The points of a window, which were kept when they were counted.
-    pub(crate) fn of_kept(scope: Arc<Scope>, window: Window, kept: Arc<Few>) -> Self {
+    pub(crate) fn of_kept(scope: Arc<Scope>, window: Window<PointId>, kept: Arc<Few>) -> Self {
         Self {
             walk: Walk::Kept(Kept::new(&scope, kept, window.offset as usize)),
             scope,

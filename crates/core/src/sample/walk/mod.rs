@@ -21,7 +21,6 @@ mod tile;
 
 pub(super) use bands::format_of;
 pub use blocks::Blocks;
-pub(super) use blocks::Window;
 pub(super) use counted::{Counted, Mark, locate_graded};
 pub use tile::Tile;
 pub(super) use tile::tiles;

@@ -1,8 +1,8 @@
 //! A fast Fourier transform with the same bits on every machine, because its figures are part of a table's history.
 //!
-//! The transforms of `rustfft` choose their instructions, and so the order of their sums, by the machine. This one is
-//! Stockham's, for sizes without prime factors above 5, in plain single precision. It transforms all columns of a plane
-//! side by side, so that its inner loops run over neighboring numbers and vectorize.
+//! The transforms of `rustfft` take their sines from the machine's library. This one is Stockham's, for sizes without
+//! prime factors above 5, in plain single precision. It transforms all columns of a plane side by side, so that its inner
+//! loops run over neighboring numbers and vectorize.
 
 /// Complex numbers in single precision: real and imaginary parts apart.
 #[derive(Clone, Debug, Default)]
