@@ -61,7 +61,8 @@ impl Messages {
         let parts = planned.parts()?;
         let coordinates = output.coordinates(|| encode::Part::corner(&parts));
         let rows = Rows::new(parts, coordinates);
-        let heads: Vec<ColumnHead> = own_columns(&rows).iter().map(head).collect();
+        // The columns besides the layer's, which blocks have as a number of their own.
+        let heads: Vec<ColumnHead> = rows.schema().own().iter().map(head).collect();
         let header = StreamHeader {
             query: Some(resolved::query(request, &planned, encoding)),
             count,
@@ -134,11 +135,6 @@ impl Iterator for Messages {
             message: Some(message),
         })
     }
-}
-
-/// The columns besides the layer's, which blocks have as a number of their own.
-fn own_columns(rows: &Rows) -> &[encode::Column] {
-    rows.schema().own()
 }
 
 fn head(column: &encode::Column) -> ColumnHead {

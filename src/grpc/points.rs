@@ -63,6 +63,18 @@ impl Points {
         response.map_err(|error| status::status(&error))
     }
 
+    /// As [`answer`](Self::answer), for calls whose message has a set: faults name its fields.
+    async fn answer_of_set<M: Shaped, A>(
+        &self,
+        request: Request<Raw<M>>,
+        answer: impl AsyncFnOnce(&Caller, Decoded<M>) -> Result<A, Error>,
+    ) -> Answer<A> {
+        self.answer(request, async |caller, decoded| {
+            answer(caller, decoded).await.map_err(query::by_field)
+        })
+        .await
+    }
+
     /// A request with its checked query.
     async fn read(
         &self,
@@ -78,24 +90,6 @@ impl Points {
         };
         let price = |(_, read): &Whole| read.0.price();
         self.service.read(effort, read, price, check).await
-    }
-
-    async fn stream(
-        &self,
-        caller: &Caller,
-        request: Decoded<StreamPointsRequest>,
-    ) -> Result<<Self as PointService>::StreamPointsStream, Error> {
-        let (request, query, encoding) = self.read(request).await?;
-        let (permit, planned) = self.service.open(caller, query, None).await?;
-        let block_bytes = block_bytes(&planned, self.service.limits().block_bytes);
-        let messages = Messages::new(&request, planned, encoding, block_bytes)?;
-        Record::in_format(match encoding {
-            Encoding::F32Le => "f32",
-            Encoding::F64Le => "f64",
-            Encoding::Points | Encoding::Unspecified => "points",
-        });
-        let frames = self.service.stream(permit, messages);
-        Ok(Box::pin(frames.map_err(status::interrupted)))
     }
 
     async fn count(
@@ -128,57 +122,6 @@ impl Points {
             parts: places.into_iter().map(part).collect(),
         })
     }
-
-    async fn point(
-        &self,
-        caller: &Caller,
-        Decoded {
-            mut message,
-            effort,
-        }: Decoded<GetPointRequest>,
-    ) -> Result<GetPointResponse, Error> {
-        let id = std::mem::take(&mut message.id);
-        // An id in space has three parts.
-        let groups = match id.matches(':').count() {
-            2 => groups::SPACE_SET,
-            _ => groups::SINGLE,
-        };
-        let read = move || Ok(set::values(message.set.as_ref(), groups, ""));
-        let check = |service: &Service, values: Values, stop: &Stop| {
-            Set::single_within(&values, &service.catalog(), allowance(stop))
-        };
-        let set = self
-            .service
-            .read(effort, read, Values::price, check)
-            .await?;
-        let placed = self.service.place(caller, set).await?;
-        Ok(GetPointResponse {
-            point: Some(resolved::point(placed.point(&id)?)),
-            set: Some(resolved::placed(&placed)),
-        })
-    }
-
-    async fn nearest(
-        &self,
-        caller: &Caller,
-        Decoded { message, effort }: Decoded<FindNearestRequest>,
-    ) -> Result<FindNearestResponse, Error> {
-        let read = move || Ok(query::nearest(&message));
-        let check = |service: &Service, values: Values, stop: &Stop| {
-            Nearest::of_set_within(&values, &service.catalog(), allowance(stop))
-        };
-        let (set, nearest) = self
-            .service
-            .read(effort, read, Values::price, check)
-            .await?;
-        let answer = |placed: &Placed, found: Vec<Found>| {
-            Ok(FindNearestResponse {
-                neighbors: found.into_iter().map(resolved::point).collect(),
-                set: Some(resolved::placed(placed)),
-            })
-        };
-        self.service.nearest(caller, set, nearest, answer).await
-    }
 }
 
 /// The query of a request, which must be there.
@@ -208,8 +151,18 @@ impl PointService for Points {
         &self,
         request: Request<Raw<StreamPointsRequest>>,
     ) -> Answer<Self::StreamPointsStream> {
-        self.answer(request, async |caller, request| {
-            self.stream(caller, request).await.map_err(query::by_field)
+        self.answer_of_set(request, async |caller, request| {
+            let (request, query, encoding) = self.read(request).await?;
+            let (permit, planned) = self.service.open(caller, query, None).await?;
+            let block_bytes = block_bytes(&planned, self.service.limits().block_bytes);
+            let messages = Messages::new(&request, planned, encoding, block_bytes)?;
+            Record::in_format(match encoding {
+                Encoding::F32Le => "f32",
+                Encoding::F64Le => "f64",
+                Encoding::Points | Encoding::Unspecified => "points",
+            });
+            let frames = self.service.stream(permit, messages);
+            Ok(Box::pin(frames.map_err(status::interrupted)) as Self::StreamPointsStream)
         })
         .await
     }
@@ -239,8 +192,25 @@ impl PointService for Points {
     }
 
     async fn get_point(&self, request: Request<Raw<GetPointRequest>>) -> Answer<GetPointResponse> {
-        self.answer(request, async |caller, request| {
-            self.point(caller, request).await.map_err(query::by_field)
+        self.answer_of_set(request, async |caller, request| {
+            let GetPointRequest { id, set } = *request.message;
+            // An id in space has three parts.
+            let groups = match id.matches(':').count() {
+                2 => groups::SPACE_SET,
+                _ => groups::SINGLE,
+            };
+            let read = move || Ok(set::values(set.as_ref(), groups, ""));
+            let check = |service: &Service, values: Values, stop: &Stop| {
+                Set::single_within(&values, &service.catalog(), allowance(stop))
+            };
+            let set = self
+                .service
+                .read(request.effort, read, Values::price, check);
+            let placed = self.service.place(caller, set.await?).await?;
+            Ok(GetPointResponse {
+                point: Some(resolved::point(placed.point(&id)?)),
+                set: Some(resolved::placed(&placed)),
+            })
         })
         .await
     }
@@ -249,8 +219,22 @@ impl PointService for Points {
         &self,
         request: Request<Raw<FindNearestRequest>>,
     ) -> Answer<FindNearestResponse> {
-        self.answer(request, async |caller, request| {
-            self.nearest(caller, request).await.map_err(query::by_field)
+        self.answer_of_set(request, async |caller, request| {
+            let read = move || Ok(query::nearest(&request.message));
+            let check = |service: &Service, values: Values, stop: &Stop| {
+                Nearest::of_set_within(&values, &service.catalog(), allowance(stop))
+            };
+            let read = self
+                .service
+                .read(request.effort, read, Values::price, check);
+            let (set, nearest) = read.await?;
+            let answer = |placed: &Placed, found: Vec<Found>| {
+                Ok(FindNearestResponse {
+                    neighbors: found.into_iter().map(resolved::point).collect(),
+                    set: Some(resolved::placed(placed)),
+                })
+            };
+            self.service.nearest(caller, set, nearest, answer).await
         })
         .await
     }

@@ -55,13 +55,31 @@ pub(super) fn boxed(corners: &[f64]) -> (Option<BoundingBox>, Option<Cuboid>) {
 /// The draft of a region at a path, `depth` lists deep.
 pub(super) fn draft(region: &Region, path: &str, depth: usize) -> Checked<RegionDraft> {
     let (name, shape) = match &region.shape {
-        Some(Shape::Bbox(b)) => ("bbox", bbox(*b)),
-        Some(Shape::Circle(circle)) => ("circle", self::circle(*circle)),
-        Some(Shape::Polygons(polygons)) => ("polygons", self::polygons(polygons)),
+        Some(Shape::Bbox(b)) => {
+            let corners = [b.min_x, b.min_y, b.max_x, b.max_y];
+            ("bbox", ShapeDraft::Box(corners))
+        }
+        Some(Shape::Circle(Circle { center, radius })) => {
+            let center = center.unwrap_or_default();
+            ("circle", ShapeDraft::Circle([center.x, center.y], *radius))
+        }
+        Some(Shape::Polygons(polygons)) => {
+            ("polygons", ShapeDraft::Polygons(rings(polygons), None))
+        }
         Some(Shape::Chunk(Chunk { size, x, y })) => ("chunk", ShapeDraft::Chunk(*size, [*x, *y])),
-        Some(Shape::Cuboid(b)) => ("cuboid", cuboid(*b)),
-        Some(Shape::Ball(ball)) => ("ball", self::ball(*ball)),
-        Some(Shape::Prism(prism)) => ("prism", self::prism(prism)),
+        Some(Shape::Cuboid(b)) => {
+            let corners = [b.min_x, b.min_y, b.min_z, b.max_x, b.max_y, b.max_z];
+            ("cuboid", ShapeDraft::Cuboid(corners))
+        }
+        Some(Shape::Ball(Ball { center, radius })) => {
+            let Position { x, y, z } = center.unwrap_or_default();
+            let center = [x, y, z.unwrap_or_default()];
+            ("ball", ShapeDraft::Ball(center, *radius))
+        }
+        Some(Shape::Prism(Prism { base, bottom, top })) => {
+            let base = base.as_ref().map(rings).unwrap_or_default();
+            ("prism", ShapeDraft::Prism(base, [*bottom, *top]))
+        }
         Some(Shape::Cube(Cube { size, x, y, z })) => {
             ("cube", ShapeDraft::Cube(*size, [*x, *y, *z]))
         }
@@ -81,41 +99,12 @@ pub(super) fn draft(region: &Region, path: &str, depth: usize) -> Checked<Region
     })
 }
 
-fn bbox(b: BoundingBox) -> ShapeDraft {
-    ShapeDraft::Box([b.min_x, b.min_y, b.max_x, b.max_y])
-}
-
-fn cuboid(b: Cuboid) -> ShapeDraft {
-    let corners = [b.min_x, b.min_y, b.min_z, b.max_x, b.max_y, b.max_z];
-    ShapeDraft::Cuboid(corners)
-}
-
-fn ball(ball: Ball) -> ShapeDraft {
-    let Position { x, y, z } = ball.center.unwrap_or_default();
-    ShapeDraft::Ball([x, y, z.unwrap_or_default()], ball.radius)
-}
-
-fn prism(prism: &Prism) -> ShapeDraft {
-    let base = prism.base.as_ref().map(rings).unwrap_or_default();
-    ShapeDraft::Prism(base, [prism.bottom, prism.top])
-}
-
-fn circle(circle: Circle) -> ShapeDraft {
-    let center = circle.center.unwrap_or_default();
-    ShapeDraft::Circle([center.x, center.y], circle.radius)
-}
-
-fn polygons(polygons: &Polygons) -> ShapeDraft {
-    ShapeDraft::Polygons(rings(polygons), None)
-}
-
-/// The rings of polygons.
 fn rings(polygons: &Polygons) -> Vec<Rings> {
     let position = |p: &Position| [p.x, p.y];
     let of_one = |polygon: &Polygon| -> Rings {
-        let rings = polygon.rings.iter();
+        let rings = polygon.rings.iter().map(|ring| &ring.positions);
         rings
-            .map(|ring| ring.positions.iter().map(position).collect())
+            .map(|ring| ring.iter().map(position).collect())
             .collect()
     };
     polygons.polygons.iter().map(of_one).collect()

@@ -14,8 +14,7 @@ const RETRY: Duration = Duration::from_secs(1);
 /// An error as a status.
 pub fn status(error: &Error) -> Status {
     Record::refuse(error.kind());
-    let mut details = ErrorDetails::new();
-    details.set_error_info(reason(error.kind()), DOMAIN, facts(error));
+    let mut details = of_reason(reason(error.kind()), facts(error));
     if let Some(record) = Record::current() {
         details.set_request_info(record.id(), "");
     }
@@ -70,12 +69,9 @@ pub(super) fn cut(text: &str, most: usize) -> String {
     };
     let mut room = 2 * most;
     for (at, char) in text.char_indices() {
-        let bytes: usize = text.as_bytes()[at..at + char.len_utf8()]
-            .iter()
-            .copied()
-            .map(encoded)
-            .sum();
-        if at + char.len_utf8() > most || bytes > room {
+        let end = at + char.len_utf8();
+        let bytes: usize = text[at..end].bytes().map(encoded).sum();
+        if end > most || bytes > room {
             return format!("{}…", &text[..at]);
         }
         room -= bytes;
@@ -98,8 +94,7 @@ pub(super) fn interrupted(why: Interrupted) -> Status {
         Interrupted::Failed => Kind::Internal,
         Interrupted::Stalled | Interrupted::TimeOver => Kind::TimeOver,
     };
-    let mut details = ErrorDetails::new();
-    details.set_error_info(reason(kind), DOMAIN, HashMap::new());
+    let mut details = of_reason(reason(kind), HashMap::new());
     if kind != Kind::Internal {
         details.set_retry_info(Some(RETRY));
     }
@@ -108,9 +103,8 @@ pub(super) fn interrupted(why: Interrupted) -> Status {
 
 /// A fault of the call rather than of its message.
 pub(super) fn faulty_metadata(name: &str, value: &str, detail: &str) -> Status {
-    let mut details = ErrorDetails::new();
+    let mut details = of_reason(reason(Kind::Invalid), HashMap::new());
     let value = cut(value, MOST_FAULT / 4);
-    details.set_error_info(reason(Kind::Invalid), DOMAIN, HashMap::new());
     details.add_bad_request_violation(name, format!("`{value}`: {detail}"));
     let message = format!("`{name}` = `{value}`: {detail}");
     Status::with_error_details(code(Kind::Invalid), message, details)
@@ -118,8 +112,7 @@ pub(super) fn faulty_metadata(name: &str, value: &str, detail: &str) -> Status {
 
 /// A call whose time is over.
 pub(super) fn too_late(allowed: Duration) -> Status {
-    let mut details = ErrorDetails::new();
-    details.set_error_info("DEADLINE_EXCEEDED", DOMAIN, HashMap::new());
+    let details = of_reason("DEADLINE_EXCEEDED".into(), HashMap::new());
     let message = format!("the call's deadline of {allowed:?} is over; it is not complete");
     Status::with_error_details(Code::DeadlineExceeded, message, details)
 }
@@ -131,8 +124,10 @@ pub(super) fn trailers(status: &Status) -> Option<HeaderMap> {
     added.ok().map(|()| trailers)
 }
 
-/// The domain of our reasons.
-const DOMAIN: &str = "strew";
+/// Details with a reason of our domain.
+fn of_reason(reason: String, facts: HashMap<String, String>) -> ErrorDetails {
+    ErrorDetails::with_error_info(reason, "strew", facts)
+}
 
 fn code(kind: Kind) -> Code {
     Code::from_i32(kind.wire().code)

@@ -14,7 +14,7 @@ use tower::{Service as _, ServiceBuilder};
 use super::{
     calls::Calls,
     exchange::{Client, Exchanges, Inbound, Intake},
-    gate::{Admission, GateLayer},
+    gate,
     metrics::Metrics,
     step::{Layered, Next, Step},
 };
@@ -73,8 +73,7 @@ fn router(routes: Routes, calls: Option<grpc::Calls>, gate: Option<Arc<Gate>>) -
         gated = calls.contract(gated);
         open = calls.others(open);
     }
-    let admission = gate.map_or(Admission::Admins, Admission::Gate);
-    open.merge(gated.route_layer(GateLayer(admission)))
+    open.merge(gated.route_layer(gate::layer(gate)))
 }
 
 impl Step<Inbound> for Finish {

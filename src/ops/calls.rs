@@ -1,17 +1,13 @@
 //! gRPC calls on the common port: native ones, those of web pages (gRPC-Web), and requests to their
 //! paths that are not calls.
 
-use std::{
-    convert::Infallible,
-    pin::{Pin, pin},
-    task::{Context, Poll},
-};
+use std::{convert::Infallible, mem::take, pin::pin};
 
-use http::Version;
+use http::{StatusCode, Version};
 use http_body_util::BodyExt as _;
 use strew_service::Record;
 use tonic_web::GrpcWebLayer;
-use tower::{Layer as _, Service};
+use tower::{Layer as _, Service as _, service_fn};
 
 use super::{
     dialect::{Dialect, grpc_code},
@@ -41,15 +37,29 @@ impl Step<Inbound> for Calls {
         };
         Record::at(route);
         match inbound.client.dialect {
-            Dialect::Rest => rest::not_a_call(request),
-            Dialect::Grpc if request.version() < Version::HTTP_2 => rest::needs_http2(request),
+            Dialect::Rest => {
+                let allowed = "POST with the content type application/grpc or application/grpc-web";
+                rest::not_a_call(request, StatusCode::UNSUPPORTED_MEDIA_TYPE, allowed)
+            }
+            Dialect::Grpc if request.version() < Version::HTTP_2 => {
+                let allowed = "gRPC over HTTP/2, gRPC-Web over any HTTP";
+                rest::not_a_call(request, StatusCode::HTTP_VERSION_NOT_SUPPORTED, allowed)
+            }
             Dialect::Grpc => in_time(inbound, next).await,
             Dialect::GrpcWeb | Dialect::GrpcWebText => {
-                let request = std::mem::take(request);
-                let inner = OfPage {
-                    next,
-                    inbound: Some(inbound),
-                };
+                let request = take(request);
+                // It has the request answered once it reads like any other, and once.
+                let mut inbound = Some(inbound);
+                let inner = service_fn(|request: http::Request<tonic::body::Body>| {
+                    let inbound = inbound.take();
+                    Box::pin(async move {
+                        let Some(mut inbound) = inbound else {
+                            return Ok::<_, Infallible>(grpc::unimplemented());
+                        };
+                        inbound.request = request.map(Body::new);
+                        Ok(in_time(inbound, next).await)
+                    })
+                });
                 let answer = GrpcWebLayer::new().layer(inner).call(request).await;
                 answer.unwrap_or_else(|never| match never {}).map(Body::new)
             }
@@ -94,32 +104,4 @@ async fn in_time(inbound: Box<Inbound>, next: &impl Next<Inbound>) -> Response {
             frame
         }))
     })
-}
-
-/// The inside of a call of a web page, once it reads like any other.
-struct OfPage<'a, N> {
-    next: &'a N,
-    /// All of the request but itself: there is one.
-    inbound: Option<Box<Inbound>>,
-}
-
-impl<'a, N: Next<Inbound>> Service<http::Request<tonic::body::Body>> for OfPage<'a, N> {
-    type Response = Response;
-    type Error = Infallible;
-    type Future = Pin<Box<dyn Future<Output = Result<Response, Infallible>> + Send + 'a>>;
-
-    fn poll_ready(&mut self, _: &mut Context<'_>) -> Poll<Result<(), Infallible>> {
-        Poll::Ready(Ok(()))
-    }
-
-    fn call(&mut self, request: http::Request<tonic::body::Body>) -> Self::Future {
-        let (next, inbound) = (self.next, self.inbound.take());
-        Box::pin(async move {
-            let Some(mut inbound) = inbound else {
-                return Ok(grpc::unimplemented());
-            };
-            inbound.request = request.map(Body::new);
-            Ok(in_time(inbound, next).await)
-        })
-    }
 }

@@ -17,7 +17,7 @@ use http::{HeaderMap, HeaderName, HeaderValue, header};
 use strew_error::{Denied, Error, Level};
 use strew_service::Record;
 use strew_service::access::{Caller, Gate};
-use tower::{Layer, Service};
+use tower::{Layer, Service, layer::layer_fn};
 
 use super::exchange::Client;
 use crate::{
@@ -29,50 +29,37 @@ const API_KEY: HeaderName = HeaderName::from_static("x-api-key");
 const RATE_LIMIT: HeaderName = HeaderName::from_static("ratelimit");
 const RATE_LIMIT_POLICY: HeaderName = HeaderName::from_static("ratelimit-policy");
 
-#[derive(Clone, Debug)]
-pub(super) enum Admission {
-    Gate(Arc<Gate>),
-    /// Everyone, as an administrator.
-    Admins,
+/// The layer of the routes that are not open to everyone; without a gate everyone is an administrator. What is inside
+/// finds the [`Caller`] among the extensions.
+pub(super) fn layer<S>(gate: Option<Arc<Gate>>) -> impl Layer<S, Service = Gated<S>> + Clone {
+    layer_fn(move |inner| Gated {
+        gate: gate.clone(),
+        inner,
+    })
 }
 
-impl Admission {
+#[derive(Clone, Debug)]
+pub(super) struct Gated<S> {
+    gate: Option<Arc<Gate>>,
+    inner: S,
+}
+
+impl<S> Gated<S> {
     fn caller(&self, client: &Client, headers: &HeaderMap) -> Result<Caller, Denied> {
-        match self {
-            Self::Gate(gate) => {
+        match &self.gate {
+            Some(gate) => {
                 let usage = client.usage.clone();
                 let caller = gate.admit(shown(headers), client.address, usage)?;
                 Record::of(&caller);
                 Ok(caller)
             }
             // Except web pages, which can reach what their reader's browser can.
-            Self::Admins if headers.contains_key(header::ORIGIN) => Err(Denied::NotAdmin {
+            None if headers.contains_key(header::ORIGIN) => Err(Denied::NotAdmin {
                 name: Some("of a web page".into()),
             }),
-            Self::Admins => Ok(Caller::admin()),
+            None => Ok(Caller::admin()),
         }
     }
-}
-
-/// The layer of the routes that are not open to everyone. What is inside finds the [`Caller`] among the extensions.
-#[derive(Clone, Debug)]
-pub(super) struct GateLayer(pub(super) Admission);
-
-impl<S> Layer<S> for GateLayer {
-    type Service = Gated<S>;
-
-    fn layer(&self, inner: S) -> Gated<S> {
-        Gated {
-            admission: self.0.clone(),
-            inner,
-        }
-    }
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct Gated<S> {
-    admission: Admission,
-    inner: S,
 }
 
 impl<S> Service<Request> for Gated<S>
@@ -98,7 +85,7 @@ where
             return Box::pin(ready(Ok(Refused(error).response())));
         };
         let dialect = client.dialect;
-        match self.admission.caller(client, request.headers()) {
+        match self.caller(client, request.headers()) {
             Ok(caller) => {
                 request.extensions_mut().insert(caller.clone());
                 let answered = self.inner.call(request);

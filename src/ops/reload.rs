@@ -16,6 +16,7 @@ use std::{
 };
 
 use axum::extract::State;
+use futures_util::future::OptionFuture;
 use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -23,7 +24,10 @@ use strew_catalog::{Refusal, Reload};
 use strew_error::{Error, Kind};
 use strew_service::Service;
 use strew_service::access::Gate;
-use tokio::sync::Mutex;
+use tokio::{
+    sync::Mutex,
+    time::{sleep, timeout},
+};
 
 use super::{metrics::Metrics, shutdown::Hangups, tls::Tls};
 use crate::{
@@ -147,9 +151,12 @@ impl Reloader {
     pub async fn watch(&self, mut hangups: Option<Hangups>, every: Option<Duration>) {
         let mut seen = self.first;
         loop {
+            let signal = OptionFuture::from(hangups.as_mut().map(Hangups::next));
+            let change = OptionFuture::from(every.map(sleep));
             let cause = tokio::select! {
-                () = heard(&mut hangups) => Cause::Signal,
-                () = wait(every) => Cause::Change,
+                Some(()) = signal => Cause::Signal,
+                Some(()) = change => Cause::Change,
+                else => return,
             };
             let now = match self.look().await {
                 Ok(now) => now,
@@ -188,7 +195,7 @@ impl Reloader {
             let _reading = Reading(is_reading);
             read()
         });
-        let read = tokio::time::timeout(PATIENCE, read).await;
+        let read = timeout(PATIENCE, read).await;
         let read = read.map_err(|_| HANGS)?;
         read.map_err(|_| Error::Internal("the files cannot be read again"))
     }
@@ -210,20 +217,6 @@ impl Done {
             detail,
             serving: None,
         });
-    }
-}
-
-async fn heard(hangups: &mut Option<Hangups>) {
-    match hangups {
-        Some(hangups) => hangups.next().await,
-        None => std::future::pending().await,
-    }
-}
-
-async fn wait(every: Option<Duration>) {
-    match every {
-        Some(every) => tokio::time::sleep(every).await,
-        None => std::future::pending().await,
     }
 }
 

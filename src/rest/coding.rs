@@ -5,7 +5,10 @@
 //! (`freshness`) can be known before it is made. It is chosen once: an answer with a tag carries it as
 //! [`Decided`].
 
-use std::io::{self, Write as _};
+use std::{
+    convert::Infallible,
+    io::{self, Write as _},
+};
 
 use axum::body::{BodyDataStream, to_bytes};
 use bytes::Bytes;
@@ -83,7 +86,8 @@ impl Choice {
             }
             None => {
                 let held = service.hold(coding.memory())?;
-                compressed(body, coding, service.workers().clone(), held)
+                let encoder = Encoder::new(coding).map_err(|_| FAILED)?;
+                compressed(body, encoder, service.workers().clone(), held)
             }
         };
         let name = HeaderValue::from_static(coding.name());
@@ -100,10 +104,10 @@ impl Choice {
 /// Compressing less than a packet gains nothing.
 const SHORT: u64 = 1024;
 
+const FAILED: Error = Error::Internal("an answer cannot be compressed");
+
 pub(super) fn unknown_length() -> Body {
-    Body::from_stream(stream::empty::<
-        Result<bytes::Bytes, std::convert::Infallible>,
-    >())
+    Body::from_stream(stream::empty::<Result<Bytes, Infallible>>())
 }
 
 async fn whole_document(
@@ -114,40 +118,28 @@ async fn whole_document(
 ) -> Result<Bytes, Error> {
     /// Compressing more than this takes milliseconds.
     const MUCH: u64 = 256 << 10;
-    let failed = |_| Error::Internal("an answer cannot be compressed");
     let _held = service.hold(coding.memory())?;
     let most = usize::try_from(length).unwrap_or(usize::MAX);
-    let plain = to_bytes(body, most).await.map_err(failed)?;
-    let lane = if length <= MUCH {
-        Lane::Short
-    } else {
-        Lane::Long
+    let plain = to_bytes(body, most).await.map_err(|_| FAILED)?;
+    let lane = match length <= MUCH {
+        true => Lane::Short,
+        false => Lane::Long,
     };
     let encode = move |_: &_| Encoder::whole(coding, &plain);
     let encoded = service.workers().take_turn(lane, encode).await?;
-    encoded.map_err(|_| Error::Internal("an answer cannot be compressed"))
+    encoded.map_err(|_| FAILED)
 }
 
 /// A body compressed block by block, each sent on when it is done. The work is done where points
 /// are made; meanwhile the next block is being made.
-fn compressed(body: Body, coding: Coding, workers: Workers, held: Held) -> Body {
-    let state = Encoder::new(coding).map(|encoder| (body.into_data_stream(), encoder));
-    let start = stream::once(std::future::ready(state));
+fn compressed(body: Body, encoder: Encoder, workers: Workers, held: Held) -> Body {
     // The body is polled outside of its request.
     let threads = (workers, Owner::current());
-    let blocks = start.flat_map(move |state| {
-        let threads = threads.clone();
-        match state {
-            Ok(state) => {
-                stream::try_unfold(Some(state), move |state| next_block(state, threads.clone()))
-                    .left_stream()
-            }
-            Err(error) => stream::once(std::future::ready(Err(error.into()))).right_stream(),
-        }
-    });
-    // The memory of the encoder is held as long as the stream is.
-    Body::from_stream(blocks.inspect(move |_| {
+    let start = Some((body.into_data_stream(), encoder));
+    Body::from_stream(stream::try_unfold(start, move |state| {
+        // The memory of the encoder is held as long as the stream is.
         let _ = &held;
+        next_block(state, threads.clone())
     }))
 }
 

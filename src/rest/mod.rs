@@ -70,21 +70,10 @@ pub fn no_place(error: &Error) -> Vec<u8> {
     Problem::last_words(error)
 }
 
-pub fn not_a_call(request: &Request) -> Response {
-    let detail = format!(
-        "`{}` is a gRPC method; allowed: POST with the content type application/grpc or \
-         application/grpc-web",
-        request.uri().path()
-    );
-    Problem::of_status(StatusCode::UNSUPPORTED_MEDIA_TYPE, detail)
-}
-
-pub fn needs_http2(request: &Request) -> Response {
-    let detail = format!(
-        "`{}` is a gRPC method; allowed: gRPC over HTTP/2, gRPC-Web over any HTTP",
-        request.uri().path()
-    );
-    Problem::of_status(StatusCode::HTTP_VERSION_NOT_SUPPORTED, detail)
+pub fn not_a_call(request: &Request, status: StatusCode, allowed: &str) -> Response {
+    let path = request.uri().path();
+    let detail = format!("`{path}` is a gRPC method; allowed: {allowed}");
+    Problem::of_status(status, detail)
 }
 
 pub struct Routes {

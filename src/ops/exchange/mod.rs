@@ -175,8 +175,8 @@ impl Step<Inbound> for Exchanges {
             _probe: probe,
             _base: base.unwrap_or_else(|_| budget.hold_anyway(BASE)),
         };
-        let entry = inbound.from.open.begin();
-        let exchange = Exchange::new(report, dialect, self.terms, permits, entry, now);
+        let open = inbound.from.open.clone();
+        let exchange = Exchange::new(report, dialect, self.terms, permits, open, now);
 
         let answered = pin!(async {
             match inbound.refused.take() {

@@ -7,10 +7,7 @@
 //! is over some time later. While the client waits for us, the clock stands still.
 
 use std::{
-    sync::{
-        Arc, Weak,
-        atomic::{AtomicU64, Ordering},
-    },
+    sync::{Arc, Weak},
     time::Duration,
 };
 
@@ -80,14 +77,11 @@ pub(super) trait Timed: Send + Sync {
 }
 
 #[derive(Debug)]
-pub(in crate::ops) struct OpenExchanges {
-    all: Mutex<Open>,
-    next: AtomicU64,
-}
+pub(in crate::ops) struct OpenExchanges(Mutex<Open>);
 
 #[derive(Debug)]
 struct Open {
-    exchanges: Vec<(u64, Weak<dyn Timed>)>,
+    exchanges: Vec<Weak<dyn Timed>>,
     /// When the last one began or ended.
     changed: Instant,
 }
@@ -108,20 +102,23 @@ const LONGEST: Duration = Duration::from_secs(5);
 
 impl OpenExchanges {
     pub(in crate::ops) fn new() -> Arc<Self> {
-        Arc::new(Self {
-            all: Mutex::new(Open {
-                exchanges: vec![],
-                changed: Instant::now(),
-            }),
-            next: AtomicU64::new(0),
-        })
+        Arc::new(Self(Mutex::new(Open {
+            exchanges: vec![],
+            changed: Instant::now(),
+        })))
     }
 
-    pub(super) fn begin(self: &Arc<Self>) -> Entry {
-        Entry {
-            open: self.clone(),
-            number: self.next.fetch_add(1, Ordering::Relaxed),
-        }
+    pub(super) fn begun(&self, exchange: Weak<dyn Timed>, now: Instant) {
+        let mut open = self.0.lock();
+        open.exchanges.push(exchange);
+        open.changed = now;
+    }
+
+    /// An exchange is being dropped.
+    pub(super) fn ended(&self) {
+        let mut open = self.0.lock();
+        open.exchanges.retain(|one| one.strong_count() > 0);
+        open.changed = Instant::now();
     }
 
     /// Checks the exchanges from time to time. Returns when the connection should not simply go on:
@@ -144,10 +141,9 @@ impl OpenExchanges {
     }
 
     fn fate(&self, now: Instant, idle: Duration, patience: Duration) -> Fate {
-        let open = self.all.lock();
+        let open = self.0.lock();
         let changed = open.changed;
-        let exchanges = open.exchanges.iter();
-        let all: Vec<_> = exchanges.filter_map(|(_, one)| one.upgrade()).collect();
+        let all: Vec<_> = open.exchanges.iter().filter_map(Weak::upgrade).collect();
         drop(open);
         if all.is_empty() {
             let quiet = now.saturating_duration_since(changed);
@@ -168,31 +164,6 @@ impl OpenExchanges {
             return Fate::Retire;
         }
         Fate::GoOn
-    }
-}
-
-/// The place of an exchange among those of its connection, until dropped.
-pub(super) struct Entry {
-    open: Arc<OpenExchanges>,
-    number: u64,
-}
-
-impl Entry {
-    pub(super) fn begin(&self, exchange: Weak<dyn Timed>, now: Instant) {
-        let mut open = self.open.all.lock();
-        open.exchanges.push((self.number, exchange));
-        open.changed = now;
-    }
-}
-
-impl Drop for Entry {
-    fn drop(&mut self) {
-        let mut open = self.open.all.lock();
-        let all = &mut open.exchanges;
-        if let Some(at) = all.iter().position(|(number, _)| *number == self.number) {
-            all.swap_remove(at);
-        }
-        open.changed = Instant::now();
     }
 }
 

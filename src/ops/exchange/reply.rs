@@ -24,7 +24,7 @@ use strew_service::{Budget, Held, Interrupted, Record};
 use tokio::time::{Instant, Sleep, sleep_until};
 
 use super::{
-    progress::{Entry, Progress, Terms, Timed},
+    progress::{OpenExchanges, Progress, Terms, Timed},
     report::Report,
 };
 use crate::{
@@ -40,9 +40,8 @@ pub(super) struct Exchange {
     state: Mutex<State>,
     budget: Budget,
     dialect: Dialect,
-    /// The most time, if the client set a limit as well.
-    end: Mutex<End>,
-    entry: Entry,
+    /// Those of its connection, of which it is one until it is dropped.
+    open: Arc<OpenExchanges>,
     _permits: Permits,
 }
 
@@ -61,6 +60,8 @@ struct End {
 
 struct State {
     report: Report,
+    /// The most time, if the client set a limit as well.
+    end: End,
     /// The body that makes the answer; none before the head, after the end, and once it was broken off.
     body: Option<Body>,
     /// The rest of a frame of a whole document.
@@ -82,12 +83,16 @@ impl Exchange {
         dialect: Dialect,
         terms: Terms,
         permits: Permits,
-        entry: Entry,
+        open: Arc<OpenExchanges>,
         now: Instant,
     ) -> Arc<Self> {
         let budget = report.record().budget().clone();
         let state = State {
             report,
+            end: End {
+                at: now.checked_add(terms.whole),
+                why: Ending::Interrupted(Interrupted::TimeOver),
+            },
             body: None,
             rest: Bytes::new(),
             whole: None,
@@ -97,40 +102,31 @@ impl Exchange {
             progress: Progress::new(terms, now),
             reader: None,
         };
-        let end = End {
-            at: now.checked_add(terms.whole),
-            why: Ending::Interrupted(Interrupted::TimeOver),
-        };
         let exchange = Arc::new(Self {
             state: Mutex::new(state),
             budget,
             dialect,
-            end: Mutex::new(end),
-            entry,
+            open,
             _permits: permits,
         });
         let timed = Arc::downgrade(&exchange);
-        exchange.entry.begin(timed, now);
+        exchange.open.begun(timed, now);
         exchange
     }
 
     /// The answer, of which every byte counts until the socket has taken it.
     pub(super) fn answer(self: Arc<Self>, response: &mut Response) {
-        let extensions = response.extensions_mut();
-        let deadline = extensions.remove::<grpc::Deadline>();
-        let end = {
-            let mut end = self.end.lock();
-            if let Some(deadline) = deadline
-                && end.at.is_none_or(|at| deadline.end() < at)
-            {
-                *end = End {
-                    at: Some(deadline.end()),
-                    why: Ending::Deadline(deadline),
-                };
-            }
-            *end
-        };
         let mut state = self.state.lock();
+        let deadline = response.extensions_mut().remove::<grpc::Deadline>();
+        if let Some(deadline) = deadline
+            && state.end.at.is_none_or(|at| deadline.end() < at)
+        {
+            state.end = End {
+                at: Some(deadline.end()),
+                why: Ending::Deadline(deadline),
+            };
+        }
+        let end = state.end.at;
         state.report.head(response);
         let held = response.extensions_mut().remove::<Whole>();
         let body = take(response.body_mut());
@@ -165,8 +161,8 @@ impl Exchange {
 
 impl Timed for Exchange {
     fn check(&self, now: Instant) -> Option<Instant> {
-        let end = *self.end.lock();
         let mut state = self.state.lock();
+        let end = state.end;
         if state.broken.is_some() {
             return state.broken;
         }
@@ -195,17 +191,17 @@ impl Timed for Exchange {
     }
 }
 
-pub(super) struct Reply {
-    exchange: Arc<Exchange>,
-    end: End,
-    /// Made when there is something to wait for.
-    sleep: Option<Pin<Box<Sleep>>>,
+impl Drop for Exchange {
+    fn drop(&mut self) {
+        self.open.ended();
+    }
 }
 
-impl Reply {
-    fn is_late(&self, now: Instant) -> bool {
-        self.end.at.is_some_and(|at| at <= now)
-    }
+pub(super) struct Reply {
+    exchange: Arc<Exchange>,
+    end: Option<Instant>,
+    /// Made when there is something to wait for.
+    sleep: Option<Pin<Box<Sleep>>>,
 }
 
 impl State {
@@ -248,7 +244,7 @@ impl HttpBody for Reply {
         let this = &mut *self;
         let exchange = this.exchange.clone();
         let now = Instant::now();
-        if this.is_late(now) {
+        if this.end.is_some_and(|at| at <= now) {
             exchange.check(now);
         }
         let mut guard = exchange.state.lock();
@@ -273,7 +269,7 @@ impl HttpBody for Reply {
                     state.progress.pause(now);
                 }
                 drop(guard);
-                let Some(at) = this.end.at else {
+                let Some(at) = this.end else {
                     return Poll::Pending;
                 };
                 let sleep = this.sleep.get_or_insert_with(|| Box::pin(sleep_until(at)));

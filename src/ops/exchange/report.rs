@@ -278,7 +278,7 @@ impl Drop for Report {
                 route: Some(route).filter(|route| *route != NO_ROUTE),
                 method,
                 address: &address,
-                client: Some(self.client),
+                client: self.client,
                 status: self.status.map(|status| status.as_u16()),
                 code: self.record.code(),
                 reason,

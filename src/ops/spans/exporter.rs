@@ -298,6 +298,7 @@ impl Answered<'_> {
             Some((path, query)) => (path, Some(query)),
             None => (self.address, None),
         };
+        let peer = self.client.ip().to_string();
         let call = self.call.and_then(|call| call[1..].split_once('/'));
         let text = |value: Option<&str>| value.map(|value| Value::from(value.to_owned()));
         let number = |value: u64| Some(Value::I64(i64::try_from(value).unwrap_or(i64::MAX)));
@@ -311,14 +312,8 @@ impl Answered<'_> {
             ("http.response.body.size", number(self.bytes)),
             ("url.path", text(Some(path))),
             ("url.query", text(query)),
-            (
-                "network.peer.address",
-                text(self.client.map(|peer| peer.ip().to_string()).as_deref()),
-            ),
-            (
-                "network.peer.port",
-                self.client.and_then(|peer| number(peer.port().into())),
-            ),
+            ("network.peer.address", text(Some(&peer))),
+            ("network.peer.port", number(self.client.port().into())),
             ("rpc.system", text(call.map(|_| "grpc"))),
             ("rpc.service", text(call.map(|(service, _)| service))),
             ("rpc.method", text(call.map(|(_, method)| method))),
@@ -330,10 +325,7 @@ impl Answered<'_> {
             ("strew.request_id", text(Some(self.request_id))),
             ("strew.format", text(self.format)),
             ("strew.points", number(self.points)),
-            (
-                "strew.broken",
-                text(self.broken.map(|broken| broken.name())),
-            ),
+            ("strew.broken", text(self.broken.map(Broken::name))),
             (
                 "strew.first_byte_seconds",
                 Some(Value::F64(self.first_byte)),

@@ -37,7 +37,7 @@ pub(in crate::ops) struct Answered<'a> {
     pub(in crate::ops) route: Option<&'a str>,
     pub(in crate::ops) method: &'static str,
     pub(in crate::ops) address: &'a str,
-    pub(in crate::ops) client: Option<SocketAddr>,
+    pub(in crate::ops) client: SocketAddr,
     pub(in crate::ops) status: Option<u16>,
     pub(in crate::ops) code: Option<u32>,
     pub(in crate::ops) reason: Option<&'static str>,
