@@ -49,7 +49,7 @@ static PROTOCOLS: LazyLock<Protocols> = LazyLock::new(|| {
     let routes = rest::Routes::new(rest::endpoints(&service), &[], &pages, "");
     let rest::Routes { gated, open, paths } = routes;
     let nothing = async move |uri: Uri| paths.nothing(uri.path());
-    let router = grpc.contract(gated.merge(open)).fallback(nothing);
+    let router = gated.merge(open).merge(grpc.contract).fallback(nothing);
     Protocols { runtime, router }
 });
 

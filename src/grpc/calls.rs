@@ -17,7 +17,7 @@ use crate::body::{Body, Request, Response};
 /// The name of the service of the contract.
 pub(super) const NAME: &str = "strew.v1.PointService";
 
-/// The paths of the services, that of the contract first, the others in the order of [`Calls`].
+/// The paths of the services, that of the contract first.
 const SERVICES: [&str; 4] = [
     "/strew.v1.PointService/{*method}",
     "/grpc.health.v1.Health/{*method}",
@@ -43,46 +43,37 @@ pub fn unimplemented() -> Response {
     Status::unimplemented(format!("unknown method; available: {methods}")).into_http()
 }
 
-/// The services of gRPC. Cheap to clone.
-#[derive(Clone, Debug)]
+/// The services of gRPC.
+#[derive(Debug)]
 pub struct Calls {
-    pub(super) service: Arc<Service>,
-    /// All but that of the contract.
-    pub(super) others: [Router; SERVICES.len() - 1],
+    pub contract: Router,
+    /// Health and reflection.
+    pub others: Router,
 }
 
-impl Calls {
-    /// A router with the calls of the contract.
-    pub fn contract(&self, router: Router) -> Router {
-        let service = self.service.clone();
-        // A message that comes to it is not longer than its limit, and is not packed.
-        let server = PointServiceServer::new(Points::new(service.clone()))
-            .max_decoding_message_size(usize::MAX)
-            .send_compressed(CompressionEncoding::Gzip)
-            .send_compressed(CompressionEncoding::Zstd);
-        let answer = move |request: Request| {
-            let (service, mut server) = (service.clone(), server.clone());
-            async move {
-                match unpacked(&service, request).await {
-                    Ok(request) => server
-                        .call(request)
-                        .await
-                        .map(|answer| answer.map(Body::new)),
-                    Err(status) => Ok(status.into_http()),
-                }
+pub(super) fn contract(service: Arc<Service>) -> Router {
+    // A message that comes to it is not longer than its limit, and is not packed.
+    let server = PointServiceServer::new(Points(service.clone()))
+        .max_decoding_message_size(usize::MAX)
+        .send_compressed(CompressionEncoding::Gzip)
+        .send_compressed(CompressionEncoding::Zstd);
+    let answer = move |request: Request| {
+        let (service, mut server) = (service.clone(), server.clone());
+        async move {
+            match unpacked(&service, request).await {
+                Ok(request) => server
+                    .call(request)
+                    .await
+                    .map(|answer| answer.map(Body::new)),
+                Err(status) => Ok(status.into_http()),
             }
-        };
-        router.route_service(SERVICES[0], service_fn(answer))
-    }
-
-    /// A router with health and reflection.
-    pub fn others(self, router: Router) -> Router {
-        self.others.into_iter().fold(router, Router::merge)
-    }
+        }
+    };
+    Router::new().route_service(SERVICES[0], service_fn(answer))
 }
 
-/// A service that the library generates, at its path.
-pub(super) fn routed<S>(place: usize, service: S) -> Router
+/// A router with a service that the library generates besides.
+pub(super) fn routed<S>(router: Router, place: usize, service: S) -> Router
 where
     S: codegen::Service<
             http::Request<TonicBody>,
@@ -96,5 +87,5 @@ where
         .map_request(|request: Request| request.map(TonicBody::new))
         .map_response(|response: http::Response<TonicBody>| response.map(Body::new))
         .service(service);
-    Router::new().route_service(SERVICES[place], service)
+    router.route_service(SERVICES[place], service)
 }

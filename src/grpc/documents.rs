@@ -3,7 +3,7 @@
 use strew_catalog::{Catalog, Entry};
 use strew_error::Error;
 use strew_query::{
-    Parameter, Periods, Value, Values, groups,
+    Periods, Value, Values, groups,
     parameters::{ALPHA, MAP, MOST, PERIODIC, PROFILE, TABLE},
     patterns::{BITS, MASK_SEED, MASK_SIZE},
 };
@@ -21,7 +21,6 @@ use super::{
     resolved::period,
 };
 
-/// A loaded table.
 pub(super) fn profile(entry: &Entry, catalog: &Catalog) -> Profile {
     let number = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
     let of = &entry.provenance;
@@ -68,20 +67,18 @@ pub(super) fn profile(entry: &Entry, catalog: &Catalog) -> Profile {
     }
 }
 
-/// The list for a request.
 pub(super) fn periods(
     request: ListPeriodsRequest,
     service: &Service,
 ) -> Result<ListPeriodsResponse, Error> {
-    let given: [(&'static Parameter, Option<Value>); 5] = [
+    let mut values = Values::new(groups::PERIODS, "");
+    values.add_values([
         (&PROFILE, request.profile.map(Value::Text)),
         (&ALPHA, request.alpha.map(Value::Text)),
         (&MAP, request.map.map(Value::Text)),
         (&PERIODIC, request.periodic.map(Value::Integer)),
         (&MOST, request.most.map(Value::Integer)),
-    ];
-    let mut values = Values::new(groups::PERIODS, "");
-    values.add_values(given);
+    ]);
     let found = Periods::of(&values, &service.catalog())?;
     Ok(ListPeriodsResponse {
         alpha: found.alpha,
@@ -92,7 +89,6 @@ pub(super) fn periods(
     })
 }
 
-/// The mask that a request describes.
 pub(super) async fn mask(
     service: &Service,
     caller: &Caller,
@@ -100,7 +96,8 @@ pub(super) async fn mask(
 ) -> Result<GetMaskResponse, Error> {
     let bits = request.bits.map(|bits| Value::Text(bits.to_string()));
     let size = request.size.map(|size| Value::Integer(size.into()));
-    let given: [(&'static Parameter, Option<Value>); 7] = [
+    let mut values = Values::new(groups::MASK, "");
+    values.add_values([
         (&PROFILE, request.profile.map(Value::Text)),
         (&ALPHA, request.alpha.map(Value::Text)),
         (&MAP, request.map.map(Value::Text)),
@@ -108,9 +105,7 @@ pub(super) async fn mask(
         (&MASK_SIZE, size),
         (&MASK_SEED, request.seed.map(Value::Integer)),
         (&BITS, bits),
-    ];
-    let mut values = Values::new(groups::MASK, "");
-    values.add_values(given);
+    ]);
     let query = MaskQuery::check(&values, &service.catalog())?;
     let png = service.mask(caller, query, Drawn::Thresholds).await?;
     Ok(GetMaskResponse { png: png.into() })

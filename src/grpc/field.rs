@@ -84,7 +84,6 @@ pub(super) fn message_of(document: &Document) -> Field {
     }
 }
 
-/// A loaded field.
 pub(super) fn loaded(field: &NamedField) -> proto::LoadedField {
     let bbox = field.bbox;
     proto::LoadedField {

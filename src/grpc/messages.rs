@@ -50,9 +50,11 @@ impl Messages {
     ) -> Result<Self, Error> {
         // Answers of more points than the limit, which has 64 bits, are refused.
         let count = u64::try_from(planned.count()).unwrap_or(u64::MAX);
-        let format = match encoding {
-            Encoding::F32Le => Format::F32,
-            Encoding::F64Le | Encoding::Points | Encoding::Unspecified => Format::F64,
+        let (name, format, bytes) = match encoding {
+            Encoding::F32Le => ("f32", Format::F32, 8),
+            Encoding::F64Le => ("f64", Format::F64, 16),
+            // A usual id has about 16 bytes; the longest has 36.
+            Encoding::Points | Encoding::Unspecified => ("points", Format::F64, 32),
         };
         let output = Output {
             relative_to: planned.query.region.corner,
@@ -73,8 +75,24 @@ impl Messages {
         let blocks = match (encoding, rows.plain_plan()) {
             (Encoding::F32Le, Some(plan)) => Blocks::F32(Pairs::new(plan, block_bytes)),
             (Encoding::F64Le, Some(plan)) => Blocks::F64(Pairs::new(plan, block_bytes)),
-            _ => Blocks::Rows(Box::new(Table::new(rows, heads, encoding, block_bytes))),
+            _ => {
+                let bytes = if rows.schema().is_in_space() {
+                    bytes / 2 * 3
+                } else {
+                    bytes
+                };
+                // A number, or an index as a varint.
+                let value = |head: &ColumnHead| if head.names.is_empty() { 8 } else { 2 };
+                let columns: usize = heads.iter().map(value).sum();
+                Blocks::Rows(Box::new(Table {
+                    rows,
+                    heads,
+                    encoding,
+                    length: block_bytes / (bytes + columns),
+                }))
+            }
         };
+        Record::in_format(name);
         Ok(Self {
             planned,
             header: Some(header),
@@ -158,26 +176,6 @@ struct Table {
 }
 
 impl Table {
-    fn new(rows: Rows, heads: Vec<ColumnHead>, encoding: Encoding, block_bytes: usize) -> Self {
-        let coordinates = match encoding {
-            // A usual id has about 16 bytes; the longest has 36.
-            Encoding::Points | Encoding::Unspecified => 32,
-            Encoding::F64Le => 16,
-            Encoding::F32Le => 8,
-        };
-        let is_in_space = rows.schema().is_in_space();
-        let coordinates = coordinates + if is_in_space { coordinates / 2 } else { 0 };
-        // A number, or an index as a varint.
-        let value = |head: &ColumnHead| if head.names.is_empty() { 8 } else { 2 };
-        let columns: usize = heads.iter().map(value).sum();
-        Self {
-            rows,
-            heads,
-            encoding,
-            length: block_bytes / (coordinates + columns),
-        }
-    }
-
     /// The next block, and how many points it has.
     fn next(&mut self) -> Option<(usize, PointBlock)> {
         let before = self.rows.schema().columns().len() - self.heads.len();

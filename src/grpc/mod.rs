@@ -11,13 +11,23 @@ mod points;
 mod query;
 mod region;
 mod resolved;
-mod server;
 mod set;
 mod status;
 mod unpacked;
 
+/// What tonic generates for the service of the contract (the test of `crates/proto` writes it).
+#[allow(
+    clippy::allow_attributes_without_reason,
+    clippy::all,
+    reason = "generated"
+)]
+mod server {
+    include!("generated/server.rs");
+}
+
 use std::sync::Arc;
 
+use axum::Router;
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use bytes::Bytes;
 use http::{HeaderMap, HeaderName, HeaderValue};
@@ -25,7 +35,7 @@ use tonic::Status;
 use tonic_health::server::HealthReporter;
 
 pub use calls::{Calls, route, unimplemented};
-use calls::{NAME, routed};
+use calls::{NAME, contract, routed};
 pub use deadline::Deadline;
 pub use status::status;
 use strew_error::Error;
@@ -76,12 +86,11 @@ pub async fn calls(service: Arc<Service>) -> Result<(Calls, Health), BuildError>
             .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
     };
     let (v1, v1alpha) = (reflection().build_v1()?, reflection().build_v1alpha()?);
-    let others = [
-        routed(1, health.max_decoding_message_size(NAMES)),
-        routed(2, v1.max_decoding_message_size(NAMES)),
-        routed(3, v1alpha.max_decoding_message_size(NAMES)),
-    ];
-    Ok((Calls { service, others }, Health(reporter)))
+    let others = routed(Router::new(), 1, health.max_decoding_message_size(NAMES));
+    let others = routed(others, 2, v1.max_decoding_message_size(NAMES));
+    let others = routed(others, 3, v1alpha.max_decoding_message_size(NAMES));
+    let contract = contract(service);
+    Ok((Calls { contract, others }, Health(reporter)))
 }
 
 /// Sets what the standard health service reports.

@@ -9,7 +9,7 @@ use strew_error::{Error, Fault};
 use strew_plan::{Found, Placed, effort::block_bytes};
 use strew_query::{Draft, Nearest, Query, Set, Values, groups};
 use strew_service::access::Caller;
-use strew_service::{Record, Service, allowance};
+use strew_service::{Service, allowance};
 use tonic::{Request, Response, Status};
 
 use super::{
@@ -36,17 +36,10 @@ type Whole = (Box<StreamPointsRequest>, Read);
 /// A checked query, with its message.
 type Checked = (Box<StreamPointsRequest>, Box<Query>, Encoding);
 
-/// Answers over gRPC.
 #[derive(Debug)]
-pub(super) struct Points {
-    service: Arc<Service>,
-}
+pub(super) struct Points(pub(super) Arc<Service>);
 
 impl Points {
-    pub(super) const fn new(service: Arc<Service>) -> Self {
-        Self { service }
-    }
-
     /// Answers a call once its message is decoded. The memory of the message is held until the head of the answer.
     async fn answer<M: Shaped, A>(
         &self,
@@ -54,7 +47,7 @@ impl Points {
         answer: impl AsyncFnOnce(&Caller, Decoded<M>) -> Result<A, Error>,
     ) -> Answer<A> {
         let caller = request.extensions_mut().remove().unwrap_or_default();
-        let decoded = request.into_inner().decoded(&self.service, &caller);
+        let decoded = request.into_inner().decoded(&self.0, &caller);
         let answered = match decoded.await {
             Ok((decoded, _held)) => answer(&caller, decoded).await,
             Err(error) => Err(error),
@@ -89,7 +82,7 @@ impl Points {
             Ok((message, query, read.1?))
         };
         let price = |(_, read): &Whole| read.0.price();
-        self.service.read(effort, read, price, check).await
+        self.0.read(effort, read, price, check).await
     }
 
     async fn count(
@@ -98,7 +91,7 @@ impl Points {
         request: Decoded<StreamPointsRequest>,
     ) -> Result<CountPointsResponse, Error> {
         let (request, query, encoding) = self.read(request).await?;
-        let planned = self.service.count(caller, query).await?;
+        let planned = self.0.count(caller, query).await?;
         Ok(CountPointsResponse {
             count: u64::try_from(planned.count()).unwrap_or(u64::MAX),
             digits: planned.count().to_string(),
@@ -113,9 +106,9 @@ impl Points {
         parts: u32,
     ) -> Result<SplitPointsResponse, Error> {
         let (request, query, _) = self.read(request).await?;
-        let planned = self.service.count(caller, query).await?;
+        let planned = self.0.count(caller, query).await?;
         let count = u64::try_from(planned.count()).unwrap_or(u64::MAX);
-        let places = self.service.split(caller, planned, parts).await?;
+        let places = self.0.split(caller, planned, parts).await?;
         let part = |place| query::part(&request, place);
         Ok(SplitPointsResponse {
             count,
@@ -141,7 +134,6 @@ fn of_query(error: Error) -> Error {
 
 type Answer<A> = Result<Response<A>, Status>;
 
-/// The calls of the contract.
 #[tonic::async_trait]
 impl PointService for Points {
     type StreamPointsStream =
@@ -153,15 +145,10 @@ impl PointService for Points {
     ) -> Answer<Self::StreamPointsStream> {
         self.answer_of_set(request, async |caller, request| {
             let (request, query, encoding) = self.read(request).await?;
-            let (permit, planned) = self.service.open(caller, query, None).await?;
-            let block_bytes = block_bytes(&planned, self.service.limits().block_bytes);
+            let (permit, planned) = self.0.open(caller, query, None).await?;
+            let block_bytes = block_bytes(&planned, self.0.limits().block_bytes);
             let messages = Messages::new(&request, planned, encoding, block_bytes)?;
-            Record::in_format(match encoding {
-                Encoding::F32Le => "f32",
-                Encoding::F64Le => "f64",
-                Encoding::Points | Encoding::Unspecified => "points",
-            });
-            let frames = self.service.stream(permit, messages);
+            let frames = self.0.stream(permit, messages);
             Ok(Box::pin(frames.map_err(status::interrupted)) as Self::StreamPointsStream)
         })
         .await
@@ -203,10 +190,8 @@ impl PointService for Points {
             let check = |service: &Service, values: Values, stop: &Stop| {
                 Set::single_within(&values, &service.catalog(), allowance(stop))
             };
-            let set = self
-                .service
-                .read(request.effort, read, Values::price, check);
-            let placed = self.service.place(caller, set.await?).await?;
+            let set = self.0.read(request.effort, read, Values::price, check);
+            let placed = self.0.place(caller, set.await?).await?;
             Ok(GetPointResponse {
                 point: Some(resolved::point(placed.point(&id)?)),
                 set: Some(resolved::placed(&placed)),
@@ -224,9 +209,7 @@ impl PointService for Points {
             let check = |service: &Service, values: Values, stop: &Stop| {
                 Nearest::of_set_within(&values, &service.catalog(), allowance(stop))
             };
-            let read = self
-                .service
-                .read(request.effort, read, Values::price, check);
+            let read = self.0.read(request.effort, read, Values::price, check);
             let (set, nearest) = read.await?;
             let answer = |placed: &Placed, found: Vec<Found>| {
                 Ok(FindNearestResponse {
@@ -234,7 +217,7 @@ impl PointService for Points {
                     set: Some(resolved::placed(placed)),
                 })
             };
-            self.service.nearest(caller, set, nearest, answer).await
+            self.0.nearest(caller, set, nearest, answer).await
         })
         .await
     }
@@ -244,7 +227,7 @@ impl PointService for Points {
         request: Request<Raw<ListProfilesRequest>>,
     ) -> Answer<ListProfilesResponse> {
         self.answer(request, async |_, _| {
-            let catalog = self.service.catalog();
+            let catalog = self.0.catalog();
             let profile = |entry: &Arc<Entry>| documents::profile(entry, &catalog);
             Ok(ListProfilesResponse {
                 profiles: catalog.entries().map(profile).collect(),
@@ -260,14 +243,14 @@ impl PointService for Points {
         request: Request<Raw<ListPeriodsRequest>>,
     ) -> Answer<ListPeriodsResponse> {
         self.answer(request, async |_, request| {
-            documents::periods(*request.message, &self.service)
+            documents::periods(*request.message, &self.0)
         })
         .await
     }
 
     async fn get_mask(&self, request: Request<Raw<GetMaskRequest>>) -> Answer<GetMaskResponse> {
         self.answer(request, async |caller, request| {
-            documents::mask(&self.service, caller, *request.message).await
+            documents::mask(&self.0, caller, *request.message).await
         })
         .await
     }
@@ -277,7 +260,7 @@ impl PointService for Points {
         request: Request<Raw<ListFieldsRequest>>,
     ) -> Answer<ListFieldsResponse> {
         self.answer(request, async |_, _| {
-            let catalog = self.service.catalog();
+            let catalog = self.0.catalog();
             let fields = catalog.fields().iter().map(|loaded| field::loaded(loaded));
             Ok(ListFieldsResponse {
                 fields: fields.collect(),
@@ -291,7 +274,7 @@ impl PointService for Points {
         request: Request<Raw<ListWorldsRequest>>,
     ) -> Answer<ListWorldsResponse> {
         self.answer(request, async |_, _| {
-            let catalog = self.service.catalog();
+            let catalog = self.0.catalog();
             let worlds = catalog.worlds.iter().map(|world| LoadedWorld {
                 name: world.name.clone(),
                 digest: world.digest.clone(),

@@ -3,7 +3,7 @@
 use prost::Message as _;
 use strew_error::{Checked, Error, Fault};
 use strew_query::{
-    Draft, LayerDraft, Parameter, RegionDraft, SPACE_AT, Token, Value, Values, groups,
+    Draft, LayerDraft, RegionDraft, SPACE_AT, Token, Value, Values, groups,
     parameters::{AT, CURSOR, K, LIMIT, OFFSET, PARTS, RADIUS, WORLD, WORLD_DIGEST},
 };
 
@@ -20,12 +20,8 @@ fn encoding(request: &StreamPointsRequest) -> Result<Encoding, Fault> {
         Err(_) => {
             let known = [Encoding::Points, Encoding::F64Le, Encoding::F32Le];
             let allowed = known.map(|encoding| encoding.as_str_name()).join(", ");
-            Err(Fault::new(
-                "encoding",
-                request.encoding,
-                "unknown encoding",
-                allowed,
-            ))
+            let detail = "unknown encoding";
+            Err(Fault::new("encoding", request.encoding, detail, allowed))
         }
     }
 }
@@ -48,7 +44,7 @@ fn draft(request: &StreamPointsRequest) -> Draft {
     };
     let mut values = set::values(request.set.as_ref(), whole, "");
     let cursor = &request.cursor;
-    let others: [(&'static Parameter, Option<Value>); 5] = [
+    values.add_values([
         (&WORLD, request.world.clone().map(Value::Text)),
         (&WORLD_DIGEST, request.world_digest.clone().map(Value::Text)),
         (&OFFSET, Some(Value::Integer(request.offset))),
@@ -57,22 +53,20 @@ fn draft(request: &StreamPointsRequest) -> Draft {
             &CURSOR,
             (!cursor.is_empty()).then(|| Value::Text(cursor.clone())),
         ),
-    ];
-    values.add_values(others);
-    let mut layers = vec![];
-    for (i, layer) in request.layers.iter().enumerate() {
+    ]);
+    let layers = request.layers.iter().enumerate().map(|(i, layer)| {
         let path = format!("layers[{i}].");
-        layers.push(LayerDraft {
+        LayerDraft {
             name: Ok((!layer.name.is_empty()).then(|| layer.name.clone())),
             region: region_of(layer.region.as_ref(), &format!("{path}region")),
             values: set::values(layer.set.as_ref(), of_layer, &path),
             clear_of: Ok(layer.clear_of.clone().into_iter().collect()),
-        });
-    }
+        }
+    });
     Draft {
         region: region_of(request.region.as_ref(), "region"),
         values,
-        layers: Ok(layers),
+        layers: Ok(layers.collect()),
     }
 }
 
@@ -101,12 +95,11 @@ pub(super) fn nearest(request: &FindNearestRequest) -> Values {
         None => (groups::NEAREST, &AT, None),
     };
     let mut values = set::values(request.set.as_ref(), groups, "");
-    let given: [(&'static Parameter, Option<Value>); 3] = [
+    values.add_values([
         (at, place.map(Value::Numbers)),
         (&K, request.k.map(|k| Value::Integer(k.into()))),
         (&RADIUS, request.radius.map(Value::Number)),
-    ];
-    values.add_values(given);
+    ]);
     values
 }
 

@@ -18,7 +18,6 @@ pub(super) fn is_volume(region: &Region) -> bool {
     }
 }
 
-/// A place as a message.
 pub(super) fn position(place: Place) -> Position {
     let [x, y] = place.flat();
     let z = matches!(place, Place::Space(_)).then(|| place.z());

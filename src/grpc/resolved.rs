@@ -89,7 +89,6 @@ fn resolved(echo: ResolvedSet, entry: &Entry, region: Option<Region>) -> proto::
     }
 }
 
-/// A period.
 pub(super) const fn period(echo: PeriodEcho) -> proto::Period {
     proto::Period {
         p: echo.p,
@@ -99,7 +98,6 @@ pub(super) const fn period(echo: PeriodEcho) -> proto::Period {
     }
 }
 
-/// A point that was found.
 pub(super) fn point(found: Found) -> Point {
     let attribute = |(name, value): (String, serde_json::Value)| proto::Value {
         name,

@@ -11,7 +11,6 @@ use tonic_types::{ErrorDetails, StatusExt as _};
 /// The time that a client should wait before it resumes a stream that the server broke off.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// An error as a status.
 pub fn status(error: &Error) -> Status {
     Record::refuse(error.kind());
     let mut details = of_reason(reason(error.kind()), facts(error));
@@ -87,7 +86,6 @@ pub(super) fn within(field: &str, error: Error) -> Error {
     }
 }
 
-/// A broken stream as a status.
 pub(super) fn interrupted(why: Interrupted) -> Status {
     let kind = match why {
         Interrupted::Shutdown => Kind::ShuttingDown,
@@ -117,7 +115,6 @@ pub(super) fn too_late(allowed: Duration) -> Status {
     Status::with_error_details(Code::DeadlineExceeded, message, details)
 }
 
-/// A status as the trailers of an answer.
 pub(super) fn trailers(status: &Status) -> Option<HeaderMap> {
     let mut trailers = HeaderMap::new();
     let added = status.add_header(&mut trailers);

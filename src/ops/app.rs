@@ -70,8 +70,8 @@ fn router(routes: Routes, calls: Option<grpc::Calls>, gate: Option<Arc<Gate>>) -
     };
     let (mut gated, mut open) = (gated, open.fallback(nothing));
     if let Some(calls) = calls {
-        gated = calls.contract(gated);
-        open = calls.others(open);
+        gated = gated.merge(calls.contract);
+        open = open.merge(calls.others);
     }
     open.merge(gated.route_layer(gate::layer(gate)))
 }

@@ -4,10 +4,10 @@
 //! Each connection is a task that runs the HTTP library over a guarded socket. Beyond the limit a
 //! client is refused. A connection frees its place when the client leaves, is idle, or takes nothing.
 
-use std::{io, net::SocketAddr, pin::Pin, sync::Arc, time::Duration};
+use std::{convert::Infallible, io, net::SocketAddr, sync::Arc, time::Duration};
 
-use http::{Request, Response};
-use hyper::{body::Incoming, service::Service as HyperService};
+use http::Request;
+use hyper::{body::Incoming, service::service_fn};
 use hyper_util::{
     rt::{TokioExecutor, TokioIo, TokioTimer},
     server::conn::auto::Builder,
@@ -25,7 +25,7 @@ use tokio_util::{sync::CancellationToken, task::TaskTracker};
 
 use super::{
     app::Steps,
-    exchange::{Exchanges, Fate, From},
+    exchange::{Exchanges, Fate},
     guarded::Guarded,
     step::Next as _,
     telemetry::LogThrottle,
@@ -151,6 +151,7 @@ impl Connections {
     pub(super) fn end(&self) {
         self.ended.cancel();
     }
+
     /// A place among all connections, and one among those of the address.
     fn places_of(&self, peer: SocketAddr) -> Result<(OneOf, Option<InUse>), Error> {
         let usage = self.gate.as_ref().map(|gate| gate.usage(peer.ip()));
@@ -199,7 +200,11 @@ impl Connections {
     {
         let from = front.exchanges.from(peer);
         let open = from.open.clone();
-        let service = Answers { front, from };
+        let service = service_fn(move |request: Request<Incoming>| {
+            let (front, from) = (front.clone(), from.clone());
+            let inbound = front.exchanges.inbound(from, request.map(Body::new));
+            Box::pin(async move { Ok::<_, Infallible>(front.steps.answer(inbound).await) })
+        });
         let stream = TokioIo::new(stream.opening_within(self.opening));
         let connection = self.http.serve_connection(stream, service);
         tokio::pin!(connection);
@@ -238,7 +243,7 @@ fn http(settings: &Server) -> Builder<TokioExecutor> {
     const REQUEST_WINDOW: u32 = 64 << 10;
     const CONNECTION_WINDOW: u32 = 256 << 10;
     let keepalive = seconds(settings.http2_keepalive_seconds);
-    // A head that is only a little too long is refused in words, by `rest::finished`.
+    // A head that is only a little too long is refused in words, by `rest::Finish`.
     let most = settings.max_header_bytes.saturating_mul(2);
     let mut builder = Builder::new(TokioExecutor::new());
     builder
@@ -263,23 +268,6 @@ pub(super) struct Front {
     pub(super) steps: Steps,
 }
 
-struct Answers {
-    front: Arc<Front>,
-    from: From,
-}
-
-impl HyperService<Request<Incoming>> for Answers {
-    type Response = Response<Body>;
-    type Error = std::convert::Infallible;
-    type Future = Pin<Box<dyn Future<Output = Result<Response<Body>, Self::Error>> + Send>>;
-
-    fn call(&self, request: Request<Incoming>) -> Self::Future {
-        let (front, from) = (self.front.clone(), self.from.clone());
-        let inbound = front.exchanges.inbound(from, request.map(Body::new));
-        Box::pin(async move { Ok(front.steps.answer(inbound).await) })
-    }
-}
-
 /// Errors of a client that left before it was let in.
 fn is_of_the_client(error: &io::Error) -> bool {
     use io::ErrorKind::{ConnectionAborted, ConnectionRefused, ConnectionReset};
@@ -293,7 +281,7 @@ fn is_of_the_client(error: &io::Error) -> bool {
 /// unread takes back what was said.
 async fn refuse(mut stream: TcpStream, error: Error) -> io::Result<()> {
     const HEARD: u64 = 1 << 16;
-    stream.write_all(&rest::no_place(&error)).await?;
+    stream.write_all(&rest::last_words(&error)).await?;
     stream.shutdown().await?;
     tokio::io::copy(&mut stream.take(HEARD), &mut tokio::io::sink()).await?;
     Ok(())

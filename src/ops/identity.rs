@@ -18,14 +18,6 @@ const TRACEPARENT: HeaderName = HeaderName::from_static("traceparent");
 
 const LONGEST: usize = 128;
 
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Identity {
-    /// Its id: visible ASCII without quotes.
-    pub(super) id: String,
-    /// Its place in a trace, if the client has one or it begins one.
-    pub(super) trace: Option<Trace>,
-}
-
 /// A place in a trace: the client's span, if there is one, and ours below it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Trace {
@@ -38,18 +30,14 @@ pub(super) struct Trace {
     pub(super) is_sampled: bool,
 }
 
-impl Identity {
-    /// That of a request, by its headers if they name it; `begins_one` says whether one without a trace begins one.
-    pub(super) fn of(headers: &HeaderMap, begins_one: impl FnOnce() -> bool) -> Self {
-        let text = |name| headers.get(name)?.to_str().ok();
-        let id = text(REQUEST_ID).filter(|id| is_sane(id));
-        Self {
-            id: id.map_or_else(|| digits(next()), Into::into),
-            trace: text(TRACEPARENT)
-                .and_then(Trace::read)
-                .or_else(|| begins_one().then(Trace::begun)),
-        }
-    }
+/// The id of a request, visible ASCII without quotes, by its headers if they name one.
+pub(super) fn id(headers: &HeaderMap) -> String {
+    let sent = text(headers, &REQUEST_ID).filter(|id| is_sane(id));
+    sent.map_or_else(|| digits(next()), Into::into)
+}
+
+fn text<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
+    headers.get(name)?.to_str().ok()
 }
 
 fn is_sane(id: &str) -> bool {
@@ -58,6 +46,12 @@ fn is_sane(id: &str) -> bool {
 }
 
 impl Trace {
+    /// The place of a request in the client's trace, if it has one; `begins_one` says whether one without begins one.
+    pub(super) fn of(headers: &HeaderMap, begins_one: impl FnOnce() -> bool) -> Option<Self> {
+        let sent = text(headers, &TRACEPARENT).and_then(Self::read);
+        sent.or_else(|| begins_one().then(Self::begun))
+    }
+
     /// Reads `00-<trace>-<span>-<flags>`; later versions may have more behind it.
     fn read(text: &str) -> Option<Self> {
         let mut parts = text.splitn(5, '-');
@@ -127,7 +121,7 @@ mod tests {
         let of = |text: &str| {
             let mut headers = HeaderMap::new();
             headers.insert(REQUEST_ID, HeaderValue::from_str(text).expect("a header"));
-            Identity::of(&headers, || false).id
+            id(&headers)
         };
         for kept in ["a", "3f1c-77", "Root=1-67891233-abcdef", &"x".repeat(128)] {
             assert_eq!(of(kept), kept);

@@ -234,7 +234,7 @@ fn differs(before: &Done, now: &Done) -> bool {
 fn log(cause: Cause, done: &Done, metrics: &Metrics) {
     let reload = &done.tables;
     let cause = cause.name();
-    metrics.reloads(cause).inc();
+    metrics.reloads.with_label_values(&[cause]).inc();
     for table in &reload.loaded {
         tracing::info!(
             cause,

@@ -57,14 +57,10 @@ impl App {
         let first = watched.look();
         let tls = Tls::new(&config.tls)?;
         let collector = Collector::new(&config.telemetry)?;
-        let folder = config.tables.folder();
+        let (tables, folder) = (&config.tables, config.tables.folder());
         let fields = Fields::load(&config.fields)?;
-        let config::Tables {
-            preload_bytes,
-            embedded,
-            ..
-        } = config.tables;
-        let catalog = Catalog::preloading(preload_bytes, embedded, folder)?.with_fields(fields);
+        let catalog = Catalog::preloading(tables.preload_bytes, tables.embedded, folder)?;
+        let catalog = catalog.with_fields(fields);
         let catalog = catalog.with_room(config.fields.max_sent_bytes);
         let workers = Workers::new(config.workers.threads);
         // For what work does side by side. There may be such threads already, where this is part of a program.
@@ -76,9 +72,8 @@ impl App {
         let worlds = Worlds::load(&config.worlds, &catalog, config.limits.max_vertices)?;
         let assets = Assets::from(catalog).with_worlds(worlds);
         let service = Service::new(assets, config.limits.clone(), workers);
-        let mixes = config.tables.folder().map(|folder| folder.join("mixes"));
-        let service = service.with_mixes(mixes);
-        let service = Arc::new(service);
+        let mixes = folder.map(|folder| folder.join("mixes"));
+        let service = Arc::new(service.with_mixes(mixes));
         let gate = Arc::new(Gate::new(
             config.access.clone(),
             &config.rate,

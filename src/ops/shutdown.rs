@@ -3,22 +3,23 @@
 
 use std::io;
 
+#[cfg(unix)]
+use tokio::signal::unix::{Signal, SignalKind, signal};
+
 /// The exit status of a process that a signal cut short.
 const CUT_SHORT: i32 = 1;
 
 /// The signals, listened for from the moment this is made.
 pub struct Signals {
     #[cfg(unix)]
-    terminate: tokio::signal::unix::Signal,
+    terminate: Signal,
     #[cfg(unix)]
-    interrupt: tokio::signal::unix::Signal,
+    interrupt: Signal,
 }
 
 impl Signals {
     /// Starts to listen for ctrl-C, and for SIGTERM where there is one. Needs a tokio runtime.
     pub fn new() -> io::Result<Self> {
-        #[cfg(unix)]
-        use tokio::signal::unix::{SignalKind, signal};
         Ok(Self {
             #[cfg(unix)]
             terminate: signal(SignalKind::terminate())?,
@@ -55,13 +56,11 @@ impl Signals {
 /// SIGHUP, listened for from the moment this is made; it never comes where there is none.
 pub struct Hangups {
     #[cfg(unix)]
-    signal: tokio::signal::unix::Signal,
+    signal: Signal,
 }
 
 impl Hangups {
     pub fn new() -> io::Result<Self> {
-        #[cfg(unix)]
-        use tokio::signal::unix::{SignalKind, signal};
         Ok(Self {
             #[cfg(unix)]
             signal: signal(SignalKind::hangup())?,

@@ -28,6 +28,15 @@ pub struct TlsError {
 }
 
 impl TlsError {
+    fn new(setting: &'static str, path: &Path, problem: String) -> Self {
+        let path = path.into();
+        Self {
+            setting,
+            path,
+            problem,
+        }
+    }
+
     pub(super) fn path(&self) -> String {
         self.path.display().to_string()
     }
@@ -94,12 +103,10 @@ struct Files {
 impl Files {
     fn read(settings: &Settings) -> Result<Self, TlsError> {
         let read = |setting, path: &Path| {
-            let failed = |error: std::io::Error| TlsError {
-                setting,
-                path: path.into(),
-                problem: format!("it cannot be read: {error}"),
-            };
-            bounded_file::read(path, MAX_BYTES).map_err(failed)
+            let read = bounded_file::read(path, MAX_BYTES);
+            read.map_err(|error| {
+                TlsError::new(setting, path, format!("it cannot be read: {error}"))
+            })
         };
         let client_ca = settings.proves_clients();
         let client_ca = client_ca.then(|| read("tls.client_ca", &settings.client_ca));
@@ -121,14 +128,10 @@ impl Files {
     }
 
     fn config(&self, settings: &Settings) -> Result<Arc<ServerConfig>, TlsError> {
-        let wrong = |setting, path: &Path, problem: String| TlsError {
-            setting,
-            path: path.into(),
-            problem,
-        };
-        let of_certificate = |problem| wrong("tls.certificate", &settings.certificate, problem);
-        let of_key = |problem| wrong("tls.key", &settings.key, problem);
-        let of_clients = |problem| wrong("tls.client_ca", &settings.client_ca, problem);
+        let of_certificate =
+            |problem| TlsError::new("tls.certificate", &settings.certificate, problem);
+        let of_key = |problem| TlsError::new("tls.key", &settings.key, problem);
+        let of_clients = |problem| TlsError::new("tls.client_ca", &settings.client_ca, problem);
 
         // Named, lest a second provider somewhere in the program make the choice ambiguous.
         let provider = Arc::new(default_provider());

@@ -22,7 +22,7 @@ use super::{
 };
 use crate::body::{Body, Response};
 
-const COUNT: HeaderName = HeaderName::from_static("strew-count");
+pub(super) const COUNT: HeaderName = HeaderName::from_static("strew-count");
 const TABLE: HeaderName = HeaderName::from_static("strew-table");
 const WORLD: HeaderName = HeaderName::from_static("strew-world");
 const ALGORITHM: HeaderName = HeaderName::from_static("strew-algorithm");
@@ -36,7 +36,7 @@ const KINDS: HeaderName = HeaderName::from_static("strew-kinds");
 /// Proxies hold the head of an answer in 4 kB, and the other headers take up to 3.6.
 const LONGEST_KINDS: usize = 400;
 const WARNING: HeaderName = HeaderName::from_static("strew-warning");
-const NEXT: HeaderName = HeaderName::from_static("strew-next");
+pub(super) const NEXT: HeaderName = HeaderName::from_static("strew-next");
 const CURSOR: HeaderName = HeaderName::from_static("strew-cursor");
 
 const HEADERS: [(&str, &str); 12] = [
@@ -191,7 +191,8 @@ pub(super) async fn stream(
         // A body is not part of the address, so caches do not keep its answer.
         return points(service, context, query, (chosen, output), true).await;
     }
-    let freshness = freshness(service, context, &query, chosen.content_type).negotiated();
+    let mut freshness = freshness(service, context, &query, chosen.content_type);
+    freshness.negotiated = true;
     let is_wanted = freshness.verdict(headers) == Verdict::Wanted;
     if is_wanted && let Some(wanted) = Wanted::of(method, headers, &freshness) {
         // On the heap, lest all answers have room for it.

@@ -5,10 +5,7 @@
 //! (`freshness`) can be known before it is made. It is chosen once: an answer with a tag carries it as
 //! [`Decided`].
 
-use std::{
-    convert::Infallible,
-    io::{self, Write as _},
-};
+use std::{convert::Infallible, io};
 
 use axum::body::{BodyDataStream, to_bytes};
 use bytes::Bytes;
@@ -18,7 +15,7 @@ use strew_error::Error;
 use strew_plan::Lane;
 use strew_service::{Held, Owner, Service, Workers};
 
-use super::{headers, negotiate::Coding};
+use super::negotiate::{BY_CODING, Coding, vary};
 use crate::body::{Body, BoxError, Response, Whole};
 
 /// The coding of an answer whose tag says it.
@@ -37,7 +34,7 @@ pub(super) fn choose(accept: &HeaderMap, response: &mut Response) -> Option<Choi
     let decided = response.extensions_mut().remove::<Decided>();
     let answer = response.headers_mut();
     // Also of answers that stay plain: with other headers they would not.
-    headers::vary(answer, headers::ACCEPT_ENCODING);
+    vary(answer, BY_CODING);
     // Without a choice nothing else is looked at.
     if accept.is_empty() && decided.is_none_or(|Decided(coding)| coding.is_none()) {
         return None;
@@ -184,28 +181,30 @@ impl Encoder {
 
     pub(super) fn whole(coding: Coding, plain: &[u8]) -> io::Result<Bytes> {
         let mut encoder = Self::new(coding)?;
-        match &mut encoder {
-            Self::Zstd(encoder) => {
-                // A small document needs no large window.
-                encoder.set_pledged_src_size(Some(plain.len() as u64))?;
-                encoder.write_all(plain)?;
-            }
-            Self::Gzip(encoder) => encoder.write_all(plain)?,
+        if let Self::Zstd(encoder) = &mut encoder {
+            // A small document needs no large window.
+            encoder.set_pledged_src_size(Some(plain.len() as u64))?;
         }
+        encoder.writer().write_all(plain)?;
         Ok(encoder.encode(None)?.1)
+    }
+
+    fn writer(&mut self) -> &mut dyn io::Write {
+        match self {
+            Self::Zstd(encoder) => encoder,
+            Self::Gzip(encoder) => encoder,
+        }
     }
 
     /// The compressed bytes of a block, from which all of it can be read; after the last one, the end.
     pub(super) fn encode(mut self, block: Option<Bytes>) -> io::Result<(Self, Bytes)> {
-        match &mut self {
-            Self::Zstd(encoder) => match block {
-                Some(block) => encoder.write_all(&block).and_then(|()| encoder.flush())?,
-                None => encoder.do_finish()?,
-            },
-            Self::Gzip(encoder) => match block {
-                Some(block) => encoder.write_all(&block).and_then(|()| encoder.flush())?,
-                None => encoder.try_finish()?,
-            },
+        match (&mut self, block) {
+            (encoder, Some(block)) => {
+                encoder.writer().write_all(&block)?;
+                encoder.writer().flush()?;
+            }
+            (Self::Zstd(encoder), None) => encoder.do_finish()?,
+            (Self::Gzip(encoder), None) => encoder.try_finish()?,
         }
         let written = match &mut self {
             Self::Zstd(encoder) => std::mem::take(encoder.get_mut()),

@@ -109,41 +109,32 @@ impl<S: Send + Sync> FromRequestParts<S> for Context {
     }
 }
 
-pub struct Posted {
+/// A request with a body: as [`Sent`] one whose query is its body, and which has no parameters beside it.
+pub struct Posted<const ALONE: bool = false> {
     pub(super) context: Context,
     pub(super) body: Bytes,
 }
 
-/// A request whose query is its body, and which has no parameters beside it.
-pub struct Sent {
-    pub(super) context: Context,
-    pub(super) body: Bytes,
-}
+pub type Sent = Posted<true>;
 
-impl FromRequest<Arc<Service>> for Posted {
-    type Rejection = Response;
-
-    async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, Response> {
-        let (mut parts, body) = request.into_parts();
-        let context = Context::from_request_parts(&mut parts, service).await?;
-        let body = whole_body(service, &context.headers, body).await;
-        let body = body.map_err(|error| Refused(error).response())?;
-        Ok(Self { context, body })
-    }
-}
-
-impl FromRequest<Arc<Service>> for Sent {
+impl<const ALONE: bool> FromRequest<Arc<Service>> for Posted<ALONE> {
     type Rejection = Response;
 
     async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, Response> {
         let text = request.uri().query().filter(|text| !text.is_empty());
-        if let Some(text) = text {
+        if let (true, Some(text)) = (ALONE, text) {
             let detail = "not allowed here: the query is in the body";
             let fault = Fault::new("query", text, detail, "no parameters");
             return Err(Refused(fault.into()).response());
         }
-        let Posted { context, body } = Posted::from_request(request, service).await?;
-        charge_reading(&context.caller, body.len()).map_err(|error| Refused(error).response())?;
+        let (mut parts, body) = request.into_parts();
+        let context = Context::from_request_parts(&mut parts, service).await?;
+        let body = whole_body(service, &context.headers, body).await;
+        let charged = body.and_then(|body| {
+            charge_reading(&context.caller, body.len())?;
+            Ok(body)
+        });
+        let body = charged.map_err(|error| Refused(error).response())?;
         Ok(Self { context, body })
     }
 }

@@ -83,18 +83,16 @@ impl Fixed {
         if verdict != Verdict::Wanted {
             return freshness.instead(verdict);
         }
-        let chosen = freshness.coding();
+        let chosen = freshness.coding;
         let coded = self
             .coded
             .iter()
             .find(|(coding, _)| Some(*coding) == chosen);
         let content = coded.map_or(&self.plain, |(_, content)| content);
-        let mut response = Response::new(Body::from(content.clone()));
-        let headers = response.headers_mut();
-        let content_type = HeaderValue::from_static(self.content_type);
-        headers.insert(header::CONTENT_TYPE, content_type);
+        let mut response = file(content.clone(), self.content_type);
         if let Some((coding, _)) = coded {
             let name = HeaderValue::from_static(coding.name());
+            let headers = response.headers_mut();
             headers.insert(header::CONTENT_ENCODING, name);
         }
         freshness.stamp(&mut response);

@@ -11,7 +11,6 @@ use strew_service::Service;
 use super::{
     coding,
     freshness::Keeping,
-    headers,
     origin::{self, Hosts, Origins},
     problem::{self, Problem},
 };
@@ -38,7 +37,13 @@ impl Preferences {
         Self {
             is_head: *request.method() == Method::HEAD,
             origin: headers.get(header::ORIGIN).cloned(),
-            accept: picked(headers, &header::ACCEPT_ENCODING),
+            accept: match headers.contains_key(header::ACCEPT_ENCODING) {
+                false => HeaderMap::new(),
+                true => {
+                    let lines = headers.get_all(header::ACCEPT_ENCODING).iter().cloned();
+                    lines.map(|line| (header::ACCEPT_ENCODING, line)).collect()
+                }
+            },
         }
     }
 }
@@ -97,7 +102,7 @@ impl Finish {
             *response = Box::pin(problem::instead(take(response))).await;
         }
         self.keeping.set(response);
-        headers::guard(response.headers_mut(), self.origins == Origins::All);
+        guard(response.headers_mut(), self.origins == Origins::All);
         if let Some(chosen) = coding::choose(&preferences.accept, response) {
             let plain = take(response);
             // On the heap, lest plain answers have room for it.
@@ -107,12 +112,32 @@ impl Finish {
     }
 }
 
-fn picked(headers: &HeaderMap, name: &HeaderName) -> HeaderMap {
-    if !headers.contains_key(name) {
-        return HeaderMap::new();
+const NO_SNIFFING: HeaderValue = HeaderValue::from_static("nosniff");
+const NO_REFERRER: HeaderValue = HeaderValue::from_static("no-referrer");
+/// The policy of an answer that is no page: a browser that opens it loads and runs nothing. Pictures bring
+/// their own style.
+const NO_PAGE: HeaderValue = HeaderValue::from_static(
+    "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'; sandbox",
+);
+
+const RESOURCE_POLICY: HeaderName = HeaderName::from_static("cross-origin-resource-policy");
+const ANY_ORIGIN: HeaderValue = HeaderValue::from_static("cross-origin");
+const SAME_ORIGIN: HeaderValue = HeaderValue::from_static("same-origin");
+
+/// Sets the headers of an answer; pages have all but the last one. If all pages may read answers, they may also show
+/// them as pictures.
+fn guard(headers: &mut HeaderMap, all_may_read: bool) {
+    let resource = if all_may_read {
+        ANY_ORIGIN
+    } else {
+        SAME_ORIGIN
+    };
+    if !headers.contains_key(header::CONTENT_SECURITY_POLICY) {
+        headers.insert(header::X_CONTENT_TYPE_OPTIONS, NO_SNIFFING);
+        headers.insert(header::REFERRER_POLICY, NO_REFERRER);
+        headers.insert(header::CONTENT_SECURITY_POLICY, NO_PAGE);
     }
-    let lines = headers.get_all(name).iter().cloned();
-    lines.map(|line| (name.clone(), line)).collect()
+    headers.insert(RESOURCE_POLICY, resource);
 }
 
 fn is_grpc(headers: &HeaderMap) -> bool {
@@ -139,10 +164,10 @@ fn too_long(request: &Request, limit: usize) -> Option<Response> {
     let headers: usize = lines.map(|(n, v)| n.as_str().len() + v.len() + 4).sum();
     let (status, length) = match (address > limit, address + headers > limit) {
         (true, _) => (StatusCode::URI_TOO_LONG, address),
-        (_, true) => (
-            StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE,
-            address + headers,
-        ),
+        (_, true) => {
+            let status = StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE;
+            (status, address + headers)
+        }
         _ => return None,
     };
     let detail = format!("it has {length} bytes; allowed: at most {limit}");

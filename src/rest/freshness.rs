@@ -17,8 +17,7 @@ use strew_service::Interrupted;
 
 use super::{
     coding::Decided,
-    headers,
-    negotiate::{self, Coding},
+    negotiate::{self, BY_BOTH, Coding},
     problem::Problem,
 };
 use crate::body::{Body, Response};
@@ -26,11 +25,13 @@ use crate::body::{Body, Response};
 /// The tag of an answer and what else caches need, known before the answer is made.
 #[derive(Clone, Debug)]
 pub(super) struct Freshness {
-    tag: HeaderValue,
-    coding: Option<Coding>,
+    pub(super) tag: HeaderValue,
+    pub(super) coding: Option<Coding>,
     is_text: bool,
+    /// Whether the address pins the table, so that its answer never changes.
     pinned: bool,
-    negotiated: bool,
+    /// Whether `Accept` had a say in the content type.
+    pub(super) negotiated: bool,
 }
 
 /// An answer that never changes; travels with the response to where `Cache-Control` is set.
@@ -82,7 +83,10 @@ impl Freshness {
             b"0123456789abcdef"[usize::from(digit)]
         });
         tag.extend_from_slice(&digits);
-        tag.extend_from_slice(coding.map_or("", Coding::suffix).as_bytes());
+        if let Some(coding) = coding {
+            tag.push(b'-');
+            tag.extend_from_slice(coding.name().as_bytes());
+        }
         tag.push(b'"');
         Self {
             tag: HeaderValue::from_bytes(&tag).unwrap_or(HeaderValue::from_static("\"\"")),
@@ -93,21 +97,6 @@ impl Freshness {
         }
     }
 
-    pub(super) const fn tag(&self) -> &HeaderValue {
-        &self.tag
-    }
-
-    pub(super) const fn coding(&self) -> Option<Coding> {
-        self.coding
-    }
-
-    /// Says that `Accept` had a say in the content type.
-    pub(super) fn negotiated(mut self) -> Self {
-        self.negotiated = true;
-        self
-    }
-
-    /// Whether the address pins the table, so that its answer never changes.
     pub(super) fn pinned(mut self, pinned: bool) -> Self {
         self.pinned = pinned;
         self
@@ -154,7 +143,7 @@ impl Freshness {
             response.extensions_mut().insert(Decided(self.coding));
         }
         if self.negotiated {
-            response.headers_mut().insert(header::VARY, headers::BOTH);
+            response.headers_mut().insert(header::VARY, BY_BOTH);
         }
         if self.pinned {
             response.extensions_mut().insert(Pinned);
@@ -273,7 +262,7 @@ impl Wanted {
     /// that `If-Range` says are of something else get the whole answer.
     pub(super) fn of(method: &Method, headers: &HeaderMap, freshness: &Freshness) -> Option<Self> {
         let text = headers.get(header::RANGE)?.to_str().ok()?;
-        let is_current = (headers.get(header::IF_RANGE)).is_none_or(|tag| tag == freshness.tag());
+        let is_current = (headers.get(header::IF_RANGE)).is_none_or(|tag| tag == freshness.tag);
         let (unit, range) = text.split_once('=')?;
         let is_simple = unit.trim().eq_ignore_ascii_case("bytes") && !range.contains(',');
         if *method != Method::GET || !is_current || !is_simple {

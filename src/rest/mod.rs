@@ -8,7 +8,6 @@ mod count;
 mod document;
 mod finish;
 mod freshness;
-mod headers;
 mod mask;
 mod named;
 mod negotiate;
@@ -25,7 +24,6 @@ use std::sync::Arc;
 use axum::Router;
 use http::StatusCode;
 use strew_catalog::Dimension;
-use strew_error::Error;
 use strew_service::Service;
 
 use crate::body::{Request, Response};
@@ -36,8 +34,8 @@ pub use document::{JSON, file, json, momentary};
 pub use finish::{Finish, Preferences};
 pub use named::world_document;
 pub use page::{Page, Pages, Part};
-pub use problem::Refused;
-use problem::{Problem, not_found};
+use problem::Problem;
+pub use problem::{Paths, Refused, last_words};
 pub use single::{One, Several};
 
 /// The endpoints of REST, without their description.
@@ -65,11 +63,6 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
     all
 }
 
-/// The whole HTTP/1.1 response to a client whose connection is refused.
-pub fn no_place(error: &Error) -> Vec<u8> {
-    Problem::last_words(error)
-}
-
 pub fn not_a_call(request: &Request, status: StatusCode, allowed: &str) -> Response {
     let path = request.uri().path();
     let detail = format!("`{path}` is a gRPC method; allowed: {allowed}");
@@ -81,16 +74,6 @@ pub struct Routes {
     pub open: Router,
     /// Answers requests to other paths.
     pub paths: Paths,
-}
-
-/// The paths that are described, for answers to unknown ones.
-#[derive(Clone, Debug)]
-pub struct Paths(Arc<str>);
-
-impl Paths {
-    pub fn nothing(&self, path: &str) -> Response {
-        not_found(path, &self.0)
-    }
 }
 
 impl Routes {

@@ -63,6 +63,7 @@ pub(super) fn except(service: &Arc<Service>) -> Endpoint {
         ..Operation::new(Tag::Worlds, answers.or_unchanged())
     };
     let answer = "The list that is held; its name is its digest.";
+    let answer = api::Answer::json::<ExceptList<'_>>(answer);
     let example = json!({ "ids": ["trees/18:-17", "trees/23:-15"] });
     let sent = Operation {
         id: "sendExcept",
@@ -70,17 +71,11 @@ pub(super) fn except(service: &Arc<Service>) -> Endpoint {
         about: "Queries name it by its digest: except=DIGEST. The body is an object, or text with an id a line, where \
                 what follows # is a comment. The list is held while there is room; a query that names one that is \
                 gone is refused, and the client sends the list again.",
-        ..Operation::new(
-            Tag::Worlds,
-            vec![api::Answer::json::<ExceptList<'_>>(answer)],
-        )
+        ..Operation::new(Tag::Worlds, vec![answer])
     };
     let sent = sent.posted("/v1/except", schemas::of::<Section<'_>>, example);
-    Endpoint::only("/v1/except", service.clone(), listed, lists).with(
-        service.clone(),
-        sent,
-        hold_list,
-    )
+    let endpoint = Endpoint::only("/v1/except", service.clone(), listed, lists);
+    endpoint.with(service.clone(), sent, hold_list)
 }
 
 /// The lists of points that queries may leave out.
@@ -121,8 +116,7 @@ async fn lists(State(service): Shared, context: Context) -> Answered {
     Ok(context.document(&ExceptLists { lists }).await?)
 }
 
-async fn hold_list(State(service): Shared, sent: Sent) -> Answered {
-    let Sent { body, .. } = sent;
+async fn hold_list(State(service): Shared, Sent { body, .. }: Sent) -> Answered {
     let bytes = body.len();
     let hold = move |service: &Service, _: &Stop| service.hold_list(&body);
     let held = service.process(bytes, hold).await??;
@@ -259,6 +253,7 @@ pub(super) fn fields(service: &Arc<Service>) -> [Endpoint; 3] {
         ..Operation::new(Tag::Fields, answers.or_unchanged())
     };
     let answer = "The field that is held; its name is its digest.";
+    let answer = api::Answer::json::<LoadedField<'_>>(answer);
     let example = json!({ "radial": { "center": [10, 10], "radii": [5, 20] } });
     let sent = Operation {
         id: "sendField",
@@ -266,10 +261,7 @@ pub(super) fn fields(service: &Arc<Service>) -> [Endpoint; 3] {
         about: "Queries name it by its digest: field=DIGEST. So a mask is sent once, and used chunk by chunk. \
                 It is held while there is room; a query that names one that is gone is refused, \
                 and the client sends the field again.",
-        ..Operation::new(
-            Tag::Fields,
-            vec![api::Answer::json::<LoadedField<'_>>(answer)],
-        )
+        ..Operation::new(Tag::Fields, vec![answer])
     };
     let sent = sent.posted("/v1/fields", schemas::of::<Document>, example);
     let answer = api::Answer::json::<DescribedField<'_>>("The field.");
@@ -291,12 +283,9 @@ pub(super) fn fields(service: &Arc<Service>) -> [Endpoint; 3] {
         ..of_one(Tag::Fields, at, answer)
     };
     let chunks = "/v1/fields/{name}/chunks/{size}/{cx}/{cy}";
+    let all = Endpoint::only("/v1/fields", service.clone(), listed, all_fields);
     [
-        Endpoint::only("/v1/fields", service.clone(), listed, all_fields).with(
-            service.clone(),
-            sent,
-            hold_field,
-        ),
+        all.with(service.clone(), sent, hold_field),
         Endpoint::only("/v1/fields/{name}", service.clone(), one, one_field),
         Endpoint::only(chunks, service.clone(), chunk, field_chunk),
     ]
@@ -358,8 +347,7 @@ async fn all_fields(State(service): Shared, context: Context) -> Answered {
     Ok(context.answer(document::JSON, &made_of, pin!(make)).await?)
 }
 
-async fn hold_field(State(service): Shared, sent: Sent) -> Answered {
-    let Sent { body, .. } = sent;
+async fn hold_field(State(service): Shared, Sent { body, .. }: Sent) -> Answered {
     let (bytes, budget) = (body.len(), service.own_budget());
     let read = move || {
         let _held = budget.hold(BODY_COPIES * body.len())?;

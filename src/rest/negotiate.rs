@@ -1,11 +1,34 @@
-//! What a client accepts: the format (RFC 9110, 12.5.1) and the coding (12.5.3) of an answer.
+//! What a client accepts: the format (RFC 9110, 12.5.1) and the coding (12.5.3) of an answer; and `Vary` (12.5.5), the
+//! headers of requests that an answer depends on.
 
 use http::{
-    HeaderMap,
-    header::{self, ACCEPT},
+    HeaderMap, HeaderName, HeaderValue,
+    header::{ACCEPT, ACCEPT_ENCODING, Entry, VARY},
 };
 use strew_encode::Encoding;
 use strew_error::Error;
+
+pub(super) const BY_CODING: HeaderValue = HeaderValue::from_static("accept-encoding");
+pub(super) const BY_ORIGIN: HeaderValue = HeaderValue::from_static("origin");
+/// `Vary` of almost all answers with points; all answers get the second name.
+pub(super) const BY_BOTH: HeaderValue = HeaderValue::from_static("accept, accept-encoding");
+
+pub(super) fn vary(headers: &mut HeaderMap, name: HeaderValue) {
+    let line = match headers.entry(VARY) {
+        Entry::Vacant(line) => {
+            line.insert(name);
+            return;
+        }
+        Entry::Occupied(line) => line.into_mut(),
+    };
+    if *line == BY_BOTH && name == BY_CODING {
+        return;
+    }
+    if let Ok(joined) = HeaderValue::from_bytes(&[line.as_bytes(), b", ", name.as_bytes()].concat())
+    {
+        *line = joined;
+    }
+}
 
 /// A format and the content type to call it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,15 +47,9 @@ impl Chosen {
 }
 
 /// The formats by media type, in the order of preference for clients that have none.
-fn offers() -> impl Iterator<Item = (&'static str, Encoding)> {
-    let of = |encoding: &Encoding| {
-        let encoding = *encoding;
-        encoding
-            .accepted()
-            .iter()
-            .map(move |media_type| (*media_type, encoding))
-    };
-    Encoding::ALL.iter().flat_map(of)
+fn offers() -> impl DoubleEndedIterator<Item = (&'static str, Encoding)> {
+    let all = Encoding::ALL.iter();
+    all.flat_map(|of| of.accepted().iter().map(|media_type| (*media_type, *of)))
 }
 
 /// A format under the media type that a client accepts.
@@ -62,36 +79,37 @@ pub(super) fn content_types() -> Vec<&'static str> {
 
 /// The offer that the `Accept` headers of a request like best; JSON if there are none.
 pub(super) fn accepted(headers: &HeaderMap) -> Result<Chosen, Error> {
-    let lines: Vec<String> = headers
-        .get_all(ACCEPT)
-        .iter()
-        .map(|value| String::from_utf8_lossy(value.as_bytes()).into_owned())
-        .collect();
-    let accept = lines.join(", ");
+    let accept = joined(headers, &ACCEPT);
     if accept.trim().is_empty() {
         return Ok(Chosen::named(Encoding::Json));
     }
     let ranges: Vec<Range<'_>> = accept.split(',').filter_map(Range::parse).collect();
-    let mut best: Option<(u16, Chosen)> = None;
-    for (media_type, encoding) in offers() {
-        let closest = ranges
-            .iter()
-            .filter(|range| range.holds(media_type))
-            .max_by_key(|range| range.precision());
-        let Some(quality) = closest.map(|range| range.quality) else {
-            continue;
-        };
-        if quality > best.map_or(0, |(quality, _)| quality) {
-            best = Some((quality, offered(media_type, encoding)));
-        }
-    }
-    best.map(|(_, chosen)| chosen)
+    let wanted = offers().filter_map(|(media_type, encoding)| {
+        let fitting = ranges.iter().filter(|range| range.holds(media_type));
+        let closest = fitting.max_by_key(|range| range.precision())?;
+        (closest.quality > 0).then_some((closest.quality, media_type, encoding))
+    });
+    // Of equals the first.
+    let best = wanted.rev().max_by_key(|(quality, ..)| *quality);
+    best.map(|(_, media_type, encoding)| offered(media_type, encoding))
         .ok_or_else(|| Error::NotAcceptable {
             accept: accept.chars().take(200).collect(),
             available: (offers().map(|(media_type, _)| media_type))
                 .collect::<Vec<_>>()
                 .join(", "),
         })
+}
+
+/// The lines of a header as one.
+fn joined(headers: &HeaderMap, name: &HeaderName) -> String {
+    let mut text = String::new();
+    for line in headers.get_all(name) {
+        if !text.is_empty() {
+            text.push_str(", ");
+        }
+        text.push_str(&String::from_utf8_lossy(line.as_bytes()));
+    }
+    text
 }
 
 /// A media range with its quality in thousandths.
@@ -125,7 +143,7 @@ impl<'a> Range<'a> {
 
 /// An element without its parameters, and its quality in thousandths: 1000 unless it has a `q`.
 /// `None` if a parameter is malformed.
-pub(super) fn split(element: &str) -> Option<(&str, u16)> {
+fn split(element: &str) -> Option<(&str, u16)> {
     let mut parts = element.split(';').map(str::trim);
     let name = parts.next()?;
     let mut quality = 1000;
@@ -157,13 +175,6 @@ impl Coding {
         }
     }
 
-    pub(super) const fn suffix(self) -> &'static str {
-        match self {
-            Self::Zstd => "-zstd",
-            Self::Gzip => "-gzip",
-        }
-    }
-
     /// About what a compressor holds, in bytes.
     pub(super) const fn memory(self) -> usize {
         match self {
@@ -173,19 +184,12 @@ impl Coding {
     }
 
     pub(super) fn chosen(headers: &HeaderMap, content_type: &str) -> Option<Self> {
-        if !headers.contains_key(header::ACCEPT_ENCODING) || !is_text(content_type) {
+        if !headers.contains_key(ACCEPT_ENCODING) || !is_text(content_type) {
             return None;
         }
-        let lines: Vec<String> = headers
-            .get_all(header::ACCEPT_ENCODING)
-            .iter()
-            .map(|line| String::from_utf8_lossy(line.as_bytes()).to_ascii_lowercase())
-            .collect();
-        let accepted: Vec<(&str, u16)> = lines
-            .iter()
-            .flat_map(|line| line.split(','))
-            .filter_map(accepted_coding)
-            .collect();
+        let mut text = joined(headers, &ACCEPT_ENCODING);
+        text.make_ascii_lowercase();
+        let accepted: Vec<(&str, u16)> = text.split(',').filter_map(accepted_coding).collect();
         let of = |name: &str| {
             let named = accepted.iter().find(|(other, _)| *other == name);
             named.map(|&(_, quality)| quality)
@@ -193,16 +197,11 @@ impl Coding {
         let any = of("*");
         // Plain is always possible, and preferred only by those who say so.
         let plain = of("identity").unwrap_or(0);
-        let best = Self::ALL
-            .into_iter()
-            .map(|coding| (coding, of(coding.name()).or(any).unwrap_or(0)))
-            .filter(|&(_, quality)| quality > 0 && quality >= plain)
-            // Of equals the first.
-            .fold(None, |best: Option<(Self, u16)>, next| match best {
-                Some(best) if best.1 >= next.1 => Some(best),
-                _ => Some(next),
-            });
-        best.map(|(coding, _)| coding)
+        let quality = |coding: Self| of(coding.name()).or(any).unwrap_or(0);
+        let is_wanted = |coding: &Self| quality(*coding) > 0 && quality(*coding) >= plain;
+        // Of equals the first.
+        let all = Self::ALL.into_iter().rev().filter(is_wanted);
+        all.max_by_key(|coding| quality(*coding))
     }
 }
 
@@ -229,9 +228,7 @@ pub(super) fn is_text(content_type: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use http::HeaderValue;
-
-    use super::{split, *};
+    use super::*;
 
     fn choose(accept: &str) -> Option<&'static str> {
         let mut headers = HeaderMap::new();
@@ -315,7 +312,7 @@ mod tests {
             ("gzip;quality=1", gzip),
         ] {
             let mut headers = HeaderMap::new();
-            headers.insert(header::ACCEPT_ENCODING, HeaderValue::from_static(accept));
+            headers.insert(ACCEPT_ENCODING, HeaderValue::from_static(accept));
             assert_eq!(Coding::chosen(&headers, "text/csv"), expected, "{accept}");
             assert_eq!(Coding::chosen(&headers, "image/png"), None);
         }

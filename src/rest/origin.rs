@@ -14,7 +14,7 @@ use std::net::{Ipv4Addr, Ipv6Addr};
 use http::{HeaderMap, HeaderValue, Method, StatusCode, header, uri::Authority};
 use strew_error::{Denied, Error};
 
-use super::headers;
+use super::negotiate::{BY_ORIGIN, vary};
 use crate::body::{Body, Request, Response};
 
 const ALL: HeaderValue = HeaderValue::from_static("*");
@@ -111,7 +111,7 @@ pub(super) fn allow(origins: &Origins, origin: Option<&HeaderValue>, answer: &mu
     let allowed = if *origins == Origins::All {
         Some(ALL)
     } else {
-        headers::vary(answer, headers::ORIGIN);
+        vary(answer, BY_ORIGIN);
         origin.and_then(|origin| origins.allowed(origin))
     };
     let Some(allowed) = allowed else {

@@ -86,18 +86,15 @@ fn content_type(name: &str) -> &'static str {
 pub(super) fn endpoints(pages: &Pages, public_url: &str) -> Vec<Endpoint> {
     let parts = pages.parts.iter().map(|part| (part.name, part.document()));
     let parts: Parts = Arc::new(parts.collect());
-    let of_the_first = ("/page/{file}", "getPagePart", "/page/main.js");
-    let of_a_folder = (
-        "/page/{folder}/{file}",
-        "getPagePartIn",
-        "/page/works/works.js",
-    );
-    let all = pages.pages.iter().map(|one| page(one, public_url));
-    let parts = [
-        parts_at(of_the_first, &[&FILE], &parts),
-        parts_at(of_a_folder, &[&FOLDER, &FILE], &parts),
-    ];
-    all.chain(parts).collect()
+    let mut all: Vec<_> = (pages.pages.iter())
+        .map(|one| page(one, public_url))
+        .collect();
+    let (path, example) = ("/page/{file}", "/page/main.js");
+    all.push(parts_at(path, "getPagePart", example, &[&FILE], &parts));
+    let (path, example) = ("/page/{folder}/{file}", "/page/works/works.js");
+    let within = &[&FOLDER, &FILE];
+    all.push(parts_at(path, "getPagePartIn", example, within, &parts));
+    all
 }
 
 /// The icon at the address where browsers look for that of an answer that is no page.
@@ -136,7 +133,9 @@ fn previewed(html: &str, public_url: &str) -> String {
 }
 
 fn parts_at(
-    (path, id, example): (&'static str, &'static str, &str),
+    path: &'static str,
+    id: &'static str,
+    example: &str,
     parameters: &'static [&'static Parameter],
     parts: &Parts,
 ) -> Endpoint {

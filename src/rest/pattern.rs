@@ -8,7 +8,7 @@ use std::{
 
 use axum::extract::State;
 use futures_util::StreamExt as _;
-use http::{HeaderName, HeaderValue, Method};
+use http::{HeaderValue, Method};
 use schemars::JsonSchema;
 use serde_json::json;
 use strew_core::server::Stop;
@@ -24,6 +24,7 @@ use strew_service::{
 
 use super::{
     Refused,
+    answer::{COUNT, NEXT},
     api::{
         self, Endpoint, Operation, Tag,
         schemas::{self, ArrangementQuery as ArrangementBody},
@@ -35,18 +36,13 @@ use super::{
 use crate::body::{Body, Response};
 
 pub(super) fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
-    let figures = FIGURES
-        .into_iter()
-        .flat_map(|described| [Format::Svg, Format::Png].map(|format| (described, format)));
-    let figures = figures.zip(&*NAMED);
-    let figures =
-        figures.map(|((described, format), named)| figure(service, described, format, named));
-    let all = [arrangements(service), clusters(service), map(service)];
-    all.into_iter().chain(figures).collect()
+    let mut all = vec![arrangements(service), clusters(service), map(service)];
+    for (described, [svg, png]) in FIGURES.into_iter().zip(&*NAMED) {
+        all.push(figure(service, described, Format::Svg, svg));
+        all.push(figure(service, described, Format::Png, png));
+    }
+    all
 }
-
-const COUNT: HeaderName = HeaderName::from_static("strew-count");
-const NEXT: HeaderName = HeaderName::from_static("strew-next");
 
 const ABOUT: &str = "An arrangement is a point of the pattern with others at some offsets from it. It exists iff its image in \
      index space fits the set region, and the area of the margin that is left is the exact density of its \
@@ -152,8 +148,7 @@ async fn get(State(service): Shared, context: Context) -> Answered {
     Ok(freshness.answer(&context.headers, pin!(make)).await?)
 }
 
-async fn post(State(service): Shared, sent: Sent) -> Answered {
-    let Sent { context, body } = sent;
+async fn post(State(service): Shared, Sent { context, body }: Sent) -> Answered {
     let bytes = body.len();
     let read = move |service: &Service, _: &Stop| {
         let values = read_members(&body, groups::ARRANGEMENT)?;
@@ -268,14 +263,13 @@ const FIGURES: [(Figure, &str, &str, &str); 4] = [
 ];
 
 /// The path of each figure as SVG and as PNG, and the id of its operation.
-static NAMED: LazyLock<Vec<[String; 2]>> = LazyLock::new(|| {
-    let named = |(_, name, ..): (Figure, &str, &str, &str)| {
+static NAMED: LazyLock<[[[String; 2]; 2]; 4]> = LazyLock::new(|| {
+    FIGURES.map(|(_, name, ..)| {
         [("svg", "Figure"), ("png", "Picture")].map(|(ending, of)| {
             let path = format!("/v1/pattern/figures/{}.{ending}", name.to_lowercase());
             [path, format!("get{name}{of}")]
         })
-    };
-    FIGURES.into_iter().flat_map(named).collect()
+    })
 });
 
 fn figure(

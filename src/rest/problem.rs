@@ -1,5 +1,7 @@
 //! Errors as problem documents (RFC 9457), also those of unknown paths and of methods that a path does not take.
 
+use std::sync::Arc;
+
 use axum::{body::to_bytes, response::IntoResponse};
 use http::{HeaderValue, Method, StatusCode, Uri, header};
 use schemars::JsonSchema;
@@ -147,24 +149,6 @@ impl<'a> Problem<'a> {
         problem.into_response()
     }
 
-    /// An error as the bytes of a whole HTTP/1.1 response, after which the connection closes: for
-    /// clients whose request is not read.
-    pub(super) fn last_words(error: &'a Error) -> Vec<u8> {
-        let problem = Self::new(error);
-        let body = serde_json::to_string(&problem).unwrap_or_default();
-        let status = StatusCode::from_u16(problem.status).unwrap_or_default();
-        let (length, reason) = (body.len() + 1, status.canonical_reason());
-        let head = format!(
-            "HTTP/1.1 {} {}\r\ncontent-type: application/problem+json\r\ncontent-length: \
-             {length}\r\ncache-control: no-store\r\nretry-after: {}\r\nconnection: \
-             close\r\n\r\n{body}\n",
-            problem.status,
-            reason.unwrap_or_default(),
-            error.retry_seconds().unwrap_or(1)
-        );
-        head.into_bytes()
-    }
-
     fn into_response(self) -> Response {
         let mut body = serde_json::to_vec(&self).unwrap_or_default();
         body.push(b'\n');
@@ -176,6 +160,23 @@ impl<'a> Problem<'a> {
         headers.insert(header::CONTENT_TYPE, content_type);
         response
     }
+}
+
+/// An error as the bytes of a whole HTTP/1.1 response, after which the connection closes: for clients whose request is
+/// not read.
+pub fn last_words(error: &Error) -> Vec<u8> {
+    let problem = Problem::new(error);
+    let body = serde_json::to_string(&problem).unwrap_or_default();
+    let status = StatusCode::from_u16(problem.status).unwrap_or_default();
+    let (length, reason) = (body.len() + 1, status.canonical_reason());
+    let head = format!(
+        "HTTP/1.1 {} {}\r\ncontent-type: application/problem+json\r\ncontent-length: {length}\r\n\
+         cache-control: no-store\r\nretry-after: {}\r\nconnection: close\r\n\r\n{body}\n",
+        problem.status,
+        reason.unwrap_or_default(),
+        error.retry_seconds().unwrap_or(1)
+    );
+    head.into_bytes()
 }
 
 /// The most text of a bare error that is passed on.
@@ -217,14 +218,10 @@ impl Refused {
     }
 }
 
-macro_rules! refused {
-    ($($error:ty),+) => {
-        $(impl From<$error> for Refused {
-            fn from(error: $error) -> Self {
-                Self(error.into())
-            }
-        })+
-    };
+impl<E: Into<Error>> From<E> for Refused {
+    fn from(error: E) -> Self {
+        Self(error.into())
+    }
 }
 
 impl IntoResponse for Refused {
@@ -233,8 +230,6 @@ impl IntoResponse for Refused {
     }
 }
 
-refused!(Error, Fault, strew_error::Faults, strew_error::Denied);
-
 /// The most paths that an answer names.
 const MOST: usize = 3;
 /// The least likeness to a path that is worth naming.
@@ -242,13 +237,17 @@ const LIKE: f64 = 0.5;
 /// The length to which a longer path is cut before it is compared.
 const COMPARED: usize = 80;
 
-/// The answer to an unknown path: the paths that are most like it.
-pub(super) fn not_found(path: &str, paths: &str) -> Response {
-    let error = Error::NoSuchPath {
-        path: path.into(),
-        available: available(path, paths),
-    };
-    Problem::response(&error)
+/// The paths that are described, with commas between them.
+#[derive(Clone, Debug)]
+pub struct Paths(pub(super) Arc<str>);
+
+impl Paths {
+    /// The answer to an unknown path: those that are most like it.
+    pub fn nothing(&self, path: &str) -> Response {
+        let available = available(path, &self.0);
+        let path = path.into();
+        Problem::response(&Error::NoSuchPath { path, available })
+    }
 }
 
 fn available(path: &str, paths: &str) -> String {

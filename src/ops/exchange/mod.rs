@@ -17,7 +17,7 @@ use std::{
     sync::Arc,
 };
 
-use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
+use http::{HeaderName, HeaderValue, Method, StatusCode, header};
 use http_body::Body as _;
 
 use super::{
@@ -65,7 +65,7 @@ pub(super) struct Client {
 /// Where the requests of a connection come from, and the exchanges that are open on it. Cheap to clone.
 #[derive(Clone, Debug)]
 pub(super) struct From {
-    pub(super) peer: SocketAddr,
+    peer: SocketAddr,
     address: IpAddr,
     usage: Arc<Usage>,
     pub(super) open: Arc<OpenExchanges>,
@@ -108,17 +108,9 @@ impl Exchanges {
         }
     }
 
+    /// A request, of which the headers name another client than the peer or do not.
     pub(super) fn inbound(&self, from: From, request: Request) -> Box<Inbound> {
-        Box::new(Inbound {
-            client: self.client(&from, request.headers()),
-            from,
-            request,
-            refused: None,
-        })
-    }
-
-    /// The client of a request, of which the headers name another than the peer or do not.
-    fn client(&self, from: &From, headers: &HeaderMap) -> Client {
+        let headers = request.headers();
         let address = match headers.contains_key(FORWARDED_FOR) {
             false => from.address,
             true => {
@@ -127,7 +119,7 @@ impl Exchanges {
                 self.gate.client(from.address, lines)
             }
         };
-        Client {
+        let client = Client {
             usage: match address == from.address {
                 true => from.usage.clone(),
                 false => self.gate.usage(address),
@@ -135,7 +127,13 @@ impl Exchanges {
             address,
             is_probe: false,
             dialect: Dialect::of(headers),
-        }
+        };
+        Box::new(Inbound {
+            request,
+            client,
+            from,
+            refused: None,
+        })
     }
 }
 

@@ -17,7 +17,7 @@ use crate::{
     grpc,
     ops::{
         dialect::{Ending, grpc_code},
-        identity::{Identity, Trace},
+        identity::{self, Trace},
         metrics::{Broken, Metrics, NO_FORMAT, NO_ROUTE, Protocol},
         spans::{Answered, Spans},
         telemetry::ACCESS,
@@ -65,9 +65,9 @@ impl Report {
         start: Instant,
     ) -> Self {
         let begins_one = || spans.is_some_and(Spans::begins_one);
-        let identity = Identity::of(request.headers(), begins_one);
+        let trace = Trace::of(request.headers(), begins_one);
+        let id = identity::id(request.headers());
         metrics.in_flight(protocol).inc();
-        let Identity { id, trace } = identity;
         let of = trace.as_ref().map(|trace| &*trace.trace);
         Self {
             record: Record::new(id, of, budget),
@@ -230,8 +230,8 @@ impl Drop for Report {
         let format = self.record.format();
         metrics.took(protocol, format.unwrap_or(NO_FORMAT), [first, total]);
         let method = method_name(&self.method);
-        let requests = metrics.requests(protocol, route, method, outcome);
-        requests.inc();
+        let labels = [protocol.name(), route, method, outcome];
+        metrics.requests.with_label_values(&labels).inc();
 
         // Only those who read it look for keys in an address.
         let (trace, address) = (self.trace.as_ref(), LazyCell::new(|| self.address()));

@@ -80,7 +80,7 @@ pub(super) const NO_ROUTE: &str = "none";
 pub struct Metrics {
     registry: Registry,
     started: SystemTime,
-    requests: IntCounterVec,
+    pub(super) requests: IntCounterVec,
     /// By protocol.
     in_flight: [IntGauge; 2],
     points: IntCounterVec,
@@ -91,12 +91,12 @@ pub struct Metrics {
     broken: IntCounterVec,
     first_byte: HistogramVec,
     whole: HistogramVec,
-    reloads: IntCounterVec,
+    pub(super) reloads: IntCounterVec,
     pub(super) refused_tables: IntCounter,
     pub(super) panics: IntCounter,
     pub(super) failed_handshakes: IntCounter,
     #[cfg(feature = "otlp")]
-    spans: IntCounterVec,
+    pub(super) spans: IntCounterVec,
 }
 
 impl Default for Metrics {
@@ -234,26 +234,5 @@ impl Metrics {
 
     pub(super) fn broken(&self, protocol: Protocol, by: Broken) -> IntCounter {
         self.broken.with_label_values(&[protocol.name(), by.name()])
-    }
-
-    pub(super) fn requests(
-        &self,
-        protocol: Protocol,
-        route: &str,
-        method: &str,
-        status: &str,
-    ) -> IntCounter {
-        let labels = [protocol.name(), route, method, status];
-        self.requests.with_label_values(&labels)
-    }
-
-    pub(super) fn reloads(&self, cause: &str) -> IntCounter {
-        self.reloads.with_label_values(&[cause])
-    }
-
-    /// The counter of spans that were `sent` or `lost`.
-    #[cfg(feature = "otlp")]
-    pub(super) fn spans(&self, outcome: &str) -> IntCounter {
-        self.spans.with_label_values(&[outcome])
     }
 }

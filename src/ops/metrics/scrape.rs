@@ -45,12 +45,27 @@ impl Metrics {
     /// show.
     async fn now(&self, service: &Service) -> Registry {
         let now = Registry::new();
-        let gauge = |name, help, labels: &[Label<'_>], value| {
-            let gauge = Gauge::with_opts(labeled(name, help, labels));
-            put(&now, gauge, |gauge| gauge.set(value));
+        let put = |name: &str, help: &str, labels: &[(&str, &str)], value: f64| {
+            let mut opts = Opts::new(name, help);
+            for (name, value) in labels {
+                opts = opts.const_label(*name, *value);
+            }
+            let metric: prometheus::Result<Box<dyn Collector>> = match name.ends_with("_total") {
+                true => Counter::with_opts(opts).map(|counter| {
+                    counter.inc_by(value);
+                    Box::new(counter) as _
+                }),
+                false => Gauge::with_opts(opts).map(|gauge| {
+                    gauge.set(value);
+                    Box::new(gauge) as _
+                }),
+            };
+            // Of two equal names and labels the first stays.
+            let _ = metric.and_then(|metric| now.register(metric));
         };
         let (cache, workers, process) = (service.cache().await, service.workers(), Process::now());
-        let counters = [
+        let started = self.started.duration_since(UNIX_EPOCH).ok();
+        let figures = [
             (
                 "strew_sampler_cache_hits_total",
                 "Requested tables that were ready",
@@ -76,15 +91,6 @@ impl Metrics {
                 "Processor time used",
                 process.cpu,
             ),
-        ];
-        for (name, help, value) in counters {
-            let counter = Counter::with_opts(labeled(name, help, &[]));
-            if let Some(value) = value {
-                put(&now, counter, |counter| counter.inc_by(value));
-            }
-        }
-        let started = self.started.duration_since(UNIX_EPOCH).ok();
-        let gauges = [
             (
                 "strew_sampler_cache_bytes",
                 "Memory of the tables that are ready",
@@ -123,9 +129,9 @@ impl Metrics {
                 started.map(|since| since.as_secs_f64()),
             ),
         ];
-        for (name, help, value) in gauges {
+        for (name, help, value) in figures {
             if let Some(value) = value {
-                gauge(name, help, &[], value);
+                put(name, help, &[], value);
             }
         }
         let catalog = service.catalog();
@@ -137,7 +143,7 @@ impl Metrics {
                 ("map", &size),
                 ("digest", &entry.digest),
             ];
-            gauge(
+            put(
                 "strew_table_info",
                 "The tables that are loaded",
                 &labels,
@@ -150,27 +156,8 @@ impl Metrics {
             ("revision", revision),
             ("algorithm", &strew_core::ALGORITHM_VERSION.to_string()),
         ];
-        gauge("strew_build_info", "The program that runs", &build, 1.0);
+        put("strew_build_info", "The program that runs", &build, 1.0);
         now
-    }
-}
-
-type Label<'a> = (&'static str, &'a str);
-
-fn labeled(name: &str, help: &str, labels: &[Label<'_>]) -> Opts {
-    let label = |&(name, value): &Label<'_>| (name.to_owned(), value.to_owned());
-    Opts::new(name, help).const_labels(labels.iter().map(label).collect())
-}
-
-/// Adds a metric with its value. Of two equal names and labels the first stays.
-fn put<M: Collector + Clone + 'static>(
-    now: &Registry,
-    metric: prometheus::Result<M>,
-    set: impl Fn(&M),
-) {
-    if let Ok(metric) = metric {
-        set(&metric);
-        let _ = now.register(Box::new(metric));
     }
 }
 

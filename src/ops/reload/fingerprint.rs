@@ -35,36 +35,21 @@ impl Watched {
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        let Config {
-            tables,
-            fields,
-            worlds,
-            except,
-            ..
-        } = self.config();
-        let folders = [
-            tables.folder(),
-            fields.folder(),
-            worlds.folder(),
-            except.folder(),
-        ];
-        let has_folder = folders.iter().any(Option::is_some);
-        !has_folder && self.files.is_empty() && fields.named.is_empty()
+        let config = &self.config;
+        let has_folder = config.tables.folder().is_some()
+            || config.fields.folder().is_some()
+            || config.worlds.folder().is_some()
+            || config.except.folder().is_some();
+        !has_folder && self.files.is_empty() && config.fields.named.is_empty()
     }
 
     /// Reads all of them. Links are followed: orchestrators change what a link points to.
     pub fn look(&self) -> Fingerprint {
-        let listed = self
-            .config
-            .tables
-            .folder()
-            .and_then(|folder| fs::read_dir(folder).ok());
-        let tables = listed.into_iter().flatten().filter_map(|file| {
-            let path = file.ok()?.path();
-            let is_table = path.extension().is_some_and(|e| e == "strew");
-            is_table.then_some(path)
-        });
-        let mut tables: Vec<PathBuf> = tables.collect();
+        let folder = self.config.tables.folder();
+        let listed = folder.and_then(|folder| fs::read_dir(folder).ok());
+        let listed = listed.into_iter().flatten().flatten();
+        let mut tables: Vec<PathBuf> = listed.map(|file| file.path()).collect();
+        tables.retain(|path| path.extension().is_some_and(|e| e == "strew"));
         tables.sort();
         // A reload may have added fields, whose files are watched from then on.
         let now = self.config.read_names();

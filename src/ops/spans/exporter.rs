@@ -80,12 +80,13 @@ impl Collector {
         })?;
         exporter.set_resource(&resource(&settings.service_name));
         let (sender, queue) = mpsc::channel(settings.max_queued_spans);
-        let lost = metrics.spans("lost");
+        let counter = |outcome| metrics.spans.with_label_values(&[outcome]);
+        let lost = counter("lost");
         let stop = CancellationToken::new();
         let task = Task {
             exporter,
             queue,
-            sent: metrics.spans("sent"),
+            sent: counter("sent"),
             lost: lost.clone(),
             failed: LogThrottle::default(),
         };

@@ -184,16 +184,13 @@ impl Endpoint {
         S: Clone + Send + Sync + 'static,
         T: 'static,
     {
-        Self::new(path).with(state, operation, handle)
-    }
-
-    pub fn new(path: &'static str) -> Self {
-        Self {
+        let endpoint = Self {
             path,
             operations: vec![],
             is_open: false,
             answers: MethodRouter::new(),
-        }
+        };
+        endpoint.with(state, operation, handle)
     }
 
     pub fn with<S, T>(
@@ -233,13 +230,10 @@ impl Endpoint {
     }
 
     fn allowed(&self) -> String {
-        let methods = self
-            .operations
-            .iter()
-            .map(|operation| match operation.method {
-                Method::GET => "GET, HEAD",
-                ref method => method.as_str(),
-            });
+        let methods = self.operations.iter().map(|of| match of.method {
+            Method::GET => "GET, HEAD",
+            ref method => method.as_str(),
+        });
         methods.collect::<Vec<_>>().join(", ")
     }
 }

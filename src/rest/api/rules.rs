@@ -56,6 +56,13 @@ pub(super) struct Other {
     values: Vec<&'static str>,
 }
 
+impl Other {
+    const fn any(parameter: &'static str) -> Self {
+        let values = vec![];
+        Self { parameter, values }
+    }
+}
+
 /// Whether a parameter is the first of those that exclude each other, or excludes none.
 pub(super) fn is_first_of_its_kind(parameter: &Parameter) -> bool {
     const ALTERNATIVES: [Group; 5] = [
@@ -92,17 +99,11 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
         _ => {}
     }
     let is_optional = groups.contains(&Group::Occurrences);
-    let alternatives = [
-        (places, None),
-        (
-            if is_optional || is_of_world {
-                vec![]
-            } else {
-                names(&[Group::Amount, Group::Count])
-            },
-            world,
-        ),
-    ];
+    let amounts = match is_optional || is_of_world {
+        true => vec![],
+        false => names(&[Group::Amount, Group::Count]),
+    };
+    let alternatives = [(places, None), (amounts, world)];
     let mut rules: Vec<Rule> = alternatives
         .into_iter()
         .filter(|(parameters, _)| !parameters.is_empty())
@@ -123,23 +124,14 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
     } else if groups.contains(&Group::WorldPin) {
         rules.push(Rule::OnlyWithOneOf {
             parameter: WORLD_DIGEST.name,
-            others: vec![Other {
-                parameter: WORLD.name,
-                values: vec![],
-            }],
+            others: vec![Other::any(WORLD.name)],
         });
     }
     if is_optional {
         let amounts = names(&[Group::Amount]);
         let beside = |parameter: &Parameter, others: &[&'static str]| Rule::OnlyWithOneOf {
             parameter: parameter.name,
-            others: others
-                .iter()
-                .map(|&parameter| Other {
-                    parameter,
-                    values: vec![],
-                })
-                .collect(),
+            others: others.iter().copied().map(Other::any).collect(),
         };
         rules.push(beside(&LIST, &[GRID.name]));
         rules.extend([&PATTERN_LIMIT, &PATTERN_CURSOR].map(|given| beside(given, &[LIST.name])));
@@ -154,12 +146,9 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
             && *parameter == ONLY.name
         {
             let layers = world.into_iter().chain(is_body.then_some("layers"));
-            others.extend(layers.map(|parameter| Other {
-                parameter,
-                values: vec![],
-            }));
+            others.extend(layers.map(Other::any));
         }
-        if !(is_of_world && rule.parameter() == Some(ONLY.name)) {
+        if !(is_of_world && rule.words().0 == Some(ONLY.name)) {
             join(&mut rules, rule);
         }
     }
@@ -228,8 +217,9 @@ fn published(rule: &rules::Rule, groups: &'static [Group]) -> Option<Rule> {
 
 /// The rules that are about no single parameter, as a list in Markdown below a description.
 pub(super) fn below(about: &str, rules: &[Rule]) -> String {
-    let shared = rules.iter().filter_map(Rule::of_several);
-    let items: String = shared.map(|words| format!("\n- {words}")).collect();
+    let all = rules.iter().map(Rule::words);
+    let shared = all.filter(|(parameter, _)| parameter.is_none());
+    let items: String = shared.map(|(_, words)| format!("\n- {words}")).collect();
     match items.is_empty() {
         true => about.into(),
         false => format!("{about}\n{items}"),
@@ -238,63 +228,51 @@ pub(super) fn below(about: &str, rules: &[Rule]) -> String {
 
 /// The rules about a parameter, as sentences behind its description.
 pub(super) fn at(parameter: &str, rules: &[Rule]) -> String {
-    let sentences = rules.iter().filter_map(|rule| rule.of_one(parameter));
-    sentences.map(|words| format!(" {words}")).collect()
+    let all = rules.iter().map(Rule::words);
+    let its = all.filter(|(of, _)| *of == Some(parameter));
+    its.map(|(_, words)| format!(" {words}")).collect()
 }
 
 impl Rule {
-    const fn parameter(&self) -> Option<&'static str> {
-        match self {
-            Self::ExactlyOneOf { .. } | Self::AtMostOneOf { .. } => None,
-            Self::OnlyWith { parameter, .. }
-            | Self::OnlyWithOneOf { parameter, .. }
-            | Self::NotWith { parameter, .. }
-            | Self::Needs { parameter, .. } => Some(*parameter),
-        }
-    }
-
-    fn of_several(&self) -> Option<String> {
+    /// The parameter that it is about, if it is about one, and what it says.
+    fn words(&self) -> (Option<&'static str>, String) {
         match self {
             Self::ExactlyOneOf { parameters, unless } => {
                 let unless =
                     unless.map_or_else(String::new, |other| format!(", unless {other} is"));
                 let parameters = parameters.join(", ");
-                Some(format!(
-                    "Exactly one of {parameters} must be given{unless}."
-                ))
+                let words = format!("Exactly one of {parameters} must be given{unless}.");
+                (None, words)
             }
-            Self::AtMostOneOf { parameters } => Some(format!(
-                "At most one of {} may be given.",
-                parameters.join(", ")
-            )),
-            _ => None,
-        }
-    }
-
-    fn of_one(&self, wanted: &str) -> Option<String> {
-        match self {
+            Self::AtMostOneOf { parameters } => {
+                let parameters = parameters.join(", ");
+                (None, format!("At most one of {parameters} may be given."))
+            }
             Self::OnlyWith {
                 parameter,
                 other,
                 values,
-            } if *parameter == wanted => Some(format!("Only with {other} {}.", values.join(", "))),
-            Self::OnlyWithOneOf { parameter, others } if *parameter == wanted => {
+            } => {
+                let words = format!("Only with {other} {}.", values.join(", "));
+                (Some(parameter), words)
+            }
+            Self::OnlyWithOneOf { parameter, others } => {
                 let others = others.iter().map(|other| {
                     let words = [&[other.parameter], &other.values[..]].concat();
                     words.join(" ").replace("even joint", "even or joint")
                 });
                 let others: Vec<String> = others.collect();
-                Some(format!("Only with {}.", others.join(", ")))
+                (Some(parameter), format!("Only with {}.", others.join(", ")))
             }
-            Self::NotWith { parameter, others } if *parameter == wanted && !others.is_empty() => {
-                Some(format!("Not together with {}.", others.join(", ")))
+            Self::NotWith { parameter, others } => {
+                let words = format!("Not together with {}.", others.join(", "));
+                (Some(parameter), words)
             }
             Self::Needs {
                 parameter,
                 value,
                 needs,
-            } if *parameter == wanted => Some(format!("`{value}` needs {needs}.")),
-            _ => None,
+            } => (Some(parameter), format!("`{value}` needs {needs}.")),
         }
     }
 }

@@ -115,45 +115,30 @@ pub(super) fn reference(name: &str) -> Value {
 
 /// The JSON Schema of a parameter in an address.
 pub(super) fn as_text(shape: Shape) -> Value {
-    match shape {
+    let list = |item: &str| format!("{item}(,{item})*");
+    let pattern = match shape {
         Shape::Numbers(names) => {
             let more = names.len().saturating_sub(1);
-            json!({ "type": "string", "pattern": format!("^{NUMBER}(,{NUMBER}){{{more}}}$") })
+            format!("{NUMBER}(,{NUMBER}){{{more}}}")
         }
-        Shape::Integers { names, .. } => {
-            let pattern = vec![INTEGER; names.len()].join(",");
-            json!({ "type": "string", "pattern": format!("^{pattern}$") })
-        }
+        Shape::Integers { names, .. } => vec![INTEGER; names.len()].join(","),
         Shape::Offsets { .. } => {
             let pair = format!("{INTEGER},{INTEGER}");
-            json!({ "type": "string", "pattern": format!("^{pair}([ +]{pair})*$") })
+            format!("{pair}([ +]{pair})*")
         }
-        Shape::Vertices => {
-            json!({ "type": "string", "pattern": format!("^{NUMBER},{NUMBER}(,{NUMBER},{NUMBER}){{2,}}$") })
-        }
-        Shape::Names { pattern } => {
-            let name = pattern.trim_start_matches('^').trim_end_matches('$');
-            json!({ "type": "string", "pattern": format!("^{name}(,{name})*$") })
-        }
-        Shape::Weights => {
-            let pair = format!("{}(:{NUMBER})?", NAME);
-            json!({ "type": "string", "pattern": format!("^{pair}(,{pair})*$") })
-        }
-        Shape::Ranges => {
-            let range = format!("{}:{NUMBER}:{NUMBER}", NAME);
-            json!({ "type": "string", "pattern": format!("^{range}(,{range})*$") })
-        }
-        Shape::Switch => json!({ "type": "string", "enum": ["on", "off"] }),
-        Shape::Field => json!({ "type": "string", "pattern": format!("^{}$", NAME) }),
-        Shape::Fields => {
-            let pair = format!("{}:{}", NAME, NAME);
-            json!({ "type": "string", "pattern": format!("^{pair}(,{pair})*$") })
-        }
+        Shape::Vertices => format!("{NUMBER},{NUMBER}(,{NUMBER},{NUMBER}){{2,}}"),
+        Shape::Names { pattern } => list(pattern.trim_start_matches('^').trim_end_matches('$')),
+        Shape::Weights => list(&format!("{NAME}(:{NUMBER})?")),
+        Shape::Ranges => list(&format!("{NAME}:{NUMBER}:{NUMBER}")),
+        Shape::Field => NAME.into(),
+        Shape::Fields => list(&format!("{NAME}:{NAME}")),
+        Shape::Switch => return json!({ "type": "string", "enum": ["on", "off"] }),
         Shape::Integer { min, max } => {
-            json!({ "type": "integer", "minimum": min, "maximum": max })
+            return json!({ "type": "integer", "minimum": min, "maximum": max });
         }
-        other => schema(other),
-    }
+        other => return schema(other),
+    };
+    json!({ "type": "string", "pattern": format!("^{pattern}$") })
 }
 
 /// An integer of up to 15 digits, which is within all bounds.

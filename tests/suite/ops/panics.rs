@@ -27,8 +27,7 @@ async fn a_panic_fails_one_request_only() {
         method,
         ..Operation::new(Tag::Operations, vec![])
     };
-    let endpoint = Endpoint::new("/panics")
-        .with((), operation(Method::GET), panics)
+    let endpoint = Endpoint::only("/panics", (), operation(Method::GET), panics)
         .with((), operation(Method::POST), panics)
         .open();
     let mut app = App::new(layers.finish().expect("settings")).expect("tables");
