@@ -11,19 +11,10 @@ mod points;
 mod query;
 mod region;
 mod resolved;
+mod server;
 mod set;
 mod status;
 mod unpacked;
-
-/// What tonic generates for the service of the contract (the test of `crates/proto` writes it).
-#[allow(
-    clippy::allow_attributes_without_reason,
-    clippy::all,
-    reason = "generated"
-)]
-mod server {
-    include!("generated/server.rs");
-}
 
 use std::sync::Arc;
 
