@@ -1,8 +1,8 @@
 //! `strew probe`: requests the health of a daemon, for health checks of containers that hold no other program.
 
 use std::{
-    fmt,
-    io::{self, Read as _, Write as _},
+    error::Error as _,
+    io,
     net::{IpAddr, SocketAddr},
     path::{Path, PathBuf},
     sync::Arc,
@@ -10,10 +10,17 @@ use std::{
 };
 
 use anyhow::{Context as _, anyhow, bail};
-use http::Uri;
+use bytes::Bytes;
+use http::{
+    Request, StatusCode, Uri,
+    header::{CONNECTION, HOST},
+};
+use http_body_util::Empty;
+use hyper::client::conn::http1;
+use hyper_util::rt::TokioIo;
 use rustls::{
-    AlertDescription, CertificateError, ClientConfig, ClientConnection, DigitallySignedStruct,
-    RootCertStore, SignatureScheme, StreamOwned,
+    AlertDescription, CertificateError, ClientConfig, DigitallySignedStruct, RootCertStore,
+    SignatureScheme,
     client::{
         WebPkiServerVerifier,
         danger::{HandshakeSignatureValid, ServerCertVerified, ServerCertVerifier},
@@ -27,16 +34,11 @@ use rustls::{
     server::ParsedCertificate,
 };
 use strew_config::bounded_file;
-use ureq::{
-    Agent,
-    unversioned::{
-        resolver::DefaultResolver,
-        transport::{
-            Buffers, ConnectionDetails, Connector, Either, LazyBuffers, NextTimeout, TcpConnector,
-            Transport, TransportAdapter,
-        },
-    },
+use tokio::{
+    io::{AsyncRead, AsyncWrite},
+    net::TcpStream,
 };
+use tokio_rustls::TlsConnector;
 
 use super::{Failure, config, must_be_within, refuse};
 use crate::ops::tls::{certificates, validity};
@@ -108,17 +110,16 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         false => ("readyz", "ready"),
     };
     let url = format!("{address}{path}");
-    let config = Agent::config_builder()
-        .timeout_global(Some(timeout))
-        .http_status_as_error(false)
-        .max_redirects(0)
-        .proxy(None)
-        .build();
-    let connector = ().chain(TcpConnector::default()).chain(tls);
-    let agent = Agent::with_parts(config, connector, DefaultResolver::default());
-    let answer = agent.get(&url).header("connection", "close").call();
-    let answer = answer.map_err(|error| explained(error, timeout));
-    match answer.with_context(|| url.clone())?.status().as_u16() {
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .context("cannot start the runtime")?;
+    let asked = async { tokio::time::timeout(timeout, status(&address, path, tls)).await };
+    let answer = runtime.block_on(asked);
+    // A name that is still being looked up must not keep the process.
+    runtime.shutdown_background();
+    let answer = answer.unwrap_or_else(|_| Err(anyhow!("no answer within {timeout:?}")));
+    match answer.with_context(|| url.clone())?.as_u16() {
         200 => Ok(()),
         status => Err(anyhow!("{url}: not {wanted}: status {status}").into()),
     }
@@ -162,27 +163,62 @@ fn listener(listen: SocketAddr, is_tls: bool) -> Result<Uri, Failure> {
     ))
 }
 
-fn explained(error: ureq::Error, timeout: Duration) -> anyhow::Error {
-    match error {
-        ureq::Error::Timeout(_) => anyhow!("no answer within {timeout:?}"),
-        ureq::Error::Protocol(_) | ureq::Error::LargeResponseHeader(..) => {
-            anyhow!("the answer is not HTTP (a daemon with TLS needs https)")
+/// The settings of TLS, and the name that the daemon's certificate must have; `None` for plain HTTP.
+type Tls = Option<(Arc<ClientConfig>, ServerName<'static>)>;
+
+/// Requests a page of the daemon. Returns the status of the answer.
+async fn status(address: &Uri, path: &str, tls: Tls) -> anyhow::Result<StatusCode> {
+    let authority = address.authority().context("no host")?;
+    let port = authority.port_u16();
+    let port = port.unwrap_or(if tls.is_some() { 443 } else { 80 });
+    let request = Request::get(format!("/{path}"))
+        .header(HOST, authority.as_str())
+        .header(CONNECTION, "close")
+        .body(Empty::new())?;
+    let socket = TcpStream::connect((host(address), port)).await?;
+    let answer = match tls {
+        None => answer(socket, request).await,
+        Some((config, name)) => {
+            let connector = TlsConnector::from(config);
+            answer(connector.connect(name, socket).await?, request).await
         }
-        ureq::Error::Io(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
-            anyhow!("the connection ended before the answer was complete")
-        }
-        ureq::Error::Io(error) => {
-            let cause = error.get_ref().and_then(|cause| cause.downcast_ref());
-            // TLS 1.3 has an alert for a missing certificate, TLS 1.2 has none.
-            let wanted = rustls::Error::AlertReceived(AlertDescription::CertificateRequired);
-            match cause == Some(&wanted) {
-                true => anyhow!(error).context(
-                    "the daemon requires a client certificate: use --certificate and --key",
-                ),
-                false => error.into(),
-            }
-        }
-        error => error.into(),
+    };
+    answer.map_err(explained)
+}
+
+async fn answer(
+    stream: impl AsyncRead + AsyncWrite + Send + Unpin + 'static,
+    request: Request<Empty<Bytes>>,
+) -> hyper::Result<StatusCode> {
+    let (mut sender, connection) = http1::handshake(TokioIo::new(stream)).await?;
+    tokio::spawn(connection);
+    Ok(sender.send_request(request).await?.status())
+}
+
+/// The host of an address, without the brackets of IPv6.
+fn host(address: &Uri) -> &str {
+    let host = address.host().unwrap_or_default();
+    host.trim_matches(['[', ']'])
+}
+
+fn explained(error: hyper::Error) -> anyhow::Error {
+    if error.is_parse() {
+        return anyhow!("the answer is not HTTP (a daemon with TLS needs https)");
+    }
+    let cause = error.source();
+    let of_socket = cause.and_then(|cause| cause.downcast_ref::<io::Error>());
+    let is_end = of_socket.is_some_and(|error| error.kind() == io::ErrorKind::UnexpectedEof);
+    if error.is_incomplete_message() || is_end {
+        return anyhow!("the connection ended before the answer was complete");
+    }
+    let of_tls = of_socket.and_then(|error| error.get_ref()?.downcast_ref());
+    // TLS 1.3 has an alert for a missing certificate, TLS 1.2 has none.
+    let wanted = rustls::Error::AlertReceived(AlertDescription::CertificateRequired);
+    let text = cause.map_or_else(|| error.to_string(), ToString::to_string);
+    match of_tls == Some(&wanted) {
+        true => anyhow!(text)
+            .context("the daemon requires a client certificate: use --certificate and --key"),
+        false => anyhow!(text),
     }
 }
 
@@ -198,7 +234,7 @@ impl Args {
                 Some((flag, _)) => {
                     bail!("{flag}: the URL is http; allowed: with an --url of https")
                 }
-                None => Ok(Tls(None)),
+                None => Ok(None),
             };
         }
         let verifier = match &self.ca {
@@ -226,14 +262,13 @@ impl Args {
             }
             _ => builder.with_no_client_auth(),
         };
-        let host = address.host().unwrap_or_default();
         let (flag, name) = match &self.server_name {
             Some(name) => ("--server-name", &**name),
-            None => ("--url", host.trim_matches(['[', ']'])),
+            None => ("--url", host(address)),
         };
         let name = ServerName::try_from(name.to_owned())
             .map_err(|_| anyhow!("{flag}: {name:?} is neither a host name nor an IP address"))?;
-        Ok(Tls(Some((config.into(), name))))
+        Ok(Some((config.into(), name)))
     }
 }
 
@@ -246,74 +281,6 @@ fn read(flag: &str, path: &Path) -> anyhow::Result<Vec<u8>> {
 
 fn of(flag: &str, path: &Path, problem: &str) -> anyhow::Error {
     anyhow!("{flag} {}: {problem}", path.display())
-}
-
-/// Encrypts a connection, if there are settings and a name that the daemon's certificate must have. ureq's own TLS
-/// takes no verifier of ours, and no name other than that of the URL.
-#[derive(Debug)]
-struct Tls(Option<(Arc<ClientConfig>, ServerName<'static>)>);
-
-struct Encrypted {
-    buffers: LazyBuffers,
-    stream: StreamOwned<ClientConnection, TransportAdapter>,
-}
-
-impl fmt::Debug for Encrypted {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Encrypted").finish_non_exhaustive()
-    }
-}
-
-impl<In: Transport> Connector<In> for Tls {
-    type Out = Either<In, Encrypted>;
-
-    fn connect(
-        &self,
-        details: &ConnectionDetails<'_>,
-        plain: Option<In>,
-    ) -> Result<Option<Self::Out>, ureq::Error> {
-        let Some(plain) = plain else {
-            return Ok(None);
-        };
-        let Some((config, name)) = &self.0 else {
-            return Ok(Some(Either::A(plain)));
-        };
-        let connection = ClientConnection::new(config.clone(), name.clone());
-        let connection = connection.map_err(|error| ureq::Error::Io(io::Error::other(error)))?;
-        // The first write is the handshake, within the time of the request.
-        let socket = TransportAdapter::new(plain.boxed(), details.current_time.clone());
-        let config = details.config;
-        Ok(Some(Either::B(Encrypted {
-            buffers: LazyBuffers::new(config.input_buffer_size(), config.output_buffer_size()),
-            stream: StreamOwned::new(connection, socket),
-        })))
-    }
-}
-
-impl Transport for Encrypted {
-    fn buffers(&mut self) -> &mut dyn Buffers {
-        &mut self.buffers
-    }
-
-    fn transmit_output(&mut self, amount: usize, timeout: NextTimeout) -> Result<(), ureq::Error> {
-        self.stream.sock.set_timeout(timeout);
-        Ok(self.stream.write_all(&self.buffers.output()[..amount])?)
-    }
-
-    fn await_input(&mut self, timeout: NextTimeout) -> Result<bool, ureq::Error> {
-        self.stream.sock.set_timeout(timeout);
-        let read = self.stream.read(self.buffers.input_append_buf())?;
-        self.buffers.input_appended(read);
-        Ok(read > 0)
-    }
-
-    fn is_open(&mut self) -> bool {
-        false
-    }
-
-    fn is_tls(&self) -> bool {
-        true
-    }
 }
 
 /// Decides which certificates are accepted: with named ones those and the ones that they issued, else any. In either
