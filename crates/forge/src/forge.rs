@@ -14,12 +14,12 @@ use crate::{
 
 /// The result of a job.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Outcome {
+pub struct Outcome<T = Table> {
     /// The table with its history. It is usable in any case.
-    pub table: Table,
+    pub table: T,
     /// Whether the table was judged on unseen point sets and met every bound of its profile.
     pub accepted: bool,
-    /// Whether the watch stopped the work. The table is then the best so far and was not judged.
+    /// Whether the watch stopped the work. The table is then the best so far, in space without ranks, and was not judged.
     pub interrupted: bool,
     /// The bounds that the table missed.
     pub complaints: Vec<Complaint>,

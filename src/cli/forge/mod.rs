@@ -13,13 +13,13 @@ use strew_catalog::{Catalog, Dimension, Key};
 use strew_config::bounded_file;
 use strew_core::{Alpha, Table, map::Size, table::Shares};
 use strew_forge::{
-    Checkpoint, DEFAULT_SEED, Estimate, ForgeError, Job, MixJob, Prospect, Target, file_name,
-    forge, mix, mix_file_name, read_table, resume,
+    Checkpoint, DEFAULT_SEED, Estimate, Job, MixJob, Prospect, Target, file_name, forge, mix,
+    mix_file_name, read_table, resume,
     space::{self, SpaceEstimate, SpaceJob, SpaceProfile, table_file_name},
 };
 use strew_query::{DEFAULT_ALPHA, DEFAULT_PROFILE};
 
-use self::work::{Checkpoints, Made, Watcher, Work};
+use self::work::{Checkpoints, Watcher, Work};
 use super::{Failure, refuse};
 
 /// Flags of `strew forge`. Equal jobs make equal tables, bit by bit, on every machine.
@@ -54,7 +54,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let Args { work, steps, .. } = args;
     match &args.task {
         Some(Task::Mix(args)) => make_mix(args),
-        None => table(&args.table, *steps, work, &args.checkpoints),
+        None => work.pool()?.install(|| match args.table.space {
+            true => in_space(&args.table.job_in_space(*steps)?, work, &args.checkpoints),
+            false => in_plane(&args.table.job(*steps)?, work, &args.checkpoints),
+        }),
     }
 }
 
@@ -104,6 +107,25 @@ impl TableArgs {
         })
     }
 
+    /// The job of a table of points in space. What the flags leave open is as in the shipped tables.
+    fn job_in_space(&self, steps: Option<u32>) -> Result<SpaceJob, Failure> {
+        let profile = &self.profile;
+        let Some(profile) = SpaceProfile::named(profile) else {
+            let names = SpaceProfile::ALL.map(SpaceProfile::name).join(", ");
+            refuse!(
+                "--profile {profile}: no profile of points in space; allowed with --space: {names}"
+            );
+        };
+        let default = SpaceJob::new(profile);
+        Ok(SpaceJob {
+            alpha: self.alpha,
+            radius: self.radius.unwrap_or(default.radius),
+            seed: self.seed.unwrap_or(default.seed),
+            steps,
+            ..default
+        })
+    }
+
     fn target(&self) -> Result<Option<Target>, Failure> {
         let Some(file) = &self.target else {
             return Ok(None);
@@ -117,58 +139,17 @@ impl TableArgs {
     }
 }
 
-fn table(
-    args: &TableArgs,
-    steps: Option<u32>,
-    work: &Work,
-    checkpoints: &Checkpoints,
-) -> Result<(), Failure> {
-    if args.space {
-        let job = job_in_space(&args.profile, args.alpha, args.radius, args.seed, steps)?;
-        return run_in_space(&job, work, checkpoints);
-    }
-    let job = args.job(steps)?;
+fn in_plane(job: &Job, work: &Work, checkpoints: &Checkpoints) -> Result<(), Failure> {
     let path = work.path(&file_name(&job.profile, job.alpha, job.radius))?;
-    let pool = work.pool()?;
-    let estimate = pool.install(|| job.estimate()).map_err(Failure::usage)?;
-    let kept = Checkpoints::path(&path);
-    let is_of = |found: &Checkpoint| found.is_of(&job);
-    let found = pool.install(|| checkpoints.found(&kept, work.quiet, is_of))?;
-    if !work.quiet {
-        announce(&path, &job.prospect(), &estimate);
-        if let Some(found) = &found {
-            let (steps, from) = (found.steps(), kept.display());
-            eprintln!(
-                "resuming at step {steps} of {}, from {from}",
-                estimate.steps
-            );
-        }
-    }
-    let watcher = checkpoints.watcher(&kept, work);
-    let outcome = pool.install(|| match found {
-        None => forge(&job, &watcher),
-        Some(found) => resume(&job, found, &watcher),
-    });
-    let outcome = outcome.map_err(Failure::usage)?;
-    watcher.finish();
-    if outcome.interrupted {
-        let text = work.interrupted(&path, &outcome.table, &watcher)?;
-        return Err(Failure::Interrupted(anyhow!(text)));
-    }
-    let nearness = outcome.nearness.as_ref().map(|near| {
-        let met = if outcome.accepted { "met" } else { "missed" };
-        format!("the target is {met}: {near}")
-    });
-    let (table, complaints) = (&outcome.table, &outcome.complaints);
-    work.conclude(
-        &path,
-        "table",
-        table,
-        outcome.accepted,
-        nearness,
-        complaints,
-    )?;
-    Checkpoints::remove(&kept)
+    let estimate = job.estimate().map_err(Failure::usage)?;
+    let announced = || announce(&path, &job.prospect(), &estimate);
+    let is_of = |found: &Checkpoint| found.is_of(job);
+    let make = |found, watcher: &Watcher| match found {
+        None => forge(job, watcher),
+        Some(found) => resume(job, found, watcher),
+    };
+    checkpoints.made(work, &path, is_of, (estimate.steps, announced), make)?;
+    Ok(())
 }
 
 fn announce(path: &Path, prospect: &Prospect, estimate: &Estimate) {
@@ -193,74 +174,19 @@ fn announce(path: &Path, prospect: &Prospect, estimate: &Estimate) {
     }
 }
 
-/// The job of a table of points in space. What the flags leave open is as in the shipped tables.
-fn job_in_space(
-    profile: &str,
-    alpha: Alpha,
-    radius: Option<u32>,
-    seed: Option<u64>,
-    steps: Option<u32>,
-) -> Result<SpaceJob, Failure> {
-    let Some(profile) = SpaceProfile::named(profile) else {
-        let names = SpaceProfile::ALL.map(SpaceProfile::name).join(", ");
-        refuse!(
-            "--profile {profile}: no profile of points in space; allowed with --space: {names}"
-        );
-    };
-    let default = SpaceJob::new(profile);
-    Ok(SpaceJob {
-        alpha,
-        radius: radius.unwrap_or(default.radius),
-        seed: seed.unwrap_or(default.seed),
-        steps,
-        ..default
-    })
-}
-
-fn run_in_space(job: &SpaceJob, work: &Work, checkpoints: &Checkpoints) -> Result<(), Failure> {
+fn in_space(job: &SpaceJob, work: &Work, checkpoints: &Checkpoints) -> Result<(), Failure> {
     let usual = table_file_name(job.profile.name(), job.alpha, job.radius);
     let path = work.path(&usual)?;
-    let pool = work.pool()?;
-    let estimate = pool.install(|| job.estimate()).map_err(Failure::usage)?;
-    let kept = Checkpoints::path(&path);
+    let estimate = job.estimate().map_err(Failure::usage)?;
+    let announced = || announce_in_space(&path, &estimate, work.threads());
     let is_of = |found: &Checkpoint| found.is_of_space(job);
-    let found = checkpoints.found(&kept, work.quiet, is_of)?;
-    if !work.quiet {
-        announce_in_space(&path, &estimate, work.threads());
-        if let Some(found) = &found {
-            let (steps, of, from) = (found.steps(), estimate.steps, kept.display());
-            eprintln!("resuming at step {steps} of {of}, from {from}");
-        }
-    }
-    let watcher = checkpoints.watcher(&kept, work);
-    let outcome = pool.install(|| match found {
-        None => space::forge(job, &watcher),
-        Some(found) => space::resume(job, found, &watcher),
-    });
-    let outcome = outcome.map_err(Failure::usage)?;
-    watcher.finish();
-    if outcome.interrupted {
-        let text = work.interrupted(&path, &outcome.table, &watcher)?;
-        return Err(Failure::Interrupted(anyhow!(text)));
-    }
-    let (is_accepted, complaints) = (outcome.accepted, &outcome.complaints);
-    work.conclude(
-        &path,
-        "table",
-        &outcome.table,
-        is_accepted,
-        None,
-        complaints,
-    )?;
-    work.show(&outcome.table.provenance().figures);
-    Checkpoints::remove(&kept)
-}
-
-impl Made for strew_core::space::Table {
-    fn write(&self, path: &Path) -> Result<String, ForgeError> {
-        space::write_table(path, self)?;
-        Ok(self.digest().to_string())
-    }
+    let make = |found, watcher: &Watcher| match found {
+        None => space::forge(job, watcher),
+        Some(found) => space::resume(job, found, watcher),
+    };
+    let table = checkpoints.made(work, &path, is_of, (estimate.steps, announced), make)?;
+    work.show(&table.provenance().figures);
+    Ok(())
 }
 
 fn announce_in_space(path: &Path, estimate: &SpaceEstimate, threads: usize) {
@@ -348,8 +274,8 @@ fn make_mix(args: &MixArgs) -> Result<(), Failure> {
     let Some(outcome) = outcome.map_err(Failure::usage)? else {
         return Err(Failure::Interrupted(anyhow!("interrupted")));
     };
-    let (table, complaints) = (&outcome.table, &outcome.complaints);
-    work.conclude(&path, "mix", table, outcome.accepted, None, complaints)?;
+    let judged = (outcome.accepted, &outcome.complaints[..]);
+    work.conclude(&path, "mix", &outcome.table, judged, None)?;
     work.show(&outcome.figures);
     Ok(())
 }

@@ -13,8 +13,13 @@ use std::{
 
 use anyhow::{Context as _, anyhow};
 use parking_lot::Mutex;
-use strew_core::{Table, table::Figures};
-use strew_forge::{Checkpoint, Complaint, ForgeError, Stage, Watch, gravest, write_table};
+use strew_core::{
+    Table,
+    table::{Digest, Figures},
+};
+use strew_forge::{
+    Checkpoint, Complaint, ForgeError, Outcome, Stage, Watch, gravest, space, write_table,
+};
 
 use crate::cli::{Failure, config, output, progress::Progress, refuse, signals};
 
@@ -71,9 +76,8 @@ impl Work {
         path: &Path,
         what: &str,
         table: &impl Made,
-        is_accepted: bool,
+        (is_accepted, complaints): (bool, &[Complaint]),
         why: Option<String>,
-        complaints: &[Complaint],
     ) -> Result<(), Failure> {
         let complaints = gravest(complaints);
         if !is_accepted && !self.keep_rejected {
@@ -94,7 +98,7 @@ impl Work {
     }
 
     /// The message of interrupted work, which says where it resumes. Writes the best table so far if it is to be kept.
-    pub(super) fn interrupted(
+    fn interrupted(
         &self,
         path: &Path,
         table: &impl Made,
@@ -128,13 +132,18 @@ impl Work {
 
 pub(super) trait Made {
     /// Writes its file. Returns its digest.
-    fn write(&self, path: &Path) -> Result<String, ForgeError>;
+    fn write(&self, path: &Path) -> Result<Digest, ForgeError>;
 }
 
 impl Made for Table {
-    fn write(&self, path: &Path) -> Result<String, ForgeError> {
-        write_table(path, self)?;
-        Ok(self.digest().to_string())
+    fn write(&self, path: &Path) -> Result<Digest, ForgeError> {
+        write_table(path, self).map(|()| self.digest())
+    }
+}
+
+impl Made for strew_core::space::Table {
+    fn write(&self, path: &Path) -> Result<Digest, ForgeError> {
+        space::write_table(path, self).map(|()| self.digest())
     }
 }
 
@@ -157,14 +166,56 @@ pub(super) struct Checkpoints {
 }
 
 impl Checkpoints {
-    pub(super) fn path(table: &Path) -> PathBuf {
+    /// Makes a table by `make`, anew or from the checkpoint of its job, and writes it. Before that, `announce` shows what
+    /// takes `steps`.
+    pub(super) fn made<T: Made>(
+        &self,
+        work: &Work,
+        path: &Path,
+        is_of: impl Fn(&Checkpoint) -> Result<(), ForgeError>,
+        (steps, announce): (u32, impl FnOnce()),
+        make: impl FnOnce(Option<Checkpoint>, &Watcher) -> Result<Outcome<T>, ForgeError>,
+    ) -> Result<T, Failure> {
+        let kept = Self::path(path);
+        let found = self.found(&kept, work.quiet, is_of)?;
+        if !work.quiet {
+            announce();
+            if let Some(found) = &found {
+                let (step, from) = (found.steps(), kept.display());
+                eprintln!("resuming at step {step} of {steps}, from {from}");
+            }
+        }
+        let every = Duration::from_secs(self.checkpoint_every);
+        let watcher = Watcher::new(&kept, every, work.quiet);
+        let outcome = make(found, &watcher).map_err(Failure::usage)?;
+        watcher.finish();
+        if outcome.interrupted {
+            let text = work.interrupted(path, &outcome.table, &watcher)?;
+            return Err(Failure::Interrupted(anyhow!(text)));
+        }
+        let nearness = outcome.nearness.map(|near| {
+            let met = if outcome.accepted { "met" } else { "missed" };
+            format!("the target is {met}: {near}")
+        });
+        let judged = (outcome.accepted, &outcome.complaints[..]);
+        work.conclude(path, "table", &outcome.table, judged, nearness)?;
+        match fs::remove_file(&kept) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                let unremovable = || format!("cannot remove {}", kept.display());
+                Err(error).with_context(unremovable)?
+            }
+            _ => Ok(outcome.table),
+        }
+    }
+
+    fn path(table: &Path) -> PathBuf {
         let mut name = table.as_os_str().to_owned();
         name.push(".checkpoint");
         name.into()
     }
 
     /// The checkpoint to resume from, if there is one of the job, which `is_of` decides.
-    pub(super) fn found(
+    fn found(
         &self,
         path: &Path,
         quiet: bool,
@@ -189,22 +240,6 @@ impl Checkpoints {
                 Ok(None)
             }
             Err(error) => refuse!("{}: {error}; finish that job, or {advice}", path.display()),
-        }
-    }
-
-    pub(super) fn watcher(&self, checkpoint: &Path, work: &Work) -> Watcher {
-        let every = Duration::from_secs(self.checkpoint_every);
-        Watcher::new(checkpoint, every, work.quiet)
-    }
-
-    /// Removes the checkpoint of a table that is written.
-    pub(super) fn remove(checkpoint: &Path) -> Result<(), Failure> {
-        match fs::remove_file(checkpoint) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => {
-                let unremovable = || format!("cannot remove {}", checkpoint.display());
-                Ok(Err(error).with_context(unremovable)?)
-            }
-            _ => Ok(()),
         }
     }
 }
@@ -252,7 +287,7 @@ impl Watcher {
         }
     }
 
-    pub(super) fn has_kept(&self) -> bool {
+    fn has_kept(&self) -> bool {
         let kept = self.kept.lock();
         kept.good
     }

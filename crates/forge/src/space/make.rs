@@ -12,26 +12,12 @@ use super::{
     state::SpaceState,
 };
 use crate::{
-    Checkpoint, ForgeError, Meter, Stage, Watch,
+    Checkpoint, ForgeError, Meter, Outcome, Stage, Watch,
     checkpoint::{State, other_kind},
-    judge::Complaint,
     numeric::SplitMix,
 };
 
-/// The result of a job.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SpaceOutcome {
-    /// The table with its history. It is usable in any case.
-    pub table: Table,
-    /// Whether the table was judged and met every bound.
-    pub accepted: bool,
-    /// Whether the watch stopped the work. The table is then the best so far, without ranks, and was not judged.
-    pub interrupted: bool,
-    /// The bounds that the table missed.
-    pub complaints: Vec<Complaint>,
-}
-
-/// Makes a table and judges it. A table that misses a bound is no error: see [`SpaceOutcome::accepted`].
+/// Makes a table and judges it. A table that misses a bound is no error: see [`Outcome::accepted`].
 ///
 /// # Errors
 /// [`ForgeError::Field`] or [`ForgeError::Table`] for a part of the job that is not allowed.
@@ -46,7 +32,7 @@ pub struct SpaceOutcome {
 /// assert!(!outcome.accepted);
 /// # Ok::<(), strew_forge::ForgeError>(())
 /// ```
-pub fn forge(job: &SpaceJob, watch: &dyn Watch) -> Result<SpaceOutcome, ForgeError> {
+pub fn forge(job: &SpaceJob, watch: &dyn Watch) -> Result<Outcome<Table>, ForgeError> {
     run(job, None, watch)
 }
 
@@ -58,7 +44,7 @@ pub fn resume(
     job: &SpaceJob,
     from: Checkpoint,
     watch: &dyn Watch,
-) -> Result<SpaceOutcome, ForgeError> {
+) -> Result<Outcome<Table>, ForgeError> {
     run(job, Some(from), watch)
 }
 
@@ -79,7 +65,7 @@ fn run(
     job: &SpaceJob,
     from: Option<Checkpoint>,
     watch: &dyn Watch,
-) -> Result<SpaceOutcome, ForgeError> {
+) -> Result<Outcome<Table>, ForgeError> {
     let [coarse, map] = job.maps()?;
     let phases = job.phases();
     let all: u32 = phases.iter().map(|phase| phase.steps()).sum();
@@ -88,11 +74,12 @@ fn run(
         moves = refined(&coarse, &map, &moves)?;
     }
     let table = table(job, &map, &moves, [steps, all])?;
-    let interrupted = |table| SpaceOutcome {
+    let interrupted = |table| Outcome {
         table,
         accepted: false,
         interrupted: true,
         complaints: Vec::new(),
+        nearness: None,
     };
     if steps < all {
         return Ok(interrupted(table));
@@ -113,11 +100,12 @@ fn run(
         ..ranked.provenance().clone()
     };
     let (vectors, ranks) = (ranked.vectors().to_vec(), ranked.ranks().cloned());
-    Ok(SpaceOutcome {
+    Ok(Outcome {
         table: Table::new(map, job.profile.name(), vectors, provenance, ranks)?,
         accepted: complaints.is_empty(),
         interrupted: false,
         complaints,
+        nearness: None,
     })
 }
 

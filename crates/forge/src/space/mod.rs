@@ -24,7 +24,7 @@ pub use estimate::SpaceEstimate;
 pub use file::{read_table, table_file_name, write_table};
 pub use job::{MAX_SPACE_RADIUS, SpaceJob, SpaceProfile};
 pub use judge::{PLACES, SIDE, SpaceReport, unseen_twins};
-pub use make::{SpaceOutcome, forge, resume};
+pub use make::{forge, resume};
 pub use measure::{
     LocalPower, Shell, SpaceDistances, SpacePoints, SpacePower, SpaceShared, is_uniform_in_space,
 };
