@@ -76,64 +76,54 @@ struct Section {
     groups: &'static [Group],
 }
 
-const REGIONS: Section = Section {
-    name: "Regions",
-    about: "Regions that are parameters by themselves: a query has one of them, or a member `region`.",
-    groups: &[Group::Region],
-};
-const MEMBERS: Section = Section {
-    name: "Parameters",
-    about: "The parameters of a query: which points, and which part of them.",
-    groups: &[
-        Group::Period,
-        Group::Amount,
-        Group::Count,
-        Group::World,
-        Group::WorldPin,
-        Group::Profile,
-        Group::Table,
-        Group::Points,
-        Group::Thinned,
-        Group::Except,
-        Group::Attributes,
-        Group::Choices,
-        Group::Window,
-    ],
-};
-const OUTPUT: Section = Section {
-    name: "Output",
-    about: "The options of a document, beside its format.",
-    groups: groups::OUTPUT,
-};
-const NEIGHBORS: Section = Section {
-    name: "Neighbors",
-    about: "The bounds of a search for the nearest points.",
-    groups: &[Group::Nearest, Group::Neighbors],
-};
-const VOLUMES: Section = Section {
-    name: "VolumeParameters",
-    about: "Volumes that are parameters by themselves: a query in space has one of them, or a member `region`.",
-    groups: &[Group::Volume],
-};
-const SPACE: Section = Section {
-    name: "SpaceParameters",
-    about: "The parameters of a query in space: which points, and which part of them.",
-    groups: &[
-        Group::Amount,
-        Group::Profile,
-        Group::Table,
-        Group::Points,
-        Group::SpaceAttributes,
-        Group::Choices,
-        Group::Window,
-    ],
-};
+/// The types of a query, and those that only programs in TypeScript have.
+const SECTIONS: [Section; 6] = [
+    Section {
+        name: "Regions",
+        about: "Regions that are parameters by themselves: a query has one of them, or a member `region`.",
+        groups: &[Group::Region],
+    },
+    Section {
+        name: "Parameters",
+        about: "The parameters of a query: which points, and which part of them.",
+        groups: groups::QUERY,
+    },
+    Section {
+        name: "Output",
+        about: "The options of a document, beside its format.",
+        groups: groups::OUTPUT,
+    },
+    Section {
+        name: "Neighbors",
+        about: "The bounds of a search for the nearest points.",
+        groups: &[Group::Nearest, Group::Neighbors],
+    },
+    Section {
+        name: "VolumeParameters",
+        about: "Volumes that are parameters by themselves: a query in space has one of them, or a member `region`.",
+        groups: &[Group::Volume],
+    },
+    Section {
+        name: "SpaceParameters",
+        about: "The parameters of a query in space: which points, and which part of them.",
+        groups: groups::SPACE_QUERY,
+    },
+];
+
+fn of_query() -> &'static [Section] {
+    &SECTIONS[..3]
+}
 
 impl Section {
-    /// Its parameters in a table. Bindings have arguments of their own for what is required, and for the format.
+    /// Its parameters in a table. Bindings have arguments of their own for what is required, and for the format. The
+    /// options of documents are a section of their own.
     fn of<'a>(&self, table: &[&'a Parameter]) -> Vec<&'a Parameter> {
         let mut taken = within(table, self.groups);
-        taken.retain(|&parameter| !parameter.is_required && *parameter != FORMAT);
+        let is_output = self.groups == groups::OUTPUT;
+        taken.retain(|&parameter| {
+            let is_own = groups::OUTPUT.contains(&parameter.group) == is_output;
+            is_own && !parameter.is_required && *parameter != FORMAT
+        });
         taken
     }
 }
@@ -143,13 +133,6 @@ fn within<'a>(table: &[&'a Parameter], groups: &[Group]) -> Vec<&'a Parameter> {
     taken
         .filter(|parameter| groups.contains(&parameter.group))
         .collect()
-}
-
-fn quoted(parameters: &[&Parameter]) -> String {
-    let names: Vec<String> = (parameters.iter())
-        .map(|parameter| format!("\"{}\"", parameter.name))
-        .collect();
-    names.join(", ")
 }
 
 const WIDTH: usize = 120;
@@ -226,14 +209,18 @@ const fn words(shape: Shape) -> [&'static str; 3] {
 
 /// The names of regions, of parts of the points and of options of documents; and lines with the kinds of all values.
 fn lists(table: &[&Parameter], mark: &str) -> [String; 4] {
-    let of = |groups| quoted(&within(table, groups));
+    let of = |groups| {
+        let names = within(table, groups).into_iter();
+        let quoted = names.map(|parameter| format!("\"{}\"", parameter.name));
+        quoted.collect::<Vec<_>>().join(", ")
+    };
     let kinds = within(table, groups::POINTS).into_iter();
     let kinds =
         kinds.map(|of| format!("    {mark}{}{mark}: \"{}\",\n", of.name, words(of.shape)[0]));
     [
-        of(REGIONS.groups),
+        of(&[Group::Region]),
         of(&[Group::Window]),
-        of(OUTPUT.groups),
+        of(groups::OUTPUT),
         kinds.collect(),
     ]
 }
@@ -249,13 +236,8 @@ export type Numbers = ArrayLike<number>;
 export type Tuple<List extends readonly number[]> = Readonly<List> | Float64Array | Float32Array;
 "
     .to_owned();
-    for section in [REGIONS, MEMBERS, OUTPUT, NEIGHBORS] {
-        text += &interface(&section, table);
-    }
-    let in_space = [table, SPACE_PARAMETERS].concat();
-    for section in [VOLUMES, SPACE] {
-        text += &interface(&section, &in_space);
-    }
+    let all = [table, SPACE_PARAMETERS].concat();
+    text.extend(SECTIONS.iter().map(|section| interface(section, &all)));
     text
 }
 
@@ -343,14 +325,13 @@ const RESERVED: [&str; 32] = [
 
 fn python(table: &[&Parameter]) -> String {
     let mut text = HEAD.to_owned();
-    for section in [REGIONS, MEMBERS, OUTPUT] {
-        text += &class(&section, table);
-    }
+    text.extend(of_query().iter().map(|section| class(section, table)));
     let [regions, window, output, kinds] = lists(table, "\"");
     let placed: String = (Encoding::every().filter(|encoding| encoding.has_crs()))
         .map(|encoding| format!("\"{}\", ", encoding.name()))
         .collect();
-    let about: String = ([REGIONS, MEMBERS, OUTPUT].iter())
+    let about: String = of_query()
+        .iter()
         .flat_map(|section| section.of(table))
         .map(about)
         .collect();
@@ -489,8 +470,10 @@ mod tests {
 
     #[test]
     fn every_member_is_typed() {
-        let sections = [REGIONS, MEMBERS, OUTPUT].map(|section| section.of(PARAMETERS));
-        let typed = sections.concat();
+        let typed: Vec<_> = of_query()
+            .iter()
+            .flat_map(|section| section.of(PARAMETERS))
+            .collect();
         for parameter in within(PARAMETERS, groups::POINTS) {
             let is_typed = typed.contains(&parameter) || *parameter == FORMAT;
             assert!(is_typed, "{}", parameter.name);
