@@ -17,7 +17,7 @@ use strew_forge::{
 use strew_plan::library::measured::document;
 use strew_query::{Draft, parameters::BBOX};
 
-use super::measure::space::Subjects;
+use self::space::Subjects;
 use super::{
     Failure, config,
     failure::Source,
@@ -104,20 +104,20 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let mut output = Output::open(args.output.as_deref())?;
     let drawing = args.picture.as_deref();
     let drawing = drawing.map(|path| Output::open(Some(path))).transpose()?;
-    let mut seeds = None;
-    let (reports, target) = if let Some(file) = &args.table {
-        of_table(args, file)?
-    } else if let Some(file) = &args.points {
-        (vec![of_points(args, file)?], None)
-    } else {
-        let (report, target, compared) = of_query(args)?;
-        seeds = compared;
-        (vec![report], target)
+    let Measurement {
+        mut reports,
+        target,
+        seeds,
+    } = match (&args.table, &args.points) {
+        (Some(file), _) => of_table(args, file)?,
+        (None, Some(file)) => of_points(args, file)?,
+        (None, None) => of_query(args)?,
     };
-    let reports: Vec<Report> = match &target {
-        Some(target) => reports.into_iter().map(|r| r.compared(target)).collect(),
-        None => reports,
-    };
+    if let Some(target) = &target {
+        reports = { reports.into_iter() }
+            .map(|report| report.compared(target))
+            .collect();
+    }
     if let (Some(mut drawing), Some(report)) = (drawing, reports.first()) {
         let subject = &report.figures.subject;
         let stem = args.table.as_deref().and_then(Path::file_stem);
@@ -142,6 +142,14 @@ fn in_space(file: &Path) -> Result<Option<strew_core::space::Table>, Failure> {
     Ok(strew_forge::space::read_table(file).map_err(anyhow::Error::from)?)
 }
 
+struct Measurement {
+    reports: Vec<Report>,
+    /// The power curve that the subjects should follow.
+    target: Option<Target>,
+    /// How the sets of several seeds compare.
+    seeds: Option<Value>,
+}
+
 enum Subject {
     Torus(String, bool, Torus),
     Window(String, Window),
@@ -156,8 +164,7 @@ impl Subject {
     }
 }
 
-/// The reports on a table, and the power curve that it should follow.
-fn of_table(args: &Args, file: &Path) -> Result<(Vec<Report>, Option<Target>), Failure> {
+fn of_table(args: &Args, file: &Path) -> Result<Measurement, Failure> {
     let table = strew_forge::read_table(file).map_err(anyhow::Error::from)?;
     let twins = args.twins(&table).map_err(Failure::Usage)?;
     let mut subjects = vec![];
@@ -182,7 +189,11 @@ fn of_table(args: &Args, file: &Path) -> Result<(Vec<Report>, Option<Target>), F
         .into_par_iter()
         .map(|subject| subject.measured(args.resolution()));
     let aim = Aim::of(table.profile(), table.provenance());
-    Ok((reports.collect(), aim.and_then(|aim| aim.curve)))
+    Ok(Measurement {
+        reports: reports.collect(),
+        target: aim.and_then(|aim| aim.curve),
+        seeds: None,
+    })
 }
 
 impl Args {
@@ -236,11 +247,7 @@ fn compared(plan: &Plan, side: f64, density: f64, seeds: u64) -> anyhow::Result<
             .within(plan.region())?;
         let mut points = vec![[0.0; 2]; plan.count() as usize];
         plan.blocks::<F64>().fill(&mut points);
-        let corner = plan.origin();
-        for p in &mut points {
-            *p = [p[0] - corner[0], p[1] - corner[1]];
-        }
-        Ok((seed.0, Window::new(side, density, points)))
+        Ok((seed.0, window(plan.origin(), side, density, points)))
     });
     let sets: Vec<(u64, Window)> = sets.collect::<anyhow::Result<_>>()?;
     let recurrences: Vec<Value> = sets
@@ -264,9 +271,7 @@ fn compared(plan: &Plan, side: f64, density: f64, seeds: u64) -> anyhow::Result<
     }))
 }
 
-type Compared = (Report, Option<Target>, Option<Value>);
-
-fn of_query(args: &Args) -> Result<Compared, Failure> {
+fn of_query(args: &Args) -> Result<Measurement, Failure> {
     let config = args.settings.merged(config::Uses::QUERIES)?;
     let catalog = config::tables(&config)?;
     let planned = config::planned(&config, &Draft::of(args.flags.values()), &catalog.into());
@@ -286,28 +291,25 @@ fn of_query(args: &Args) -> Result<Compared, Failure> {
     plan.blocks_f64().fill(&mut points);
     let name = described(&planned);
     let density = set.density * planned.query.sets[0].share();
-    let report = window(corner, side, density, points, name).measured(args.resolution());
-    let seeds = match args.seeds {
-        0 => None,
-        seeds => Some(compared(plan, side, density, seeds)?),
-    };
-    Ok((report, set.entry.aim().and_then(|aim| aim.curve), seeds))
+    let subject = Subject::Window(name, window(corner, side, density, points));
+    Ok(Measurement {
+        reports: vec![subject.measured(args.resolution())],
+        target: set.entry.aim().and_then(|aim| aim.curve),
+        seeds: match args.seeds {
+            0 => None,
+            seeds => Some(compared(plan, side, density, seeds)?),
+        },
+    })
 }
 
-fn window(
-    corner: [f64; 2],
-    side: f64,
-    density: f64,
-    mut points: Vec<[f64; 2]>,
-    name: String,
-) -> Subject {
+fn window(corner: [f64; 2], side: f64, density: f64, mut points: Vec<[f64; 2]>) -> Window {
     for p in &mut points {
         *p = [p[0] - corner[0], p[1] - corner[1]];
     }
-    Subject::Window(name, Window::new(side, density, points))
+    Window::new(side, density, points)
 }
 
-fn of_points(args: &Args, file: &Path) -> Result<Report, Failure> {
+fn of_points(args: &Args, file: &Path) -> Result<Measurement, Failure> {
     let bbox = args.corners().map_err(Failure::Usage)?;
     let (corner, side) = square(bbox).map_err(Failure::Usage)?;
     let bytes = std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
@@ -337,9 +339,13 @@ fn of_points(args: &Args, file: &Path) -> Result<Report, Failure> {
         Subject::Torus(name, false, Torus::new(side, points))
     } else {
         let density = points.len() as f64 / (side * side);
-        window(corner, side, density, points, name)
+        Subject::Window(name, window(corner, side, density, points))
     };
-    Ok(subject.measured(args.resolution()))
+    Ok(Measurement {
+        reports: vec![subject.measured(args.resolution())],
+        target: None,
+        seeds: None,
+    })
 }
 
 fn packed(bytes: &[u8]) -> anyhow::Result<Vec<[f64; 2]>> {

@@ -44,11 +44,8 @@ pub(super) fn document(args: &Subjects, table: &Table) -> Result<Value, Failure>
     let set = |seed: u64| SpaceSet::new(table.clone()).seed(seed);
     let mut subjects = Vec::new();
     for (twin, points) in twins(args, table)? {
-        subjects.push(shown(&SpaceReport::of(
-            format!("twin {twin}"),
-            &points,
-            None,
-        )));
+        let report = SpaceReport::of(format!("twin {twin}"), &points, None);
+        subjects.push(shown(&report));
     }
     for &seed in &seeds {
         let report = SpaceReport::of_window(&set(seed), at, side, PLACES, args.places_seed);
@@ -56,14 +53,12 @@ pub(super) fn document(args: &Subjects, table: &Table) -> Result<Value, Failure>
     }
     let mut thinned = Vec::new();
     for &seed in seeds.iter().filter(|seed| **seed != 0) {
-        for part in KEPT {
-            let kept = set(seed)
-                .keep(1.0 / f64::from(part))
-                .map_err(Failure::usage)?;
-            let side = side.min(THINNED_SIDE) * f64::from(part).cbrt();
+        for part in KEPT.map(f64::from) {
+            let share = 1.0 / part;
+            let kept = set(seed).keep(share).map_err(Failure::usage)?;
+            let side = side.min(THINNED_SIDE) * part.cbrt();
             let points = SpacePoints::of_window(&kept, at, side).map_err(Failure::usage)?;
             let low = SpacePower::of(&points).low;
-            let share = 1.0 / f64::from(part);
             thinned.push(json!([seed, share, points.points().len(), low]));
         }
     }
@@ -74,19 +69,10 @@ pub(super) fn document(args: &Subjects, table: &Table) -> Result<Value, Failure>
     let mut pairs = Vec::new();
     for (i, (a, first)) in seeds.iter().zip(&windows).enumerate() {
         for (b, second) in seeds.iter().zip(&windows).skip(i + 1) {
-            let SpaceShared {
-                power_correlation,
-                power_by_chance,
-                phase_peak,
-                phase_by_chance,
-            } = SpaceShared::of(first, second);
-            let values = [
-                power_correlation,
-                power_by_chance,
-                phase_peak,
-                phase_by_chance,
-            ];
-            pairs.push(json!([a, b, values[0], values[1], values[2], values[3]]));
+            let shared = SpaceShared::of(first, second);
+            let power = [shared.power_correlation, shared.power_by_chance];
+            let phase = [shared.phase_peak, shared.phase_by_chance];
+            pairs.push(json!([a, b, power[0], power[1], phase[0], phase[1]]));
         }
     }
     let compared = [
