@@ -1,72 +1,71 @@
 //! Compresses outputs, by the endings of their names.
 
 use std::{
+    borrow::Cow,
     ffi::OsStr,
     io::{self, Read as _, Write},
     path::Path,
 };
 
+use clap::ValueEnum;
 use flate2::write::GzEncoder;
+use serde::{Deserialize, Serialize};
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize, Deserialize)]
 pub(super) enum Compression {
+    #[value(name = "none")]
+    Plain,
+    #[value(name = "gz")]
+    #[serde(rename = "gz")]
     Gzip,
+    #[value(name = "zst")]
+    #[serde(rename = "zst")]
     Zstd,
 }
 
 impl Compression {
     /// The compression that the ending of a name means, and the name without that ending.
-    pub(super) fn of(path: &Path) -> Option<(Self, &Path)> {
-        let compression = match path.extension().and_then(OsStr::to_str)? {
-            "gz" => Self::Gzip,
-            "zst" => Self::Zstd,
-            _ => return None,
+    pub(super) fn of(path: &Path) -> (Self, &Path) {
+        let compression = match path.extension().and_then(OsStr::to_str) {
+            Some("gz") => Self::Gzip,
+            Some("zst") => Self::Zstd,
+            _ => return (Self::Plain, path),
         };
-        let stem = path.file_stem()?;
-        Some((compression, Path::new(stem)))
+        (compression, path.file_stem().unwrap_or_default().as_ref())
     }
 
-    pub(super) const fn ending(self) -> &'static str {
+    /// The name of a compressed file.
+    pub(super) fn name(self, plain: &str) -> String {
         match self {
-            Self::Gzip => "gz",
-            Self::Zstd => "zst",
+            Self::Plain => plain.into(),
+            Self::Gzip => format!("{plain}.gz"),
+            Self::Zstd => format!("{plain}.zst"),
         }
     }
 
-    pub(super) fn pack(self, bytes: &[u8]) -> io::Result<Vec<u8>> {
-        match self {
+    pub(super) fn pack(self, bytes: &[u8]) -> io::Result<Cow<'_, [u8]>> {
+        Ok(match self {
+            Self::Plain => bytes.into(),
             Self::Gzip => {
                 let mut encoder = GzEncoder::new(vec![], flate2::Compression::default());
                 encoder.write_all(bytes)?;
-                encoder.finish()
+                encoder.finish()?.into()
             }
-            Self::Zstd => zstd::stream::encode_all(bytes, 0),
-        }
+            Self::Zstd => zstd::stream::encode_all(bytes, 0)?.into(),
+        })
     }
 
-    pub(super) fn unpack(self, bytes: &[u8]) -> io::Result<Vec<u8>> {
+    pub(super) fn unpack(self, bytes: Vec<u8>) -> io::Result<Vec<u8>> {
         match self {
+            Self::Plain => Ok(bytes),
             Self::Gzip => {
                 let mut plain = vec![];
-                flate2::read::GzDecoder::new(bytes).read_to_end(&mut plain)?;
+                flate2::read::GzDecoder::new(&bytes[..]).read_to_end(&mut plain)?;
                 Ok(plain)
             }
-            Self::Zstd => zstd::stream::decode_all(bytes),
+            Self::Zstd => zstd::stream::decode_all(&bytes[..]),
         }
     }
-}
-
-/// The names of a file and of its compressed variants, the plain one first.
-pub(super) fn names(
-    plain: &str,
-    variants: &[Compression],
-) -> impl Iterator<Item = (String, Option<Compression>)> {
-    let packed = |&variant: &Compression| {
-        let name = format!("{plain}.{}", variant.ending());
-        (name, Some(variant))
-    };
-    let packed: Vec<_> = variants.iter().map(packed).collect();
-    [(plain.to_owned(), None)].into_iter().chain(packed)
 }
 
 pub(super) enum Sink {
@@ -76,18 +75,21 @@ pub(super) enum Sink {
 }
 
 impl Sink {
-    pub(super) fn new(
-        writer: Box<dyn Write + Send>,
-        compression: Option<Compression>,
-    ) -> io::Result<Self> {
+    pub(super) fn new(writer: Box<dyn Write + Send>, compression: Compression) -> io::Result<Self> {
         Ok(match compression {
-            None => Self::Plain(writer),
-            Some(Compression::Gzip) => {
-                Self::Gzip(GzEncoder::new(writer, flate2::Compression::default()))
-            }
+            Compression::Plain => Self::Plain(writer),
+            Compression::Gzip => Self::Gzip(GzEncoder::new(writer, flate2::Compression::default())),
             // 0 is the default level of zstd.
-            Some(Compression::Zstd) => Self::Zstd(zstd::stream::write::Encoder::new(writer, 0)?),
+            Compression::Zstd => Self::Zstd(zstd::stream::write::Encoder::new(writer, 0)?),
         })
+    }
+
+    pub(super) fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
+        match self {
+            Self::Plain(writer) => writer.write_all(bytes),
+            Self::Gzip(encoder) => encoder.write_all(bytes),
+            Self::Zstd(encoder) => encoder.write_all(bytes),
+        }
     }
 
     /// Writes the rest, which the compressor still holds.
@@ -98,23 +100,5 @@ impl Sink {
             Self::Zstd(encoder) => encoder.finish()?,
         };
         writer.flush()
-    }
-}
-
-impl Write for Sink {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self {
-            Self::Plain(writer) => writer.write(bytes),
-            Self::Gzip(encoder) => encoder.write(bytes),
-            Self::Zstd(encoder) => encoder.write(bytes),
-        }
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        match self {
-            Self::Plain(writer) => writer.flush(),
-            Self::Gzip(encoder) => encoder.flush(),
-            Self::Zstd(encoder) => encoder.flush(),
-        }
     }
 }

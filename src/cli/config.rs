@@ -138,6 +138,11 @@ pub(super) fn with_worlds(config: &Config, catalog: Catalog) -> Result<Assets, F
     Ok(Assets::from(catalog).with_worlds(worlds.map_err(Failure::usage)?))
 }
 
+/// The tables, fields, lists and worlds.
+pub(super) fn assets(config: &Config) -> Result<Assets, Failure> {
+    with_worlds(config, tables(config)?)
+}
+
 /// Checks and plans a query.
 pub(super) fn planned(
     config: &Config,

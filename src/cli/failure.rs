@@ -3,6 +3,7 @@
 use anyhow::anyhow;
 use strew_encode::Encoding;
 use strew_error::{Error, Fault};
+use strew_forge::SettingError;
 use strew_query::{Parameter, patterns::PATTERN_PARAMETERS};
 
 /// Why a command failed: decides the exit code.
@@ -19,6 +20,16 @@ pub(crate) enum Failure {
 impl Failure {
     pub(crate) fn usage(error: impl Into<anyhow::Error>) -> Self {
         Self::Usage(error.into())
+    }
+
+    /// A setting that is a flag of the same name.
+    pub(crate) fn of_setting(error: SettingError) -> Self {
+        let SettingError {
+            field,
+            value,
+            allowed,
+        } = error;
+        Self::Usage(anyhow!("--{field} {value}: allowed: {allowed}"))
     }
 
     pub(crate) fn other(error: impl Into<anyhow::Error>) -> Self {

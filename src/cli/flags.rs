@@ -157,6 +157,11 @@ impl<T> Flags<T> {
             .map(|(parameter, text)| (*parameter, text.as_str()))
     }
 
+    pub(super) fn text(&self, wanted: &Parameter) -> Option<&str> {
+        let mut texts = self.texts();
+        texts.find_map(|(parameter, text)| (parameter == wanted).then_some(text))
+    }
+
     pub(super) fn has(&self, wanted: &Parameter) -> bool {
         self.given().any(|parameter| parameter == wanted)
     }

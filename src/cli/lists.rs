@@ -93,7 +93,7 @@ pub(super) fn worlds(command: &Worlds) -> Result<(), Failure> {
 }
 
 fn list(config: &Config) -> Result<(), Failure> {
-    let catalog = config::with_worlds(config, config::tables(config)?)?;
+    let catalog = config::assets(config)?;
     let lines: Vec<String> = catalog.worlds.iter().map(|world| line(world)).collect();
     output::print(&lines.concat())
 }

@@ -2,12 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::anyhow;
 use strew_catalog::Ready;
-use strew_forge::{
-    figure,
-    mask::{Mask, MaskError},
-};
+use strew_forge::{figure, mask::Mask};
 use strew_query::chosen;
 
 use super::{
@@ -51,12 +47,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let ready = chosen(&args.table.values(), &catalog).and_then(|entry| Ready::load(&entry));
     let ready = ready.map_err(|error| Source::Flags.refused(error))?;
     let mut output = Output::open(args.output.as_deref())?;
-    let mask = Mask::new(&ready.table, args.size, args.seed).map_err(refused)?;
+    let mask = Mask::new(&ready.table, args.size, args.seed).map_err(Failure::of_setting)?;
     let written = match is_array {
         true => mask.to_npy(args.bits),
         false => mask.to_png(args.bits),
     };
-    let written = written.map_err(refused)?;
+    let written = written.map_err(Failure::of_setting)?;
     if let Some(path) = &args.spectrum {
         /// The longer side of a PNG.
         const SIZE: u32 = 1600;
@@ -83,13 +79,4 @@ fn is_array(output: Option<&Path>) -> Result<bool, Failure> {
             path.display()
         ),
     }
-}
-
-fn refused(error: MaskError) -> Failure {
-    let MaskError {
-        field,
-        value,
-        allowed,
-    } = error;
-    Failure::Usage(anyhow!("--{field} {value}: allowed: {allowed}"))
 }

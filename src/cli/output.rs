@@ -3,7 +3,7 @@
 
 use std::{
     fs::{self, File},
-    io::{self, IsTerminal as _, Write as _},
+    io::{self, IsTerminal as _},
     path::{Path, PathBuf},
 };
 
@@ -51,7 +51,7 @@ impl Output {
         };
         let unwritable = || format!("cannot write {}", path.display());
         let (file, pending) = open(path).with_context(unwritable)?;
-        let compression = Compression::of(path).map(|(compression, _)| compression);
+        let (compression, _) = Compression::of(path);
         Ok(Self {
             writer: Sink::new(Box::new(file), compression).with_context(unwritable)?,
             path: Some(path.to_owned()),

@@ -4,11 +4,10 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::anyhow;
 use clap::Subcommand;
 use strew_core::Alpha;
 use strew_error::Error;
-use strew_forge::figure::{self, Drawing, FigureError};
+use strew_forge::figure::{self, Drawing};
 use strew_plan::Placed;
 use strew_query::{Value, patterns::OFFSETS};
 use strew_service::pattern::{ArrangementQuery, Listing};
@@ -173,22 +172,9 @@ pub(super) fn draw(command: &Figure) -> Result<(), Failure> {
             block,
         } => (common, figure::map(common.alpha, *radius, *block)),
     };
-    let drawing = drawing.map_err(refused)?;
-    write(&drawing, common)
-}
-
-fn refused(error: FigureError) -> Failure {
-    let FigureError {
-        field,
-        value,
-        allowed,
-    } = error;
-    Failure::Usage(anyhow!("--{field} {value}: allowed: {allowed}"))
-}
-
-fn write(drawing: &Drawing, common: &Common) -> Result<(), Failure> {
     let path = common.output.as_deref();
-    let bytes = encoded(drawing, ("--output", path), common.size)?;
+    let drawing = drawing.map_err(Failure::of_setting)?;
+    let bytes = encoded(&drawing, ("--output", path), common.size)?;
     output::write(path, &bytes)
 }
 
@@ -202,7 +188,7 @@ pub(super) fn encoded(
     if ending.eq_ignore_ascii_case("svg") {
         Ok(drawing.to_svg().into_bytes())
     } else if ending.eq_ignore_ascii_case("png") {
-        drawing.to_png(size).map_err(refused)
+        drawing.to_png(size).map_err(Failure::of_setting)
     } else {
         refuse!(
             "{flag}: figures are not drawn as {}; allowed: a file whose name ends in .svg or .png",

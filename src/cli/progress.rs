@@ -2,10 +2,12 @@
 
 use std::{
     io::IsTerminal as _,
+    sync::atomic::{AtomicU64, Ordering},
     time::{Duration, Instant},
 };
 
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use parking_lot::Mutex;
 
 /// The interval between lines where there is no terminal.
 const EVERY: Duration = Duration::from_secs(10);
@@ -86,6 +88,38 @@ impl Progress {
         if let Some(bar) = self.bar {
             bar.finish_and_clear();
         }
+    }
+}
+
+/// The progress of work on several threads.
+pub(super) struct Steps {
+    progress: Mutex<Progress>,
+    done: AtomicU64,
+}
+
+impl Steps {
+    /// Begins at `done` units, which an earlier run did.
+    pub(super) fn new(progress: Progress, done: u64) -> Self {
+        Self {
+            progress: Mutex::new(progress.going_on_at(done)),
+            done: AtomicU64::new(done),
+        }
+    }
+
+    pub(super) fn done(&self) -> u64 {
+        self.done.load(Ordering::Relaxed)
+    }
+
+    /// Notes another unit. Threads do not wait for each other to show it.
+    pub(super) fn step(&self) {
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        if let Some(mut progress) = self.progress.try_lock() {
+            progress.reach(done, "");
+        }
+    }
+
+    pub(super) fn finish(self) {
+        self.progress.into_inner().finish();
     }
 }
 

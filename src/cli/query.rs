@@ -104,11 +104,7 @@ impl<T: Takes> QueryArgs<T> {
 
     /// The system of the file of PROJJSON that --crs names, if it names one.
     fn defined(&self) -> Result<Option<Crs>, Failure> {
-        let mut given = self
-            .flags
-            .texts()
-            .filter(|(parameter, _)| **parameter == CRS);
-        let text = given.next().map_or("", |(_, text)| text);
+        let text = self.flags.text(&CRS).unwrap_or_default();
         if !text.contains('/') && !text.ends_with("json") {
             return Ok(None);
         }

@@ -41,8 +41,8 @@ pub(super) struct Args {
 /// The format of an output by the ending of its name; JSON without one.
 pub(super) fn encoding_of(output: Option<&Path>) -> Result<Encoding, Failure> {
     // The format stands before the compression: points.csv.gz.
-    let inner = output.and_then(|path| Compression::of(path).map(|(_, inner)| inner));
-    let Some(ending) = inner.or(output).and_then(Path::extension) else {
+    let inner = output.map(|path| Compression::of(path).1);
+    let Some(ending) = inner.and_then(Path::extension) else {
         return Ok(Encoding::Json);
     };
     let ending = ending.to_string_lossy();
@@ -80,11 +80,15 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         ..looks
     });
     let looks = looks.map_err(|error| ask.source.refused(error))?;
-    let written = write(planned, &looks, &config, output, args.quiet, "points");
-    written.map_err(|failure| match failure {
-        Ok(failure) => failure,
-        Err(error) => ask.source.refused(error),
-    })
+    let refused = |error| ask.source.refused(error);
+    write(
+        planned,
+        &looks,
+        &config,
+        output,
+        (args.quiet, "points"),
+        refused,
+    )
 }
 
 /// Refuses to compress what is compressed already, or would not be.
@@ -97,8 +101,8 @@ fn check_packing(args: &Args, encoding: Encoding) -> Result<(), Failure> {
             encoding.name()
         );
     }
-    let output = args.output.as_deref();
-    match output.filter(|path| is_parquet && Compression::of(path).is_some()) {
+    let output = args.output.as_deref().filter(|_| is_parquet);
+    match output.filter(|path| Compression::of(path).0 != Compression::Plain) {
         None => Ok(()),
         Some(path) => refuse!(
             "--output {}: Parquet is compressed inside, and no reader opens a file of it that is compressed as a \
@@ -108,38 +112,34 @@ fn check_packing(args: &Args, encoding: Encoding) -> Result<(), Failure> {
     }
 }
 
-/// Writes an answer. Errors of the service are returned as they are, because the caller knows the names of its
-/// flags.
+/// Writes an answer of things that are called `what`. The caller knows the names of its flags, by which `refused`
+/// explains errors of the service.
 pub(super) fn write(
     planned: &Planned,
     looks: &Output,
     config: &Config,
     mut output: Target,
-    quiet: bool,
-    what: &'static str,
-) -> Result<(), Result<Failure, Error>> {
-    let answer = planned
-        .answer(looks, config.limits.block_bytes)
-        .map_err(Err)?;
-    let count = u64::try_from(planned.count()).map_err(|_| {
-        let count = planned.count();
-        Ok(Failure::Usage(anyhow!(
-            "the region holds {count} points, too many to write"
-        )))
-    })?;
+    (quiet, what): (bool, &'static str),
+    refused: impl Fn(Error) -> Failure,
+) -> Result<(), Failure> {
+    let answer = planned.answer(looks, config.limits.block_bytes);
+    let answer = answer.map_err(refused)?;
+    let count = planned.count();
+    let Ok(count) = u64::try_from(count) else {
+        refuse!("the region holds {count} points, too many to write");
+    };
     if !quiet {
         announce(planned, looks, &answer);
     }
-    let failed = |error: anyhow::Error| Ok(Failure::from(error));
-    let pool = config::pool(config.workers.threads).map_err(failed)?;
+    let pool = config::pool(config.workers.threads)?;
     let mut progress = Progress::new(what, count, quiet);
     let written = pool.install(|| match answer.plain().cloned() {
         Some(plain) => packed(&plain, &mut output, &mut progress),
         None => blocks(answer, &mut output, &mut progress),
     });
     progress.finish();
-    written.map_err(failed)?;
-    output.finish().map_err(failed)
+    written?;
+    Ok(output.finish()?)
 }
 
 /// Announces the answer on standard error, with the facts for which packed formats have no room.

@@ -9,7 +9,7 @@ use std::{
     },
 };
 
-use parking_lot::{Mutex, MutexGuard};
+use parking_lot::Mutex;
 
 #[derive(Debug, Default)]
 struct State {
@@ -23,15 +23,11 @@ static STATE: Mutex<State> = Mutex::new(State {
     stop: None,
 });
 
-fn state() -> MutexGuard<'static, State> {
-    STATE.lock()
-}
-
 /// Returns a flag that the first signal sets, instead of ending the command.
 pub(super) fn stop_flag() -> Arc<AtomicBool> {
     // Before signals are heard: one that came in between would end the command without a word.
     let stop = Arc::new(AtomicBool::new(false));
-    state().stop = Some(stop.clone());
+    STATE.lock().stop = Some(stop.clone());
     listen();
     stop
 }
@@ -46,7 +42,7 @@ impl Incomplete {
         make: impl FnOnce(&Path) -> Result<T, E>,
     ) -> Result<(T, Self), E> {
         listen();
-        let mut state = state();
+        let mut state = STATE.lock();
         let made = make(path)?;
         state.incomplete.push(path.to_owned());
         Ok((made, Self(path.to_owned())))
@@ -54,7 +50,7 @@ impl Incomplete {
 
     /// Renames the file by `rename` and keeps it, unless that fails.
     pub(super) fn complete<E>(self, rename: impl FnOnce(&Path) -> Result<(), E>) -> Result<(), E> {
-        let mut state = state();
+        let mut state = STATE.lock();
         rename(&self.0)?;
         state.incomplete.retain(|path| *path != self.0);
         Ok(())
@@ -63,7 +59,7 @@ impl Incomplete {
 
 impl Drop for Incomplete {
     fn drop(&mut self) {
-        let mut state = state();
+        let mut state = STATE.lock();
         if let Some(i) = state.incomplete.iter().position(|path| *path == self.0) {
             state.incomplete.swap_remove(i);
             let _ = std::fs::remove_file(&self.0);
@@ -73,7 +69,7 @@ impl Drop for Incomplete {
 
 /// Ends the command; the first signal only sets the flag, if there is one.
 fn end(signal: i32) {
-    let state = state();
+    let state = STATE.lock();
     let is_first = |stop: &Arc<AtomicBool>| !stop.swap(true, Ordering::Relaxed);
     if state.stop.as_ref().is_some_and(is_first) {
         return;

@@ -109,10 +109,15 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         looks
     });
     let looks = looks.map_err(|error| refused(args, error))?;
-    write(&planned, &looks, &config, output, args.quiet, "dots").map_err(|failure| match failure {
-        Ok(failure) => failure,
-        Err(error) => refused(args, error),
-    })
+    let refused = |error| refused(args, error);
+    write(
+        &planned,
+        &looks,
+        &config,
+        output,
+        (args.quiet, "dots"),
+        refused,
+    )
 }
 
 fn refused(args: &Args, error: strew_error::Error) -> Failure {

@@ -161,19 +161,10 @@ impl Which {
 fn read(file: &Path) -> anyhow::Result<AnyTable> {
     // A file that is no table, or cannot be read, is that of the plane's reader, whose errors are complete.
     let is_regular = std::fs::metadata(file).is_ok_and(|found| found.is_file());
-    if is_regular && let Some(table) = in_space(file)? {
-        return Ok(AnyTable::Space(table));
-    }
-    Ok(AnyTable::Plane(Entry::from_file(file.to_owned())?.table()?))
-}
-
-/// The table of a file, if its points are in space and the file can be read.
-fn in_space(file: &Path) -> anyhow::Result<Option<strew_core::space::Table>> {
-    match strew_forge::space::read_table(file) {
-        Err(ForgeError::NotATable { path, source }) => {
-            Err(ForgeError::NotATable { path, source }.into())
-        }
-        found => Ok(found.ok().flatten()),
+    match is_regular.then(|| strew_forge::space::read_table(file)) {
+        Some(Ok(Some(table))) => Ok(AnyTable::Space(table)),
+        Some(Err(error @ ForgeError::NotATable { .. })) => Err(error.into()),
+        _ => Ok(AnyTable::Plane(Entry::from_file(file.to_owned())?.table()?)),
     }
 }
 

@@ -18,17 +18,15 @@ use super::{
 };
 use crate::cli::{
     Failure,
-    compression::{Compression, names},
+    compression::Compression,
     config,
-    progress::Progress,
+    progress::{Progress, Steps},
     refuse,
 };
 
 /// The number of chunks that are made again, unless all are.
 const SAMPLE: usize = 100;
 const NAMED: usize = 20;
-/// The number of files between two lines of progress.
-const BATCH: usize = 256;
 
 struct Tree<'a>(&'a Path);
 
@@ -55,19 +53,20 @@ pub(super) fn run(path: &Path, all: bool, quiet: bool, config: &Config) -> Resul
     let mut faults = Faults::default();
     let digests = tree.digests(&manifest)?;
     tree.compare_names(&digests, &mut faults)?;
-    let mut progress = Progress::new("files", digests.len() as u64, quiet);
-    let names: Vec<&String> = digests.keys().collect();
-    for (k, batch) in names.chunks(BATCH).enumerate() {
-        for (name, digest) in tree.hash(batch) {
-            match digest {
-                None => faults.add(&name, "missing or unreadable"),
-                Some(digest) if digest != digests[&name] => faults.add(&name, "changed"),
-                Some(_) => {}
-            }
+    let steps = Steps::new(Progress::new("files", digests.len() as u64, quiet), 0);
+    let changed = digests.par_iter().filter_map(|(name, digest)| {
+        let found = tree.read(name).map(|bytes| blake3::hash(&bytes));
+        steps.step();
+        match found {
+            Ok(found) if found == *digest => None,
+            Ok(_) => Some((name, "changed")),
+            Err(_) => Some((name, "missing or unreadable")),
         }
-        progress.reach((k * BATCH + batch.len()) as u64, "");
+    });
+    for (name, fault) in changed.collect::<Vec<_>>() {
+        faults.add(name, fault);
     }
-    progress.finish();
+    steps.finish();
     // Changed files need no further check.
     faults.report(path)?;
     let made = made_again(&tree, &manifest, all, quiet, config, &mut faults)?;
@@ -95,45 +94,31 @@ fn made_again(
     faults: &mut Faults,
 ) -> Result<usize, Failure> {
     let spec = &manifest.export;
-    let maker = Maker::new(
-        spec,
-        &config::with_worlds(config, config::tables(config)?)?,
-        config,
-    )?;
+    let maker = Maker::new(spec, &config::assets(config)?, config)?;
     let (chunks, compressions) = (maker.grid.chunks(), spec.compressions());
     let number = if all { chunks } else { SAMPLE.min(chunks) };
     let picked = |k: usize| (2 * k + 1) * chunks / (2 * number);
-    let mut progress = Progress::new("chunks", number as u64, quiet);
-    for first in (0..number).step_by(BATCH) {
-        let batch: Vec<usize> = (first..number.min(first + BATCH)).map(picked).collect();
-        // Compared chunks are dropped, so memory holds one for each thread.
-        let differ = batch.par_iter().map(|&i| {
-            let chunk = maker.make(i)?;
-            let plain = maker.grid.name(maker.grid.place(i));
-            // Unreadable files are reported already.
-            let differs = |(name, packed): &(String, _)| {
-                let read = tree.read(name);
-                read.is_ok_and(|bytes| unpacked(bytes, *packed).as_ref() != Some(&chunk.bytes))
-            };
-            Ok(names(&plain, &compressions)
-                .filter(differs)
-                .map(|(name, _)| name)
-                .collect::<Vec<_>>())
-        });
-        for name in differ.collect::<Result<Vec<_>, Failure>>()?.concat() {
-            faults.add(&name, "has other points than this program makes now");
-        }
-        progress.reach((first + batch.len()) as u64, "");
+    let steps = Steps::new(Progress::new("chunks", number as u64, quiet), 0);
+    // Compared chunks are dropped, so memory holds one for each thread.
+    let differ = (0..number).into_par_iter().map(|k| {
+        let i = picked(k);
+        let chunk = maker.make(i)?;
+        let plain = maker.grid.name(i);
+        // Unreadable files are reported already.
+        let differing = |packed: &Compression| {
+            let name = packed.name(&plain);
+            let bytes = packed.unpack(tree.read(&name).ok()?).ok();
+            (bytes.as_ref() != Some(&chunk.bytes)).then_some(name)
+        };
+        let names: Vec<String> = compressions.iter().filter_map(differing).collect();
+        steps.step();
+        Ok(names)
+    });
+    for name in differ.collect::<Result<Vec<_>, Failure>>()?.concat() {
+        faults.add(&name, "has other points than this program makes now");
     }
-    progress.finish();
+    steps.finish();
     Ok(number)
-}
-
-fn unpacked(bytes: Vec<u8>, packed: Option<Compression>) -> Option<Vec<u8>> {
-    match packed {
-        None => Some(bytes),
-        Some(packed) => packed.unpack(&bytes).ok(),
-    }
 }
 
 impl Tree<'_> {
@@ -173,14 +158,6 @@ impl Tree<'_> {
             faults.add(name, "foreign: the export has no such file");
         }
         Ok(())
-    }
-
-    fn hash(&self, names: &[&String]) -> Vec<(String, Option<blake3::Hash>)> {
-        let hash = |name: &&String| {
-            let bytes = self.read(name).ok();
-            ((*name).clone(), bytes.map(|bytes| blake3::hash(&bytes)))
-        };
-        names.par_iter().map(hash).collect()
     }
 }
 

@@ -1,7 +1,8 @@
 //! Makes the bytes of chunks, the same as the daemon's answers.
 
+use std::borrow::Cow;
+
 use anyhow::Context as _;
-use rayon::prelude::*;
 use strew_catalog::Ready;
 use strew_config::Config;
 use strew_encode::{Answer, Output};
@@ -10,7 +11,7 @@ use strew_plan::Planned;
 use strew_query::{Assets, Query, RegionDraft, ShapeDraft};
 
 use super::{
-    grid::{Grid, Place},
+    grid::Grid,
     spec::{Checked, Spec, chunk},
 };
 use crate::cli::{Failure, compression::Compression, failure::Source, refuse};
@@ -26,6 +27,12 @@ pub(super) struct Maker {
 pub(super) struct Chunk {
     pub(super) points: u64,
     pub(super) bytes: Vec<u8>,
+}
+
+impl Chunk {
+    pub(super) fn packed(&self, compression: Compression) -> anyhow::Result<Cow<'_, [u8]>> {
+        { compression.pack(&self.bytes) }.context("cannot compress a file")
+    }
 }
 
 impl Maker {
@@ -50,8 +57,7 @@ impl Maker {
     }
 
     pub(super) fn make(&self, i: usize) -> Result<Chunk, Failure> {
-        let place = self.grid.place(i);
-        self.answer(place)
+        self.answer(i)
             .and_then(|(points, answer)| {
                 let mut bytes = Vec::with_capacity(answer.size().unwrap_or(0) as usize);
                 for block in answer {
@@ -59,11 +65,11 @@ impl Maker {
                 }
                 Ok(Chunk { points, bytes })
             })
-            .map_err(|error| self.refused(place, error))
+            .map_err(|error| self.refused(i, error))
     }
 
-    fn refused(&self, place: Place, error: Error) -> Failure {
-        let name = self.grid.name(place);
+    fn refused(&self, i: usize, error: Error) -> Failure {
+        let name = self.grid.name(i);
         match Source::Flags.refused(error) {
             Failure::Usage(error) => Failure::Usage(error.context(name)),
             Failure::Other(error) => Failure::Other(error.context(name)),
@@ -71,7 +77,8 @@ impl Maker {
         }
     }
 
-    fn answer(&self, place: Place) -> Result<(u64, Answer), Error> {
+    fn answer(&self, i: usize) -> Result<(u64, Answer), Error> {
+        let place = self.grid.place(i);
         let Checked { query, output, .. } = &self.levels[place.level];
         let size = self.grid.levels[place.level].size;
         let region = chunk(size, place.at).check()?;
@@ -93,10 +100,7 @@ impl Maker {
 
     /// The columns of files without names in them, as the header `strew-columns` has them.
     pub(super) fn legend(&self) -> Result<Option<String>, Failure> {
-        let place = self.grid.place(0);
-        let answer = self
-            .answer(place)
-            .map_err(|error| self.refused(place, error))?;
+        let answer = self.answer(0).map_err(|error| self.refused(0, error))?;
         Ok(answer.1.legend().map(Into::into))
     }
 
@@ -131,17 +135,4 @@ impl Maker {
             });
         counts.sum()
     }
-}
-
-/// A file and its compressed variants, each with its ending; the plain one first.
-pub(super) fn variants(
-    bytes: Vec<u8>,
-    compressions: &[Compression],
-) -> anyhow::Result<Vec<(String, Vec<u8>)>> {
-    let packed = compressions.par_iter().map(|compression| {
-        let packed = compression.pack(&bytes).context("cannot compress a file")?;
-        Ok((format!(".{}", compression.ending()), packed))
-    });
-    let packed: Vec<(String, Vec<u8>)> = packed.collect::<anyhow::Result<_>>()?;
-    Ok([(String::new(), bytes)].into_iter().chain(packed).collect())
 }

@@ -7,10 +7,7 @@ use anyhow::anyhow;
 use indicatif::HumanBytes;
 use rayon::prelude::*;
 
-use super::{
-    chunks::{Maker, variants},
-    spec::Spec,
-};
+use super::{chunks::Maker, spec::Spec};
 use crate::cli::Failure;
 
 /// The most chunks that are tried, evenly spread over all of them, and of few chunks one in this number.
@@ -41,10 +38,13 @@ impl Cost {
         // The points, the bytes and those on the disk of the middle chunk of each of `number` parts.
         let tried = (0..number).into_par_iter().map(|k| {
             let chunk = maker.make((2 * k + 1) * chunks / (2 * number))?;
-            let files = variants(chunk.bytes, &compressions)?;
-            let sizes = files.iter().map(|(_, bytes)| bytes.len() as u64);
-            let disk = sizes.clone().map(|size| size.next_multiple_of(BLOCK));
-            Ok([chunk.points, sizes.sum(), disk.sum()])
+            let (mut bytes, mut disk) = (0, 0);
+            for compression in &compressions {
+                let size = chunk.packed(*compression)?.len() as u64;
+                bytes += size;
+                disk += size.next_multiple_of(BLOCK);
+            }
+            Ok([chunk.points, bytes, disk])
         });
         let tried: Vec<[u64; 3]> = tried.collect::<Result<_, Failure>>()?;
         let mean = |of: usize| {
@@ -65,7 +65,7 @@ impl Cost {
             is_counted: counted.is_some(),
             bytes: all * mean(1) * scale,
             disk: left * mean(2) * scale,
-            files: left * (1 + compressions.len()) as f64,
+            files: left * compressions.len() as f64,
         })
     }
 
@@ -90,7 +90,7 @@ impl Cost {
         // An export that has begun keeps its options.
         let advise = |otherwise: &str| match self.done {
             0 => format!(": {otherwise}"),
-            done => format!("; {}", go_on(done, self.chunks)),
+            done => format!("; {}", go_on(done as u64, self.chunks)),
         };
         if self.disk > bytes as f64 {
             return Err(Failure::Other(anyhow!(
@@ -112,7 +112,7 @@ impl Cost {
     }
 }
 
-pub(super) fn go_on(done: usize, chunks: usize) -> String {
+pub(super) fn go_on(done: u64, chunks: usize) -> String {
     format!("{done} of {chunks} chunks exist: make room, and the same command resumes there")
 }
 

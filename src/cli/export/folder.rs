@@ -12,15 +12,11 @@ use anyhow::{Context as _, anyhow};
 use parking_lot::Mutex;
 
 use super::{
-    chunks::{Chunk, Maker, variants},
+    chunks::{Chunk, Maker},
     record::{MANIFEST, Manifest, Record},
     spec::Spec,
 };
-use crate::cli::{
-    Failure,
-    compression::{Compression, names},
-    refuse,
-};
+use crate::cli::{Failure, compression::Compression, refuse};
 
 /// The folder of an incomplete export: the spec, the journal, files under temporary names.
 pub(super) const WORK: &str = ".partial";
@@ -92,68 +88,28 @@ impl Folder {
             Ok(theirs) if theirs == ours => {}
             Ok(_) => return Err(other(root)),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                let fresh = work.join("spec.json.new");
-                fs::write(&fresh, &ours)
-                    .and_then(|()| fs::rename(&fresh, &file))
-                    .with_context(unwritable)?;
+                replace(&work.join("spec.json.new"), &file, &ours).with_context(unwritable)?;
             }
-            Err(error) => return Err(Failure::Other(anyhow!(error).context(unwritable()))),
+            Err(error) => return Err(anyhow!(error).context(unwritable()).into()),
         }
-        let path = work.join("journal");
-        let mut folder = Self {
+        let (path, fresh) = (work.join("journal"), work.join("journal.new"));
+        let journal = || {
+            let mut options = File::options();
+            let opened = options.create(true).read(true).append(true).open(&path);
+            opened.with_context(unwritable)
+        };
+        let done = done(&journal()?, root, maker, &spec.compressions()).with_context(unwritable)?;
+        // Without a broken last line, and with each chunk once.
+        let lines: String = done.iter().map(|(i, record)| record.line(*i)).collect();
+        replace(&fresh, &path, lines.as_bytes()).with_context(unwritable)?;
+        let folder = Self {
             root: root.into(),
-            journal: Mutex::new(
-                File::options()
-                    .create(true)
-                    .append(true)
-                    .open(&path)
-                    .with_context(unwritable)?,
-            ),
+            journal: Mutex::new(journal()?),
             work,
             compressions: spec.compressions(),
             _lock: lock,
         };
-        let done = folder.done(&path, maker).with_context(unwritable)?;
-        // Without a broken last line, and with each chunk once.
-        let mut lines = String::new();
-        for (i, record) in &done {
-            lines += &record.line(*i);
-        }
-        let fresh = folder.work.join("journal.new");
-        fs::write(&fresh, lines)
-            .and_then(|()| fs::rename(&fresh, &path))
-            .with_context(unwritable)?;
-        let journal = File::options()
-            .append(true)
-            .open(&path)
-            .with_context(unwritable)?;
-        folder.journal = Mutex::new(journal);
         Ok(Found::Open(folder, done))
-    }
-
-    /// The chunks of the journal whose files exist and have their lengths.
-    fn done(&self, journal: &Path, maker: &Maker) -> io::Result<HashMap<usize, Record>> {
-        let mut done = HashMap::new();
-        let mut lines = BufReader::new(File::open(journal)?);
-        let (chunks, files) = (maker.grid.chunks(), 1 + self.compressions.len());
-        let mut line = String::new();
-        while lines.read_line(&mut line)? > 0 {
-            let known = Record::read(&line)
-                .filter(|(i, record)| *i < chunks && record.files.len() == files);
-            if let Some((i, record)) = known {
-                let name = maker.grid.name(maker.grid.place(i));
-                let is_there = names(&name, &self.compressions).zip(&record.files).all(
-                    |((name, _), (_, length))| {
-                        fs::metadata(self.root.join(name)).is_ok_and(|file| file.len() == *length)
-                    },
-                );
-                if is_there {
-                    done.insert(i, record);
-                }
-            }
-            line.clear();
-        }
-        Ok(done)
     }
 
     pub(super) fn put(&self, i: usize, name: &str, chunk: Chunk) -> anyhow::Result<Record> {
@@ -161,11 +117,11 @@ impl Folder {
             points: chunk.points,
             files: vec![],
         };
-        for (ending, bytes) in variants(chunk.bytes, &self.compressions)? {
-            record
-                .files
-                .push((blake3::hash(&bytes), bytes.len() as u64));
-            self.file(&format!("{name}{ending}"), &bytes)?;
+        for compression in &self.compressions {
+            let bytes = chunk.packed(*compression)?;
+            let length = bytes.len() as u64;
+            record.files.push((blake3::hash(&bytes), length));
+            self.file(&compression.name(name), &bytes)?;
         }
         let mut journal = self.journal.lock();
         let noted = journal.write_all(record.line(i).as_bytes());
@@ -221,6 +177,43 @@ impl Folder {
     fn sync(&self) -> anyhow::Result<()> {
         Ok(())
     }
+}
+
+/// The chunks of a journal whose files exist and have their lengths.
+fn done(
+    journal: &File,
+    root: &Path,
+    maker: &Maker,
+    compressions: &[Compression],
+) -> io::Result<HashMap<usize, Record>> {
+    let chunks = maker.grid.chunks();
+    let is_there = |(i, record): &(usize, Record)| {
+        let is_of_export = *i < chunks && record.files.len() == compressions.len();
+        is_of_export && {
+            let name = maker.grid.name(*i);
+            compressions
+                .iter()
+                .zip(&record.files)
+                .all(|(packed, (_, length))| {
+                    let file = fs::metadata(root.join(packed.name(&name)));
+                    file.is_ok_and(|file| file.len() == *length)
+                })
+        }
+    };
+    let mut done = HashMap::new();
+    let mut lines = BufReader::new(journal);
+    let mut line = String::new();
+    while lines.read_line(&mut line)? > 0 {
+        done.extend(Record::read(&line).filter(is_there));
+        line.clear();
+    }
+    Ok(done)
+}
+
+/// Writes a file under another name, and renames it.
+fn replace(fresh: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
+    fs::write(fresh, bytes)?;
+    fs::rename(fresh, path)
 }
 
 /// Opens and locks a file, and makes it if it is missing; `None` if another process holds it.

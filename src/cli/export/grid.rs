@@ -160,7 +160,8 @@ impl Grid {
     }
 
     /// The path of a chunk below the daemon's address, without the first slash.
-    pub(super) fn name(&self, place: Place) -> String {
+    pub(super) fn name(&self, i: usize) -> String {
+        let place = self.place(i);
         let [x, y] = place.at;
         format!("{}/{x}/{y}", self.folder(&self.levels[place.level]))
     }
@@ -177,7 +178,7 @@ mod tests {
         let levels = vec![level(64.0, bbox), level(128.0, bbox)];
         let grid = Grid::new(Some("forest"), levels).expect("few");
         assert_eq!(grid.chunks(), 9 + 4);
-        let names: Vec<String> = (0..13).map(|i| grid.name(grid.place(i))).collect();
+        let names: Vec<String> = (0..13).map(|i| grid.name(i)).collect();
         assert_eq!(names[0], "v1/worlds/forest/chunks/64/-2/0");
         assert_eq!(names[8], "v1/worlds/forest/chunks/64/0/2");
         assert_eq!(names[9], "v1/worlds/forest/chunks/128/-1/0");

@@ -12,12 +12,10 @@ mod spec;
 use std::{
     io,
     path::{Path, PathBuf},
-    sync::atomic::{AtomicUsize, Ordering},
+    sync::atomic::Ordering,
 };
 
 use anyhow::anyhow;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
-use parking_lot::Mutex;
 use rayon::prelude::*;
 use strew_config::Config;
 use strew_query::Assets;
@@ -34,7 +32,7 @@ use super::{
     compression::Compression,
     config,
     flags::{Exported, Flags, WHERE},
-    progress::Progress,
+    progress::{Progress, Steps},
     refuse,
     signals::stop_flag,
 };
@@ -59,8 +57,8 @@ pub(super) struct Args {
           value_parser = clap::value_parser!(u32).range(1..=i64::from(grid::MOST_LEVELS)))]
     levels: u32,
     /// Compressed files beside the plain ones: gz, zst, both or none [default: gz for text formats, else none]
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = packing())]
-    compress: Option<Vec<Option<Compression>>>,
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    compress: Option<Vec<Compression>>,
     /// The number of threads [default: one for each core]
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..=1024))]
     threads: Option<u32>,
@@ -115,7 +113,7 @@ fn export(args: &Args, config: &Config) -> Result<(), Failure> {
         }
         _ => {}
     }
-    let catalog = config::with_worlds(config, config::tables(config)?)?;
+    let catalog = config::assets(config)?;
     let shape = Shape {
         size,
         levels: args.levels,
@@ -147,22 +145,18 @@ impl Job<'_> {
         place.map_or(Ok(()), |place| cost.check(place))
     }
 
-    fn progress(&self, done: usize) -> Progress {
-        let chunks = self.maker.grid.chunks() as u64;
-        Progress::new("chunks", chunks, self.args.quiet).going_on_at(done as u64)
-    }
-
-    fn name(&self, i: usize) -> String {
-        self.maker.grid.name(self.maker.grid.place(i))
-    }
-
     fn to_folder(&self, root: &Path) -> Result<(), Failure> {
         // The existing chunks are not counted yet.
         let advice = "make room, and the same command resumes there";
         let to_open = |failure| with_advice(failure, advice);
         let (folder, mut done) =
             match Folder::open(root, &self.spec, &self.maker).map_err(to_open)? {
-                folder::Found::Complete => return self.nothing_to_do(root),
+                folder::Found::Complete => {
+                    if !self.args.quiet {
+                        eprintln!("{} is complete: nothing to do", root.display());
+                    }
+                    return Ok(());
+                }
                 folder::Found::Open(folder, done) => (folder, done),
             };
         if let Err(failure) = self.cost(done.len(), Some(root)) {
@@ -173,42 +167,30 @@ impl Job<'_> {
         }
         let stop = stop_flag();
         let chunks = self.maker.grid.chunks();
-        let (progress, count) = (
-            Mutex::new(self.progress(done.len())),
-            AtomicUsize::new(done.len()),
-        );
+        let progress = Progress::new("chunks", chunks as u64, self.args.quiet);
+        let steps = Steps::new(progress, done.len() as u64);
         let made = (0..chunks)
             .into_par_iter()
             .filter(|i| !done.contains_key(i))
             .map(|i| {
                 if stop.load(Ordering::Relaxed) {
-                    return Err(stopped(count.load(Ordering::Relaxed), chunks));
+                    return Err(stopped(steps.done(), chunks));
                 }
-                let record = folder.put(i, &self.name(i), self.maker.make(i)?)?;
-                let reached = count.fetch_add(1, Ordering::Relaxed) + 1;
-                if let Some(mut progress) = progress.try_lock() {
-                    progress.reach(reached as u64, "");
-                }
+                let record = folder.put(i, &self.maker.grid.name(i), self.maker.make(i)?)?;
+                steps.step();
                 Ok((i, record))
             });
         let made: Result<Vec<(usize, Record)>, Failure> = made.collect();
-        progress.into_inner().finish();
-        let count = count.into_inner();
-        done.extend(made.map_err(|failure| with_advice(failure, &cost::go_on(count, chunks)))?);
+        let advice = cost::go_on(steps.done(), chunks);
+        steps.finish();
+        done.extend(made.map_err(|failure| with_advice(failure, &advice))?);
         let mut records: Vec<(usize, Record)> = done.into_iter().collect();
         records.sort_unstable_by_key(|(i, _)| *i);
         let records: Vec<Record> = records.into_iter().map(|(_, record)| record).collect();
         let documents = documents(&self.spec, &self.maker, &self.catalog, &records)?;
         let finished = folder.finish(&documents);
-        finished.map_err(|failure| with_advice(failure.into(), &cost::go_on(count, chunks)))?;
+        finished.map_err(|failure| with_advice(failure.into(), &advice))?;
         self.report(root, &records);
-        Ok(())
-    }
-
-    fn nothing_to_do(&self, place: &Path) -> Result<(), Failure> {
-        if !self.args.quiet {
-            eprintln!("{} is complete: nothing to do", place.display());
-        }
         Ok(())
     }
 
@@ -230,7 +212,7 @@ impl Job<'_> {
     }
 }
 
-fn stopped(done: usize, chunks: usize) -> Failure {
+fn stopped(done: u64, chunks: usize) -> Failure {
     Failure::Interrupted(anyhow!(
         "interrupted after {done} of {chunks} chunks; the same command resumes there"
     ))
@@ -251,21 +233,14 @@ fn with_advice(failure: Failure, advice: &str) -> Failure {
     Failure::Other(anyhow!("{error:#}; {advice}"))
 }
 
-fn packing() -> impl TypedValueParser<Value = Option<Compression>> {
-    PossibleValuesParser::new(["none", "gz", "zst"]).map(|name| match &*name {
-        "gz" => Some(Compression::Gzip),
-        "zst" => Some(Compression::Zstd),
-        _ => None,
-    })
-}
-
-/// The compressions of some names. `none` stands alone.
-fn compressions(names: &[Option<Compression>]) -> Result<Vec<Compression>, Failure> {
-    if names.len() > 1 && names.contains(&None) {
+/// The compressions of some names, each once. `none` stands alone.
+fn compressions(names: &[Compression]) -> Result<Vec<Compression>, Failure> {
+    let mut all = names.to_vec();
+    all.sort();
+    all.dedup();
+    if names.len() > 1 && all[0] == Compression::Plain {
         refuse!("--compress none stands alone; allowed: none, gz, zst, gz,zst");
     }
-    let all = [Compression::Gzip, Compression::Zstd];
-    Ok({ all.into_iter() }
-        .filter(|one| names.contains(&Some(*one)))
-        .collect())
+    all.retain(|one| *one != Compression::Plain);
+    Ok(all)
 }

@@ -12,10 +12,7 @@ use super::{
     servers,
     spec::Spec,
 };
-use crate::{
-    cli::{Failure, compression::names},
-    rest::world_document,
-};
+use crate::{cli::Failure, rest::world_document};
 
 /// The manifest, which comes last: an export without it is not complete.
 pub(super) const MANIFEST: &str = "manifest.json";
@@ -140,10 +137,9 @@ fn digests(spec: &Spec, maker: &Maker, records: &[Record], files: &[(String, Vec
     let mut text = String::new();
     let compressions = spec.compressions();
     for (i, record) in records.iter().enumerate() {
-        let plain = maker.grid.name(maker.grid.place(i));
-        let names = names(&plain, &compressions);
-        for ((digest, _), (name, _)) in record.files.iter().zip(names) {
-            let _ = writeln!(text, "{digest}  {name}");
+        let plain = maker.grid.name(i);
+        for ((digest, _), packed) in record.files.iter().zip(&compressions) {
+            let _ = writeln!(text, "{digest}  {}", packed.name(&plain));
         }
     }
     for (name, bytes) in files {

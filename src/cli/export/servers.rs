@@ -7,6 +7,7 @@ use super::{
     grid::{Grid, Level},
     spec::{Spec, WorldName},
 };
+use crate::cli::compression::Compression;
 
 /// Settings for nginx, to be included in a server whose root is the export.
 pub(super) const NGINX: &str = "strew.nginx.conf";
@@ -53,7 +54,7 @@ impl Served<'_> {
             "# Answers as the daemon does, from the files of this folder. Include it in a server:\n\
              #     server { listen 80; root /srv/world; include /srv/world/strew.nginx.conf; }\n",
         );
-        if self.spec.compressed.iter().any(|ending| ending == "gz") {
+        if self.spec.compressions().contains(&Compression::Gzip) {
             text += "gzip_static on;\n";
         }
         if let Some(WorldName { name, .. }) = &self.spec.world {

@@ -9,7 +9,7 @@ use strew_encode::{Encoding, Output};
 use strew_error::Error;
 use strew_plan::Planned;
 use strew_query::{
-    Assets, Draft, Options, Parameter, Query, RegionDraft, ShapeDraft, Value, groups,
+    Assets, Draft, Query, RegionDraft, ShapeDraft, Value, groups,
     parameters::{BBOX, LOD, WORLD},
     parse_pairs,
 };
@@ -37,7 +37,7 @@ pub(super) struct Spec {
     pub(super) format: String,
     pub(super) content_type: String,
     pub(super) bbox: [f64; 4],
-    pub(super) compressed: Vec<String>,
+    compressed: Vec<Compression>,
     /// The setting `limits.block_bytes`, in formats whose bytes depend on it; else none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) block_bytes: Option<usize>,
@@ -75,39 +75,20 @@ impl Spec {
         config: &Config,
     ) -> Result<Self, Failure> {
         let bbox = bbox(flags)?;
-        let text = |wanted: &Parameter| {
-            let mut texts = flags.texts();
-            texts.find_map(|(parameter, text)| (parameter == wanted).then(|| text.to_owned()))
-        };
-        let world = text(&WORLD);
+        let encoded = |text: &str| utf8_percent_encode(text.trim(), PLAIN).to_string();
         let others = flags
             .texts()
             .filter(|(parameter, _)| ![&BBOX, &WORLD, &LOD].contains(parameter));
-        let pairs = others.map(|(parameter, text)| {
-            format!(
-                "{}={}",
-                parameter.name,
-                utf8_percent_encode(text.trim(), PLAIN)
-            )
-        });
+        let pairs = others.map(|(parameter, text)| format!("{}={}", parameter.name, encoded(text)));
         let query = pairs.collect::<Vec<_>>().join("&");
         let with_lod = |lod: Option<&str>| match (lod, query.is_empty()) {
             (None, _) => query.clone(),
             (Some(lod), true) => format!("lod={lod}"),
             (Some(lod), false) => format!("{query}&lod={lod}"),
         };
-        let given = text(&LOD);
-        let given = given
-            .as_deref()
-            .map(|text| utf8_percent_encode(text.trim(), PLAIN).to_string());
+        let given = flags.text(&LOD).map(encoded);
         let finest = Level::new(shape.size, 1.0, with_lod(given.as_deref()), bbox)?;
-        let first = check(
-            world.as_deref(),
-            &finest,
-            [finest.columns[0], finest.rows[0]],
-            catalog,
-            config,
-        )?;
+        let first = check(flags.text(&WORLD), &finest, catalog, config)?;
         let encoding = first.output.encoding;
         if !encoding.is_streamed() {
             let formats = Encoding::names(Encoding::ALL);
@@ -121,8 +102,6 @@ impl Spec {
         } else {
             vec![]
         };
-        let compressed = shape.compressed.as_ref().unwrap_or(&usual);
-        let compressed = compressed.iter().map(|one| one.ending().into()).collect();
         let share = first.lod;
         let mut levels = vec![Level {
             lod: share,
@@ -158,7 +137,7 @@ impl Spec {
             format: encoding.name().into(),
             content_type: encoding.content_type().into(),
             bbox,
-            compressed,
+            compressed: shape.compressed.clone().unwrap_or(usual),
             block_bytes: blocks(encoding, config),
             levels,
         })
@@ -169,11 +148,9 @@ impl Spec {
         Grid::new(world, self.levels.clone())
     }
 
+    /// The compressions of the files of each chunk; the plain one first.
     pub(super) fn compressions(&self) -> Vec<Compression> {
-        let all = [Compression::Gzip, Compression::Zstd];
-        let is_wanted =
-            |one: &Compression| self.compressed.iter().any(|ending| ending == one.ending());
-        all.into_iter().filter(is_wanted).collect()
+        [&[Compression::Plain], &self.compressed[..]].concat()
     }
 
     /// The checked query of each level, and the tables of all.
@@ -183,15 +160,8 @@ impl Spec {
         config: &Config,
     ) -> Result<(Vec<Checked>, Vec<Ready>), Failure> {
         let world = self.world.as_ref().map(|world| world.name.as_str());
-        let levels = self.levels.iter().map(|level| {
-            check(
-                world,
-                level,
-                [level.columns[0], level.rows[0]],
-                catalog,
-                config,
-            )
-        });
+        let levels = self.levels.iter();
+        let levels = levels.map(|level| check(world, level, catalog, config));
         let levels: Vec<Checked> = levels.collect::<Result<_, _>>()?;
         let now = blocks(levels[0].output.encoding, config);
         if self.block_bytes != now {
@@ -240,7 +210,6 @@ fn bbox<T>(flags: &Flags<T>) -> Result<[f64; 4], Failure> {
 fn check(
     world: Option<&str>,
     level: &Level,
-    at: [i64; 2],
     catalog: &Assets,
     config: &Config,
 ) -> Result<Checked, Failure> {
@@ -248,24 +217,18 @@ fn check(
     if let Some(name) = world {
         values.replace(&WORLD, Some(Value::Text(name.into())));
     }
+    let at = [level.columns[0], level.rows[0]];
     let draft = Draft::new(values).within(Ok(chunk(level.size, at)));
-    let checked = draft.check(catalog, config.limits.max_vertices);
-    // It comes from flags or from the world's document.
-    let lod = || -> Result<f64, Error> {
-        let (whole, _) = draft.filled(&catalog.worlds)?;
-        Ok(whole.values.get(&LOD)?.unwrap_or(1.0))
-    };
-    let looks = |(query, options): (Query, Options)| -> Result<Checked, Error> {
+    let checked = || -> Result<Checked, Error> {
+        let (query, options) = draft.check(catalog, config.limits.max_vertices)?;
         let encoding = options.encoding.unwrap_or(Encoding::Json);
-        Ok(Checked {
-            output: options.output(encoding)?,
-            query,
-            lod: lod()?,
-        })
+        let output = options.output(encoding)?;
+        // The share comes from flags or from the world's document.
+        let (whole, _) = draft.filled(&catalog.worlds)?;
+        let lod = whole.values.get(&LOD)?.unwrap_or(1.0);
+        Ok(Checked { query, lod, output })
     };
-    checked
-        .and_then(looks)
-        .map_err(|error| Source::Flags.refused(error))
+    checked().map_err(|error| Source::Flags.refused(error))
 }
 
 pub(super) fn chunk(size: f64, at: [i64; 2]) -> RegionDraft {
