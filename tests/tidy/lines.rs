@@ -1,7 +1,6 @@
 //! How much there is to hold in one's head: the lines of each part, and the most that it may have.
 //!
-//! A ceiling only falls: a feature pays for itself by what it merges. `just lines` prints the table. Lines are all lines
-//! of the files of a part, its tests, benches and examples too; generated code is not counted.
+//! A ceiling only falls: a feature pays for itself by what it merges. All lines count but generated ones.
 
 use std::path::Path;
 
@@ -9,17 +8,17 @@ use super::files;
 
 /// A part, the endings of its files, and the most lines that it may have.
 const CEILINGS: &[(&str, &[&str], usize)] = &[
-    ("src", &["rs"], 22_144),
+    ("src", &["rs"], 21_553),
     ("crates/catalog", &["rs"], 4949),
     ("crates/config", &["rs"], 1560),
-    ("crates/core", &["rs"], 54_849),
-    ("crates/encode", &["rs"], 8259),
+    ("crates/core", &["rs"], 51_159),
+    ("crates/encode", &["rs"], 8258),
     ("crates/error", &["rs"], 985),
-    ("crates/forge", &["rs"], 20_766),
+    ("crates/forge", &["rs"], 20_721),
     ("crates/pages", &["rs"], 439),
     ("crates/plan", &["rs"], 4170),
-    ("crates/proto", &["rs"], 343),
-    ("crates/query", &["rs"], 8738),
+    ("crates/proto", &["rs"], 337),
+    ("crates/query", &["rs"], 8736),
     ("crates/raster", &["rs"], 2976),
     ("crates/service", &["rs"], 5977),
     ("crates/testkit", &["rs"], 1197),
@@ -35,22 +34,43 @@ const CEILINGS: &[(&str, &[&str], usize)] = &[
     ),
 ];
 
+/// The modules of core and forge, and the most lines of each.
+const MODULES: &[(&str, &str)] = &[
+    (
+        "crates/core/src",
+        "map 1811 pattern 2085 shape 1843 space 6365 table 3646",
+    ),
+    (
+        "crates/core/src/sample",
+        "attribute 1442 count 738 field 3732 kernel 3486 lattice 2425 near 1764 \
+         periodic 1077 plan 665 set 1352 settle 2686 sieve 388 walk 2977 warp 1482",
+    ),
+    (
+        "crates/forge/src",
+        "curve 791 energy 465 figure 1643 judge 822 mask 700 measure 2028 mix 2092 \
+         numeric 270 optimize 1550 picture 279 profile 823 space 2620 thinned 421",
+    ),
+];
+
 #[test]
 fn no_part_outgrows_its_ceiling() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut outgrown = vec![];
-    println!(
-        "{:24} {:>7} {:>7} {:>6}",
-        "part", "lines", "ceiling", "files"
-    );
-    for &(part, endings, ceiling) in CEILINGS {
-        let found = files(&root.join(part), endings);
+    let mut check = |part: &str, endings: &[&str], ceiling: usize| {
+        let found = files(&Path::new(env!("CARGO_MANIFEST_DIR")).join(part), endings);
         let lines: usize = found.iter().map(|(_, text)| text.lines().count()).sum();
         println!("{part:24} {lines:7} {ceiling:7} {:6}", found.len());
         if lines > ceiling {
-            outgrown.push(format!(
-                "{part} has {lines} lines; its ceiling is {ceiling}"
-            ));
+            outgrown.push(format!("{part} has {lines} lines, not {ceiling}"));
+        }
+    };
+    for &(part, endings, ceiling) in CEILINGS {
+        check(part, endings, ceiling);
+    }
+    for (folder, modules) in MODULES {
+        let words: Vec<&str> = modules.split(' ').collect();
+        for module in words.chunks_exact(2) {
+            let ceiling = module[1].parse().expect("a number");
+            check(&format!("{folder}/{}", module[0]), &["rs"], ceiling);
         }
     }
     assert!(outgrown.is_empty(), "{outgrown:#?}");

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 use strew::grpc::proto::{
-    CountPointsRequest, StreamPointsRequest, point_service_client::PointServiceClient,
-    point_set::Amount,
+    CountPointsRequest, Field, ResolvedSet, StreamPointsRequest,
+    point_service_client::PointServiceClient, point_set::Amount,
 };
 use strew_core::{Point, Table};
 use strew_testkit::wait::until;
@@ -222,33 +222,37 @@ fn joint_kinds_have_points_of_their_own() {
     assert_eq!(of("s")["joint_kinds"], json!([]));
 }
 
-#[tokio::test(flavor = "multi_thread")]
-async fn calls_and_commands_agree() {
-    let daemon = Daemon::built_in();
-    let region = [0.0, 0.0, 50.0, 40.0];
-    let csv = Csv::get(&daemon, &format!("bbox=0,0,50,40&{SET}&spread=even"));
+/// What a call that counts oaks and birches echoes.
+pub(super) async fn counted<const N: usize>(
+    daemon: &Daemon,
+    oaks: f64,
+    fields: [(String, Field); N],
+) -> ResolvedSet {
     let mut set = grpc::set(Amount::Spacing(1.0)).expect("a set");
     set.profile = None;
     set.alpha = None;
     set.map = Some("s".into());
     set.seed = Some(9);
-    set.variants = [("oak".into(), 3.0), ("birch".into(), 1.0)].into();
+    set.variants = [("oak".into(), oaks), ("birch".into(), 1.0)].into();
     set.spread = Some("even".into());
+    set.variant_fields = fields.into();
     let query = StreamPointsRequest {
-        region: grpc::boxed(region),
+        region: grpc::boxed([0.0, 0.0, 50.0, 40.0]),
         set: Some(set),
         ..StreamPointsRequest::default()
     };
     let mut client = PointServiceClient::new(daemon.channel().await);
-    let request = CountPointsRequest { query: Some(query) };
-    let counted = client
-        .count_points(request)
-        .await
-        .expect("counted")
-        .into_inner();
-    let sets = counted.query.expect("an echo").sets;
-    let kinds: BTreeMap<String, u64> = sets[0].kinds.clone().into_iter().collect();
-    assert_eq!(counts(&csv), json!(kinds));
+    let counted = client.count_points(CountPointsRequest { query: Some(query) });
+    let counted = counted.await.expect("counted").into_inner();
+    counted.query.expect("an echo").sets.swap_remove(0)
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn calls_and_commands_agree() {
+    let daemon = Daemon::built_in();
+    let csv = Csv::get(&daemon, &format!("bbox=0,0,50,40&{SET}&spread=even"));
+    let set = counted(&daemon, 3.0, []).await;
+    assert_eq!(counts(&csv), json!(set.kinds));
     let arguments = "sample --bbox 0,0,50,40 --map s --spacing 1 --seed 9 --attributes variant \
                      --variants oak:3,birch:1 --spread even --format csv -o -";
     let output = command::run(&arguments.split_whitespace().collect::<Vec<_>>(), "");

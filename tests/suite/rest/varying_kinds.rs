@@ -1,22 +1,19 @@
 //! Kinds whose shares vary from place to place.
 
 use serde_json::{Value, json};
-use strew::grpc::proto::{
-    CountPointsRequest, Field, StreamPointsRequest, field::Shape,
-    point_service_client::PointServiceClient, point_set::Amount,
-};
+use strew::grpc::proto::{Field, field::Shape};
 use strew_core::Point;
 use strew_testkit::{
     http1::{self, Answer},
     wait::until,
 };
 
+use super::kinds::counted;
 use crate::support::{
     command,
     csv::Csv,
     daemon::{Daemon, no_tables},
     fields::{folder, write},
-    grpc,
     problem::assert_fault,
 };
 
@@ -256,30 +253,10 @@ async fn calls_and_commands_agree() {
     let folder = folder();
     let daemon = daemon(&folder);
     let csv = Csv::get(&daemon, &format!("bbox=0,0,50,40&{SET}&{VARIED}"));
-    let mut set = grpc::set(Amount::Spacing(1.0)).expect("a set");
-    set.profile = None;
-    set.alpha = None;
-    set.map = Some("s".into());
-    set.seed = Some(9);
-    set.variants = [("oak".into(), 1.0), ("birch".into(), 1.0)].into();
-    set.spread = Some("even".into());
     let named = Field {
         shape: Some(Shape::Name("ramp".into())),
     };
-    set.variant_fields = [("birch".into(), named)].into();
-    let query = StreamPointsRequest {
-        region: grpc::boxed([0.0, 0.0, 50.0, 40.0]),
-        set: Some(set),
-        ..StreamPointsRequest::default()
-    };
-    let mut client = PointServiceClient::new(daemon.channel().await);
-    let request = CountPointsRequest { query: Some(query) };
-    let counted = client
-        .count_points(request)
-        .await
-        .expect("counted")
-        .into_inner();
-    let set = &counted.query.expect("an echo").sets[0];
+    let set = counted(&daemon, 1.0, [("birch".into(), named)]).await;
     assert_eq!(counts(&csv.answer), json!(set.kinds));
     let digest = daemon.get("/v1/fields/ramp").json()["digest"].clone();
     assert_eq!(json!(set.variant_field_digests), json!({ "birch": digest }));
