@@ -6,7 +6,7 @@ use strew_query::{Token, groups, parts};
 
 use super::{
     Failure, config,
-    failure::Source,
+    failure::refused,
     flags::{Counted, Parted},
     output,
     query::QueryArgs,
@@ -51,7 +51,7 @@ pub(super) struct SplitArgs {
 pub(super) fn split(args: &SplitArgs) -> Result<(), Failure> {
     let config = args.query.settings.merged(config::Uses::QUERIES)?;
     let parts = parts(&args.query.flags.values_of(groups::SPLIT));
-    let parts = parts.map_err(|faults| Source::Flags.refused(faults.into()))?;
+    let parts = parts.map_err(refused)?;
     let ask = args.query.plan(&config)?;
     let part = |(token, count): (Token, u64)| Piece {
         count: Long(count),

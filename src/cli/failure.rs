@@ -65,6 +65,11 @@ pub(super) fn flag(name: &str) -> String {
     format!("--{}", name.replace('_', "-"))
 }
 
+/// Refuses what flags ask for.
+pub(super) fn refused(error: impl Into<Error>) -> Failure {
+    Source::Flags.refused(error)
+}
+
 /// The source of a query, which decides how its parameters are written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Source {
@@ -73,7 +78,8 @@ pub(super) enum Source {
 }
 
 impl Source {
-    pub(super) fn refused(&self, error: Error) -> Failure {
+    pub(super) fn refused(&self, error: impl Into<Error>) -> Failure {
+        let error = error.into();
         let text = match &error {
             Error::Invalid(faults) => self.described(faults.as_slice()),
             Error::TooManyPoints { count, limit } => format!(

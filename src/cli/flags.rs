@@ -126,35 +126,30 @@ impl<T: Takes> Flags<T> {
 
 impl<T> Flags<T> {
     pub(super) fn values_of(&self, groups: &'static [Group]) -> Values {
+        self.chosen(groups, |group| groups.contains(&group))
+    }
+
+    fn chosen(&self, groups: &'static [Group], is_chosen: impl Fn(Group) -> bool) -> Values {
         let mut values = Values::new(groups, "");
-        for (parameter, text) in &self.given {
-            if groups.contains(&parameter.group) {
-                values.add_text(parameter.name, text);
-            }
+        for (parameter, text) in self.texts().filter(|(known, _)| is_chosen(known.group)) {
+            values.add_text(parameter.name, text);
         }
         values
     }
 
     /// All given flags as values of a request about points in space, which some groups make.
     pub(super) fn values_in_space(&self, groups: &'static [Group]) -> Values {
-        let mut values = Values::new(groups, "");
         // How a query is split is not a part of it.
-        let own = self.given.iter();
-        let own = own.filter(|(parameter, _)| parameter.group != Group::Split);
-        for (parameter, text) in own {
-            values.add_text(parameter.name, text);
-        }
-        values
+        self.chosen(groups, |group| group != Group::Split)
     }
 
     pub(super) fn given(&self) -> impl Iterator<Item = &'static Parameter> {
-        self.given.iter().map(|(parameter, _)| *parameter)
+        self.texts().map(|(parameter, _)| parameter)
     }
 
     pub(super) fn texts(&self) -> impl Iterator<Item = (&'static Parameter, &str)> {
-        self.given
-            .iter()
-            .map(|(parameter, text)| (*parameter, text.as_str()))
+        let given = self.given.iter();
+        given.map(|(parameter, text)| (*parameter, text.as_str()))
     }
 
     pub(super) fn text(&self, wanted: &Parameter) -> Option<&str> {
@@ -163,7 +158,7 @@ impl<T> Flags<T> {
     }
 
     pub(super) fn has(&self, wanted: &Parameter) -> bool {
-        self.given().any(|parameter| parameter == wanted)
+        self.text(wanted).is_some()
     }
 }
 

@@ -13,7 +13,7 @@ use strew_query::{
 
 use super::{
     Failure, config,
-    failure::Source,
+    failure::refused,
     flags::{Flags, Listed},
     output,
 };
@@ -69,7 +69,7 @@ pub(super) struct PeriodsArgs {
 pub(super) fn periods(args: &PeriodsArgs) -> Result<(), Failure> {
     let config = args.settings.merged(config::Uses::LOADED)?;
     let found = Periods::of(&args.flags.values(), &config::tables(&config)?);
-    let found = found.map_err(|error| Source::Flags.refused(error))?;
+    let found = found.map_err(refused)?;
     if args.json {
         return output::print_json([found]);
     }

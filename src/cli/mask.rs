@@ -8,7 +8,7 @@ use strew_query::chosen;
 
 use super::{
     Failure, config,
-    failure::Source,
+    failure::refused,
     flags::{Flags, Tabled},
     output::{self, Output, must_not_be_terminal},
     pattern::encoded,
@@ -45,7 +45,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.settings.merged(config::Uses::LOADED)?;
     let catalog = config::tables(&config)?;
     let ready = chosen(&args.table.values(), &catalog).and_then(|entry| Ready::load(&entry));
-    let ready = ready.map_err(|error| Source::Flags.refused(error))?;
+    let ready = ready.map_err(refused)?;
     let mut output = Output::open(args.output.as_deref())?;
     let mask = Mask::new(&ready.table, args.size, args.seed).map_err(Failure::of_setting)?;
     let written = match is_array {

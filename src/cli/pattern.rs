@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 use strew_core::Alpha;
-use strew_error::Error;
 use strew_forge::figure::{self, Drawing};
 use strew_plan::Placed;
 use strew_query::{Value, patterns::OFFSETS};
@@ -14,7 +13,7 @@ use strew_service::pattern::{ArrangementQuery, Listing};
 
 use super::{
     Failure, config,
-    failure::Source,
+    failure::refused,
     flags::{Arranged, Flags},
     output::{self, Output},
     refuse,
@@ -30,7 +29,6 @@ pub(super) struct ArrangementArgs {
 }
 
 pub(super) fn arrangement(args: &ArrangementArgs) -> Result<(), Failure> {
-    let refused = |error: Error| Source::Flags.refused(error);
     let config = args.settings.merged(config::Uses::LISTS)?;
     let query = ArrangementQuery::check(&args.flags.values(), &config::tables(&config)?)
         .map_err(refused)?;

@@ -6,7 +6,7 @@ use strew_query::{Nearest, Set, Values};
 
 use super::{
     Failure, config,
-    failure::Source,
+    failure::refused,
     fields::FieldArgs,
     flags::{Flags, Near, Single, Takes},
     output,
@@ -61,7 +61,7 @@ pub(super) fn point(args: &PointArgs) -> Result<(), Failure> {
         let point = placed.point(&args.id)?;
         Ok((placed.resolved, point))
     });
-    let (query, point) = found.map_err(|error| Source::Flags.refused(error))?;
+    let (query, point) = found.map_err(refused)?;
     if args.set.json {
         return output::print_json([One { point, query }]);
     }
@@ -76,7 +76,7 @@ pub(super) fn nearest(args: &NearestArgs) -> Result<(), Failure> {
         let neighbors = placed.nearest(nearest)?;
         Ok((placed.resolved, neighbors))
     });
-    let (query, neighbors) = found.map_err(|error| Source::Flags.refused(error))?;
+    let (query, neighbors) = found.map_err(refused)?;
     if args.json {
         return output::print_json([Several { neighbors, query }]);
     }

@@ -1,7 +1,6 @@
 //! `strew probe`: requests the health of a daemon, for health checks of containers that hold no other program.
 
 use std::{
-    error::Error as _,
     io,
     net::{IpAddr, SocketAddr},
     path::{Path, PathBuf},
@@ -118,7 +117,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let answer = runtime.block_on(asked);
     // A name that is still being looked up must not keep the process.
     runtime.shutdown_background();
-    let answer = answer.unwrap_or_else(|_| Err(anyhow!("no answer within {timeout:?}")));
+    let answer = match answer {
+        Ok(answer) => answer.map_err(explained),
+        Err(_) => Err(anyhow!("no answer within {timeout:?}")),
+    };
     match answer.with_context(|| url.clone())?.as_u16() {
         200 => Ok(()),
         status => Err(anyhow!("{url}: not {wanted}: status {status}").into()),
@@ -176,20 +178,19 @@ async fn status(address: &Uri, path: &str, tls: Tls) -> anyhow::Result<StatusCod
         .header(CONNECTION, "close")
         .body(Empty::new())?;
     let socket = TcpStream::connect((host(address), port)).await?;
-    let answer = match tls {
+    match tls {
         None => answer(socket, request).await,
         Some((config, name)) => {
             let connector = TlsConnector::from(config);
             answer(connector.connect(name, socket).await?, request).await
         }
-    };
-    answer.map_err(explained)
+    }
 }
 
 async fn answer(
     stream: impl AsyncRead + AsyncWrite + Send + Unpin + 'static,
     request: Request<Empty<Bytes>>,
-) -> hyper::Result<StatusCode> {
+) -> anyhow::Result<StatusCode> {
     let (mut sender, connection) = http1::handshake(TokioIo::new(stream)).await?;
     tokio::spawn(connection);
     Ok(sender.send_request(request).await?.status())
@@ -201,20 +202,20 @@ fn host(address: &Uri) -> &str {
     host.trim_matches(['[', ']'])
 }
 
-fn explained(error: hyper::Error) -> anyhow::Error {
-    if error.is_parse() {
+fn explained(error: anyhow::Error) -> anyhow::Error {
+    let of_http: Option<&hyper::Error> = error.downcast_ref();
+    if of_http.is_some_and(hyper::Error::is_parse) {
         return anyhow!("the answer is not HTTP (a daemon with TLS needs https)");
     }
-    let cause = error.source();
-    let of_socket = cause.and_then(|cause| cause.downcast_ref::<io::Error>());
+    let of_socket: Option<&io::Error> = error.chain().find_map(|cause| cause.downcast_ref());
     let is_end = of_socket.is_some_and(|error| error.kind() == io::ErrorKind::UnexpectedEof);
-    if error.is_incomplete_message() || is_end {
+    if is_end || of_http.is_some_and(hyper::Error::is_incomplete_message) {
         return anyhow!("the connection ended before the answer was complete");
     }
     let of_tls = of_socket.and_then(|error| error.get_ref()?.downcast_ref());
     // TLS 1.3 has an alert for a missing certificate, TLS 1.2 has none.
     let wanted = rustls::Error::AlertReceived(AlertDescription::CertificateRequired);
-    let text = cause.map_or_else(|| error.to_string(), ToString::to_string);
+    let text = of_socket.map_or_else(|| error.to_string(), ToString::to_string);
     match of_tls == Some(&wanted) {
         true => anyhow!(text)
             .context("the daemon requires a client certificate: use --certificate and --key"),
@@ -238,9 +239,9 @@ impl Args {
             };
         }
         let verifier = match &self.ca {
-            Some(path) => certificates(&read("--ca", path)?)
-                .and_then(Verifier::of)
-                .map_err(|problem| of("--ca", path, &problem))?,
+            Some(path) => {
+                Verifier::of(chain("--ca", path)?).map_err(|problem| of("--ca", path, &problem))?
+            }
             None if self.insecure || self.url.is_none() => Verifier::of_anyone(),
             None => bail!("https needs --ca FILE, or --insecure to accept any certificate"),
         };
@@ -250,8 +251,7 @@ impl Args {
             .with_custom_certificate_verifier(Arc::new(verifier));
         let config = match (&self.certificate, &self.key) {
             (Some(certificate), Some(key)) => {
-                let chain = certificates(&read("--certificate", certificate)?)
-                    .map_err(|problem| of("--certificate", certificate, &problem))?;
+                let chain = chain("--certificate", certificate)?;
                 let private = PrivateKeyDer::from_pem_slice(&read("--key", key)?)
                     .map_err(|_| of("--key", key, "it holds no private key in PEM"))?;
                 let config = builder.with_client_auth_cert(chain, private);
@@ -277,6 +277,10 @@ const MOST_BYTES: u64 = 4 << 20;
 fn read(flag: &str, path: &Path) -> anyhow::Result<Vec<u8>> {
     bounded_file::read(path, MOST_BYTES)
         .with_context(|| format!("{flag} {}: it cannot be read", path.display()))
+}
+
+fn chain(flag: &str, path: &Path) -> anyhow::Result<Vec<CertificateDer<'static>>> {
+    certificates(&read(flag, path)?).map_err(|problem| of(flag, path, &problem))
 }
 
 fn of(flag: &str, path: &Path, problem: &str) -> anyhow::Error {

@@ -8,7 +8,6 @@ use std::{
 use anyhow::{Context as _, anyhow};
 use strew_config::Config;
 use strew_encode::Crs;
-use strew_error::Faults;
 use strew_plan::{Planned, PlannedSet};
 use strew_query::{
     BALL, Draft, Feature, Group, Options, RegionDraft, Set, ShapeDraft, Value, Values, groups, of,
@@ -17,7 +16,7 @@ use strew_query::{
 
 use super::{
     Failure, config,
-    failure::{Source, flag},
+    failure::{Source, flag, refused},
     fields::{FieldArgs, StrataArgs},
     flags::{Flags, Takes, WHERE},
     refuse,
@@ -108,7 +107,7 @@ impl<T: Takes> QueryArgs<T> {
         if !text.contains('/') && !text.ends_with("json") {
             return Ok(None);
         }
-        let read = Crs::of_projjson(&read_file("--crs", Path::new(text))?);
+        let read = Crs::of_projjson(&read_file("--crs", Path::new(text))?.0);
         let crs = read.map_err(|detail| {
             Failure::Usage(anyhow!(
                 "--crs {text}: {detail}; allowed: a file of PROJJSON, as `projinfo -o PROJJSON` writes it, or {}",
@@ -145,7 +144,6 @@ impl<T: Takes> QueryArgs<T> {
             };
             return Ok((draft, Source::Flags));
         };
-        let source = Source::File(format!("--query {}", file.display()));
         let is_beside = |group| [Group::Output, Group::Reference, Group::Split].contains(&group);
         let others = self
             .flags
@@ -163,14 +161,14 @@ impl<T: Takes> QueryArgs<T> {
                 allowed.collect::<Vec<_>>().join(", ")
             );
         }
-        let bytes = read_file("--query", file)?;
-        let refused = |faults: Faults| source.refused(faults.into());
-        let mut draft = read_body(&bytes, self.in_file()).map_err(refused)?;
+        let (bytes, source) = read_file("--query", file)?;
+        let read = read_body(&bytes, self.in_file());
+        let mut draft = read.map_err(|faults| source.refused(faults))?;
         // Flags of the output override the file.
         let mut output = self.flags.values_of(groups::OUTPUT);
         name(&mut output);
         let read = output.read();
-        read.map_err(|faults| Source::Flags.refused(faults.into()))?;
+        read.map_err(refused)?;
         for (parameter, value) in output.given() {
             draft.values.replace(parameter, Some(value.clone()));
         }
@@ -204,11 +202,10 @@ impl<T: Takes> QueryArgs<T> {
                 flag(amount.name)
             );
         }
-        let bytes = read_file("--features", file)?;
-        let source = Source::File(format!("--features {}", file.display()));
+        let (bytes, source) = read_file("--features", file)?;
         let names = [self.feature_id.as_deref(), self.feature_count.as_deref()];
         let read = read_features(&bytes, names).map(Some);
-        read.map_err(|faults| source.refused(faults.into()))
+        read.map_err(|faults| source.refused(faults))
     }
 
     fn region(&self) -> Result<Option<RegionDraft>, Failure> {
@@ -230,10 +227,9 @@ impl<T: Takes> QueryArgs<T> {
                     "--region is flat; in space a polygon between two heights is a prism of --query"
                 );
             }
-            let bytes = read_file("--region", file)?;
-            let source = Source::File(format!("--region {}", file.display()));
-            let read = read_region(&bytes);
-            return Ok(Some(read.map_err(|fault| source.refused(fault.into()))?));
+            let (bytes, source) = read_file("--region", file)?;
+            let read = read_region(&bytes).map(Some);
+            return read.map_err(|fault| source.refused(fault));
         }
         let chunk = |text| chunk(text, self.space);
         self.chunk.as_deref().map(chunk).transpose()
@@ -263,7 +259,8 @@ fn chunk(text: &str, in_space: bool) -> Result<RegionDraft, Failure> {
     })
 }
 
-fn read_file(flag: &str, path: &Path) -> Result<Vec<u8>, Failure> {
+/// The content of the file of a flag.
+fn read_file(flag: &str, path: &Path) -> Result<(Vec<u8>, Source), Failure> {
     let read = if path == Path::new("-") {
         let mut bytes = vec![];
         std::io::stdin().read_to_end(&mut bytes).map(|_| bytes)
@@ -271,7 +268,8 @@ fn read_file(flag: &str, path: &Path) -> Result<Vec<u8>, Failure> {
         std::fs::read(path)
     };
     let read = read.with_context(|| format!("{flag}: cannot read {}", path.display()));
-    read.map_err(Failure::Usage)
+    let source = Source::File(format!("{flag} {}", path.display()));
+    read.map(|bytes| (bytes, source)).map_err(Failure::Usage)
 }
 
 pub(super) fn described(planned: &Planned) -> String {

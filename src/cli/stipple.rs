@@ -17,8 +17,7 @@ use strew_query::{Draft, Value, parameters};
 use strew_raster::{Image, Limits};
 
 use super::{
-    Failure, config,
-    failure::Source,
+    Failure, config, failure,
     flags::{Flags, Stippled},
     must_be_within,
     output::Output as Target,
@@ -126,7 +125,7 @@ fn refused(args: &Args, error: strew_error::Error) -> Failure {
         let text = format!("--points {}: {detail}; allowed: {allowed}", args.points);
         return Failure::Usage(anyhow!(text));
     }
-    Source::Flags.refused(error)
+    failure::refused(error)
 }
 
 fn read(path: &Path) -> Result<Image, Failure> {

@@ -14,7 +14,7 @@ use super::{
     grid::Grid,
     spec::{Checked, Spec, chunk},
 };
-use crate::cli::{Failure, compression::Compression, failure::Source, refuse};
+use crate::cli::{Failure, compression::Compression, failure, refuse};
 
 pub(super) struct Maker {
     pub(super) grid: Grid,
@@ -70,7 +70,7 @@ impl Maker {
 
     fn refused(&self, i: usize, error: Error) -> Failure {
         let name = self.grid.name(i);
-        match Source::Flags.refused(error) {
+        match failure::refused(error) {
             Failure::Usage(error) => Failure::Usage(error.context(name)),
             Failure::Other(error) => Failure::Other(error.context(name)),
             interrupted => interrupted,

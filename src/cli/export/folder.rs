@@ -21,6 +21,9 @@ use crate::cli::{Failure, compression::Compression, refuse};
 /// The folder of an incomplete export: the spec, the journal, files under temporary names.
 pub(super) const WORK: &str = ".partial";
 
+/// The chunks of earlier runs, by their numbers.
+type Done = HashMap<usize, Record>;
+
 pub(super) struct Folder {
     root: PathBuf,
     work: PathBuf,
@@ -47,20 +50,19 @@ fn other(root: &Path) -> Failure {
     ))
 }
 
-pub(super) enum Found {
-    Complete,
-    /// It is empty, or holds chunks of an earlier run.
-    Open(Folder, HashMap<usize, Record>),
-}
-
 impl Folder {
-    /// Opens a folder for an export; refuses one that holds anything else.
-    pub(super) fn open(root: &Path, spec: &Spec, maker: &Maker) -> Result<Found, Failure> {
+    /// Opens a folder for an export, with the chunks of an earlier run; `None` if the export is complete. Refuses a folder
+    /// that holds anything else.
+    pub(super) fn open(
+        root: &Path,
+        spec: &Spec,
+        maker: &Maker,
+    ) -> Result<Option<(Self, Done)>, Failure> {
         let unwritable = || format!("cannot write {}", root.display());
         fs::create_dir_all(root).with_context(unwritable)?;
         let work = root.join(WORK);
         if is_complete(root, spec)? && !work.exists() {
-            return Ok(Found::Complete);
+            return Ok(None);
         }
         let is_empty = || -> io::Result<bool> { Ok(fs::read_dir(root)?.next().is_none()) };
         if !work.exists() && !is_empty().with_context(unwritable)? {
@@ -80,7 +82,7 @@ impl Folder {
         if is_complete(root, spec)? {
             fs::remove_dir_all(&work)
                 .with_context(|| format!("cannot remove {}", work.display()))?;
-            return Ok(Found::Complete);
+            return Ok(None);
         }
         let ours = serde_json::to_vec(spec).context("the options cannot be written")?;
         let file = work.join("spec.json");
@@ -109,7 +111,7 @@ impl Folder {
             compressions: spec.compressions(),
             _lock: lock,
         };
-        Ok(Found::Open(folder, done))
+        Ok(Some((folder, done)))
     }
 
     pub(super) fn put(&self, i: usize, name: &str, chunk: Chunk) -> anyhow::Result<Record> {
@@ -185,7 +187,7 @@ fn done(
     root: &Path,
     maker: &Maker,
     compressions: &[Compression],
-) -> io::Result<HashMap<usize, Record>> {
+) -> io::Result<Done> {
     let chunks = maker.grid.chunks();
     let is_there = |(i, record): &(usize, Record)| {
         let is_of_export = *i < chunks && record.files.len() == compressions.len();

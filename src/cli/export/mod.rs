@@ -149,16 +149,13 @@ impl Job<'_> {
         // The existing chunks are not counted yet.
         let advice = "make room, and the same command resumes there";
         let to_open = |failure| with_advice(failure, advice);
-        let (folder, mut done) =
-            match Folder::open(root, &self.spec, &self.maker).map_err(to_open)? {
-                folder::Found::Complete => {
-                    if !self.args.quiet {
-                        eprintln!("{} is complete: nothing to do", root.display());
-                    }
-                    return Ok(());
-                }
-                folder::Found::Open(folder, done) => (folder, done),
-            };
+        let opened = Folder::open(root, &self.spec, &self.maker).map_err(to_open)?;
+        let Some((folder, mut done)) = opened else {
+            if !self.args.quiet {
+                eprintln!("{} is complete: nothing to do", root.display());
+            }
+            return Ok(());
+        };
         if let Err(failure) = self.cost(done.len(), Some(root)) {
             if done.is_empty() {
                 folder.abandon();

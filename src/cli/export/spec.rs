@@ -15,7 +15,7 @@ use strew_query::{
 };
 
 use super::grid::{Grid, Level};
-use crate::cli::{Failure, compression::Compression, failure::Source, flags::Flags, refuse};
+use crate::cli::{Failure, compression::Compression, failure::refused, flags::Flags, refuse};
 
 /// The characters that need no escaping in addresses or in the settings of servers.
 const PLAIN: &AsciiSet = &NON_ALPHANUMERIC
@@ -175,7 +175,7 @@ impl Spec {
             );
         }
         let query = &levels[0].query;
-        let tables = Planned::tables(query).map_err(|error| Source::Flags.refused(error))?;
+        let tables = Planned::tables(query).map_err(refused)?;
         Ok((levels, tables))
     }
 
@@ -196,13 +196,11 @@ fn blocks(encoding: Encoding, config: &Config) -> Option<usize> {
 
 fn bbox<T>(flags: &Flags<T>) -> Result<[f64; 4], Failure> {
     let values = flags.values_of(groups::POINTS);
-    let region = RegionDraft::of(&values).map_err(|faults| Source::Flags.refused(faults.into()))?;
+    let region = RegionDraft::of(&values).map_err(refused)?;
     let Some(region) = region else {
         refuse!("a region is missing: use --bbox");
     };
-    let checked = region
-        .check()
-        .map_err(|faults| Source::Flags.refused(faults.into()))?;
+    let checked = region.check().map_err(refused)?;
     Ok(checked.bbox())
 }
 
@@ -228,7 +226,7 @@ fn check(
         let lod = whole.values.get(&LOD)?.unwrap_or(1.0);
         Ok(Checked { query, lod, output })
     };
-    checked().map_err(|error| Source::Flags.refused(error))
+    checked().map_err(refused)
 }
 
 pub(super) fn chunk(size: f64, at: [i64; 2]) -> RegionDraft {

@@ -20,7 +20,7 @@ use strew_query::{Draft, parameters::BBOX};
 use self::space::Subjects;
 use super::{
     Failure, config,
-    failure::Source,
+    failure::refused,
     flags::{Flags, Measured},
     must_be_within,
     output::Output,
@@ -205,11 +205,6 @@ impl Args {
         }
     }
 
-    fn corners(&self) -> anyhow::Result<[f64; 4]> {
-        let bbox = self.flags.values().require(&BBOX);
-        bbox.map_err(|faults| anyhow!("{}", Error::from(faults)))
-    }
-
     fn twins(&self, table: &Table) -> anyhow::Result<Vec<Twin>> {
         if self.subjects.twin.is_empty() {
             let seen = &table.provenance().twins;
@@ -275,7 +270,7 @@ fn of_query(args: &Args) -> Result<Measurement, Failure> {
     let config = args.settings.merged(config::Uses::QUERIES)?;
     let catalog = config::tables(&config)?;
     let planned = config::planned(&config, &Draft::of(args.flags.values()), &catalog.into());
-    let (planned, _) = planned.map_err(|error| Source::Flags.refused(error))?;
+    let (planned, _) = planned.map_err(refused)?;
     let (corner, side) = square(planned.query.region.bbox()).map_err(Failure::Usage)?;
     if planned.count() > MAX_POINTS || planned.count() < 100 {
         refuse!(
@@ -310,7 +305,8 @@ fn window(corner: [f64; 2], side: f64, density: f64, mut points: Vec<[f64; 2]>) 
 }
 
 fn of_points(args: &Args, file: &Path) -> Result<Measurement, Failure> {
-    let bbox = args.corners().map_err(Failure::Usage)?;
+    let bbox = args.flags.values().require(&BBOX);
+    let bbox = bbox.map_err(|faults| Failure::usage(Error::from(faults)))?;
     let (corner, side) = square(bbox).map_err(Failure::Usage)?;
     let bytes = std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
     let is_packed = file.extension().is_some_and(|ending| ending == "f64");
