@@ -8,7 +8,7 @@ use super::files;
 
 /// A part, the endings of its files, and the most lines that it may have.
 const CEILINGS: &[(&str, &[&str], usize)] = &[
-    ("src", &["rs"], 21_553),
+    ("src", &["rs"], 21_546),
     ("crates/catalog", &["rs"], 4949),
     ("crates/config", &["rs"], 1560),
     ("crates/core", &["rs"], 51_159),
