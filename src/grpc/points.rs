@@ -1,6 +1,6 @@
 //! The service of the contract.
 
-use std::{pin::Pin, sync::Arc};
+use std::{convert::identity, pin::Pin, sync::Arc};
 
 use futures_util::{Stream, TryStreamExt as _};
 use strew_catalog::Entry;
@@ -41,31 +41,21 @@ pub(super) struct Points(pub(super) Arc<Service>);
 
 impl Points {
     /// Answers a call once its message is decoded. The memory of the message is held until the head of the answer.
+    /// `named` gives errors of the answer the names of the message's fields.
     async fn answer<M: Shaped, A>(
         &self,
         mut request: Request<Raw<M>>,
+        named: impl FnOnce(Error) -> Error,
         answer: impl AsyncFnOnce(&Caller, Decoded<M>) -> Result<A, Error>,
     ) -> Answer<A> {
         let caller = request.extensions_mut().remove().unwrap_or_default();
         let decoded = request.into_inner().decoded(&self.0, &caller);
         let answered = match decoded.await {
-            Ok((decoded, _held)) => answer(&caller, decoded).await,
+            Ok((decoded, _held)) => answer(&caller, decoded).await.map_err(named),
             Err(error) => Err(error),
         };
         let response = answered.map(Response::new);
         response.map_err(|error| status::status(&error))
-    }
-
-    /// As [`answer`](Self::answer), for calls whose message has a set: faults name its fields.
-    async fn answer_of_set<M: Shaped, A>(
-        &self,
-        request: Request<Raw<M>>,
-        answer: impl AsyncFnOnce(&Caller, Decoded<M>) -> Result<A, Error>,
-    ) -> Answer<A> {
-        self.answer(request, async |caller, decoded| {
-            answer(caller, decoded).await.map_err(query::by_field)
-        })
-        .await
     }
 
     /// A request with its checked query.
@@ -143,7 +133,7 @@ impl PointService for Points {
         &self,
         request: Request<Raw<StreamPointsRequest>>,
     ) -> Answer<Self::StreamPointsStream> {
-        self.answer_of_set(request, async |caller, request| {
+        self.answer(request, query::by_field, async |caller, request| {
             let (request, query, encoding) = self.read(request).await?;
             let (permit, planned) = self.0.open(caller, query, None).await?;
             let block_bytes = block_bytes(&planned, self.0.limits().block_bytes);
@@ -158,7 +148,7 @@ impl PointService for Points {
         &self,
         request: Request<Raw<CountPointsRequest>>,
     ) -> Answer<CountPointsResponse> {
-        self.answer(request, async |caller, request| {
+        self.answer(request, identity, async |caller, request| {
             let query = required(request.message.query, request.effort)?;
             self.count(caller, query).await.map_err(of_query)
         })
@@ -169,7 +159,7 @@ impl PointService for Points {
         &self,
         request: Request<Raw<SplitPointsRequest>>,
     ) -> Answer<SplitPointsResponse> {
-        self.answer(request, async |caller, request| {
+        self.answer(request, identity, async |caller, request| {
             let SplitPointsRequest { query, parts } = *request.message;
             let query = required(query, request.effort)?;
             let parts = query::parts(&query.message, parts)?;
@@ -179,7 +169,7 @@ impl PointService for Points {
     }
 
     async fn get_point(&self, request: Request<Raw<GetPointRequest>>) -> Answer<GetPointResponse> {
-        self.answer_of_set(request, async |caller, request| {
+        self.answer(request, query::by_field, async |caller, request| {
             let GetPointRequest { id, set } = *request.message;
             // An id in space has three parts.
             let groups = match id.matches(':').count() {
@@ -204,7 +194,7 @@ impl PointService for Points {
         &self,
         request: Request<Raw<FindNearestRequest>>,
     ) -> Answer<FindNearestResponse> {
-        self.answer_of_set(request, async |caller, request| {
+        self.answer(request, query::by_field, async |caller, request| {
             let read = move || Ok(query::nearest(&request.message));
             let check = |service: &Service, values: Values, stop: &Stop| {
                 Nearest::of_set_within(&values, &service.catalog(), allowance(stop))
@@ -226,7 +216,7 @@ impl PointService for Points {
         &self,
         request: Request<Raw<ListProfilesRequest>>,
     ) -> Answer<ListProfilesResponse> {
-        self.answer(request, async |_, _| {
+        self.answer(request, identity, async |_, _| {
             let catalog = self.0.catalog();
             let profile = |entry: &Arc<Entry>| documents::profile(entry, &catalog);
             Ok(ListProfilesResponse {
@@ -242,14 +232,14 @@ impl PointService for Points {
         &self,
         request: Request<Raw<ListPeriodsRequest>>,
     ) -> Answer<ListPeriodsResponse> {
-        self.answer(request, async |_, request| {
+        self.answer(request, identity, async |_, request| {
             documents::periods(*request.message, &self.0)
         })
         .await
     }
 
     async fn get_mask(&self, request: Request<Raw<GetMaskRequest>>) -> Answer<GetMaskResponse> {
-        self.answer(request, async |caller, request| {
+        self.answer(request, identity, async |caller, request| {
             documents::mask(&self.0, caller, *request.message).await
         })
         .await
@@ -259,7 +249,7 @@ impl PointService for Points {
         &self,
         request: Request<Raw<ListFieldsRequest>>,
     ) -> Answer<ListFieldsResponse> {
-        self.answer(request, async |_, _| {
+        self.answer(request, identity, async |_, _| {
             let catalog = self.0.catalog();
             let fields = catalog.fields().iter().map(|loaded| field::loaded(loaded));
             Ok(ListFieldsResponse {
@@ -273,7 +263,7 @@ impl PointService for Points {
         &self,
         request: Request<Raw<ListWorldsRequest>>,
     ) -> Answer<ListWorldsResponse> {
-        self.answer(request, async |_, _| {
+        self.answer(request, identity, async |_, _| {
             let catalog = self.0.catalog();
             let worlds = catalog.worlds.iter().map(|world| LoadedWorld {
                 name: world.name.clone(),
