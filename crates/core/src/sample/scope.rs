@@ -56,10 +56,7 @@ impl Corner {
             let corner = Multiple::new(lattice.step, min[axis].abs(), sign);
             // Reported coordinates decide which is first, so it is a little beside the corner far out.
             let [gap, error] = corner.gap;
-            [
-                gap,
-                error + (first[axis] - corner.first) as f64 * lattice.step,
-            ]
+            [gap, error + lattice.world(first[axis] - corner.first)]
         };
         Self {
             at: min,

@@ -445,7 +445,8 @@ impl Lattice {
 
     /// The largest absolute world coordinate of a region.
     pub(crate) fn limit(&self) -> f64 {
-        self.world(fixed(LATTICE_LIMIT))
+        const LIMIT: f64 = fixed(LATTICE_LIMIT) as f64;
+        LIMIT * self.step
     }
 
     /// The least fixed-point coordinate whose world coordinate is ≥ `bound`, for a bound within the
