@@ -25,8 +25,8 @@ mod steps;
 
 pub use ball::{Ball, Circle};
 pub use polygon::Polygon;
-pub use prism::Prism;
+pub use prism::{Prism, Volume};
 pub(crate) use region::Chunk;
 pub use region::Region;
-pub use shape::{Area, Shape, Volume};
+pub use shape::{Area, Shape};
 pub(crate) use steps::{Near, State, Stepper};

@@ -3,11 +3,11 @@
 use alloc::{boxed::Box, vec::Vec};
 
 use super::{
-    Ball, Chunk, Polygon, Prism, Region,
+    Ball, Chunk, Polygon, Region,
     steps::{State, Stepper, Steps},
 };
 
-/// A part of the plane ([`Area`]) or of space ([`Volume`]).
+/// A part of the plane ([`Area`]) or of space ([`Volume`](crate::space::Volume)).
 ///
 /// ```
 /// use strew_core::{Area, Circle, Polygon, Region};
@@ -25,7 +25,7 @@ pub enum Shape<const D: usize, P> {
     Region(Region<D>),
     /// A disk without its rim, or a ball without its surface.
     Ball(Ball<D>),
-    /// A [`Polygon`] or a [`Prism`].
+    /// A [`Polygon`] or a [`Prism`](crate::space::Prism).
     Outlined(P),
     /// The union of several shapes.
     AnyOf(Vec<Self>),
@@ -47,19 +47,6 @@ pub enum Shape<const D: usize, P> {
 /// ```
 pub type Area = Shape<2, Polygon>;
 
-/// A part of space: boxes, balls and prisms, combined.
-///
-/// ```
-/// use strew_core::space::{Ball, Region, Volume};
-///
-/// let rock = Volume::from(Region::new([0.0; 3], [10.0; 3])?);
-/// let cave = rock.without([Ball::new([5.0; 3], 3.0)?.into()]);
-/// assert!(cave.contains([1.0; 3]) && !cave.contains([5.0; 3]));
-/// assert_eq!(cave.bounds(), Region::new([0.0; 3], [10.0; 3]).ok());
-/// # Ok::<(), strew_core::Error>(())
-/// ```
-pub type Volume = Shape<3, Prism>;
-
 /// What polygons bound: in the plane themselves, in space prisms over them.
 pub trait Outlined<const D: usize>: Clone {
     /// Whether a place lies inside.
@@ -73,29 +60,23 @@ pub trait Outlined<const D: usize>: Clone {
     fn focus(&self, within: &Region<D>) -> Result<bool, Self>;
 }
 
-macro_rules! outlined {
-    ($($part:ty: $dimension:literal)*) => {$(
-        impl Outlined<$dimension> for $part {
-            fn contains(&self, p: [f64; $dimension]) -> bool {
-                self.contains(p)
-            }
+impl Outlined<2> for Polygon {
+    fn contains(&self, p: [f64; 2]) -> bool {
+        self.contains(p)
+    }
 
-            fn bounds(&self) -> Region<$dimension> {
-                self.bounds()
-            }
+    fn bounds(&self) -> Region {
+        self.bounds()
+    }
 
-            fn vertices(&self) -> usize {
-                self.vertices()
-            }
+    fn vertices(&self) -> usize {
+        self.vertices()
+    }
 
-            fn focus(&self, within: &Region<$dimension>) -> Result<bool, Self> {
-                self.focus(within)
-            }
-        }
-    )*};
+    fn focus(&self, within: &Region) -> Result<bool, Self> {
+        self.focus(within)
+    }
 }
-
-outlined! { Polygon: 2 Prism: 3 }
 
 impl<const D: usize, P> From<Region<D>> for Shape<D, P> {
     fn from(region: Region<D>) -> Self {
@@ -112,12 +93,6 @@ impl<const D: usize, P> From<Ball<D>> for Shape<D, P> {
 impl From<Polygon> for Area {
     fn from(polygon: Polygon) -> Self {
         Self::Outlined(polygon)
-    }
-}
-
-impl From<Prism> for Volume {
-    fn from(prism: Prism) -> Self {
-        Self::Outlined(prism)
     }
 }
 
@@ -451,60 +426,5 @@ mod tests {
         let square = Area::from(Region::new([0.0; 2], [1.0; 2]).expect("valid"));
         assert_eq!(square.clone().without(vec![]), square);
         assert_eq!(Area::Outside(Box::new(square)).bounds(), None);
-    }
-
-    fn place() -> impl Strategy<Value = [f64; 3]> {
-        [coordinate(), coordinate(), coordinate()]
-    }
-
-    fn corners() -> impl Strategy<Value = Region<3>> {
-        (place(), place()).prop_map(|(a, b)| {
-            let pick = |f: fn(f64, f64) -> f64| [0, 1, 2].map(|i| f(a[i], b[i]));
-            Region::new(pick(f64::min), pick(f64::max)).expect("ordered")
-        })
-    }
-
-    fn any_volume() -> impl Strategy<Value = Volume> {
-        let ball = (place(), 0.1..4.0f64)
-            .prop_map(|(center, radius)| Volume::from(Ball::new(center, radius).expect("valid")));
-        let prism = prop::collection::vec([coordinate(), coordinate()], 3..7).prop_filter_map(
-            "different",
-            |ring| {
-                let prism = Prism::new(Polygon::new(&[ring]).ok()?, [-2.0, 1.5]).expect("ordered");
-                Some(Volume::from(prism))
-            },
-        );
-        prop_oneof![corners().prop_map(Volume::from), ball, prism].prop_recursive(
-            3,
-            8,
-            3,
-            |inner| {
-                prop_oneof![
-                    prop::collection::vec(inner.clone(), 1..3).prop_map(Volume::any_of),
-                    (inner.clone(), inner.clone()).prop_map(|(a, b)| a.and(b)),
-                    (inner.clone(), inner).prop_map(|(a, b)| a.without([b])),
-                ]
-            },
-        )
-    }
-
-    proptest! {
-        #[test]
-        fn focus_and_bounds_never_contradict_membership(
-            volume in any_volume(), within in corners(),
-            parts in prop::collection::vec(prop::array::uniform3(0.0..=1.0f64), 40),
-        ) {
-            let near = volume.focus(&within);
-            let bounds = volume.bounds();
-            for part in parts {
-                let p = [0, 1, 2].map(|i| {
-                    let (min, max) = (within.min()[i], within.max()[i]);
-                    (min + part[i] * (max - min)).min(max)
-                });
-                prop_assert_eq!(near.contains(p), volume.contains(p), "{:?}", p);
-                let around = bounds.is_none_or(|bounds| bounds.contains(p));
-                prop_assert!(around || !volume.contains(p), "{p:?}");
-            }
-        }
     }
 }
