@@ -1,6 +1,6 @@
 //! The fixed numbers of the file format.
 
-use alloc::format;
+use alloc::{format, string::String};
 
 use crate::error::{Error, ErrorKind};
 
