@@ -3,8 +3,8 @@
 /// The operations of an instruction set that are one expression of its intrinsics.
 #[cfg(any(
     target_arch = "x86_64",
-    target_arch = "aarch64",
-    target_arch = "wasm32"
+    all(target_arch = "aarch64", target_feature = "neon"),
+    all(target_arch = "wasm32", target_feature = "simd128")
 ))]
 macro_rules! operations {
     ($($name:ident $parameters:tt $(-> $value:ty)? = $operation:expr;)*) => {$(
