@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize, Deserialize)]
 pub(super) enum Compression {
     #[value(name = "none")]
+    #[serde(skip)]
     Plain,
     #[value(name = "gz")]
     #[serde(rename = "gz")]
@@ -34,7 +35,7 @@ impl Compression {
         (compression, path.file_stem().unwrap_or_default().as_ref())
     }
 
-    /// The name of a compressed file.
+    /// The name of a file that is compressed so.
     pub(super) fn name(self, plain: &str) -> String {
         match self {
             Self::Plain => plain.into(),

@@ -41,7 +41,7 @@ pub(super) struct Points(pub(super) Arc<Service>);
 
 impl Points {
     /// Answers a call once its message is decoded. The memory of the message is held until the head of the answer.
-    /// `named` gives errors of the answer the names of the message's fields.
+    /// `named` puts the names of the message's fields into errors of the answer.
     async fn answer<M: Shaped, A>(
         &self,
         mut request: Request<Raw<M>>,

@@ -68,12 +68,16 @@ fn router(routes: Routes, calls: Option<grpc::Calls>, gate: Option<Arc<Gate>>) -
             false => paths.nothing(request.uri().path()),
         }
     };
-    let (mut gated, mut open) = (gated, open.fallback(nothing));
-    if let Some(calls) = calls {
-        gated = gated.merge(calls.contract);
-        open = open.merge(calls.others);
-    }
-    open.merge(gated.route_layer(gate::layer(gate)))
+    let mut open = open.fallback(nothing);
+    // A service that is merged into another router is boxed once more; handlers are not.
+    let gated = match calls {
+        Some(calls) => {
+            open = open.merge(calls.others);
+            calls.contract.merge(gated)
+        }
+        None => gated,
+    };
+    gated.route_layer(gate::layer(gate)).merge(open)
 }
 
 impl Step<Inbound> for Finish {

@@ -68,9 +68,15 @@ pub(crate) trait Windowed: Clone {
     type Id: Copy;
 
     fn part(&self) -> Window<Self::Id>;
-    fn with_part(&self, part: Window<Self::Id>) -> Self;
+    fn part_mut(&mut self) -> &mut Window<Self::Id>;
     /// The lattice addresses of points of the request, which ascend and are below its total.
     fn locate(&self, numbers: &[u128]) -> Vec<Option<Self::Id>>;
+
+    fn with_part(&self, part: Window<Self::Id>) -> Self {
+        let mut other = self.clone();
+        *other.part_mut() = part;
+        other
+    }
 
     fn locate_one(&self, number: u128) -> Option<Self::Id> {
         let is_inside = number < self.part().total;
@@ -168,7 +174,11 @@ pub(crate) trait Windowed: Clone {
 
     /// The place of the first point.
     fn first_cursor(&self) -> Option<Cursor<Self::Id>> {
-        self.cursors_at(&[0]).pop().flatten()
+        let part = self.part();
+        let at = part.start.or_else(|| self.locate_one(part.offset));
+        let (offset, total) = (part.offset, part.total);
+        let at = at.filter(|_| part.count > 0)?;
+        Some(Cursor { offset, total, at })
     }
 
     /// The place of the first point of the request after the part's last.

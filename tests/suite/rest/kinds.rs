@@ -222,7 +222,7 @@ fn joint_kinds_have_points_of_their_own() {
     assert_eq!(of("s")["joint_kinds"], json!([]));
 }
 
-/// What a call that counts oaks and birches echoes.
+/// Counts oaks and birches by a call, and returns the set as the server echoes it.
 pub(super) async fn counted<const N: usize>(
     daemon: &Daemon,
     oaks: f64,

@@ -147,7 +147,7 @@ impl Scope {
             Error::new(ErrorKind::Unbounded, field, value, "within a box")
         })?;
         let limit = lattice.limit();
-        for (name, value) in region.bounds() {
+        for (name, value) in region.numbers() {
             if value.abs() > limit {
                 let allowed = alloc::format!(
                     "within ±{} with this spacing, where f64 coordinates still keep \

@@ -60,7 +60,7 @@ impl<const D: usize> Region<D> {
         let refused = |name, value, allowed: String| {
             Err(Error::new(ErrorKind::Region, name, number(value), allowed))
         };
-        if let Some((name, value)) = region.bounds().find(|(_, value)| !value.is_finite()) {
+        if let Some((name, value)) = region.numbers().find(|(_, value)| !value.is_finite()) {
             return refused(name, value, "a finite number".into());
         }
         match (0..D).find(|&axis| max[axis] < min[axis]) {
@@ -73,7 +73,7 @@ impl<const D: usize> Region<D> {
     }
 
     /// Its numbers with their names.
-    pub(crate) fn bounds(&self) -> impl Iterator<Item = (&'static str, f64)> {
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let corners = CORNERS.into_iter().zip([self.min, self.max]);
         corners.flat_map(|(names, corner)| names.into_iter().zip(corner))
     }

@@ -47,7 +47,7 @@ pub enum Shape<const D: usize, P> {
 /// ```
 pub type Area = Shape<2, Polygon>;
 
-/// What polygons bound: in the plane themselves, in space prisms over them.
+/// A shape with an outline of polygons: a [`Polygon`] in the plane, a [`Prism`](crate::space::Prism) in space.
 pub trait Outlined<const D: usize>: Clone {
     /// Whether a place lies inside.
     fn contains(&self, p: [f64; D]) -> bool;
@@ -55,8 +55,8 @@ pub trait Outlined<const D: usize>: Clone {
     fn bounds(&self) -> Region<D>;
     /// The number of vertices.
     fn vertices(&self) -> usize;
-    /// What it is for points of a box, its upper sides included: whether all or none of them lie inside, or the part
-    /// that decides.
+    /// Looks at the points of a box, its upper sides included: `Ok` if all of them are inside, or all outside; else the
+    /// part of the outline that decides.
     fn focus(&self, within: &Region<D>) -> Result<bool, Self>;
 }
 

@@ -103,7 +103,7 @@ impl Scope {
             .bounds()
             .ok_or_else(|| Error::new(ErrorKind::Unbounded, "area", "unbounded", "within a box"))?;
         let limit = lattice.limit();
-        for (name, value) in region.bounds() {
+        for (name, value) in region.numbers() {
             if value.is_nan() || value.abs() > limit {
                 let allowed = alloc::format!(
                     "within ±{limit:e} with this spacing, where f64 coordinates still keep neighbors apart"

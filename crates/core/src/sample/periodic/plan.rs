@@ -115,11 +115,8 @@ impl Windowed for PeriodicPlan {
         self.window
     }
 
-    fn with_part(&self, window: Window<PointId>) -> Self {
-        Self {
-            window,
-            ..self.clone()
-        }
+    fn part_mut(&mut self) -> &mut Window<PointId> {
+        &mut self.window
     }
 
     fn locate(&self, numbers: &[u128]) -> Vec<Option<PointId>> {

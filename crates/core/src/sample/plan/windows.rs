@@ -19,12 +19,8 @@ impl Windowed for Plan {
         self.window
     }
 
-    fn with_part(&self, window: Window<PointId>) -> Self {
-        Self {
-            scope: self.scope.clone(),
-            window,
-            counted: self.counted.clone(),
-        }
+    fn part_mut(&mut self) -> &mut Window<PointId> {
+        &mut self.window
     }
 
     fn locate(&self, numbers: &[u128]) -> Vec<Option<PointId>> {
@@ -45,9 +41,6 @@ impl Windowed for Plan {
         // The window may begin nearer than a mark, and the point that was found last may lie nearer still.
         let mut last = start.map(|at| Mark { at, before: offset });
         let mut locate = |k: u128| {
-            if k >= total {
-                return None;
-            }
             let after = marks.partition_point(|mark| mark.before <= k);
             let mark = after.checked_sub(1).map(|last| marks[last]);
             let own = last.filter(|own| own.before <= k);
