@@ -57,8 +57,8 @@ impl Head {
     /// Reads the head of a file of `bytes` bytes; `at` fills a slice from a place of the file.
     ///
     /// # Errors
-    /// The errors of `at`; within, one of the `Table…` kinds or [`ErrorKind::Alpha`], naming the part of the file that
-    /// is wrong.
+    /// The errors of `at`; within, one of the `Table…` kinds or [`ErrorKind::Alpha`](crate::ErrorKind::Alpha), naming
+    /// the part of the file that is wrong.
     pub fn read<E>(
         bytes: u64,
         mut at: impl FnMut(u64, &mut [u8]) -> Result<(), E>,
