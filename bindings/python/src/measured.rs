@@ -24,12 +24,12 @@ impl Report {
     }
 
     /// Points, spectrum and curves as SVG.
-    fn svg(&self, py: Python<'_>, title: &str) -> PyResult<String> {
+    fn svg(&self, title: &str) -> PyResult<String> {
         let report = self
             .0
             .lock()
             .map_err(|error| PyValueError::new_err(error.to_string()))?;
-        drawing(&report, title).map_err(|error| raised(py, &error))
+        Ok(drawing(&report, title))
     }
 }
 

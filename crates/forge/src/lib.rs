@@ -32,7 +32,7 @@
 //!
 //! Meanwhile a [`Watch`] follows the [`Progress`], keeps [`Checkpoint`]s and may stop the work; [`resume`] goes on from
 //! a checkpoint. For an existing table, [`with_ranks`] makes the order in which its points leave, and [`labels`] and
-//! [`mix()`] make kinds of points. Apart from jobs, a [`Report`] measures any point set, and [`picture()`] draws it.
+//! [`mix()`] make kinds of points. Apart from jobs, a [`Report`] measures any point set, and [`figure::report`] draws it.
 
 mod checkpoint;
 pub mod curve;
@@ -50,8 +50,6 @@ pub mod measure;
 mod mix;
 pub mod numeric;
 pub mod optimize;
-#[cfg(feature = "pictures")]
-mod picture;
 mod plan;
 pub mod profile;
 mod prospect;
@@ -70,8 +68,6 @@ pub use forge::{Outcome, forge, resume};
 pub use job::{DEFAULT_SEED, Job, MAX_RADIUS, MAX_STEPS};
 pub use judge::{Complaint, Figure, gravest};
 pub use mix::{MixJob, MixOutcome, labels, mix, mix_file_name, second_order};
-#[cfg(feature = "pictures")]
-pub use picture::{PictureError, picture};
 pub use profile::{Aim, Profile};
 pub use prospect::{FEW_INTERVALS, Hopeless, Prospect};
 pub use report::{Report, Resolution};

@@ -4,8 +4,8 @@ use strew_core::table::Figures;
 
 use crate::{
     Target,
-    judge::{RING_WIDTH, curve_figures, figures_of_spectrum},
-    measure::{Distances, Rdf, Ring, Spectrum, Torus, Voronoi, Window},
+    judge::{RING_WIDTH, curve_figures, figures},
+    measure::{Rdf, Ring, Sample, Spectrum},
 };
 
 /// The range and the ring width of a report's spectrum.
@@ -36,7 +36,7 @@ impl Default for Resolution {
 /// // The AA pattern itself, in a window of about 2,000 points.
 /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
 /// let window = window_set(&table, 2000, 1);
-/// let report = Report::of_window("pattern".into(), false, &window, Resolution::default());
+/// let report = Report::of("pattern".into(), false, &window, Resolution::default());
 /// assert!(report.figures.value("delta_min").is_some_and(|delta| delta > 0.6));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -57,69 +57,17 @@ pub struct Report {
 }
 
 impl Report {
-    /// Measures a periodic set. `subject` is its name in the figures, `seen` says whether its table
-    /// was optimized on it.
+    /// Measures a set. `subject` is its name in the figures, `seen` says whether its table was optimized on it.
     #[must_use]
-    pub fn of_torus(subject: String, seen: bool, set: &Torus, at: Resolution) -> Self {
-        let spectrum = Spectrum::of_torus(set, at.nu_max);
-        let named = figures_of_spectrum(
-            &spectrum,
-            at.ring_width,
-            Distances::of_torus(set),
-            Voronoi::of_torus(set),
-        );
-        Self::new(
-            subject,
-            seen,
-            named,
-            (spectrum, at),
-            Rdf::of_torus(set),
-            set.points(),
-        )
-    }
-
-    /// Measures a window of an unbounded set. `subject` is its name in the figures, `seen` says
-    /// whether its table was optimized on it.
-    #[must_use]
-    pub fn of_window(subject: String, seen: bool, set: &Window, at: Resolution) -> Self {
-        let spectrum = Spectrum::of_window(set, at.nu_max);
-        let named = figures_of_spectrum(
-            &spectrum,
-            at.ring_width,
-            Distances::of_window(set),
-            Voronoi::of_window(set),
-        );
-        Self::new(
-            subject,
-            seen,
-            named,
-            (spectrum, at),
-            Rdf::of_window(set),
-            set.points(),
-        )
-    }
-
-    fn new(
-        subject: String,
-        seen: bool,
-        values: Vec<(String, f64)>,
-        (spectrum, at): (Spectrum, Resolution),
-        rdf: Rdf,
-        points: &[[f64; 2]],
-    ) -> Self {
-        let figures = Figures {
-            subject,
-            seen,
-            points: points.len() as u64,
-            values,
-        };
+    pub fn of(subject: String, seen: bool, set: &Sample, at: Resolution) -> Self {
+        let spectrum = Spectrum::of(set, at.nu_max);
         Self {
-            figures,
+            figures: figures(subject, seen, set, &spectrum, at.ring_width),
             rings: spectrum.rings(at.ring_width),
             anisotropy_by_band: spectrum.anisotropy_by_band(at.ring_width),
-            rdf,
+            rdf: Rdf::of(set),
             spectrum,
-            points: points.to_vec(),
+            points: set.points().to_vec(),
         }
     }
 

@@ -8,7 +8,7 @@ use strew_core::{Alpha, PointSet, Table, Twin, table::Figures};
 use strew_forge::{
     Job, Profile, Target, forge,
     judge::{Figure, RING_WIDTH, complaints, curve_figures},
-    measure::{Crispness, Spectrum, Window, twin_set, window_set},
+    measure::{Crispness, Sample, Spectrum, twin_set, window_set},
 };
 
 fn alpha() -> Alpha {
@@ -68,7 +68,7 @@ fn far_and_near(table: &Table) -> Vec<Twin> {
 fn on_twins(table: &Table, target: &Target) -> Vec<(Figures, Spectrum)> {
     let measure = |twin: Twin| {
         let set = twin_set(table, twin).expect("a twin");
-        let spectrum = Spectrum::of_torus(&set, 4.0);
+        let spectrum = Spectrum::of(&set, 4.0);
         (judged(format!("twin {twin}"), &spectrum, target), spectrum)
     };
     far_and_near(table).into_par_iter().map(measure).collect()
@@ -80,14 +80,14 @@ fn on_windows(table: &Table, target: &Target) -> Vec<(Figures, Spectrum)> {
         [100, 101].map(|seed| (format!("window {seed}"), window_set(table, 75_000, seed)));
     let warped = [3, 4].map(|seed| (format!("warped, seed {seed}"), warped(table, seed)));
     let measure = |(name, set)| {
-        let spectrum = Spectrum::of_window(&set, 4.0);
+        let spectrum = Spectrum::of(&set, 4.0);
         (judged(name, &spectrum, target), spectrum)
     };
     windows.into_iter().chain(warped).map(measure).collect()
 }
 
 /// 300² mean spacings with the warp on, away from the origin.
-fn warped(table: &Table, seed: u64) -> Window {
+fn warped(table: &Table, seed: u64) -> Sample {
     let set = PointSet::new(table.clone()).seed(seed);
     shipped::window(&set, [1000.0 * seed as f64; 2], 300.0)
 }

@@ -11,7 +11,7 @@ use std::{
 use strew_core::{Map, PointSet, Table, Twin, table::Provenance};
 use strew_forge::{
     MixJob, Progress, ThinnedTwin, Watch, labels,
-    measure::{Distances, Spectrum, Torus},
+    measure::{Distances, Sample, Spectrum},
     mix, read_table,
 };
 
@@ -21,8 +21,8 @@ fn twin() -> Twin {
     Twin::new(2549, 1560).expect("reduced")
 }
 
-fn low(set: &Torus) -> f64 {
-    Spectrum::of_torus(set, 0.6).summary(0.04).low_power
+fn low(set: &Sample) -> f64 {
+    Spectrum::of(set, 0.6).summary(0.04).low_power
 }
 
 /// A small table whose points move a little.
@@ -88,7 +88,7 @@ fn labels_of_the_default_table_are_even_on_another_twin_and_at_every_share() {
 fn shipped_joint_tables_keep_their_promises_on_another_twin() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/tables/joint");
     let plain = shipped::table("blue", "(5-sqrt(3))/2", 100);
-    let anisotropy = |set: &Torus| Spectrum::of_torus(set, 1.5).summary(0.04);
+    let anisotropy = |set: &Sample| Spectrum::of(set, 1.5).summary(0.04);
     let before = ThinnedTwin::new(&plain, twin()).expect("a twin").at(1.0);
     let before = anisotropy(&before).anisotropy_db;
     for shares in ["1-1", "1-3", "1-1-2", "1-3-10"] {
@@ -107,7 +107,7 @@ fn shipped_joint_tables_keep_their_promises_on_another_twin() {
                 "{shares}: {}",
                 summary.anisotropy_db
             );
-            let found = Distances::of_torus(&set).delta_min;
+            let found = Distances::of(&set).delta_min;
             assert!(found > delta, "{shares}: {found}");
         }
     }

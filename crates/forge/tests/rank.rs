@@ -3,7 +3,7 @@
 mod shipped;
 
 use strew_core::{Point, PointSet, Region};
-use strew_forge::measure::{Distances, Spectrum, Window};
+use strew_forge::measure::{Distances, Sample, Spectrum};
 
 fn points(set: &PointSet, side: f64) -> Vec<Point> {
     let region = Region::new([0.0, 0.0], [side, side]).expect("ordered");
@@ -26,9 +26,9 @@ fn thinned_sets_are_even_with_every_seed_and_warp() {
                 let left = points(&set.clone().keep(keep).expect("a share"), side);
                 let fraction = left.len() as f64 / (side * side);
                 assert!((fraction / keep - 1.0).abs() < 0.02, "{keep}: {fraction}");
-                let window = Window::new(side, keep, left.iter().map(|p| [p.x, p.y]).collect());
-                let low = Spectrum::of_window(&window, 0.6).summary(0.05).low_power;
-                let delta = Distances::of_window(&window).delta_min;
+                let window = Sample::window(side, keep, left.iter().map(|p| [p.x, p.y]).collect());
+                let low = Spectrum::of(&window, 0.6).summary(0.05).low_power;
+                let delta = Distances::of(&window).delta_min;
                 let what = format!("R = {radius}, seed {seed}, warp {warp}, share {keep}");
                 // A random choice leaves 1 − share.
                 assert!(low < 0.095, "{what}: {low}");

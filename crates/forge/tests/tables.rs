@@ -8,8 +8,8 @@ use strew_forge::{
     Figure, Job,
     energy::{Cell, Lloyd},
     forge,
-    judge::{Bound, RING_WIDTH, complaints, figures_of_torus, figures_of_window},
-    measure::{Spectrum, twin_set, window_set},
+    judge::{Bound, RING_WIDTH, complaints, figures},
+    measure::{Sample, Spectrum, twin_set, window_set},
 };
 
 const DEFAULT: &str = "(5-sqrt(3))/2";
@@ -37,10 +37,14 @@ fn large_twins(table: &Table, most: u64) -> impl Iterator<Item = Twin> {
     twins.filter(|twin| twin.points() >= 50_000 && !seen.contains(twin))
 }
 
+fn measured(subject: String, set: &Sample) -> Figures {
+    figures(subject, false, set, &Spectrum::of(set, 1.5), RING_WIDTH)
+}
+
 fn on_twins(table: &Table, twins: impl Iterator<Item = Twin>) -> Vec<Figures> {
     let measure = |twin: Twin| {
         let set = twin_set(table, twin).expect("a twin");
-        figures_of_torus(twin.to_string(), false, &set, 1.5)
+        measured(twin.to_string(), &set)
     };
     twins.map(measure).collect()
 }
@@ -48,7 +52,7 @@ fn on_twins(table: &Table, twins: impl Iterator<Item = Twin>) -> Vec<Figures> {
 fn on_windows(table: &Table) -> Vec<Figures> {
     let measure = |seed| {
         let set = window_set(table, 70_000, seed);
-        figures_of_window(format!("window {seed}"), false, &set, 1.5)
+        measured(format!("window {seed}"), &set)
     };
     (100..103).map(measure).collect()
 }
@@ -162,7 +166,7 @@ fn a_million_points_are_as_good_as_few() {
     let twin = Twin::new(989 + 1560, 1560).expect("coprime");
     let set = twin_set(&table, twin).expect("a twin");
     assert_eq!(set.points().len(), 978_121);
-    let summary = Spectrum::of_torus(&set, 0.6).summary(RING_WIDTH);
+    let summary = Spectrum::of(&set, 0.6).summary(RING_WIDTH);
     assert!(summary.low_power <= 1e-5, "{summary:?}");
 }
 

@@ -2,28 +2,32 @@
 
 mod shipped;
 
-use strew_core::PointSet;
+use strew_core::{PointSet, table::Figures};
 use strew_forge::{
-    judge::figures_of_window,
-    measure::{Spectrum, Window},
+    judge::{RING_WIDTH, figures},
+    measure::{Sample, Spectrum},
 };
 
 const OFF: f64 = 0.0;
 const ON: f64 = 1.0;
 
 /// A window of `side`² mean spacings away from the origin.
-fn window(seed: u64, warp: f64, side: f64) -> Window {
+fn window(seed: u64, warp: f64, side: f64) -> Sample {
     let table = shipped::table("blue", "(5-sqrt(3))/2", 49);
     let set = PointSet::new(table).seed(seed).warp(warp);
     let corner = 1000.0 * seed as f64;
     shipped::window(&set.expect("in range"), [corner, -corner], side)
 }
 
+fn measured(subject: String, set: &Sample, nu_max: f64) -> Figures {
+    figures(subject, false, set, &Spectrum::of(set, nu_max), RING_WIDTH)
+}
+
 #[test]
 fn warped_sets_are_isotropic_and_keep_their_noise() {
     for seed in [1, 2, 77] {
         let set = window(seed, ON, 362.0);
-        let figures = figures_of_window(format!("seed {seed}"), false, &set, 4.0);
+        let figures = measured(format!("seed {seed}"), &set, 4.0);
         let value = |name| figures.value(name).expect("measured");
         assert!(value("anisotropy_db") <= 0.2, "{figures:?}");
         assert!(value("tallest_peak") <= 35.0, "{figures:?}");
@@ -31,7 +35,7 @@ fn warped_sets_are_isotropic_and_keep_their_noise() {
         assert!(value("delta_min") >= 0.60, "{figures:?}");
     }
     // Without the warp they are not.
-    let plain = figures_of_window("plain".into(), false, &window(1, OFF, 362.0), 4.0);
+    let plain = measured("plain".into(), &window(1, OFF, 362.0), 4.0);
     assert!(
         plain.value("anisotropy_db").expect("measured") > 2.0,
         "{plain:?}"
@@ -41,7 +45,7 @@ fn warped_sets_are_isotropic_and_keep_their_noise() {
 #[test]
 fn a_million_warped_points_are_isotropic() {
     let set = window(3, ON, 1000.0);
-    let figures = figures_of_window("seed 3".into(), false, &set, 2.0);
+    let figures = measured("seed 3".into(), &set, 2.0);
     let value = |name| figures.value(name).expect("measured");
     assert!(value("anisotropy_db") <= 0.2, "{figures:?}");
     assert!(value("low_power") <= 1e-5, "{figures:?}");
@@ -50,8 +54,8 @@ fn a_million_warped_points_are_isotropic() {
 
 /// The correlation of two power spectra over 0.8 < ν < 2.5, with the power of each mode over the
 /// mean of its ring.
-fn correlation(a: &Window, b: &Window) -> f64 {
-    let spectra = [a, b].map(|set| Spectrum::of_window(set, 2.5));
+fn correlation(a: &Sample, b: &Sample) -> f64 {
+    let spectra = [a, b].map(|set| Spectrum::of(set, 2.5));
     let side = a.side();
     let modes = (2.5 * side) as i64;
     // The taper blurs neighboring modes; every fifth mode is an independent sample.

@@ -6,9 +6,8 @@ use std::sync::Arc;
 
 use moka::future::Cache;
 use strew_catalog::Entry;
-use strew_encode::EncodeError;
 use strew_error::Error;
-use strew_forge::{Report, Resolution, measure::window_set, picture};
+use strew_forge::{Report, Resolution, figure, measure::window_set};
 use strew_plan::Lane;
 
 use crate::Workers;
@@ -35,10 +34,9 @@ impl Portrait {
     fn new(entry: &Entry) -> Result<Self, Error> {
         let table = entry.table()?;
         let set = window_set(&table, POINTS, 1);
-        let report = Report::of_window("window seed 1".into(), false, &set, Resolution::default());
+        let report = Report::of("window seed 1".into(), false, &set, Resolution::default());
         let target = entry.aim().and_then(|aim| aim.curve);
-        let svg =
-            picture(&report, &entry.key.to_string(), target.as_ref()).map_err(EncodeError::of)?;
+        let svg = figure::report(&report, &entry.key.to_string(), target.as_ref()).to_svg();
         Ok(Self {
             points: report.figures.points,
             radial: report

@@ -10,18 +10,17 @@ use serde_json::{Value, json};
 use strew_core::{F64, Placement, Plan, PointSet, Seed, Table, Twin};
 use strew_error::Error;
 use strew_forge::{
-    Aim, Report, Resolution, Target,
-    measure::{Shared, Torus, Window, recurrence, twin_set, window_set},
-    picture,
+    Aim, Report, Resolution, Target, figure,
+    measure::{Sample, Shared, recurrence, twin_set, window_set},
 };
-use strew_plan::library::measured::document;
+use strew_plan::library::measured::{LEAST_POINTS, MOST_POINTS, Measured, document, measure};
 use strew_query::{Draft, parameters::BBOX};
 
 use self::space::Subjects;
 use super::{
     Failure, config,
     failure::refused,
-    flags::{Flags, Measured},
+    flags::{self, Flags},
     must_be_within,
     output::Output,
     query::described,
@@ -64,13 +63,10 @@ pub(super) struct Args {
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]
-    flags: Flags<Measured>,
+    flags: Flags<flags::Measured>,
     #[command(flatten)]
     settings: config::Args,
 }
-
-/// The largest set that is measured: its spectrum takes some gigabytes at ν = 4.
-const MAX_POINTS: u128 = 4_000_000;
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     must_be_within("--nu-max", args.resolution().nu_max, [0.5, 8.0])?;
@@ -125,7 +121,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             || subject.clone(),
             |stem| format!("{}: {subject}", stem.display()),
         );
-        let svg = picture(report, &title, target.as_ref()).context("--picture")?;
+        let svg = figure::report(report, &title, target.as_ref()).to_svg();
         drawing.write(svg.as_bytes())?;
         drawing.finish()?;
     }
@@ -150,32 +146,15 @@ struct Measurement {
     seeds: Option<Value>,
 }
 
-enum Subject {
-    Torus(String, bool, Torus),
-    Window(String, Window),
-}
-
-impl Subject {
-    fn measured(self, at: Resolution) -> Report {
-        match self {
-            Self::Torus(name, seen, set) => Report::of_torus(name, seen, &set, at),
-            Self::Window(name, set) => Report::of_window(name, false, &set, at),
-        }
-    }
-}
-
 fn of_table(args: &Args, file: &Path) -> Result<Measurement, Failure> {
     let table = strew_forge::read_table(file).map_err(anyhow::Error::from)?;
     let twins = args.twins(&table).map_err(Failure::Usage)?;
     let mut subjects = vec![];
     for twin in twins {
-        let set = twin_set(&table, twin).ok_or_else(|| {
-            Failure::Usage(anyhow!(
-                "--twin {twin} has another map than the table's alpha"
-            ))
-        })?;
+        let other = || anyhow!("--twin {twin} has another map than the table's alpha");
+        let set = twin_set(&table, twin).ok_or_else(|| Failure::Usage(other()))?;
         let seen = table.provenance().twins.contains(&twin);
-        subjects.push(Subject::Torus(format!("twin {twin}"), seen, set));
+        subjects.push((format!("twin {twin}"), seen, set));
     }
     let seeds = match args.subjects.window_seed.as_slice() {
         [] => &[1, 2],
@@ -183,11 +162,11 @@ fn of_table(args: &Args, file: &Path) -> Result<Measurement, Failure> {
     };
     for &seed in seeds {
         let set = window_set(&table, args.subjects.window_points.unwrap_or(80_000), seed);
-        subjects.push(Subject::Window(format!("window seed {seed}"), set));
+        subjects.push((format!("window seed {seed}"), false, set));
     }
     let reports = subjects
         .into_par_iter()
-        .map(|subject| subject.measured(args.resolution()));
+        .map(|(name, seen, set)| Report::of(name, seen, &set, args.resolution()));
     let aim = Aim::of(table.profile(), table.provenance());
     Ok(Measurement {
         reports: reports.collect(),
@@ -205,6 +184,25 @@ impl Args {
         }
     }
 
+    /// Measures the points of a square.
+    fn measured(
+        &self,
+        subject: String,
+        bbox: [f64; 4],
+        density: Option<f64>,
+        points: Vec<[f64; 2]>,
+    ) -> Result<Report, Failure> {
+        let of = Measured {
+            bbox,
+            density,
+            is_periodic: self.periodic,
+            resolution: self.resolution(),
+        };
+        let mut report = measure(points, &of).map_err(refused)?;
+        report.figures.subject = subject;
+        Ok(report)
+    }
+
     fn twins(&self, table: &Table) -> anyhow::Result<Vec<Twin>> {
         if self.subjects.twin.is_empty() {
             let seen = &table.provenance().twins;
@@ -213,19 +211,13 @@ impl Args {
             return Ok(table.map().twins().filter(large).take(2).collect());
         }
         let read = |&twin: &Twin| match u128::from(twin.points()) {
-            0..=MAX_POINTS => Ok(twin),
-            points => bail!("--twin {twin} has {points} points; at most {MAX_POINTS} are measured"),
+            0..=MOST_POINTS => Ok(twin),
+            points => {
+                bail!("--twin {twin} has {points} points; at most {MOST_POINTS} are measured")
+            }
         };
         self.subjects.twin.iter().map(read).collect()
     }
-}
-
-fn square([min_x, min_y, max_x, max_y]: [f64; 4]) -> anyhow::Result<([f64; 2], f64)> {
-    let (width, height) = (max_x - min_x, max_y - min_y);
-    if (width / height - 1.0).abs() > 1e-9 {
-        bail!("--bbox is {width} wide and {height} high; only squares are measured");
-    }
-    Ok(([min_x, min_y], width))
 }
 
 fn compared(plan: &Plan, side: f64, density: f64, seeds: u64) -> anyhow::Result<Value> {
@@ -242,9 +234,11 @@ fn compared(plan: &Plan, side: f64, density: f64, seeds: u64) -> anyhow::Result<
             .within(plan.region())?;
         let mut points = vec![[0.0; 2]; plan.count() as usize];
         plan.blocks::<F64>().fill(&mut points);
-        Ok((seed.0, window(plan.origin(), side, density, points)))
+        let [x, y] = plan.origin();
+        let points = points.into_iter().map(|p| [p[0] - x, p[1] - y]).collect();
+        Ok((seed.0, Sample::window(side, density, points)))
     });
-    let sets: Vec<(u64, Window)> = sets.collect::<anyhow::Result<_>>()?;
+    let sets: Vec<(u64, Sample)> = sets.collect::<anyhow::Result<_>>()?;
     let recurrences: Vec<Value> = sets
         .iter()
         .map(|(seed, set)| json!([seed, recurrence(set, None, PATCHES, *seed)]))
@@ -256,7 +250,7 @@ fn compared(plan: &Plan, side: f64, density: f64, seeds: u64) -> anyhow::Result<
     let mut pairs = vec![];
     for (i, (a, first)) in sets.iter().enumerate() {
         for (b, second) in &sets[i + 1..] {
-            let shared = Shared::of_windows(first, second, 2.0);
+            let shared = Shared::of(first, second, 2.0);
             pairs.push(json!([a, b, shared.power_correlation, shared.phase_peak]));
         }
     }
@@ -271,43 +265,32 @@ fn of_query(args: &Args) -> Result<Measurement, Failure> {
     let catalog = config::tables(&config)?;
     let planned = config::planned(&config, &Draft::of(args.flags.values()), &catalog.into());
     let (planned, _) = planned.map_err(refused)?;
-    let (corner, side) = square(planned.query.region.bbox()).map_err(Failure::Usage)?;
-    if planned.count() > MAX_POINTS || planned.count() < 100 {
-        refuse!(
-            "--bbox holds {} points; from 100 to {MAX_POINTS} are measured",
-            planned.count()
-        );
+    let count = planned.count();
+    if !(LEAST_POINTS..=MOST_POINTS).contains(&count) {
+        refuse!("--bbox holds {count} points; from {LEAST_POINTS} to {MOST_POINTS} are measured");
     }
-    let mut points = vec![[0.0; 2]; planned.count() as usize];
+    let mut points = vec![[0.0; 2]; count as usize];
     let set = &planned.sets[0];
     let Some(plan) = set.plan.plane() else {
         refuse!("only points of the plane are measured here");
     };
     plan.blocks_f64().fill(&mut points);
-    let name = described(&planned);
+    let bbox = planned.query.region.bbox();
     let density = set.density * planned.query.sets[0].share();
-    let subject = Subject::Window(name, window(corner, side, density, points));
+    let report = args.measured(described(&planned), bbox, Some(density), points)?;
     Ok(Measurement {
-        reports: vec![subject.measured(args.resolution())],
+        reports: vec![report],
         target: set.entry.aim().and_then(|aim| aim.curve),
         seeds: match args.seeds {
             0 => None,
-            seeds => Some(compared(plan, side, density, seeds)?),
+            seeds => Some(compared(plan, bbox[2] - bbox[0], density, seeds)?),
         },
     })
-}
-
-fn window(corner: [f64; 2], side: f64, density: f64, mut points: Vec<[f64; 2]>) -> Window {
-    for p in &mut points {
-        *p = [p[0] - corner[0], p[1] - corner[1]];
-    }
-    Window::new(side, density, points)
 }
 
 fn of_points(args: &Args, file: &Path) -> Result<Measurement, Failure> {
     let bbox = args.flags.values().require(&BBOX);
     let bbox = bbox.map_err(|faults| Failure::usage(Error::from(faults)))?;
-    let (corner, side) = square(bbox).map_err(Failure::Usage)?;
     let bytes = std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
     let is_packed = file.extension().is_some_and(|ending| ending == "f64");
     let points = if is_packed {
@@ -316,29 +299,8 @@ fn of_points(args: &Args, file: &Path) -> Result<Measurement, Failure> {
         csv(&bytes)
     };
     let points = points.with_context(|| format!("{} is not a file of points", file.display()))?;
-    let outside = |p: &&[f64; 2]| (0..2).any(|i| !(corner[i]..corner[i] + side).contains(&p[i]));
-    if let Some([x, y]) = points.iter().find(outside) {
-        refuse!(
-            "the point ({x}, {y}) of {} is outside --bbox",
-            file.display()
-        );
-    }
-    if points.len() < 100 || points.len() as u128 > MAX_POINTS {
-        refuse!(
-            "{} has {} points; from 100 to {MAX_POINTS} are measured",
-            file.display(),
-            points.len()
-        );
-    }
-    let name = file.display().to_string();
-    let subject = if args.periodic {
-        Subject::Torus(name, false, Torus::new(side, points))
-    } else {
-        let density = points.len() as f64 / (side * side);
-        Subject::Window(name, window(corner, side, density, points))
-    };
     Ok(Measurement {
-        reports: vec![subject.measured(args.resolution())],
+        reports: vec![args.measured(file.display().to_string(), bbox, None, points)?],
         target: None,
         seeds: None,
     })

@@ -11,7 +11,7 @@
 use rayon::prelude::*;
 
 use super::SetEnergy;
-use crate::measure::{CellList, Torus};
+use crate::measure::{CellList, Sample};
 
 /// The centroidal Voronoi energy.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +37,7 @@ const CHUNK: usize = 256;
 impl Lloyd {
     /// Returns the Voronoi cells of a periodic set of at least 100 points, in order of the points.
     #[must_use]
-    pub fn cells(set: &Torus) -> Vec<Cell> {
+    pub fn cells(set: &Sample) -> Vec<Cell> {
         let list = CellList::new(set.points(), set.side(), 1.0, true);
         let found: Vec<Vec<(u32, Cell)>> = list
             .members()
@@ -57,7 +57,7 @@ impl Lloyd {
 }
 
 impl SetEnergy for Lloyd {
-    fn evaluate(&self, set: &Torus, gradient: &mut [[f64; 2]]) -> f64 {
+    fn evaluate(&self, set: &Sample, gradient: &mut [[f64; 2]]) -> f64 {
         let mut energy = 0.0;
         let cells = Self::cells(set);
         for (cell, out) in cells.iter().zip(gradient) {
@@ -154,10 +154,10 @@ mod tests {
     use super::*;
     use crate::{measure::Voronoi, numeric::SplitMix};
 
-    fn noise(count: usize) -> Torus {
+    fn noise(count: usize) -> Sample {
         let mut random = SplitMix::new(4);
         let points = (0..count).map(|_| [random.next_f64(), random.next_f64()]);
-        Torus::new(1.0, points.collect())
+        Sample::torus(1.0, points.collect())
     }
 
     #[test]
@@ -167,7 +167,7 @@ mod tests {
         let sum: f64 = cells.iter().map(|cell| cell.area).sum();
         assert!((sum - 3000.0).abs() < 1e-8, "{sum}");
         let worst = cells.iter().map(|cell| (cell.area - 1.0).abs());
-        let expected = Voronoi::of_torus(&set);
+        let expected = Voronoi::of(&set);
         assert!((worst.fold(0.0, f64::max) - expected.area_deviation).abs() < 1e-9);
         let squares: f64 = cells.iter().map(|cell| (cell.area - 1.0).powi(2)).sum();
         assert!(((squares / 3000.0).sqrt() - expected.area_spread).abs() < 1e-9);
@@ -200,7 +200,7 @@ mod tests {
         let twin = Twin::new(683, 418).expect("coprime");
         let sites = twin.sites(&map).expect("a twin");
         let start = sites.iter().map(|s| [f64::from(s.x), f64::from(s.y)]);
-        let mut set = Torus::new(twin.period() as f64, start.collect());
+        let mut set = Sample::torus(twin.period() as f64, start.collect());
         let start = set.points().to_vec();
         for _ in 0..steps {
             let cells = Lloyd::cells(&set);

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{PairEnergy, SetEnergy};
-use crate::measure::{CellList, Torus};
+use crate::measure::{CellList, Sample};
 
 /// A pair energy as a [`SetEnergy`]. It serves sets that have no table, and tests as the oracle of
 /// [`Pairs`](crate::optimize::Pairs), which is faster.
@@ -11,7 +11,7 @@ use crate::measure::{CellList, Torus};
 pub struct Pairwise<E>(pub E);
 
 impl<E: PairEnergy> SetEnergy for Pairwise<E> {
-    fn evaluate(&self, set: &Torus, gradient: &mut [[f64; 2]]) -> f64 {
+    fn evaluate(&self, set: &Sample, gradient: &mut [[f64; 2]]) -> f64 {
         let cutoff = self.0.cutoff();
         let cells = CellList::new(set.points(), set.side(), (cutoff / 4.0).max(0.5), true);
         let rings = (cutoff / cells.width()).ceil() as i64;

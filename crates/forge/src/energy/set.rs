@@ -1,6 +1,6 @@
 //! Energies of periodic point sets.
 
-use crate::measure::Torus;
+use crate::measure::Sample;
 
 /// An energy of a periodic point set.
 pub trait SetEnergy: Sync {
@@ -8,5 +8,5 @@ pub trait SetEnergy: Sync {
     /// *total* energy by the position of the point in mean spacings.
     ///
     /// Must return the same bits with any number of threads.
-    fn evaluate(&self, set: &Torus, gradient: &mut [[f64; 2]]) -> f64;
+    fn evaluate(&self, set: &Sample, gradient: &mut [[f64; 2]]) -> f64;
 }

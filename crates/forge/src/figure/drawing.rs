@@ -2,6 +2,8 @@
 
 use std::fmt::{self, Write as _};
 
+use base64::{Engine as _, prelude::BASE64_STANDARD};
+
 /// A finished figure.
 ///
 /// ```
@@ -49,6 +51,8 @@ pub(super) enum Mark {
     Ring([f64; 2], f64, Pen),
     /// The area that an odd number of rectangles covers, each by its upper left corner and its size.
     Checkers(Vec<[[f64; 2]; 2]>, Color),
+    /// A rectangle of gray cells: its upper left corner, its size, and the cells of rows of so many from the top.
+    Cells([f64; 2], [f64; 2], usize, Vec<u8>),
     /// A text on the line of writing at a place, with its size.
     Text([f64; 2], f64, Anchor, String),
 }
@@ -151,9 +155,14 @@ impl Drawing {
             .push(Mark::Checkers(rectangles.into_iter().collect(), color));
     }
 
+    /// Gray cells over a rectangle from its upper left corner; rows of `columns` cells from the top.
+    pub(super) fn cells(&mut self, at: [f64; 2], size: [f64; 2], columns: usize, cells: Vec<u8>) {
+        self.unless_empty(cells.is_empty(), Mark::Cells(at, size, columns, cells));
+    }
+
     /// A text on the line of writing at a place.
     pub(super) fn text(&mut self, at: [f64; 2], size: f64, anchor: Anchor, text: &str) {
-        self.marks.push(Mark::Text(at, size, anchor, text.into()));
+        self.unless_empty(text.is_empty(), Mark::Text(at, size, anchor, text.into()));
     }
 }
 
@@ -213,6 +222,14 @@ impl fmt::Display for Mark {
                 }
                 write!(f, "\" fill=\"{}\" fill-rule=\"evenodd\"/>", hex(*color))
             }
+            // As an image: an element for each cell would take a hundred times as much.
+            Self::Cells([x, y], [w, h], columns, cells) => write!(
+                f,
+                "<image x=\"{x:.2}\" y=\"{y:.2}\" width=\"{w:.2}\" height=\"{h:.2}\" \
+                 preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" \
+                 href=\"data:image/png;base64,{}\"/>",
+                BASE64_STANDARD.encode(gray(*columns, cells).map_err(|_| fmt::Error)?)
+            ),
             Self::Text([x, y], size, anchor, text) => {
                 let anchor = match anchor {
                     Anchor::Start => "start",
@@ -244,9 +261,42 @@ fn stroke(f: &mut fmt::Formatter<'_>, (color, width): Pen) -> fmt::Result {
     )
 }
 
+/// Rows of gray cells as a PNG file.
+fn gray(columns: usize, cells: &[u8]) -> Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let rows = cells.len() / columns.max(1);
+    let mut encoder = png::Encoder::new(&mut bytes, columns as u32, rows as u32);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Eight);
+    // This level has a single implementation, whichever features of the compressor other parts of a
+    // program enable. So the same picture has the same bytes.
+    encoder.set_compression(png::Compression::Fast);
+    encoder.write_header()?.write_image_data(cells)?;
+    Ok(bytes)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn cells_are_an_image_of_them() {
+        let mut drawing = Drawing::new(100.0, 50.0);
+        let cells = vec![0, 128, 255, 1, 2, 3];
+        drawing.cells([10.0, 20.0], [60.0, 30.0], 3, cells.clone());
+        let svg = drawing.to_svg();
+        assert!(svg.contains("width=\"60.00\" height=\"30.00\""), "{svg}");
+        let data = svg
+            .split("base64,")
+            .nth(1)
+            .and_then(|d| d.split('"').next());
+        let bytes = BASE64_STANDARD.decode(data.expect("data")).expect("valid");
+        let decoder = png::Decoder::new(std::io::Cursor::new(bytes));
+        let mut reader = decoder.read_info().expect("PNG");
+        let mut found = vec![0; 6];
+        reader.next_frame(&mut found).expect("an image");
+        assert_eq!(found, cells);
+    }
 
     #[test]
     fn texts_are_escaped_and_empty_paths_left_out() {

@@ -1,4 +1,5 @@
-//! Figures of AA patterns, as SVG or PNG: how points, index space and maps belong together.
+//! Figures, as SVG or PNG: of AA patterns, how points, index space and maps belong together; of measured sets, their
+//! [`report`].
 //!
 //! They draw the facts of [`strew_core::pattern`] and [`strew_core::map`] for any α, in the manner of the
 //! figures of the paper: [`index`] the index torus and the set region, [`arrangement`] an arrangement with its
@@ -17,6 +18,7 @@ mod map;
 mod mask;
 mod paint;
 mod panel;
+mod report;
 mod window;
 
 pub use crate::SettingError as FigureError;
@@ -26,3 +28,4 @@ pub use drawing::Drawing;
 pub use index::index;
 pub use map::map;
 pub use mask::mask_spectrum;
+pub use report::report;

@@ -92,6 +92,16 @@ impl Canvas {
             }
             Mark::Ring(at, radius, pen) => self.ring(*at, *radius, *pen),
             Mark::Checkers(rectangles, color) => self.checkers(rectangles, *color),
+            Mark::Cells([x, y], [w, h], columns, cells) => {
+                let [w, h] = [
+                    w / *columns as f64,
+                    h * *columns as f64 / cells.len() as f64,
+                ];
+                for (i, &gray) in cells.iter().enumerate() {
+                    let [column, row] = [i % columns, i / columns].map(|v| v as f64);
+                    self.fill([x + column * w, y + row * h], [w, h], [gray; 3], 1.0);
+                }
+            }
             Mark::Text([x, y], size, anchor, text) => {
                 let length = letters::length(text, *size);
                 let left = match anchor {
@@ -325,6 +335,10 @@ mod tests {
         near(Mark::Ring([5.0, 5.0], 3.0, (black, 1.0)), 18.85);
         let stripes = vec![[[1.0, 1.0], [4.0, 8.0]], [[3.0, 1.0], [4.0, 8.0]]];
         near(Mark::Checkers(stripes, black), 32.0);
+        near(
+            Mark::Cells([1.0, 1.0], [6.0, 4.0], 3, vec![0, 255, 0, 0, 255, 255]),
+            12.0,
+        );
         let dashed = Mark::Outline([1.0, 1.0], [8.0, 8.0], (black, 0.1), 1.0);
         // Sixteen dashes, half a pixel longer at both ends.
         near(dashed, 16.0 * 1.5 * 0.1);

@@ -38,13 +38,23 @@ pub(super) fn note(drawing: &mut Drawing, line: usize, text: &str) {
 impl Panel {
     /// Panel number `i` of a row, with its caption.
     pub(super) fn new(drawing: &mut Drawing, i: usize, range: Range<f64>, caption: &str) -> Self {
-        let left = GAP + i as f64 * (SIDE + GAP);
-        drawing.text([left, CAPTION - 12.0], 14.0, Anchor::Start, caption);
-        Self {
-            left,
-            top: CAPTION,
+        Self::placed(
+            drawing,
+            [GAP + i as f64 * (SIDE + GAP), CAPTION],
             range,
-        }
+            caption,
+        )
+    }
+
+    /// A panel at its upper left corner, with its caption above.
+    pub(super) fn placed(
+        drawing: &mut Drawing,
+        [left, top]: [f64; 2],
+        range: Range<f64>,
+        caption: &str,
+    ) -> Self {
+        drawing.text([left, top - 12.0], 14.0, Anchor::Start, caption);
+        Self { left, top, range }
     }
 
     /// Pixels for each unit.

@@ -2,7 +2,7 @@
 
 use strew_core::table::Figures;
 
-use crate::measure::{Crispness, Distances, Spectrum, Torus, Voronoi, Window};
+use crate::measure::{Crispness, Distances, Sample, Spectrum, Voronoi};
 
 /// The width in ν of the rings that radial figures are taken over. It is as fine as the smallest
 /// twin of the default map resolves, and the same for sets of all sizes, so that their peaks
@@ -93,20 +93,29 @@ impl Figure {
     }
 }
 
-/// Returns all figures of a point set, (name, value), radial ones over rings of width `ring_width`.
+/// Rounds to four significant decimal digits.
+pub(crate) fn round(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(0.0)
+}
+
+/// All figures of a set and its spectrum, radial ones over rings of width `ring_width`; `seen` says whether the table
+/// was optimized on it.
 ///
 /// They are rounded to four significant digits: far more than they mean, and few enough to hide
 /// another order of a sum inside an FFT.
-pub(crate) fn figures_of_spectrum(
+#[must_use]
+pub fn figures(
+    subject: String,
+    seen: bool,
+    set: &Sample,
     spectrum: &Spectrum,
     ring_width: f64,
-    distances: Distances,
-    cells: Voronoi,
-) -> Vec<(String, f64)> {
+) -> Figures {
     let ring_width = ring_width.max(spectrum.finest_ring());
     let summary = spectrum.summary(ring_width);
     let crispness = Crispness::of_rings(&spectrum.rings(ring_width), ring_width);
-    [
+    let (distances, cells) = (Distances::of(set), Voronoi::of(set));
+    let values = [
         (Figure::LowPower, summary.low_power),
         (Figure::PeakPower, summary.peak_power),
         (Figure::PeakNu, summary.peak_nu),
@@ -119,47 +128,14 @@ pub(crate) fn figures_of_spectrum(
         (Figure::AreaDeviation, cells.area_deviation),
         (Figure::LargestHole, cells.largest_hole),
         (Figure::Q6, cells.q6),
-    ]
-    .map(|(figure, value)| (figure.name().to_owned(), round(value)))
-    .into()
-}
-
-/// Rounds to four significant decimal digits.
-pub(crate) fn round(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(0.0)
-}
-
-/// Measures a periodic set up to the frequency `nu_max`. `seen` says whether the table was
-/// optimized on it.
-#[must_use]
-pub fn figures_of_torus(subject: String, seen: bool, set: &Torus, nu_max: f64) -> Figures {
+    ];
     Figures {
         subject,
         seen,
         points: set.points().len() as u64,
-        values: figures_of_spectrum(
-            &Spectrum::of_torus(set, nu_max),
-            RING_WIDTH,
-            Distances::of_torus(set),
-            Voronoi::of_torus(set),
-        ),
-    }
-}
-
-/// Measures a window up to the frequency `nu_max`. `seen` says whether the table was optimized on
-/// it.
-#[must_use]
-pub fn figures_of_window(subject: String, seen: bool, set: &Window, nu_max: f64) -> Figures {
-    Figures {
-        subject,
-        seen,
-        points: set.points().len() as u64,
-        values: figures_of_spectrum(
-            &Spectrum::of_window(set, nu_max),
-            RING_WIDTH,
-            Distances::of_window(set),
-            Voronoi::of_window(set),
-        ),
+        values: { values.into_iter() }
+            .map(|(figure, value)| (figure.name().to_owned(), round(value)))
+            .collect(),
     }
 }
 

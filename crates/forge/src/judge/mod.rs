@@ -17,7 +17,7 @@ mod panel;
 
 pub use bound::{Bound, Complaint, Side, complaints, gravest};
 pub use curve::{TARGET_RING, curve_figures};
-pub use figure::{Figure, RING_WIDTH, figures_of_torus, figures_of_window};
-pub(crate) use figure::{figures_of_spectrum, round};
+pub(crate) use figure::round;
+pub use figure::{Figure, RING_WIDTH, figures};
 pub use nearness::{Nearness, bounds_of_curve};
 pub use panel::{JUDGED_POINTS, Panel};

@@ -4,11 +4,11 @@ use strew_core::{Map, Table, Twin, table::Figures};
 
 use super::{
     curve_figures,
-    figure::{NU_MAX, figures_of_torus, figures_of_window},
+    figure::{NU_MAX, RING_WIDTH, figures},
 };
 use crate::{
     curve::Target,
-    measure::{Spectrum, twin_set, window_set},
+    measure::{Sample, Spectrum, twin_set, window_set},
     twins::{LARGE_TWIN, farthest, next_to_alpha},
     watch::Meter,
 };
@@ -75,10 +75,12 @@ impl Panel {
         self
     }
 
-    /// Adds the figures of the curve, if there is one.
-    fn compared(&self, mut figures: Figures, spectrum: impl FnOnce() -> Spectrum) -> Figures {
+    /// The figures of a set, and those of the curve, if there is one.
+    fn figures(&self, subject: String, seen: bool, set: &Sample, nu_max: f64) -> Figures {
+        let spectrum = Spectrum::of(set, nu_max);
+        let mut figures = figures(subject, seen, set, &spectrum, RING_WIDTH);
         if let Some(target) = &self.target {
-            figures.values.extend(curve_figures(&spectrum(), target));
+            figures.values.extend(curve_figures(&spectrum, target));
         }
         figures
     }
@@ -110,8 +112,7 @@ impl Panel {
             }
             if let Some(set) = twin_set(table, *twin) {
                 let nu_max = NU_MAX.min(MAX_MODES / set.side());
-                let figures = figures_of_torus(format!("twin {twin}"), seen, &set, nu_max);
-                all.push(self.compared(figures, || Spectrum::of_torus(&set, nu_max)));
+                all.push(self.figures(format!("twin {twin}"), seen, &set, nu_max));
             }
             meter.advance(None);
         }
@@ -120,8 +121,7 @@ impl Panel {
                 return None;
             }
             let set = window_set(table, WINDOW_POINTS, seed);
-            let figures = figures_of_window(format!("window seed {seed}"), false, &set, NU_MAX);
-            all.push(self.compared(figures, || Spectrum::of_window(&set, NU_MAX)));
+            all.push(self.figures(format!("window seed {seed}"), false, &set, NU_MAX));
             meter.advance(None);
         }
         Some(all)

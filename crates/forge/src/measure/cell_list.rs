@@ -1,5 +1,7 @@
 //! A cell list, which finds the points near a place on a torus or in a box.
 
+use super::Sample;
+
 /// Points sorted into square cells.
 pub(crate) struct CellList {
     /// The number of cells along an axis.
@@ -13,6 +15,11 @@ pub(crate) struct CellList {
 }
 
 impl CellList {
+    /// Sorts the points of a set into cells at least `cell` wide.
+    pub(crate) fn of(set: &Sample, cell: f64) -> Self {
+        Self::new(set.points(), set.side(), cell, set.is_periodic())
+    }
+
     /// Sorts `points` into cells at least `cell` wide over [0, `side`)². If `periodic`, positions
     /// are taken modulo the side.
     pub(crate) fn new(points: &[[f64; 2]], side: f64, cell: f64, periodic: bool) -> Self {

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{CellList, Torus, Window};
+use super::{CellList, Sample};
 
 /// Nearest-neighbor distances in units of √(2/√3)·N^−½, the nearest-neighbor distance of the
 /// hexagonal lattice of the same density. The smallest distance is at most 1.
@@ -21,30 +21,17 @@ const MARGIN: f64 = 4.0;
 const CHUNK: usize = 4096;
 
 impl Distances {
-    /// Measures a periodic set. A single point has its own images as neighbors.
+    /// Measures a set; of a window the distances from points at least 4 mean spacings from its edge to all points. A
+    /// single point of a periodic set has its own images as neighbors. Both figures are 0 if there are no points.
     #[must_use]
-    pub fn of_torus(set: &Torus) -> Self {
-        Self::of(&CellList::new(set.points(), set.side(), 1.0, true), |_| {
-            true
-        })
-    }
-
-    /// Measures a window: the distances from points at least 4 mean spacings from its edge to all
-    /// points. Both figures are 0 if there are none.
-    #[must_use]
-    pub fn of_window(set: &Window) -> Self {
-        let inner = MARGIN..set.side() - MARGIN;
-        let cells = CellList::new(set.points(), set.side(), 1.0, false);
-        Self::of(&cells, |p| p.iter().all(|v| inner.contains(v)))
-    }
-
-    fn of(cells: &CellList, counts: impl Fn(&[f64; 2]) -> bool + Sync) -> Self {
+    pub fn of(set: &Sample) -> Self {
+        let cells = &CellList::of(set, 1.0);
         let parts: Vec<(f64, f64, usize)> = cells
             .members()
             .par_chunks(CHUNK)
             .map(|chunk| {
                 let (mut least, mut sum, mut counted) = (f64::INFINITY, 0.0, 0);
-                for (index, p) in chunk.iter().filter(|(_, p)| counts(p)) {
+                for (index, p) in chunk.iter().filter(|(_, p)| set.is_inner(MARGIN, p)) {
                     let distance = nearest(cells, *index, *p);
                     least = least.min(distance);
                     sum += distance;
@@ -112,11 +99,11 @@ mod tests {
 
     #[test]
     fn lattices_have_their_known_distances() {
-        let square = Distances::of_torus(&Torus::new(1.0, lattice(32, 32, 0.0)));
+        let square = Distances::of(&Sample::torus(1.0, lattice(32, 32, 0.0)));
         assert!((square.delta_min - 0.930_604_859_102_1).abs() < 1e-12);
         assert!((square.delta_avg - 0.930_604_859_102_1).abs() < 1e-12);
         // 97 columns and 112 rows: 97/56 ≈ √3, so rows are √3/2 columns apart.
-        let hexagonal = Distances::of_torus(&Torus::new(1.0, lattice(97, 112, 0.5)));
+        let hexagonal = Distances::of(&Sample::torus(1.0, lattice(97, 112, 0.5)));
         assert!((hexagonal.delta_min - 1.0).abs() < 1e-3, "{hexagonal:?}");
         assert!(hexagonal.delta_avg <= 1.001);
     }
@@ -124,7 +111,7 @@ mod tests {
     proptest! {
         #[test]
         fn agrees_with_the_search_of_all_pairs(points in proptest::collection::vec([0.0f64..1.0, 0.0f64..1.0], 2..120)) {
-            let set = Torus::new(1.0, points);
+            let set = Sample::torus(1.0, points);
             let side = set.side();
             let gap = |a: f64, b: f64| {
                 let d = (a - b).abs();
@@ -136,7 +123,7 @@ mod tests {
                     .fold(f64::INFINITY, f64::min)
             }).collect();
             let unit = (2.0 / 3.0f64.sqrt()).sqrt();
-            let found = Distances::of_torus(&set);
+            let found = Distances::of(&set);
             let least = each.iter().copied().fold(f64::INFINITY, f64::min) / unit;
             let mean = each.iter().sum::<f64>() / each.len() as f64 / unit;
             prop_assert!((found.delta_min - least).abs() < 1e-12);
@@ -148,13 +135,13 @@ mod tests {
     fn only_inner_points_of_a_window_count() {
         let mut points = lattice(40, 40, 0.0);
         points.push([0.001, 0.0005]); // near the edge, close to a neighbor
-        let window = Window::new(1.0, 1600.0, points);
-        let found = Distances::of_window(&window);
+        let window = Sample::window(1.0, 1600.0, points);
+        let found = Distances::of(&window);
         assert!(
             (found.delta_min - 0.930_604_859_102_1).abs() < 1e-9,
             "{found:?}"
         );
-        let empty = Distances::of_window(&Window::new(1.0, 1.0, vec![]));
+        let empty = Distances::of(&Sample::window(1.0, 1.0, vec![]));
         assert_eq!(empty.delta_min, 0.0);
     }
 }

@@ -8,12 +8,12 @@ use strew_core::{
     table::to_grid_units,
 };
 
-use super::{Torus, Window};
+use super::Sample;
 use crate::numeric::SplitMix;
 
 /// Returns one period of a twin, displaced, or `None` if it is no twin of the table's map.
 #[must_use]
-pub fn twin_set(table: &Table, twin: Twin) -> Option<Torus> {
+pub fn twin_set(table: &Table, twin: Twin) -> Option<Sample> {
     let n = table.map().intervals();
     let points = twin
         .sites(table.map())?
@@ -26,13 +26,13 @@ pub fn twin_set(table: &Table, twin: Twin) -> Option<Torus> {
             ]
         })
         .collect();
-    Some(Torus::new(twin.period() as f64, points))
+    Some(Sample::torus(twin.period() as f64, points))
 }
 
 /// Returns a window of about `points` points of the unbounded displaced pattern of the table's own
 /// α, at a place chosen by `seed`.
 #[must_use]
-pub fn window_set(table: &Table, points: u64, seed: u64) -> Window {
+pub fn window_set(table: &Table, points: u64, seed: u64) -> Sample {
     let map = table.map();
     let density = map.alpha().set_side_f64() * map.alpha().set_side_f64();
     let side = (points as f64 / density).sqrt();
@@ -61,7 +61,7 @@ pub fn window_set(table: &Table, points: u64, seed: u64) -> Window {
             }
         }
     }
-    Window::new(side, density, found)
+    Sample::window(side, density, found)
 }
 
 /// The columns (or rows, along [`Axis::Y`]) of a class in a range, each with its interval.

@@ -1,6 +1,6 @@
 //! Measuring point sets: spectrum, distances and Voronoi cells of whole periods and of windows.
 //!
-//! A set is a [`Torus`] (one period of a periodic set) or a [`Window`] (a box of an unbounded one);
+//! A set is a [`Sample`]: one period of a periodic set, or a window of an unbounded one;
 //! [`twin_set`] and [`window_set`] make them from a table. [`Spectrum`] is computed by `nufft`,
 //! windows with the weights of `taper`; its [`Ring`]s yield the [`Summary`] and the [`Crispness`].
 //! [`Distances`] and [`Rdf`] look up neighbors in a `cell_list`, [`Voronoi`] in a triangulation. [`recurrence`] is how
@@ -30,6 +30,6 @@ pub use from_table::{twin_set, window_set};
 pub use pair::Shared;
 pub use rdf::Rdf;
 pub use recurrence::recurrence;
-pub use set::{Torus, Window};
+pub use set::Sample;
 pub use spectrum::{BANDS, Ring, Spectrum, Summary};
 pub use voronoi::Voronoi;

@@ -6,7 +6,7 @@
 
 use rustfft::{FftPlanner, num_complex::Complex};
 
-use super::{Window, nufft::transform};
+use super::{Sample, nufft::transform};
 
 /// The structure that two sets have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ impl Shared {
     /// # Panics
     /// If the sides differ by more than a millionth.
     #[must_use]
-    pub fn of_windows(a: &Window, b: &Window, nu_max: f64) -> Self {
+    pub fn of(a: &Sample, b: &Sample, nu_max: f64) -> Self {
         assert!((a.side() / b.side() - 1.0).abs() < 1e-6, "equal sides");
         let side = a.side();
         let modes = (nu_max * side) as usize;
@@ -48,7 +48,7 @@ impl Shared {
 
 /// The sums of a window at integer frequencies, where its mean density adds nothing. Without a taper, which
 /// would tie neighboring modes to each other.
-fn sums(set: &Window, modes: usize) -> Vec<Complex<f64>> {
+fn sums(set: &Sample, modes: usize) -> Vec<Complex<f64>> {
     let turns: Vec<[f64; 2]> = set
         .points()
         .iter()
@@ -135,16 +135,16 @@ mod tests {
 
     #[test]
     fn independent_sets_share_nothing_and_shifted_ones_their_phases() {
-        let [a, b] = [1, 2].map(|seed| Window::new(100.0, 1.0, noise(seed)));
-        let shared = Shared::of_windows(&a, &b, 2.0);
+        let [a, b] = [1, 2].map(|seed| Sample::window(100.0, 1.0, noise(seed)));
+        let shared = Shared::of(&a, &b, 2.0);
         assert!(shared.power_correlation.abs() < 0.03, "{shared:?}");
         assert!((4.0..8.0).contains(&shared.phase_peak), "{shared:?}");
         let moved = noise(1)
             .iter()
             .map(|p| [(p[0] + 7.0) % 100.0, p[1]])
             .collect();
-        let moved = Window::new(100.0, 1.0, moved);
-        let shared = Shared::of_windows(&a, &moved, 2.0);
+        let moved = Sample::window(100.0, 1.0, moved);
+        let shared = Shared::of(&a, &moved, 2.0);
         assert!(shared.power_correlation > 0.2, "{shared:?}");
         assert!(shared.phase_peak > 50.0, "{shared:?}");
     }

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{CellList, Torus, Window};
+use super::{CellList, Sample};
 
 /// The largest distance counted, in mean spacings.
 const REACH: f64 = 5.0;
@@ -20,24 +20,10 @@ pub struct Rdf {
 }
 
 impl Rdf {
-    /// Measures a periodic set.
+    /// Measures a set; of a window the distances from points at least 5 mean spacings from its edge to all points.
     #[must_use]
-    pub fn of_torus(set: &Torus) -> Self {
-        Self::of(&CellList::new(set.points(), set.side(), 1.0, true), |_| {
-            true
-        })
-    }
-
-    /// Measures a window: the distances from points at least 5 mean spacings from its edge to all
-    /// points.
-    #[must_use]
-    pub fn of_window(set: &Window) -> Self {
-        let inner = REACH..set.side() - REACH;
-        let cells = CellList::new(set.points(), set.side(), 1.0, false);
-        Self::of(&cells, |p| p.iter().all(|v| inner.contains(v)))
-    }
-
-    fn of(cells: &CellList, counts: impl Fn(&[f64; 2]) -> bool + Sync) -> Self {
+    pub fn of(set: &Sample) -> Self {
+        let cells = &CellList::of(set, 1.0);
         let width = REACH / BINS as f64;
         let rings = (REACH / cells.width()).ceil() as i64;
         let (found, from) = cells
@@ -45,7 +31,7 @@ impl Rdf {
             .par_chunks(CHUNK)
             .map(|chunk| {
                 let (mut found, mut from) = (vec![0u64; BINS], 0u64);
-                for (index, p) in chunk.iter().filter(|(_, p)| counts(p)) {
+                for (index, p) in chunk.iter().filter(|(_, p)| set.is_inner(REACH, p)) {
                     from += 1;
                     for ring in 0..=rings {
                         cells.ring(*p, ring, |other, [dx, dy]| {
@@ -86,8 +72,8 @@ mod tests {
         let mut random = SplitMix::new(5);
         let mut next = || (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64 * 200.0;
         let points: Vec<[f64; 2]> = (0..40_000).map(|_| [next(), next()]).collect();
-        let torus = Rdf::of_torus(&Torus::new(200.0, points.clone()));
-        let window = Rdf::of_window(&Window::new(200.0, 1.0, points));
+        let torus = Rdf::of(&Sample::torus(200.0, points.clone()));
+        let window = Rdf::of(&Sample::window(200.0, 1.0, points));
         for rdf in [torus, window] {
             let far = rdf.bins.iter().filter(|[r, _]| *r > 1.0);
             assert!(far.clone().all(|[_, g]| (g - 1.0).abs() < 0.1));
@@ -97,7 +83,7 @@ mod tests {
         let lattice = (0..900)
             .map(|i| [f64::from(i % 30) + 0.001, f64::from(i / 30)])
             .collect();
-        let rdf = Rdf::of_torus(&Torus::new(30.0, lattice));
+        let rdf = Rdf::of(&Sample::torus(30.0, lattice));
         let count = |range: std::ops::Range<f64>| {
             let area = |r: f64| std::f64::consts::TAU * r * REACH / BINS as f64;
             let bins = rdf.bins.iter().filter(|[r, _]| range.contains(r));

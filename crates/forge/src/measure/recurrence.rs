@@ -7,7 +7,7 @@
 
 use rayon::prelude::*;
 
-use super::Window;
+use super::Sample;
 use crate::numeric::SplitMix;
 
 /// The side of a patch, in mean spacings.
@@ -48,7 +48,7 @@ const SELF: f64 = 2.0;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[must_use]
-pub fn recurrence(set: &Window, other: Option<&Window>, patches: usize, seed: u64) -> f64 {
+pub fn recurrence(set: &Sample, other: Option<&Sample>, patches: usize, seed: u64) -> f64 {
     let room = set.side() - PATCH;
     if room < PATCH || patches == 0 {
         return 0.0;
@@ -87,7 +87,7 @@ struct Field<'a> {
 }
 
 impl<'a> Field<'a> {
-    fn new(window: &'a Window) -> Self {
+    fn new(window: &'a Sample) -> Self {
         let side = window.side();
         let (cells, columns) = ((side * FINE) as usize + 1, side as usize + 1);
         let mut raster = vec![false; cells * cells];
@@ -242,9 +242,9 @@ mod tests {
         let tile = noise(40.0, 1);
         let shifted = |[x, y]: [f64; 2]| tile.iter().map(move |p| [p[0] + x, p[1] + y]);
         let both = [[0.0, 0.0], [40.0, 0.0], [0.0, 40.0], [40.0, 40.0]];
-        let repeated = Window::new(80.0, 1.0, both.into_iter().flat_map(shifted).collect());
+        let repeated = Sample::window(80.0, 1.0, both.into_iter().flat_map(shifted).collect());
         assert!(recurrence(&repeated, None, 8, 3) > 0.9);
-        let other = Window::new(80.0, 1.0, noise(80.0, 2));
+        let other = Sample::window(80.0, 1.0, noise(80.0, 2));
         let [own, chance] =
             [None, Some(&repeated)].map(|found_in| recurrence(&other, found_in, 8, 3));
         // Random points clump, so chance is high; both are the same chance.
@@ -261,7 +261,7 @@ mod tests {
         };
         let mut points = tile.clone();
         points.extend(tile.iter().map(|&p| moved(p)));
-        let window = Window::new(80.0, 1.0, points);
+        let window = Sample::window(80.0, 1.0, points);
         // Half of the patches lie above, where nothing is, and are empty.
         let share = recurrence(&window, None, 24, 5);
         assert!(share > 0.15, "{share}");

@@ -1,32 +1,58 @@
-//! Point sets to measure: one period of a periodic set, or a window of an unbounded set.
+//! Point sets to measure.
 
-/// A periodic point set at unit density, on a torus whose side is √N mean spacings. Coordinates may
-/// lie outside [0, side); they are taken modulo the side.
+/// The points of a square at unit density: one period of a set that repeats, or a window of an unbounded one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Torus {
+pub struct Sample {
     side: f64,
     points: Vec<[f64; 2]>,
+    is_periodic: bool,
 }
 
-impl Torus {
-    /// Rescales the points of a torus of side `side` to unit density.
+impl Sample {
+    /// Rescales the points of one period, a torus of side `side`, to unit density: to a side of √N mean spacings.
+    /// Coordinates may lie outside [0, side); they are taken modulo the side.
     #[must_use]
-    pub fn new(side: f64, mut points: Vec<[f64; 2]>) -> Self {
+    pub fn torus(side: f64, points: Vec<[f64; 2]>) -> Self {
         let unit_side = (points.len() as f64).sqrt();
-        let scale = unit_side / side;
+        Self::scaled(unit_side, unit_side / side, points, true)
+    }
+
+    /// Rescales the points in the box [0, `side`)² of a set with `density` points per unit area to
+    /// unit density. Points outside the box are dropped; none inside may be missing.
+    #[must_use]
+    pub fn window(side: f64, density: f64, mut points: Vec<[f64; 2]>) -> Self {
+        points.retain(|p| p.iter().all(|v| (0.0..side).contains(v)));
+        let scale = density.sqrt();
+        Self::scaled(side * scale, scale, points, false)
+    }
+
+    fn scaled(side: f64, scale: f64, mut points: Vec<[f64; 2]>, is_periodic: bool) -> Self {
         for p in &mut points {
             *p = p.map(|v| v * scale);
         }
         Self {
-            side: unit_side,
+            side,
             points,
+            is_periodic,
         }
     }
 
-    /// The side of the torus, √N mean spacings.
+    /// The side of the square, in mean spacings.
     #[must_use]
     pub const fn side(&self) -> f64 {
         self.side
+    }
+
+    /// Whether the set repeats outside the square.
+    #[must_use]
+    pub const fn is_periodic(&self) -> bool {
+        self.is_periodic
+    }
+
+    /// Whether all is there within `margin` of a point: on a torus always, in a window away from its edge.
+    pub(super) fn is_inner(&self, margin: f64, p: &[f64; 2]) -> bool {
+        let inner = margin..self.side - margin;
+        self.is_periodic || p.iter().all(|v| inner.contains(v))
     }
 
     /// The points, in mean spacings.
@@ -38,41 +64,5 @@ impl Torus {
     /// The points for moving them, in mean spacings.
     pub fn points_mut(&mut self) -> &mut [[f64; 2]] {
         &mut self.points
-    }
-}
-
-/// The points of an unbounded set at unit density that lie in the box [0, side)².
-#[derive(Clone, Debug, PartialEq)]
-pub struct Window {
-    side: f64,
-    points: Vec<[f64; 2]>,
-}
-
-impl Window {
-    /// Rescales the points in the box [0, `side`)² of a set with `density` points per unit area to
-    /// unit density. Points outside the box are dropped; none inside may be missing.
-    #[must_use]
-    pub fn new(side: f64, density: f64, mut points: Vec<[f64; 2]>) -> Self {
-        points.retain(|p| p.iter().all(|v| (0.0..side).contains(v)));
-        let scale = density.sqrt();
-        for p in &mut points {
-            *p = p.map(|v| v * scale);
-        }
-        Self {
-            side: side * scale,
-            points,
-        }
-    }
-
-    /// The side of the box, in mean spacings.
-    #[must_use]
-    pub const fn side(&self) -> f64 {
-        self.side
-    }
-
-    /// The points, in mean spacings.
-    #[must_use]
-    pub fn points(&self) -> &[[f64; 2]] {
-        &self.points
     }
 }

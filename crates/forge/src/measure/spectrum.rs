@@ -2,7 +2,7 @@
 //!
 //! Frequencies ν are in units of √N: ν = 1 is one cycle per mean spacing. White noise has power 1.
 
-use super::{Torus, Window, cell_list::wrap, nufft::transform, taper};
+use super::{Sample, cell_list::wrap, nufft::transform, taper};
 
 /// The power P(k) = |Σ exp(−2πi k·x)|²/N at every integer k up to a largest frequency.
 #[derive(Clone, Debug)]
@@ -58,29 +58,23 @@ pub const BANDS: [[f64; 2]; 6] = [
 ];
 
 impl Spectrum {
-    /// Computes the spectrum of a periodic set for |k| ≤ `nu_max`·√N along either axis, with an
-    /// error in amplitude of 10⁻¹⁰·√N. Memory grows as N·`nu_max`².
+    /// Computes the spectrum of a set for |k| ≤ `nu_max`·√N along either axis. Memory grows as N·`nu_max`².
+    ///
+    /// Of a periodic set it is exact but for an error in amplitude of 10⁻¹⁰·√N. Of a window it is an estimate at
+    /// frequencies k/side: the taper blurs it over about ±2 modes; less than 10⁻¹² of a mode's power leaks 10 modes
+    /// away.
     #[must_use]
-    pub fn of_torus(set: &Torus, nu_max: f64) -> Self {
+    pub fn of(set: &Sample, nu_max: f64) -> Self {
         let side = set.side();
         let modes = (nu_max * side).floor().max(0.0) as usize;
-        let turns: Vec<[f64; 2]> = set
-            .points()
-            .iter()
-            .map(|p| p.map(|v| wrap(v / side, 1.0)))
-            .collect();
-        let unit = 1.0 / set.points().len().max(1) as f64;
-        let power = transform(&turns, None, modes, |_, _, sum| sum.norm_sqr() * unit);
-        Self { side, modes, power }
-    }
-
-    /// Estimates the spectrum of an unbounded set from a window, at frequencies k/side. The taper
-    /// blurs it over about ±2 modes; less than 10⁻¹² of a mode's power leaks 10 modes away.
-    #[must_use]
-    pub fn of_window(set: &Window, nu_max: f64) -> Self {
-        let side = set.side();
-        let modes = (nu_max * side).floor().max(0.0) as usize;
-        let turns: Vec<[f64; 2]> = set.points().iter().map(|p| p.map(|v| v / side)).collect();
+        let turns = set.points().iter().map(|p| p.map(|v| v / side));
+        if set.is_periodic() {
+            let turns: Vec<[f64; 2]> = turns.map(|p| p.map(|v| wrap(v, 1.0))).collect();
+            let unit = 1.0 / set.points().len().max(1) as f64;
+            let power = transform(&turns, None, modes, |_, _, sum| sum.norm_sqr() * unit);
+            return Self { side, modes, power };
+        }
+        let turns: Vec<[f64; 2]> = turns.collect();
         let weights: Vec<f64> = turns
             .iter()
             .map(|p| taper::value(p[0]) * taper::value(p[1]))
@@ -241,12 +235,12 @@ mod tests {
 
     #[test]
     fn white_noise_has_power_one_and_no_anisotropy() {
-        let summary = Spectrum::of_torus(&Torus::new(1.0, noise(10_000, 1)), 4.0).summary(0.02);
+        let summary = Spectrum::of(&Sample::torus(1.0, noise(10_000, 1)), 4.0).summary(0.02);
         assert!((summary.low_power - 1.0).abs() < 0.05, "{summary:?}");
         assert!(summary.peak_power < 2.0, "{summary:?}");
         assert!(summary.anisotropy_db.abs() < 0.15, "{summary:?}");
-        let window = Window::new(1.0, 10_000.0, noise(10_000, 2));
-        let summary = Spectrum::of_window(&window, 4.0).summary(0.02);
+        let window = Sample::window(1.0, 10_000.0, noise(10_000, 2));
+        let summary = Spectrum::of(&window, 4.0).summary(0.02);
         assert!((summary.low_power - 1.0).abs() < 0.15, "{summary:?}");
         assert!(summary.anisotropy_db.abs() < 0.5, "{summary:?}");
     }
@@ -262,7 +256,7 @@ mod tests {
             }
         };
         let sets: Vec<Spectrum> = (0..10)
-            .map(|seed| Spectrum::of_torus(&Torus::new(64.0, jittered(64, seed)), 2.0))
+            .map(|seed| Spectrum::of(&Sample::torus(64.0, jittered(64, seed)), 2.0))
             .collect();
         let mut worst: f64 = 0.0;
         for ring in 1..30 {
@@ -294,7 +288,7 @@ mod tests {
     #[test]
     fn a_lattice_has_its_peaks_and_nothing_else() {
         let lattice = (0..32).flat_map(|j| (0..32).map(move |i| [f64::from(i), f64::from(j)]));
-        let spectrum = Spectrum::of_torus(&Torus::new(32.0, lattice.collect()), 2.5);
+        let spectrum = Spectrum::of(&Sample::torus(32.0, lattice.collect()), 2.5);
         for kx in -80..=80i64 {
             for ky in -80..=80i64 {
                 let expected = if kx % 32 == 0 && ky % 32 == 0 {
@@ -317,22 +311,22 @@ mod tests {
         let lattice: Vec<[f64; 2]> = (-1..102)
             .flat_map(|j| (-1..102).map(move |i| [f64::from(i) + 0.3, f64::from(j) + 0.8]))
             .collect();
-        let window = Window::new(100.5, 1.0, lattice);
-        let summary = Spectrum::of_window(&window, 0.9).summary(0.02);
+        let window = Sample::window(100.5, 1.0, lattice);
+        let summary = Spectrum::of(&window, 0.9).summary(0.02);
         assert!(summary.low_power < 1e-12, "{summary:?}");
         // With a wrong density the mean is not subtracted exactly.
-        let wrong = Window::new(100.5, 1.01, window.points().to_vec());
-        assert!(Spectrum::of_window(&wrong, 0.9).summary(0.02).low_power > 1e-6);
+        let wrong = Sample::window(100.5, 1.01, window.points().to_vec());
+        assert!(Spectrum::of(&wrong, 0.9).summary(0.02).low_power > 1e-6);
     }
 
     #[test]
     fn rings_are_whole_and_sorted() {
-        let spectrum = Spectrum::of_torus(&Torus::new(1.0, noise(400, 3)), 1.0);
+        let spectrum = Spectrum::of(&Sample::torus(1.0, noise(400, 3)), 1.0);
         let rings = spectrum.rings(0.0);
         assert_eq!(rings.len(), 19); // 1 ≤ |k| < 20
         assert!(rings.is_sorted_by(|a, b| a.nu < b.nu));
         assert!(
-            Spectrum::of_torus(&Torus::new(1.0, vec![]), 1.0)
+            Spectrum::of(&Sample::torus(1.0, vec![]), 1.0)
                 .rings(0.1)
                 .is_empty()
         );

@@ -5,7 +5,7 @@
 
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
-use super::{Torus, Window, cell_list::wrap};
+use super::{Sample, cell_list::wrap};
 
 /// The figures of a Voronoi diagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,10 +30,14 @@ const BORDER: f64 = 6.0;
 const HEX: f64 = 1.074_569_931_823_542;
 
 impl Voronoi {
-    /// Measures a periodic set. All figures are 0 for a set too small to have a triangulation. If
-    /// points coincide, the deviation and the spread of areas are 1 and the other figures 0.
+    /// Measures a set; of a window its points at least 6 mean spacings from the edge. All figures are 0 for a set too
+    /// small to have a triangulation. If points coincide, the deviation and the spread of areas are 1 and the other
+    /// figures 0.
     #[must_use]
-    pub fn of_torus(set: &Torus) -> Self {
+    pub fn of(set: &Sample) -> Self {
+        if !set.is_periodic() {
+            return Self::of_cells(set.points(), |_, p| set.is_inner(BORDER, p));
+        }
         let side = set.side();
         let border = BORDER.min(side);
         let home = set.points().iter().map(|p| p.map(|v| wrap(v, side)));
@@ -52,17 +56,10 @@ impl Voronoi {
                 }
             }
         }
-        Self::of(&points, |index, _| index < counted)
+        Self::of_cells(&points, |index, _| index < counted)
     }
 
-    /// Measures a window: its points at least 6 mean spacings from the edge.
-    #[must_use]
-    pub fn of_window(set: &Window) -> Self {
-        let inner = BORDER..set.side() - BORDER;
-        Self::of(set.points(), |_, p| p.iter().all(|v| inner.contains(v)))
-    }
-
-    fn of(points: &[[f64; 2]], counts: impl Fn(usize, &[f64; 2]) -> bool) -> Self {
+    fn of_cells(points: &[[f64; 2]], counts: impl Fn(usize, &[f64; 2]) -> bool) -> Self {
         let none = Self {
             area_deviation: 0.0,
             area_spread: 0.0,
@@ -124,7 +121,7 @@ mod tests {
     use super::*;
     use crate::numeric::SplitMix;
 
-    fn hexagonal(columns: usize, rows: usize) -> Torus {
+    fn hexagonal(columns: usize, rows: usize) -> Sample {
         let points = (0..rows).flat_map(|j| {
             let shift = 0.5 * (j % 2) as f64;
             (0..columns).map(move |i| {
@@ -132,13 +129,13 @@ mod tests {
                 [(i as f64 + shift) / columns, j as f64 / rows]
             })
         });
-        Torus::new(1.0, points.collect())
+        Sample::torus(1.0, points.collect())
     }
 
     #[test]
     fn a_hexagonal_lattice_has_equal_cells_and_the_smallest_holes() {
         // 97 columns and 112 rows: the ratio is √3/2 to within 10⁻⁴.
-        let found = Voronoi::of_torus(&hexagonal(97, 112));
+        let found = Voronoi::of(&hexagonal(97, 112));
         assert!(found.area_deviation < 1e-9, "{found:?}");
         assert!(
             (found.largest_hole - 1.0 / 3f64.sqrt()).abs() < 1e-3,
@@ -150,11 +147,11 @@ mod tests {
     #[test]
     fn a_missing_point_is_a_hole_of_a_known_size() {
         let mut points = hexagonal(97, 112).points().to_vec();
-        let window = Window::new(104.0, 1.0, points.clone());
-        let whole = Voronoi::of_window(&window);
+        let window = Sample::window(104.0, 1.0, points.clone());
+        let whole = Voronoi::of(&window);
         assert!((whole.largest_hole - 1.0 / 3f64.sqrt()).abs() < 1e-3);
         points.remove(97 * 56 + 48);
-        let holed = Voronoi::of_window(&Window::new(104.0, 1.0, points));
+        let holed = Voronoi::of(&Sample::window(104.0, 1.0, points));
         // The empty circle reaches the six neighbors, each of which gains a sixth of the cell.
         assert!((holed.largest_hole - 1.0).abs() < 1e-3, "{holed:?}");
         assert!((holed.area_deviation - 1.0 / 6.0).abs() < 1e-3, "{holed:?}");
@@ -164,7 +161,7 @@ mod tests {
     fn cells_of_a_random_set_vary_as_known() {
         let mut random = SplitMix::new(3);
         let points = (0..20_000).map(|_| [random.next_f64(), random.next_f64()]);
-        let found = Voronoi::of_torus(&Torus::new(1.0, points.collect()));
+        let found = Voronoi::of(&Sample::torus(1.0, points.collect()));
         // Known for a Poisson set: the variance of the area is 0.2802 of its squared mean.
         assert!(
             (found.area_spread - 0.2802f64.sqrt()).abs() < 0.02,
@@ -179,11 +176,8 @@ mod tests {
 
     #[test]
     fn sets_without_cells_have_figures_too() {
-        assert_eq!(
-            Voronoi::of_torus(&Torus::new(1.0, vec![])).largest_hole,
-            0.0
-        );
-        let twice = Torus::new(1.0, vec![[0.5, 0.5]; 2]);
-        assert_eq!(Voronoi::of_torus(&twice).area_deviation, 1.0);
+        assert_eq!(Voronoi::of(&Sample::torus(1.0, vec![])).largest_hole, 0.0);
+        let twice = Sample::torus(1.0, vec![[0.5, 0.5]; 2]);
+        assert_eq!(Voronoi::of(&twice).area_deviation, 1.0);
     }
 }

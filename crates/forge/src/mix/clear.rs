@@ -153,10 +153,10 @@ mod tests {
         let table = table.with_mix(mix, ranks).expect("valid");
         let twin = Twin::new(683, 418).expect("reduced");
         let points = ThinnedTwin::new(&table, twin).expect("a twin");
-        assert!(Distances::of_torus(&points.at(1.0)).delta_min > 0.399);
+        assert!(Distances::of(&points.at(1.0)).delta_min > 0.399);
         for kind in 0..2 {
             let set = points.of_kind(1.0, kind);
-            assert!(Distances::of_torus(&set).delta_min > 0.449, "{kind}");
+            assert!(Distances::of(&set).delta_min > 0.449, "{kind}");
         }
     }
 }

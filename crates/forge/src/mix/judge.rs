@@ -5,7 +5,7 @@ use strew_core::{PointSet, Region, Table, Twin, table::Figures};
 
 use crate::{
     judge::{Bound, Complaint, Figure, round},
-    measure::{Distances, Spectrum, Summary, Torus, Window},
+    measure::{Distances, Sample, Spectrum, Summary},
     thinned::ThinnedTwin,
     twins::nearest,
     watch::{Meter, Stage, Watch},
@@ -75,7 +75,7 @@ pub(super) fn judge(
     for place in places {
         let sets = place.sets(table)?;
         let before = match of {
-            Some(of) => Some(place.sets(of)?.all(1.0)?.summary(NU).anisotropy_db),
+            Some(of) => Some(summary(&place.sets(of)?.all(1.0)?, NU).anisotropy_db),
             None => None,
         };
         for &share in [1.0].iter().chain(place.shares()) {
@@ -108,12 +108,6 @@ enum Sets {
     Window(Box<PointSet>),
 }
 
-/// A set to measure.
-enum Set {
-    Twin(Torus),
-    Window(Window),
-}
-
 impl Place {
     /// The shares at which the place is judged, besides 1.
     const fn shares(&self) -> &'static [f64] {
@@ -133,62 +127,40 @@ impl Place {
 
 impl Sets {
     /// All points at a share.
-    fn all(&self, share: f64) -> Option<Set> {
-        Some(match self {
-            Self::Twin(twin) => Set::Twin(twin.at(share)),
-            Self::Window(set) => Set::Window(window(set, share, 1.0)?),
-        })
+    fn all(&self, share: f64) -> Option<Sample> {
+        match self {
+            Self::Twin(twin) => Some(twin.at(share)),
+            Self::Window(set) => window(set, share, 1.0),
+        }
     }
 
     /// The points of a kind at a share. The kind has a part of all points.
-    fn of_kind(&self, share: f64, kind: u8, part: f64) -> Option<Set> {
-        Some(match self {
-            Self::Twin(twin) => Set::Twin(twin.of_kind(share, kind)),
-            Self::Window(set) => {
-                Set::Window(window(&PointSet::clone(set).only(kind).ok()?, share, part)?)
-            }
-        })
+    fn of_kind(&self, share: f64, kind: u8, part: f64) -> Option<Sample> {
+        match self {
+            Self::Twin(twin) => Some(twin.of_kind(share, kind)),
+            Self::Window(set) => window(&PointSet::clone(set).only(kind).ok()?, share, part),
+        }
     }
 }
 
 /// A window of a set of which a part of all points is at a share, away from the origin.
-fn window(set: &PointSet, share: f64, part: f64) -> Option<Window> {
+fn window(set: &PointSet, share: f64, part: f64) -> Option<Sample> {
     let side = (POINTS / share).sqrt();
     let corner = [12_345.0, -6_789.0];
     let region = Region::new(corner, corner.map(|v| v + side)).ok()?;
     let points = set.clone().keep(share).ok()?.within(region).ok()?.to_vec();
     let points = points.iter().map(|p| [p.x - corner[0], p.y - corner[1]]);
-    Some(Window::new(side, share * part, points.collect()))
+    Some(Sample::window(side, share * part, points.collect()))
 }
 
-impl Set {
-    fn len(&self) -> usize {
-        match self {
-            Self::Twin(set) => set.points().len(),
-            Self::Window(set) => set.points().len(),
-        }
-    }
-
-    fn summary(&self, nu: f64) -> Summary {
-        match self {
-            Self::Twin(set) => Spectrum::of_torus(set, nu),
-            Self::Window(set) => Spectrum::of_window(set, nu),
-        }
-        .summary(RING)
-    }
-
-    fn distances(&self) -> Distances {
-        match self {
-            Self::Twin(set) => Distances::of_torus(set),
-            Self::Window(set) => Distances::of_window(set),
-        }
-    }
+fn summary(set: &Sample, nu: f64) -> Summary {
+    Spectrum::of(set, nu).summary(RING)
 }
 
 /// A set to judge: a kind, or all points.
 struct Subject {
     kind: Option<u8>,
-    set: Set,
+    set: Sample,
     /// The share of the kind that was found, and what it should be.
     found: f64,
     wanted: f64,
@@ -197,7 +169,7 @@ struct Subject {
 /// The kinds at a share, and all points.
 fn subjects(table: &Table, sets: &Sets, share: f64) -> Option<Vec<Subject>> {
     let all = sets.all(share)?;
-    let count = all.len() as f64;
+    let count = all.points().len() as f64;
     let mut subjects = Vec::new();
     if let Some(mix) = table.mix() {
         for kind in 0..mix.shares().kinds() as u8 {
@@ -205,7 +177,7 @@ fn subjects(table: &Table, sets: &Sets, share: f64) -> Option<Vec<Subject>> {
             let set = sets.of_kind(share, kind, wanted)?;
             subjects.push(Subject {
                 kind: Some(kind),
-                found: set.len() as f64 / count,
+                found: set.points().len() as f64 / count,
                 wanted,
                 set,
             });
@@ -236,10 +208,10 @@ impl Subject {
         } else {
             format!(", keep {share}")
         };
-        let summary = self.set.summary(if is_whole { NU } else { NU_THINNED });
+        let summary = summary(&self.set, if is_whole { NU } else { NU_THINNED });
         let mut values = vec![
             (Figure::LowPower, summary.low_power),
-            (Figure::DeltaMin, self.set.distances().delta_min),
+            (Figure::DeltaMin, Distances::of(&self.set).delta_min),
         ];
         if is_whole {
             values.push((Figure::PeakPower, summary.peak_power));
@@ -252,7 +224,7 @@ impl Subject {
         Figures {
             subject: format!("{place}, {what}{kept}"),
             seen: false,
-            points: self.set.len() as u64,
+            points: self.set.points().len() as u64,
             values: values.map(|(f, v)| (f.name().into(), round(v))).collect(),
         }
     }

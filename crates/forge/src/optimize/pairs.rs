@@ -81,7 +81,7 @@ mod tests {
     use super::*;
     use crate::{
         energy::{Gaussian, Guard, Pairwise, SetEnergy},
-        measure::Torus,
+        measure::Sample,
         optimize::jitter,
     };
 
@@ -119,7 +119,7 @@ mod tests {
                 ]
             })
             .collect();
-        let set = Torus::new(twin.t() as f64, points);
+        let set = Sample::torus(twin.t() as f64, points);
         let mut each = vec![[0.0; 2]; sites.len()];
         let value = Pairwise(energy()).evaluate(&set, &mut each);
         let mut mean = vec![[0.0; 3]; moves.len()];

@@ -311,7 +311,7 @@ mod tests {
         let table = Table::new(map, "some", vectors, Provenance::default()).expect("valid");
         let twin = Twin::new(265 + 418, 418).expect("coprime");
         let set = twin_set(&table, twin).expect("a twin");
-        let rings = Spectrum::of_torus(&set, 2.1).rings(0.1);
+        let rings = Spectrum::of(&set, 2.1).rings(0.1);
         // Both blurred to about the same width, where neither the mean density nor the end shows.
         for ring in rings.iter().filter(|r| (0.3..1.9).contains(&r.nu)) {
             let near = curves.iter().filter(|c| (c[0] - ring.nu).abs() < 0.05);

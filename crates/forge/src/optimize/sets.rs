@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use strew_core::{Map, Twin, map::Site};
 
 use super::Objective;
-use crate::{energy::SetEnergy, measure::Torus};
+use crate::{energy::SetEnergy, measure::Sample};
 
 /// An energy of point sets as a function of a table's vectors: its mean over the points of several
 /// twins.
@@ -24,7 +24,7 @@ struct TwinPoints {
     /// The block of each site.
     blocks: Vec<u32>,
     /// Displaced.
-    set: Torus,
+    set: Sample,
     /// The gradient of the energy, by each point.
     gradient: Vec<[f64; 2]>,
 }
@@ -37,7 +37,7 @@ impl<E: SetEnergy> Sets<E> {
         let points = |twin: &Twin| {
             let sites = twin.sites(map)?;
             let place = |site: &Site| [f64::from(site.x), f64::from(site.y)];
-            let set = Torus::new(twin.period() as f64, sites.iter().map(place).collect());
+            let set = Sample::torus(twin.period() as f64, sites.iter().map(place).collect());
             let block = |site: &Site| site.block_y * n as u32 + site.block_x;
             Some(TwinPoints {
                 sites: set.points().to_vec(),

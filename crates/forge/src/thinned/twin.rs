@@ -5,7 +5,7 @@ use strew_core::{
     table::{Displacement, to_grid_units},
 };
 
-use crate::measure::Torus;
+use crate::measure::Sample;
 
 /// One period of a twin, to be thinned again and again.
 pub struct ThinnedTwin {
@@ -59,22 +59,22 @@ impl ThinnedTwin {
 
     /// The points that are left at a share, at unit density.
     #[must_use]
-    pub fn at(&self, share: f64) -> Torus {
+    pub fn at(&self, share: f64) -> Sample {
         self.set(share, |_| true)
     }
 
     /// The points of a kind that are left at a share, at unit density. Tables without a mix have points of kind 0
     /// only.
     #[must_use]
-    pub fn of_kind(&self, share: f64, kind: u8) -> Torus {
+    pub fn of_kind(&self, share: f64, kind: u8) -> Sample {
         self.set(share, |point| point.kind == kind)
     }
 
-    fn set(&self, share: f64, counts: impl Fn(&Candidate) -> bool) -> Torus {
+    fn set(&self, share: f64, counts: impl Fn(&Candidate) -> bool) -> Sample {
         let left = self.points.iter();
         let left = left.filter(|point| point.rank < share && counts(point));
         let points = left.map(|point| point.at);
-        Torus::new(self.period, points.collect())
+        Sample::torus(self.period, points.collect())
     }
 }
 

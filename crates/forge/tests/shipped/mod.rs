@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use strew_core::{PointSet, Region, Table};
-use strew_forge::{file_name, measure::Window, read_table};
+use strew_forge::{file_name, measure::Sample, read_table};
 
 /// A table of the repository.
 pub fn table(profile: &str, alpha: &str, radius: u32) -> Table {
@@ -18,12 +18,12 @@ pub fn table(profile: &str, alpha: &str, radius: u32) -> Table {
 }
 
 /// A square window of a set with mean spacing 1, away from the origin.
-pub fn window(set: &PointSet, corner: [f64; 2], side: f64) -> Window {
+pub fn window(set: &PointSet, corner: [f64; 2], side: f64) -> Sample {
     let region = Region::new(corner, corner.map(|v| v + side)).expect("ordered");
     let plan = set.within(region).expect("near");
     let moved = plan.iter().map(|member| {
         let [x, y] = member.at();
         [x - corner[0], y - corner[1]]
     });
-    Window::new(side, 1.0, moved.collect())
+    Sample::window(side, 1.0, moved.collect())
 }

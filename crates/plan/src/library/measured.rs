@@ -1,12 +1,10 @@
 //! Measuring points: figures, power and distances of a set that a program has.
 
 use serde_json::{Map, Value, json};
-use strew_encode::EncodeError;
 use strew_error::{Error, Fault, number};
 use strew_forge::{
-    Report, Resolution,
-    measure::{BANDS, Torus, Window},
-    picture,
+    Report, Resolution, figure,
+    measure::{BANDS, Sample},
 };
 
 /// The largest set that is measured: its spectrum takes some gigabytes at ν = 4.
@@ -60,13 +58,13 @@ pub fn measure(mut points: Vec<[f64; 2]>, of: &Measured) -> Result<Report, Error
         *point = [point[0] - min_x, point[1] - min_y];
     }
     let name = format!("{count} points");
-    Ok(if of.is_periodic {
-        Report::of_torus(name, false, &Torus::new(width, points), of.resolution)
+    let set = if of.is_periodic {
+        Sample::torus(width, points)
     } else {
         let density = of.density.unwrap_or(count as f64 / (width * height));
-        let set = Window::new(width, density, points);
-        Report::of_window(name, false, &set, of.resolution)
-    })
+        Sample::window(width, density, points)
+    };
+    Ok(Report::of(name, false, &set, of.resolution))
 }
 
 pub fn document(report: &Report) -> Value {
@@ -98,6 +96,6 @@ pub fn document(report: &Report) -> Value {
 }
 
 /// A report as a picture: points, spectrum and curves, as SVG.
-pub fn drawing(report: &Report, title: &str) -> Result<String, Error> {
-    Ok(picture(report, title, None).map_err(EncodeError::of)?)
+pub fn drawing(report: &Report, title: &str) -> String {
+    figure::report(report, title, None).to_svg()
 }
