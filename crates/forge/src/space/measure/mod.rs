@@ -4,7 +4,6 @@
 //! (√2/N)^⅓. Everything here has the same bits on every machine and with any number of threads.
 
 mod distance;
-mod fourier;
 mod local;
 mod points;
 mod power;

@@ -1,19 +1,16 @@
 //! Fourier sums over scattered points in space: a non-uniform FFT of type 1.
 //!
-//! Each point is spread onto a regular grid, twice as fine as the frequencies need, with the kernel exp(β(√(1 − z²) − 1))
-//! (Barnett, Magland, af Klinteberg 2019), the grid is transformed along each axis, and the transform of the kernel is
-//! divided out. In single precision the power errs by less than 10⁻⁶. The grid is never in memory as a whole: planes are
+//! Each point is spread onto a regular grid, twice as fine as the frequencies need, the grid is transformed along each
+//! axis, and the transform of the kernel is divided out. In single precision the power errs by less than 10⁻⁶. The grid is never in memory as a whole: planes are
 //! spread, transformed along x and y, and cut to the frequencies.
 
 use rayon::prelude::*;
 
-use super::fourier::{Fourier, Plane};
-use crate::numeric::exp;
+use crate::numeric::{Fourier, Kernel, Plane, size_from};
 
 /// The width of the kernel, in grid cells.
 const WIDTH: usize = 8;
-/// β, in the ratio to the width that Barnett et al. recommend for an upsampling of 2.
-const SHARPNESS: f64 = 2.30 * WIDTH as f64;
+type Spreading = Kernel<WIDTH>;
 
 /// The sums w·exp(−2πi k·x) over points, for all k with components up to some number. As k and −k have conjugate sums, kx
 /// is not negative.
@@ -28,11 +25,11 @@ impl Sums {
     /// The sums over points in [0, 1)³, up to `modes` along each axis.
     pub(super) fn new(points: &[[f64; 3]], weights: Option<&[f64]>, modes: usize) -> Self {
         let least = (2 * (2 * modes + 1)).max(2 * WIDTH);
-        let fourier = Fourier::new(Fourier::size_from(least));
+        let fourier = Fourier::new(size_from(least));
         let spread = Spread::new(points, weights, fourier.size());
         let (size, across) = (fourier.size(), modes + 1);
         let slot = |k: usize| (k + size - modes) % size;
-        let planes: Vec<Plane> = (0..size)
+        let planes: Vec<Plane<f32>> = (0..size)
             .into_par_iter()
             .map_init(Plane::default, |other, z| {
                 // Columns are along x, then along y.
@@ -57,9 +54,7 @@ impl Sums {
                 }
             })
             .collect();
-        let undo: Vec<f64> = (0..=modes)
-            .map(|k| 1.0 / kernel_transform(k, size))
-            .collect();
+        let undo = Spreading::undo(modes, size);
         let slabs: Vec<Vec<[f32; 2]>> = (0..=2 * modes)
             .into_par_iter()
             .map_init(Plane::default, |other, ky| {
@@ -121,7 +116,7 @@ impl<'a> Spread<'a> {
     fn new(points: &'a [[f64; 3]], weights: Option<&'a [f64]>, size: usize) -> Self {
         let mut by_plane = vec![Vec::new(); size];
         for (i, point) in (0..).zip(points) {
-            by_plane[first(point[2], size).rem_euclid(size as i64) as usize].push(i);
+            by_plane[Spreading::first(point[2], size).rem_euclid(size as i64) as usize].push(i);
         }
         Self {
             points,
@@ -132,7 +127,7 @@ impl<'a> Spread<'a> {
     }
 
     /// A plane of the grid, by x, then by y.
-    fn plane(&self, z: usize) -> Plane {
+    fn plane(&self, z: usize) -> Plane<f32> {
         let size = self.size;
         let mut plane = Plane::new(size * size);
         let wrap = |v: i64| v.rem_euclid(size as i64) as usize;
@@ -140,7 +135,8 @@ impl<'a> Spread<'a> {
             for &i in &self.by_plane[(z + size - cell) % size] {
                 let point = self.points[i as usize];
                 let weight = self.weights.map_or(1.0, |weights| weights[i as usize]);
-                let [x, y, z] = point.map(|v| kernel(v, size));
+                let [x, y, z] =
+                    point.map(|v| (Spreading::first(v, size), Spreading::values(v, size)));
                 let weight = weight * z.1[cell];
                 for (a, along_x) in x.1.iter().enumerate() {
                     let row = wrap(x.0 + a as i64) * size;
@@ -153,38 +149,6 @@ impl<'a> Spread<'a> {
         }
         plane
     }
-}
-
-/// The first grid cell under the kernel of a coordinate.
-fn first(coordinate: f64, size: usize) -> i64 {
-    (coordinate * size as f64 - WIDTH as f64 / 2.0).ceil() as i64
-}
-
-/// The first grid cell under the kernel of a coordinate, and the values of the kernel from there on.
-fn kernel(coordinate: f64, size: usize) -> (i64, [f64; WIDTH]) {
-    let at = coordinate * size as f64;
-    let half = WIDTH as f64 / 2.0;
-    let first = first(coordinate, size);
-    let mut values = [0.0; WIDTH];
-    for (cell, value) in values.iter_mut().enumerate() {
-        let z = (first as f64 + cell as f64 - at) / half;
-        *value = exp(SHARPNESS * ((1.0 - z * z).max(0.0).sqrt() - 1.0));
-    }
-    (first, values)
-}
-
-/// The transform of the kernel at k cycles per side of the torus, by the trapezoid rule in the angle arcsin z.
-fn kernel_transform(k: usize, size: usize) -> f64 {
-    const NODES: i32 = 256;
-    let step = std::f64::consts::PI / f64::from(NODES);
-    let half = WIDTH as f64 / 2.0;
-    let turn = 2.0 * std::f64::consts::PI * k as f64 * half / size as f64;
-    let node = |node: i32| {
-        let angle = f64::from(node) * step;
-        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-        exp(SHARPNESS * (cos - 1.0)) * libm::cos(turn * sin) * cos
-    };
-    half * step * (-NODES / 2 + 1..NODES / 2).map(node).sum::<f64>()
 }
 
 #[cfg(test)]
