@@ -72,7 +72,7 @@ impl Plan {
                     .into(),
             });
         }
-        if let Recipe::Radial(_) = profile.recipe {
+        if let Recipe::Radial { .. } = profile.recipe {
             // Curves are followed on unbounded patterns.
             domain.twins.clear();
         }
@@ -144,7 +144,7 @@ impl Plan {
     pub(crate) fn provenance(&self, job: &Job, steps: u32) -> Provenance {
         let (optimizer, mut parameters) = self.profile.recipe.describe();
         parameters.extend(self.target.iter().flat_map(to_parameters));
-        if let Recipe::Radial(_) = self.profile.recipe {
+        if let Recipe::Radial { .. } = self.profile.recipe {
             let alphas = self.domain.spread().len();
             parameters.push(("alphas".into(), alphas.to_string()));
         }

@@ -1,20 +1,20 @@
 //! The blue-noise profiles `blue`, `sharp`, `spaced` and `lloyd`.
 
-use super::{GaussianRecipe, LloydRecipe, Profile, Push, Recipe, SpacingRecipe};
+use super::{Profile, Push, Recipe};
 use crate::judge::{Bound, Figure};
 
 /// Gaussian blue noise of σ = 1: the least power at low frequencies.
 pub(super) const BLUE: Profile = Profile {
     name: "blue",
     summary: "Gaussian blue noise, sigma 1: least power at low frequencies",
-    recipe: Recipe::Gaussian(GaussianRecipe {
+    recipe: Recipe::Gaussian {
         sigma: 1.0,
         polish_sigma: 1.15,
         polish_share: 0.52,
         guard_reach: 0.72,
         guard_strength: 0.3,
         rate: 0.2,
-    }),
+    },
     jitter: 0.7,
     steps: 250,
     bounds: &[
@@ -30,14 +30,14 @@ pub(super) const BLUE: Profile = Profile {
 pub(super) const SHARP: Profile = Profile {
     name: "sharp",
     summary: "Gaussian blue noise, sigma 0.8: a steep edge, cells of nearly equal areas",
-    recipe: Recipe::Gaussian(GaussianRecipe {
+    recipe: Recipe::Gaussian {
         sigma: 0.8,
         polish_sigma: 1.0,
         polish_share: 0.16,
         guard_reach: 0.9,
         guard_strength: 0.3,
         rate: 0.1,
-    }),
+    },
     jitter: 0.7,
     steps: 640,
     bounds: &[
@@ -56,7 +56,7 @@ pub(super) const SHARP: Profile = Profile {
 pub(super) const SPACED: Profile = Profile {
     name: "spaced",
     summary: "large minimum distance, small holes",
-    recipe: Recipe::Spacing(SpacingRecipe {
+    recipe: Recipe::Spacing {
         sigma: 1.0,
         pushes: &[
             Push {
@@ -78,7 +78,7 @@ pub(super) const SPACED: Profile = Profile {
                 share: 0.465,
             },
         ],
-    }),
+    },
     jitter: 0.7,
     steps: 860,
     bounds: &[
@@ -95,7 +95,7 @@ pub(super) const SPACED: Profile = Profile {
 pub(super) const LLOYD: Profile = Profile {
     name: "lloyd",
     summary: "centroidal Voronoi relaxation of the pattern, at convergence",
-    recipe: Recipe::Lloyd(LloydRecipe { rate: 0.5 }),
+    recipe: Recipe::Lloyd { rate: 0.5 },
     jitter: 0.0,
     steps: 400,
     bounds: &[

@@ -25,10 +25,8 @@ impl Profile {
     #[must_use]
     pub fn target(&self) -> Option<Target> {
         match self.recipe {
-            Recipe::Radial(recipe) => Some(Target::fixed(recipe.curve)),
-            Recipe::Gaussian(_) | Recipe::Spacing(_) | Recipe::Lloyd(_) | Recipe::Undisplaced => {
-                None
-            }
+            Recipe::Radial { curve, .. } => Some(Target::fixed(curve)),
+            _ => None,
         }
     }
 }

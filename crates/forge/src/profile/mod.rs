@@ -2,11 +2,11 @@
 //!
 //! A [`Profile`] says how a table is optimized and which bounds its figures must satisfy before it
 //! is accepted. `blue.rs`, `curves.rs` and `pattern.rs` hold the profiles as constants, `known.rs`
-//! lists them and finds them by name. Each has a [`Recipe`], one of the optimizers in `recipes/`.
+//! lists them and finds them by name. Each has a [`Recipe`], the parameters of an optimizer.
 //! An [`Aim`] is read back from a finished table: the statement, bounds and curve it was made for.
 //!
 //! To add a profile, add a constant in the file of its family and its name to [`Profile::ALL`]. For
-//! a new kind of optimizer, also add a file in `recipes/` and a variant of [`Recipe`].
+//! a new kind of optimizer, also add a variant of [`Recipe`].
 
 mod aim;
 mod blue;
@@ -15,10 +15,8 @@ mod definition;
 mod known;
 mod pattern;
 mod recipe;
-mod recipes;
 
 pub use aim::Aim;
 pub use definition::Profile;
-pub use recipe::Recipe;
-pub(crate) use recipes::Phase;
-pub use recipes::{GaussianRecipe, LloydRecipe, Push, RadialRecipe, SpacingRecipe};
+pub(crate) use recipe::Phase;
+pub use recipe::{Push, Recipe};

@@ -1,32 +1,153 @@
-//! The recipe of a profile: one of the ways to optimize a table.
+//! The recipe of a profile: the parameters of an optimizer, and the phases in which it runs.
 
-use super::recipes::{GaussianRecipe, LloydRecipe, Phase, RadialRecipe, SpacingRecipe};
-use crate::{curve::Target, domain::Domain};
+use std::slice;
 
-/// The way in which the tables of a profile are optimized.
+use crate::{
+    curve::Target,
+    domain::Domain,
+    energy::{Gaussian, Guard, Lloyd},
+    optimize::{Descent, Objective, Pairs, Radial, RadialWeights, Sets},
+};
+
+/// The way in which the tables of a profile are optimized. Lengths are in mean spacings, rates in mean spacings moved per
+/// unit of gradient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Recipe {
-    /// Gaussian repulsion with a guard against close pairs, in two phases.
-    Gaussian(GaussianRecipe),
-    /// Pairs in conflict are pushed apart, harder from stage to stage.
-    Spacing(SpacingRecipe),
-    /// Points move to the centroids of their Voronoi cells.
-    Lloyd(LloydRecipe),
-    /// A radial power curve is followed.
-    Radial(RadialRecipe),
+    /// Gaussian repulsion with a [`Guard`] against close pairs, in two phases.
+    Gaussian {
+        /// The width of the Gaussian in the first phase.
+        sigma: f64,
+        /// The width of the Gaussian in the second phase. A wider Gaussian goes on lowering the power
+        /// at low frequencies and leaves the rest as it is. The first phase alone, run until the power
+        /// there is as low, also sharpens the set and raises its spectral peak.
+        polish_sigma: f64,
+        /// The share of the steps that the second phase takes.
+        polish_share: f64,
+        /// The range of the guard. The smallest distance ends a little below it.
+        guard_reach: f64,
+        /// The height of the guard at distance 0; see [`Guard::new`].
+        guard_strength: f64,
+        /// The rate of both phases.
+        rate: f64,
+    },
+    /// Push and pull in table space, after Ahmed, Guo, Yan, Franceschi, Zhang, Deussen (2017).
+    ///
+    /// A [`Guard`] that hardens from stage to stage pushes pairs in conflict apart. A Gaussian assigns
+    /// every point its share of the plane, which also keeps holes closed. Both are pair energies, so
+    /// their frequencies are known exactly and no triangulation is needed.
+    Spacing {
+        /// The width of the Gaussian.
+        sigma: f64,
+        /// The stages of the push, in order.
+        pushes: &'static [Push],
+    },
+    /// Lloyd's centroidal Voronoi relaxation, that AA patterns were published with, on all twins at once. A block moves by
+    /// the mean of its instances.
+    Lloyd {
+        /// The rate: ½ is a step to the centroid.
+        rate: f64,
+    },
+    /// The descent on the error of a radial power curve, on unbounded patterns.
+    Radial {
+        /// The points (ν, power) of the curve; see [`Target`].
+        curve: &'static [[f64; 2]],
+        /// The weights in the cost of its error.
+        weights: RadialWeights,
+        /// The share of the steps that Gaussian repulsion (σ = 1) takes first. It quickly removes the
+        /// power at low frequencies, which suits curves that are 0 nearly as far as it reaches.
+        warm_share: f64,
+        /// The rate at first.
+        rate: f64,
+    },
     /// No optimization: every vector is zero.
     Undisplaced,
 }
 
+/// A stage of the push. The upper limit for a smallest distance is that of the hexagonal lattice, 1.0746.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push {
+    /// Pairs closer than this are in conflict. Above 1.02 sets crystallize: the spectral peak grows
+    /// from 6 to 9 and more.
+    pub reach: f64,
+    /// The height of the guard at distance 0. The greater it is, the closer to `reach` the smallest
+    /// distance ends.
+    pub strength: f64,
+    /// The rate. A harder push needs a lower one.
+    pub rate: f64,
+    /// The share of the steps that the stage takes; the last stage takes all that are left.
+    pub share: f64,
+}
+
+/// A descent with one objective.
+pub(crate) struct Phase {
+    pub(crate) objective: Box<dyn Objective>,
+    pub(crate) descent: Descent,
+}
+
+/// The rate of the repulsion before a curve is followed.
+const WARM_RATE: f64 = 0.2;
+
 impl Recipe {
-    /// The optimizer's name and its parameters (name, value), as a table's history records them.
+    /// The optimizer's name and its parameters (name, value) but the curve, as a table's history records them.
     #[must_use]
     pub fn describe(&self) -> (&'static str, Vec<(String, String)>) {
-        match self {
-            Self::Gaussian(recipe) => ("gaussian", as_text(recipe.parameters())),
-            Self::Spacing(recipe) => ("spacing", as_text(recipe.parameters())),
-            Self::Lloyd(recipe) => ("lloyd", as_text(recipe.parameters())),
-            Self::Radial(recipe) => ("radial", as_text(recipe.parameters())),
+        let numbers = |all: &[(&str, f64)]| {
+            let text = |(name, value): &(&str, f64)| ((*name).to_owned(), value.to_string());
+            all.iter().map(text).collect()
+        };
+        match *self {
+            Self::Gaussian {
+                sigma,
+                polish_sigma,
+                polish_share,
+                guard_reach,
+                guard_strength,
+                rate,
+            } => {
+                let all = [
+                    ("sigma", sigma),
+                    ("polish_sigma", polish_sigma),
+                    ("polish_share", polish_share),
+                    ("guard_reach", guard_reach),
+                    ("guard_strength", guard_strength),
+                    ("rate", rate),
+                ];
+                ("gaussian", numbers(&all))
+            }
+            Self::Spacing { sigma, pushes } => {
+                let list = |name: &str, pick: fn(&Push) -> f64| {
+                    let each: Vec<String> = pushes.iter().map(|p| pick(p).to_string()).collect();
+                    (name.to_owned(), each.join(" "))
+                };
+                let all = vec![
+                    ("sigma".to_owned(), sigma.to_string()),
+                    list("reach", |p| p.reach),
+                    list("strength", |p| p.strength),
+                    list("rate", |p| p.rate),
+                    list("share", |p| p.share),
+                ];
+                ("spacing", all)
+            }
+            Self::Lloyd { rate } => ("lloyd", numbers(&[("rate", rate)])),
+            Self::Radial {
+                weights,
+                warm_share,
+                rate,
+                ..
+            } => {
+                let all = [
+                    ("reach", weights.reach),
+                    ("nu_max", weights.nu_max),
+                    ("fit", weights.fit),
+                    ("quiet", weights.quiet),
+                    ("edge", weights.edge),
+                    ("leash", weights.leash),
+                    ("rate", rate),
+                    ("warm_share", warm_share),
+                ];
+                let has_warm = usize::from(warm_share > 0.0);
+                ("radial", numbers(&all[..7 + has_warm]))
+            }
             Self::Undisplaced => ("none", Vec::new()),
         }
     }
@@ -39,19 +160,72 @@ impl Recipe {
         target: Option<&Target>,
         steps: u32,
     ) -> Vec<Phase> {
-        match self {
-            Self::Gaussian(recipe) => recipe.phases(domain, steps),
-            Self::Spacing(recipe) => recipe.phases(domain, steps),
-            Self::Lloyd(recipe) => recipe.phases(domain, steps),
-            Self::Radial(recipe) => target
-                .map(|target| recipe.phases(domain, target, steps))
-                .unwrap_or_default(),
+        let share = |share: f64| (f64::from(steps) * share) as u32;
+        let phase = |objective: Box<dyn Objective>, steps, rate| Phase {
+            objective,
+            descent: Descent { steps, rate },
+        };
+        let repelled = |sigma, reach, strength, steps, rate| {
+            let energy = (Gaussian::new(sigma), Guard::new(reach, strength));
+            let pairs = Pairs::new(energy, &domain.twin_maps(), domain.scale());
+            phase(Box::new(pairs), steps, rate)
+        };
+        match *self {
+            Self::Gaussian {
+                sigma,
+                polish_sigma,
+                polish_share,
+                guard_reach: reach,
+                guard_strength: strength,
+                rate,
+            } => {
+                let polish = share(polish_share);
+                vec![
+                    repelled(sigma, reach, strength, steps - polish, rate),
+                    repelled(polish_sigma, reach, strength, polish, rate),
+                ]
+            }
+            Self::Spacing { sigma, pushes } => {
+                let mut left = steps;
+                let stages = pushes.iter().enumerate().map(|(at, push)| {
+                    let is_last = at + 1 == pushes.len();
+                    let steps = if is_last {
+                        left
+                    } else {
+                        share(push.share).min(left)
+                    };
+                    left -= steps;
+                    repelled(sigma, push.reach, push.strength, steps, push.rate)
+                });
+                stages.collect()
+            }
+            Self::Lloyd { rate } => {
+                let sets = Sets::new(Lloyd, &domain.map, &domain.twins);
+                vec![phase(Box::new(sets), steps, rate)]
+            }
+            // The repulsion uses the pattern of α alone. The error is averaged over several α of the same map, so that the
+            // table follows its curve on every twin.
+            Self::Radial {
+                weights,
+                warm_share,
+                rate,
+                ..
+            } => {
+                let Some(target) = target else {
+                    return Vec::new();
+                };
+                let warm = share(warm_share);
+                let map = slice::from_ref(&domain.map);
+                let repulsion = Pairs::new(Gaussian::new(1.0), map, domain.scale());
+                let error = Radial::new(&domain.spread(), target, &weights);
+                let phases = [
+                    phase(Box::new(repulsion), warm, WARM_RATE),
+                    phase(Box::new(error), steps - warm, rate),
+                ];
+                let some = phases.into_iter().filter(|phase| phase.descent.steps > 0);
+                some.collect()
+            }
             Self::Undisplaced => Vec::new(),
         }
     }
-}
-
-fn as_text<V: ToString>(parameters: Vec<(&str, V)>) -> Vec<(String, String)> {
-    let text = |(name, value): (&str, V)| (name.to_owned(), value.to_string());
-    parameters.into_iter().map(text).collect()
 }
