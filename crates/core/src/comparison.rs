@@ -16,7 +16,7 @@
 //! Windows of 300 × 300 mean spacings. *Low power* is the mean power below ν = 0.5 (white noise: 1), δ_min
 //! and δ_avg are the least and the mean distance to the nearest neighbor in units of the hexagonal lattice,
 //! the anisotropy is 0 dB for a set without preferred directions, and the peak is that of the tallest
-//! single mode (`cargo run --release -p strew-forge --example comparison`):
+//! single mode (`cargo run --release -p strew-forge --example study -- comparison`):
 //!
 //! | | low power | δ_min | δ_avg | anisotropy, dB | peak |
 //! |---|---|---|---|---|---|

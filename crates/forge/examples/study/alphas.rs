@@ -77,7 +77,9 @@ fn worst(table: &Table) -> [f64; 3] {
 }
 
 fn markdown(rows: &[Row]) -> String {
-    let mut text = figures::head("α | intervals | low power | peak power | δ_min | accepted");
+    let mut text = String::from(
+        "| α | intervals | low power | peak power | δ_min | accepted |\n|---|---|---|---|---|---|\n",
+    );
     for row in rows {
         let accepted = match row.worst {
             Some([low, peak, least]) if low <= LOW_POWER && peak <= 3.0 && least >= 0.6 => "yes",
@@ -85,10 +87,10 @@ fn markdown(rows: &[Row]) -> String {
             None => "no table",
         };
         let [low, peak, least] = row.worst.unwrap_or([f64::NAN; 3]);
-        let cells = figures::row(row.alpha, &[row.intervals as f64, low, peak, least]);
-        text += &format!("\n{cells} {accepted} |");
+        let cells = figures::cells(row.alpha, &[row.intervals as f64, low, peak, least]);
+        text += &format!("{cells} {accepted} |\n");
     }
-    text + "\n"
+    text
 }
 
 /// Low power (logarithmic) above, intervals below, over α.

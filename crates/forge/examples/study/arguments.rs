@@ -7,6 +7,11 @@ use strew_forge::read_table;
 
 use crate::Outcome;
 
+/// A value that is read from text.
+pub trait Readable: FromStr<Err: Error + 'static> {}
+
+impl<T: FromStr<Err: Error + 'static>> Readable for T {}
+
 pub struct Arguments(Vec<String>);
 
 impl Arguments {
@@ -28,20 +33,12 @@ impl Arguments {
     }
 
     /// Takes a flag and its value, which has a default.
-    pub fn value<T: FromStr<Err: Error + 'static>>(
-        &mut self,
-        flag: &str,
-        default: &str,
-    ) -> Outcome<T> {
+    pub fn value<T: Readable>(&mut self, flag: &str, default: &str) -> Outcome<T> {
         Ok(self.after(flag).as_deref().unwrap_or(default).parse()?)
     }
 
     /// Takes a flag and its list, which has a default.
-    pub fn list<T: FromStr<Err: Error + 'static>>(
-        &mut self,
-        flag: &str,
-        default: &str,
-    ) -> Outcome<Vec<T>> {
+    pub fn list<T: Readable>(&mut self, flag: &str, default: &str) -> Outcome<Vec<T>> {
         let text = self.after(flag);
         let parts = text.as_deref().unwrap_or(default).split(',');
         Ok(parts.map(str::parse).collect::<Result<_, _>>()?)
@@ -52,7 +49,7 @@ impl Arguments {
         match self.0.first() {
             Some(word) if word.starts_with("--") => Err(format!("unknown flag {word}").into()),
             Some(_) => Ok(self.0.remove(0)),
-            None => Err(format!("{name} is missing").into()),
+            None => Err(format!("missing: {name}").into()),
         }
     }
 

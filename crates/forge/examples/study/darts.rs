@@ -8,7 +8,7 @@
 use std::time::Instant;
 
 use strew_core::table::Shares;
-use strew_forge::{Report, Resolution, measure::Torus, numeric::SplitMix};
+use strew_forge::{measure::Torus, numeric::SplitMix};
 
 use crate::{Outcome, arguments::Arguments, figures, ground::HEXAGONAL};
 
@@ -23,7 +23,7 @@ pub fn study(mut arguments: Arguments) -> Outcome {
     if all.is_empty() {
         all = ["1:1", "1:3", "1:1:2", "1:3:10"].map(String::from).to_vec();
     }
-    figures::print_head(&["µs a point", "darts a point"]);
+    figures::head_of_sets(" | µs a point | darts a point");
     for shares in all {
         let parsed: Shares = shares.parse()?;
         let mut parts = parsed.parts().to_vec();
@@ -44,8 +44,7 @@ pub fn study(mut arguments: Arguments) -> Outcome {
             let own = darts.cells.iter().flatten();
             let own = own.filter(|(_, own)| kind.is_none_or(|kind| *own == kind));
             let set = Torus::new(1.0, own.map(|(at, _)| *at).collect());
-            let report = Report::of_torus(subject, false, &set, Resolution::default());
-            figures::print(&report.figures, more);
+            figures::torus(subject, &set, more);
         };
         for kind in 0..parts.len() {
             print(format!("{shares}, kind {kind}"), Some(kind), &[]);
@@ -108,9 +107,8 @@ impl Darts {
         let largest = self.distances[kind].iter().copied().fold(0.0, f64::max);
         let reach = (largest * self.side as f64).ceil() as isize;
         let [columns, rows] = self.cell(at).map(|middle| {
-            let around = move |by: isize| middle as isize + by;
-            let wrapped = |cell: isize| cell.rem_euclid(self.side as isize) as usize;
-            (-reach..=reach).map(move |by| wrapped(around(by)))
+            let (middle, side) = (middle as isize, self.side as isize);
+            (-reach..=reach).map(move |by| (middle + by).rem_euclid(side) as usize)
         });
         let mut found = vec![];
         for cell in rows.flat_map(|row| columns.clone().map(move |c| row * self.side + c)) {

@@ -3,26 +3,25 @@
 use std::fmt::Display;
 
 use strew_core::table::Figures;
+use strew_forge::{Report, Resolution, measure::Torus};
 
 /// The figures of measured sets, in columns. `strew measure` has the same names.
-const NAMES: [&str; 7] = [
-    "low_power",
-    "peak_power",
-    "peak_nu",
-    "tallest_peak",
-    "anisotropy_db",
-    "delta_min",
-    "delta_avg",
-];
+const NAMES: &str =
+    "low_power | peak_power | peak_nu | tallest_peak | anisotropy_db | delta_min | delta_avg";
 
-/// The head of a table: columns with bars between.
-pub fn head(columns: &str) -> String {
+/// Prints the head of a table: columns with bars between.
+pub fn head(columns: &str) {
     let rules = "---|".repeat(columns.split('|').count());
-    format!("| {columns} |\n|{rules}")
+    println!("\n| {columns} |\n|{rules}");
 }
 
-/// A row: the subject, which may be several columns, and numbers.
-pub fn row(subject: impl Display, numbers: &[f64]) -> String {
+/// Prints a row: the subject, which may be several columns, and numbers.
+pub fn row(subject: impl Display, numbers: &[f64]) {
+    println!("{}", cells(subject, numbers));
+}
+
+/// A row as text.
+pub fn cells(subject: impl Display, numbers: &[f64]) -> String {
     let cells = numbers.iter().map(|&v| match v.abs() {
         _ if v.is_nan() => " |".into(),
         _ if v.fract() == 0.0 => format!(" {v:.0} |"),
@@ -34,15 +33,25 @@ pub fn row(subject: impl Display, numbers: &[f64]) -> String {
 }
 
 /// Prints the head of a table of measured sets, with more columns.
-pub fn print_head(more: &[&str]) {
-    let columns = ["set", "points"].iter().chain(&NAMES).chain(more);
-    let columns: Vec<&str> = columns.copied().collect();
-    println!("{}", head(&columns.join(" | ")));
+pub fn head_of_sets(more: &str) {
+    head(&format!("set | points | {NAMES}{more}"));
 }
 
 /// Prints the row of a measured set, with more numbers.
-pub fn print(figures: &Figures, more: &[f64]) {
-    let known = NAMES.map(|name| figures.value(name).unwrap_or(f64::NAN));
-    let numbers = [&[figures.points as f64], &known[..], more].concat();
-    println!("{}", row(&figures.subject, &numbers));
+pub fn set(figures: &Figures, more: &[f64]) {
+    let known = NAMES.split(" | ").map(|name| value(figures, name));
+    let numbers = [figures.points as f64].into_iter().chain(known);
+    let numbers = numbers.chain(more.iter().copied());
+    row(&figures.subject, &numbers.collect::<Vec<_>>());
+}
+
+/// A figure; NaN if it was not measured.
+pub fn value(figures: &Figures, name: &str) -> f64 {
+    figures.value(name).unwrap_or(f64::NAN)
+}
+
+/// Measures a periodic set and prints its row.
+pub fn torus(subject: String, set: &Torus, more: &[f64]) {
+    let report = Report::of_torus(subject, false, set, Resolution::default());
+    self::set(&report.figures, more);
 }

@@ -1,7 +1,15 @@
-//! Ground on which the density of points varies, and how near they lie in units of the local density.
+//! Ground on which the density of points varies, its points, and how near they lie in units of the local density.
 
 use rayon::prelude::*;
-use strew_core::Field;
+use strew_core::{
+    Field, Point, PointSet, Region,
+    field::{FieldSpec, Noise},
+};
+
+use crate::Outcome;
+
+/// The corner of squares that are drawn, away from the origin.
+pub const CORNER: [f64; 2] = [12_345.0, -6_789.0];
 
 /// The neighbor distance of the hexagonal lattice, in mean spacings.
 pub const HEXAGONAL: f64 = 1.074_569_931_823_542;
@@ -23,6 +31,16 @@ pub struct Grid {
     pub densities: Vec<f64>,
 }
 
+impl Grid {
+    /// The middles of the cells, from the corner of the grid.
+    pub fn places(&self) -> impl Iterator<Item = [f64; 2]> {
+        (0..self.densities.len()).map(|number| {
+            let cell = [number % self.columns, number / self.columns];
+            [0, 1].map(|i| (cell[i] as f64 + 0.5) * self.cell[i])
+        })
+    }
+}
+
 impl Ground<'_> {
     pub fn density(&self, [x, y]: [f64; 2]) -> f64 {
         let at = [self.corner[0] + x, self.corner[1] + y];
@@ -31,21 +49,16 @@ impl Ground<'_> {
 
     /// A grid of some columns and rows over a box.
     pub fn grid(&self, corner: [f64; 2], size: [f64; 2], numbers: [usize; 2]) -> Grid {
-        let [columns, rows] = numbers;
-        let cell = [0, 1].map(|i| size[i] / numbers[i] as f64);
-        let place = |number: usize| {
-            let middle = [number % columns, number / columns].map(|v| v as f64 + 0.5);
-            [0, 1].map(|i| self.corner[i] + corner[i] + middle[i] * cell[i])
+        let mut grid = Grid {
+            columns: numbers[0],
+            cell: [0, 1].map(|i| size[i] / numbers[i] as f64),
+            densities: vec![0.0; numbers[0] * numbers[1]],
         };
-        let places: Vec<[f64; 2]> = (0..columns * rows).map(place).collect();
-        let mut densities = vec![0.0; places.len()];
-        self.field.shares(&places, &mut densities);
-        densities.iter_mut().for_each(|v| *v *= self.unit);
-        Grid {
-            columns,
-            cell,
-            densities,
-        }
+        let place = |p: [f64; 2]| [0, 1].map(|i| self.corner[i] + corner[i] + p[i]);
+        let places: Vec<[f64; 2]> = grid.places().map(place).collect();
+        self.field.shares(&places, &mut grid.densities);
+        grid.densities.iter_mut().for_each(|v| *v *= self.unit);
+        grid
     }
 }
 
@@ -95,4 +108,30 @@ impl Near {
             plain: plain.into_iter().fold(f64::INFINITY, f64::min),
         }
     }
+}
+
+/// The points of a square, from its corner.
+pub fn square(set: &PointSet, corner: [f64; 2], side: f64) -> Outcome<Vec<Point>> {
+    let region = Region::new(corner, corner.map(|v| v + side))?;
+    let mut points = set.within(region)?.to_vec();
+    for point in &mut points {
+        (point.x, point.y) = (point.x - corner[0], point.y - corner[1]);
+    }
+    Ok(points)
+}
+
+/// Where points are.
+pub fn places(points: &[Point]) -> Vec<[f64; 2]> {
+    points.iter().map(Point::at).collect()
+}
+
+/// Natural noise from 0 to 1.
+pub fn noise(seed: u64, wavelength: f64, octaves: u32) -> Outcome<FieldSpec> {
+    let range = [0.0, 1.0];
+    Ok(FieldSpec::noise(Noise {
+        seed,
+        wavelength,
+        octaves,
+        range,
+    })?)
 }

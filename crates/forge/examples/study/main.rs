@@ -6,23 +6,18 @@
 mod alphas;
 mod arguments;
 mod cases;
-mod comparison;
 mod darts;
 mod figures;
 mod ground;
 mod kinds;
 mod local;
 mod masks;
+mod measured;
 mod paint;
 mod pictures;
-mod seeds;
-mod sets;
 mod settled;
 mod stipple;
-mod stripes;
-mod thinned;
 mod tones;
-mod varying;
 
 use std::{env, error::Error};
 
@@ -30,38 +25,38 @@ use arguments::Arguments;
 
 /// What a study returns.
 type Outcome<T = ()> = Result<T, Box<dyn Error>>;
-type Study = fn(Arguments) -> Outcome;
 
-/// The subcommands, with their arguments.
-const STUDIES: [(&str, Study, &str); 12] = [
-    ("alphas", alphas::scan, "FOLDER [ALPHA…]"),
-    ("comparison", comparison::study, ""),
-    ("figures", alphas::figures, "ALPHA FOLDER"),
-    ("kinds", kinds::study, kinds::USAGE),
-    ("masks", masks::study, "TABLE [PICTURE.png]"),
-    (
-        "periodic",
-        seeds::periodic,
-        "TABLE [--points 5000] [--seeds 4]",
-    ),
-    ("seeds", seeds::unbounded, seeds::USAGE),
-    ("settled", settled::study, settled::USAGE),
-    ("stipple", stipple::study, stipple::USAGE),
-    ("thinned", thinned::study, thinned::USAGE),
-    ("varying", varying::study, "TABLE"),
-    ("wei", darts::study, "[--points 7000] [SHARES…]"),
-];
+const USAGE: &str = "\
+alphas FOLDER [ALPHA…]
+comparison
+figures ALPHA FOLDER
+kinds TABLE SHARES… [--joint] [--time] [--draw OUT.png [--side 26] [--pixels 12]]
+masks TABLE [PICTURE.png]
+periodic TABLE [--points 5000] [--seeds 4]
+seeds TABLE [--warp 1] [--settle 0] [--seeds 4] [--side 362]
+settled TABLE [--sets NAME | --share SHARE] [--steps 0,1,2,3,4] [--seeds 11,29,58] [--points 50000]
+    [--at 7300000,-5100000] [--mix SHARES] [--draw forest|shares|NAME OUT.png]
+stipple [--steps 0,2,3,4] [--points 5000] [--seeds 1,2,3,4,5] [--draw FOLDER]
+thinned TABLE [--ranks] [--twin 683/418] [--per 1] [--octaves 6] [--phase 0] [--nu 2.5] [--quiet]
+varying TABLE
+wei [--points 7000] [SHARES…]";
 
 fn main() -> Outcome {
     let mut arguments = Arguments::new(env::args().skip(1));
-    let name = arguments.next("SUBCOMMAND").unwrap_or_default();
-    match STUDIES.iter().find(|(known, ..)| *known == name) {
-        Some((_, study, _)) => study(arguments),
-        None => {
-            for (name, _, usage) in STUDIES {
-                println!("{name} {usage}");
-            }
-            Err("which study?".into())
-        }
-    }
+    let study = match arguments.next(USAGE)?.as_str() {
+        "alphas" => alphas::scan,
+        "comparison" => measured::comparison,
+        "figures" => alphas::figures,
+        "kinds" => kinds::fixed,
+        "masks" => masks::study,
+        "periodic" => measured::periodic,
+        "seeds" => measured::seeds,
+        "settled" => settled::study,
+        "stipple" => stipple::study,
+        "thinned" => measured::thinned,
+        "varying" => kinds::varying,
+        "wei" => darts::study,
+        other => return Err(format!("no study {other}; there are\n{USAGE}").into()),
+    };
+    study(arguments)
 }

@@ -24,10 +24,7 @@ const LEVELS: [u8; 10] = [1, 4, 8, 16, 24, 32, 40, 48, 64, 128];
 pub fn study(mut arguments: Arguments) -> Outcome {
     let table = arguments.table()?;
     let columns = LEVELS.map(|level| format!("{level}/256: low power | peak"));
-    println!(
-        "{}",
-        figures::head(&format!("mask | {}", columns.join(" | ")))
-    );
+    figures::head(&format!("mask | {}", columns.join(" | ")));
     let mut times = vec![];
     for size in [64, 128, 256] {
         let all = |make: &dyn Fn(u64) -> Outcome<Mask>| (0..SEEDS).map(make).collect();
@@ -41,8 +38,8 @@ pub fn study(mut arguments: Arguments) -> Outcome {
         print("white", size, all(&|seed| white(size, seed))?);
         print("bayer", size, vec![bayer(size)?]);
     }
-    println!("\n{}", figures::head("seconds for 64 | 128 | 256"));
-    println!("{}", figures::row(format!("{:.3}", times[0]), &times[1..]));
+    figures::head("pixels | 64 | 128 | 256");
+    figures::row("seconds", &times);
     for path in arguments.rest()? {
         let masks = [white(128, 0)?, bayer(128)?, Mask::new(&table, 128, 0)?];
         paint::write(Path::new(&path), &masks.map(gradient), [1, 12], 1, None)?;
@@ -58,7 +55,7 @@ fn print(name: &str, size: u32, masks: Vec<Mask>) {
         [worst(|s| s.low_power), worst(|s| s.peak)]
     };
     let numbers: Vec<f64> = LEVELS.iter().flat_map(worst).collect();
-    println!("{}", figures::row(format!("{name} {size}"), &numbers));
+    figures::row(format!("{name} {size}"), &numbers);
 }
 
 /// A gradient from black to white, dithered with a mask.

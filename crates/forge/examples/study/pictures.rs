@@ -4,13 +4,13 @@ use std::{fs::File, io::BufReader, path::Path};
 
 use strew_core::{
     Field, PointSet, Raster, Region,
-    field::{Edges, FieldSpec, Noise, Pixels},
+    field::{Edges, FieldSpec, Pixels},
 };
 use strew_raster::{Image, Limits};
 
 use crate::{
     Outcome,
-    ground::{Grid, Ground},
+    ground::{Grid, Ground, noise, places},
 };
 
 /// Cells of the grid for each point. Weighted Voronoi stippling needs many, so that cells of points have round edges.
@@ -54,7 +54,7 @@ impl Picture {
         let set = PointSet::blue().seed(seed).in_field(self.field.clone());
         let region = Region::new([0.0, 0.0], self.size)?;
         let plan = set.settle(steps)?.exactly(count as u128, region)?;
-        Ok(crate::sets::places(&plan.to_vec()))
+        Ok(places(&plan.to_vec()))
     }
 
     /// The picture as a density with an integral of `count` points.
@@ -106,12 +106,7 @@ fn ball() -> Outcome<Picture> {
 
 /// Natural land from above, with light from the upper left, and dark water.
 fn land() -> Outcome<Picture> {
-    let height = FieldSpec::noise(Noise {
-        seed: 9,
-        wavelength: 260.0,
-        octaves: 6,
-        range: [0.0, 1.0],
-    })?;
+    let height = noise(9, 260.0, 6)?;
     Picture::drawn("land", [600, 480], |[x, y]| {
         if height.share([x, y]) < 0.4 {
             return 0.85;

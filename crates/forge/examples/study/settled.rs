@@ -18,29 +18,21 @@ use std::path::Path;
 
 use strew_core::{
     Point, PointSet,
-    field::{FieldSpec, Marks, Noise},
+    field::{FieldSpec, Marks},
 };
-use strew_forge::{
-    MixJob,
-    measure::{Spectrum, Window},
-};
+use strew_forge::measure::{Spectrum, Window};
 
 use crate::{
     Outcome,
     arguments::Arguments,
-    cases::{Case, Kind},
+    cases::{Case, Kind, Profile},
     figures,
-    ground::{Ground, Near},
+    ground::{CORNER, Ground, Near, noise, places, square},
     kinds::made,
     local::{Octave, Windows, boxes, count},
     paint::{self, Panel},
-    sets::{CORNER, places, square},
-    stripes::Profile,
 };
 
-pub const USAGE: &str = "TABLE [--sets NAME] [--steps 0,1,2,3,4] [--seeds 11,29,58] [--points 50000] \
-                         [--at 7300000,-5100000] [--mix SHARES] [--share SHARE] \
-                         [--draw forest|shares|NAME OUT.png]";
 /// The width of a ring.
 const RING: f64 = 0.02;
 
@@ -60,7 +52,7 @@ pub fn study(mut arguments: Arguments) -> Outcome {
     let [shares, drawn] = ["--mix", "--draw"].map(|flag| arguments.after(flag));
     let mut table = arguments.table()?;
     if let Some(shares) = shares {
-        table = made(&table, &MixJob::labels(shares.parse()?))?.table;
+        table = made(&table, &shares.parse()?, false)?.table;
     }
     let all = PointSet::new(table);
     if let Some(what) = drawn {
@@ -68,12 +60,8 @@ pub fn study(mut arguments: Arguments) -> Outcome {
         let out = arguments.next("OUT.png")?;
         return paint::write(Path::new(&out), &panels, [panels.len(), 12], 4, None);
     }
-    println!(
-        "{}",
-        figures::head(
-            "set | steps | low | median | δ_min | of 1 % | mean δ | near | of D | var | bias | ± | whole | tall"
-        )
-    );
+    let columns = "set | steps | low | median | δ_min | of 1 % | mean δ | near | of D | var";
+    figures::head(&format!("{columns} | bias | ± | whole | tall"));
     for case in cases.iter().filter(|case| case.name.starts_with(&wanted)) {
         let mut rows: Vec<Row> = steps.iter().map(|_| Row::default()).collect();
         for &seed in &seeds {
@@ -104,11 +92,7 @@ fn measure(
         unit,
     };
     let ground = of_part(1.0);
-    let (for_boxes, for_windows) = if case.has_edges() {
-        (64, 768)
-    } else {
-        (16, 96)
-    };
+    let [for_boxes, for_windows] = case.looks();
     let boxes = boxes(&ground, for_boxes);
     let parts = all.table().mix().map_or(Vec::new(), |mix| {
         let shares = mix.shares();
@@ -124,10 +108,8 @@ fn measure(
             let is_own = |p: &&Point| set.kind_of(p.id) == Some(kind as u8);
             members.iter().filter(is_own).map(Point::at).collect()
         };
-        let kinds = parts
-            .iter()
-            .enumerate()
-            .map(|(kind, part)| (*part, of_kind(kind)));
+        let kinds = parts.iter().enumerate();
+        let kinds = kinds.map(|(kind, part)| (*part, of_kind(kind)));
         row.low.resize(1 + parts.len(), Vec::new());
         for (i, (part, own)) in [(1.0, points.clone())].into_iter().chain(kinds).enumerate() {
             if windows.len() == i {
@@ -192,26 +174,18 @@ impl Row {
             average(self.whole.iter().copied())[0],
             average(self.tall.iter().copied())[0],
         ];
-        println!("{}", figures::row(name, &numbers));
+        figures::row(name, &numbers);
         for (kind, low) in self.low[1..].iter().enumerate() {
-            let subject = format!("{name}, kind {kind}");
-            println!(
-                "{}",
-                figures::row(subject, &average(low.iter().copied())[..1])
-            );
+            let [mean, _] = average(low.iter().copied());
+            figures::row(format!("{name}, kind {kind}"), &[mean]);
         }
         let octaves = (0..10).flat_map(|octave| {
             let each = self.counts.iter().map(|octaves| octaves[octave]);
-            average(
-                each.filter(|octave| octave.boxes >= 16.0)
-                    .map(|octave| bias(&[octave])),
-            )
+            let each = each.filter(|octave| octave.boxes >= 16.0);
+            average(each.map(|octave| bias(&[octave])))
         });
         let octaves: Vec<f64> = octaves.filter(|v| !v.is_nan()).collect();
-        println!(
-            "{}",
-            figures::row(format!("{name}, bias by octave"), &octaves)
-        );
+        figures::row(format!("{name}, bias by octave"), &octaves);
         self.profile.print(name);
     }
 }
@@ -241,8 +215,8 @@ fn tallest(spectrum: &Spectrum, side: f64) -> f64 {
         }
     }
     let over = rings.iter().filter(|ring| ring.0 > 0.0);
-    over.map(|(count, sum, most)| most * count / sum)
-        .fold(0.0, f64::max)
+    let over = over.map(|(count, sum, most)| most * count / sum);
+    over.fold(0.0, f64::max)
 }
 
 /// Pictures of a forest or a set for each number of steps, or of shares.
@@ -256,9 +230,8 @@ fn panels(all: &PointSet, what: &str, steps: &[u32]) -> Outcome<Vec<Panel>> {
         "forest" => (all.in_field(forest()?), 110.0, 700),
         name => {
             let mut cases = Case::all().into_iter();
-            let case = cases
-                .find(|case| case.name.starts_with(name))
-                .ok_or("no such set")?;
+            let case = cases.find(|case| case.name.starts_with(name));
+            let case = case.ok_or("no such set")?;
             (case.set(all, CORNER[0])?.0, case.side(3000.0), 900)
         }
     };
@@ -272,21 +245,15 @@ fn panel(set: &PointSet, side: f64, width: usize) -> Outcome<Panel> {
     // Points of all pictures cover about a tenth of the plane where it is densest.
     let radius = 0.2 * scale / set.placement().keep.get().sqrt();
     let points = square(set, CORNER.map(|v| v - 1.0), side + 2.0)?;
-    let pixels = points
-        .iter()
-        .map(|p| [(p.x - 1.0) * scale, (side + 1.0 - p.y) * scale]);
+    let pixel = |p: &Point| [(p.x - 1.0) * scale, (side + 1.0 - p.y) * scale];
+    let pixels = points.iter().map(pixel);
     Ok(Panel::dots([width; 2], pixels, radius.max(0.9)))
 }
 
 /// Natural patches, a bare road through them, and a straight edge of a field at their right.
 fn forest() -> Outcome<FieldSpec> {
     let at = |[x, y]: [f64; 2]| [CORNER[0] + x, CORNER[1] + y];
-    let patches = FieldSpec::noise(Noise {
-        seed: 3,
-        wavelength: 60.0,
-        octaves: 3,
-        range: [0.0, 1.0],
-    })?;
+    let patches = noise(3, 60.0, 3)?;
     let patches = patches.curve(vec![[0.3, 0.08], [0.7, 1.0]])?;
     let way = [[-5.0, 20.0], [35.0, 34.0], [60.0, 60.0], [75.0, 120.0]];
     let way = Marks::Lines(vec![way.map(at).to_vec()]);

@@ -30,7 +30,6 @@ use crate::{
     tones::Judge,
 };
 
-pub const USAGE: &str = "[--steps 0,2,3,4] [--points 5000] [--seeds 1,2,3,4,5] [--draw FOLDER]";
 /// The steps of weighted Voronoi stippling.
 const RELAXED: usize = 50;
 /// Sets of independent points, the unit of tones.
@@ -40,33 +39,37 @@ const LONGER: f64 = 450.0;
 /// The area of all dots over that of the paper.
 const COVERED: f64 = 0.3;
 
-/// A way to place points: steps of settling, and the power of the darkness by which cells are weighted, if points go
-/// to their centroids. The density tends to the root of the weight, so long steps by the darkness itself, as
-/// published, would lighten what is dark.
-type Way = (String, u32, Option<i32>);
+/// A way to place points: its name, steps of settling, steps to centroids, and the power of the darkness by which cells
+/// are weighted. The density tends to the root of the weight, so long steps by the darkness itself, as published, would
+/// lighten what is dark.
+type Way = (String, u32, usize, i32);
 
 pub fn study(mut arguments: Arguments) -> Outcome {
     let steps: Vec<u32> = arguments.list("--steps", "0,2,3,4")?;
     let seeds: Vec<u64> = arguments.list("--seeds", "1,2,3,4,5")?;
     let count: usize = arguments.value("--points", "5000")?;
     let folder = arguments.after("--draw");
-    let settled = |&steps: &u32| (format!("`settle` = {steps}"), steps, None);
+    let settled = |&steps: &u32| (format!("`settle` = {steps}"), steps, 0, 0);
     let mut ways: Vec<Way> = steps.iter().map(settled).collect();
-    ways.push(("weighted Voronoi".into(), 0, Some(1)));
-    ways.push(("the same, darkness squared".into(), 0, Some(2)));
+    ways.push(("weighted Voronoi".into(), 0, RELAXED, 1));
+    ways.push(("the same, darkness squared".into(), 0, RELAXED, 2));
 
     let columns = "picture | points | tone at 1 | 2 | 4 | δ of 1 % | mean δ | time";
-    println!("{}", figures::head(columns));
+    figures::head(columns);
     let mut of_ways = vec![Vec::new(); ways.len()];
     for picture in Picture::all()? {
         let ground = picture.ground(count);
-        let judge = Judge::new(&ground, &picture.grid(&ground, count), count, CHANCE);
+        let grid = picture.grid(&ground, count);
+        let judge = Judge::new(&ground, &grid, count, CHANCE);
         let mut drawn = Vec::new();
         for (way, verdicts) in ways.iter().zip(&mut of_ways) {
             let mut of_seeds = Vec::new();
             for &seed in &seeds {
                 let start = seconds();
-                let points = points(way, &picture, count, seed)?;
+                let mut points = picture.stippled(count, seed, way.1)?;
+                for _ in 0..way.2 {
+                    points = relaxed(&grid, &points, way.3)?;
+                }
                 let took = seconds() - start;
                 let [a, b, c, hundredth, mean] = judge.verdict(&points);
                 of_seeds.push([a, b, c, hundredth, mean, took]);
@@ -76,8 +79,7 @@ pub fn study(mut arguments: Arguments) -> Outcome {
             }
             let mut verdict = mean(&of_seeds);
             verdict[5] = of_seeds.iter().map(|v| v[5]).fold(f64::INFINITY, f64::min);
-            let subject = format!("{} | {}", picture.name, way.0);
-            println!("{}", figures::row(subject, &verdict));
+            figures::row(format!("{} | {}", picture.name, way.0), &verdict);
             verdicts.push(verdict);
         }
         if let Some(folder) = &folder {
@@ -86,10 +88,7 @@ pub fn study(mut arguments: Arguments) -> Outcome {
         }
     }
     for (way, verdicts) in ways.iter().zip(&of_ways) {
-        println!(
-            "{}",
-            figures::row(format!("all | {}", way.0), &mean(verdicts))
-        );
+        figures::row(format!("all | {}", way.0), &mean(verdicts));
     }
     Ok(())
 }
@@ -99,45 +98,23 @@ fn mean(all: &[[f64; 6]]) -> [f64; 6] {
     [0, 1, 2, 3, 4, 5].map(mean)
 }
 
-/// Points by a way and a seed.
-fn points(
-    (_, steps, power): &Way,
-    picture: &Picture,
-    count: usize,
-    seed: u64,
-) -> Outcome<Vec<[f64; 2]>> {
-    let mut points = picture.stippled(count, seed, *steps)?;
-    if let Some(power) = power {
-        let grid = picture.grid(&picture.ground(count), count);
-        for _ in 0..RELAXED {
-            points = relaxed(&grid, &points, *power)?;
-        }
-    }
-    Ok(points)
-}
-
 /// Each point at the centroid of its cell, weighted by a power of the density. One without weight around it stays.
 fn relaxed(grid: &Grid, points: &[[f64; 2]], power: i32) -> Outcome<Vec<[f64; 2]>> {
     let sites = points.iter().map(|&[x, y]| Point2::new(x, y)).collect();
     let sites = DelaunayTriangulation::<Point2<f64>>::bulk_load_stable(sites)?;
     let mut sums = vec![[0.0; 3]; points.len()];
-    for (i, density) in grid.densities.iter().enumerate() {
-        let cell = [i % grid.columns, i / grid.columns];
-        let [x, y] = [0, 1].map(|axis| (cell[axis] as f64 + 0.5) * grid.cell[axis]);
+    for ([x, y], density) in grid.places().zip(&grid.densities) {
         // The search begins at the nearest point of the cell before.
         let nearest = sites.nearest_neighbor(Point2::new(x, y));
         let sum = &mut sums[nearest.ok_or("no points")?.fix().index()];
         let weight = density.powi(power);
         *sum = [sum[0] + weight * x, sum[1] + weight * y, sum[2] + weight];
     }
-    let moved = points
-        .iter()
-        .zip(&sums)
-        .map(|(point, [x, y, all])| match *all > 0.0 {
-            true => [x / all, y / all],
-            false => *point,
-        });
-    Ok(moved.collect())
+    let moved = |(point, [x, y, all]): (&[f64; 2], &[f64; 3])| match *all > 0.0 {
+        true => [x / all, y / all],
+        false => *point,
+    };
+    Ok(points.iter().zip(&sums).map(moved).collect())
 }
 
 /// A stipple as a picture.
@@ -146,11 +123,9 @@ fn panel(picture: &Picture, points: &[[f64; 2]]) -> Panel {
     let scale = LONGER / width.max(height);
     let area = width * height * scale * scale;
     let radius = (area * COVERED / points.len() as f64 / PI).sqrt();
-    let places = points
-        .iter()
-        .map(|[x, y]| [x * scale, (height - y) * scale]);
+    let place = |[x, y]: &[f64; 2]| [x * scale, (height - y) * scale];
     let size = picture.size.map(|v| (v * scale).round() as usize);
-    Panel::dots(size, places, radius)
+    Panel::dots(size, points.iter().map(place), radius)
 }
 
 /// The seconds for which this thread has had a processor, where Linux counts them; else those of the clock, which are

@@ -32,12 +32,15 @@ struct Look {
 impl<'a> Judge<'a> {
     /// A judge by some sets of `count` independent points.
     pub fn new(ground: &'a Ground<'a>, grid: &Grid, count: usize, sets: u64) -> Self {
+        let cell = grid.cell[0] * grid.cell[1];
+        let weights = grid.densities.iter().map(|density| density * cell);
+        let cells: Vec<_> = grid.places().zip(weights).collect();
         let look = |at: [f64; 2]| {
             let spreads = WIDTHS.map(|width| width / ground.density(at).sqrt());
             Look {
                 at,
                 spreads,
-                tones: spreads.map(|spread| tone(grid, at, spread)),
+                tones: tones(at, spreads, cells.iter().copied()),
             }
         };
         let places = independent(grid, PLACES, 1).into_par_iter();
@@ -56,16 +59,7 @@ impl<'a> Judge<'a> {
     /// The mean squared relative errors of tones.
     fn errors(&self, points: &[[f64; 2]]) -> [f64; 3] {
         let each = self.looks.par_iter().map(|look| {
-            let mut sums = [0.0; 3];
-            for [x, y] in points {
-                let squared = (x - look.at[0]).powi(2) + (y - look.at[1]).powi(2);
-                for (sum, spread) in sums.iter_mut().zip(look.spreads) {
-                    let squared = squared / (spread * spread);
-                    if squared < REACH * REACH {
-                        *sum += (-squared / 2.0).exp() / (2.0 * PI * spread * spread);
-                    }
-                }
-            }
+            let sums = tones(look.at, look.spreads, points.iter().map(|&p| (p, 1.0)));
             [0, 1, 2].map(|i| (sums[i] / look.tones[i] - 1.0).powi(2) / PLACES as f64)
         });
         let add = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| a[i] + b[i]);
@@ -100,28 +94,21 @@ fn independent(grid: &Grid, count: usize, seed: u64) -> Vec<[f64; 2]> {
     places.collect()
 }
 
-/// The density of a picture through a Gaussian.
-fn tone(grid: &Grid, at: [f64; 2], spread: f64) -> f64 {
-    let rows = grid.densities.len() / grid.columns;
-    let weights = |axis: usize, cells: usize| {
-        let cell = grid.cell[axis];
-        let from = ((at[axis] - REACH * spread) / cell).floor().max(0.0) as usize;
-        let to = (((at[axis] + REACH * spread) / cell).ceil() as usize).min(cells);
-        let weight = move |i: usize| {
-            let far = ((i as f64 + 0.5) * cell - at[axis]) / spread;
-            (-far * far / 2.0).exp() * cell / (spread * (2.0 * PI).sqrt())
-        };
-        (from, (from..to).map(weight).collect::<Vec<f64>>())
-    };
-    let (left, along_x) = weights(0, grid.columns);
-    let (below, along_y) = weights(1, rows);
-    let lines = along_y.iter().enumerate().map(|(row, weight)| {
-        let line = &grid.densities[(below + row) * grid.columns + left..][..along_x.len()];
-        let products = line
-            .iter()
-            .zip(&along_x)
-            .map(|(density, weight)| density * weight);
-        products.sum::<f64>() * weight
-    });
-    lines.sum()
+/// The density of weighted places through Gaussians around a place.
+fn tones(
+    at: [f64; 2],
+    spreads: [f64; 3],
+    places: impl Iterator<Item = ([f64; 2], f64)>,
+) -> [f64; 3] {
+    let mut sums = [0.0; 3];
+    for ([x, y], weight) in places {
+        let squared = (x - at[0]).powi(2) + (y - at[1]).powi(2);
+        for (sum, spread) in sums.iter_mut().zip(spreads) {
+            let squared = squared / (spread * spread);
+            if squared < REACH * REACH {
+                *sum += weight * (-squared / 2.0).exp() / (2.0 * PI * spread * spread);
+            }
+        }
+    }
+    sums
 }
