@@ -1,5 +1,5 @@
-//! Kinds of fixed shares: makes mixes and measures them on twins they were not made with. `--time` prints how long labels take, and measures
-//! nothing.
+//! Kinds of fixed shares: makes mixes and measures them on twins they were not made with. `--time` prints how long
+//! labels take, and measures nothing.
 //!
 //! `--draw` draws kinds by chance, by labels and of a joint table side by side instead, in squares as they are served,
 //! with a seed and its warp: `--side` is that of a square in mean spacings, `--pixels` those of a spacing.

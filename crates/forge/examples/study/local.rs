@@ -19,7 +19,7 @@ const MODES: usize = 12;
 /// The modes from −[`MODES`] to it.
 const ROW: usize = 2 * MODES + 1;
 
-/// A square that is not split in four any more: it holds 8 to 32 points on average, or few by chance.
+/// A square that holds 4 to 32 points on average.
 pub struct Counted {
     corner: [f64; 2],
     side: f64,
@@ -36,7 +36,7 @@ pub struct Octave {
     pub errors: f64,
 }
 
-/// The boxes of a square ground. Shares are looked up on `across` × `across` places of each.
+/// The boxes of a square ground, which is split in four until they hold few points. Shares are looked up on `across` × `across` places of each.
 pub fn boxes(ground: &Ground<'_>, across: usize) -> Vec<Counted> {
     let mut open = vec![([0.0; 2], ground.size[0])];
     let mut found = Vec::new();
