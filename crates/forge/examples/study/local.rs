@@ -36,7 +36,8 @@ pub struct Octave {
     pub errors: f64,
 }
 
-/// The boxes of a square ground, which is split in four until they hold few points. Shares are looked up on `across` × `across` places of each.
+/// The boxes of a square ground, which is split in four until they hold few points. Shares are looked up on `across` ×
+/// `across` places of each.
 pub fn boxes(ground: &Ground<'_>, across: usize) -> Vec<Counted> {
     let mut open = vec![([0.0; 2], ground.size[0])];
     let mut found = Vec::new();

@@ -43,7 +43,7 @@ wei [--points 7000] [SHARES…]";
 
 fn main() -> Outcome {
     let mut arguments = Arguments::new(env::args().skip(1));
-    let study = match arguments.next(USAGE)?.as_str() {
+    let study = match arguments.next("SUBCOMMAND").unwrap_or_default().as_str() {
         "alphas" => alphas::scan,
         "comparison" => measured::comparison,
         "figures" => alphas::figures,
@@ -56,7 +56,10 @@ fn main() -> Outcome {
         "thinned" => measured::thinned,
         "varying" => kinds::varying,
         "wei" => darts::study,
-        other => return Err(format!("no study {other}; there are\n{USAGE}").into()),
+        _ => {
+            println!("{USAGE}");
+            return Err("which study?".into());
+        }
     };
     study(arguments)
 }
