@@ -1,0 +1,174 @@
+//! What α is good for: forges `blue` over a scan of α and draws its figures and the number of blocks; and the figures of
+//! a pattern.
+//!
+//! Without values of α the scan has 34. Tables that are in FOLDER already are not made again, so that an interrupted
+//! scan goes on. Writes FOLDER/alphas.md and FOLDER/alphas.svg.
+
+use std::{fs, path::Path};
+
+use strew_core::{Alpha, Map, Table};
+use strew_forge::{Job, figure, file_name, forge, read_table, write_table};
+
+use crate::{Outcome, arguments::Arguments, figures};
+
+/// The half-width of the maps: s.
+const RADIUS: u32 = 49;
+/// The bounds of the profile `blue`.
+const LOW_POWER: f64 = 2e-5;
+
+/// One row.
+struct Row {
+    alpha: Alpha,
+    intervals: usize,
+    /// The worst figures of unseen sets: low power, peak power, δ_min. None if no table can be made.
+    worst: Option<[f64; 3]>,
+}
+
+pub fn scan(mut arguments: Arguments) -> Outcome {
+    let folder = arguments.next("FOLDER")?;
+    let folder = Path::new(&folder);
+    fs::create_dir_all(folder)?;
+    let mut texts = arguments.rest()?;
+    if texts.is_empty() {
+        // Steps of 0.03 from 1.1, kept off small fractions, and the three that are shipped.
+        texts.extend((0..31).map(|i| format!("1.{}", 1013 + 290 * i)));
+        texts.extend(["(5-sqrt(3))/2", "sqrt(3)", "(1+sqrt(5))/2"].map(Into::into));
+    }
+    let mut rows = vec![];
+    for text in texts {
+        let alpha: Alpha = text.parse()?;
+        rows.push(Row {
+            alpha,
+            intervals: Map::new(alpha, RADIUS)?.intervals(),
+            worst: table_of(folder, alpha)?.as_ref().map(worst),
+        });
+        rows.sort_by(|a, b| a.alpha.to_f64().total_cmp(&b.alpha.to_f64()));
+        fs::write(folder.join("alphas.md"), markdown(&rows))?;
+        fs::write(folder.join("alphas.svg"), svg(&rows))?;
+    }
+    Ok(())
+}
+
+/// The table of an α, made unless it is there; `None` where none can be made.
+fn table_of(folder: &Path, alpha: Alpha) -> Outcome<Option<Table>> {
+    let path = folder.join(file_name("blue", alpha, RADIUS));
+    if path.exists() {
+        return Ok(Some(read_table(&path)?));
+    }
+    let Ok(outcome) = forge(&Job::new(alpha), &()) else {
+        return Ok(None);
+    };
+    write_table(&path, &outcome.table)?;
+    Ok(Some(outcome.table))
+}
+
+/// The worst figures of the sets that a table was not made on.
+fn worst(table: &Table) -> [f64; 3] {
+    let worst = |name: &str, worse: fn(f64, f64) -> f64| {
+        let unseen = table.provenance().figures.iter().filter(|f| !f.seen);
+        let values = unseen.filter_map(|figures| figures.value(name));
+        values.fold(f64::NAN, worse)
+    };
+    [
+        worst("low_power", f64::max),
+        worst("peak_power", f64::max),
+        worst("delta_min", f64::min),
+    ]
+}
+
+fn markdown(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "| α | intervals | low power | peak power | δ_min | accepted |\n|---|---|---|---|---|---|\n",
+    );
+    for row in rows {
+        let accepted = match row.worst {
+            Some([low, peak, least]) if low <= LOW_POWER && peak <= 3.0 && least >= 0.6 => "yes",
+            Some(_) => "no",
+            None => "no table",
+        };
+        let [low, peak, least] = row.worst.unwrap_or([f64::NAN; 3]);
+        let cells = figures::cells(row.alpha, &[row.intervals as f64, low, peak, least]);
+        text += &format!("{cells} {accepted} |\n");
+    }
+    text
+}
+
+/// Low power (logarithmic) above, intervals below, over α.
+fn svg(rows: &[Row]) -> String {
+    let x = |alpha: f64| 60.0 + 660.0 * (alpha - 1.0);
+    let power = |low: f64| 20.0 + 200.0 * (-1.0 - low.log10().clamp(-6.0, -1.0)) / 5.0;
+    let count = |n: f64| 420.0 - 160.0 * n.min(100.0) / 100.0;
+    let line = |[x1, y1]: [f64; 2], [x2, y2]: [f64; 2], style: &str| {
+        format!("<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" {style}/>\n")
+    };
+    let level = |y: f64, style: &str| line([60.0, y], [720.0, y], style);
+    let text = |[x, y]: [f64; 2], anchor: &str, text: &str| {
+        format!("<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>\n")
+    };
+    let mut s = String::from(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"760\" height=\"460\" font-family=\"sans-serif\" \
+         font-size=\"12\"><rect width=\"760\" height=\"460\" fill=\"#fff\"/>\n",
+    );
+    let decades = (1..=6).map(|decade| power(10f64.powi(-decade)));
+    let counts = [0.0, 25.0, 50.0, 75.0, 100.0].map(count);
+    s.extend(decades.chain(counts).map(|y| level(y, "stroke=\"#ddd\"")));
+    s += &level(power(LOW_POWER), "stroke=\"#c33\" stroke-dasharray=\"5 4\"");
+    // Every α, to show where the blocks are few.
+    for i in 1..660 {
+        let alpha = format!("1.{:06}", i * 1515 + 137).parse();
+        if let Ok(map) = alpha.and_then(|alpha: Alpha| Map::new(alpha, RADIUS)) {
+            let at = x(map.alpha().to_f64());
+            let top = count(map.intervals() as f64);
+            s += &line([at, count(0.0)], [at, top], "stroke=\"#9bb7d6\"");
+        }
+    }
+    for row in rows {
+        let Some([low, ..]) = row.worst else { continue };
+        let (at, y, alpha) = (x(row.alpha.to_f64()), power(low), row.alpha);
+        let color = if low <= LOW_POWER { "#1a7f37" } else { "#c33" };
+        s += &format!(
+            "<circle cx=\"{at:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"{color}\"><title>{alpha}</title></circle>\n"
+        );
+    }
+    let powers = [(1e-1, "0.1"), (1e-3, "1e-3"), (1e-6, "1e-6")].map(|(v, t)| (power(v), t));
+    let counts = [(0.0, "0"), (50.0, "50"), (100.0, "100")].map(|(v, t)| (count(v), t));
+    for (y, label) in powers.into_iter().chain(counts) {
+        s += &text([52.0, y + 4.0], "end", label);
+    }
+    for i in 0..=10 {
+        let alpha = 1.0 + f64::from(i) / 10.0;
+        s += &text([x(alpha), 438.0], "middle", &format!("{alpha:.1}"));
+    }
+    for (at, anchor, label) in [
+        (
+            [66.0, 16.0],
+            "start",
+            "worst power below ν = 0.5 of blue, map s; red line: the bound",
+        ),
+        (
+            [66.0, 252.0],
+            "start",
+            "intervals per axis, R = 49 (cut at 100)",
+        ),
+        ([390.0, 455.0], "middle", "α"),
+    ] {
+        s += &text(at, anchor, label);
+    }
+    s + "</svg>\n"
+}
+
+/// Draws the figures of the pattern of an α into a folder.
+pub fn figures(mut arguments: Arguments) -> Outcome {
+    let (alpha, folder) = (arguments.next("ALPHA")?.parse()?, arguments.next("FOLDER")?);
+    let offsets = [(2, 1), (3, 3)];
+    for (name, drawing) in [
+        ("index", figure::index(alpha, 64)?),
+        ("arrangement", figure::arrangement(alpha, &offsets, 48)?),
+        ("clusters", figure::clusters(alpha, 2.24, 64, 96)?),
+        ("map", figure::map(alpha, 20, [6, 14])?),
+    ] {
+        let path = Path::new(&folder).join(name).with_extension("svg");
+        fs::write(path, drawing.to_svg())?;
+    }
+    Ok(())
+}

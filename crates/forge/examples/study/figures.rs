@@ -1,0 +1,57 @@
+//! Tables of figures, in Markdown.
+
+use std::fmt::Display;
+
+use strew_core::table::Figures;
+use strew_forge::{Report, Resolution, measure::Torus};
+
+/// The figures of measured sets, in columns. `strew measure` has the same names.
+const NAMES: &str =
+    "low_power | peak_power | peak_nu | tallest_peak | anisotropy_db | delta_min | delta_avg";
+
+/// Prints the head of a table: columns with bars between.
+pub fn head(columns: &str) {
+    let rules = "---|".repeat(columns.split('|').count());
+    println!("\n| {columns} |\n|{rules}");
+}
+
+/// Prints a row: the subject, which may be several columns, and numbers.
+pub fn row(subject: impl Display, numbers: &[f64]) {
+    println!("{}", cells(subject, numbers));
+}
+
+/// A row as text.
+pub fn cells(subject: impl Display, numbers: &[f64]) -> String {
+    let cells = numbers.iter().map(|&v| match v.abs() {
+        _ if v.is_nan() => " |".into(),
+        _ if v.fract() == 0.0 => format!(" {v:.0} |"),
+        size if size < 0.001 => format!(" {v:.2e} |"),
+        size if size < 10.0 => format!(" {v:.4} |"),
+        _ => format!(" {v:.2} |"),
+    });
+    format!("| {subject} |{}", cells.collect::<String>())
+}
+
+/// Prints the head of a table of measured sets, with more columns.
+pub fn head_of_sets(more: &str) {
+    head(&format!("set | points | {NAMES}{more}"));
+}
+
+/// Prints the row of a measured set, with more numbers.
+pub fn set(figures: &Figures, more: &[f64]) {
+    let known = NAMES.split(" | ").map(|name| value(figures, name));
+    let numbers = [figures.points as f64].into_iter().chain(known);
+    let numbers = numbers.chain(more.iter().copied());
+    row(&figures.subject, &numbers.collect::<Vec<_>>());
+}
+
+/// A figure; NaN if it was not measured.
+pub fn value(figures: &Figures, name: &str) -> f64 {
+    figures.value(name).unwrap_or(f64::NAN)
+}
+
+/// Measures a periodic set and prints its row.
+pub fn torus(subject: String, set: &Torus, more: &[f64]) {
+    let report = Report::of_torus(subject, false, set, Resolution::default());
+    self::set(&report.figures, more);
+}

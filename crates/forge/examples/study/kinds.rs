@@ -1,0 +1,199 @@
+//! Kinds of fixed shares: makes mixes and measures them on twins they were not made with. `--time` prints how long
+//! labels take, and measures nothing.
+//!
+//! `--draw` draws kinds by chance, by labels and of a joint table side by side instead, in squares as they are served,
+//! with a seed and its warp: `--side` is that of a square in mean spacings, `--pixels` those of a spacing.
+//!
+//! Kinds whose shares vary from place to place: the variance of the number of points of a kind in boxes, over what it
+//! would be if each point had its kind by chance. Shares are waves of 60 spacings; boxes hold 25 and 100 points; seed 7
+//! with its warp, 500 × 500 spacings.
+
+use std::{f64::consts::TAU, path::Path, sync::Arc, time::Instant};
+
+use strew_core::{Field, PointId, PointSet, Table, VaryingKinds, table::Shares};
+use strew_forge::{MixJob, MixOutcome, labels, mix, numeric::SplitMix, second_order};
+
+use crate::{
+    Outcome,
+    arguments::Arguments,
+    figures::{self, value},
+    ground::{CORNER, square},
+    paint::{self, Panel},
+};
+
+/// The colors of the background and of the kinds, the rarest first.
+const PALETTE: [[u8; 3]; 6] = [
+    [255, 255, 255],
+    [20, 60, 150],
+    [230, 120, 0],
+    [120, 180, 90],
+    [190, 30, 90],
+    [90, 90, 90],
+];
+/// Steps between a kind's color and white, for smooth edges.
+const SHADES: usize = 4;
+const SEED: u64 = 5;
+
+pub fn fixed(mut arguments: Arguments) -> Outcome {
+    let [is_joint, times] = ["--joint", "--time"].map(|flag| arguments.has(flag));
+    let out = arguments.after("--draw");
+    let side: f64 = arguments.value("--side", "26")?;
+    let pixels: f64 = arguments.value("--pixels", "12")?;
+    let table = arguments.table()?;
+    for shares in arguments.rest()? {
+        let shares: Shares = shares.parse()?;
+        if let Some(out) = &out {
+            return draw(&table, &shares, side, pixels, Path::new(out));
+        }
+        let began = Instant::now();
+        if times {
+            labels(&table, &shares, &())?;
+            println!("{shares}: {:.2?}", began.elapsed());
+            continue;
+        }
+        let made = made(&table, &shares, is_joint)?;
+        let (accepted, digest) = (made.accepted, made.table.digest());
+        let took = began.elapsed();
+        println!("{shares}: accepted {accepted}, {took:.2?}, {digest}");
+        figures::head_of_sets(" | share_error");
+        for measured in &made.figures {
+            figures::set(measured, &[value(measured, "share_error")]);
+        }
+        for complaint in &made.complaints {
+            println!("\nmissed: {complaint}");
+        }
+    }
+    Ok(())
+}
+
+/// Makes a mix: labels, or a joint table.
+pub fn made(table: &Table, shares: &Shares, is_joint: bool) -> Outcome<MixOutcome> {
+    let job = match is_joint {
+        true => MixJob::joint(shares.clone()),
+        false => MixJob::labels(shares.clone()),
+    };
+    Ok(mix(table, &job, &())?.ok_or("stopped")?)
+}
+
+fn draw(table: &Table, shares: &Shares, side: f64, pixels: f64, out: &Path) -> Outcome {
+    let panel = |table: &Table, kind: &dyn Fn(&PointSet, PointId) -> Option<u8>| {
+        let set = PointSet::new(table.clone()).seed(SEED);
+        let mut panel = Panel::blank([(side * pixels) as usize; 2], 0.0);
+        for point in square(&set, CORNER, side)? {
+            let first = SHADES * usize::from(kind(&set, point.id).ok_or("no kind")?);
+            let at = point.at().map(|v| v * pixels);
+            panel.disk(at, 0.34 * pixels, |color, covered| {
+                let shade = (covered * SHADES as f64).round() as usize;
+                if shade > 0 {
+                    *color = (first + shade) as f64 / 255.0;
+                }
+            });
+        }
+        Outcome::Ok(panel)
+    };
+    let labeled = labels(table, shares, &())?.ok_or("stopped")?;
+    let joint = made(table, shares, true)?.table;
+    let panels = [
+        panel(table, &|_, id| by_chance(shares, id))?,
+        panel(&labeled, &PointSet::kind_of)?,
+        panel(&joint, &PointSet::kind_of)?,
+    ];
+    let [paper, kinds @ ..] = PALETTE;
+    let mixed = |color: [u8; 3], shade: usize| {
+        let part = shade as f64 / SHADES as f64;
+        [0, 1, 2].map(|i| (f64::from(color[i]) * part + f64::from(paper[i]) * (1.0 - part)) as u8)
+    };
+    let shades = |color| (1..=SHADES).map(move |shade| mixed(color, shade));
+    let colors = kinds.into_iter().flat_map(shades);
+    let palette = [paper].into_iter().chain(colors).flatten().collect();
+    paint::write(out, &panels, [3, 8], 8, Some(palette))
+}
+
+/// A kind drawn by a hash of the id.
+fn by_chance(shares: &Shares, id: PointId) -> Option<u8> {
+    let mut random = SplitMix::new(id.x as u64);
+    let mut random = SplitMix::new(random.next_u64() ^ id.y as u64);
+    let mut drawn = random.next_f64();
+    (0..shares.kinds() as u8).find(|&kind| {
+        drawn -= shares.of(kind);
+        drawn < 0.0
+    })
+}
+
+/// The side of the square that is measured, in spacings.
+const SIDE: f64 = 500.0;
+
+type Fields = Vec<Arc<dyn Field>>;
+
+pub fn varying(mut arguments: Arguments) -> Outcome {
+    let table = arguments.table()?;
+    let began = Instant::now();
+    let ranks = second_order(&table, &())?.ok_or("stopped")?;
+    println!("The second order took {:.2?}.", began.elapsed());
+    let order = table.with_ranks(ranks)?;
+    let rest = |other: &Arc<dyn Field>, height| -> Arc<dyn Field> {
+        let other = other.clone();
+        Arc::new(move |at: [f64; 2]| height - other.share(at))
+    };
+    let two = wave(0.5, 0.45, 0.3);
+    let first = wave(0.45, 0.3, 0.0);
+    // Of equal parts the kinds lie in the order first, third, second.
+    let rare = vec![first.clone(), rest(&first, 0.95), wave(0.05, 0.04, 1.6)];
+    let four = [0.0, 0.8, 1.6, 2.4].map(|angle| wave(0.25, 0.22, angle));
+    figures::head("kinds | points | box | each kind | | | ");
+    for (name, fields) in [
+        ("two", vec![two.clone(), rest(&two, 1.0)]),
+        ("0.45, 0.5 and a rare one in the middle", rare),
+        ("four", four.to_vec()),
+    ] {
+        let parts = vec!["1"; fields.len()].join(":");
+        let some = fields.iter().cloned().map(Some).collect();
+        let kinds = VaryingKinds::new(&order, parts.parse()?, some)?;
+        let whole = PointSet::new(table.clone()).seed(7);
+        let whole = whole.with_varying_kinds(kinds)?;
+        let slope = wave(0.55, 0.4, 0.8);
+        let slope = move |at: [f64; 2]| slope.share(at);
+        for (thinning, set) in [
+            ("all", whole.clone()),
+            ("keep 0.5", whole.clone().keep(0.5)?),
+            ("keep 0.3", whole.clone().keep(0.3)?),
+            ("in a field", whole.in_field(slope)),
+        ] {
+            for side in [5.0, 10.0] {
+                let subject = format!("{name} | {thinning} | {side}²");
+                figures::row(subject, &ratios(&set, &fields, side)?);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A wave of the share of a kind around a mean.
+fn wave(mean: f64, height: f64, angle: f64) -> Arc<dyn Field> {
+    let (along, across) = (angle.cos() / 60.0, angle.sin() / 60.0);
+    Arc::new(move |[x, y]: [f64; 2]| mean + height * (TAU * (x * along + y * across)).sin())
+}
+
+/// The variance of the counts of each kind over that of chance.
+fn ratios(set: &PointSet, fields: &Fields, side: f64) -> Outcome<Vec<f64>> {
+    let boxes = (SIDE / side) as usize;
+    let mut off = vec![vec![0.0; boxes * boxes]; fields.len()];
+    let mut chance = vec![0.0; fields.len()];
+    for point in square(set, [0.0; 2], SIDE)? {
+        let [column, row] = point.at().map(|v| ((v / side) as usize).min(boxes - 1));
+        let kind = set.kind_of(point.id).ok_or("no kind")?;
+        let weights: Vec<f64> = fields.iter().map(|field| field.share(point.at())).collect();
+        let total: f64 = weights.iter().sum();
+        for (own, weight) in weights.iter().enumerate() {
+            let share = weight / total;
+            let is_own = f64::from(u8::from(usize::from(kind) == own));
+            off[own][row * boxes + column] += is_own - share;
+            chance[own] += share * (1.0 - share);
+        }
+    }
+    let squares = off.iter().map(|off| off.iter().map(|v| v * v).sum::<f64>());
+    let ratios = squares
+        .zip(chance)
+        .map(|(squares, chance)| squares / chance);
+    Ok(ratios.collect())
+}

@@ -1,0 +1,263 @@
+//! Measures how points settle: sets that are thinned or lie in a field, after 0 to 4 steps, in windows of some points
+//! at a corner. A set is taken if its name begins so. A row is for all seeds together:
+//!
+//! - *low*: mean power below ν = 0.5 (chance 1) in windows of 24 local spacings, their mean and median;
+//! - *δ*: the least distance of all, that of the nearest 1 %, and the mean, in hexagonal distances of the denser
+//!   point's share; *near*: the number of pairs below 0.4; *of D*: the least distance over the one that is promised;
+//! - *var*: Var(N − ∫λ)/∫λ in boxes of 8 to 32 points; *bias* of the count in percent with its standard error, and so by
+//!   octave of the share in a row of their own;
+//! - *whole*: low power of the whole window, and *tall*, the tallest mode below ν = 0.8 over its ring, at constant shares.
+//!
+//! Where a table has kinds, or gets some by `--mix 1:1:2`, rows have the mean low power of each, in windows of 24
+//! spacings of its own, the rarest first. `--share 0.21` measures that share alone. Stripes have more rows: the density
+//! over the share by half local spacings from the edge, outside first.
+//!
+//! `--draw` draws a forest, shares or a set instead, after each number of steps.
+
+use std::path::Path;
+
+use strew_core::{
+    Point, PointSet,
+    field::{FieldSpec, Marks},
+};
+use strew_forge::measure::{Spectrum, Window};
+
+use crate::{
+    Outcome,
+    arguments::Arguments,
+    cases::{Case, Kind, Profile},
+    figures,
+    ground::{CORNER, Ground, Near, noise, places, square},
+    kinds::made,
+    local::{Octave, Windows, boxes, count},
+    paint::{self, Panel},
+};
+
+/// The width of a ring.
+const RING: f64 = 0.02;
+
+pub fn study(mut arguments: Arguments) -> Outcome {
+    let steps: Vec<u32> = arguments.list("--steps", "0,1,2,3,4")?;
+    let seeds: Vec<u64> = arguments.list("--seeds", "11,29,58")?;
+    let corner: Vec<f64> = arguments.list("--at", "7300000,-5100000")?;
+    let &[x, y] = corner.as_slice() else {
+        return Err("a corner is x,y".into());
+    };
+    let points: f64 = arguments.value("--points", "50000")?;
+    let wanted: String = arguments.value("--sets", "")?;
+    let cases = match arguments.after("--share") {
+        Some(share) => vec![Case::constant(share.parse()?)],
+        None => Case::all(),
+    };
+    let [shares, drawn] = ["--mix", "--draw"].map(|flag| arguments.after(flag));
+    let mut table = arguments.table()?;
+    if let Some(shares) = shares {
+        table = made(&table, &shares.parse()?, false)?.table;
+    }
+    let all = PointSet::new(table);
+    if let Some(what) = drawn {
+        let panels = panels(&all.seed(seeds[0]), &what, &steps)?;
+        let out = arguments.next("OUT.png")?;
+        return paint::write(Path::new(&out), &panels, [panels.len(), 12], 4, None);
+    }
+    let columns = "set | steps | low | median | δ_min | of 1 % | mean δ | near | of D | var";
+    figures::head(&format!("{columns} | bias | ± | whole | tall"));
+    for case in cases.iter().filter(|case| case.name.starts_with(&wanted)) {
+        let mut rows: Vec<Row> = steps.iter().map(|_| Row::default()).collect();
+        for &seed in &seeds {
+            let all = all.clone().seed(seed);
+            measure(case, &all, ([x, y], points), &steps, &mut rows)?;
+        }
+        for (steps, row) in steps.iter().zip(&rows) {
+            row.print(&format!("{} | {steps}", case.name));
+        }
+    }
+    Ok(())
+}
+
+/// Measures a set by one seed, after each number of steps.
+fn measure(
+    case: &Case,
+    all: &PointSet,
+    (corner, points): ([f64; 2], f64),
+    steps: &[u32],
+    rows: &mut [Row],
+) -> Outcome {
+    let side = case.side(points);
+    let (set, field) = case.set(all, corner[0])?;
+    let of_part = |unit: f64| Ground {
+        corner,
+        size: [side; 2],
+        field: &*field,
+        unit,
+    };
+    let ground = of_part(1.0);
+    let [for_boxes, for_windows] = case.looks();
+    let boxes = boxes(&ground, for_boxes);
+    let parts = all.table().mix().map_or(Vec::new(), |mix| {
+        let shares = mix.shares();
+        (0..shares.kinds() as u8).map(|k| shares.of(k)).collect()
+    });
+    // Of all points, then of each kind, around those of the first number of steps.
+    let mut windows: Vec<Windows> = Vec::new();
+    for (&steps, row) in steps.iter().zip(rows) {
+        let set = set.clone().settle(steps)?;
+        let members = square(&set, corner, side)?;
+        let points = places(&members);
+        let of_kind = |kind: usize| {
+            let is_own = |p: &&Point| set.kind_of(p.id) == Some(kind as u8);
+            members.iter().filter(is_own).map(Point::at).collect()
+        };
+        let kinds = parts.iter().enumerate();
+        let kinds = kinds.map(|(kind, part)| (*part, of_kind(kind)));
+        row.low.resize(1 + parts.len(), Vec::new());
+        for (i, (part, own)) in [(1.0, points.clone())].into_iter().chain(kinds).enumerate() {
+            if windows.len() == i {
+                windows.push(Windows::new(&of_part(part), &own, for_windows));
+            }
+            row.low[i].extend(windows[i].low(&own));
+        }
+        let mut near = Near::of(&ground, &points);
+        near.plain /= all.least_distance();
+        row.near.push(near);
+        row.counts.push(count(&boxes, &points));
+        match case.kind {
+            Kind::Constant(share) => {
+                let window = Window::new(side, share, points);
+                let spectrum = Spectrum::of_window(&window, 1.0);
+                row.whole.push(spectrum.summary(RING).low_power);
+                row.tall.push(tallest(&spectrum, window.side()));
+            }
+            Kind::Stripes(stripes) => row.profile.add(stripes, side, &points),
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// The figures of a set after some steps, by seed.
+#[derive(Default)]
+struct Row {
+    /// Of all points, then of each kind.
+    low: Vec<Vec<f64>>,
+    whole: Vec<f64>,
+    tall: Vec<f64>,
+    near: Vec<Near>,
+    counts: Vec<[Octave; 10]>,
+    profile: Profile,
+}
+
+impl Row {
+    fn print(&self, name: &str) {
+        let mut low = self.low[0].clone();
+        low.sort_by(f64::total_cmp);
+        let median = low.get(low.len() / 2).copied().unwrap_or(f64::NAN);
+        let near = |of: fn(&Near) -> f64| self.near.iter().map(of);
+        let mean = |of: fn(&Near) -> f64| average(near(of))[0];
+        let sum = |of: fn(&Octave) -> f64| self.counts.as_flattened().iter().map(of).sum::<f64>();
+        let bias = |octaves: &[Octave]| {
+            let sum = |of: fn(&Octave) -> f64| octaves.iter().map(of).sum::<f64>();
+            100.0 * (sum(|o| o.found) / sum(|o| o.expected) - 1.0)
+        };
+        let [all, error] = average(self.counts.iter().map(|octaves| bias(octaves)));
+        let numbers = [
+            average(low.iter().copied())[0],
+            median,
+            near(|near| near.least).fold(f64::INFINITY, f64::min),
+            mean(|near| near.hundredth),
+            mean(|near| near.mean),
+            near(|near| near.pairs).sum(),
+            near(|near| near.plain).fold(f64::INFINITY, f64::min),
+            sum(|o| o.errors) / sum(|o| o.boxes),
+            all,
+            error,
+            average(self.whole.iter().copied())[0],
+            average(self.tall.iter().copied())[0],
+        ];
+        figures::row(name, &numbers);
+        for (kind, low) in self.low[1..].iter().enumerate() {
+            let [mean, _] = average(low.iter().copied());
+            figures::row(format!("{name}, kind {kind}"), &[mean]);
+        }
+        let octaves = (0..10).flat_map(|octave| {
+            let each = self.counts.iter().map(|octaves| octaves[octave]);
+            let each = each.filter(|octave| octave.boxes >= 16.0);
+            average(each.map(|octave| bias(&[octave])))
+        });
+        let octaves: Vec<f64> = octaves.filter(|v| !v.is_nan()).collect();
+        figures::row(format!("{name}, bias by octave"), &octaves);
+        self.profile.print(name);
+    }
+}
+
+/// The mean, and its standard error.
+fn average(all: impl Iterator<Item = f64>) -> [f64; 2] {
+    let all: Vec<f64> = all.collect();
+    let number = all.len() as f64;
+    let mean = all.iter().sum::<f64>() / number;
+    let squares: f64 = all.iter().map(|v| (v - mean).powi(2)).sum();
+    [mean, (squares / number / (number - 1.0).max(1.0)).sqrt()]
+}
+
+/// The tallest mode below ν = 0.8, over the mean of its ring.
+fn tallest(spectrum: &Spectrum, side: f64) -> f64 {
+    let most = (0.8 * side) as i64;
+    let mut rings = vec![(0.0, 0.0, 0.0f64); (0.8 / RING) as usize + 1];
+    for (kx, ky) in (-most..=most).flat_map(|kx| (-most..=most).map(move |ky| (kx, ky))) {
+        let nu = ((kx * kx + ky * ky) as f64).sqrt() / side;
+        // The taper spreads what is at 0 over a few modes.
+        if nu > 4.0 / side && nu < 0.8 {
+            let power = spectrum.at(kx, ky).unwrap_or(0.0);
+            let (count, sum, most) = &mut rings[(nu / RING) as usize];
+            *count += 1.0;
+            *sum += power;
+            *most = most.max(power);
+        }
+    }
+    let over = rings.iter().filter(|ring| ring.0 > 0.0);
+    let over = over.map(|(count, sum, most)| most * count / sum);
+    over.fold(0.0, f64::max)
+}
+
+/// Pictures of a forest or a set for each number of steps, or of shares.
+fn panels(all: &PointSet, what: &str, steps: &[u32]) -> Outcome<Vec<Panel>> {
+    let (set, side, width) = match what {
+        "shares" => {
+            let shares = [0.25, 0.0625, 0.04, 0.005f64].into_iter();
+            let panel = |share: f64| panel(&all.clone().keep(share)?, 32.0 / share.sqrt(), 400);
+            return shares.map(panel).collect();
+        }
+        "forest" => (all.in_field(forest()?), 110.0, 700),
+        name => {
+            let mut cases = Case::all().into_iter();
+            let case = cases.find(|case| case.name.starts_with(name));
+            let case = case.ok_or("no such set")?;
+            (case.set(all, CORNER[0])?.0, case.side(3000.0), 900)
+        }
+    };
+    let settled = |&steps: &u32| panel(&set.clone().settle(steps)?, side, width);
+    steps.iter().map(settled).collect()
+}
+
+/// A square of a set.
+fn panel(set: &PointSet, side: f64, width: usize) -> Outcome<Panel> {
+    let scale = width as f64 / side;
+    // Points of all pictures cover about a tenth of the plane where it is densest.
+    let radius = 0.2 * scale / set.placement().keep.get().sqrt();
+    let points = square(set, CORNER.map(|v| v - 1.0), side + 2.0)?;
+    let pixel = |p: &Point| [(p.x - 1.0) * scale, (side + 1.0 - p.y) * scale];
+    let pixels = points.iter().map(pixel);
+    Ok(Panel::dots([width; 2], pixels, radius.max(0.9)))
+}
+
+/// Natural patches, a bare road through them, and a straight edge of a field at their right.
+fn forest() -> Outcome<FieldSpec> {
+    let at = |[x, y]: [f64; 2]| [CORNER[0] + x, CORNER[1] + y];
+    let patches = noise(3, 60.0, 3)?;
+    let patches = patches.curve(vec![[0.3, 0.08], [0.7, 1.0]])?;
+    let way = [[-5.0, 20.0], [35.0, 34.0], [60.0, 60.0], [75.0, 120.0]];
+    let way = Marks::Lines(vec![way.map(at).to_vec()]);
+    let road = FieldSpec::distance(way, [2.0, 2.001], [0.0, 1.0])?;
+    let edge = FieldSpec::ramp(at([112.0, 0.0]), at([112.004, 0.001]), [1.0, 0.0])?;
+    Ok(FieldSpec::multiply(vec![patches, road, edge])?)
+}
