@@ -8,7 +8,7 @@
 use std::time::Instant;
 
 use strew_core::table::Shares;
-use strew_forge::{measure::Torus, numeric::SplitMix};
+use strew_forge::{measure::Sample, numeric::SplitMix};
 
 use crate::{Outcome, arguments::Arguments, figures, ground::HEXAGONAL};
 
@@ -43,7 +43,7 @@ pub fn study(mut arguments: Arguments) -> Outcome {
         let print = |subject: String, kind: Option<usize>, more: &[f64]| {
             let own = darts.cells.iter().flatten();
             let own = own.filter(|(_, own)| kind.is_none_or(|kind| *own == kind));
-            let set = Torus::new(1.0, own.map(|(at, _)| *at).collect());
+            let set = Sample::torus(1.0, own.map(|(at, _)| *at).collect());
             figures::torus(subject, &set, more);
         };
         for kind in 0..parts.len() {

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use strew_core::table::Figures;
-use strew_forge::{Report, Resolution, measure::Torus};
+use strew_forge::{Report, Resolution, measure::Sample};
 
 /// The figures of measured sets, in columns. `strew measure` has the same names.
 const NAMES: &str =
@@ -51,7 +51,7 @@ pub fn value(figures: &Figures, name: &str) -> f64 {
 }
 
 /// Measures a periodic set and prints its row.
-pub fn torus(subject: String, set: &Torus, more: &[f64]) {
-    let report = Report::of_torus(subject, false, set, Resolution::default());
+pub fn torus(subject: String, set: &Sample, more: &[f64]) {
+    let report = Report::of(subject, false, set, Resolution::default());
     self::set(&report.figures, more);
 }

@@ -4,7 +4,7 @@ use fast_poisson::Poisson2D;
 use strew_core::{PeriodicSet, Placement, PointSet, Seed, Settle, Spacing, Twin, Warp};
 use strew_forge::{
     Report, Resolution, ThinnedTwin,
-    measure::{BANDS, Shared, Torus, Window, recurrence, twin_set},
+    measure::{BANDS, Sample, Shared, recurrence, twin_set},
     numeric::SplitMix,
     read_table, with_ranks,
 };
@@ -45,8 +45,8 @@ pub fn comparison(_: Arguments) -> Outcome {
         ("random", independent.collect()),
     ] {
         let density = points.len() as f64 / (SIDE * SIDE);
-        let set = Window::new(SIDE, density, points);
-        let report = Report::of_window(name.into(), false, &set, Resolution::default());
+        let set = Sample::window(SIDE, density, points);
+        let report = Report::of(name.into(), false, &set, Resolution::default());
         figures::set(&report.figures, &[]);
     }
     Ok(())
@@ -82,7 +82,7 @@ pub fn seeds(mut arguments: Arguments) -> Outcome {
     figures::row(warp.strength(), &[guaranteed, least.relative()]);
     let bands = BANDS.map(|[from, to]| format!(" | dB {from} to {to}"));
     figures::head_of_sets(&format!(" | recurrence{}", bands.concat()));
-    let recurrence = |set: &Window, other: Option<&Window>, seed: u64| match side <= 400.0 {
+    let recurrence = |set: &Sample, other: Option<&Sample>, seed: u64| match side <= 400.0 {
         true => recurrence(set, other, RECURRENCE.1, seed),
         false => f64::NAN,
     };
@@ -93,12 +93,12 @@ pub fn seeds(mut arguments: Arguments) -> Outcome {
         let placement = Placement::new(Spacing::ONE, Seed(seed));
         let placement = placement.with_warp(warp).with_settle(settle);
         let set = PointSet::new(table.clone()).placed(placement);
-        let window = |side: f64| -> Outcome<Window> {
+        let window = |side: f64| -> Outcome<Sample> {
             let points = places(&square(&set, [0.0; 2], side)?);
-            Ok(Window::new(side, 1.0, points))
+            Ok(Sample::window(side, 1.0, points))
         };
         let (wide, small) = (window(side)?, window(RECURRENCE.0)?);
-        let report = Report::of_window(format!("seed {seed}"), false, &wide, at);
+        let report = Report::of(format!("seed {seed}"), false, &wide, at);
         let found = recurrence(&small, None, seed);
         let more = [&[found], &report.anisotropy_by_band[..]].concat();
         figures::set(&report.figures, &more);
@@ -107,7 +107,7 @@ pub fn seeds(mut arguments: Arguments) -> Outcome {
     figures::head("seeds | power | phase | recurrence");
     for (i, (seed, wide, small)) in windows.iter().enumerate() {
         for (other, other_wide, other_small) in &windows[..i] {
-            let shared = Shared::of_windows(wide, other_wide, 2.0);
+            let shared = Shared::of(wide, other_wide, 2.0);
             let found = recurrence(small, Some(other_small), *seed);
             let numbers = [shared.power_correlation, shared.phase_peak, found];
             figures::row(format!("{other} and {seed}"), &numbers);
@@ -126,7 +126,7 @@ pub fn periodic(mut arguments: Arguments) -> Outcome {
     figures::head_of_sets("");
     for seed in 0..=seeds {
         let tile = tile.clone().seed(seed);
-        let set = Torus::new(tile.length(), tile.iter().map(|p| p.at()).collect());
+        let set = Sample::torus(tile.length(), tile.iter().map(|p| p.at()).collect());
         figures::torus(format!("{}, seed {seed}", tile.twin()), &set, &[]);
     }
     Ok(())
@@ -159,7 +159,7 @@ pub fn thinned(mut arguments: Arguments) -> Outcome {
         let few = set.points().len() < 4000;
         let ring_width = if few { 0.08 } else { 0.04 };
         let at = Resolution { nu_max, ring_width };
-        let measured = Report::of_torus(format!("{share:.5}"), false, &set, at).figures;
+        let measured = Report::of(format!("{share:.5}"), false, &set, at).figures;
         if !is_quiet {
             figures::set(&measured, &[]);
         }

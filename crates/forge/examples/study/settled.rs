@@ -20,7 +20,7 @@ use strew_core::{
     Point, PointSet,
     field::{FieldSpec, Marks},
 };
-use strew_forge::measure::{Spectrum, Window};
+use strew_forge::measure::{Sample, Spectrum};
 
 use crate::{
     Outcome,
@@ -123,8 +123,8 @@ fn measure(
         row.counts.push(count(&boxes, &points));
         match case.kind {
             Kind::Constant(share) => {
-                let window = Window::new(side, share, points);
-                let spectrum = Spectrum::of_window(&window, 1.0);
+                let window = Sample::window(side, share, points);
+                let spectrum = Spectrum::of(&window, 1.0);
                 row.whole.push(spectrum.summary(RING).low_power);
                 row.tall.push(tallest(&spectrum, window.side()));
             }
