@@ -4,11 +4,11 @@
 //! 2000² spacings, constant shares, a mask of 16384² pixels of which 1 % is 1, and cold boxes; all of it without
 //! settling, and by two and three steps.
 
-use std::{hint::black_box, time::Instant};
+use std::{cell::Cell, hint::black_box};
 
-use rounds::{fill_all, is_quick, medians, now};
+use rounds::{Turns, fill_all, filling, micros, size, timed};
 use strew_core::{
-    F32, Field, Plan, PointSet, Raster, Region,
+    Error, F32, PointSet, Raster, Region,
     field::{Edges, FieldSpec, Filter, Marks, Noise, Pixels},
     server,
 };
@@ -50,186 +50,110 @@ fn mask(size: usize, side: f64) -> Raster {
     raster.edges(Edges::Zero).filter(Filter::Nearest)
 }
 
-fn within(set: &PointSet, field: impl Field + 'static, region: Region) -> Plan {
-    set.in_field(field).within(region).expect("near")
-}
-
 fn main() {
+    let side = size(2000.0, 200.0);
     for steps in [0, 2, 3] {
         println!("settle={steps}");
-        measure(steps);
+        let set = PointSet::blue().seed(5).settle(steps).expect("0 to 4");
+        rates(&set, side, if steps == 0 { 7 } else { 3 });
+        for (name, octaves) in [("1 to 1/4", 2.0), ("1 to 1/32", 5.0)] {
+            cold(&set, side, name, octaves);
+        }
+        masked(&set);
+        let exactly = || set.in_field(ramp(side, 2.0)).exactly(100_000, square(side));
+        let (plan, seconds) = timed(|| exactly().expect("near"));
+        let (count, millis) = (plan.count(), 1e3 * seconds);
+        println!("{count} points exactly in {millis:.1} ms");
     }
 }
 
-fn measure(steps: u32) {
-    let (side, size, rounds) = match steps {
-        _ if is_quick() => (200.0, 1024, 1),
-        0 => (2000.0, 16384, 7),
-        _ => (2000.0, 16384, 3),
-    };
-    let region = square(side);
-    let set = PointSet::blue().seed(5).settle(steps).expect("0 to 4");
+fn rates(set: &PointSet, side: f64, rounds: usize) {
     let noise = Noise {
         seed: 1,
         wavelength: 50.0,
         octaves: 4,
         range: [0.0, 1.0],
     };
-    let road: Vec<[f64; 2]> = (0..200)
-        .map(|i| {
-            [
-                f64::from(i) * side / 199.0,
-                side / 2.0 + 50.0 * f64::from(i % 7),
-            ]
-        })
-        .collect();
-    let spec = |spec: Result<FieldSpec, strew_core::Error>| spec.expect("valid");
-    let half_and_ramp = spec(FieldSpec::max(vec![
-        spec(FieldSpec::constant(0.5)),
-        spec(FieldSpec::ramp([0.0, 0.0], [side / 4.0, 0.0], [1.0, 0.0])),
-    ]));
+    let vertex = |i: i32| {
+        let along = f64::from(i) * side / 199.0;
+        [along, side / 2.0 + 50.0 * f64::from(i % 7)]
+    };
+    let road = Marks::Lines(vec![(0..200).map(vertex).collect()]);
+    let of = |field: Result<FieldSpec, Error>| set.in_field(field.expect("valid"));
+    let half_and_ramp = vec![
+        FieldSpec::constant(0.5).expect("valid"),
+        FieldSpec::ramp([0.0, 0.0], [side / 4.0, 0.0], [1.0, 0.0]).expect("valid"),
+    ];
+    let thinned = set.clone().keep(0.5).expect("a share");
+    let flat = set.clone().warp(0.0).expect("off");
+    let shape = FieldSpec::ramp([0.0; 2], [side, 0.0], [1.0, 0.25]);
+    let by_road = FieldSpec::distance(road, [5.0, 20.0], [0.0, 1.0]);
     let plans = [
-        (
-            "thinned to 1/2",
-            set.clone()
-                .keep(0.5)
-                .expect("a share")
-                .within(region)
-                .expect("near"),
-        ),
-        (
-            "constant 1/2",
-            within(&set, spec(FieldSpec::constant(0.5)), region),
-        ),
+        ("thinned to 1/2", thinned),
+        ("constant 1/2", of(FieldSpec::constant(0.5))),
         (
             "1/2 in seven eighths of a ramp",
-            within(&set, half_and_ramp, region),
+            of(FieldSpec::max(half_and_ramp)),
         ),
-        (
-            "raster, ramp 1 to 1/4",
-            within(&set, ramp(side, 2.0), region),
-        ),
-        (
-            "raster, ramp 1 to 1/32",
-            within(&set, ramp(side, 5.0), region),
-        ),
+        ("raster, ramp 1 to 1/4", set.in_field(ramp(side, 2.0))),
+        ("raster, ramp 1 to 1/32", set.in_field(ramp(side, 5.0))),
         (
             "raster of bytes, ramp 1 to 0",
-            within(&set, ramp_of_bytes(side), region),
+            set.in_field(ramp_of_bytes(side)),
         ),
-        (
-            "shape, ramp 1 to 1/4",
-            within(
-                &set,
-                spec(FieldSpec::ramp([0.0; 2], [side, 0.0], [1.0, 0.25])),
-                region,
-            ),
-        ),
-        (
-            "noise of four octaves",
-            within(&set, spec(FieldSpec::noise(noise)), region),
-        ),
-        (
-            "road of 200 vertices",
-            within(
-                &set,
-                spec(FieldSpec::distance(
-                    Marks::Lines(vec![road]),
-                    [5.0, 20.0],
-                    [0.0, 1.0],
-                )),
-                region,
-            ),
-        ),
-        (
-            "raster, ramp, no warp",
-            within(
-                &set.clone().warp(0.0).expect("off"),
-                ramp(side, 2.0),
-                region,
-            ),
-        ),
-    ];
-    let mut blocks = vec![vec![[0f32; 2]; BLOCK]; plans.len()];
-    let mut jobs: Vec<Box<dyn FnMut() -> u64>> = vec![];
-    for ((_, plan), block) in plans.iter().zip(&mut blocks) {
-        jobs.push(Box::new(move || fill_all::<F32>(plan, block)));
+        ("shape, ramp 1 to 1/4", of(shape)),
+        ("noise of four octaves", of(FieldSpec::noise(noise))),
+        ("road of 200 vertices", of(by_road)),
+        ("raster, ramp, no warp", flat.in_field(ramp(side, 2.0))),
+    ]
+    .map(|(name, set)| (name, set.within(square(side)).expect("near")));
+    let mut turns = Turns::new(rounds);
+    for (name, plan) in &plans {
+        let name = format!("{name}, {} points", plan.count());
+        turns.case(name, filling::<F32>(plan, BLOCK));
     }
-    let mut jobs: Vec<&mut dyn FnMut() -> u64> =
-        jobs.iter_mut().map(|job| &mut **job as _).collect();
-    let jobs: &mut [_; 10] = jobs.as_mut_slice().try_into().expect("ten");
-    let result = medians(rounds, jobs);
-    println!("{side}² spacings, f32, blocks of {BLOCK}, one core, median of {rounds}");
-    for ((name, plan), seconds) in plans.iter().zip(result) {
-        let count = plan.count();
-        println!(
-            "{name:<32} {:>8.1} M points/s  {count} points",
-            1e-6 / seconds
-        );
-    }
+    let title = format!("{side}² spacings, f32, blocks of {BLOCK}, one core");
+    turns.run().print(title, &[("M points/s", &|s| 1e-6 / s)]);
+}
 
-    // Each box is elsewhere, and its plan is new.
-    for (name, octaves) in [("1 to 1/4", 2.0), ("1 to 1/32", 5.0)] {
-        let graded = set.in_field(ramp(side, octaves));
-        let mut times = vec![];
-        let mut counted = 0;
-        for i in 0..200 {
-            let corner = [
-                0.3 * side + f64::from(i % 17),
-                0.2 * side + f64::from(i) * 2.0,
-            ];
-            let share = (-octaves * (corner[0] + 20.0) / side).exp2();
-            let wide = (1000.0 / share).sqrt();
-            let region = Region::new(corner, corner.map(|v| v + wide)).expect("ordered");
-            let start = now();
-            let plan = graded.within(region).expect("near");
-            let mut points = vec![[0f32; 2]; plan.count() as usize];
-            counted += plan.blocks_f32().fill(&mut points);
-            times.push(now() - start);
-            black_box(points);
-        }
-        times.sort_by(f64::total_cmp);
-        println!(
-            "cold box of {} points, ramp {name}: {:.1} µs",
-            counted / times.len(),
-            1e6 * times[times.len() / 2]
-        );
-    }
+/// Boxes of some 1,000 points, each elsewhere, whose plan is new.
+fn cold(set: &PointSet, side: f64, name: &str, octaves: f64) {
+    const BOXES: usize = 200;
+    let graded = set.in_field(ramp(side, octaves));
+    let (number, counted) = (Cell::new(0), Cell::new(0));
+    let one = || {
+        let i = f64::from(number.replace(number.get() + 1));
+        let corner = [0.3 * side + i % 17.0, 0.2 * side + i * 2.0];
+        let share = (-octaves * (corner[0] + 20.0) / side).exp2();
+        let wide = (1000.0 / share).sqrt();
+        let region = Region::new(corner, corner.map(|v| v + wide)).expect("ordered");
+        let plan = graded.within(region).expect("near");
+        let mut points = vec![[0f32; 2]; plan.count() as usize];
+        counted.set(counted.get() + plan.blocks_f32().fill(&mut points));
+        black_box(points);
+        1
+    };
+    let name = format!("cold box, ramp {name}");
+    let times = Turns::new(BOXES).case(name, one).run();
+    let title = format!("{} points a box", counted.get() / number.get() as usize);
+    times.print(title, &[("µs", &micros)]);
+}
 
-    let start = Instant::now();
-    let mask = mask(size, size as f64);
-    println!(
-        "mask of {size}² pixels made ready in {:.2} s",
-        start.elapsed().as_secs_f64()
-    );
+fn masked(set: &PointSet) {
+    let size = size(16384, 1024);
+    let (mask, seconds) = timed(|| mask(size, size as f64));
+    println!("mask of {size}² pixels made ready in {seconds:.2} s");
     let graded = set.in_field(mask);
     for part in [0.25, 1.0] {
         let region = square(size as f64 * part);
-        let start = Instant::now();
-        let plan = graded.within(region).expect("near");
-        let counted = start.elapsed().as_secs_f64();
-        let start = Instant::now();
-        fill_all::<F32>(&plan, &mut vec![[0f32; 2]; BLOCK]);
-        let filled = start.elapsed().as_secs_f64();
-        let start = Instant::now();
-        let candidates = server::candidates(&graded, region, 8192).expect("near");
-        let estimated = start.elapsed().as_secs_f64();
+        let (plan, counted) = timed(|| graded.within(region).expect("near"));
+        let (_, filled) = timed(|| fill_all::<F32>(&plan, &mut vec![[0f32; 2]; BLOCK]));
+        let candidates = || server::candidates(&graded, region, 8192).expect("near");
+        let (candidates, estimated) = timed(candidates);
+        let [counted, filled, estimated] = [counted, filled, estimated].map(|v| 1e3 * v);
         println!(
-            "mask, {part} of its side: {} points, counted in {:.1} ms, filled in {:.1} ms, {candidates} candidates in {:.2} ms",
+            "mask, {part} of its side: {} points, counted in {counted:.1} ms, filled in {filled:.1} ms, {candidates} candidates in {estimated:.2} ms",
             plan.count(),
-            1e3 * counted,
-            1e3 * filled,
-            1e3 * estimated
         );
     }
-    let start = Instant::now();
-    let plan = set
-        .in_field(ramp(side, 2.0))
-        .exactly(100_000, region)
-        .expect("near");
-    println!(
-        "{} points exactly in {:.1} ms",
-        plan.count(),
-        1e3 * start.elapsed().as_secs_f64()
-    );
 }

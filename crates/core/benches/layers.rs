@@ -1,16 +1,18 @@
 //! Chunks of layers: trees clear of rocks, and grass clear of both, counted and made.
 
-use rounds::{fill_all, is_quick, medians};
-use strew_core::{F64, Plan, Point, PointSet, Points, Region};
+use rounds::{Turns, elsewhere, fill_all, filling, in_block, micros, size};
+use strew_core::{F64, Plan, PointSet, Points, Region};
 
 mod rounds;
 
 /// The side of a chunk.
 const SIDE: f64 = 64.0;
 
+fn square(set: &PointSet, side: f64) -> Plan {
+    rounds::boxed(set, [0.0; 2], side)
+}
+
 fn main() {
-    let quick = is_quick();
-    let (rounds, chunks) = if quick { (1, 2) } else { (25, 40) };
     let set = |spacing: f64, seed: u64| {
         let set = PointSet::blue().spacing(spacing);
         set.expect("in range").seed(seed)
@@ -26,71 +28,39 @@ fn main() {
     let clear_trees = clear(&trees, &rocks, 3.0);
     let clear_grass = clear(&clear(&grass, &rocks, 2.0), &clear_trees, 1.0);
     let sparse = clear(&set(64.0, 4), &grass, 1.0);
-
-    let mut number = 0;
-    // Each chunk elsewhere.
-    let mut made = |set: &PointSet, block: &mut [Point]| {
-        for _ in 0..chunks {
-            number += 1;
-            let plan = set.chunk(SIDE, [number % 211, number / 211]);
-            let plan = plan.expect("in range");
-            fill_all::<Points>(&plan, block);
-        }
-        chunks as u64
-    };
-    let mut blocks = [(); 5].map(|()| vec![Point::default(); 8192]);
-    let [one, two, three, four, five] = &mut blocks;
-    let sets = [&trees, &clear_trees, &grass, &clear_grass, &sparse];
-    let made = std::cell::RefCell::new(&mut made);
-    let chunk = |i: usize, block: &mut [Point]| (made.borrow_mut())(sets[i], block);
-    let times = medians(
-        rounds,
-        &mut [
-            &mut || chunk(0, one),
-            &mut || chunk(1, two),
-            &mut || chunk(2, three),
-            &mut || chunk(3, four),
-            &mut || chunk(4, five),
-        ],
-    );
-    println!("chunks of {SIDE}, each elsewhere: counted and made; median of {rounds}");
-    let names = [
-        "trees",
-        "trees clear of rocks",
-        "grass",
-        "grass clear of rocks and trees",
-        "a few points clear of grass",
+    let sets = [
+        ("trees", trees),
+        ("trees clear of rocks", clear_trees),
+        ("grass", grass),
+        ("grass clear of rocks and trees", clear_grass),
+        ("a few points clear of grass", sparse),
     ];
-    for ((name, set), seconds) in names.iter().zip(sets).zip(times) {
-        let points = mean(set);
-        let each = seconds * 1e6;
-        println!("{name:<32} {points:>7.0} points {each:>9.1} µs");
+    let chunks = size(40, 2);
+    let mut turns = Turns::new(25);
+    for (name, set) in &sets {
+        // The mean of a chunk.
+        let points = square(set, 4.0 * SIDE).count() as f64 / 16.0;
+        let elsewhere = elsewhere();
+        let made = in_block(8192, move |block| {
+            for _ in 0..chunks {
+                let region = Region::chunk(SIDE, elsewhere()).expect("in range");
+                fill_all::<Points>(&set.within(region).expect("in range"), block);
+            }
+            chunks
+        });
+        turns.case(format!("{name}, {points:.0} points"), made);
     }
+    let title = format!("chunks of {SIDE}, each elsewhere: counted and made");
+    turns.run().print(title, &[("µs", &micros)]);
 
     // Large plans, made piece by piece.
-    let side = if quick { 200.0 } else { 2000.0 };
-    let plan = |set: &PointSet| -> Plan {
-        let region = Region::new([0.0; 2], [side; 2]).expect("ordered");
-        set.within(region).expect("in range")
-    };
-    let plans = [plan(&clear_trees), plan(&clear_grass)];
-    let mut block = vec![[0.0; 2]; 8192];
-    let mut other = block.clone();
-    let times = medians(
-        rounds.min(5),
-        &mut [&mut || fill_all::<F64>(&plans[0], &mut block), &mut || {
-            fill_all::<F64>(&plans[1], &mut other)
-        }],
-    );
-    println!("squares of {side}, counted before");
-    for ((name, plan), seconds) in [names[1], names[3]].iter().zip(&plans).zip(times) {
-        let (points, each) = (plan.count(), seconds * 1e9);
-        println!("{name:<32} {points:>7} points {each:>9.1} ns a point");
+    let side = size(2000.0, 200.0);
+    let plans = [&sets[1], &sets[3]].map(|(name, set)| (name, square(set, side)));
+    let mut turns = Turns::new(5);
+    for (name, plan) in &plans {
+        let name = format!("{name}, {} points", plan.count());
+        turns.case(name, filling::<F64>(plan, 8192));
     }
-}
-
-/// The mean number of points in a chunk.
-fn mean(set: &PointSet) -> f64 {
-    let region = Region::new([0.0; 2], [4.0 * SIDE; 2]).expect("ordered");
-    set.count(region).expect("in range") as f64 / 16.0
+    let title = format!("squares of {side}, counted before");
+    turns.run().print(title, &[("ns a point", &|s| 1e9 * s)]);
 }

@@ -2,254 +2,97 @@
 //!
 //! `-- --quick` only checks that everything still runs.
 
-use std::{cell::Cell, hint::black_box};
+use std::hint::black_box;
 
-use rounds::{BLOCK, boxed, fill_all, is_quick, medians, now, sets, table_of};
-use strew_core::{
-    Attribute, Attributes, Column, F32, F64, Plan, Point, PointSet, Points, Polygon, Region,
+use rounds::{
+    AT_ONCE, BLOCK, Turns, boxed, cold_boxes, digits, elsewhere, filling, filling_area, plain_fill,
+    sets, sets_of, size, star, table_of, with_attributes,
 };
+use strew_core::{F32, F64, Points, Region};
 
 mod rounds;
 
-/// Points per block with attributes: few enough to stay in cache.
-const AT_ONCE: usize = 1024;
-
-/// A number that is `value` with rounds enough to be measured, and small in a quick run.
-fn size(value: f64) -> f64 {
-    if is_quick() { 40.0 } else { value }
+fn row(name: &str, value: f64, target: &str, seconds: f64) {
+    let note = format!("{:.3} ns a point", 1e9 * seconds);
+    rounds::row(name, [digits(value), target.to_string()], &note);
 }
 
-fn rounds_of(number: usize) -> usize {
-    if is_quick() { 1 } else { number }
-}
-
-fn row(name: &str, ratio: f64, target: &str, note: String) {
-    println!("{name:<44} {ratio:>8.2} {target:>8}   {note}");
-}
-
-fn nanos(seconds: f64) -> String {
-    format!("{:.3} ns a point", 1e9 * seconds)
-}
-
-/// Makes all points of a plan with ids and two attributes. Returns the number of points.
-fn with_attributes(plan: &Plan, points: &mut [Point], columns: &mut Vec<Column>) -> u64 {
-    let attributes = vec![Attribute::Angle, Attribute::scale(0.5, 2.0).expect("valid")];
-    let attributes = Attributes::new(attributes).expect("different");
-    let bound = plan.attributes(&attributes).expect("not of a mix");
-    let (mut blocks, mut total) = (plan.blocks_points(), 0);
-    loop {
-        let filled = blocks.fill(points);
-        bound.write_points(&points[..filled], columns);
-        black_box(&mut *columns);
-        total += filled as u64;
-        if filled < points.len() {
-            return total;
-        }
-    }
-}
+/// The speed of cases as multiples of that of their baselines: a name, both cases, and the target.
+const RATIOS: [(&str, [&str; 2], &str); 10] = [
+    ("f32 ÷ plain fill", ["f32", "fill"], "0.45"),
+    ("warped f32 ÷ f32", ["warped f32", "f32"], "0.5"),
+    ("warped f64 ÷ f64", ["warped f64", "f64"], ""),
+    ("ids ÷ f64", ["ids", "f64"], "0.8"),
+    ("ids and two attributes ÷ ids", ["both", "few ids"], "0.7"),
+    ("map m ÷ s, f32", ["m", "s"], "0.9"),
+    ("map l ÷ s, f32", ["l", "s"], "0.9"),
+    ("map m ÷ s, warped f32", ["m warped", "s warped"], "0.9"),
+    ("map l ÷ s, warped f32", ["l warped", "s warped"], "0.9"),
+    ("star of 100 vertices ÷ box", ["star", "box"], "0.5"),
+];
 
 fn bulk() {
-    let side = size(3000.0);
-    let [plain, warped] = sets().map(|set| boxed(&set, [0.0, 0.0], side));
-    let points = plain.count() as u64;
-    let (mut fill, mut singles) = (vec![[0f32; 2]; BLOCK], vec![[0f32; 2]; BLOCK]);
-    let (mut moved, mut doubles) = (singles.clone(), vec![[0f64; 2]; BLOCK]);
-    let mut moved_doubles = doubles.clone();
-    let mut ids = vec![Point::default(); BLOCK];
-    let (mut few, mut columns) = (vec![Point::default(); AT_ONCE], vec![]);
-    let mut few_ids = few.clone();
-    let mut marker = 0f32;
-    let [
-        filled,
-        single,
-        double,
-        id,
-        few_id,
-        attributes,
-        warped_single,
-        warped_double,
-    ] = medians(
-        rounds_of(15),
-        &mut [
-            &mut || {
-                for _ in 0..points.div_ceil(BLOCK as u64) {
-                    marker += 1.0;
-                    black_box(&mut fill).fill([marker, marker]);
-                }
-                points.next_multiple_of(BLOCK as u64)
-            },
-            &mut || fill_all::<F32>(&plain, &mut singles),
-            &mut || fill_all::<F64>(&plain, &mut doubles),
-            &mut || fill_all::<Points>(&plain, &mut ids),
-            &mut || fill_all::<Points>(&plain, &mut few_ids),
-            &mut || with_attributes(&plain, &mut few, &mut columns),
-            &mut || fill_all::<F32>(&warped, &mut moved),
-            &mut || fill_all::<F64>(&warped, &mut moved_doubles),
-        ],
-    );
-    row("f32 ÷ plain fill", filled / single, "0.45", nanos(single));
-    row(
-        "warped f32 ÷ f32",
-        single / warped_single,
-        "0.5",
-        nanos(warped_single),
-    );
-    row(
-        "warped f64 ÷ f64",
-        double / warped_double,
-        "",
-        nanos(warped_double),
-    );
-    row("ids ÷ f64", double / id, "0.8", nanos(id));
-    row(
-        "ids and two attributes ÷ ids",
-        few_id / attributes,
-        "0.7",
-        nanos(attributes),
-    );
-}
-
-fn maps() {
-    let plans = [49, 100, 200].map(|radius| {
-        let plain = PointSet::new(table_of(radius));
-        [plain.clone(), plain.seed(1)].map(|set| boxed(&set, [0.0, 0.0], size(3000.0)))
+    let side = size(3000f64, 40.0);
+    let sets = sets();
+    let [plain, warped] = sets.each_ref().map(|set| boxed(set, [0.0, 0.0], side));
+    let maps = [("s", 49), ("m", 100), ("l", 200)].map(|(name, radius)| {
+        let plans = sets_of(table_of(radius)).map(|set| boxed(&set, [0.0, 0.0], side));
+        (name, plans)
     });
-    let block = Cell::new(vec![[0f32; 2]; BLOCK]);
-    let fill = |plan: &Plan| {
-        let mut room = block.take();
-        let made = fill_all::<F32>(plan, &mut room);
-        block.set(room);
-        made
-    };
-    let [s, m, l, warped_s, warped_m, warped_l] = medians(
-        rounds_of(15),
-        &mut [
-            &mut || fill(&plans[0][0]),
-            &mut || fill(&plans[1][0]),
-            &mut || fill(&plans[2][0]),
-            &mut || fill(&plans[0][1]),
-            &mut || fill(&plans[1][1]),
-            &mut || fill(&plans[2][1]),
-        ],
-    );
-    row("map m ÷ s, f32", s / m, "0.9", nanos(m));
-    row("map l ÷ s, f32", s / l, "0.9", nanos(l));
-    row(
-        "map m ÷ s, warped f32",
-        warped_s / warped_m,
-        "0.9",
-        nanos(warped_m),
-    );
-    row(
-        "map l ÷ s, warped f32",
-        warped_s / warped_l,
-        "0.9",
-        nanos(warped_l),
-    );
+    let radius = side / std::f64::consts::PI.sqrt() / 0.9;
+    let [square, star] = [plain.region().into(), star(radius, 0.8).into()];
+    let outline = size(10_000.0, 40.0);
+    let mut turns = Turns::new(15);
+    turns
+        .case("fill", plain_fill(plain.count() as u64))
+        .case("f32", filling::<F32>(&plain, BLOCK))
+        .case("f64", filling::<F64>(&plain, BLOCK))
+        .case("ids", filling::<Points>(&plain, BLOCK))
+        .case("few ids", filling::<Points>(&plain, AT_ONCE))
+        .case("both", with_attributes(|| plain.clone()))
+        .case("warped f32", filling::<F32>(&warped, BLOCK))
+        .case("warped f64", filling::<F64>(&warped, BLOCK))
+        .case("box", filling_area(&sets[0], &square))
+        .case("star", filling_area(&sets[0], &star))
+        .case("count", || {
+            black_box(boxed(&sets[1], [0.0, 0.0], outline).count());
+            (4.0 * outline) as u64
+        });
+    for (name, [plain, warped]) in &maps {
+        turns.case(name, filling::<F32>(plain, BLOCK));
+        turns.case(format!("{name} warped"), filling::<F32>(warped, BLOCK));
+    }
+    let times = turns.run();
+    for (name, [case, baseline], target) in RATIOS {
+        row(name, times[baseline] / times[case], target, times[case]);
+    }
+    let name = "warped count of a box, ns a spacing of outline";
+    rounds::row(name, [digits(1e9 * times["count"])], "");
 }
 
 fn small() {
-    let sets = sets();
-    let mut block = vec![[0f32; 2]; 4096];
-    let (mut points, mut columns) = (vec![Point::default(); AT_ONCE], vec![]);
-    let number = Cell::new(0i64);
-    let next = || {
-        number.set(number.get() + 1);
-        [number.get() % 997, number.get() / 997]
+    let [plain, warped] = sets();
+    let elsewhere = elsewhere();
+    let chunk = || {
+        let region = Region::chunk(64.0, elsewhere()).expect("valid");
+        warped.within(region).expect("in range")
     };
-    let mut boxes = |set: usize| {
-        let calls = if is_quick() { 3 } else { 500 };
-        for _ in 0..calls {
-            let plan = boxed(&sets[set], next().map(|v| v as f64 * 40.0), 31.6);
-            let count = plan.count() as usize;
-            black_box(plan.blocks_f32().fill(&mut block[..count]));
-            black_box(&mut block);
-        }
-        calls
-    };
-    let (mut plain, mut warped) = (vec![], vec![]);
-    let [chunk] = medians(
-        rounds_of(25),
-        &mut [&mut || {
-            for (set, times) in [(0, &mut plain), (1, &mut warped)] {
-                let start = now();
-                let calls = boxes(set);
-                times.push((now() - start) / f64::from(calls));
-            }
-            0
-        }],
-    )
-    .map(|_| {
-        medians(
-            rounds_of(25),
-            &mut [&mut || {
-                let region = Region::chunk(64.0, next()).expect("valid");
-                let plan = sets[1].within(region).expect("in range");
-                with_attributes(&plan, &mut points, &mut columns)
-            }],
-        )[0]
-    });
-    let [plain, warped] = [plain, warped].map(|mut times| {
-        times.sort_by(f64::total_cmp);
-        times[times.len() / 2]
-    });
-    let note = format!("{:.1} µs, plain {:.1}", 1e6 * warped, 1e6 * plain);
-    row(
-        "cold box of 1,000 points, warped, µs",
-        1e6 * warped,
-        "12",
-        note.clone(),
-    );
-    row("the same × plain", warped / plain, "2", note);
-    row(
-        "chunk of 64 × 64, ids, two attributes, ns",
-        1e9 * chunk,
-        "100",
-        nanos(chunk),
-    );
-}
-
-fn areas() {
-    let points = size(3000.0).powi(2);
-    let radius = (points / std::f64::consts::PI).sqrt() / 0.9;
-    let vertex = |i: i32| {
-        let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 100.0).sin_cos();
-        let radius = if i % 2 == 0 { radius } else { 0.8 * radius };
-        [radius * cos, radius * sin]
-    };
-    let star = Polygon::new(&[(0..100).map(vertex).collect::<Vec<_>>()]).expect("a ring");
-    let sets = sets();
-    let (mut one, mut two) = (vec![[0f32; 2]; BLOCK], vec![[0f32; 2]; BLOCK]);
-    let side = size(10_000.0);
-    let [all, of_star, counted] = medians(
-        rounds_of(15),
-        &mut [
-            &mut || fill_all::<F32>(&boxed(&sets[0], [0.0, 0.0], points.sqrt()), &mut one),
-            &mut || {
-                let plan = sets[0].within(star.clone()).expect("in range");
-                fill_all::<F32>(&plan, &mut two)
-            },
-            &mut || {
-                black_box(boxed(&sets[1], [0.0, 0.0], side).count());
-                (4.0 * side) as u64
-            },
-        ],
-    );
-    row(
-        "star of 100 vertices ÷ box",
-        all / of_star,
-        "0.5",
-        nanos(of_star),
-    );
-    let name = "warped count of a box, ns a spacing of outline";
-    row(name, 1e9 * counted, "", String::new());
+    let times = Turns::new(25)
+        .case("plain", cold_boxes(&plain, size(500, 3)))
+        .case("warped", cold_boxes(&warped, size(500, 3)))
+        .case("chunk", with_attributes(chunk))
+        .run();
+    let [plain, warped, chunk] = ["plain", "warped", "chunk"].map(|name| times[name]);
+    let name = "cold box of 1,000 points, warped, µs";
+    row(name, 1e6 * warped, "12", 1e-3 * warped);
+    row("the same × plain", warped / plain, "2", 1e-3 * plain);
+    let name = "chunk of 64 × 64, ids, two attributes, ns";
+    row(name, 1e9 * chunk, "100", chunk);
 }
 
 fn main() {
     println!("one thread's own time, medians of interleaved rounds");
-    println!("{:<44} {:>8} {:>8}", "", "measured", "target");
+    rounds::row("", ["measured", "target"].map(String::from), "");
     bulk();
-    maps();
     small();
-    areas();
 }

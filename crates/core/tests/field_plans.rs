@@ -6,12 +6,16 @@ use std::sync::{Arc, OnceLock};
 
 use proptest::prelude::*;
 use strew_core::{
-    Area, Backend, Circle, ErrorKind, F32, F64, Field, Format, Member, Offsets, Placement, Plan,
-    Point, PointId, PointSet, Points, Polygon, Raster, Region, Seed, Spacing, Table, Warp,
+    Area, Circle, ErrorKind, F32, Field, Member, Offsets, Point, PointSet, Points, Raster, Region,
+    Table,
     field::{Edges, FieldSpec, Filter, Marks, Noise, Pixels},
     server::{self, Stop},
 };
-use subject::{all_by, definition, shipped};
+use subject::{
+    all, any_area, any_box, any_placement, definition,
+    plane::{Parts, agree, agree_around, any_parts, brute_force, within},
+    set, shipped,
+};
 
 /// Blue with ranks, and a table without.
 fn tables() -> &'static [Table; 2] {
@@ -98,66 +102,11 @@ impl Field for Shared {
 }
 
 fn any_set() -> impl Strategy<Value = (PointSet, Shared)> {
-    let seed = prop_oneof![Just(0u64), any::<u64>()];
-    let warp = prop_oneof![Just(0.0), Just(1.0), 0.0..2.0f64];
-    let keep = prop_oneof![Just(1.0), 0.2..1.0f64];
-    let parts = (0..2usize, seed, warp, 0.6..3.0f64, keep, 0..fields().len());
-    parts.prop_map(|(table, seed, warp, spacing, keep, field)| {
-        let placement = Placement::new(Spacing::new(spacing).expect("in range"), Seed(seed));
-        let placement = placement.with_warp(Warp::new(warp).expect("in range"));
-        let set = PointSet::new(tables()[table].clone()).placed(placement);
-        (
-            set.keep(keep).expect("a share"),
-            Shared(fields()[field].clone(), field),
-        )
+    let parts = (0..2usize, any_placement(), 0..fields().len());
+    parts.prop_map(|(table, placement, field)| {
+        let set = set(&tables()[table], placement);
+        (set, Shared(fields()[field].clone(), field))
     })
-}
-
-fn any_box() -> impl Strategy<Value = Region> {
-    let corner = prop::array::uniform2(-70.0..40.0f64);
-    (corner, prop::array::uniform2(0.0..45.0f64))
-        .prop_map(|([x, y], [w, h])| Region::new([x, y], [x + w, y + h]).expect("ordered"))
-}
-
-fn any_area() -> impl Strategy<Value = Area> {
-    let center = || prop::array::uniform2(-30.0..30.0f64);
-    let ring = prop::collection::vec(center(), 3..7);
-    prop_oneof![
-        any_box().prop_map(Area::from),
-        (center(), 1.0..25.0f64).prop_map(|(at, r)| Circle::new(at, r).expect("round").into()),
-        ring.prop_filter_map("a polygon", |ring| Polygon::new(&[ring])
-            .ok()
-            .map(Area::from)),
-        (any_box(), center(), 1.0..25.0f64).prop_map(|(region, at, r)| {
-            Area::from(region).without([Circle::new(at, r).expect("round").into()])
-        }),
-    ]
-}
-
-/// Every point of a box by the definition, in order.
-fn defined(set: &PointSet, field: &Shared, region: &Region) -> Vec<Point> {
-    let unit = set.table().alpha().set_side_f64() * set.placement().spacing.get();
-    let lines = |axis: usize| {
-        let ends = [region.min()[axis], region.max()[axis]].map(|v| (v / unit) as i64);
-        ends[0] - 160..ends[1] + 160
-    };
-    let mut all = Vec::new();
-    for y in lines(1) {
-        for x in lines(0) {
-            let id = PointId { x, y };
-            if let Some([x, y]) = definition::place_in(set, field, id)
-                && region.contains([x, y])
-            {
-                all.push(Point { id, x, y });
-            }
-        }
-    }
-    all.sort_by_key(|p| (p.id.x.div_euclid(1024), p.id.y, p.id.x));
-    all
-}
-
-fn items<F: Format>(plan: &Plan, block: usize) -> Vec<F::Item> {
-    all_by::<F>(plan, block, Backend::best())
 }
 
 proptest! {
@@ -165,7 +114,8 @@ proptest! {
 
     #[test]
     fn a_box_holds_what_the_definition_has((set, field) in any_set(), region in any_box()) {
-        let expected = defined(&set, &field, &region);
+        let place = |id| definition::place_in(&set, &field, id);
+        let expected = brute_force(&set, &region.into(), 160, place);
         let set = set.in_field(field).settle(0).expect("0");
         let plan = set.within(region).expect("near");
         prop_assert_eq!(plan.to_vec(), expected.clone());
@@ -182,90 +132,28 @@ proptest! {
 
     #[test]
     fn an_area_holds_the_points_of_its_box_that_lie_in_it(
-        (set, field) in any_set(), area in any_area(), block in 1usize..300, clear: bool,
+        (set, field) in any_set(), area in any_area(), parts in any_parts(), clear: bool,
     ) {
         let mut set = set.in_field(field.clone());
         if clear {
             let other = PointSet::new(tables()[0].clone()).spacing(4.0).expect("in range");
             set = set.clear_of(&other.seed(3).in_field(field), 1.5).expect("near");
         }
-        let bounds = area.bounds().expect("bounded");
-        let mut expected = set.within(bounds).expect("near").to_vec();
+        let mut expected = within(&set, area.bounds().expect("bounded"));
         expected.retain(|p| area.contains(p.at()));
-        let plan = set.within(area).expect("near");
-        prop_assert_eq!(plan.count(), expected.len() as u128);
-        let pairs: Vec<[f64; 2]> = expected.iter().map(Point::at).collect();
-        for backend in Backend::available() {
-            prop_assert_eq!(&all_by::<Points>(&plan, block, backend), &expected);
-            prop_assert_eq!(&all_by::<F64>(&plan, block, backend), &pairs);
-            prop_assert_eq!(
-                all_by::<F32>(&plan, block, backend), all_by::<F32>(&plan, 99, Backend::Scalar)
-            );
-        }
-        let from_tiles = plan.tiles(300).flat_map(|tile| {
-            let mut all = vec![Point::default(); expected.len() + 1];
-            let filled = plan.tile_blocks::<Points>(&tile).fill(&mut all);
-            all.truncate(filled);
-            all
-        });
-        prop_assert!(from_tiles.eq(expected.iter().copied()));
-    }
-
-    #[test]
-    fn windows_and_cursors_are_parts(
-        (set, field) in any_set(), area in any_area(), parts in 1u32..7, offset in 0.0..1.2f64,
-        limit in 0u128..400, block in 1usize..300,
-    ) {
-        let set = set.in_field(field);
-        let plan = set.within(area.clone()).expect("near");
-        let all = plan.to_vec();
-        let split: Vec<Point> = plan.split(parts).flat_map(|part| part.to_vec()).collect();
-        prop_assert_eq!(&split, &all);
-        let offset = (offset * all.len() as f64) as u128;
-        let window = plan.window(offset, Some(limit));
-        let rest = &all[(offset as usize).min(all.len())..];
-        prop_assert_eq!(window.to_vec(), &rest[..rest.len().min(limit as usize)]);
-        // From where the window ends, and from where it begins.
-        let resumed = |cursor| set.resume(area.clone(), cursor).expect("near");
-        if let Some(next) = window.next_cursor() {
-            prop_assert_eq!(next.offset, window.offset() + window.count());
-            let (again, stop) = (resumed(next), Stop::new());
-            prop_assert_eq!(again.to_vec(), &all[next.offset as usize..]);
-            prop_assert_eq!(again.window(5, Some(9)).to_vec(), plan.window(next.offset + 5, Some(9)).to_vec());
-            prop_assert_eq!(again.window(0, Some(7)).next_cursor(), plan.window(0, Some(next.offset + 7)).next_cursor());
-            stop.raise();
-            let _ = server::stopped_by(again, stop.clone()).window(3, None).next_cursor();
-        }
-        if let Some(cursor) = window.cursor() {
-            prop_assert_eq!(resumed(cursor).to_vec(), &all[cursor.offset as usize..]);
-        }
-        // From any block.
-        let (mut blocks, mut some) = (plan.blocks_points(), vec![Point::default(); block]);
-        let filled = blocks.fill(&mut some);
-        if let Some(cursor) = blocks.cursor() {
-            prop_assert_eq!(cursor.offset, filled as u128);
-            prop_assert_eq!(resumed(cursor).to_vec(), &all[filled..]);
-        }
+        agree(&set, area, &expected, parts);
     }
 
     #[test]
     fn searches_find_what_boxes_hold(
         (set, field) in any_set(), at in prop::array::uniform2(-40.0..40.0f64), radius in 0.0..9.0f64,
     ) {
-        let set = set.in_field(field);
-        let region = Region::new(at.map(|v| v - 10.0), at.map(|v| v + 10.0)).expect("ordered");
-        let squared = |p: &Point| (p.x - at[0]).powi(2) + (p.y - at[1]).powi(2);
-        let mut expected = set.within(region).expect("near").to_vec();
-        expected.retain(|p| squared(p) <= radius * radius);
-        expected.sort_by(|a, b| squared(a).total_cmp(&squared(b)).then(a.id.cmp(&b.id)));
-        let found = set.around(at, radius, 10_000).expect("few");
-        let found: Vec<Point> = found.iter().map(|near| near.member.point()).collect();
-        prop_assert_eq!(found, expected);
+        agree_around(&set.in_field(field), at, radius);
     }
 
     #[test]
     fn a_constant_field_is_a_share(
-        (set, _) in any_set(), area in any_area(), share in prop_oneof![Just(1.0), 0.0..1.0f64],
+        (set, _) in any_set(), area in any_area(), share in prop_oneof![Just(1.0), Just(0.7), 0.0..1.0f64],
     ) {
         let keep = set.placement().keep.get();
         let field = FieldSpec::constant(share).expect("a share");
@@ -275,7 +163,14 @@ proptest! {
         prop_assert_eq!(described.placement(), set.placement());
         if share * keep >= 1e-6 {
             let kept = set.keep(share * keep).expect("a share");
-            prop_assert_eq!(described.to_vec(), kept.within(area).expect("near").to_vec());
+            let points = within(&kept, area);
+            prop_assert_eq!(described.to_vec(), &points[..]);
+            prop_assert_eq!(described.count(), points.len() as u128);
+            for member in described.iter().step_by(points.len() / 50 + 1) {
+                prop_assert_eq!(kept.point(member.id()), Some(member));
+                let near = kept.nearest(member.at(), 1).expect("near");
+                prop_assert_eq!(near[0].distance, 0.0);
+            }
         }
     }
 }
@@ -342,20 +237,20 @@ fn numbers_are_found_in_every_field() {
 #[test]
 fn far_chunks_have_exact_offsets() {
     let field = |_: [f64; 2]| 0.6;
+    let set = PointSet::new(tables()[0].clone());
+    let beside = |[x, y]: [i64; 2]| [[x, y], [x + 1, y], [x, y + 1]];
     for (seed, at) in [(0, [1_000_000_000_000, -77]), (7, [-3, 99_999_999_999])] {
-        let set = PointSet::new(tables()[0].clone()).seed(seed);
-        let chunk = Region::chunk(10.0, at).expect("near enough");
-        let kept = set
-            .clone()
-            .keep(0.6)
-            .expect("a share")
-            .within(chunk)
-            .expect("near");
-        let plan = set.in_field(field).within(chunk).expect("near");
-        assert_eq!(items::<Offsets>(&plan, 17), items::<Offsets>(&kept, 99));
-        assert_eq!(items::<F32>(&plan, 17), items::<F32>(&kept, 99));
-        assert_eq!(items::<Points>(&plan, 17), items::<Points>(&kept, 99));
-        assert_eq!(plan.origin(), kept.origin());
+        let set = set.clone().seed(seed);
+        let graded = set.in_field(field);
+        let kept = set.keep(0.6).expect("a share");
+        for at in beside(at) {
+            let chunk = Region::chunk(10.0, at).expect("near enough");
+            let [plan, kept] = [&graded, &kept].map(|set| set.within(chunk).expect("near"));
+            assert_eq!(all::<Offsets>(&plan, 17), all::<Offsets>(&kept, 99));
+            assert_eq!(all::<F32>(&plan, 17), all::<F32>(&kept, 99));
+            assert_eq!(all::<Points>(&plan, 17), all::<Points>(&kept, 99));
+            assert_eq!(plan.origin(), kept.origin());
+        }
     }
 }
 
@@ -388,37 +283,30 @@ fn where_a_field_is_constant_its_bounds_change_nothing() {
         let region = Region::new([-30.0, 10.0], [900.0, 1500.0]).expect("ordered");
         let circle = Circle::new([300.0, 700.0], 420.0).expect("round");
         for area in [Area::from(region), circle.into()] {
+            let expected = within(&looked_up, area.clone());
+            let parts = Parts {
+                block: 1234,
+                tile: 40_000,
+                offset: 0.3,
+                limit: 5000,
+                number: 2,
+            };
+            agree(&set, area.clone(), &expected, parts);
             let [plan, other] =
                 [&set, &looked_up].map(|set| set.within(area.clone()).expect("near"));
-            let expected = other.to_vec();
-            assert_eq!(plan.count(), expected.len() as u128);
-            assert_eq!(plan.to_vec(), expected);
-            assert_eq!(items::<F32>(&plan, 777), items::<F32>(&other, 4000));
+            assert_eq!(all::<F32>(&plan, 777), all::<F32>(&other, 4000));
             for part in [0.0, 0.01, 0.3, 0.31, 0.9] {
                 let offset = (part * expected.len() as f64) as usize;
-                let window = plan.window(offset as u128, Some(5000));
-                assert_eq!(
-                    window.to_vec(),
-                    &expected[offset..expected.len().min(offset + 5000)]
-                );
-                let next = window.next_cursor();
-                assert_eq!(next, other.window(offset as u128, Some(5000)).next_cursor());
-                let (mut blocks, mut block) = (window.blocks_points(), [Point::default(); 1234]);
-                let filled = blocks.fill(&mut block);
-                let cursor = blocks.cursor().expect("more");
-                let resumed = set.resume(area.clone(), cursor).expect("near");
-                assert_eq!(
-                    resumed.window(0, Some(99)).to_vec(),
-                    &expected[offset + filled..][..99]
-                );
+                let windows = [&plan, &other].map(|plan| plan.window(offset as u128, Some(5000)));
+                let end = expected.len().min(offset + 5000);
+                assert_eq!(windows[0].to_vec(), &expected[offset..end]);
+                assert_eq!(windows[0].next_cursor(), windows[1].next_cursor());
+                let mut blocks = windows[0].blocks_points();
+                let filled = blocks.fill(&mut [Point::default(); 1234]);
+                let rest = set.resume(area.clone(), blocks.cursor().expect("more"));
+                let rest = rest.expect("near").window(0, Some(99)).to_vec();
+                assert_eq!(rest, &expected[offset + filled..][..99]);
             }
-            let from_tiles = plan.tiles(40_000).flat_map(|tile| {
-                let mut all = vec![Point::default(); 40_000];
-                let filled = plan.tile_blocks::<Points>(&tile).fill(&mut all);
-                all.truncate(filled);
-                all
-            });
-            assert!(from_tiles.eq(expected.iter().copied()));
         }
     }
 }

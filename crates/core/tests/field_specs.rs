@@ -46,8 +46,8 @@ fn filter() -> impl Strategy<Value = Filter> {
     prop::sample::select(vec![Filter::Linear, Filter::Nearest])
 }
 
-/// Pixels of each kind, with plains of zeros.
-fn pixels() -> impl Strategy<Value = Pixels> {
+/// Pixels of each kind, with plains of zeros, and their width.
+fn sized() -> impl Strategy<Value = (usize, Pixels)> {
     (1usize..60, 1usize..40, any::<u32>(), 0..3u32).prop_map(|(width, height, salt, kind)| {
         let pixel = move |i: usize| {
             let z = (i as u32 / 7).wrapping_mul(0x9e37_79b9) ^ salt;
@@ -55,16 +55,38 @@ fn pixels() -> impl Strategy<Value = Pixels> {
             z.saturating_sub(1 << 31) << 1
         };
         let all = 0..width * height;
-        match kind {
+        let pixels = match kind {
             0 => Pixels::from_bytes(width, all.map(|i| (pixel(i) >> 24) as u8).collect()),
             1 => Pixels::from_words(width, all.map(|i| (pixel(i) >> 16) as u16).collect()),
             _ => {
                 let share = |i| (f64::from(pixel(i)) / f64::from(u32::MAX)) as f32;
                 Pixels::from_floats(width, all.map(share).collect())
             }
-        }
-        .expect("whole rows")
+        };
+        (width, pixels.expect("whole rows"))
     })
+}
+
+fn pixels() -> impl Strategy<Value = Pixels> {
+    sized().prop_map(|(_, pixels)| pixels)
+}
+
+/// Pixels of which some, a corner or none are missing.
+fn holes() -> impl Strategy<Value = Pixels> {
+    let missing = prop_oneof![
+        Just(vec![]),
+        prop::collection::vec(any::<bool>(), 1..60 * 40)
+    ];
+    (sized(), missing, 0usize..60, 0usize..60 * 40).prop_map(
+        |((width, pixels), missing, corner, end)| {
+            pixels.without(|at| match missing.get(at) {
+                Some(missing) => {
+                    *missing && at % width >= corner || at % width < corner && at < end
+                }
+                None => false,
+            })
+        },
+    )
 }
 
 fn marks() -> impl Strategy<Value = Marks> {
@@ -77,7 +99,7 @@ fn marks() -> impl Strategy<Value = Marks> {
 }
 
 fn raster() -> impl Strategy<Value = FieldSpec> {
-    (region(), pixels(), edges(), filter(), shares(), 0.2..4.0f64).prop_map(
+    (region(), holes(), edges(), filter(), shares(), 0.2..4.0f64).prop_map(
         |(region, pixels, edges, filter, [low, high], gamma)| {
             let raster = Raster::of(region, pixels).expect("shares").edges(edges);
             let raster = raster.filter(filter).tone(low, high, gamma);

@@ -4,12 +4,15 @@ mod subject;
 
 use proptest::prelude::*;
 use strew_core::{
-    Area, Circle, Field, Map, Placement, PointId, PointSet, Raster, Region, Seed, Settle, Spacing,
-    Table, Warp,
-    field::{Edges, FieldSpec, Filter, Pixels},
+    Area, Circle, Field, Map, Placement, PointSet, Raster, Region, Seed, Settle, Spacing, Table,
+    Warp,
+    field::{FieldSpec, Pixels},
     table::{Provenance, Ranks},
 };
-use subject::definition;
+use subject::{
+    definition,
+    plane::{Parts, agree, any_parts, brute_force},
+};
 
 /// A number that looks random.
 fn mixed(i: u32) -> u32 {
@@ -81,40 +84,17 @@ fn holes() -> FieldSpec {
     FieldSpec::raster(raster.expect("shares")).expect("a field")
 }
 
-/// Every id near a box, by the definition.
-fn brute(
-    find: impl Fn(PointId) -> Option<[f64; 2]>,
-    region: &Region,
-    unit: f64,
-) -> Vec<(PointId, [f64; 2])> {
-    let [x0, y0] = region.min().map(|v| (v / unit) as i64 - 90);
-    let [x1, y1] = region.max().map(|v| (v / unit) as i64 + 90);
-    let ids = (y0..y1).flat_map(|y| (x0..x1).map(move |x| PointId { x, y }));
-    let found = ids.filter_map(|id| find(id).map(|at| (id, at)));
-    let mut found: Vec<_> = found.filter(|(_, at)| region.contains(*at)).collect();
-    found.sort_by_key(|(id, _)| (id.x.div_euclid(1024), id.y, id.x));
-    found
-}
-
 fn any_region() -> impl Strategy<Value = Region> {
     let corner = prop::array::uniform2(-60.0..40.0f64);
     (corner, prop::array::uniform2(0.0..30.0f64))
         .prop_map(|([x, y], [w, h])| Region::new([x, y], [x + w, y + h]).expect("ordered"))
 }
 
-fn agrees(
-    set: &PointSet,
-    field: impl Field + 'static,
-    region: Region,
-) -> Result<(), TestCaseError> {
+fn agrees(set: &PointSet, field: impl Field + 'static, region: Region, parts: Parts) {
     let graded = set.in_field(field);
-    let unit = set.table().alpha().set_side_f64() * set.placement().spacing.get();
-    let expected = brute(|id| graded.point(id).map(|m| m.at()), &region, unit);
-    let plan = graded.within(region).expect("near");
-    let found: Vec<_> = plan.iter().map(|m| (m.id(), m.at())).collect();
-    prop_assert_eq!(&found, &expected);
-    prop_assert_eq!(plan.count(), expected.len() as u128);
-    Ok(())
+    let place = |id| graded.point(id).map(|member| member.at());
+    let expected = brute_force(&graded, &region.into(), 91, place);
+    agree(&graded, region, &expected, parts);
 }
 
 proptest! {
@@ -124,83 +104,30 @@ proptest! {
     fn a_walk_finds_what_the_definition_has(
         seed in 0u64..40, warp in prop_oneof![Just(0.0), Just(1.0)],
         spacing in 0.5..3.0f64, region in any_region(), keep in prop_oneof![Just(1.0), 0.2..1.0f64],
+        parts in any_parts(),
     ) {
         let set = set(seed, warp, spacing).keep(keep).expect("a share");
-        agrees(&set, hills, region)?;
-        agrees(&set, raster(), region)?;
-        agrees(&set, dunes(), region)?;
-        agrees(&set, holes(), region)?;
-        agrees(&set, holes().invert().expect("a field"), region)?;
+        agrees(&set, hills, region, parts);
+        agrees(&set, raster(), region, parts);
+        agrees(&set, dunes(), region, parts);
+        agrees(&set, holes(), region, parts);
+        agrees(&set, holes().invert().expect("a field"), region, parts);
         let ramp = FieldSpec::ramp([0.0; 2], [500.0, 90.0], [0.9, 1.0]).expect("valid");
         let both = FieldSpec::multiply(vec![FieldSpec::raster(dunes()).expect("valid"), ramp]);
-        agrees(&set, both.expect("valid"), region)?;
-    }
-
-    #[test]
-    fn shares_change_by_no_more_than_slopes(
-        region in any_region(), edge in 0usize..4, nearest: bool, scale in 1.0..9.0f64,
-        from in prop::array::uniform2(0.0..1.0f64), to in prop::array::uniform2(0.0..1.0f64),
-    ) {
-        let edges = [Edges::Clamp, Edges::Zero, Edges::Repeat, Edges::Mirror][edge];
-        let filter = if nearest { Filter::Nearest } else { Filter::Linear };
-        let raster = dunes().edges(edges).filter(filter).tone(0.1, 0.9, 2.0).expect("once");
-        let ramp = FieldSpec::ramp([0.0; 2], [scale, 3.0], [0.0, 1.0]).expect("valid");
-        let all = vec![FieldSpec::raster(raster).expect("valid"), ramp.invert().expect("valid")];
-        let (min, max) = (region.min().map(|v| v * scale * 0.2), region.max().map(|v| v * scale * 0.2));
-        let region = Region::new(min, max).expect("ordered");
-        let place = |part: [f64; 2]| [0, 1].map(|i| min[i] + part[i] * (max[i] - min[i]));
-        let (from, to) = (place(from), place(to));
-        let joined = [FieldSpec::multiply(all.clone()), FieldSpec::min(all.clone()), FieldSpec::max(all.clone())];
-        for field in all.into_iter().chain(joined.map(|spec| spec.expect("valid"))) {
-            let slopes = field.slopes(&region);
-            let most: f64 = [0, 1].map(|i| match (to[i] - from[i]).abs() {
-                0.0 => 0.0,
-                way => way * slopes[i],
-            }).iter().sum();
-            let change = (field.share(to) - field.share(from)).abs();
-            prop_assert!(change <= most + 1e-12, "{change} {most}");
-        }
-    }
-
-    #[test]
-    fn a_constant_field_is_a_thinned_set(
-        seed in 0u64..40, warp in prop_oneof![Just(0.0), Just(1.0)],
-        region in any_region(), share in prop_oneof![0.01..1.0f64, Just(1.0), Just(0.7)],
-    ) {
-        let set = set(seed, warp, 1.0);
-        let kept = set.clone().keep(share).expect("a share");
-        let graded = set.in_field(move |_: [f64; 2]| share);
-        let points = kept.within(region).expect("near");
-        let found = graded.within(region).expect("near");
-        prop_assert_eq!(points.to_vec(), found.to_vec());
-        prop_assert_eq!(points.count(), found.count());
-        for member in found {
-            prop_assert_eq!(kept.point(member.id()), Some(member));
-            let near = kept.nearest(member.at(), 1).expect("near");
-            prop_assert_eq!(near[0].distance, 0.0);
-        }
+        agrees(&set, both.expect("valid"), region, parts);
     }
 
     #[test]
     fn what_is_kept_turns_with_the_seed(
         seed in 0u64..40, warp in prop_oneof![Just(0.0), Just(1.0)],
         region in any_region(), share in prop_oneof![0.01..1.0f64, Just(1.0), Just(0.7)],
+        parts in any_parts(),
     ) {
         let all = set(seed, warp, 1.0);
         let kept = all.clone().keep(share).expect("a share");
-        let unit = all.table().alpha().set_side_f64();
-        let expected = brute(|id| definition::place(&kept, id), &region, unit);
-        let plan = kept.within(region).expect("near");
-        let found: Vec<_> = plan.iter().map(|m| (m.id(), m.at())).collect();
-        prop_assert_eq!(&found, &expected);
-        prop_assert_eq!(plan.count(), expected.len() as u128);
-        // Blocks of any length have the same points.
-        let mut pairs = vec![[0.0; 2]; found.len()];
-        let mut blocks = plan.blocks_f64();
-        let filled: usize = pairs.chunks_mut(7).map(|part| blocks.fill(part)).sum();
-        prop_assert_eq!(filled, found.len());
-        prop_assert!(found.iter().map(|(_, at)| at).eq(&pairs));
-        for (id, _) in found {
+        let expected = brute_force(&kept, &region.into(), 91, |id| definition::place(&kept, id));
+        agree(&kept, region, &expected, parts);
+        for id in expected.iter().map(|point| point.id) {
             prop_assert_eq!(Some(all.rank(id)), definition::rank(&all, id));
             prop_assert_eq!(kept.rank(id), all.rank(id));
         }
@@ -238,20 +165,6 @@ proptest! {
         prop_assert_eq!(parts, whole);
     }
 
-}
-
-#[test]
-fn far_chunks_of_a_field_are_exact() {
-    for (seed, at) in [(0, [1_000_000_000_000, -77]), (7, [-3, 99_999_999_999])] {
-        let set = set(seed, 1.0, 1.0);
-        let kept = set.clone().keep(0.6).expect("a share");
-        let graded = set.in_field(|_: [f64; 2]| 0.6);
-        for at in [at, [at[0] + 1, at[1]], [at[0], at[1] + 1]] {
-            let chunk = Region::chunk(10.0, at).expect("near enough");
-            let points = kept.within(chunk).expect("near enough").to_vec();
-            assert_eq!(points, graded.within(chunk).expect("near enough").to_vec());
-        }
-    }
 }
 
 #[test]

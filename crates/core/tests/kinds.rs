@@ -4,13 +4,15 @@ mod subject;
 
 use proptest::prelude::*;
 use strew_core::{
-    Area, Attribute, Attributes, Backend, Circle, ErrorKind, F32, F64, Keep, Kinds, Placement,
-    Point, PointId, PointSet, Points, Polygon, Region, ScaleRange, Seed, Spacing, Variants, Warp,
+    Attribute, Attributes, Circle, ErrorKind, Kinds, Point, PointId, PointSet, Points, Region,
+    ScaleRange, Variants,
     server::{self, Stop},
 };
 use subject::{
-    all, all_by, definition,
+    all, any_area, any_box, any_placement, definition,
     mixed::{mixed, tables},
+    plane::{agree, agree_around, any_parts, brute_force, within},
+    set, waves,
 };
 
 fn kinds(set: &PointSet) -> u8 {
@@ -23,40 +25,8 @@ fn only(set: &PointSet, kind: u8) -> PointSet {
 }
 
 fn any_set() -> impl Strategy<Value = PointSet> {
-    let seed = prop_oneof![Just(0u64), any::<u64>()];
-    let warp = prop_oneof![Just(0.0), Just(1.0), 0.0..2.0f64];
-    let keep = prop_oneof![Just(1.0), 0.02..1.0f64];
-    let parts = (0..tables().len(), seed, warp, 0.6..3.0f64, keep);
-    parts.prop_map(|(table, seed, warp, spacing, keep)| {
-        let keep = Keep::new(keep).expect("a share");
-        let placement = Placement::new(Spacing::new(spacing).expect("in range"), Seed(seed))
-            .with_warp(Warp::new(warp).expect("in range"))
-            .with_keep(keep);
-        PointSet::new(tables()[table].clone()).placed(placement)
-    })
-}
-
-fn any_box() -> impl Strategy<Value = Region> {
-    let corner = prop::array::uniform2(-70.0..40.0f64);
-    (corner, prop::array::uniform2(0.0..45.0f64))
-        .prop_map(|([x, y], [w, h])| Region::new([x, y], [x + w, y + h]).expect("ordered"))
-}
-
-fn any_area() -> impl Strategy<Value = Area> {
-    let center = || prop::array::uniform2(-30.0..30.0f64);
-    let ring = prop::collection::vec(center(), 3..7);
-    let chunk = || (1.0..40.0f64, prop::array::uniform2(-3..3i64));
-    prop_oneof![
-        any_box().prop_map(Area::from),
-        chunk().prop_map(|(size, at)| Region::chunk(size, at).expect("near").into()),
-        (center(), 1.0..25.0f64).prop_map(|(at, r)| Circle::new(at, r).expect("round").into()),
-        ring.prop_filter_map("a polygon", |ring| Polygon::new(&[ring])
-            .ok()
-            .map(Area::from)),
-        (any_box(), center(), 1.0..25.0f64).prop_map(|(region, at, r)| {
-            Area::from(region).without([Circle::new(at, r).expect("round").into()])
-        }),
-    ]
+    let parts = (0..tables().len(), any_placement());
+    parts.prop_map(|(table, placement)| set(&tables()[table], placement))
 }
 
 /// Every point of a box that `place` has, in order, with its kind.
@@ -65,25 +35,9 @@ fn defined(
     region: &Region,
     place: impl Fn(PointId) -> Option<[f64; 2]>,
 ) -> Vec<(Point, u8)> {
-    let unit = set.table().alpha().set_side_f64() * set.placement().spacing.get();
-    let lines = |axis: usize| {
-        let ends = [region.min()[axis], region.max()[axis]].map(|v| (v / unit) as i64);
-        ends[0] - 160..ends[1] + 160
-    };
-    let mut all = Vec::new();
-    for y in lines(1) {
-        for x in lines(0) {
-            let id = PointId { x, y };
-            if let Some([x, y]) = place(id)
-                && region.contains([x, y])
-            {
-                let kind = definition::kind(set, id).expect("a table with kinds");
-                all.push((Point { id, x, y }, kind));
-            }
-        }
-    }
-    all.sort_by_key(|(p, _)| (p.id.x.div_euclid(1024), p.id.y, p.id.x));
-    all
+    let points = brute_force(set, &(*region).into(), 160, place);
+    let kind = |id| definition::kind(set, id).expect("a table with kinds");
+    points.into_iter().map(|p| (p, kind(p.id))).collect()
 }
 
 /// Those points that are of a kind.
@@ -93,7 +47,7 @@ fn of_kind(all: &[(Point, u8)], kind: u8) -> Vec<Point> {
 }
 
 /// Compares the points of each kind in a box with those expected.
-fn agree(set: &PointSet, region: Region, expected: &[(Point, u8)]) {
+fn agree_by_kind(set: &PointSet, region: Region, expected: &[(Point, u8)]) {
     let mut counts = Vec::new();
     for kind in 0..kinds(set) {
         let (own, points) = (only(set, kind), of_kind(expected, kind));
@@ -120,7 +74,7 @@ proptest! {
     fn a_box_holds_what_the_definition_has(set in any_set(), region in any_box()) {
         let set = set.settle(0).expect("0");
         let expected = defined(&set, &region, |id| definition::place(&set, id));
-        agree(&set, region, &expected);
+        agree_by_kind(&set, region, &expected);
     }
 
     #[test]
@@ -128,7 +82,7 @@ proptest! {
         let set = set.settle(0).expect("0");
         let field = |[x, y]: [f64; 2]| 0.5 + 0.6 * (x * 0.11).sin() * (y * 0.07).cos();
         let expected = defined(&set, &region, |id| definition::place_in(&set, &field, id));
-        agree(&set.in_field(field), region, &expected);
+        agree_by_kind(&set.in_field(field), region, &expected);
         // The kind may also be chosen first.
         let own = only(&set, 0).in_field(field).within(region).expect("near");
         prop_assert_eq!(own.to_vec(), of_kind(&expected, 0));
@@ -144,7 +98,7 @@ fn every_symmetry_agrees_with_the_definition() {
             let set = PointSet::new(table.clone()).seed(seed);
             let expected = defined(&set, &region, |id| definition::place(&set, id));
             assert!(expected.len() > 200);
-            agree(&set, region, &expected);
+            agree_by_kind(&set, region, &expected);
         }
     }
 }
@@ -180,70 +134,24 @@ proptest! {
 
     #[test]
     fn an_area_holds_the_points_of_the_whole_set_that_are_of_the_kind(
-        set in any_set(), area in any_area(), block in 1usize..300, clear: bool, in_field: bool, kind: u8,
+        set in any_set(), area in any_area(), parts in any_parts(), clear: bool, in_field: bool, kind: u8,
     ) {
         let kind = kind % kinds(&set);
         let mut set = set;
         if in_field {
-            set = set.in_field(|[x, y]: [f64; 2]| 0.7 + 0.5 * (x * 0.2).sin() * (y * 0.1).cos());
+            set = set.in_field(waves);
         }
         if clear {
             let other = PointSet::new(tables()[1].clone()).spacing(3.0).expect("in range");
             set = set.clear_of(&only(&other.seed(3), 1), 1.5).expect("near");
         }
-        let whole = set.within(area.clone()).expect("near").to_vec();
+        let whole = within(&set, area.clone());
         let is_own = |point: &&Point| set.kind_of(point.id) == Some(kind);
         let expected: Vec<Point> = whole.iter().filter(is_own).copied().collect();
-        let own = only(&set, kind);
-        let plan = own.within(area.clone()).expect("near");
-        prop_assert_eq!(plan.count(), expected.len() as u128);
-        let pairs: Vec<[f64; 2]> = expected.iter().map(Point::at).collect();
-        for backend in Backend::available() {
-            prop_assert_eq!(&all_by::<Points>(&plan, block, backend), &expected);
-            prop_assert_eq!(&all_by::<F64>(&plan, block, backend), &pairs);
-            prop_assert_eq!(
-                all_by::<F32>(&plan, block, backend), all_by::<F32>(&plan, 99, Backend::Scalar)
-            );
-        }
-        let from_tiles = plan.tiles(100).flat_map(|tile| {
-            let mut all = vec![Point::default(); expected.len() + 1];
-            let filled = plan.tile_blocks::<Points>(&tile).fill(&mut all);
-            all.truncate(filled);
-            all
-        });
-        prop_assert!(from_tiles.eq(expected.iter().copied()));
+        agree(&only(&set, kind), area.clone(), &expected, parts);
         let counts = server::kind_counts(&set, area, &Stop::default()).expect("near");
-        prop_assert_eq!(counts[usize::from(kind)], plan.count());
+        prop_assert_eq!(counts[usize::from(kind)], expected.len() as u128);
         prop_assert_eq!(counts.iter().sum::<u128>(), whole.len() as u128);
-    }
-
-    #[test]
-    fn windows_and_cursors_are_parts(
-        set in any_set(), area in any_area(), parts in 1u32..7, offset in 0.0..1.2f64, limit in 0u128..200,
-        block in 1usize..300, kind: u8,
-    ) {
-        let own = only(&set, kind % kinds(&set));
-        let plan = own.within(area.clone()).expect("near");
-        let all = plan.to_vec();
-        let split: Vec<Point> = plan.split(parts).flat_map(|part| part.to_vec()).collect();
-        prop_assert_eq!(&split, &all);
-        let offset = (offset * all.len() as f64) as u128;
-        let window = plan.window(offset, Some(limit));
-        let rest = &all[(offset as usize).min(all.len())..];
-        prop_assert_eq!(window.to_vec(), &rest[..rest.len().min(limit as usize)]);
-        let resumed = |cursor| own.resume(area.clone(), cursor).expect("near");
-        if let Some(next) = window.next_cursor() {
-            prop_assert_eq!(resumed(next).to_vec(), &all[next.offset as usize..]);
-        }
-        if let Some(cursor) = window.cursor() {
-            prop_assert_eq!(resumed(cursor).to_vec(), &all[cursor.offset as usize..]);
-        }
-        let (mut blocks, mut some) = (plan.blocks_points(), vec![Point::default(); block]);
-        let filled = blocks.fill(&mut some);
-        if let Some(cursor) = blocks.cursor() {
-            prop_assert_eq!(cursor.offset, filled as u128);
-            prop_assert_eq!(resumed(cursor).to_vec(), &all[filled..]);
-        }
     }
 
     #[test]
@@ -251,27 +159,8 @@ proptest! {
         set in any_set(), at in prop::array::uniform2(-40.0..40.0f64), radius in 0.0..9.0f64, kind: u8,
         in_field: bool,
     ) {
-        let mut set = set;
-        if in_field {
-            set = set.in_field(|[x, y]: [f64; 2]| 0.7 + 0.5 * (x * 0.2).sin() * (y * 0.1).cos());
-        }
-        let own = only(&set, kind % kinds(&set));
-        let region = Region::new(at.map(|v| v - 10.0), at.map(|v| v + 10.0)).expect("ordered");
-        let squared = |p: &Point| (p.x - at[0]).powi(2) + (p.y - at[1]).powi(2);
-        let mut expected = own.within(region).expect("near").to_vec();
-        expected.retain(|p| squared(p) <= radius * radius);
-        expected.sort_by(|a, b| squared(a).total_cmp(&squared(b)).then(a.id.cmp(&b.id)));
-        let found = own.around(at, radius, 10_000).expect("few");
-        let found: Vec<Point> = found.iter().map(|near| near.member.point()).collect();
-        prop_assert_eq!(&found, &expected);
-        let few = found.len().min(20);
-        if few > 0 {
-            let nearest = own.nearest(at, few).expect("enough");
-            prop_assert!(nearest.iter().map(|near| near.member.point()).eq(found.iter().take(20).copied()));
-        }
-        let mut clearance = own.clearance(radius.max(0.1)).expect("few");
-        let strictly = found.iter().any(|p| squared(p) < radius.max(0.1).powi(2));
-        prop_assert!(radius < 0.1 || clearance.is_any_near(at, |_| true) == strictly);
+        let set = if in_field { set.in_field(waves) } else { set };
+        agree_around(&only(&set, kind % kinds(&set)), at, radius);
     }
 
     #[test]

@@ -4,10 +4,14 @@ mod subject;
 
 use proptest::prelude::*;
 use strew_core::{
-    Area, Circle, F64, Keep, Placement, Plan, Point, PointSet, Points, Region, Seed, Spacing, Tile,
+    Area, Circle, Keep, Placement, PointSet, Points, Region, Seed, Spacing,
     server::{self, Stop},
 };
-use subject::{all, any_seed, any_table, in_order_of_ids, mixed, set, unit};
+use subject::{
+    all, any_seed, any_table, mixed,
+    plane::{agree, any_parts, one_by_one},
+    set, unit,
+};
 
 /// The form of another set, whatever its table, seed and spacing.
 #[derive(Clone, Copy, Debug)]
@@ -93,25 +97,6 @@ fn any_area() -> impl Strategy<Value = ([f64; 2], Area)> {
     })
 }
 
-/// The points of a set that keeps clear of others, each decided by itself: a lookup searches near a single place.
-fn one_by_one(whole: &PointSet, clear: &PointSet, area: Area) -> Vec<Point> {
-    let mut points = whole.within(area).expect("in range").to_vec();
-    points.retain(|point| clear.point(point.id).is_some());
-    points
-}
-
-fn tiles(plan: &Plan, most: usize) -> Vec<Point> {
-    let tile = |tile: Tile| {
-        let (mut blocks, mut points) = (plan.tile_blocks::<Points>(&tile), vec![]);
-        let mut block = vec![Point::default(); 100];
-        while let filled @ 1.. = blocks.fill(&mut block) {
-            points.extend_from_slice(&block[..filled]);
-        }
-        points
-    };
-    plan.tiles(most).flat_map(tile).collect()
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
@@ -120,7 +105,7 @@ proptest! {
         table in any_table(), (seed, warp) in any_seed(), (at, area) in any_area(),
         (first, second) in (any_other(), any_other()),
         distances in [0.02..4.0f64, 0.02..4.0f64, 0.02..4.0f64],
-        nested: bool, sort in any_sort(), block in 1usize..300, most in 1usize..500,
+        nested: bool, sort in any_sort(), parts in any_parts(),
     ) {
         let (first, second) = (made(first, at), made(second, at));
         let [of_first, of_second, between] = distances;
@@ -138,89 +123,7 @@ proptest! {
         let clear = whole.clone().clear_of(&first, most_of(&first, of_first)).expect("near");
         let clear = clear.clear_of(&second, most_of(&second, of_second)).expect("near");
         let expected = one_by_one(&whole, &clear, area.clone());
-        let plan = clear.within(area.clone()).expect("in range");
-        prop_assert_eq!(plan.count(), expected.len() as u128);
-        prop_assert_eq!(&all::<Points>(&plan, block), &expected);
-        prop_assert_eq!(&plan.to_vec(), &expected);
-        let places: Vec<[f64; 2]> = expected.iter().map(Point::at).collect();
-        prop_assert_eq!(&all::<F64>(&plan, block), &places);
-        prop_assert_eq!(&tiles(&plan, most), &expected);
-        // A part, and what comes after it.
-        let start = expected.len() / 3;
-        prop_assert_eq!(&plan.window(start as u128, Some(7)).to_vec()[..], &expected[start..(start + 7).min(expected.len())]);
-        let mut blocks = plan.blocks::<Points>();
-        let mut some = vec![Point::default(); start];
-        blocks.fill(&mut some);
-        if let Some(cursor) = blocks.cursor() {
-            let rest = clear.resume(area, cursor).expect("in range");
-            prop_assert_eq!(&rest.to_vec()[..], &expected[start..]);
-        }
-    }
-
-    #[test]
-    fn chunks_lose_nothing_and_share_nothing(
-        table in any_table(), (seed, warp) in any_seed(), other in any_other(),
-        distance in 0.05..3.0f64, at in [-40i64..40, -40i64..40], parts in 2i64..5,
-    ) {
-        let other = made(other, at.map(|v| 24.0 * v as f64));
-        let distance = distance.min(15.0 * other.placement().spacing.get());
-        let own = set(&table, Placement { seed, ..unit(0) }.with_warp(warp));
-        let clear = own.clear_of(&other, distance).expect("near");
-        let whole = clear.chunk(24.0, at).expect("in range").to_vec();
-        let mut points = vec![];
-        for i in 0..parts * parts {
-            let number = [at[0] * parts + i % parts, at[1] * parts + i / parts];
-            points.extend(clear.chunk(24.0 / parts as f64, number).expect("in range").to_vec());
-        }
-        prop_assert_eq!(in_order_of_ids(points), whole);
-    }
-}
-
-/// All pairs of points, without any search.
-#[test]
-fn no_pair_is_nearer() {
-    let table = &subject::tables()[0];
-    for (spacing, distance, side) in [
-        (6.0, 2.5, 300.0),
-        (1.0, 0.4, 150.0),
-        (0.3, 0.1, 60.0),
-        (0.5, 4.0, 60.0),
-    ] {
-        for min in [[0.0, 0.0], [-7000.0, 1300.0]] {
-            let rocks = set(
-                table,
-                Placement::new(Spacing::new(spacing).expect("valid"), Seed(5)),
-            );
-            let whole = set(
-                table,
-                Placement {
-                    seed: Seed(9),
-                    ..unit(0)
-                },
-            );
-            let clear = whole.clone().clear_of(&rocks, distance).expect("near");
-            let region = |room: f64| {
-                let [low, high] = [min.map(|v| v - room), min.map(|v| v + side + room)];
-                Region::new(low, high).expect("ordered")
-            };
-            let mut near = rocks
-                .within(region(distance + 1.0))
-                .expect("in range")
-                .to_vec();
-            near.sort_by(|a, b| a.x.total_cmp(&b.x));
-            let mut expected = whole.within(region(0.0)).expect("in range").to_vec();
-            expected.retain(|p| {
-                let start = near.partition_point(|q| q.x < p.x - distance - 0.1);
-                let end = near.partition_point(|q| q.x < p.x + distance + 0.1);
-                near[start..end].iter().all(|q| {
-                    let (x, y) = (q.x - p.x, q.y - p.y);
-                    x * x + y * y >= distance * distance
-                })
-            });
-            let plan = clear.within(region(0.0)).expect("in range");
-            assert_eq!(plan.count(), expected.len() as u128);
-            assert_eq!(all::<Points>(&plan, 1000), expected);
-        }
+        agree(&clear, area, &expected, parts);
     }
 }
 
@@ -255,7 +158,7 @@ fn large_plans_are_made_piece_by_piece() {
             let plan = clear.within(region).expect("in range");
             let points = all::<Points>(&plan, 5000);
             assert_eq!(points.len() as u128, plan.count());
-            assert_eq!(points, one_by_one(&whole, &clear, region.into()));
+            assert_eq!(points, one_by_one(&whole, &clear, region));
         }
     }
 }

@@ -1,6 +1,5 @@
 //! Pixels without data: empty, whatever is made of them, while their neighbors are means of those that are there.
 
-use proptest::prelude::*;
 use strew_core::{
     Field, Raster, Region,
     field::{Edges, FieldSpec, Filter, Pixels, Terrain},
@@ -127,36 +126,4 @@ fn heights_that_are_missing_are_no_heights_and_no_cliffs() {
         [5.0, 15.0, 25.0, 35.0].map(|x| steep.share([x, 5.0])),
         [0.5, 0.5, 0.0, 0.0]
     );
-}
-
-proptest! {
-    #[test]
-    fn bounds_and_slopes_hold_where_pixels_are_missing(
-        values in prop::collection::vec(0.0..1.0f32, 30 * 20), missing in prop::collection::vec(any::<bool>(), 30 * 20),
-        corner in 0usize..30, edge in 0usize..4, nearest: bool, tones in prop::array::uniform2(0.0..1.0f64),
-        from in prop::array::uniform2(-0.3..1.3f64), size in prop::array::uniform2(0.0..0.5f64),
-        parts in prop::array::uniform4(0.0..1.0f64),
-    ) {
-        let edges = [Edges::Clamp, Edges::Zero, Edges::Repeat, Edges::Mirror][edge];
-        let filter = if nearest { Filter::Nearest } else { Filter::Linear };
-        let is_missing = |at: usize| missing[at] && at % 30 >= corner || at % 30 < corner && at < 300;
-        let pixels = Pixels::from_floats(30, values.clone()).expect("numbers").without(is_missing);
-        let region = Region::new([0.0, 0.0], [30.0, 20.0]).expect("ordered");
-        let raster = Raster::of(region, pixels).expect("shares").tone(tones[0], tones[1], 1.0).expect("once");
-        let raster = FieldSpec::raster(raster.edges(edges).filter(filter)).expect("a field");
-        let inverted = raster.clone().invert().expect("a field");
-        let both = FieldSpec::max(vec![raster.clone(), inverted.clone()]).expect("parts");
-        let min = [from[0] * 30.0, from[1] * 20.0];
-        let max = [min[0] + size[0] * 30.0, min[1] + size[1] * 20.0];
-        let within = Region::new(min, max).expect("ordered");
-        let place = |u: f64, v: f64| [min[0] + u * (max[0] - min[0]), min[1] + v * (max[1] - min[1])];
-        let (a, b) = (place(parts[0], parts[1]), place(parts[2], parts[3]));
-        for field in [raster, inverted, both] {
-            let ([low, high], slopes) = (field.bounds(&within), field.slopes(&within));
-            let [first, second] = [a, b].map(|at| field.share(at));
-            prop_assert!(low <= first && first <= high, "{low} {first} {high}");
-            let way: f64 = [0, 1].map(|i| if a[i] == b[i] { 0.0 } else { (a[i] - b[i]).abs() * slopes[i] }).iter().sum();
-            prop_assert!((first - second).abs() <= way + 1e-9, "{first} {second} {way}");
-        }
-    }
 }

@@ -1,41 +1,10 @@
-//! Nearest points and disks against brute force over boxes.
+//! Disks and searches against brute force over boxes.
 
 mod subject;
 
 use proptest::prelude::*;
-use strew_core::{
-    Circle, ErrorKind, Keep, Neighbor, Placement, Point, PointSet, Region, Seed, Spacing, Table,
-    Warp,
-};
-use subject::{set, shipped, table};
-
-fn tables() -> &'static [Table; 4] {
-    static ONCE: std::sync::OnceLock<[Table; 4]> = std::sync::OnceLock::new();
-    ONCE.get_or_init(|| {
-        [
-            table("sqrt(3)", 20),
-            table("(1+sqrt(5))/2", 20),
-            shipped("blue-5-sqrt3-over-2-s"),
-            shipped("pink-5-sqrt3-over-2-s"),
-        ]
-    })
-}
-
-/// All points of the box around a disk, and their squared distances, in order.
-fn in_box(set: &PointSet, at: [f64; 2], r: f64) -> Vec<(f64, Point)> {
-    let r = r * 1.001 + (at[0].abs() + at[1].abs()) * 1e-15;
-    let region = Region::new(at.map(|v| v - r), at.map(|v| v + r)).expect("ordered");
-    let points = set.within(region).expect("near").to_vec();
-    let mut all: Vec<(f64, Point)> = points
-        .into_iter()
-        .map(|p| {
-            let (dx, dy) = (p.x - at[0], p.y - at[1]);
-            (dx * dx + dy * dy, p)
-        })
-        .collect();
-    all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.id.cmp(&b.1.id)));
-    all
-}
+use strew_core::{Circle, ErrorKind, Keep, Neighbor, Placement, Point, PointSet, Seed, Spacing};
+use subject::{any_place, plane::in_box, set, tables_of_searches};
 
 /// Points with distances.
 fn pairs(all: &[(f64, Point)]) -> Vec<(Point, f64)> {
@@ -47,53 +16,12 @@ fn found(neighbors: Vec<Neighbor>) -> Vec<(Point, f64)> {
     neighbors.into_iter().map(pair).collect()
 }
 
-fn any_query() -> impl Strategy<Value = (PointSet, [f64; 2])> {
-    let place = prop_oneof![
-        4 => -50.0..50.0f64,
-        2 => -1e6..1e6f64,
-        1 => -1e15..1e15f64,
-        1 => Just(0.0),
-    ];
-    let seed = prop_oneof![1 => Just(0u64), 3 => any::<u64>()];
-    let strength = prop_oneof![Just(0.0), Just(1.0), Just(2.0), 0.0..2.0f64];
-    let spacing = prop_oneof![Just(1.0), 0.01..100.0f64, 1e-9..1e9f64];
-    (0..4usize, seed, strength, spacing, place.clone(), place).prop_map(
-        |(table, seed, strength, spacing, x, y)| {
-            let warp = Warp::new(strength).expect("in range");
-            let placement =
-                Placement::new(Spacing::new(spacing).expect("valid"), Seed(seed)).with_warp(warp);
-            let set = set(&tables()[table], placement);
-            (set, [x * spacing, y * spacing])
-        },
-    )
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn the_nearest_are_what_brute_force_finds(
-        (set, at) in any_query(), k in prop_oneof![1usize..12, 1usize..200],
-        part in prop_oneof![Just(1.0), 0.1..3.0f64],
-    ) {
-        let nearest = found(set.nearest(at, k).expect("near"));
-        prop_assert_eq!(nearest.len(), k);
-        let farthest = nearest.last().map_or(0.0, |n| n.1);
-        let all = in_box(&set, at, farthest);
-        prop_assert!(all.len() >= k);
-        prop_assert_eq!(&nearest, &pairs(&all[..k]));
-        // Within a radius there may be fewer.
-        let radius = farthest * part;
-        let mut fewer = pairs(&in_box(&set, at, radius.min(farthest)));
-        // By the distance that is reported: with that of the farthest none is lost.
-        fewer.retain(|(_, distance)| *distance <= radius);
-        fewer.truncate(k);
-        prop_assert_eq!(set.nearest_within(at, k, radius).map(found), Ok(fewer));
-    }
-
-    #[test]
     fn disks_hold_what_brute_force_finds(
-        (set, at) in any_query(), spacings in prop_oneof![0.0..3.0f64, 0.0..12.0f64],
+        (set, at) in any_place(), spacings in prop_oneof![0.0..3.0f64, 0.0..12.0f64],
     ) {
         let radius = spacings * set.placement().spacing.get();
         let all = in_box(&set, at, radius);
@@ -124,7 +52,7 @@ proptest! {
 
     #[test]
     fn thinned_searches_see_what_is_kept(
-        (set, at) in any_query(), keep in 0.01..1.0f64, k in 1usize..20,
+        (set, at) in any_place(), keep in 0.01..1.0f64, k in 1usize..20,
     ) {
         let thinned = set.clone().keep(keep).expect("a share").settle(0).expect("0");
         let nearest = found(thinned.nearest(at, k).expect("near"));
@@ -136,7 +64,7 @@ proptest! {
 
     #[test]
     fn searches_see_the_points_of_a_limited_set_that_keeps_clear(
-        (set, at) in any_query(), (other, _) in any_query(), k in 1usize..6, r in 4.0..8.0f64,
+        (set, at) in any_place(), (other, _) in any_place(), k in 1usize..6, r in 4.0..8.0f64,
     ) {
         let spacing = set.placement().spacing.get();
         let other = other.spacing(spacing * 2.0).expect("valid");
@@ -159,7 +87,7 @@ proptest! {
 #[test]
 fn a_thousand_neighbors_and_the_limits() {
     let placement = Placement::new(Spacing::new(3.0).expect("valid"), Seed(4));
-    let set = set(&tables()[2], placement);
+    let set = set(&tables_of_searches()[2], placement);
     let at = [1e9, -7.5];
     let nearest = found(set.nearest(at, 10_000).expect("near"));
     let all = in_box(&set, at, nearest[9_999].1);

@@ -1,17 +1,23 @@
-//! Periodic sets against brute force: over the seam, and against the plane.
+//! Periodic sets, parts of them (shares, kinds, fields) and their windows, against brute force: over the seam, and
+//! against the plane.
+
+mod subject;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use strew_core::{
-    Alpha, ErrorKind, Map, Member, PeriodicSet, PointSet, Region, Table, table::from_grid_units,
+    Alpha, Attribute, Attributes, Cursor, ErrorKind, Kinds, Map, Member, PeriodicPlan, PeriodicSet,
+    Point, PointId, PointSet, Region, Table,
+    table::{Mix, Ranks, from_grid_units},
 };
+use subject::shipped;
 
-/// A table with arbitrary vectors of up to 3 grid units, so that wrong blocks show.
-fn table(alpha: &str) -> Table {
+/// A table with arbitrary vectors of up to so many grid units, so that wrong blocks show.
+fn table_of(alpha: &str, most: f64) -> Table {
     let map = Map::new(alpha.parse().expect("valid"), 20).expect("small");
     let n = map.intervals();
     let vector = |i: usize| {
-        let part = |k: usize| ((i * k) % 601) as f64 / 100.0 - 3.0;
+        let part = |k: usize| (((i * k) % 601) as f64 / 100.0 - 3.0) * (most / 3.0);
         [part(7919), part(104_729)].map(|v| from_grid_units(v).expect("small"))
     };
     Table::new(
@@ -21,6 +27,34 @@ fn table(alpha: &str) -> Table {
         Default::default(),
     )
     .expect("valid")
+}
+
+fn table(alpha: &str) -> Table {
+    table_of(alpha, 3.0)
+}
+
+/// A table with small vectors and kinds.
+fn with_kinds(shares: &str) -> Table {
+    let table = table_of("(5-sqrt(3))/2", 1.0);
+    let mix = Mix::scattered(table.map(), shares.parse().expect("valid")).expect("near");
+    let blocks = table.displacements().len() as u32;
+    let ranks = Ranks::new((0..blocks).rev().collect()).expect("a permutation");
+    table.with_mix(mix, ranks).expect("of the map")
+}
+
+/// From one place to another on a torus of side `side`.
+fn apart(a: [f64; 2], b: [f64; 2], side: f64) -> f64 {
+    let d = [0, 1]
+        .map(|i| a[i] - b[i])
+        .map(|v| v - side * (v / side).round());
+    d[0].hypot(d[1])
+}
+
+/// Each of some places with each other one.
+fn pairs(all: &[[f64; 2]], step: usize) -> impl Iterator<Item = [[f64; 2]; 2]> {
+    let others = |i: usize| all[..i].iter().chain(&all[i + 1..]);
+    let some = all.iter().enumerate().step_by(step);
+    some.flat_map(move |(i, &a)| others(i).map(move |&b| [a, b]))
 }
 
 /// The vectors from one place to all others within `radius` along both axes, on a torus of side `side`, or in
@@ -138,18 +172,8 @@ fn a_period_has_each_point_once_and_stays_inside() {
 /// The least distance between two points on a torus with a side of 1, times √N.
 fn least_distance(tile: &PeriodicSet) -> f64 {
     let all = places(tile.clone().side(1.0).expect("in range").iter());
-    let apart = |a: [f64; 2], b: [f64; 2]| {
-        let d = [0, 1].map(|i| a[i] - b[i]).map(|v| v - v.round());
-        (d[0] * d[0] + d[1] * d[1]).sqrt()
-    };
-    let pairs = all
-        .iter()
-        .enumerate()
-        .flat_map(|(i, &a)| all[..i].iter().map(move |&b| (a, b)));
-    let least = pairs
-        .map(|(a, b)| apart(a, b))
-        .fold(f64::INFINITY, f64::min);
-    least * (all.len() as f64).sqrt()
+    let least = pairs(&all, 1).map(|[a, b]| apart(a, b, 1.0));
+    least.fold(f64::INFINITY, f64::min) * (all.len() as f64).sqrt()
 }
 
 #[test]
@@ -230,4 +254,203 @@ fn points_have_these_bits() {
     let seeded = tile.clone().seed(7).side(3.0).expect("in range");
     let expected = [12_348_697_484_901_543_038, 8_288_891_734_264_237_938];
     assert_eq!([sum(&tile), sum(&seeded)], expected);
+}
+
+fn tile() -> PeriodicSet {
+    PeriodicSet::new(with_kinds("1:3:10"), 500)
+        .expect("a period")
+        .seed(9)
+}
+
+fn listed(plan: &PeriodicPlan, most: usize) -> Vec<Point> {
+    let (mut blocks, mut block, mut all) =
+        (plan.blocks(), vec![Point::default(); most], Vec::new());
+    loop {
+        let filled = blocks.fill(&mut block);
+        all.extend_from_slice(&block[..filled]);
+        if filled == 0 {
+            return all;
+        }
+    }
+}
+
+/// The sets whose points are a part of a tile's.
+fn parts(tile: &PeriodicSet) -> Vec<PeriodicSet> {
+    let side = tile.length();
+    let waves = move |[x, y]: [f64; 2]| {
+        let turn = std::f64::consts::TAU / side;
+        0.5 + 0.3 * (turn * x).sin() + 0.2 * (turn * y).cos()
+    };
+    let kept = tile.clone().keep(0.3).expect("a share");
+    let only = tile.clone().only(1).expect("a kind");
+    vec![
+        tile.clone(),
+        kept.clone(),
+        only.clone(),
+        kept.only(2).expect("a kind"),
+        tile.in_field(waves),
+        only.in_field(waves).keep(0.5).expect("a share"),
+    ]
+}
+
+#[test]
+fn parts_are_those_points_that_their_definition_leaves() {
+    let tile = tile();
+    let all: Vec<_> = tile.iter().collect();
+    let kept = tile.clone().keep(0.3).expect("a share");
+    let expected = all.iter().filter(|p| tile.rank(p.id()) < Some(0.3));
+    assert!(kept.iter().eq(expected.copied()));
+    let mut counts = [0; 3];
+    for kind in 0..3u8 {
+        let only = tile.clone().only(kind).expect("a kind");
+        let expected = all.iter().filter(|p| tile.kind_of(p.id()) == Some(kind));
+        assert!(only.iter().eq(expected.copied()));
+        counts[usize::from(kind)] = only.count();
+    }
+    assert_eq!(counts.iter().sum::<u64>(), tile.len());
+    for (count, share) in counts.into_iter().zip([1.0, 3.0, 10.0]) {
+        // A period has few points, whose indices are as coarse.
+        let error = count as f64 / tile.len() as f64 - share / 14.0;
+        assert!(error.abs() < 0.03, "{share}: {error}");
+    }
+    // Points in a field stay where they are.
+    let side = tile.length();
+    let ramp = move |[x, _]: [f64; 2]| x / side;
+    let graded = tile.in_field(ramp);
+    let expected = all
+        .iter()
+        .filter(|p| tile.rank(p.id()) < Some(ramp(p.at())));
+    assert!(graded.iter().eq(expected.copied()));
+}
+
+#[test]
+fn windows_cursors_and_ids_agree_with_the_whole() {
+    for set in parts(&tile()) {
+        let whole: Vec<Point> = set.iter().map(|p| p.point()).collect();
+        let plan = set.plan();
+        assert_eq!(
+            (plan.count(), plan.total()),
+            (whole.len() as u128, whole.len() as u128)
+        );
+        assert_eq!(set.count(), whole.len() as u64);
+        for most in [1, 7, 10_000] {
+            assert_eq!(listed(&plan, most), whole);
+        }
+        let ids: BTreeSet<PointId> = whole.iter().map(|p| p.id).collect();
+        let period = set.twin().period() as i64;
+        for y in -1..=period {
+            for x in -1..=period {
+                let id = PointId { x, y };
+                assert_eq!(set.point(id).is_some(), ids.contains(&id), "{id}");
+            }
+        }
+        for offset in [0, 1, 17, whole.len() - 1, whole.len()] {
+            for limit in [0, 1, 40, whole.len()] {
+                let window = plan.window(offset as u128, Some(limit as u128));
+                let expected = &whole[offset..(offset + limit).min(whole.len())];
+                assert_eq!(listed(&window, 13), expected);
+                let end = offset + expected.len();
+                assert_eq!(window.next_cursor().is_some(), end < whole.len());
+                for cursor in window.cursor().into_iter().chain(window.next_cursor()) {
+                    let rest = set.resume(cursor);
+                    assert_eq!(listed(&rest, 100), whole[cursor.offset as usize..]);
+                    let part = rest.window(3, Some(5));
+                    let from = (cursor.offset as usize + 3).min(whole.len());
+                    assert_eq!(listed(&part, 100), whole[from..(from + 5).min(whole.len())]);
+                }
+            }
+        }
+        // Blocks know where they are.
+        let (mut blocks, mut block) = (plan.blocks(), vec![Point::default(); 50]);
+        let mut given = 0;
+        loop {
+            given += blocks.fill(&mut block);
+            let Some(cursor) = blocks.cursor() else { break };
+            assert_eq!(cursor.offset as usize, given);
+            assert_eq!(listed(&set.resume(cursor), 100), whole[given..]);
+        }
+        assert_eq!(given, whole.len());
+        // A cursor from nowhere makes no more than there is.
+        let at = PointId {
+            x: i64::MAX,
+            y: i64::MIN,
+        };
+        let odd = Cursor {
+            offset: 3,
+            total: u128::MAX,
+            at,
+        };
+        assert!(listed(&set.resume(odd), 100).len() <= whole.len());
+    }
+}
+
+#[test]
+fn a_field_with_the_period_is_followed_without_a_seam() {
+    // The same points, whatever part of the plane the period is: the field is looked at modulo L.
+    let table = shipped("blue-5-sqrt3-over-2-m");
+    let tile = PeriodicSet::new(table, 5000).expect("a period");
+    let side = tile.length();
+    let wave = move |shift: f64| {
+        move |[x, y]: [f64; 2]| {
+            assert!(
+                (0.0..side).contains(&x) && (0.0..side).contains(&y),
+                "{x} {y}"
+            );
+            let turn = std::f64::consts::TAU / side;
+            0.4 + 0.35 * (turn * (x + shift)).cos() * (turn * (y + 2.0 * shift)).cos()
+        }
+    };
+    // Where the field is least and where it is greatest, points are as far apart at the seam as inside.
+    for shift in [0.0, side / 2.0, side / 3.0] {
+        let graded = tile.in_field(wave(shift));
+        let all = places(graded.iter());
+        let mut least = [f64::INFINITY; 2];
+        for [a, b] in pairs(&all, 7) {
+            let is_across = (0..2).any(|i| (a[i] - b[i]).abs() > side / 2.0);
+            let least = &mut least[usize::from(is_across)];
+            *least = least.min(apart(a, b, side));
+        }
+        assert!(least[0] > 0.2 && least[1] > 0.2, "{shift}: {least:?}");
+        let share = all.len() as f64 / tile.len() as f64;
+        assert!((share - 0.4).abs() < 0.01, "{shift}: {share}");
+    }
+}
+
+#[test]
+fn attributes_are_those_of_the_points() {
+    let tile = tile();
+    let even = Kinds::even("oak:10,birch:3,fir:1").expect("kinds");
+    let list = vec![
+        Attribute::Rank,
+        Attribute::Angle,
+        Attribute::Kind(even.clone()),
+    ];
+    let list = Attributes::new(list).expect("different");
+    let bound = tile.attributes(&list).expect("its shares");
+    for p in tile.iter() {
+        assert_eq!(bound.value(0, p.id()), tile.rank(p.id()));
+        assert_eq!(bound.value(1, p.id()), Some(p.angle()));
+        let kind = tile.kind_of(p.id()).expect("kinds");
+        assert_eq!(bound.value(2, p.id()), even.index(kind).map(f64::from));
+    }
+    let other = PeriodicSet::new(with_kinds("1:1"), 500).expect("a period");
+    assert!(other.attributes(&list).is_err());
+}
+
+#[test]
+fn guaranteed_distances_hold_across_the_seam() {
+    let table = shipped("blue-5-sqrt3-over-2-m");
+    for seed in [0, 4] {
+        let tile = PeriodicSet::new(table.clone(), 5000).expect("a period");
+        let tile = tile.side(3.0).expect("in range").seed(seed);
+        let guaranteed = tile.least_distance();
+        let all = places(tile.iter());
+        let least = pairs(&all, 5).map(|[a, b]| apart(a, b, 3.0));
+        let least = least.fold(f64::INFINITY, f64::min);
+        assert!(
+            guaranteed > 0.0 && least >= guaranteed,
+            "{seed}: {least} {guaranteed}"
+        );
+        assert!(seed > 0 || least < 1.5 * guaranteed);
+    }
 }

@@ -1,4 +1,7 @@
-//! A slow program written from the section "Points in space" of docs/algorithm.md alone, compared with the library.
+//! A slow program written from the section "Points in space" of docs/algorithm.md alone, with the shears of the plane's
+//! program, compared with the library.
+
+mod subject;
 
 use proptest::prelude::*;
 use strew_core::{
@@ -6,49 +9,23 @@ use strew_core::{
     space::{PointId, SpaceSet, Table},
     table::{Provenance, Ranks},
 };
+use subject::{
+    definition::{KNOT, control, mix, shift},
+    space::between,
+};
 
 /// The sizes of the shears' slopes: along axes, and along diagonals.
 const SLOPES: [f64; 2] = [0.09, 0.045];
-
-fn mix(state: u64) -> u64 {
-    let z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
-}
 
 /// A name of eight bytes as an integer.
 fn named(name: &[u8; 8]) -> u64 {
     u64::from_be_bytes(*name)
 }
 
-/// The control value of a knot.
-fn control(key: u64, step: i64, knot: i64) -> i64 {
-    let knot = knot + (key >> 61) as i64;
-    let (group, place) = (knot.div_euclid(8), knot.rem_euclid(8) as usize);
-    let h = mix(key ^ (group as u64).wrapping_mul(0xd6e8_feb8_6659_fd93));
-    let mut order = [0, 1, 2, 3, 4, 5, 6, 7];
-    for (i, last) in (1..8).rev().enumerate() {
-        let byte = (h >> (8 * i)) & 255;
-        order.swap(last, (byte * (last as u64 + 1) / 256) as usize);
-    }
-    let phase = (h >> 56) % 16;
-    let at = |place: usize| {
-        let angle = (16 * order[place] as u64 + phase) as f64 / 128.0;
-        let sine = (f64::from(1 << 30) * (std::f64::consts::TAU * angle).sin()).round() as i64;
-        sine * step / (1 << 30)
-    };
-    (0..=place).map(at).sum()
-}
-
 /// g of one shear.
-fn g(key: u64, step: i64, s: i64) -> i64 {
-    let (cell, w) = (s >> 25, (s & ((1 << 25) - 1)) as f32);
-    let [a, b, c] = [cell - 1, cell, cell + 1].map(|knot| control(key, step, knot));
-    let c0 = (a + b) as f32 * 0.5;
-    let c1 = (b - a) as f32 * (1.0 / f64::from(1 << 25)) as f32;
-    let c2 = (a - 2 * b + c) as f32 * (0.5f64.powi(51)) as f32;
-    ((c2 * w + c1) * w + c0) as i64
+fn g(key: u64, slope: f64, s: i64) -> i64 {
+    let step = (slope * KNOT as f64).round() as i128;
+    shift(|knot| control(key, step, knot), s.into()) as i64
 }
 
 /// The set of a table, a spacing, a seed and a strength of the warp.
@@ -131,8 +108,7 @@ impl Definition<'_> {
             for i in 1..=4u64 {
                 let key = mix(common.wrapping_add((4 * group as u64 + i) << 56));
                 let slope = SLOPES[usize::from(i > 2)];
-                let step = (slope * self.strength * f64::from(1 << 25)).round() as i64;
-                let g = |s| g(key, step, s);
+                let g = |s| g(key, slope * self.strength, s);
                 match i {
                     1 => p[b] += g(p[a]),
                     2 => p[a] += g(p[b]),
@@ -226,10 +202,10 @@ proptest! {
         let definition = Definition { table: &table, spacing, seed, strength };
         let mut inside = Vec::new();
         let unit = spacing * table.map().alpha().set_side_f64();
-        let region = strew_core::space::Region::new(
+        let region = between(
             corner.map(|v| (v as f64 + 4.0) * unit),
             corner.map(|v| (v as f64 + 20.0) * unit),
-        ).expect("ordered");
+        );
         for at in addresses(corner.map(|v| v - 72), 168) {
             let [x, y, z] = at;
             let place = definition.coordinates(at);

@@ -6,13 +6,16 @@ use std::sync::Arc;
 
 use proptest::prelude::*;
 use strew_core::{
-    Area, Attribute, Attributes, Backend, Circle, ErrorKind, F64, Field, Keep, Kinds, Placement,
-    Point, PointId, PointSet, Points, Polygon, Region, Seed, Spacing, Table, VariantScales,
-    VaryingKinds, Warp,
+    Attribute, Attributes, ErrorKind, Field, Kinds, Point, PointId, PointSet, Table, VariantScales,
+    VaryingKinds,
     server::{self, Stop},
     table::Ranks,
 };
-use subject::{all_by, definition};
+use subject::{
+    any_area, any_placement, definition,
+    plane::{agree, agree_around, any_parts, within},
+    set, waves as hills,
+};
 
 /// Shares, and the fields of some of their kinds.
 type Weights = (&'static str, Vec<Option<Arc<dyn Field>>>);
@@ -98,47 +101,17 @@ impl Subject {
 }
 
 fn any_subject() -> impl Strategy<Value = Subject> {
-    let seed = prop_oneof![Just(0u64), any::<u64>()];
-    let warp = prop_oneof![Just(0.0), Just(1.0), 0.0..2.0f64];
-    let keep = prop_oneof![Just(1.0), 0.02..1.0f64];
     let tables = subject::mixed::tables();
-    let parts = (0..tables.len(), seed, warp, 0.6..3.0f64, keep, 0..4usize);
-    parts.prop_map(|(table, seed, warp, spacing, keep, number)| {
-        let keep = Keep::new(keep).expect("a share");
-        let placement = Placement::new(Spacing::new(spacing).expect("in range"), Seed(seed))
-            .with_warp(Warp::new(warp).expect("in range"))
-            .with_keep(keep);
+    let parts = (0..tables.len(), any_placement(), 0..4usize);
+    parts.prop_map(|(table, placement, number)| {
         // They have kinds of their own, which do not count.
         let table = &subject::mixed::tables()[table];
         Subject {
-            plain: PointSet::new(table.clone()).placed(placement),
+            plain: set(table, placement),
             order: order(table),
             weights: weights(number),
         }
     })
-}
-
-fn any_area() -> impl Strategy<Value = Area> {
-    let point = || prop::array::uniform2(-30.0..30.0f64);
-    let ring = prop::collection::vec(point(), 3..7);
-    prop_oneof![
-        (point(), prop::array::uniform2(0.0..45.0f64)).prop_map(|([x, y], [w, h])| {
-            Region::new([x, y], [x + w, y + h]).expect("ordered").into()
-        }),
-        (1.0..40.0f64, prop::array::uniform2(-3..3i64)).prop_map(|(size, at)| Region::chunk(
-            size, at
-        )
-        .expect("near")
-        .into()),
-        (point(), 1.0..25.0f64).prop_map(|(at, r)| Circle::new(at, r).expect("round").into()),
-        ring.prop_filter_map("a polygon", |ring| Polygon::new(&[ring])
-            .ok()
-            .map(Area::from)),
-    ]
-}
-
-fn all(set: &PointSet, area: &Area) -> Vec<Point> {
-    set.within(area.clone()).expect("near").to_vec()
 }
 
 proptest! {
@@ -146,14 +119,13 @@ proptest! {
 
     #[test]
     fn each_kind_has_the_points_that_the_definition_says(
-        mut subject in any_subject(), area in any_area(), block in 1usize..300, in_field: bool, clear: bool,
+        mut subject in any_subject(), area in any_area(), parts in any_parts(), in_field: bool, clear: bool,
     ) {
         let unthinned = subject.plain.clone();
         let mut varied = subject.varied();
         if in_field {
-            let field = |[x, y]: [f64; 2]| 0.7 + 0.5 * (x * 0.2).sin() * (y * 0.1).cos();
-            subject.plain = subject.plain.in_field(field);
-            varied = varied.in_field(field);
+            subject.plain = subject.plain.in_field(hills);
+            varied = varied.in_field(hills);
         }
         if clear {
             let other = Subject { plain: unthinned.clone().seed(3), ..subject.clone() };
@@ -161,24 +133,18 @@ proptest! {
             subject.plain = subject.plain.clear_of(&other, 0.7).expect("near");
             varied = varied.clear_of(&other, 0.7).expect("near");
         }
-        let points = all(&subject.plain, &area);
-        prop_assert_eq!(&all(&varied, &area), &points);
+        let points = within(&subject.plain, area.clone());
+        prop_assert_eq!(&within(&varied, area.clone()), &points);
         let defined = Subject { plain: unthinned, ..subject };
         let counts = server::kind_counts(&varied, area.clone(), &Stop::default()).expect("near");
         for kind in 0..defined.kinds() {
             let expected = defined.expected(&points, kind);
             let own = varied.clone().only(kind).expect("a kind");
-            let plan = own.within(area.clone()).expect("near");
             prop_assert_eq!(own.kind(), Some(kind));
-            prop_assert_eq!(plan.count(), expected.len() as u128);
-            prop_assert_eq!(counts[usize::from(kind)], plan.count());
-            let pairs: Vec<[f64; 2]> = expected.iter().map(Point::at).collect();
-            for backend in Backend::available() {
-                prop_assert_eq!(&all_by::<Points>(&plan, block, backend), &expected);
-                prop_assert_eq!(&all_by::<F64>(&plan, block, backend), &pairs);
-            }
+            prop_assert_eq!(counts[usize::from(kind)], expected.len() as u128);
+            agree(&own, area.clone(), &expected, parts);
             let of_others = own.kind_counts(area.clone()).expect("near");
-            prop_assert_eq!(of_others.iter().sum::<u128>(), plan.count());
+            prop_assert_eq!(of_others.iter().sum::<u128>(), expected.len() as u128);
         }
         for point in &points {
             let kind = varied.kind_of(point.id);
@@ -189,49 +155,10 @@ proptest! {
     }
 
     #[test]
-    fn windows_cursors_and_tiles_are_parts(
-        subject in any_subject(), area in any_area(), parts in 1u32..7, offset in 0.0..1.2f64,
-        block in 1usize..300, kind: u8, in_field: bool,
-    ) {
-        let mut own = subject.varied().only(kind % subject.kinds()).expect("a kind");
-        if in_field {
-            own = own.in_field(|[x, y]: [f64; 2]| 0.7 + 0.5 * (x * 0.2).sin() * (y * 0.1).cos());
-        }
-        let plan = own.within(area.clone()).expect("near");
-        let all = plan.to_vec();
-        let split: Vec<Point> = plan.split(parts).flat_map(|part| part.to_vec()).collect();
-        prop_assert_eq!(&split, &all);
-        let offset = ((offset * all.len() as f64) as usize).min(all.len());
-        let window = plan.window(offset as u128, Some(30));
-        prop_assert_eq!(window.to_vec(), &all[offset..(offset + 30).min(all.len())]);
-        if let Some(next) = window.next_cursor() {
-            let rest = own.resume(area, next).expect("near");
-            prop_assert_eq!(rest.to_vec(), &all[next.offset as usize..]);
-        }
-        let from_tiles = plan.tiles(block).flat_map(|tile| {
-            let mut points = vec![Point::default(); all.len() + 1];
-            let filled = plan.tile_blocks::<Points>(&tile).fill(&mut points);
-            points.truncate(filled);
-            points
-        });
-        prop_assert!(from_tiles.eq(all.iter().copied()));
-    }
-
-    #[test]
     fn searches_find_what_boxes_hold(
         subject in any_subject(), at in prop::array::uniform2(-40.0..40.0f64), radius in 0.1..9.0f64, kind: u8,
     ) {
-        let own = subject.varied().only(kind % subject.kinds()).expect("a kind");
-        let region = Region::new(at.map(|v| v - 10.0), at.map(|v| v + 10.0)).expect("ordered");
-        let squared = |p: &Point| (p.x - at[0]).powi(2) + (p.y - at[1]).powi(2);
-        let mut expected = all(&own, &region.into());
-        expected.retain(|p| squared(p) <= radius * radius);
-        expected.sort_by(|a, b| squared(a).total_cmp(&squared(b)).then(a.id.cmp(&b.id)));
-        let found = own.around(at, radius, 10_000).expect("few");
-        prop_assert!(found.iter().map(|near| near.member.point()).eq(expected.iter().copied()));
-        let mut clearance = own.clearance(radius).expect("few");
-        let is_near = expected.iter().any(|p| squared(p) < radius * radius);
-        prop_assert_eq!(clearance.is_any_near(at, |_| true), is_near);
+        agree_around(&subject.varied().only(kind % subject.kinds()).expect("a kind"), at, radius);
     }
 }
 

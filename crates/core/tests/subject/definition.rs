@@ -3,9 +3,10 @@
 
 use strew_core::{Field, Keep, PointId, PointSet, Seed, Table};
 
-const KNOT: i128 = 1 << 25;
+/// The length of a cell of the warp.
+pub const KNOT: i128 = 1 << 25;
 
-fn mix(state: u64) -> u64 {
+pub fn mix(state: u64) -> u64 {
     let mut z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -58,7 +59,7 @@ impl Symmetry {
 }
 
 /// The control value of a knot.
-fn control(key: u64, step: i128, knot: i128) -> i128 {
+pub fn control(key: u64, step: i128, knot: i128) -> i128 {
     let knot = knot + i128::from(key >> 61);
     let (group, place) = (knot.div_euclid(8), knot.rem_euclid(8) as usize);
     let hash = mix(key ^ (group as u64).wrapping_mul(0xd6e8_feb8_6659_fd93));
@@ -89,7 +90,7 @@ fn long_control(key: u64, step: i128, knot: i128) -> i128 {
 }
 
 /// g of a direction at a coordinate across it, from its control values.
-fn shift(control: impl Fn(i128) -> i128, s: i128) -> i128 {
+pub fn shift(control: impl Fn(i128) -> i128, s: i128) -> i128 {
     let cell = s.div_euclid(KNOT);
     let [a, b, c] = [-1, 0, 1].map(|i| control(cell + i));
     let (half, unit) = (0.5f32, (KNOT as f32).recip());

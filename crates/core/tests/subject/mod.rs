@@ -1,15 +1,24 @@
 //! What the tests of point sets share: tables of arbitrary vectors, seeds, and all points of a plan.
 
-#![allow(dead_code, reason = "each test uses what it needs")]
+#![allow(
+    dead_code,
+    unused_imports,
+    clippy::duplicate_mod,
+    reason = "each test uses what it needs, and both dimensions have the same ways"
+)]
 
 pub mod definition;
 pub mod mixed;
+pub mod plane;
+pub mod space;
 
 use std::path::Path;
 
+pub use plane::{all, all_by};
 use proptest::prelude::*;
 use strew_core::{
-    Alpha, Backend, Format, Map, Placement, Plan, Point, PointSet, Seed, Spacing, Table, Warp,
+    Alpha, Area, Circle, Keep, Map, Placement, PointSet, Polygon, Region, Seed, Spacing, Table,
+    Warp,
     table::{FRACTION_BITS, Provenance},
 };
 
@@ -63,28 +72,6 @@ pub fn set(table: &Table, placement: Placement) -> PointSet {
     PointSet::new(table.clone()).placed(placement)
 }
 
-pub fn all<F: Format>(plan: &Plan, block: usize) -> Vec<F::Item> {
-    all_by::<F>(plan, block, Backend::best())
-}
-
-pub fn all_by<F: Format>(plan: &Plan, block: usize, backend: Backend) -> Vec<F::Item> {
-    let mut blocks = plan.blocks::<F>().with_backend(backend);
-    let mut buffer = vec![F::Item::default(); block];
-    let mut items = Vec::new();
-    loop {
-        let filled = blocks.fill(&mut buffer);
-        items.extend_from_slice(&buffer[..filled]);
-        if filled < block {
-            return items;
-        }
-    }
-}
-
-pub fn in_order_of_ids(mut points: Vec<Point>) -> Vec<Point> {
-    points.sort_by_key(|p| (p.id.x.div_euclid(1024), p.id.y, p.id.x));
-    points
-}
-
 pub fn any_table() -> impl Strategy<Value = Table> {
     (0..3usize).prop_map(|i| tables()[i].clone())
 }
@@ -96,4 +83,79 @@ pub fn any_seed() -> impl Strategy<Value = (Seed, Warp)> {
         seed,
         prop_oneof![2 => Just(Warp::OFF), 2 => Just(Warp::ON), 1 => strength],
     )
+}
+
+/// Arbitrary and published tables.
+pub fn tables_of_searches() -> &'static [Table; 4] {
+    static ONCE: std::sync::OnceLock<[Table; 4]> = std::sync::OnceLock::new();
+    ONCE.get_or_init(|| {
+        [
+            table("sqrt(3)", 20),
+            table("(1+sqrt(5))/2", 20),
+            shipped("blue-5-sqrt3-over-2-s"),
+            shipped("pink-5-sqrt3-over-2-s"),
+        ]
+    })
+}
+
+/// A set, and a place near or far.
+pub fn any_place() -> impl Strategy<Value = (PointSet, [f64; 2])> {
+    let place = prop_oneof![
+        4 => -50.0..50.0f64,
+        2 => -1e6..1e6f64,
+        1 => -1e15..1e15f64,
+        1 => Just(0.0),
+    ];
+    let seed = prop_oneof![1 => Just(0u64), 3 => any::<u64>()];
+    let strength = prop_oneof![Just(0.0), Just(1.0), Just(2.0), 0.0..2.0f64];
+    let spacing = prop_oneof![Just(1.0), 0.01..100.0f64, 1e-9..1e9f64];
+    (0..4usize, seed, strength, spacing, place.clone(), place).prop_map(
+        |(table, seed, strength, spacing, x, y)| {
+            let warp = Warp::new(strength).expect("in range");
+            let placement =
+                Placement::new(Spacing::new(spacing).expect("valid"), Seed(seed)).with_warp(warp);
+            let set = set(&tables_of_searches()[table], placement);
+            (set, [x * spacing, y * spacing])
+        },
+    )
+}
+
+/// Seeds, strengths of the warp, spacings and shares.
+pub fn any_placement() -> impl Strategy<Value = Placement> {
+    let seed = prop_oneof![Just(0u64), any::<u64>()];
+    let warp = prop_oneof![Just(0.0), Just(1.0), 0.0..2.0f64];
+    let keep = prop_oneof![Just(1.0), 0.02..1.0f64, 0.2..1.0f64];
+    (seed, warp, 0.6..3.0f64, keep).prop_map(|(seed, warp, spacing, keep)| {
+        Placement::new(Spacing::new(spacing).expect("in range"), Seed(seed))
+            .with_warp(Warp::new(warp).expect("in range"))
+            .with_keep(Keep::new(keep).expect("a share"))
+    })
+}
+
+pub fn any_box() -> impl Strategy<Value = Region> {
+    let corner = prop::array::uniform2(-70.0..40.0f64);
+    (corner, prop::array::uniform2(0.0..45.0f64))
+        .prop_map(|([x, y], [w, h])| plane::between([x, y], [x + w, y + h]))
+}
+
+pub fn any_area() -> impl Strategy<Value = Area> {
+    let center = || prop::array::uniform2(-30.0..30.0f64);
+    let circle = || (center(), 1.0..25.0f64).prop_map(|(at, r)| Circle::new(at, r).expect("round"));
+    let ring = prop::collection::vec(center(), 3..7);
+    let chunk = (1.0..40.0f64, prop::array::uniform2(-3..3i64));
+    prop_oneof![
+        any_box().prop_map(Area::from),
+        chunk.prop_map(|(size, at)| Region::chunk(size, at).expect("near").into()),
+        circle().prop_map(Area::from),
+        ring.prop_filter_map("a polygon", |ring| Polygon::new(&[ring])
+            .ok()
+            .map(Area::from)),
+        (any_box(), circle())
+            .prop_map(|(region, circle)| { Area::from(region).without([circle.into()]) }),
+    ]
+}
+
+/// A field with places of share 0 and of share 1.
+pub fn waves([x, y]: [f64; 2]) -> f64 {
+    0.7 + 0.5 * (x * 0.2).sin() * (y * 0.1).cos()
 }

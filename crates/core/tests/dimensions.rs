@@ -1,0 +1,11 @@
+//! Points of regions, areas and chunks against brute force, and the laws: partitions, order, blocks, windows. Those of
+//! both dimensions are in `both.rs`.
+
+#![allow(clippy::duplicate_mod, reason = "both dimensions have the same laws")]
+
+mod subject;
+
+#[path = "dimensions/plane.rs"]
+mod plane;
+#[path = "dimensions/space.rs"]
+mod space;

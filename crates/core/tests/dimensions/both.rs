@@ -1,0 +1,231 @@
+//! Properties of sets. This file is a module of the plane and one of space.
+
+use proptest::prelude::*;
+use strew_core::ErrorKind;
+
+use super::*;
+
+/// A partition of a region into boxes by cuts across an axis, some of them on top of each other.
+fn cut(region: Region, cuts: &[(usize, f64)]) -> Vec<Region> {
+    let mut parts = vec![region];
+    for (i, &(axis, at)) in cuts.iter().enumerate() {
+        let part = parts.swap_remove((i * 7919) % parts.len());
+        let (min, max) = (part.min(), part.max());
+        let middle = (min[axis] + at * (max[axis] - min[axis])).clamp(min[axis], max[axis]);
+        let (mut upper_min, mut lower_max) = (min, max);
+        upper_min[axis] = middle;
+        lower_max[axis] = middle;
+        parts.extend([between(min, lower_max), between(upper_min, max)]);
+    }
+    parts
+}
+
+fn any_cuts() -> impl Strategy<Value = Vec<(usize, f64)>> {
+    let at = prop_oneof![0.0..1.0f64, Just(0.0), Just(1.0)];
+    prop::collection::vec((0..D, at), 1..8)
+}
+
+/// Checks that boxes have every point of a region once, in the order of the whole.
+fn agree_in_boxes(set: &Set, points: &[Point], boxes: Vec<Region>) {
+    let mut from_parts = Vec::new();
+    for part in boxes {
+        let plan = set.within(part).expect("near");
+        let points = all::<strew_core::Points>(&plan, 100);
+        assert_eq!(plan.count(), points.len() as u128);
+        assert!(points.iter().all(|point| part.contains(point.at())));
+        assert_eq!(in_order(points.clone()), points);
+        from_parts.extend(points);
+    }
+    assert_eq!(in_order(from_parts), points);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(cases(1500)))]
+
+    #[test]
+    fn a_box_holds_what_brute_force_finds((set, region) in any_box(), parts in any_parts()) {
+        let expected = brute_force(&set, &region.into(), REACH, definition(&set));
+        agree(&set, region, &expected, parts);
+    }
+
+    #[test]
+    fn the_nearest_are_what_brute_force_finds(
+        (set, at) in any_place(), k in prop_oneof![1usize..12, 1usize..200],
+        part in prop_oneof![Just(1.0), 0.1..3.0f64],
+    ) {
+        agree_near(&set, at, k, part);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(cases(10_000)))]
+
+    #[test]
+    fn a_partition_has_every_point_exactly_once((set, region) in any_box(), cuts in any_cuts()) {
+        agree_in_boxes(&set, &within(&set, region), cut(region, &cuts));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(cases(300)))]
+
+    #[test]
+    fn an_area_holds_the_points_of_its_box_that_lie_in_it(
+        (set, area) in any_area(), is_box: bool, parts in any_parts(),
+    ) {
+        let bounds = area.bounds().expect("bounded");
+        let area = if is_box { bounds.into() } else { area };
+        let mut expected = within(&set, bounds);
+        expected.retain(|point| area.contains(point.at()));
+        agree(&set, area, &expected, parts);
+    }
+
+    #[test]
+    fn a_share_keeps_the_points_of_lesser_rank(
+        (set, area) in any_area(), share in prop_oneof![0.0001..1.0f64, Just(1.0)], parts in any_parts(),
+    ) {
+        let whole = within(&set, area.clone());
+        let mut expected = whole.clone();
+        expected.retain(|point| set.rank(point.id) < share);
+        let kept = thinned(&set, share);
+        agree(&kept, area, &expected, parts);
+        for point in whole.iter().take(50) {
+            let found = kept.point(point.id);
+            prop_assert_eq!(found.is_some(), expected.contains(point));
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(cases(100)))]
+
+    #[test]
+    fn chunks_lose_nothing_and_share_nothing(
+        (whole, other, distance, _) in any_layers(), is_clear: bool,
+        at in prop::array::uniform::<_, D>(-40i64..40),
+        (size, number) in prop_oneof![(8.0..20.0f64, Just(2i64)), (2i64..5).prop_map(|n| (24.0 / n as f64, n))],
+        parts in any_parts(),
+    ) {
+        let set = if is_clear { whole.clear_of(&other, distance).expect("near") } else { whole };
+        let chunk = |size: f64, at| Region::chunk(size, at).expect("near");
+        let region = chunk(size * number as f64, at);
+        let points = within(&set, region);
+        let part = |i: i64| {
+            let mut rest = i;
+            chunk(size, at.map(|v| {
+                let place = rest % number;
+                rest /= number;
+                v * number + place
+            }))
+        };
+        let boxes = (0..number.pow(D as u32)).map(part);
+        let made = boxes.flat_map(|region| within(&set, region)).collect();
+        prop_assert_eq!(&in_order(made), &points);
+        agree(&set, region, &points, parts);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(cases(40)))]
+
+    #[test]
+    fn sets_keep_clear_of_each_other_wherever_regions_end(
+        (whole, other, distance, region) in any_layers(), cuts in any_cuts(), parts in any_parts(),
+    ) {
+        let clear = whole.clone().clear_of(&other, distance).expect("near");
+        let expected = clear_by_hand(&whole, &other, distance, region);
+        agree(&clear, region, &expected, parts);
+        for point in within(&whole, region) {
+            let stays = expected.contains(&point).then_some(point);
+            prop_assert_eq!(clear.point(point.id).map(Point::from), stays);
+        }
+        agree_in_boxes(&clear, &expected, cut(region, &cuts));
+        if let Some(first) = expected.first() {
+            let nearest = clear.nearest(first.at(), 1).expect("near");
+            prop_assert_eq!(found(&nearest[0]), *first);
+        }
+    }
+}
+
+#[test]
+fn bad_input_is_refused() {
+    let set = unit_set();
+    let corners = |axis: usize, low: f64, high: f64| {
+        let (mut min, mut max) = ([0.0; D], [1.0; D]);
+        (min[axis], max[axis]) = (low, high);
+        let error = Region::new(min, max).expect_err("refused");
+        assert_eq!(error.kind(), ErrorKind::Region);
+        error.field().to_owned()
+    };
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate().take(D) {
+        let [min, max] = ["min", "max"].map(|end| format!("{end}_{name}"));
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert_eq!(corners(axis, bad, 1.0), min);
+            assert_eq!(corners(axis, 0.0, bad), max);
+            let mut at = [0.0; D];
+            at[axis] = bad;
+            let error = Round::new(at, 1.0).expect_err("not finite");
+            assert_eq!(error.kind(), ErrorKind::Area);
+            let error = set.nearest(at, 1).expect_err("not finite");
+            assert_eq!(error.kind(), ErrorKind::Place);
+        }
+        assert_eq!(corners(axis, 2.0, 1.0), max);
+        // A flat box has no points.
+        let mut max = [9.0; D];
+        max[axis] = 0.0;
+        let flat = between([0.0; D], max);
+        assert!(flat.is_empty());
+        assert_eq!(set.count(flat), Ok(0));
+        let (mut min, mut max) = ([0.0; D], [1.0; D]);
+        (min[axis], max[axis]) = (1e16, 1e16 + 5.0);
+        let error = set.within(between(min, max)).expect_err("far");
+        assert_eq!(error.kind(), ErrorKind::TooFar);
+    }
+    let everywhere = Area::Outside(Box::new(cube([0.0; D], 1.0).into()));
+    let error = set.within(everywhere.clone()).expect_err("unbounded");
+    assert_eq!(error.kind(), ErrorKind::Unbounded);
+    // A limit bounds it.
+    let limited = set.clone().limited_to(cube([-1.0; D], 2.0));
+    assert!(limited.within(everywhere).is_ok());
+    for (size, at, problem) in [
+        (0.0, 0, "size"),
+        (-1.0, 0, "size"),
+        (f64::NAN, 0, "size"),
+        (1.0, (1 << 52) + 1, "too far"),
+        (1.0, i64::MAX, "too far"),
+        (1e300, 1 << 40, "finite"),
+    ] {
+        let mut column = [0; D];
+        column[0] = at;
+        let error = set.chunk(size, column).expect_err(problem);
+        assert_eq!(error.kind(), ErrorKind::Chunk);
+        assert!(error.to_string().contains(problem), "{error}");
+    }
+    for k in [0, 10_001] {
+        let error = set.nearest([0.0; D], k).expect_err("none or too many");
+        assert_eq!(error.kind(), ErrorKind::Neighbors);
+        assert_eq!(error.value(), k.to_string());
+        assert!(set.nearest_within([0.0; D], k, 1.0).is_err());
+    }
+    for radius in [-1.0, f64::NAN] {
+        let error = set.nearest_within([0.0; D], 9, radius);
+        assert_eq!(error.expect_err("refused").kind(), ErrorKind::Radius);
+    }
+    // 16 spacings of the other set.
+    let other = set.clone().spacing(2.0).expect("in range");
+    for distance in [0.0, -1.0, f64::NAN, f64::INFINITY, 32.1] {
+        let error = set.clone().clear_of(&other, distance).expect_err("refused");
+        assert_eq!(
+            (error.kind(), error.field()),
+            (ErrorKind::Clearance, "distance")
+        );
+        assert!(error.allowed().contains("at most 32"), "{error}");
+    }
+    assert!(set.clone().clear_of(&other, 32.0).is_ok());
+    for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
+        let kind = |result: Result<Set, strew_core::Error>| result.expect_err("refused").kind();
+        assert_eq!(kind(set.clone().spacing(bad)), ErrorKind::Spacing);
+        assert_eq!(kind(set.clone().density(bad)), ErrorKind::Density);
+        assert_eq!(kind(set.clone().keep(bad)), ErrorKind::Keep);
+    }
+}
