@@ -8,19 +8,19 @@ use super::files;
 
 /// A part, the endings of its files, and the most lines that it may have.
 const CEILINGS: &[(&str, &[&str], usize)] = &[
-    ("src", &["rs"], 21_536),
+    ("src", &["rs"], 21_503),
     ("crates/catalog", &["rs"], 4949),
     ("crates/config", &["rs"], 1560),
-    ("crates/core", &["rs"], 51_181),
+    ("crates/core", &["rs"], 50_364),
     ("crates/encode", &["rs"], 8258),
     ("crates/error", &["rs"], 985),
-    ("crates/forge", &["rs"], 20_721),
+    ("crates/forge", &["rs"], 19_848),
     ("crates/pages", &["rs"], 439),
-    ("crates/plan", &["rs"], 4170),
+    ("crates/plan", &["rs"], 4168),
     ("crates/proto", &["rs"], 337),
     ("crates/query", &["rs"], 8736),
     ("crates/raster", &["rs"], 2976),
-    ("crates/service", &["rs"], 5977),
+    ("crates/service", &["rs"], 5975),
     ("crates/testkit", &["rs"], 1197),
     ("tests", &["rs", "py"], 32_168),
     ("engines", &["rs", "py", "gd", "cs", "c"], 3894),
@@ -47,8 +47,8 @@ const MODULES: &[(&str, &str)] = &[
     ),
     (
         "crates/forge/src",
-        "curve 791 energy 465 figure 1643 judge 822 mask 700 measure 2028 mix 2092 \
-         numeric 270 optimize 1550 picture 279 profile 823 space 2620 thinned 421",
+        "curve 791 energy 465 figure 1927 judge 798 mask 695 measure 1895 mix 2064 \
+         numeric 522 optimize 1550 profile 730 space 2412 thinned 421",
     ),
 ];
 

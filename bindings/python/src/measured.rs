@@ -3,8 +3,8 @@
 use std::sync::Mutex;
 
 use pyo3::{exceptions::PyValueError, prelude::*};
-use strew_forge::Resolution;
-use strew_plan::library::measured::{self, Measured, document, drawing};
+use strew_forge::{Resolution, figure};
+use strew_plan::library::measured::{self, Measured, document};
 
 use crate::{failure::raised, json};
 
@@ -29,7 +29,7 @@ impl Report {
             .0
             .lock()
             .map_err(|error| PyValueError::new_err(error.to_string()))?;
-        Ok(drawing(&report, title))
+        Ok(figure::report(&report, title, None).to_svg())
     }
 }
 

@@ -1,5 +1,7 @@
 //! Properties of sets. This file is a module of the plane and one of space.
 
+#![allow(clippy::useless_conversion, reason = "points of space are their own")]
+
 use proptest::prelude::*;
 use strew_core::ErrorKind;
 

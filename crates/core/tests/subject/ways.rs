@@ -1,5 +1,7 @@
 //! Every way to the points of a set agrees. This file is a module of the plane and one of space.
 
+#![allow(clippy::useless_conversion, reason = "points of space are their own")]
+
 use proptest::prelude::*;
 use strew_core::{Backend, F32, F64, Points};
 

@@ -65,10 +65,13 @@ pub fn considered(planned: &Planned) -> u128 {
 
 /// The rows that are counted to split a plan, or points made, which takes as long: many parts take little more than one.
 pub fn splitting(planned: &Planned, parts: u32) -> f64 {
-    /// Those of each part: a row is made to find where it begins.
-    const PART: f64 = 3.0;
+    /// Those of each part: rows are counted by halves, then the places of one, to find where it begins.
+    const PART: f64 = 20.0;
+    /// Those of ten times as many places in a row of more than a thousand.
+    const TENFOLD: f64 = 20.0;
     let query = &planned.query;
     let parts = f64::from(parts.max(1));
+    let [min_x, _, max_x, _] = query.region.bbox();
     let rows = |(set, planned): (&Set, &PlannedSet)| {
         if let Some(sought) =
             volume::splitting(query, set, (&*planned.plan, planned.nanoseconds), parts)
@@ -78,20 +81,22 @@ pub fn splitting(planned: &Planned, parts: u32) -> f64 {
         let Some(placement) = planned.plan.plane().map(strew_core::Plan::placement) else {
             return 0.0;
         };
+        let units = UNITS / placement.spacing.get();
+        let places = (max_x - min_x) * units;
+        let found = parts * (PART + TENFOLD * (places / 1000.0).max(1.0).log10());
         if set.field.is_some() || !set.clear_of.is_empty() {
-            return planned.plan.total() as f64 * planned.nanoseconds / ROW;
+            return found + planned.plan.total() as f64 * planned.nanoseconds / ROW;
         }
         let area = set.area(&query.region);
         let is_box = matches!(area, Area::Region(_));
-        let Some(bounds) = area
-            .bounds()
-            .filter(|_| !is_box || placement.warp != Warp::OFF)
-        else {
-            return 0.0;
-        };
-        let along = server::outline(&area, bounds) + bounds.sides()[1];
-        along * UNITS / placement.spacing.get() * (1.0 + 0.5 * parts.log2())
+        match area.bounds() {
+            Some(bounds) if !is_box || placement.warp != Warp::OFF => {
+                let along = server::outline(&area, bounds) + bounds.sides()[1];
+                found + along * units * (1.0 + 0.5 * parts.log2())
+            }
+            _ => found,
+        }
     };
     let sets = query.sets.iter().zip(&planned.sets);
-    sets.map(rows).sum::<f64>() + parts * PART
+    sets.map(rows).sum()
 }

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 use strew_error::{Error, Fault, number};
 use strew_forge::{
-    Report, Resolution, figure,
+    Report, Resolution,
     measure::{BANDS, Sample},
 };
 
@@ -93,9 +93,4 @@ pub fn document(report: &Report) -> Value {
         "anisotropy": { "columns": ["from", "to", "db"], "bands": bands },
         "rdf": { "columns": ["distance", "g"], "bins": report.rdf.bins },
     })
-}
-
-/// A report as a picture: points, spectrum and curves, as SVG.
-pub fn drawing(report: &Report, title: &str) -> String {
-    figure::report(report, title, None).to_svg()
 }
