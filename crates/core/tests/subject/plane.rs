@@ -38,9 +38,9 @@ pub fn agree_otherwise(plan: &Plan, points: &[Point], parts: Parts) {
     let made = tiles.flat_map(|tile| read(plan.tile_blocks::<Points>(&tile), 100));
     assert!(made.eq(points.iter().copied()));
     let mut blocks = plan.blocks::<F32>();
-    assert_eq!(blocks.cursor().is_some(), !points.is_empty());
+    assert!(blocks.cursor().is_some() || points.is_empty());
     let filled = blocks.fill(&mut vec![[0.0; 2]; parts.block]);
-    assert_eq!(blocks.cursor().is_some(), filled < points.len());
+    assert!(blocks.cursor().is_some() || filled == points.len());
     if let Some(cursor) = blocks.cursor() {
         let next = plan.from_cursor(cursor).window(0, Some(70)).to_vec();
         assert_eq!(next, points[filled..points.len().min(filled + 70)]);
