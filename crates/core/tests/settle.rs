@@ -9,13 +9,10 @@ use std::collections::HashMap;
 use definition::reference;
 use proptest::prelude::*;
 use strew_core::{
-    Area, Circle, Field, Placement, Point, PointId, PointSet, Region, Seed, Settle, Spacing, Table,
-    field::FieldSpec,
+    Area, Backend, Circle, F64, Field, Placement, Point, PointId, PointSet, Points, Region, Seed,
+    Settle, Spacing, Table, field::FieldSpec,
 };
-use subject::{
-    plane::{Parts, agree, squared, within},
-    shipped,
-};
+use subject::{all, all_by, shipped};
 
 const SQUARE: f64 = 4.0;
 
@@ -189,26 +186,48 @@ fn rare_kinds_settle_with_the_others_alone() {
     }
 }
 
-/// Every part of a plan, made in another way, has the same points, and searches find them.
+/// Every part of a plan, made in another way, has the same points.
 fn agrees(set: &PointSet, area: impl Into<Area>) {
     let area = area.into();
-    let whole = within(set, area.clone());
-    for offset in [0.0, 1.0 / 3.0, 0.5] {
-        let parts = Parts {
-            block: 777,
-            tile: 900,
-            offset,
-            limit: whole.len() / 3,
-            number: 2,
-        };
-        agree(set, area.clone(), &whole, parts);
+    let plan = set.within(area.clone()).expect("near");
+    let whole = plan.to_vec();
+    assert_eq!(plan.count(), whole.len() as u128);
+    for backend in Backend::available() {
+        assert_eq!(all_by::<Points>(&plan, 777, backend), whole);
     }
-    for point in whole.iter().step_by(whole.len() / 30 + 1) {
+    let tiled: Vec<Point> = plan
+        .tiles(900)
+        .flat_map(|tile| {
+            let mut points = vec![Point::default(); 1500];
+            let filled = plan.tile_blocks::<Points>(&tile).fill(&mut points);
+            points.truncate(filled);
+            points
+        })
+        .collect();
+    assert_eq!(tiled, whole);
+    let n = whole.len();
+    for (from, to) in [(0, n / 3), (n / 3, n), (n / 2, n / 2 + 1)] {
+        let part = plan.window(from as u128, Some((to - from) as u128));
+        assert_eq!(all::<Points>(&part, 100), whole[from..to]);
+    }
+    let mut blocks = plan.blocks::<F64>();
+    let mut some = vec![[0.0; 2]; n / 2 + 1];
+    let filled = blocks.fill(&mut some);
+    let rest = set.resume(area.clone(), blocks.cursor().expect("a place"));
+    assert_eq!(rest.expect("the place").to_vec(), whole[filled..]);
+    for point in whole.iter().step_by(n / 30 + 1) {
+        assert_eq!(
+            set.point(point.id).map(|member| member.at()),
+            Some(point.at())
+        );
         let nearest = set.nearest(point.at(), 1).expect("found");
         assert_eq!(nearest[0].member.id(), point.id);
         let around = set.around(point.at(), 4.0, 10_000).expect("few");
-        let near = |other: &&Point| squared(other.at(), point.at()) <= 16.0;
-        assert!(whole.iter().filter(near).count() <= around.len());
+        let near = whole.iter().filter(|other| {
+            let [dx, dy] = [other.x - point.x, other.y - point.y];
+            dx * dx + dy * dy <= 16.0
+        });
+        assert!(near.count() <= around.len());
     }
 }
 
