@@ -291,7 +291,7 @@ fn request(random: &mut SplitMix) -> (&'static str, Value) {
         false => [
             "/v1/points:query",
             "/v1/count",
-            "/v1/points:split?parts=1000",
+            "/v1/points:split?parts=5000",
         ],
     };
     let path = paths[[0, 0, 0, 1, 2][random.index(5)]];

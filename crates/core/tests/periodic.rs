@@ -12,7 +12,7 @@ use strew_core::{
 };
 use subject::shipped;
 
-/// A table with arbitrary vectors of up to so many grid units, so that wrong blocks show.
+/// A table with arbitrary vectors of up to `most` grid units, to make wrong blocks show.
 fn table_of(alpha: &str, most: f64) -> Table {
     let map = Map::new(alpha.parse().expect("valid"), 20).expect("small");
     let n = map.intervals();

@@ -68,7 +68,7 @@ fn any_box() -> impl Strategy<Value = (Set, Region)> {
     })
 }
 
-/// Boxes, balls, prisms, and what is made of them.
+/// Boxes, balls, prisms, and their combinations.
 fn any_area() -> impl Strategy<Value = (Set, Area)> {
     let parts = (any_box(), 1.0..7.0f64, 0..5);
     let seeds = (0u64..3).prop_map(|seed| set(1.0, seed));

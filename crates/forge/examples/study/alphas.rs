@@ -1,5 +1,4 @@
-//! What α is good for: forges `blue` over a scan of α and draws its figures and the number of blocks; and the figures of
-//! a pattern.
+//! What α is good for: forges `blue` over a scan of α and draws its figures and the number of blocks.
 //!
 //! Without values of α the scan has 34. Tables that are in FOLDER already are not made again, so that an interrupted
 //! scan goes on. Writes FOLDER/alphas.md and FOLDER/alphas.svg.
@@ -7,7 +6,7 @@
 use std::{fs, path::Path};
 
 use strew_core::{Alpha, Map, Table};
-use strew_forge::{Job, figure, file_name, forge, read_table, write_table};
+use strew_forge::{Job, file_name, forge, read_table, write_table};
 
 use crate::{Outcome, arguments::Arguments, figures};
 
@@ -155,20 +154,4 @@ fn svg(rows: &[Row]) -> String {
         s += &text(at, anchor, label);
     }
     s + "</svg>\n"
-}
-
-/// Draws the figures of the pattern of an α into a folder.
-pub fn figures(mut arguments: Arguments) -> Outcome {
-    let (alpha, folder) = (arguments.next("ALPHA")?.parse()?, arguments.next("FOLDER")?);
-    let offsets = [(2, 1), (3, 3)];
-    for (name, drawing) in [
-        ("index", figure::index(alpha, 64)?),
-        ("arrangement", figure::arrangement(alpha, &offsets, 48)?),
-        ("clusters", figure::clusters(alpha, 2.24, 64, 96)?),
-        ("map", figure::map(alpha, 20, [6, 14])?),
-    ] {
-        let path = Path::new(&folder).join(name).with_extension("svg");
-        fs::write(path, drawing.to_svg())?;
-    }
-    Ok(())
 }

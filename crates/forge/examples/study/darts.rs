@@ -123,7 +123,7 @@ impl Darts {
         found
     }
 
-    /// Throws a dart of a kind, which stays if all in its way gives way.
+    /// Throws a dart of a kind. It stays if every dart in conflict with it can be removed.
     fn throw(&mut self, kind: usize) {
         let at = [0, 1].map(|_| self.random.next_f64());
         let mut conflicts = self.conflicts(at, kind);

@@ -5,8 +5,8 @@
 
 use std::f64::consts::PI;
 
-use num_complex::Complex;
 use rayon::prelude::*;
+use rustfft::num_complex::Complex;
 use strew_forge::numeric::SplitMix;
 
 use crate::ground::Ground;

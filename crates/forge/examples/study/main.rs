@@ -23,13 +23,12 @@ use std::{env, error::Error};
 
 use arguments::Arguments;
 
-/// What a study returns.
+/// The result of a study.
 type Outcome<T = ()> = Result<T, Box<dyn Error>>;
 
 const USAGE: &str = "\
 alphas FOLDER [ALPHA…]
 comparison
-figures ALPHA FOLDER
 kinds TABLE SHARES… [--joint] [--time] [--draw OUT.png [--side 26] [--pixels 12]]
 masks TABLE [PICTURE.png]
 periodic TABLE [--points 5000] [--seeds 4]
@@ -46,7 +45,6 @@ fn main() -> Outcome {
     let study = match arguments.next("SUBCOMMAND").unwrap_or_default().as_str() {
         "alphas" => alphas::scan,
         "comparison" => measured::comparison,
-        "figures" => alphas::figures,
         "kinds" => kinds::fixed,
         "masks" => masks::study,
         "periodic" => measured::periodic,

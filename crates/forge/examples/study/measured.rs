@@ -67,9 +67,9 @@ fn tiled() -> Outcome<Vec<[f64; 2]>> {
     Ok(points)
 }
 
-/// What seeds do to a table: distances, isotropy by bands, recurrence, and what two seeds share: of each pair also the
-/// recurrence of the one in the other, which for different symmetries is that of chance. Seeds 7 and 10 have the same
-/// one.
+/// The sets of several seeds of a table: distances, isotropy by bands and recurrence of each; of each pair the shared
+/// power and phases, and the recurrence of one in the other, which for different symmetries is that of chance. Seeds 7
+/// and 10 have the same symmetry.
 pub fn seeds(mut arguments: Arguments) -> Outcome {
     let warp = Warp::new(arguments.value("--warp", "1")?)?;
     let settle = Settle::new(arguments.value("--settle", "0")?)?;

@@ -132,7 +132,7 @@ fn panel(picture: &Picture, points: &[[f64; 2]]) -> Panel {
 /// more on a busy machine.
 fn seconds() -> f64 {
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
-    // The count is brought up to date when the thread gives way.
+    // The count is updated when the thread yields.
     thread::sleep(Duration::from_micros(1));
     let counts = fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     let first = counts.split(' ').next();

@@ -38,7 +38,7 @@ impl Lloyd {
     /// Returns the Voronoi cells of a periodic set of at least 100 points, in order of the points.
     #[must_use]
     pub fn cells(set: &Sample) -> Vec<Cell> {
-        let list = CellList::new(set.points(), set.side(), 1.0, true);
+        let list = CellList::of(set, 1.0);
         let found: Vec<Vec<(u32, Cell)>> = list
             .members()
             .par_chunks(CHUNK)

@@ -13,7 +13,7 @@ pub struct Pairwise<E>(pub E);
 impl<E: PairEnergy> SetEnergy for Pairwise<E> {
     fn evaluate(&self, set: &Sample, gradient: &mut [[f64; 2]]) -> f64 {
         let cutoff = self.0.cutoff();
-        let cells = CellList::new(set.points(), set.side(), (cutoff / 4.0).max(0.5), true);
+        let cells = CellList::of(set, (cutoff / 4.0).max(0.5));
         let rings = (cutoff / cells.width()).ceil() as i64;
         let each: Vec<(u32, f64, [f64; 2])> = cells
             .members()

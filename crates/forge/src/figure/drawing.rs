@@ -51,7 +51,7 @@ pub(super) enum Mark {
     Ring([f64; 2], f64, Pen),
     /// The area that an odd number of rectangles covers, each by its upper left corner and its size.
     Checkers(Vec<[[f64; 2]; 2]>, Color),
-    /// A rectangle of gray cells: its upper left corner, its size, and the cells of rows of so many from the top.
+    /// A rectangle of gray cells: its upper left corner, its size, the number of columns, and the cells by rows from the top.
     Cells([f64; 2], [f64; 2], usize, Vec<u8>),
     /// A text on the line of writing at a place, with its size.
     Text([f64; 2], f64, Anchor, String),

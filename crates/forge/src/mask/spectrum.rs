@@ -1,7 +1,8 @@
 //! Spectra of thresholded masks: how even the pixels are that are on at a level.
 
+use rustfft::{FftPlanner, num_complex::Complex};
+
 use super::Mask;
-use crate::numeric::{Fourier, Plane};
 
 /// The spectrum of the pixels of a mask that are on at a level.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,25 +44,29 @@ impl Mask {
         let pixels = size * size;
         let on = ((level.clamp(0.0, 1.0) * pixels as f64).round() as usize).clamp(1, pixels - 1);
         let share = on as f64 / pixels as f64;
-        let scale = pixels as f64 * share * (1.0 - share);
         let values = self.ranks.iter().map(|&rank| {
             let is_on = f64::from(u8::from((rank as usize) < on));
-            is_on - share
+            Complex::new(is_on - share, 0.0)
         });
-        let (mut plane, fourier) = (Plane::new(pixels), Fourier::new(size));
-        plane.re = values.collect();
-        fourier.columns(&mut plane, &mut Plane::default());
-        // Frequencies do not tell rows from columns.
-        let mut plane = plane.turned(size);
-        fourier.columns(&mut plane, &mut Plane::default());
-        let powers = plane.re.iter().zip(&plane.im);
-        let powers = powers.map(|(re, im)| (re * re + im * im) / scale);
+        let mut values: Vec<Complex<f64>> = values.collect();
+        let fft = FftPlanner::new().plan_fft_forward(size);
+        // Rows, then columns, which are rows of the transposed square.
+        for _ in 0..2 {
+            fft.process(&mut values);
+            for y in 0..size {
+                for x in 0..y {
+                    values.swap(y * size + x, x * size + y);
+                }
+            }
+        }
         let unit = (pixels as f64 * share.min(1.0 - share)).sqrt();
+        let scale = pixels as f64 * share * (1.0 - share);
         let (mut sums, mut counts) = ([0.0; LevelSpectrum::RINGS], [0u32; LevelSpectrum::RINGS]);
         let (mut low, mut peak) = ((0.0, 0u32), 0f64);
-        for (i, power) in powers.enumerate().skip(1) {
+        for (i, value) in values.iter().enumerate().skip(1) {
             let frequency = |k: usize| k.min(size - k) as f64;
             let nu = frequency(i % size).hypot(frequency(i / size)) / unit;
+            let power = value.norm_sqr() / scale;
             peak = peak.max(power);
             if nu < 0.5 {
                 low = (low.0 + power, low.1 + 1);

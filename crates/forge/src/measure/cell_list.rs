@@ -15,14 +15,9 @@ pub(crate) struct CellList {
 }
 
 impl CellList {
-    /// Sorts the points of a set into cells at least `cell` wide.
+    /// Sorts the points of a set into cells at least `cell` wide. Positions of a periodic set are taken modulo its side.
     pub(crate) fn of(set: &Sample, cell: f64) -> Self {
-        Self::new(set.points(), set.side(), cell, set.is_periodic())
-    }
-
-    /// Sorts `points` into cells at least `cell` wide over [0, `side`)². If `periodic`, positions
-    /// are taken modulo the side.
-    pub(crate) fn new(points: &[[f64; 2]], side: f64, cell: f64, periodic: bool) -> Self {
+        let (points, side, periodic) = (set.points(), set.side(), set.is_periodic());
         // However small `cell` is, there are at most about twice as many cells as points.
         let most = (2.0 * points.len() as f64).sqrt().ceil().max(1.0);
         let per_axis = (side / cell).floor().clamp(1.0, most) as i64;

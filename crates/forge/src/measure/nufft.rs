@@ -1,77 +1,63 @@
 //! Fourier sums over scattered points: a non-uniform FFT of type 1 in two dimensions.
 //!
-//! Each point is spread onto a regular grid, twice as fine as the frequencies need. Then the grid is transformed by an FFT
-//! and the transform of the kernel is divided out; the error is about 10⁻¹¹ of √Σw².
+//! Each point is spread onto a regular grid, twice as fine as the frequencies need. Then the grid is transformed by an
+//! FFT and the transform of the kernel is divided out. The error is about 10⁻¹¹ of √Σw².
 //!
-//! The grid is never in memory as a whole: bands of rows are spread, transformed along x and cut to the requested
-//! frequencies. Then as many columns at a time are transformed along y.
+//! The grid is never in memory as a whole: bands of rows are spread, transformed along x and cut to
+//! the requested frequencies. Then the columns are transformed one by one.
+
+use std::sync::Arc;
 
 use rayon::prelude::*;
+use rustfft::{Fft, FftPlanner, num_complex::Complex};
 
-use crate::numeric::{Fourier, Kernel, Plane, size_from};
+use crate::numeric::Kernel;
 
 /// The width of the kernel, in grid cells.
 const WIDTH: usize = 12;
 type Spreading = Kernel<WIDTH>;
-/// Grid rows, and then columns, that are transformed together.
+/// Grid rows that are spread and transformed together.
 const BAND: usize = 32;
 
 /// Computes Σ w·exp(−2πi k·x) over the points for kx in 0..=`modes` and ky in −`modes`..=`modes`.
 ///
-/// Returns the sums in this order, ky fastest, each mapped by `each(kx, ky, [real, imaginary])`. Points are in
+/// Returns the sums in this order, ky fastest, each mapped by `each(kx, ky, sum)`. Points are in
 /// [0, 1)², where 1 is the side of the torus; without weights w = 1.
 pub(super) fn transform<T: Send>(
     points: &[[f64; 2]],
     weights: Option<&[f64]>,
     modes: usize,
-    each: impl Fn(i64, i64, [f64; 2]) -> T + Sync,
+    each: impl Fn(i64, i64, Complex<f64>) -> T + Sync,
 ) -> Vec<T> {
-    let size = size_from((2 * (2 * modes + 1)).div_ceil(BAND)) * BAND;
-    let fourier = Fourier::new(size);
+    let size = grid_size(modes);
+    let fft = FftPlanner::new().plan_fft_forward(size);
     let rows = RowIndex::new(points, size);
-    // By kx, then by row of the band.
-    let bands: Vec<Plane<f64>> = (0..size / BAND)
-        .into_par_iter()
-        .map_init(Plane::default, |other, band| {
-            let mut plane = Plane::new(size * BAND);
-            plane.re = rows.spread(points, weights, size, band * BAND);
-            fourier.columns(&mut plane, other);
-            plane.re.truncate((modes + 1) * BAND);
-            plane.im.truncate((modes + 1) * BAND);
-            plane
-        })
-        .collect();
-    let undo = Spreading::undo(modes, size);
-    let columns: Vec<usize> = (0..=modes).collect();
-    let columns = columns
-        .par_chunks(BAND)
-        .map_init(Plane::default, |other, own| {
-            let width = own.len();
-            let mut plane = Plane::new(size * width);
-            for (band, part) in bands.iter().enumerate() {
-                for (column, kx) in own.iter().enumerate() {
-                    for row in 0..BAND {
-                        let to = (band * BAND + row) * width + column;
-                        plane.re[to] = part.re[kx * BAND + row];
-                        plane.im[to] = part.im[kx * BAND + row];
-                    }
-                }
-            }
-            fourier.columns(&mut plane, other);
-            let sum = |column: usize, ky: i64| {
-                let undo = undo[own[column]] * undo[ky.unsigned_abs() as usize];
-                let at = ky.rem_euclid(size as i64) as usize * width + column;
-                each(
-                    own[column] as i64,
-                    ky,
-                    [plane.re[at] * undo, plane.im[at] * undo],
-                )
-            };
-            let modes = modes as i64;
-            let sums = (0..width).flat_map(|column| (-modes..=modes).map(move |ky| (column, ky)));
-            sums.map(|(column, ky)| sum(column, ky)).collect::<Vec<T>>()
+    let columns = modes + 1;
+    // Indexed by band, then kx, then row of the band.
+    let mut half_done = vec![Complex::default(); columns * size];
+    half_done
+        .par_chunks_mut(columns * BAND)
+        .enumerate()
+        .for_each(|(band, out)| {
+            let grid = rows.spread(points, weights, size, band * BAND);
+            transform_rows(&grid, &*fft, columns, out);
         });
-    columns.collect::<Vec<_>>().into_iter().flatten().collect()
+    finish_columns(&half_done, &fft, modes, &each)
+}
+
+/// The side of the grid: the least multiple of [`BAND`] that is twice as fine as needed and has no
+/// prime factor above 5, for the FFT.
+fn grid_size(modes: usize) -> usize {
+    let smooth = |mut m: usize| {
+        for p in [2usize, 3, 5] {
+            while m.is_multiple_of(p) {
+                m /= p;
+            }
+        }
+        m == 1
+    };
+    let least = (2 * (2 * modes + 1)).div_ceil(BAND).max(1);
+    (least..).find(|&m| smooth(m)).unwrap_or(least) * BAND
 }
 
 /// Points sorted by the first grid row under their kernel.
@@ -102,7 +88,7 @@ impl RowIndex {
         Self { starts, order }
     }
 
-    /// Spreads the points onto the band of grid rows from `first_row` on, by x, then by row.
+    /// Spreads the points onto the band of grid rows from `first_row` on.
     fn spread(
         &self,
         points: &[[f64; 2]],
@@ -114,23 +100,94 @@ impl RowIndex {
         // Kernels that start up to WIDTH − 1 rows above reach into the band.
         for offset in 1 - WIDTH as i64..BAND as i64 {
             let row = (first_row as i64 + offset).rem_euclid(size as i64) as usize;
-            let inside = (-offset).max(0) as usize..WIDTH.min((BAND as i64 - offset) as usize);
-            let first = offset.max(0) as usize;
             for &index in &self.order[self.starts[row] as usize..self.starts[row + 1] as usize] {
                 let [x, y] = points[index as usize];
                 let weight = weights.map_or(1.0, |w| w[index as usize]);
-                let along_y = &Spreading::values(y, size)[inside.clone()];
-                let start = Spreading::first(x, size);
-                for (i, kx) in (start..).zip(Spreading::values(x, size)) {
-                    let at = i.rem_euclid(size as i64) as usize * BAND + first;
-                    for (cell, ky) in grid[at..].iter_mut().zip(along_y) {
-                        *cell += weight * kx * ky;
+                let [along_x, along_y] = [x, y].map(|v| Spreading::values(v, size));
+                let start = Spreading::first(x, size).rem_euclid(size as i64) as usize;
+                for (j, ky) in along_y.iter().enumerate() {
+                    let Ok(in_band) = usize::try_from(offset + j as i64) else {
+                        continue;
+                    };
+                    if in_band >= BAND {
+                        break;
                     }
+                    let row = &mut grid[in_band * size..(in_band + 1) * size];
+                    add_wrapped(row, start, &along_x, weight * ky);
                 }
             }
         }
         grid
     }
+}
+
+/// Adds the kernel times a factor to a cyclic row, from the cell `start` on.
+fn add_wrapped(row: &mut [f64], start: usize, kernel: &[f64; WIDTH], factor: f64) {
+    if let Some(cells) = row.get_mut(start..start + WIDTH) {
+        for (cell, value) in cells.iter_mut().zip(kernel) {
+            *cell += factor * value;
+        }
+    } else {
+        let size = row.len();
+        for (j, value) in kernel.iter().enumerate() {
+            row[(start + j) % size] += factor * value;
+        }
+    }
+}
+
+/// Transforms the rows of a band, two real rows at a time, and keeps kx = 0..`columns`.
+fn transform_rows(grid: &[f64], fft: &dyn Fft<f64>, columns: usize, out: &mut [Complex<f64>]) {
+    let size = fft.len();
+    let mut line = vec![Complex::default(); size];
+    let mut scratch = vec![Complex::default(); fft.get_inplace_scratch_len()];
+    for pair in 0..BAND / 2 {
+        let (even, odd) = (2 * pair, 2 * pair + 1);
+        for (x, value) in line.iter_mut().enumerate() {
+            *value = Complex::new(grid[even * size + x], grid[odd * size + x]);
+        }
+        fft.process_with_scratch(&mut line, &mut scratch);
+        for kx in 0..columns {
+            // Transforms of real rows are Hermitian, so the sum's even and odd parts separate them.
+            let (plus, minus) = (line[kx], line[(size - kx) % size].conj());
+            out[kx * BAND + even] = (plus + minus) * 0.5;
+            out[kx * BAND + odd] = (plus - minus) * Complex::new(0.0, -0.5);
+        }
+    }
+}
+
+/// Transforms the columns along y and divides by the transform of the kernel.
+fn finish_columns<T: Send>(
+    half_done: &[Complex<f64>],
+    fft: &Arc<dyn Fft<f64>>,
+    modes: usize,
+    each: &(impl Fn(i64, i64, Complex<f64>) -> T + Sync),
+) -> Vec<T> {
+    let (size, columns) = (fft.len(), modes + 1);
+    let undo = Spreading::undo(modes, size);
+    let by_column: Vec<Vec<T>> = (0..columns)
+        .into_par_iter()
+        .map_init(
+            || vec![Complex::default(); fft.get_inplace_scratch_len()],
+            |scratch, kx| {
+                let mut line: Vec<Complex<f64>> = (0..size / BAND)
+                    .flat_map(|band| {
+                        let at = (band * columns + kx) * BAND;
+                        half_done[at..at + BAND].iter().copied()
+                    })
+                    .collect();
+                fft.process_with_scratch(&mut line, scratch);
+                let modes = modes as i64;
+                (-modes..=modes)
+                    .map(|ky| {
+                        let value = line[ky.rem_euclid(size as i64) as usize];
+                        let undo = undo[kx] * undo[ky.unsigned_abs() as usize];
+                        each(kx as i64, ky, value * undo)
+                    })
+                    .collect()
+            },
+        )
+        .collect();
+    by_column.into_iter().flatten().collect()
 }
 
 #[cfg(test)]
@@ -151,13 +208,15 @@ mod tests {
             let found = transform(&points, Some(&weights), modes, |kx, ky, v| (kx, ky, v));
             assert_eq!(found.len(), (modes + 1) * (2 * modes + 1));
             for (kx, ky, value) in found {
-                let mut direct = [0.0; 2];
-                for (p, weight) in points.iter().zip(&weights) {
-                    let turns = kx as f64 * p[0] + ky as f64 * p[1];
-                    let (sin, cos) = (-2.0 * std::f64::consts::PI * turns).sin_cos();
-                    direct = [direct[0] + weight * cos, direct[1] + weight * sin];
-                }
-                let error = (value[0] - direct[0]).hypot(value[1] - direct[1]) / size;
+                let direct: Complex<f64> = points
+                    .iter()
+                    .zip(&weights)
+                    .map(|(p, w)| {
+                        let turns = kx as f64 * p[0] + ky as f64 * p[1];
+                        Complex::from_polar(*w, -2.0 * std::f64::consts::PI * turns)
+                    })
+                    .sum();
+                let error = (value - direct).norm() / size;
                 assert!(error < 1e-9, "{count} {modes} {kx} {ky}: {error:e}");
             }
         }

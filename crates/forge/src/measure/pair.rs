@@ -4,8 +4,9 @@
 //! both 0 for independent sets but for chance: the correlation of their powers, mode by mode, and the highest
 //! peak of their phase correlation, which finds a part of one set in the other at any translation.
 
+use rustfft::{FftPlanner, num_complex::Complex};
+
 use super::{Sample, nufft::transform};
-use crate::numeric::{Fourier, Plane, size_from};
 
 /// The structure that two sets have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +48,7 @@ impl Shared {
 
 /// The sums of a window at integer frequencies, where its mean density adds nothing. Without a taper, which
 /// would tie neighboring modes to each other.
-fn sums(set: &Sample, modes: usize) -> Vec<[f64; 2]> {
+fn sums(set: &Sample, modes: usize) -> Vec<Complex<f64>> {
     let turns: Vec<[f64; 2]> = set
         .points()
         .iter()
@@ -58,12 +59,8 @@ fn sums(set: &Sample, modes: usize) -> Vec<[f64; 2]> {
 
 type Mode = (i64, i64, f64);
 
-fn squared([re, im]: [f64; 2]) -> f64 {
-    re * re + im * im
-}
-
 fn power_correlation(
-    sums: &[Vec<[f64; 2]>; 2],
+    sums: &[Vec<Complex<f64>>; 2],
     side: f64,
     wanted: impl Fn(usize) -> Option<Mode>,
 ) -> f64 {
@@ -76,8 +73,8 @@ fn power_correlation(
                 means.resize(ring(nu) + 1, [0.0; 3]);
             }
             let mean = &mut means[ring(nu)];
-            mean[0] += squared(*a);
-            mean[1] += squared(*b);
+            mean[0] += a.norm_sqr();
+            mean[1] += b.norm_sqr();
             mean[2] += 1.0;
         }
     }
@@ -85,8 +82,8 @@ fn power_correlation(
     for (i, (a, b)) in sums[0].iter().zip(&sums[1]).enumerate() {
         if let Some((_, _, nu)) = wanted(i) {
             let mean = means[ring(nu)];
-            let a = squared(*a) * mean[2] / mean[0] - 1.0;
-            let b = squared(*b) * mean[2] / mean[1] - 1.0;
+            let a = a.norm_sqr() * mean[2] / mean[0] - 1.0;
+            let b = b.norm_sqr() * mean[2] / mean[1] - 1.0;
             both += a * b;
             own = [own[0] + a * a, own[1] + b * b];
         }
@@ -95,37 +92,33 @@ fn power_correlation(
 }
 
 fn phase_peak(
-    sums: &[Vec<[f64; 2]>; 2],
+    sums: &[Vec<Complex<f64>>; 2],
     modes: usize,
     wanted: impl Fn(usize) -> Option<Mode>,
 ) -> f64 {
-    let size = size_from(2 * (modes + 1));
-    let mut grid = Plane::new(size * size);
-    for (i, ([a, b], [c, d])) in sums[0].iter().zip(&sums[1]).enumerate() {
+    let size = 2 * (modes + 1);
+    let mut grid = vec![Complex::default(); size * size];
+    for (i, (a, b)) in sums[0].iter().zip(&sums[1]).enumerate() {
         if let Some((kx, ky, _)) = wanted(i) {
-            // One sum times the conjugate of the other.
-            let (re, im) = (a * c + b * d, b * c - a * d);
-            let length = re.hypot(im).max(f64::MIN_POSITIVE);
+            let cross = a * b.conj();
+            let phase = cross / cross.norm().max(f64::MIN_POSITIVE);
             let place = |k: i64| k.rem_euclid(size as i64) as usize;
-            for (at, im) in [
-                (place(kx) * size + place(ky), im),
-                (place(-kx) * size + place(-ky), -im),
-            ] {
-                (grid.re[at], grid.im[at]) = (re / length, im / length);
+            grid[place(kx) * size + place(ky)] = phase;
+            grid[place(-kx) * size + place(-ky)] = phase.conj();
+        }
+    }
+    let fft = FftPlanner::new().plan_fft_inverse(size);
+    for _ in 0..2 {
+        grid.chunks_exact_mut(size).for_each(|row| fft.process(row));
+        for i in 0..size {
+            for j in 0..i {
+                grid.swap(i * size + j, j * size + i);
             }
         }
     }
-    // Forward, which mirrors the places.
-    let fourier = Fourier::new(size);
-    fourier.columns(&mut grid, &mut Plane::default());
-    let mut grid = grid.turned(size);
-    fourier.columns(&mut grid, &mut Plane::default());
-    let squares: f64 = grid.re.iter().map(|v| v * v).sum();
-    let highest = grid.re.iter().copied().fold(0.0, f64::max);
-    highest
-        / (squares / grid.re.len() as f64)
-            .sqrt()
-            .max(f64::MIN_POSITIVE)
+    let squares: f64 = grid.iter().map(|v| v.re * v.re).sum();
+    let highest = grid.iter().map(|v| v.re).fold(0.0, f64::max);
+    highest / (squares / grid.len() as f64).sqrt().max(f64::MIN_POSITIVE)
 }
 
 #[cfg(test)]

@@ -71,9 +71,7 @@ impl Spectrum {
         if set.is_periodic() {
             let turns: Vec<[f64; 2]> = turns.map(|p| p.map(|v| wrap(v, 1.0))).collect();
             let unit = 1.0 / set.points().len().max(1) as f64;
-            let power = transform(&turns, None, modes, |_, _, [re, im]| {
-                (re * re + im * im) * unit
-            });
+            let power = transform(&turns, None, modes, |_, _, sum| sum.norm_sqr() * unit);
             return Self { side, modes, power };
         }
         let turns: Vec<[f64; 2]> = turns.collect();
@@ -84,9 +82,9 @@ impl Spectrum {
         // At unit density a window has side² points on average.
         let area = side * side;
         let unit = 1.0 / (area * taper::MEAN_SQUARE * taper::MEAN_SQUARE);
-        let power = transform(&turns, Some(&weights), modes, |kx, ky, [re, im]| {
-            let re = re - area * taper::coefficient(kx) * taper::coefficient(ky);
-            (re * re + im * im) * unit
+        let power = transform(&turns, Some(&weights), modes, |kx, ky, sum| {
+            let mean = area * taper::coefficient(kx) * taper::coefficient(ky);
+            (sum - mean).norm_sqr() * unit
         });
         Self { side, modes, power }
     }

@@ -7,13 +7,11 @@
 mod bessel;
 mod exp;
 mod exp32;
-mod fourier;
 mod random;
 mod spreading;
 
 pub use bessel::BesselJ0;
 pub use exp::exp;
 pub use exp32::exp32;
-pub(crate) use fourier::{Fourier, Plane, size_from};
 pub use random::SplitMix;
 pub(crate) use spreading::Kernel;

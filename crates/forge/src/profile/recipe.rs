@@ -54,7 +54,7 @@ pub enum Recipe {
         /// The weights in the cost of its error.
         weights: RadialWeights,
         /// The share of the steps that Gaussian repulsion (σ = 1) takes first. It quickly removes the
-        /// power at low frequencies, which suits curves that are 0 nearly as far as it reaches.
+        /// power at low frequencies, which suits curves that are 0 over nearly the same range.
         warm_share: f64,
         /// The rate at first.
         rate: f64,

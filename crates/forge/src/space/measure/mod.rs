@@ -4,6 +4,7 @@
 //! (√2/N)^⅓. Everything here has the same bits on every machine and with any number of threads.
 
 mod distance;
+mod fourier;
 mod local;
 mod points;
 mod power;

@@ -4,8 +4,11 @@
 //! share: the correlation of their powers, frequency by frequency, and the highest peak of their phase correlation, which
 //! finds a part of one set in the other at any translation. With each comes what two independent sets have.
 
-use super::{points::SpacePoints, transform::Sums};
-use crate::numeric::{Fourier, Plane, size_from};
+use super::{
+    fourier::{Fourier, Plane},
+    points::SpacePoints,
+    transform::Sums,
+};
 
 /// The structure that two windows have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,9 +82,9 @@ fn squared([re, im]: [f64; 2]) -> f64 {
 
 /// The highest peak of the phase correlation, in deviations, and the number of translations.
 fn phase_peak(all: &[([i64; 3], [[f64; 2]; 2])], modes: usize) -> (f64, f64) {
-    let fourier = Fourier::new(size_from(2 * (modes + 1)));
+    let fourier = Fourier::new(Fourier::size_from(2 * (modes + 1)));
     let (size, mut other) = (fourier.size(), Plane::default());
-    let mut grid = Plane::<f32>::new(size.pow(3));
+    let mut grid = Plane::new(size.pow(3));
     let slot = |k: i64| k.rem_euclid(size as i64) as usize;
     let place = |k: [i64; 3]| (slot(k[2]) * size + slot(k[1])) * size + slot(k[0]);
     for (k, [a, b]) in all {

@@ -6,7 +6,8 @@
 
 use rayon::prelude::*;
 
-use crate::numeric::{Fourier, Kernel, Plane, size_from};
+use super::fourier::{Fourier, Plane};
+use crate::numeric::Kernel;
 
 /// The width of the kernel, in grid cells.
 const WIDTH: usize = 8;
@@ -25,11 +26,11 @@ impl Sums {
     /// The sums over points in [0, 1)³, up to `modes` along each axis.
     pub(super) fn new(points: &[[f64; 3]], weights: Option<&[f64]>, modes: usize) -> Self {
         let least = (2 * (2 * modes + 1)).max(2 * WIDTH);
-        let fourier = Fourier::new(size_from(least));
+        let fourier = Fourier::new(Fourier::size_from(least));
         let spread = Spread::new(points, weights, fourier.size());
         let (size, across) = (fourier.size(), modes + 1);
         let slot = |k: usize| (k + size - modes) % size;
-        let planes: Vec<Plane<f32>> = (0..size)
+        let planes: Vec<Plane> = (0..size)
             .into_par_iter()
             .map_init(Plane::default, |other, z| {
                 // Columns are along x, then along y.
@@ -127,7 +128,7 @@ impl<'a> Spread<'a> {
     }
 
     /// A plane of the grid, by x, then by y.
-    fn plane(&self, z: usize) -> Plane<f32> {
+    fn plane(&self, z: usize) -> Plane {
         let size = self.size;
         let mut plane = Plane::new(size * size);
         let wrap = |v: i64| v.rem_euclid(size as i64) as usize;
