@@ -208,10 +208,10 @@ impl Map {
     }
 }
 
-/// A start for the lookup of every index: about two buckets per interval.
+/// A start for the lookup of every index: some sixteen buckets per interval.
 fn buckets(bounds: &[u64]) -> (Vec<u32>, u32) {
     let side = bounds[bounds.len() - 1];
-    let wanted = (2 * bounds.len()).next_power_of_two().trailing_zeros();
+    let wanted = (16 * bounds.len()).next_power_of_two().trailing_zeros();
     let shift = (64 - side.leading_zeros()).saturating_sub(wanted);
     let mut buckets = vec![0u32; (side.saturating_sub(1) >> shift) as usize + 1];
     let mut interval = 0;

@@ -189,7 +189,7 @@ impl Scope {
             None
         } else {
             let area = area.map(around_chunks);
-            Sieve::new(lattice, (Mask { area, ..mask }, is_box), [x.reach, y.reach])
+            Sieve::new(lattice, Mask { area, ..mask }, [x.reach, y.reach])
         };
         Ok(Self {
             lattice: lattice.clone(),
@@ -211,14 +211,6 @@ impl Scope {
             lattice,
             x,
             y,
-            ..self.clone()
-        }
-    }
-
-    /// All points of the scope's box.
-    pub(crate) fn of_box(&self) -> Self {
-        Self {
-            sieve: None,
             ..self.clone()
         }
     }

@@ -4,8 +4,7 @@ use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
 use core::{marker::PhantomData, ops::Range};
 
 use super::{
-    Cursor,
-    batch::Batch,
+    Batch, Cursor,
     format::{Format, write},
     point::{Point, PointId},
     scope::Scope,

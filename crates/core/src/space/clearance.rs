@@ -10,8 +10,7 @@
 use alloc::{collections::BTreeMap, sync::Arc, vec, vec::Vec};
 
 use super::{
-    Region, Volume,
-    batch::Batch,
+    Batch, Region, Volume,
     lattice::{Lattice, fixed},
     mask::{ClearOf, Mask},
     scope::Scope,

@@ -4,8 +4,7 @@ use alloc::{sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
 use super::{
-    Volume,
-    batch::Batch,
+    Batch, Volume,
     clearance::Clearance,
     closed,
     columns::{COLUMN_BITS, columns},

@@ -3,7 +3,7 @@
 use core::fmt::Debug;
 
 use super::{
-    batch::Batch,
+    Batch,
     lattice::fixed,
     point::{Point, PointId},
     scope::Scope,

@@ -22,7 +22,6 @@
 //! that the crate has.
 
 mod attributes;
-mod batch;
 mod blocks;
 mod cells;
 mod clearance;
@@ -66,6 +65,8 @@ pub use table::Table;
 
 pub use crate::shape::{Prism, Volume};
 
+/// Points with their addresses, relative to an origin.
+type Batch = crate::batch::Batch<3, [i32; 3]>;
 /// A place in the order of a request's points.
 pub type Cursor = crate::Cursor<PointId>;
 /// A half-open box in world coordinates.

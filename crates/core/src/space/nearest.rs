@@ -3,8 +3,7 @@
 use alloc::{sync::Arc, vec::Vec};
 
 use super::{
-    Region, Volume,
-    batch::Batch,
+    Batch, Region, Volume,
     lattice::{LATTICE_LIMIT, Lattice, fixed},
     mask::Mask,
     point::{Point, PointId},

@@ -3,8 +3,7 @@
 use alloc::{sync::Arc, vec, vec::Vec};
 
 use super::{
-    Region, Volume,
-    batch::Batch,
+    Batch, Region, Volume,
     blocks::{Blocks, Members},
     count,
     format::Format,

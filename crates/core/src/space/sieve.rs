@@ -4,8 +4,7 @@ use alloc::sync::Arc;
 use core::ops::Range;
 
 use super::{
-    Region, Volume,
-    batch::Batch,
+    Batch, Region, Volume,
     clearance::Clearance,
     lattice::Lattice,
     mask::Mask,

@@ -38,15 +38,20 @@ impl TurnedTable {
         }
     }
 
+    /// The vectors of all blocks: those with one interval of dY one after another.
+    #[inline]
+    pub(crate) fn vectors(&self) -> &[Displacement] {
+        match &self.turned {
+            Some(turned) => &turned.vectors,
+            None => self.table.displacements(),
+        }
+    }
+
     /// The vectors of all blocks with one interval of dY.
     #[inline]
     pub(crate) fn row(&self, block_y: usize) -> &[Displacement] {
-        let all = match &self.turned {
-            Some(turned) => &turned.vectors,
-            None => self.table.displacements(),
-        };
         let n = self.table.map().intervals();
-        &all[block_y * n..][..n]
+        &self.vectors()[block_y * n..][..n]
     }
 
     /// The order in which blocks leave.

@@ -9,7 +9,7 @@ use super::tally::product;
 use crate::{
     sample::{
         kernel::Backend,
-        lattice::{BAND_WIDTH, Columns, Flat, Lattice, PATCH_HEIGHT, Patch, Span},
+        lattice::{BAND_WIDTH, Columns, Flat, Lattice, Patch, Span, places},
     },
     stop::Stop,
 };
@@ -23,13 +23,7 @@ pub(super) fn count(lattice: &Lattice, [x, y]: [&Span; 2], stop: &Stop) -> u128 
         columns: Columns::default(),
         flat: Flat::default(),
         backend: Backend::best(),
-        piece: PIECE,
     };
-    let [width, height] = [x, y].map(|span| span.all.end - span.all.start);
-    if width <= FEW && height <= FEW {
-        margins.piece = [BAND_WIDTH, PATCH_HEIGHT];
-        return margins.count(&x.all, &y.all);
-    }
     let [left, right] = x.margins();
     let [bottom, top] = y.margins();
     let tested = margins.count(&left, &y.inner)
@@ -38,9 +32,6 @@ pub(super) fn count(lattice: &Lattice, [x, y]: [&Span; 2], stop: &Stop) -> u128 
         + margins.count(&x.all, &top);
     product(lattice, &x.inner, &y.inner) + tested
 }
-
-/// The largest width and height, in lattice units, of boxes that are all margin.
-const FEW: i64 = 256;
 
 /// The sides of a piece, in lattice units. The larger it is, the more the movement differs within it.
 const PIECE: [i64; 2] = [128, 64];
@@ -52,8 +43,6 @@ struct Margins<'a> {
     columns: Columns,
     flat: Flat,
     backend: Backend,
-    /// The sides of a piece.
-    piece: [i64; 2],
 }
 
 /// The next range of at most `length`, ending at its multiples.
@@ -83,9 +72,9 @@ impl Margins<'_> {
                 let patch = Patch::new(self.lattice, band, rows.start, x, y);
                 let mut in_patch = rows.start..rows.end.min(patch.end());
                 rows.start = in_patch.end;
-                while let Some(rows) = next_piece(&mut in_patch, self.piece[1]) {
+                while let Some(rows) = next_piece(&mut in_patch, PIECE[1]) {
                     let mut columns = columns.clone();
-                    while let Some(columns) = next_piece(&mut columns, self.piece[0]) {
+                    while let Some(columns) = next_piece(&mut columns, PIECE[0]) {
                         count += self.count_piece(&patch, columns, rows.clone()) as u128;
                     }
                 }
@@ -97,44 +86,28 @@ impl Margins<'_> {
     fn count_piece(&mut self, patch: &Patch, columns: Range<i64>, rows: Range<i64>) -> usize {
         let (lattice, backend) = (self.lattice, self.backend);
         let [x, y] = Span::of_piece(lattice, self.spans, [columns, rows]);
-        let [left, right] = x.margins().map(|margin| self.columns.part(margin));
-        let all = self.columns.part(x.all.clone());
-        let (mut count, mut is_first) = (0, true);
-        let [below, above] = y.margins();
-        let parts = [
-            (below, &all),
-            (above, &all),
-            (y.inner.clone(), &left),
-            (y.inner, &right),
-        ];
-        for (number, (rows, part)) in parts.into_iter().enumerate() {
-            let is_inner = number >= 2;
-            if rows.is_empty() || part.is_empty() && !(is_inner && is_first) {
-                continue;
-            }
-            if is_inner && is_first {
-                count += self.count_inner(&x.inner, rows.clone());
-                is_first = false;
-            }
-            if part.is_empty() {
-                continue;
-            }
-            let columns = (&mut self.columns, part);
+        let ([left, right], [below, above]) = (x.margins(), y.margins());
+        let mut count = self.count_inner(&x.inner, y.inner.clone());
+        let inner = &y.inner;
+        for (columns, rows) in [
+            (&x.all, &below),
+            (&x.all, &above),
+            (&left, inner),
+            (&right, inner),
+        ] {
             self.flat
-                .list(lattice, patch, columns, rows, usize::MAX, backend);
-            count += self.flat.count(patch, backend);
+                .list((lattice, patch), columns, rows.clone(), usize::MAX, backend);
+            count += self.flat.found.len();
         }
         count
     }
 
     /// The number of points with addresses in some columns and rows.
     fn count_inner(&mut self, columns: &Range<i64>, rows: Range<i64>) -> usize {
-        let part = self.columns.part(columns.clone());
         let rows = rows.filter_map(|y| self.lattice.row(y));
         rows.map(|(class, block)| {
-            self.columns
-                .of_part(self.lattice, class, block, &part)
-                .len()
+            let all = self.columns.of_row(self.lattice, class, block);
+            places(all, columns).len()
         })
         .sum()
     }

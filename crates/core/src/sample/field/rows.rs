@@ -32,8 +32,7 @@ pub(crate) struct FieldRows {
     strip: Strip,
     /// The number of candidates, then of the points among them that are left.
     number: usize,
-    /// Positions relative to the patch, and where the warp moves them.
-    displaced: [Vec<i32>; 2],
+    /// Positions relative to the patch, which the warp moves.
     places: [Vec<i32>; 2],
     /// Columns in the lower 16 bits and rows in the upper ones, relative to the patch.
     addresses: Vec<u32>,
@@ -136,7 +135,7 @@ impl FieldRows {
             self.positions.resize(length, 0);
             self.at.resize(length, [0.0; 2]);
             self.shares.resize(length, 0.0);
-            for list in self.displaced.iter_mut().chain(&mut self.places) {
+            for list in &mut self.places {
                 list.resize(length, 0);
             }
         }
@@ -162,7 +161,7 @@ impl FieldRows {
             let columns = self.strip.columns(class);
             let start = self.number;
             let most = start + columns.len();
-            let [xs, ys] = &mut self.displaced;
+            let [xs, ys] = &mut self.places;
             let mut listed = ListedRow {
                 first: ((y - bottom) as u32) << 16,
                 row: patch.relative(Axis::Y, y),
@@ -210,20 +209,14 @@ impl FieldRows {
     /// Moves displaced positions by the warp.
     fn place(&mut self, patch: &Patch, backend: Backend) {
         let whole = self.number.next_multiple_of(PAIR);
-        for list in &mut self.displaced {
+        for list in &mut self.places {
             // What comes after the last one must be near it.
             let last = list[self.number.saturating_sub(1)];
             list[self.number..whole].fill(last);
         }
-        let [x, y] = &self.displaced;
-        let displaced = [&x[..whole], &y[..whole]];
-        match patch.shears() {
-            Some(shears) => warp_all(backend, shears, displaced, &mut self.places),
-            None => {
-                for (list, places) in displaced.into_iter().zip(&mut self.places) {
-                    places[..whole].copy_from_slice(list);
-                }
-            }
+        if let Some(shears) = patch.shears() {
+            let places = self.places.each_mut().map(|list| &mut list[..whole]);
+            warp_all(backend, shears, places);
         }
     }
 

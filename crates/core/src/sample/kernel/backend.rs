@@ -61,10 +61,14 @@ impl Backend {
         let all = [
             Some(Self::Scalar),
             #[cfg(target_arch = "x86_64")]
-            has!("avx2").then_some(Self::Avx2),
+            (has!("avx2") && has!("popcnt")).then_some(Self::Avx2),
             #[cfg(target_arch = "x86_64")]
-            (has!("avx512f") && has!("avx512vl") && has!("avx512dq") && has!("avx2"))
-                .then_some(Self::Avx512),
+            (has!("avx512f")
+                && has!("avx512vl")
+                && has!("avx512dq")
+                && has!("avx2")
+                && has!("popcnt"))
+            .then_some(Self::Avx512),
             #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
             Some(Self::Neon),
             #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]

@@ -32,6 +32,8 @@ pub trait Lanes: Sized {
     unsafe fn sub_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints;
     unsafe fn min_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints;
     unsafe fn max_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints;
+    /// Lattice coordinates in fixed point: `v << FRACTION_BITS`.
+    unsafe fn fixed(v: Self::Ints) -> Self::Ints;
     /// The cells of coordinates: `v >> CELL_BITS`.
     unsafe fn cells(v: Self::Ints) -> Self::Ints;
     /// The places of coordinates in their cells: `v & PatchShears::CELL_MASK`.
@@ -70,6 +72,9 @@ pub trait Lanes: Sized {
             Self::load_singles(picked.as_ptr())
         }
     }
+
+    /// The lanes of numbers that were integers in memory.
+    unsafe fn bits_of(v: Self::Singles) -> Self::Ints;
 
     unsafe fn load_doubles(from: *const f64) -> Self::Doubles;
     unsafe fn splat_double(v: f64) -> Self::Doubles;
@@ -128,6 +133,20 @@ pub trait Lanes: Sized {
         }
     }
 
+    /// Whether there are [`between`](Self::between) and [`compress`](Self::compress).
+    const HAS_COMPRESS: bool = false;
+
+    /// A bit for each lane from `least` to before `end`.
+    unsafe fn between(v: Self::Ints, least: i32, end: i32) -> u32 {
+        let _ = (v, least, end);
+        unreachable!("HAS_COMPRESS is false");
+    }
+    /// The lanes whose bits are set, moved to the front.
+    unsafe fn compress(v: Self::Ints, mask: u32) -> Self::Ints {
+        let _ = (v, mask);
+        unreachable!("HAS_COMPRESS is false");
+    }
+
     /// Whether there are [`two_tables`](Self::two_tables) and the functions after it.
     const HAS_TRIPLES: bool = false;
 
@@ -144,21 +163,6 @@ pub trait Lanes: Sized {
     /// The numbers at some places, modulo 32, of two tables.
     unsafe fn pick_of_two(tables: [Self::Singles; 2], places: Self::Ints) -> Self::Singles {
         let _ = (tables, places);
-        unreachable!("HAS_TRIPLES is false");
-    }
-    /// The lanes of numbers that were integers in memory.
-    unsafe fn bits_of(v: Self::Singles) -> Self::Ints {
-        let _ = v;
-        unreachable!("HAS_TRIPLES is false");
-    }
-    /// A bit for each lane from `least` to before `end`.
-    unsafe fn between(v: Self::Ints, least: i32, end: i32) -> u32 {
-        let _ = (v, least, end);
-        unreachable!("HAS_TRIPLES is false");
-    }
-    /// The lanes whose bits are set, moved to the front.
-    unsafe fn compress(v: Self::Ints, mask: u32) -> Self::Ints {
-        let _ = (v, mask);
         unreachable!("HAS_TRIPLES is false");
     }
     /// Stores the three numbers of each lane side by side.

@@ -8,14 +8,14 @@ use super::{
     lanes::{Lanes, VectorLoop},
 };
 
-/// Keeps the points of some parts of three lists that lie between bounds: moves them to the front. Parts ascend and begin
-/// at multiples of 16, of which the length of the lists is one, too. Returns the number of points kept, or `None`, and
-/// leaves the lists, unless vectors can do it.
-pub(crate) fn retain_parts(
+/// Keeps the points of some parts of three lists whose numbers in the first ones lie between bounds: moves them to the
+/// front. Parts ascend and begin at multiples of 16, of which the length of the lists is one, too. Returns the number of
+/// points kept, or `None`, and leaves the lists, unless vectors can do it.
+pub(crate) fn retain_parts<const N: usize>(
     backend: Backend,
     lists: [&mut [i32]; 3],
     parts: impl Iterator<Item = Range<usize>> + Clone,
-    ends: &[Range<i32>; 3],
+    ends: &[Range<i32>; N],
 ) -> Option<usize> {
     let mut retain = Retain {
         lists,
@@ -26,54 +26,67 @@ pub(crate) fn retain_parts(
     (run_vectors(backend, &mut retain) > 0).then_some(retain.kept)
 }
 
-struct Retain<'a, P> {
+struct Retain<'a, P, const N: usize> {
     lists: [&'a mut [i32]; 3],
     parts: P,
-    ends: &'a [Range<i32>; 3],
+    ends: &'a [Range<i32>; N],
     kept: usize,
 }
 
-impl<P: Iterator<Item = Range<usize>> + Clone> VectorLoop for Retain<'_, P> {
+impl<P: Iterator<Item = Range<usize>> + Clone, const N: usize> VectorLoop for Retain<'_, P, N> {
     #[inline(always)]
     unsafe fn run<L: Lanes>(&mut self) -> usize {
         let length = self.lists[0].len();
         let is_whole = |list: &&mut [i32]| list.len() == length;
-        if !L::HAS_TRIPLES || !length.is_multiple_of(L::WIDTH) || !self.lists.iter().all(is_whole) {
+        if !L::HAS_COMPRESS || !length.is_multiple_of(L::WIDTH) || !self.lists.iter().all(is_whole)
+        {
             return 0;
         }
-        let keeps_all = self.ends.iter().all(|ends| *ends == (i32::MIN..i32::MAX));
-        let mut kept = 0;
+        self.kept = 0;
         for part in self.parts.clone() {
             assert!(
-                part.start.is_multiple_of(L::WIDTH) && part.end <= length && kept <= part.start
+                part.start.is_multiple_of(L::WIDTH)
+                    && part.end <= length
+                    && self.kept <= part.start
             );
-            for start in part.clone().step_by(L::WIDTH) {
-                let number = (part.end - start).min(L::WIDTH);
-                let mut mask = u32::MAX >> (32 - number);
-                // SAFETY: the machine has the instructions, the lists have a vector from `start` on, and so from where
-                // points are kept, which is not behind it.
-                unsafe {
-                    let places =
-                        [0, 1, 2].map(|axis| L::load_ints(self.lists[axis].as_ptr().add(start)));
-                    if keeps_all {
-                        for (list, v) in self.lists.iter_mut().zip(places) {
-                            L::store_ints(list.as_mut_ptr().add(kept), v);
-                        }
-                        kept += number;
-                        continue;
-                    }
-                    for (v, ends) in places.iter().zip(self.ends) {
-                        mask &= L::between(*v, ends.start, ends.end);
-                    }
-                    for (list, v) in self.lists.iter_mut().zip(places) {
-                        L::store_ints(list.as_mut_ptr().add(kept), L::compress(v, mask));
-                    }
+            let whole = part.end - part.len() % L::WIDTH;
+            // SAFETY: the machine has the instructions, the lists have a vector from each start on, and so from where
+            // points are kept, which is not behind it.
+            unsafe {
+                self.keep::<L>(part.start..whole, u32::MAX >> (32 - L::WIDTH));
+                self.keep::<L>(whole..part.end, (1 << (part.end - whole)) - 1);
+            }
+        }
+        length
+    }
+}
+
+impl<P, const N: usize> Retain<'_, P, N> {
+    /// Keeps points of vectors, of which some lanes are points.
+    ///
+    /// # Safety
+    /// The machine has the instructions of `L`, and the lists have a vector from each start on.
+    #[inline(always)]
+    unsafe fn keep<L: Lanes>(&mut self, part: Range<usize>, lanes: u32) {
+        // Copies stay in registers.
+        let (ends, mut kept) = (self.ends.clone(), self.kept);
+        let lists = self.lists.each_mut().map(|list| list.as_mut_ptr());
+        for start in part.step_by(L::WIDTH) {
+            // SAFETY: as the caller ensures; points are kept no later than where they are.
+            unsafe {
+                let places = lists.map(|list| L::load_ints(list.add(start)));
+                let mut mask = lanes;
+                for (&v, ends) in places.iter().zip(&ends) {
+                    mask &= L::between(v, ends.start, ends.end);
+                }
+                for (list, v) in lists.into_iter().zip(places) {
+                    let v = if N == 0 { v } else { L::compress(v, mask) };
+                    L::store_ints(list.add(kept), v);
                 }
                 kept += mask.count_ones() as usize;
             }
         }
         self.kept = kept;
-        length
     }
 }
 

@@ -11,7 +11,6 @@
 //! cells take two on machines of short vectors ([`AtOnce`]), and more are gathered ([`Any`]). Lists jump from row to
 //! row; there the cells are those of a pass.
 
-use alloc::vec::Vec;
 use core::{mem::MaybeUninit, ops::Range};
 
 use super::{
@@ -308,54 +307,33 @@ impl FirstShear<'_> {
 }
 
 /// Warps positions of points that follow each other: as [`warp_all`], with the cells of two vectors at a time.
-pub(crate) fn warp_lists(
-    backend: Backend,
-    shears: &PatchShears,
-    displaced: [&[i32]; 2],
-    places: &mut [Vec<i32>; 2],
-) {
-    warp_in_passes(backend, shears, displaced, places, 2);
+pub(crate) fn warp_lists(backend: Backend, shears: &PatchShears, places: [&mut [i32]; 2]) {
+    warp_in_passes(backend, shears, places, 2);
 }
 
-/// Warps positions: the x and y of all, whose number is a multiple of 32, into as many places.
-pub(crate) fn warp_all(
-    backend: Backend,
-    shears: &PatchShears,
-    displaced: [&[i32]; 2],
-    places: &mut [Vec<i32>; 2],
-) {
-    warp_in_passes(backend, shears, displaced, places, PASS);
+/// Warps positions: the x and y of all, whose number is a multiple of 32.
+pub(crate) fn warp_all(backend: Backend, shears: &PatchShears, places: [&mut [i32]; 2]) {
+    warp_in_passes(backend, shears, places, PASS);
 }
 
-fn warp_in_passes(
-    backend: Backend,
-    shears: &PatchShears,
-    displaced: [&[i32]; 2],
-    places: &mut [Vec<i32>; 2],
-    pass: usize,
-) {
-    let [x_places, y_places] = places;
-    let length = displaced[0].len();
+fn warp_in_passes(backend: Backend, shears: &PatchShears, places: [&mut [i32]; 2], pass: usize) {
+    let length = places[0].len();
     let mut all = WarpAll {
         shears,
-        displaced: displaced.map(|list| &list[..length]),
-        places: [&mut x_places[..length], &mut y_places[..length]],
+        places: places.map(|list| &mut list[..length]),
         pass,
     };
     if run_vectors(backend, &mut all) < length {
-        let [xs, ys] = displaced;
-        let [x_places, y_places] = all.places;
-        let places = x_places.iter_mut().zip(y_places);
-        for ((x_place, y_place), (&x, &y)) in places.zip(xs.iter().zip(ys)) {
-            [*x_place, *y_place] = shears.apply(x, y);
+        let [xs, ys] = all.places;
+        for (x, y) in xs.iter_mut().zip(ys) {
+            [*x, *y] = shears.apply(*x, *y);
         }
     }
 }
 
-/// All four slices have the same length.
+/// Both slices have the same length.
 struct WarpAll<'a> {
     shears: &'a PatchShears,
-    displaced: [&'a [i32]; 2],
     places: [&'a mut [i32]; 2],
     /// The number of vectors whose cells are found together.
     pass: usize,
@@ -364,49 +342,77 @@ struct WarpAll<'a> {
 impl VectorLoop for WarpAll<'_> {
     #[inline(always)]
     unsafe fn run<L: Lanes>(&mut self) -> usize {
-        let length = self.displaced[0].len();
-        if !length.is_multiple_of(L::WIDTH) {
+        let length = self.places[0].len();
+        if length == 0 || !length.is_multiple_of(L::WIDTH) {
             return 0;
         }
-        let mut next = 0;
-        while next < length {
-            let part = next..length.min(next + self.pass * L::WIDTH);
-            next = part.end;
-            // SAFETY: as the caller ensures, and parts lie within the slices.
-            unsafe {
-                // Closures would be compiled without the instructions.
-                let x = extent::<L>(&self.displaced[0][part.clone()]);
-                let y = extent::<L>(&self.displaced[1][part.clone()]);
-                let [along_y, along_x, rising, _] = self.shears.bounds;
-                let more = |[a, b]: [i32; 2], [c, d]: [i32; 2]| [a + c, b + d];
-                let first = x;
-                let second = more(y, along_y);
-                let x = more(x, along_x);
-                let third = [x[0] - second[1], x[1] - second[0]];
-                let fourth = [x[0] + second[0], x[1] + second[1]];
-                let fourth = more(more(fourth, rising), rising);
-                let fit = |cells| {
-                    let width = |[least, most]: [i32; 2]| i64::from(most) - i64::from(least);
-                    move |ranges: [[i32; 2]; 2]| ranges.map(width).iter().all(|&w| fits(w, cells))
-                };
-                let ends = [first, second, third, fourth].map(|range| range[0] >> CELL_BITS);
-                if fit(L::WINDOW)([first, second]) {
-                    self.run_axes::<L, Near<L>>(&part, ends);
-                } else if fit(PatchShears::AT_ONCE)([first, second]) {
-                    self.run_axes::<L, AtOnce<L>>(&part, ends);
-                } else {
-                    self.run_axes::<L, Any<L>>(&part, ends);
+        // SAFETY: as the caller ensures, and parts lie within the slices.
+        unsafe {
+            let (mut size, mut all) = (self.pass * L::WIDTH, None);
+            if self.pass == PASS {
+                // The cells of all positions, if they are few enough to be found once.
+                let known = self.cells::<L>(&(0..length));
+                if known.1 == [L::WINDOW; 2] {
+                    (size, all) = (length, Some(known));
                 }
-                if fit(L::WINDOW)([third, fourth]) {
-                    self.run_diagonals::<L, Near<L>>(&part, ends);
-                } else if fit(PatchShears::AT_ONCE)([third, fourth]) {
-                    self.run_diagonals::<L, AtOnce<L>>(&part, ends);
+            }
+            for next in (0..length).step_by(size) {
+                let part = next..length.min(next + size);
+                let (first, [axes, diagonals]) = match all {
+                    Some(known) => known,
+                    None => self.cells::<L>(&part),
+                };
+                if axes == L::WINDOW {
+                    self.run_axes::<L, Near<L>>(&part, first);
+                } else if axes == PatchShears::AT_ONCE {
+                    self.run_axes::<L, AtOnce<L>>(&part, first);
                 } else {
-                    self.run_diagonals::<L, Any<L>>(&part, ends);
+                    self.run_axes::<L, Any<L>>(&part, first);
+                }
+                if diagonals == L::WINDOW {
+                    self.run_diagonals::<L, Near<L>>(&part, first);
+                } else if diagonals == PatchShears::AT_ONCE {
+                    self.run_diagonals::<L, AtOnce<L>>(&part, first);
+                } else {
+                    self.run_diagonals::<L, Any<L>>(&part, first);
                 }
             }
         }
         length
+    }
+}
+
+impl WarpAll<'_> {
+    /// The first cells of the four shears that some positions touch, and the least number of cells known at once that has
+    /// all of them, of those along the axes and of the diagonal ones; `usize::MAX` if none has.
+    ///
+    /// # Safety
+    /// The machine has the instructions of `L`, and the part is one of whole vectors.
+    #[inline(always)]
+    unsafe fn cells<L: Lanes>(&self, part: &Range<usize>) -> ([i32; 4], [usize; 2]) {
+        // Closures would be compiled without the instructions. SAFETY: as the caller ensures.
+        let [x, y] = unsafe {
+            [
+                extent::<L>(&self.places[0][part.clone()]),
+                extent::<L>(&self.places[1][part.clone()]),
+            ]
+        };
+        let [along_y, along_x, rising, _] = self.shears.bounds;
+        let more = |[a, b]: [i32; 2], [c, d]: [i32; 2]| [a + c, b + d];
+        let (first, second) = (x, more(y, along_y));
+        let x = more(x, along_x);
+        let third = [x[0] - second[1], x[1] - second[0]];
+        let fourth = [x[0] + second[0], x[1] + second[1]];
+        let fourth = more(more(fourth, rising), rising);
+        let width = |[least, most]: [i32; 2]| i64::from(most) - i64::from(least);
+        let known = |ranges: [[i32; 2]; 2]| {
+            let fit = |cells: &usize| ranges.map(width).iter().all(|&w| fits(w, *cells));
+            let known = [L::WINDOW, PatchShears::AT_ONCE].into_iter().find(fit);
+            known.unwrap_or(usize::MAX)
+        };
+        let ranges = [first, second, third, fourth];
+        let cells = [known([first, second]), known([third, fourth])];
+        (ranges.map(|range| range[0] >> CELL_BITS), cells)
     }
 }
 
@@ -427,8 +433,8 @@ impl WarpAll<'_> {
             let along_y = Q::new(Tables::new(self.shears, 0), first[0]);
             let along_x = Q::new(Tables::new(self.shears, 1), first[1]);
             for start in part.clone().step_by(L::WIDTH) {
-                let x = L::load_ints(self.displaced[0].as_ptr().add(start));
-                let y = L::load_ints(self.displaced[1].as_ptr().add(start));
+                let x = L::load_ints(to_x.as_ptr().add(start));
+                let y = L::load_ints(to_y.as_ptr().add(start));
                 let y = L::add_ints(y, noise(along_y, x));
                 let x = L::add_ints(x, noise(along_x, y));
                 L::store_ints(to_x.as_mut_ptr().add(start), x);

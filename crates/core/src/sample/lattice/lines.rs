@@ -69,45 +69,9 @@ impl Columns {
         &kept.lines
     }
 
-    /// The columns of a part that have points in the rows of a class and block.
-    #[inline]
-    pub(crate) fn of_part(
-        &mut self,
-        lattice: &Lattice,
-        class: Class,
-        block_y: usize,
-        part: &Listed,
-    ) -> &[Line] {
-        if lattice.has_all() {
-            return &self.all[class.ordinal()][part.places[class.ordinal()].clone()];
-        }
-        let kept = self.keep(lattice, class, block_y);
-        &kept[places(kept, &part.range)]
-    }
-
-    /// The columns in a range of coordinates.
-    pub(crate) fn part(&self, range: Range<i64>) -> Listed {
-        let places = self.places(&range);
-        Listed { range, places }
-    }
-
     /// The places of a range of coordinates in the list of each class.
     pub(crate) fn places(&self, range: &Range<i64>) -> [Range<usize>; 4] {
         Class::ALL.map(|class| places(self.of(class), range))
-    }
-}
-
-/// Some columns of a list.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Listed {
-    range: Range<i64>,
-    /// Their places in the list of each class.
-    places: [Range<usize>; 4],
-}
-
-impl Listed {
-    pub(crate) fn is_empty(&self) -> bool {
-        self.places.iter().all(Range::is_empty)
     }
 }
 

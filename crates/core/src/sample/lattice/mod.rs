@@ -30,12 +30,12 @@ mod span;
 mod varied;
 mod world;
 
-pub(super) use flat::{Flat, Found, Inside};
+pub(super) use flat::{Flat, Found};
 pub(super) use grade::Grade;
 pub use keep::Keep;
 pub(super) use kinds::{OneKind, check_kind};
 pub(super) use line::Line;
-pub(super) use lines::{Columns, Listed, lines_of_class, places};
+pub(super) use lines::{Columns, lines_of_class, places};
 pub(crate) use multiple::Multiple;
 pub(super) use patch::{BAND_WIDTH, PATCH_HEIGHT, Patch, clip_to_band};
 pub use placement::Placement;

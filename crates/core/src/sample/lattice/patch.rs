@@ -10,7 +10,7 @@ use core::ops::Range;
 use super::{Lattice, Span};
 use crate::{
     pattern::Axis,
-    sample::warp::PatchShears,
+    sample::warp::{KNOT_BITS, PatchShears},
     table::{FRACTION_BITS, fixed},
 };
 
@@ -30,6 +30,8 @@ pub(crate) fn clip_to_band(band: i64, columns: &Range<i64>) -> Range<i64> {
 #[derive(Clone, Debug)]
 pub(crate) struct Patch {
     origin: [i64; 2],
+    /// The number of rows.
+    height: i64,
     /// The region, relative to the origin.
     bounds: [Range<i32>; 2],
     /// Whether all columns are inner ones.
@@ -54,6 +56,22 @@ impl Patch {
         reach: [[i32; 2]; 2],
     ) -> Self {
         let origin = [band * BAND_WIDTH, row & !(PATCH_HEIGHT - 1)];
+        Self::at(lattice, (origin, PATCH_HEIGHT), [x, y], reach)
+    }
+
+    /// A patch of twice the height, from a row on or some before it.
+    pub(crate) fn tall(lattice: &Lattice, [band, row]: [i64; 2], spans: [&Span; 2]) -> Self {
+        let origin = [band * BAND_WIDTH, row & !((1 << KNOT_BITS) - 1)];
+        let reach = [Axis::X, Axis::Y].map(|axis| lattice.table_reach(axis));
+        Self::at(lattice, (origin, 2 * PATCH_HEIGHT), spans, reach)
+    }
+
+    fn at(
+        lattice: &Lattice,
+        (origin, height): ([i64; 2], i64),
+        [x, y]: [&Span; 2],
+        reach: [[i32; 2]; 2],
+    ) -> Self {
         let relative = |span: &Span, origin: i64| {
             // A bound beyond 32 bits is beyond every point of the patch.
             let clamp =
@@ -62,20 +80,20 @@ impl Patch {
         };
         Self {
             origin,
+            height,
             bounds: [relative(x, origin[0]), relative(y, origin[1])],
             columns_are_inner: x.inner.start <= origin[0] && origin[0] + BAND_WIDTH <= x.inner.end,
             reach: reach[0],
             shears: lattice.shears.map(|shears| {
-                let ranges = [(Axis::X, x, BAND_WIDTH), (Axis::Y, y, PATCH_HEIGHT)].map(
-                    |(axis, span, length)| {
+                let ranges =
+                    [(Axis::X, x, BAND_WIDTH), (Axis::Y, y, height)].map(|(axis, span, length)| {
                         let origin = origin[axis as usize];
                         let [least, most] = reach[axis as usize];
                         let first = span.all.start.clamp(origin, origin + length) - origin;
                         let end = span.all.end.clamp(origin, origin + length) - origin;
                         let fixed = |v: i64| (v << FRACTION_BITS) as i32;
                         [fixed(first) + least, fixed(end - 1) + most]
-                    },
-                );
+                    });
                 Box::new(PatchShears::new(&shears, origin, ranges))
             }),
         }
@@ -88,7 +106,7 @@ impl Patch {
 
     /// The first row above the patch.
     pub(crate) const fn end(&self) -> i64 {
-        self.origin[1] + PATCH_HEIGHT
+        self.origin[1] + self.height
     }
 
     /// Whether there is a warp.
@@ -140,6 +158,11 @@ impl Patch {
     #[inline(always)]
     pub(crate) fn holds_along(&self, axis: Axis, v: i32) -> bool {
         self.bounds[axis as usize].contains(&v)
+    }
+
+    /// The region, relative to the origin.
+    pub(crate) const fn bounds(&self) -> &[Range<i32>; 2] {
+        &self.bounds
     }
 
     /// Whether a relative position lies inside the region.

@@ -37,7 +37,7 @@ pub(super) struct Points<'a> {
 
 impl Points<'_> {
     #[inline(always)]
-    pub(super) const fn id(&self, found: &Found) -> PointId {
+    pub(super) fn id(&self, found: &Found) -> PointId {
         let [column, row] = found.address();
         PointId {
             x: self.address[0] + column,

@@ -45,10 +45,12 @@
 use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
+use super::Scale;
 use crate::{
+    batch::Batch,
     pattern::Axis,
     sample::{
-        lattice::{Lattice, PointId},
+        lattice::{Found, Lattice, PointId},
         near::Guard,
     },
     shape::{Area, Near, Region, State, Stepper},
@@ -161,6 +163,22 @@ impl LocalSieve {
         self.area.as_ref().is_none_or(|area| area.contains(p))
             && self.is_picked(id)
             && self.guards.iter().all(|guard| guard.permits(p))
+    }
+
+    /// Keeps the points of a patch that pass, by the scale of the patch.
+    pub(crate) fn retain(&self, scale: Scale, found: &mut Batch<2, i32>) {
+        let [left, bottom] = found.origin;
+        let passes = |found: Found| {
+            let [x, y] = found.address();
+            let id = PointId {
+                x: left + x,
+                y: bottom + y,
+            };
+            self.permits(id, scale.world(found.place))
+        };
+        let kept: Vec<bool> = found.points(0..found.len()).map(passes).collect();
+        let mut kept = kept.into_iter();
+        found.retain(|_| kept.next() == Some(true));
     }
 
     /// The columns whose points may pass in any of some rows. The points of a run that passes do so in

@@ -1,13 +1,10 @@
 //! The sieve of a whole plan.
 
-use alloc::{sync::Arc, vec::Vec};
+use alloc::sync::Arc;
 
 use super::LocalSieve;
 use crate::{
-    sample::{
-        lattice::Lattice,
-        near::{Guard, Mask},
-    },
+    sample::{lattice::Lattice, near::Mask},
     shape::Area,
     table::FRACTION_BITS,
 };
@@ -17,8 +14,6 @@ use crate::{
 pub(crate) struct Sieve {
     /// Its area is `None` where all of the plan's box is requested.
     mask: Mask,
-    /// Whether the area is no more than the plan's box.
-    is_box: bool,
     /// The set, if its points are left out by their kind one by one.
     picked: Option<Arc<Lattice>>,
     /// The least and the greatest distance of a point from its lattice address, in lattice units, by
@@ -29,14 +24,9 @@ pub(crate) struct Sieve {
 }
 
 impl Sieve {
-    /// A sieve, or `None` if everything passes. `is_box` is whether the mask's area is no more than the plan's box.
-    /// `reach` has the least and the greatest distance of a point
+    /// A sieve, or `None` if everything passes. `reach` has the least and the greatest distance of a point
     /// from its lattice address by axis, in fixed-point units.
-    pub(crate) fn new(
-        lattice: &Lattice,
-        (mask, is_box): (Mask, bool),
-        reach: [[i32; 2]; 2],
-    ) -> Option<Self> {
+    pub(crate) fn new(lattice: &Lattice, mask: Mask, reach: [[i32; 2]; 2]) -> Option<Self> {
         let picked = lattice.picks().then(|| Arc::new(lattice.clone()));
         if mask.area.is_none() && mask.clear.is_empty() && picked.is_none() {
             return None;
@@ -44,7 +34,6 @@ impl Sieve {
         let grid_units = |v: i32| f64::from(v) / f64::from(1u32 << FRACTION_BITS);
         Some(Self {
             mask,
-            is_box,
             picked,
             reach: reach.map(|reach| reach.map(grid_units)),
             unit: lattice.step * f64::from(1u32 << FRACTION_BITS),
@@ -55,18 +44,6 @@ impl Sieve {
     pub(crate) fn local(&self) -> LocalSieve {
         let tests = (self.mask.clear_guards(), self.picked.clone());
         LocalSieve::new(tests, self.reach, self.unit)
-    }
-
-    /// The tests of other sets to keep clear of, if there are any and nothing else restricts the points of a box.
-    pub(crate) fn guards_alone(&self) -> Option<Vec<Guard>> {
-        if !self.is_box || self.picked.is_some() || self.mask.clear.is_empty() {
-            return None;
-        }
-        let guards = self.mask.clear_guards();
-        if let Some(within) = self.area().and_then(Area::bounds) {
-            guards.iter().for_each(|guard| guard.aim(within));
-        }
-        Some(guards)
     }
 
     /// Whether there are other sets to keep clear of.

@@ -119,7 +119,7 @@ impl Counted {
                     count += found.len() as u128;
                     kept = kept.filter(|_| count <= most as u128);
                     if let Some(kept) = &mut kept {
-                        kept.add(origin, found.iter().copied());
+                        found.iter().for_each(|&found| kept.add(origin, found));
                     }
                     walk.pass(found.len());
                 }

@@ -3,63 +3,103 @@
 use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
-use super::{
-    bands::{Bands, format_of, write_found},
-    rows::RowWalk,
-};
-use crate::sample::{
-    kernel::{Backend, Exact, Format},
-    lattice::{Found, PointId},
-    scope::Scope,
-    sieve::Scale,
+use super::bands::{format_of, write_found};
+use crate::{
+    batch::{Batch, Offset},
+    sample::{
+        kernel::{Backend, Format},
+        lattice::{Flat, Found, PATCH_HEIGHT, Patch, PointId, clip_to_band},
+        scope::Scope,
+        sieve::{Scale, Sieve},
+    },
 };
 
 /// The most points of a small plan: 12 bytes each.
 pub(super) const FEW: usize = 2048;
 
+/// The most points of a plan that keeps clear of other sets: testing them again costs more.
+pub(super) const FEW_GUARDED: usize = 8192;
+
+/// The candidates that are listed between two looks at the flag, where each is tested against other sets.
+const GUARDED: usize = 256;
+
+/// The most parts of an area that each candidate is compared with.
+const PARTS: usize = 16;
+
 /// The points of a plan in their order, patch by patch.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Few {
-    /// The origins of the patches, and the number of points before each.
-    patches: Vec<([i64; 2], usize)>,
-    found: Vec<Found>,
+    patches: Vec<FewOfPatch>,
+    found: Batch<2, i32>,
+}
+
+/// The points of a patch that follow each other.
+#[derive(Clone, Copy, Debug)]
+struct FewOfPatch {
+    /// The origin of the patch.
+    origin: [i64; 2],
+    /// The number of rows from there to the row that the points are relative to.
+    lift: i32,
+    /// The numbers of points before them.
+    before: usize,
 }
 
 impl Few {
-    /// Adds points of a patch, after all others.
-    pub(super) fn add(&mut self, origin: [i64; 2], found: impl Iterator<Item = Found>) {
-        if self.patches.last().is_none_or(|&(last, _)| last != origin) {
-            self.patches.push((origin, self.found.len()));
+    /// Adds a point of a patch, after all others.
+    pub(super) fn add(&mut self, origin: [i64; 2], found: Found) {
+        self.begin(origin, 0, 0);
+        self.found.push(found);
+    }
+
+    /// Notes that another patch begins, some points after those that are there.
+    fn begin(&mut self, origin: [i64; 2], lift: i64, after: usize) {
+        if self.patches.last().is_none_or(|last| last.origin != origin) {
+            self.patches.push(FewOfPatch {
+                origin,
+                lift: lift as i32,
+                before: self.found.len() + after,
+            });
         }
-        self.found.extend(found);
+    }
+
+    /// Adds the points of a band that were found from an origin on, after all others.
+    fn add_all(&mut self, found: &mut Batch<2, i32>) {
+        let [left, bottom] = found.origin;
+        let mut from = 0;
+        while let Some([_, y]) = found.address(from) {
+            let patch = y & !(PATCH_HEIGHT - 1);
+            let rows = patch + PATCH_HEIGHT - bottom;
+            self.begin([left, patch], bottom - patch, from);
+            from = found.ids.partition_point(|id| i64::from(id >> 16) < rows);
+        }
+        self.found.append(found);
     }
 
     /// The memory that this takes.
-    pub(crate) const fn bytes(&self) -> usize {
-        size_of::<Found>() * self.found.capacity()
-            + size_of::<([i64; 2], usize)>() * self.patches.capacity()
+    pub(crate) fn bytes(&self) -> usize {
+        self.found.bytes() + size_of::<FewOfPatch>() * self.patches.capacity()
     }
 
     /// The number of points.
-    pub(crate) const fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.found.len()
     }
 
-    /// The patch of point number `k`: its origin, and the number of the first point after it.
-    fn patch(&self, k: usize) -> Option<([i64; 2], usize)> {
-        let after = self.patches.partition_point(|&(_, before)| before <= k);
-        let (origin, _) = self.patches.get(after.checked_sub(1)?)?;
+    /// The patch of point number `k`, and the number of the first point after it.
+    fn patch(&self, k: usize) -> Option<(FewOfPatch, usize)> {
+        let after = self.patches.partition_point(|patch| patch.before <= k);
+        let patch = self.patches.get(after.checked_sub(1)?)?;
         let end = self.patches.get(after);
-        Some((*origin, end.map_or(self.len(), |&(_, before)| before)))
+        Some((*patch, end.map_or(self.len(), |next| next.before)))
     }
 
     /// The address of point number `k`; `None` from the end on.
     pub(crate) fn id(&self, k: usize) -> Option<PointId> {
-        let [x, y] = self.found.get(k)?.address();
-        let ([left, bottom], _) = self.patch(k)?;
+        let [x, y] = self.found.ids.get(k)?.offset();
+        let (FewOfPatch { origin, lift, .. }, _) = self.patch(k)?;
         Some(PointId {
-            x: left + x,
-            y: bottom + y,
+            x: origin[0] + x,
+            y: origin[1] + i64::from(lift) + y,
         })
     }
 }
@@ -102,12 +142,13 @@ impl<F: Format> Kept<F> {
         let mut written = 0;
         while self.next < self.few.len()
             && written < out.len()
-            && let Some((origin, end)) = self.few.patch(self.next)
+            && let Some((patch, end)) = self.few.patch(self.next)
         {
             let number = (out.len() - written).min(end - self.next);
-            let found = self.few.found[self.next..][..number].iter().copied();
+            let points = self.few.found.points(self.next..self.next + number);
+            let points = points.map(|found| found.lifted(patch.lift));
             let by = (&self.format, self.backend);
-            write_found(by, origin, found, &mut out[written..]);
+            write_found(by, patch.origin, points, &mut out[written..]);
             self.next += number;
             written += number;
         }
@@ -115,57 +156,45 @@ impl<F: Format> Kept<F> {
     }
 }
 
-/// The most points of a plan that keeps clear of other sets: testing them again costs more.
-pub(super) const FEW_GUARDED: usize = 8192;
-
-/// The points that are listed between two looks at the flag, where each is tested against other sets.
-const GUARDED: usize = 256;
-
-/// The points of a small box that is warped or keeps clear of other sets. `None` if it is not small, or no such box.
-pub(super) fn find_few(scope: &Arc<Scope>) -> Option<Few> {
-    let Scope { lattice, x, y, .. } = &**scope;
-    if lattice.grade.is_some() {
+/// The points of a small scope outside fields. `None` if it is not small, or has an area of many parts.
+pub(super) fn find_few(scope: &Scope) -> Option<Few> {
+    let Scope { lattice, x, y, .. } = scope;
+    let area = scope.sieve.as_ref().and_then(Sieve::area);
+    if lattice.grade.is_some() || area.is_some_and(|area| area.parts() > PARTS) {
         return None;
     }
-    let (guards, most) = match &scope.sieve {
-        Some(sieve) => (sieve.guards_alone()?, FEW_GUARDED),
-        None if lattice.shears.is_some() => (Vec::new(), FEW),
-        None => return None,
-    };
+    let is_guarded = scope.sieve.as_ref().is_some_and(Sieve::is_guarded);
     let length = |range: &Range<i64>| (range.end as f64 - range.start as f64).max(0.0);
     // The share of lattice places that have a point.
-    let side = lattice.map().alpha().set_side() as f64 / 18_446_744_073_709_551_616.0;
+    let side = lattice.map().alpha().set_side_f64();
     let expected = length(&x.all) * length(&y.all) * side * side;
-    if expected > most as f64 {
+    if expected > if is_guarded { FEW_GUARDED } else { FEW } as f64 {
         return None;
     }
-    let of_box = match &scope.sieve {
-        Some(_) => Arc::new(scope.of_box()),
-        None => scope.clone(),
-    };
-    let mut walk = RowWalk::<Exact>::new(Bands::from(of_box, None), None);
-    if !walk.is_flat() {
-        return None;
-    }
-    let mut few = Few {
-        found: Vec::with_capacity(expected as usize),
-        ..Few::default()
-    };
-    let enough = if guards.is_empty() { FEW } else { GUARDED };
-    while let Some((origin, found)) = walk.list(enough) {
-        if guards.is_empty() {
-            few.add(origin, found);
-            continue;
+    // A little more than expected, as lists of small patches vary.
+    let all = expected as usize + expected as usize / 16 + 32;
+    let enough = if is_guarded { GUARDED } else { all };
+    let mut sieve = scope.sieve.as_ref().map(|sieve| {
+        let mut local = sieve.local();
+        local.aim(sieve.area(), &y.all, &x.all);
+        local
+    });
+    let (mut few, mut flat) = <(Few, Flat)>::default();
+    for band in scope.bands() {
+        let range = clip_to_band(band, &x.all);
+        let mut next = y.all.start;
+        while next < y.all.end && !scope.stop.is_raised() {
+            let patch = Patch::tall(lattice, [band, next], [x, y]);
+            let end = y.all.end.min(patch.end());
+            while next < end && !scope.stop.is_raised() {
+                let by = Backend::best();
+                next = flat.list((lattice, &patch), &range, next..end, enough, by);
+                if let Some(sieve) = &mut sieve {
+                    sieve.retain(Scale::new(lattice, &patch), &mut flat.found);
+                }
+                few.add_all(&mut flat.found);
+            }
         }
-        if scope.stop.is_raised() {
-            break;
-        }
-        let scale = Scale::at(lattice, origin);
-        let permitted = found.filter(|found| {
-            let at = scale.world(found.place);
-            guards.iter().all(|guard| guard.permits(at))
-        });
-        few.add(origin, permitted);
     }
     Some(few)
 }

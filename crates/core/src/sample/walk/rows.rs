@@ -15,33 +15,31 @@
 //!               └─────────────────────┘
 //! ```
 //!
-//! Four ways fill rows, each the fastest for its case. All find the same points with the same bits:
+//! Three ways fill rows, each the fastest for its case. All find the same points with the same bits:
 //!
 //! 1. *Tall bands* keep a template for each class and block. A row is then a copy of its columns plus y, in vectors.
 //!    This pays from [`TALL`] rows on, where several rows share each template.
-//! 2. *Short bands without warp* would make templates that hardly any other row uses, so `write_row` goes from the
-//!    columns to the items in one pass. A row that the block cuts off uses a template, which knows how to stop.
-//! 3. *Short bands with warp* have rows too short to fill vectors. [`Flat`] lists the points of many rows
-//!    without gaps, warps them together and leaves out those outside. The list is some rows ahead of the block: if
-//!    the block ends within the list, the place after it is looked up and the rest is found again.
-//! 4. *Patches that a sieve cuts* have runs of columns (see `sieve`). A run that passes is filled like 1; in others
+//! 2. *Short bands* have rows too short to fill vectors, and templates that hardly any other row uses. [`Flat`] lists the
+//!    points of many rows without gaps, warps them together and leaves out those outside. Where the block ends within
+//!    the list, the address of the next point is known, and the rest is found again.
+//! 3. *Patches that a sieve cuts* have runs of columns (see `sieve`). A run that passes is filled like 1; in others
 //!    each point is tested.
 //!
 //! The place in a row is a number of columns of its template, not of points, because the columns of one row may lie
-//! inside and outside in turn. Templates therefore may not change between two calls that share a row. Where way 3
-//! stops within a row, it clears them, and the rest of the row makes a template of its own.
+//! inside and outside in turn. Templates therefore may not change between two calls that share a row. Where way 2
+//! stops within a row, the rest of the row makes a template of its own.
 
 use core::ops::Range;
 
 use super::{
     bands::{Bands, Place, write_found},
-    template::{Check, Kept, Part, Templates, displaced, sift, write_row},
+    template::{Check, Kept, Part, Templates, displaced, sift},
 };
 use crate::{
     pattern::Axis,
     sample::{
-        kernel::{Format, Row, compiled},
-        lattice::{BAND_WIDTH, Flat, Found, Inside, Listed, PointId, places},
+        kernel::{Format, Row},
+        lattice::{BAND_WIDTH, Flat, PointId, places},
         sieve::Scale,
     },
 };
@@ -61,27 +59,24 @@ pub(super) struct RowWalk<F: Format> {
     pub(super) bands: Bands<F>,
     /// The columns that lie inside whatever their displacement, as places in the lists.
     inner: [Range<usize>; 4],
-    /// All columns of the band.
-    listed: Listed,
     templates: Templates<F>,
-    /// The points of some rows of a warped patch, and those inside.
-    flat: (Flat, Inside),
+    /// The points of some rows of a patch.
+    flat: Flat,
 }
 
 impl<F: Format> RowWalk<F> {
     /// A walk over some bands from an address on, or from the first one.
     pub(super) fn new(bands: Bands<F>, start: Option<PointId>) -> Self {
+        let is_tall = bands.rows.end - bands.rows.start >= TALL;
         let kept = match &bands.sieve {
             Some(_) => Kept::All,
-            None if start.is_some() => Kept::Places,
+            None if start.is_some() || !is_tall => Kept::Places,
             None => Kept::Columns,
         };
-        let is_tall = bands.rows.end - bands.rows.start >= TALL;
         let mut walk = Self {
             inner: [const { 0..0 }; 4],
-            listed: Listed::default(),
             templates: Templates::new(&bands.scope.lattice, is_tall, kept),
-            flat: Default::default(),
+            flat: Flat::default(),
             bands,
         };
         if let Some(at) = start
@@ -100,13 +95,11 @@ impl<F: Format> RowWalk<F> {
             let Some(end) = self.advance() else {
                 break;
             };
-            let Bands {
-                sieve, patch, at, ..
-            } = &self.bands;
+            let Bands { sieve, at, .. } = &self.bands;
             let out = &mut out[filled..];
             filled += if sieve.as_ref().is_some_and(|sieve| sieve.is_cut) {
                 self.fill_sifted(end, out)
-            } else if patch.is_warped() && self.templates.are_short() && at.is_fresh() {
+            } else if self.templates.are_short() && at.is_fresh() {
                 self.fill_flat(end, out)
             } else {
                 self.fill_rows(end, out)
@@ -167,69 +160,43 @@ impl<F: Format> RowWalk<F> {
         }
         let (columns, scope) = (&self.bands.columns, &self.bands.scope);
         self.inner = columns.places(&scope.x.inner);
-        self.listed = columns.part(self.bands.range());
         self.templates.clear();
         self.bands.next_patch();
         true
     }
 
-    /// Whether points can be [listed](Self::list): in boxes that are not tall.
-    pub(super) fn is_flat(&self) -> bool {
-        self.bands.scope.sieve.is_none() && self.templates.are_short()
-    }
-
-    /// Lists the next points of a [flat](Self::is_flat) walk, some of which may be in the next patch. Returns their
-    /// patch's origin and the points; `None` at the end.
-    pub(super) fn list(
-        &mut self,
-        enough: usize,
-    ) -> Option<([i64; 2], impl Iterator<Item = Found>)> {
-        let end = self.advance()?;
-        let next = self.list_flat(end, enough);
-        self.bands.at = Place::row(next);
-        let (_, inside) = &self.flat;
-        Some((self.bands.patch.origin(), inside.points()))
-    }
-
-    /// Lists the points of the patch's rows up to `end` that lie inside, or `enough` of its points. Returns
-    /// the first row that is not listed.
-    fn list_flat(&mut self, end: i64, enough: usize) -> i64 {
+    /// Writes points of a patch in which few rows share a template, until row `end` or until `out` is full.
+    fn fill_flat(&mut self, end: i64, out: &mut [F::Item]) -> usize {
+        let range = self.bands.range();
         let Bands {
             scope,
+            format,
             backend,
             at,
-            columns,
             patch,
             ..
         } = &mut self.bands;
-        let (flat, inside) = &mut self.flat;
-        let (rows, columns) = (at.y..end, (columns, &self.listed));
-        let next = flat.list(&scope.lattice, patch, columns, rows, enough, *backend);
-        flat.sift(patch, *backend, inside);
-        next
-    }
-
-    /// Writes points of a warped patch in which few rows share a template, until row `end` or until `out` is full.
-    /// Rows are warped several at a time.
-    fn fill_flat(&mut self, end: i64, out: &mut [F::Item]) -> usize {
         // Some two in three points of a small box's patches lie inside.
         let enough = (2 * out.len()).clamp(64, FLAT);
-        let next = self.list_flat(end, enough);
-        let (bands, (flat, inside)) = (&mut self.bands, &self.flat);
-        let by = (&bands.format, bands.backend);
-        write_found(by, bands.patch.origin(), inside.points(), out);
-        bands.at = Place::row(next);
-        if inside.len() > out.len()
-            && let Some((y, done)) = flat.locate(&bands.patch, out.len())
-        {
-            bands.at = Place {
-                done,
-                ..Place::row(y)
-            };
+        let next = self
+            .flat
+            .list((&scope.lattice, patch), &range, at.y..end, enough, *backend);
+        let found = &self.flat.found;
+        write_found(
+            (&*format, *backend),
+            patch.origin(),
+            found.points(0..found.len()),
+            out,
+        );
+        *at = match found.address(out.len()) {
             // The rest of this row takes a template of its own.
-            self.templates.clear();
-        }
-        inside.len().min(out.len())
+            Some([x, y]) => Place {
+                from: Some(x),
+                ..Place::row(y)
+            },
+            None => Place::row(next),
+        };
+        found.len().min(out.len())
     }
 
     /// Writes points of the patch's rows until row `end` or until `out` is full.
@@ -243,13 +210,13 @@ impl<F: Format> RowWalk<F> {
             patch,
             piece: [x, span],
             base,
+            sieve,
             ..
         } = &mut self.bands;
         let (lattice, format, patch, base, by) =
             (&scope.lattice, &*format, &*patch, *base, *backend);
         let is_split = patch.is_warped() && !patch.columns_are_inner;
-        let is_direct = self.templates.are_plain() && !patch.is_warped();
-        let is_flat = self.templates.are_short() && patch.is_warped();
+        let is_flat = self.templates.are_short() && sieve.is_none();
         let mut filled = 0;
         while at.y < end && filled < out.len() {
             if is_flat && at.is_fresh() {
@@ -276,14 +243,6 @@ impl<F: Format> RowWalk<F> {
                 places(columns, &x.inner)
             };
             let out = &mut out[filled..];
-            if is_direct && at.done == 0 && columns.len() <= out.len() {
-                filled += compiled(by, || {
-                    let (columns, vectors) = ((columns, inner), (vectors, is_inner));
-                    write_row(format, patch, row, columns, vectors, out)
-                });
-                at.next_row();
-                continue;
-            }
             let template = self
                 .templates
                 .get(class, block, at.done > 0, |template, kept| {

@@ -405,7 +405,9 @@ pub(super) fn count_settled(mut pieces: Pieces, mut mark: impl FnMut(PointId, u1
     let share = share.filter(|_| !scope.lattice.picks());
     let thinned = share.map(|share| {
         let lattice = scope.lattice.in_constant(share);
-        scope.of_box().with_lattice(lattice)
+        let mut thinned = scope.with_lattice(lattice);
+        thinned.sieve = None;
+        thinned
     });
     let mut rows = Rows::new(scope.bands(), scope.y.all.clone());
     let mut number = 0;
@@ -479,7 +481,7 @@ pub(super) fn find_few_settled(pieces: &mut Pieces) -> Option<Few> {
             x.div_euclid(BAND_WIDTH) * BAND_WIDTH,
             y.div_euclid(PATCH_HEIGHT) * PATCH_HEIGHT,
         ];
-        few.add(origin, core::iter::once(found_at(origin, point)));
+        few.add(origin, found_at(origin, point));
     }
     Some(few)
 }

@@ -280,42 +280,6 @@ fn bounds(all: &[i32]) -> [i32; 2] {
     [all.clone().min(), all.max()].map(Option::unwrap_or_default)
 }
 
-/// Writes a row of a box without warp and without a template, for rows that share theirs with few
-/// others. There is room for all columns. Columns in `inner` lie inside along x; `is_inner` rows do along
-/// y. Returns the number of points written.
-#[inline(always)]
-pub(super) fn write_row<F: Format>(
-    format: &F,
-    patch: &Patch,
-    row: Row,
-    (columns, inner): (&[Line], Range<usize>),
-    (vectors, is_inner): (&[[i32; 2]], bool),
-    out: &mut [F::Item],
-) -> usize {
-    let item = |Displaced { lattice, x, dy }: Displaced| {
-        let column = format.column(row.base, x, lattice);
-        format.item(row.base, column, row.y + dy, row.lattice)
-    };
-    let inner = if is_inner { inner } else { 0..0 };
-    let parts = [0..inner.start, inner.clone(), inner.end..columns.len()];
-    let [left, middle, right] = parts.map(|part| displaced(patch, &columns[part], vectors));
-    let holds = |column: &Displaced| patch.holds([column.x, row.y + column.dy]);
-    let mut written = 0;
-    for (out, column) in out.iter_mut().zip(left.filter(holds)) {
-        *out = item(column);
-        written += 1;
-    }
-    for (out, column) in out[written..].iter_mut().zip(middle) {
-        *out = item(column);
-    }
-    written += inner.len();
-    for (out, column) in out[written..].iter_mut().zip(right.filter(holds)) {
-        *out = item(column);
-        written += 1;
-    }
-    written
-}
-
 /// Writes those points of some columns of a row whose column and place pass; `place` is the place of a displaced
 /// position, both relative to the patch's origin.
 pub(super) fn sift<F: Format>(
@@ -410,11 +374,6 @@ impl<F: Format> Templates<F> {
     /// Whether each row makes its own template.
     pub(super) const fn are_short(&self) -> bool {
         !self.is_tall
-    }
-
-    /// Whether each row makes a template of its own, and only for what it writes.
-    pub(super) fn are_plain(&self) -> bool {
-        !self.is_tall && self.kept == Kept::Columns
     }
 
     /// The template of a row, made if it is not there; `is_same` states that the row is the one of the

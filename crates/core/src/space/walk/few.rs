@@ -11,7 +11,7 @@ use crate::{
         space::{PLANES, compiled, warp_all},
     },
     space::{
-        batch::Batch,
+        Batch,
         columns::{Lines, columns, coordinates},
         lattice::fixed,
         scope::{Scope, common},
@@ -116,11 +116,7 @@ fn add(scope: &Scope, lines: &Lines, batch: &mut Batch) {
             length += kept;
         }
     }
-    batch
-        .places
-        .iter_mut()
-        .for_each(|list| list.truncate(length));
-    batch.ids.truncate(length);
+    batch.truncate(length);
 }
 
 /// Warps the points.
@@ -138,17 +134,11 @@ fn warp(scope: &Scope, batch: &mut Batch) {
         [place(range.start) + least, place(range.end - 1) + most].map(|v| v as i32)
     });
     let patch = shears.patch(origin, ranges, scope.lattice.turned.reach);
-    let padded = length.next_multiple_of(WHOLE);
-    let mut room = [(); 2].map(|()| alloc::vec![0; padded]);
-    for list in &mut batch.places {
-        let last = list.last().copied().unwrap_or(0);
-        list.resize(padded, last);
-    }
+    batch.pad(WHOLE);
     for (shears, [a, b]) in patch.planes.iter().zip(PLANES) {
-        let places = [&batch.places[a][..], &batch.places[b][..]];
-        warp_all(Backend::best(), shears, places, &mut room);
-        core::mem::swap(&mut batch.places[a], &mut room[0]);
-        core::mem::swap(&mut batch.places[b], &mut room[1]);
+        if let Ok(places) = batch.places.get_disjoint_mut([a, b]) {
+            warp_all(Backend::best(), shears, places.map(Vec::as_mut_slice));
+        }
     }
     batch
         .places

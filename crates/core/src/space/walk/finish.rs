@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::{PATCH_BITS, Walk, relative, world};
 use crate::{
     sample::space::{GROUP, PLANES, compiled, retain_parts, warp_groups, warp_lists},
-    space::{batch::Batch, cells::IN, scope::common},
+    space::{Batch, cells::IN, scope::common},
     table::FRACTION_BITS,
 };
 
@@ -49,17 +49,15 @@ impl Walk {
         self.warp(out);
         let scope = &self.course.scope;
         let is_tested = self.key.state != IN;
-        let ends = match is_tested {
-            true => relative(&scope.bounds, origin),
-            false => [(); 3].map(|()| i32::MIN..i32::MAX),
-        };
+        let ends = relative(&scope.bounds, origin);
         let starts = [0].into_iter().chain(self.gaps.iter().map(|gap| gap.end));
         let last = self.gaps.iter().map(|gap| gap.start).chain([length]);
         let parts = starts.zip(last).map(|(start, end)| start..end);
         let lists = out.places.each_mut().map(Vec::as_mut_slice);
-        let kept = match out.ids.is_empty() {
-            true => retain_parts(self.backend, lists, parts, &ends),
-            false => None,
+        let kept = match (out.ids.is_empty(), is_tested) {
+            (true, true) => retain_parts(self.backend, lists, parts, &ends),
+            (true, false) => retain_parts(self.backend, lists, parts, &[]),
+            (false, _) => None,
         };
         match kept {
             Some(kept) => out.truncate(kept),
@@ -106,12 +104,7 @@ impl Walk {
             });
             shears.patch(origin, ranges, lattice.turned.reach)
         });
-        let length = out.len();
-        let padded = length.next_multiple_of(GROUP);
-        for list in &mut out.places {
-            let last = list.last().copied().unwrap_or(0);
-            list.resize(padded, last);
-        }
+        out.pad(GROUP);
         let places = out.places.each_mut().map(Vec::as_mut_slice);
         let is_warped = warp_groups(self.backend, patch, &self.extents, places);
         self.extents.clear();
@@ -119,15 +112,9 @@ impl Walk {
             if is_warped {
                 break;
             }
-            self.room.iter_mut().for_each(|list| list.resize(padded, 0));
-            warp_lists(
-                self.backend,
-                shears,
-                [&out.places[a], &out.places[b]],
-                &mut self.room,
-            );
-            core::mem::swap(&mut out.places[a], &mut self.room[0]);
-            core::mem::swap(&mut out.places[b], &mut self.room[1]);
+            if let Ok(places) = out.places.get_disjoint_mut([a, b]) {
+                warp_lists(self.backend, shears, places.map(Vec::as_mut_slice));
+            }
         }
     }
 }

@@ -19,7 +19,7 @@ use self::{
 };
 pub(super) use self::{few::few, rows::Rows};
 use super::{
-    batch::Batch,
+    Batch,
     cells::{IN, OUT, Run, TEST},
     columns::Row,
     lattice::fixed,
@@ -52,8 +52,6 @@ pub(super) struct Walk {
     shears: (u64, Vec<Option<SpaceShears>>),
     /// The extents of the groups of points that will be warped.
     extents: Vec<Extents>,
-    /// Room for warped places.
-    room: [Vec<i32>; 2],
     /// The parts of the batch that are no points.
     gaps: Vec<Range<usize>>,
     /// Where the rows begin that no gap follows.
@@ -85,7 +83,6 @@ impl Walk {
             key: Key::default(),
             shears: (0, Vec::new()),
             extents: Vec::new(),
-            room: [Vec::new(), Vec::new()],
             gaps: Vec::new(),
             row_start: 0,
         }

@@ -3,15 +3,19 @@
 use core::arch::x86_64::*;
 
 use super::super::lanes::{Lanes, PlainLoop, VectorLoop};
-use crate::sample::warp::{CELL_BITS, PatchShears};
+use crate::{
+    sample::warp::{CELL_BITS, PatchShears},
+    table::FRACTION_BITS,
+};
 
-entries!(Avx2, "avx2");
+entries!(Avx2, "avx2,popcnt");
 
 pub(in super::super) struct Avx2;
 
 impl Lanes for Avx2 {
     const WIDTH: usize = 8;
     const WINDOW: usize = 8;
+    const HAS_COMPRESS: bool = true;
 
     type Ints = __m256i;
     type Singles = __m256;
@@ -25,6 +29,7 @@ impl Lanes for Avx2 {
         sub_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = _mm256_sub_epi32(a, b);
         min_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = _mm256_min_epi32(a, b);
         max_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = _mm256_max_epi32(a, b);
+        fixed(v: Self::Ints) -> Self::Ints = _mm256_slli_epi32::<{ FRACTION_BITS as i32 }>(v);
         cells(v: Self::Ints) -> Self::Ints = _mm256_srai_epi32::<{ CELL_BITS as i32 }>(v);
         places(v: Self::Ints) -> Self::Ints =
             _mm256_and_si256(v, _mm256_set1_epi32(PatchShears::CELL_MASK));
@@ -40,6 +45,7 @@ impl Lanes for Avx2 {
             _mm256_permutevar8x32_ps(table, places);
         gather(from: *const f32, places: Self::Ints) -> Self::Singles =
             _mm256_i32gather_ps::<4>(from, places);
+        bits_of(v: Self::Singles) -> Self::Ints = _mm256_castps_si256(v);
         load_doubles(from: *const f64) -> Self::Doubles =
             [_mm256_loadu_pd(from), _mm256_loadu_pd(from.add(4))];
         splat_double(v: f64) -> Self::Doubles = [_mm256_set1_pd(v); 2];
@@ -75,6 +81,41 @@ impl Lanes for Avx2 {
     #[inline(always)]
     unsafe fn narrow([low, high]: [__m256d; 2]) -> __m256 {
         unsafe { _mm256_set_m128(_mm256_cvtpd_ps(high), _mm256_cvtpd_ps(low)) }
+    }
+
+    #[inline(always)]
+    unsafe fn between(v: __m256i, least: i32, end: i32) -> u32 {
+        unsafe {
+            let below = _mm256_cmpgt_epi32(_mm256_set1_epi32(least), v);
+            let is_inside =
+                _mm256_andnot_si256(below, _mm256_cmpgt_epi32(_mm256_set1_epi32(end), v));
+            _mm256_movemask_ps(_mm256_castsi256_ps(is_inside)) as u32
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn compress(v: __m256i, mask: u32) -> __m256i {
+        /// The numbers of the lanes of each mask, one after another.
+        static LANES: [[u8; 8]; 256] = {
+            let mut all = [[0; 8]; 256];
+            let mut mask = 0;
+            while mask < 256 {
+                let (mut kept, mut lane) = (0, 0);
+                while lane < 8 {
+                    if mask >> lane & 1 == 1 {
+                        all[mask][kept] = lane as u8;
+                        kept += 1;
+                    }
+                    lane += 1;
+                }
+                mask += 1;
+            }
+            all
+        };
+        unsafe {
+            let lanes = _mm_loadl_epi64(LANES[mask as usize & 255].as_ptr().cast());
+            _mm256_permutevar8x32_epi32(v, _mm256_cvtepu8_epi32(lanes))
+        }
     }
 
     #[inline(always)]

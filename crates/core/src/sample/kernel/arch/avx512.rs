@@ -3,12 +3,15 @@
 use core::arch::x86_64::*;
 
 use super::super::lanes::{Lanes, PlainLoop, VectorLoop};
-use crate::sample::{
-    lattice::Point,
-    warp::{CELL_BITS, PatchShears},
+use crate::{
+    sample::{
+        lattice::Point,
+        warp::{CELL_BITS, PatchShears},
+    },
+    table::FRACTION_BITS,
 };
 
-entries!(Avx512, "avx512f,avx512vl,avx512dq,avx2");
+entries!(Avx512, "avx512f,avx512vl,avx512dq,avx2,popcnt");
 
 pub(in super::super) struct Avx512;
 
@@ -28,6 +31,7 @@ impl Lanes for Avx512 {
         sub_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = _mm512_sub_epi32(a, b);
         min_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = _mm512_min_epi32(a, b);
         max_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = _mm512_max_epi32(a, b);
+        fixed(v: Self::Ints) -> Self::Ints = _mm512_slli_epi32::<FRACTION_BITS>(v);
         cells(v: Self::Ints) -> Self::Ints = _mm512_srai_epi32::<CELL_BITS>(v);
         places(v: Self::Ints) -> Self::Ints =
             _mm512_and_si512(v, _mm512_set1_epi32(PatchShears::CELL_MASK));
@@ -118,6 +122,7 @@ impl Lanes for Avx512 {
     }
 
     const HAS_TRIPLES: bool = true;
+    const HAS_COMPRESS: bool = true;
 
     #[inline(always)]
     unsafe fn pick_of_two([low, high]: [__m512; 2], places: __m512i) -> __m512 {

@@ -3,7 +3,10 @@
 use core::arch::aarch64::*;
 
 use super::super::lanes::{Lanes, VectorLoop};
-use crate::sample::warp::{CELL_BITS, PatchShears};
+use crate::{
+    sample::warp::{CELL_BITS, PatchShears},
+    table::FRACTION_BITS,
+};
 
 /// Runs a loop.
 ///
@@ -46,6 +49,7 @@ impl Lanes for Neon {
         sub_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = vsubq_s32(a, b);
         min_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = vminq_s32(a, b);
         max_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = vmaxq_s32(a, b);
+        fixed(v: Self::Ints) -> Self::Ints = vshlq_n_s32::<{ FRACTION_BITS as i32 }>(v);
         cells(v: Self::Ints) -> Self::Ints = vshrq_n_s32::<{ CELL_BITS as i32 }>(v);
         places(v: Self::Ints) -> Self::Ints = vandq_s32(v, vdupq_n_s32(PatchShears::CELL_MASK));
         load_singles(from: *const f32) -> Self::Singles = vld1q_f32(from);
@@ -55,6 +59,7 @@ impl Lanes for Neon {
         // Not `vminq_f32`, which orders the two zeros.
         min_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles =
             vbslq_f32(vcltq_f32(a, b), a, b);
+        bits_of(v: Self::Singles) -> Self::Ints = vreinterpretq_s32_f32(v);
         singles_of(v: Self::Ints) -> Self::Singles = vcvtq_f32_s32(v);
         truncate(v: Self::Singles) -> Self::Ints = vcvtq_s32_f32(v);
         table(from: *const f32) -> Self::Table = vld1q_u8_x2(from.cast());

@@ -3,7 +3,10 @@
 use core::arch::wasm32::*;
 
 use super::super::lanes::{Lanes, VectorLoop};
-use crate::sample::warp::{CELL_BITS, PatchShears};
+use crate::{
+    sample::warp::{CELL_BITS, PatchShears},
+    table::FRACTION_BITS,
+};
 
 /// Runs a loop.
 ///
@@ -49,6 +52,7 @@ impl Lanes for Simd128 {
         sub_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = i32x4_sub(a, b);
         min_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = i32x4_min(a, b);
         max_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints = i32x4_max(a, b);
+        fixed(v: Self::Ints) -> Self::Ints = i32x4_shl(v, FRACTION_BITS);
         cells(v: Self::Ints) -> Self::Ints = i32x4_shr(v, CELL_BITS);
         places(v: Self::Ints) -> Self::Ints = v128_and(v, i32x4_splat(PatchShears::CELL_MASK));
         load_singles(from: *const f32) -> Self::Singles = v128_load(from.cast());
@@ -57,6 +61,7 @@ impl Lanes for Simd128 {
         mul_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles = f32x4_mul(a, b);
         // `pmin(b, a)` is a if a < b, else b.
         min_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles = f32x4_pmin(b, a);
+        bits_of(v: Self::Singles) -> Self::Ints = v;
         singles_of(v: Self::Ints) -> Self::Singles = f32x4_convert_i32x4(v);
         truncate(v: Self::Singles) -> Self::Ints = i32x4_trunc_sat_f32x4(v);
         table(from: *const f32) -> Self::Table = [0, 4].map(|k| v128_load(from.add(k).cast()));
