@@ -1,12 +1,27 @@
-//! Exact counts without making points.
-//!
-//! `choose` picks the way: `boxes` counts a box without warp in closed form (`tally` counts its columns
+//! Exact counts without making points: `boxes` counts a box without warp in closed form (`tally` counts its columns
 //! and rows by block), `margins` a warped box, `sifted` everything that has a sieve.
 
 mod boxes;
-mod choose;
 mod margins;
 mod sifted;
 mod tally;
 
-pub(super) use choose::count;
+use core::ops::Range;
+
+use super::scope::Scope;
+
+/// The number of points of a scope with addresses in some columns and rows. Meaningless once the scope's
+/// stop flag is raised.
+pub(super) fn count(scope: &Scope, columns: &Range<i64>, rows: &Range<i64>) -> u128 {
+    let (lattice, stop) = (&scope.lattice, &scope.stop);
+    let (x, y) = (scope.x.within(columns), scope.y.within(rows));
+    if let Some(sieve) = &scope.sieve {
+        sifted::count(lattice, sieve, [&x, &y], stop)
+    } else if x.bounds.is_empty() || y.bounds.is_empty() {
+        0
+    } else if lattice.shears.is_some() {
+        margins::count(lattice, [&x, &y], stop)
+    } else {
+        boxes::count(lattice, &x, &y)
+    }
+}

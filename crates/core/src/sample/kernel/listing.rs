@@ -196,3 +196,41 @@ impl VectorLoop for Rows<'_> {
         1
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use alloc::{vec, vec::Vec};
+
+    use super::*;
+
+    #[test]
+    fn rows_have_the_same_points_by_all_backends() {
+        let vectors: Vec<[i32; 2]> = (0..60).map(|i| [i * 7919, i * -104_729]).collect();
+        let mut listing = Listing::default();
+        let columns = (0..100).map(|c| (c as usize % 4, 3 * c, c as usize * 7 % 20));
+        let classes = listing.set_classes(25, columns);
+        let more = listing.add((0..9).map(|c| [c, c]));
+        listing.restart(0);
+        let rows = [(0, classes[1].clone(), 20), (7, 5..5, 0), (9, more, 40)];
+        for (row, columns, first) in rows.into_iter().chain([(255, classes[3].clone(), 0)]) {
+            listing.add_row(row, columns, first);
+        }
+        assert_eq!(listing.len(), 59);
+        let listed = |backend| {
+            let mut lists = [vec![1], vec![2], vec![3]];
+            listing.write(backend, &vectors, lists.each_mut());
+            lists
+        };
+        let [xs, ys, ids] = listed(Backend::Scalar);
+        // The second point: column 15 with vector 20 + 5 · 7 % 20.
+        let place = [(15 << FRACTION_BITS) + 35 * 7919, 35 * -104_729, 15];
+        assert_eq!([xs[2], ys[2], ids[2]], place);
+        for backend in Backend::available() {
+            assert_eq!(
+                listed(backend),
+                [xs.clone(), ys.clone(), ids.clone()],
+                "{backend:?}"
+            );
+        }
+    }
+}

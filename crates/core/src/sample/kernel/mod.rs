@@ -6,7 +6,9 @@
 //! while lattice coordinates stay below 2⁵³, so it rounds once, as the conversion of the whole integer
 //! would.
 //!
-//! `rows` writes plain rows, `triples` points in space, `groups` warps them, `retain` leaves out those outside, `warped` warped rows, whose coefficients `quadratics` looks up. Their vector loops are
+//! `rows` writes plain rows, `warped` warped ones, whose coefficients `quadratics` looks up; `listing` lists the points of
+//! many short rows, and `retain` leaves out those outside; `triples` writes points in space, and `groups` warps them. Their
+//! vector loops are
 //! written once over the trait of `lanes`, and each instruction set is a thin file of `arch`. `backend` finds out which
 //! sets the machine has, and runs a loop by one of them. `tests` compares every backend with plain code.
 

@@ -7,7 +7,7 @@
 //! membership. The bounds of chunks are exact multiples of their size (`multiple`).
 //!
 //! Work proceeds in pieces: `lines` lists the columns and rows that hold points (each a `line`), `prefix` counts them,
-//! `patch` has the bands and patches in which positions fit 32 bits, `flat` the points of a patch without gaps. `point`
+//! `patch` has the bands and patches in which positions fit 32 bits, `flat` lists the points of a patch without gaps. `point`
 //! is what comes out, `rank` its place in the order in which points leave and its kind, `kinds` the points of one kind,
 //! `varied` kinds whose shares vary (`picked` has their points), and `grade` the field that says how many have left.
 

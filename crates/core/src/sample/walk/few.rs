@@ -53,10 +53,12 @@ impl Few {
 
     /// Notes that another patch begins, some points after those that are there.
     fn begin(&mut self, origin: [i64; 2], lift: i64, after: usize) {
-        if self.patches.last().is_none_or(|last| last.origin != origin) {
+        let lift = lift as i32;
+        let is_same = |last: &FewOfPatch| last.origin == origin && last.lift == lift;
+        if !self.patches.last().is_some_and(is_same) {
             self.patches.push(FewOfPatch {
                 origin,
-                lift: lift as i32,
+                lift,
                 before: self.found.len() + after,
             });
         }
@@ -197,4 +199,40 @@ pub(super) fn find_few(scope: &Scope) -> Option<Few> {
         }
     }
     Some(few)
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+
+    use super::*;
+    use crate::{Area, Circle, PointSet, Points, Region, Table};
+
+    #[test]
+    fn few_points_are_those_of_a_walk() {
+        let alpha = "(5-sqrt(3))/2".parse().expect("valid");
+        let table = Table::undisplaced(alpha, 20, "pattern").expect("small");
+        let boxes = [[1.0, 200.0], [200.0, 1.0], [30.0, 31.0], [0.5, 0.1]].into_iter();
+        for (number, [width, height]) in boxes.cycle().take(24).enumerate() {
+            let corner = [number as f64 * 977.3 - 9000.0, number as f64 * -331.7];
+            let corners = [corner, [corner[0] + width, corner[1] + height]];
+            let region = Region::new(corners[0], corners[1]).expect("valid");
+            let circle = Circle::new(corner, width.min(25.0)).expect("valid");
+            let seed = number as u64 % 3;
+            let set = PointSet::new(table.clone()).seed(seed);
+            for area in [
+                Area::from(region),
+                circle.into(),
+                Area::from(region).and(circle.into()),
+            ] {
+                let plan = set.within(area).expect("near");
+                assert!(plan.kept() > 0 || seed > 0, "{region:?}");
+                let mut walked = vec![Default::default(); plan.count() as usize + 1];
+                let mut blocks = plan.blocks::<Points>().with_backend(Backend::Scalar);
+                let filled = blocks.fill(&mut walked);
+                walked.truncate(filled);
+                assert_eq!(plan.to_vec(), walked, "{region:?}");
+            }
+        }
+    }
 }
