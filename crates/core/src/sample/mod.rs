@@ -41,13 +41,15 @@ pub(crate) use seed::split_mix;
 
 /// The parts of the plane that points in space share.
 pub(crate) mod space {
+    #[cfg(test)]
+    pub(crate) use super::warp::Stretch;
     pub(crate) use super::{
         kernel::{
             Extents, GROUP, PICKS, PLANES, PlainLoop, SpaceShears, add_picked, compiled,
             compiled_loop, lift_picked, pick_pairs, pick_triples, retain_parts, warp_all,
             warp_groups, warp_lists, write_triples,
         },
-        warp::{PatchShears, Shears, Stretch},
+        warp::{PatchShears, Shears},
     };
 }
 

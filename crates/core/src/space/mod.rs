@@ -18,7 +18,7 @@
 //! `walk` makes points row by row or batch by batch from `columns` of planes, `cells` and `template`s; `sieve` leaves out
 //! those that `clearance` finds too near other sets; `closed` and `count` count them. `plan` is a request made ready,
 //! `windows` are its parts, and `blocks` writes its points in a `format`; `attributes` are their further values.
-//! `lookups`, `nearest` and `distance` are about single points and neighbors. `set` is all of this, `shipped` the table
+//! `lookups` and `nearest` are about single points and neighbors. `set` is all of this, `shipped` the table
 //! that the crate has.
 
 mod attributes;
@@ -29,7 +29,6 @@ mod clearance;
 mod closed;
 mod columns;
 mod count;
-mod distance;
 mod format;
 mod lattice;
 mod lookups;
@@ -52,7 +51,6 @@ mod windows;
 
 pub use attributes::BoundAttributes;
 pub use blocks::{Blocks, Members};
-pub use distance::LeastDistance;
 pub use format::Format;
 pub use lattice::LATTICE_LIMIT;
 pub use nearest::Neighbor;
@@ -64,7 +62,10 @@ pub use set::SpaceSet;
 pub use shipped::BLUE;
 pub use table::Table;
 
-pub use crate::shape::{Prism, Volume};
+pub use crate::{
+    LeastDistance,
+    shape::{Prism, Volume},
+};
 
 /// A place in the order of a request's points.
 pub type Cursor = crate::Cursor<PointId>;

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Fraction bits of the components of a vector: a unit is 2⁻¹² grid units.
-pub(super) const VECTOR_BITS: u32 = 12;
+const VECTOR_BITS: u32 = 12;
 /// The bits from a unit of a vector to a fixed-point unit.
 const FINER: u32 = FRACTION_BITS - VECTOR_BITS;
 
@@ -204,8 +204,14 @@ impl Table {
         self.0.turned[symmetry.number()].get_or(|| Arc::new(Turned::new(self, symmetry)))
     }
 
+    /// All vectors, in fixed-point units.
+    pub(crate) fn fixed_vectors(&self) -> Vec<[i32; 3]> {
+        let fixed = |vector: &[i16; 3]| vector.map(|v| i32::from(v) << FINER);
+        self.vectors().iter().map(fixed).collect()
+    }
+
     /// The least squared distance between two points, from `compute` if it is not known yet.
-    pub(super) fn least_squared(&self, compute: impl FnOnce() -> u64) -> u64 {
+    pub(crate) fn least_squared(&self, compute: impl FnOnce() -> u64) -> u64 {
         self.0.least_squared.get_or(compute)
     }
 }
