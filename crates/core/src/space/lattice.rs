@@ -5,7 +5,6 @@ use alloc::sync::Arc;
 use super::{
     pattern::Pattern,
     point::{Point, PointId},
-    symmetry::Symmetry,
     table::{Table, Turned},
     warp::Shears3,
 };
@@ -61,7 +60,7 @@ pub(super) const fn fixed(v: i64) -> i64 {
 impl Lattice {
     pub(super) fn new(table: Table, placement: Placement) -> Self {
         let alpha = table.map().alpha();
-        let turned = table.turned(Symmetry::of(placement.seed));
+        let turned = table.turned(placement.seed.symmetry_in_space());
         let cut = (placement.keep != Keep::ALL).then(|| Cut::new(&table, &turned, placement.keep));
         let units = f64::from(1u32 << FRACTION_BITS);
         Self {

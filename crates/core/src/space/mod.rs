@@ -13,7 +13,7 @@
 //! # Ok::<(), strew_core::Error>(())
 //! ```
 //!
-//! `pattern` and `symmetry` have the pattern, `table` the vectors, `warp` the shears, `lattice` which addresses have
+//! `pattern` has the pattern, `table` the vectors, `warp` the shears, `lattice` which addresses have
 //! points and where; `scope` what of a lattice is requested, `mask` what narrows a set.
 //! `walk` makes points row by row or batch by batch from `columns` of planes, `cells` and `template`s; `sieve` leaves out
 //! those that `clearance` finds too near other sets; `closed` and `count` count them. `plan` is a request made ready,
@@ -42,7 +42,6 @@ mod set;
 #[cfg(feature = "tables")]
 mod shipped;
 mod sieve;
-mod symmetry;
 mod table;
 mod template;
 mod walk;

@@ -5,40 +5,42 @@ use core::{fmt, ops::Range};
 
 use super::{
     Digest, Displacement, Labels, Mix, Order, Provenance, Ranks, file, parts::Parts,
-    symmetry::TurnedCopies,
+    turned::PlaneParts, vector::Vector,
 };
 use crate::{error::Error, map::Map, once::Once, pattern::Alpha};
 
-/// The displacement vectors of one noise profile for one neighborhood map, with their history.
+/// The displacement vectors of one noise profile for one neighborhood map, with their history: a [`Table`] of the plane,
+/// or one of [points in space](crate::space::Table).
 ///
 /// A table is immutable: its content has been checked, and its digest names it. Cloning shares the
 /// content.
 ///
 /// ```
-/// use strew_core::Table;
+/// use strew_core::{Table, space};
 ///
 /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-/// let file = table.to_bytes();
-/// assert_eq!(Table::from_bytes(&file)?, table);
+/// assert_eq!(table.displacements().len(), table.map().intervals().pow(2));
+/// assert_eq!(Table::from_bytes(&table.to_bytes())?, table);
+///
+/// let table = space::Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?;
+/// assert_eq!(table.vectors().len(), table.map().intervals().pow(3));
+/// assert_eq!(space::Table::from_bytes(&table.to_bytes())?, table);
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 #[derive(Clone)]
-pub struct Table(Arc<Content>);
+pub struct TableOf<V: Vector>(Arc<Content<V>>);
 
-struct Content {
-    parts: Parts,
+/// The table of a point set of the plane, with a vector for each of the n² blocks of its map.
+pub type Table = TableOf<Displacement>;
+
+struct Content<V: Vector> {
+    parts: Parts<V>,
     digest: Digest,
-    /// The least and the greatest displacement along x and y.
-    reach: [[i32; 2]; 2],
     /// The order in which blocks leave.
     order: Order,
-    /// The kinds of the points of each block.
-    labels: Option<Labels>,
     /// The least squared distance between two points, once it has been computed.
     least_squared: Once<u64>,
-    /// The least squared distance of each pair of kinds, row by row.
-    least_of_kinds: Once<Arc<[u64]>>,
-    turned: TurnedCopies,
+    held: V::Held,
 }
 
 impl Table {
@@ -70,82 +72,12 @@ impl Table {
         let parts = Parts {
             map,
             profile: profile.into(),
-            displacements,
+            vectors: displacements,
             provenance,
             ranks: None,
             mix: None,
         };
         Self::of_parts(parts)
-    }
-
-    /// A table of parts to check.
-    pub(super) fn of_parts(parts: Parts) -> Result<Self, Error> {
-        parts.check()?;
-        let digest = file::digest(&parts)?;
-        Self::checked(parts, digest)
-    }
-
-    /// A table of checked parts.
-    fn checked(parts: Parts, digest: Digest) -> Result<Self, Error> {
-        let order = match &parts.ranks {
-            Some(ranks) => Order::new(&parts.map, ranks),
-            None => Order::new(&parts.map, &Ranks::hashed(parts.displacements.len())),
-        };
-        let labels = parts.mix.as_ref();
-        let labels = labels.map(|mix| Labels::new(&parts.map, mix, |block| block));
-        let mut reach = [[i32::MAX, i32::MIN]; 2];
-        for vector in &parts.displacements {
-            for (ends, &v) in reach.iter_mut().zip(vector) {
-                *ends = [ends[0].min(v), ends[1].max(v)];
-            }
-        }
-        Ok(Self(Arc::new(Content {
-            parts,
-            digest,
-            reach,
-            order,
-            labels,
-            least_squared: Once::new(),
-            least_of_kinds: Once::new(),
-            turned: TurnedCopies::new(),
-        })))
-    }
-
-    /// A table without displacements: the AA pattern itself.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new), and [`ErrorKind::MapSize`](crate::ErrorKind::MapSize) if `radius` is too
-    /// large.
-    pub fn undisplaced(alpha: Alpha, radius: u32, profile: &str) -> Result<Self, Error> {
-        let map = Map::new(alpha, radius)?;
-        let blocks = map.intervals() * map.intervals();
-        let provenance = Provenance {
-            optimizer: "none".into(),
-            ..Provenance::default()
-        };
-        Self::new(map, profile, vec![[0, 0]; blocks], provenance)
-    }
-
-    /// Reads a table file and checks everything in it.
-    ///
-    /// # Errors
-    /// One of the `Table…` kinds, [`ErrorKind::Alpha`](crate::ErrorKind::Alpha) or
-    /// [`ErrorKind::MapSize`](crate::ErrorKind::MapSize), naming the part of the file that is wrong.
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
-        let (parts, digest) = file::read(bytes)?;
-        Self::checked(parts, digest)
-    }
-
-    /// The table as a file. Equal tables have equal bytes.
-    #[must_use]
-    pub fn to_bytes(&self) -> Vec<u8> {
-        file::write(&self.0.parts)
-    }
-
-    /// The neighborhood map whose blocks the vectors belong to.
-    #[must_use]
-    pub fn map(&self) -> &Map {
-        &self.0.parts.map
     }
 
     /// The α of the pattern that the table displaces.
@@ -154,35 +86,10 @@ impl Table {
         self.map().alpha()
     }
 
-    /// The name of the noise profile: 1 to 32 characters of a-z, 0-9 and -.
-    #[must_use]
-    pub fn profile(&self) -> &str {
-        &self.0.parts.profile
-    }
-
     /// All n² vectors, row = interval of dY, column = interval of dX, in units of 2⁻²⁰ grid units.
     #[must_use]
     pub fn displacements(&self) -> &[Displacement] {
-        &self.0.parts.displacements
-    }
-
-    /// The history of the table: its making and its measurements.
-    #[must_use]
-    pub fn provenance(&self) -> &Provenance {
-        &self.0.parts.provenance
-    }
-
-    /// The BLAKE3 digest of the file without its last 32 bytes, which hold it. It names the table.
-    #[must_use]
-    pub fn digest(&self) -> Digest {
-        self.0.digest
-    }
-
-    /// The order in which blocks leave when a set is thinned, or `None` if the table has none. Blocks
-    /// then leave in a hashed order, which is no more even than a random choice.
-    #[must_use]
-    pub fn ranks(&self) -> Option<&Ranks> {
-        self.0.parts.ranks.as_ref()
+        &self.0.parts.vectors
     }
 
     /// The kinds of the points of each block, or `None` if the table has none.
@@ -213,14 +120,9 @@ impl Table {
         order.floors(order.position(block))
     }
 
-    /// The order in which blocks leave, a hashed one for a table without ranks.
-    pub(crate) fn order(&self) -> &Order {
-        &self.0.order
-    }
-
     /// The kinds of the points of each block.
     pub(crate) fn labels(&self) -> Option<&Labels> {
-        self.0.labels.as_ref()
+        self.held().labels.as_ref()
     }
 
     /// About the memory that the table may come to hold, in bytes: seeds turn it, and each of the eight
@@ -238,52 +140,162 @@ impl Table {
     pub fn memory_bytes(&self) -> usize {
         // A bound, a label and about two buckets for each interval.
         let map = 32 * self.map().intervals();
-        let copies = TurnedCopies::MOST;
+        let copies = PlaneParts::COPIES;
         let vectors = (1 + copies) * size_of_val(self.displacements());
         let order = self.0.order.memory_bytes(copies);
         let mix = self.mix().map_or(0, |mix| mix.memory_bytes(1 + copies));
-        size_of::<Content>() + vectors + order + mix + map + 4096
+        size_of::<Content<Displacement>>() + vectors + order + mix + map + 4096
+    }
+    /// The least squared distance of each pair of kinds, computed once.
+    pub(crate) fn least_of_kinds(&self, compute: impl FnOnce() -> Arc<[u64]>) -> Arc<[u64]> {
+        self.held().least_of_kinds.get_or(compute)
+    }
+}
+
+impl<V: Vector> TableOf<V> {
+    /// A table of parts to check.
+    pub(crate) fn of_parts(parts: Parts<V>) -> Result<Self, Error> {
+        parts.check()?;
+        let digest = file::digest(&parts)?;
+        Ok(Self::checked(parts, digest))
     }
 
-    /// The least and the greatest displacement along x and y.
-    pub(crate) fn reach(&self) -> [[i32; 2]; 2] {
-        self.0.reach
+    /// A table of checked parts.
+    fn checked(parts: Parts<V>, digest: Digest) -> Self {
+        let hashed = || Ranks::hashed(parts.vectors.len());
+        let ranks = parts.ranks.clone().unwrap_or_else(hashed);
+        Self(Arc::new(Content {
+            digest,
+            order: Order::new(&parts.map, V::AXES, &ranks),
+            least_squared: Once::new(),
+            held: V::held(&parts),
+            parts,
+        }))
+    }
+
+    /// A table without displacements: the AA pattern itself.
+    ///
+    /// # Errors
+    /// As [`Table::new`], and [`ErrorKind::MapSize`](crate::ErrorKind::MapSize) if `radius` is too
+    /// large.
+    pub fn undisplaced(alpha: Alpha, radius: u32, profile: &str) -> Result<Self, Error> {
+        let map = Map::new(alpha, radius)?;
+        let provenance = Provenance {
+            optimizer: "none".into(),
+            ..Provenance::default()
+        };
+        Self::of_parts(Parts {
+            vectors: vec![V::default(); Parts::<V>::blocks(&map)],
+            map,
+            profile: profile.into(),
+            provenance,
+            ranks: None,
+            mix: None,
+        })
+    }
+
+    /// Reads a table file and checks everything in it.
+    ///
+    /// # Errors
+    /// One of the `Table…` kinds, [`ErrorKind::Alpha`](crate::ErrorKind::Alpha) or
+    /// [`ErrorKind::MapSize`](crate::ErrorKind::MapSize), naming the part of the file that is wrong.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
+        let (parts, digest) = file::read(bytes)?;
+        Ok(Self::checked(parts, digest))
+    }
+
+    /// The table as a file. Equal tables have equal bytes.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        file::write(&self.0.parts)
+    }
+
+    /// This table with an order in which its blocks leave.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Table`](crate::ErrorKind::Table) unless there is a position for each block.
+    ///
+    /// ```
+    /// use strew_core::{Table, table::Ranks};
+    ///
+    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let blocks = table.displacements().len() as u32;
+    /// let ranked = table.with_ranks(Ranks::new((0..blocks).rev().collect())?)?;
+    /// assert_eq!(ranked.displacements(), table.displacements());
+    /// assert_ne!(ranked.digest(), table.digest());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn with_ranks(&self, ranks: Ranks) -> Result<Self, Error> {
+        let mut parts = self.parts().clone();
+        parts.ranks = Some(ranks);
+        Self::of_parts(parts)
+    }
+
+    /// The neighborhood map whose blocks the vectors belong to.
+    #[must_use]
+    pub fn map(&self) -> &Map {
+        &self.0.parts.map
+    }
+
+    /// The name of the noise profile: 1 to 32 characters of a-z, 0-9 and -.
+    #[must_use]
+    pub fn profile(&self) -> &str {
+        &self.0.parts.profile
+    }
+
+    /// The history of the table: its making and its measurements.
+    #[must_use]
+    pub fn provenance(&self) -> &Provenance {
+        &self.0.parts.provenance
+    }
+
+    /// The BLAKE3 digest of the file without its last 32 bytes, which hold it. It names the table.
+    #[must_use]
+    pub fn digest(&self) -> Digest {
+        self.0.digest
+    }
+
+    /// The order in which blocks leave when a set is thinned, or `None` if the table has none. Blocks
+    /// then leave in a hashed order, which is no more even than a random choice.
+    #[must_use]
+    pub fn ranks(&self) -> Option<&Ranks> {
+        self.0.parts.ranks.as_ref()
+    }
+
+    /// The order in which blocks leave, a hashed one for a table without ranks.
+    pub(crate) fn order(&self) -> &Order {
+        &self.0.order
     }
 
     /// The parts of the table.
-    pub(super) fn parts(&self) -> &Parts {
+    pub(crate) fn parts(&self) -> &Parts<V> {
         &self.0.parts
     }
 
-    /// The copies for the symmetries of seeds.
-    pub(super) fn turned(&self) -> &TurnedCopies {
-        &self.0.turned
+    /// What the table holds beside its parts.
+    pub(crate) fn held(&self) -> &V::Held {
+        &self.0.held
     }
 
     /// The result of `compute` when it was first called.
     pub(crate) fn least_squared(&self, compute: impl FnOnce() -> u64) -> u64 {
         self.0.least_squared.get_or(compute)
     }
-
-    /// The least squared distance of each pair of kinds, computed once.
-    pub(crate) fn least_of_kinds(&self, compute: impl FnOnce() -> Arc<[u64]>) -> Arc<[u64]> {
-        self.0.least_of_kinds.get_or(compute)
-    }
 }
 
-impl fmt::Debug for Table {
+impl<V: Vector> fmt::Debug for TableOf<V> {
     /// Names the table; its vectors would fill pages.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Table")
             .field("profile", &self.profile())
-            .field("alpha", &format_args!("{}", self.alpha()))
+            .field("alpha", &format_args!("{}", self.map().alpha()))
             .field("map", &format_args!("{}", self.map().size()))
             .field("digest", &self.digest())
             .finish()
     }
 }
 
-impl PartialEq for Table {
+impl<V: Vector> PartialEq for TableOf<V> {
     fn eq(&self, other: &Self) -> bool {
         self.digest() == other.digest() && self.0.parts == other.0.parts
     }

@@ -17,6 +17,7 @@
 //! ```
 //!
 //! `displacement` has the [`Table`], made of the `parts` that a `file` holds, and `derived` makes one from another;
+//! `vector` is what differs between tables of the plane and of space;
 //! `units` the fixed point, `provenance` the history, `digest` the name, `text` the published text form. `ranks` is the
 //! order in which blocks leave when a set is thinned. `mix` has the kinds of points, in the ratio of `shares`.
 //! `symmetry` has the ways to turn all of these, `turned` a table that is turned, `shipped` the tables and labels built into
@@ -37,13 +38,14 @@ mod symmetry;
 mod text;
 mod turned;
 mod units;
+mod vector;
 
 pub use digest::Digest;
-pub use displacement::Table;
-pub(crate) use file::CubeParts;
+pub use displacement::{Table, TableOf};
 pub use file::{FORMAT_VERSION, Head, MAX_FILE_BYTES};
 pub(crate) use mix::Labels;
 pub use mix::{Mix, Split};
+pub(crate) use parts::Parts;
 pub use provenance::{Figures, Provenance};
 pub use ranks::Ranks;
 pub(crate) use ranks::{Cut, Order};
@@ -54,3 +56,4 @@ pub(crate) use symmetry::Symmetry;
 pub(crate) use turned::TurnedTable;
 pub(crate) use units::fixed;
 pub use units::{Displacement, FRACTION_BITS, MAX_DISPLACEMENT, from_grid_units, to_grid_units};
+pub(crate) use vector::Vector;

@@ -43,7 +43,11 @@ impl<V: Vector> Parts<V> {
         let mut vectors = self.vectors.iter().enumerate();
         let long = vectors.find_map(|(block, vector)| Some((block, vector.too_long()?)));
         if let Some((block, [vector, allowed])) = long {
-            return refused("displacements", format!("{vector} in block {block}"), allowed);
+            return refused(
+                "displacements",
+                format!("{vector} in block {block}"),
+                allowed,
+            );
         }
         check_profile(&self.profile)?;
         if let Some(ranks) = &self.ranks

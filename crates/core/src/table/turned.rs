@@ -1,11 +1,65 @@
 //! A table turned by a symmetry.
 
-use alloc::sync::Arc;
+use alloc::{sync::Arc, vec::Vec};
 
-use super::{
-    Displacement, Labels, Order, Table,
-    symmetry::{Symmetry, Turned, Upright},
-};
+use super::{Displacement, Labels, Order, Table, parts::Parts, symmetry::Symmetry};
+use crate::once::Once;
+
+/// What a table of the plane holds beside its parts.
+#[derive(Debug)]
+pub struct PlaneParts {
+    /// The least and the greatest displacement along x and y.
+    reach: [[i32; 2]; 2],
+    /// The kinds of the points of each block.
+    pub(super) labels: Option<Labels>,
+    /// The least squared distance of each pair of kinds, row by row.
+    pub(super) least_of_kinds: Once<Arc<[u64]>>,
+    /// The copies for the symmetries but the first, made when they are first needed.
+    turned: [Once<Arc<Turned>>; Self::COPIES],
+}
+
+impl PlaneParts {
+    /// The number of copies that a table may come to hold.
+    pub(super) const COPIES: usize = Symmetry::<2>::ALL - 1;
+
+    pub(super) fn new(parts: &Parts<Displacement>) -> Self {
+        let mut reach = [[i32::MAX, i32::MIN]; 2];
+        for vector in &parts.vectors {
+            for (ends, &v) in reach.iter_mut().zip(vector) {
+                *ends = [ends[0].min(v), ends[1].max(v)];
+            }
+        }
+        let labels = parts.mix.as_ref();
+        Self {
+            reach,
+            labels: labels.map(|mix| Labels::new(&parts.map, mix, |block| block)),
+            least_of_kinds: Once::new(),
+            turned: [const { Once::new() }; Self::COPIES],
+        }
+    }
+}
+
+/// The entries of a table for each block, turned.
+#[derive(Debug)]
+struct Turned {
+    vectors: Vec<Displacement>,
+    order: Order,
+    labels: Option<Labels>,
+}
+
+impl Turned {
+    fn new(table: &Table, symmetry: Symmetry<2>) -> Self {
+        let (map, vectors) = (table.map(), table.displacements());
+        let source = |block: usize| symmetry.source(map.intervals(), block);
+        let vector = |block| symmetry.turn(vectors[source(block)]);
+        let labels = table.mix();
+        Self {
+            vectors: (0..vectors.len()).map(vector).collect(),
+            order: table.order().turned(source),
+            labels: labels.map(|mix| Labels::new(map, mix, source)),
+        }
+    }
+}
 
 /// The vectors of a table and the order of its blocks under a symmetry.
 #[derive(Clone, Debug)]
@@ -18,15 +72,11 @@ pub(crate) struct TurnedTable {
 }
 
 impl TurnedTable {
-    pub(crate) fn new(table: &Table, symmetry: Symmetry) -> Self {
-        let upright = Upright {
-            map: table.map(),
-            vectors: table.displacements(),
-            order: table.order(),
-            mix: table.mix(),
-        };
-        let turned = table.turned().get(symmetry, upright);
-        let [x, y] = table.reach();
+    pub(crate) fn new(table: &Table, symmetry: Symmetry<2>) -> Self {
+        let make = || Arc::new(Turned::new(table, symmetry));
+        let copy = symmetry.number().checked_sub(1);
+        let turned = copy.map(|copy| table.held().turned[copy].get_or(make));
+        let [x, y] = table.held().reach;
         let ends = [0, 1].map(|end| symmetry.turn([x[end], y[end]]));
         Self {
             turned,
@@ -63,7 +113,7 @@ impl TurnedTable {
     pub(crate) fn labels(&self) -> Option<&Labels> {
         match &self.turned {
             Some(turned) => turned.labels.as_ref(),
-            None => self.table.labels(),
+            None => self.table.held().labels.as_ref(),
         }
     }
 
@@ -90,7 +140,7 @@ mod tests {
         let vectors = (0..n * n).map(|i| [i * 37 % 101 - 20, i * 53 % 89 - 70]);
         let table = Table::new(map, "test", vectors.collect(), Default::default()).expect("valid");
         for bits in 0..8 {
-            let vectors = TurnedTable::new(&table, Symmetry::from_bits(bits));
+            let vectors = TurnedTable::new(&table, Symmetry::<2>::numbered(bits));
             let all = (0..n as usize).flat_map(|row| vectors.row(row));
             let mut reach = [[i32::MAX, i32::MIN]; 2];
             for v in all {
