@@ -3,7 +3,7 @@
 //! The floors, each built on those before it:
 //!
 //! 1. `seed` and `warp`: which piece of the pattern, and how the plane is sheared;
-//! 2. `lattice`: which addresses have points, and where in the world these are;
+//! 2. `lattice`: which addresses have points, and where in the world these are, within `bounds`;
 //! 3. `near`: the points near a place (the parts of the plane in which points are requested are in `shape`);
 //! 4. `settle`: where points end that settle; `sieve` and `scope`: what the points of a request satisfy;
 //! 5. `count`: how many there are, without making them;
@@ -16,6 +16,7 @@
 
 mod amount;
 mod attribute;
+mod bounds;
 mod count;
 mod field;
 mod kernel;
@@ -34,9 +35,10 @@ mod walk;
 mod warp;
 
 pub(crate) use attribute::hash;
+pub(crate) use bounds::{Corner, bounds, check_limit, common, common_box};
 pub(crate) use kernel::Exactly;
 pub(crate) use lattice::Multiple;
-pub(crate) use near::limits::farthest;
+pub(crate) use near::limits;
 pub(crate) use seed::split_mix;
 
 /// The parts of the plane that points in space share.

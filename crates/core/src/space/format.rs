@@ -228,7 +228,7 @@ impl Single {
         let (corner, step) = (&scope.corner, scope.lattice.step);
         let [gap, error] = corner.gap[axis];
         Self {
-            base: (fixed(origin) - corner.first[axis]) as f64,
+            base: (fixed(origin) - corner.first[axis] as i64) as f64,
             lead: ((gap + error) / step).max(0.0),
             step,
             last: below(corner.extent[axis]),
@@ -344,7 +344,7 @@ impl Emit for Offsets {
 
     fn axis(scope: &Scope, axis: usize, origin: i64) -> (Exactly, f64) {
         let (corner, step) = (&scope.corner, scope.lattice.step);
-        let first = corner.first[axis];
+        let first = corner.first[axis] as i64;
         let exactly = Exactly::new(step, first.into(), corner.gap[axis], corner.extent[axis]);
         (exactly, fixed(origin - (first >> FRACTION_BITS)) as f64)
     }

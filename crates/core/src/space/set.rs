@@ -4,13 +4,12 @@ use super::{
     Cursor, Region, Volume,
     lattice::Lattice,
     mask::{ClearOf, Mask},
-    nearest,
     plan::Plan,
     table::Table,
 };
 use crate::{
     error::{Error, ErrorKind, number},
-    sample::{Keep, Placement, Seed, Spacing, Warp},
+    sample::{Keep, Placement, Seed, Spacing, Warp, limits},
     stop::Stop,
 };
 
@@ -45,9 +44,9 @@ pub struct SpaceSet {
 
 impl SpaceSet {
     /// The largest number of points that [`nearest`](Self::nearest) returns.
-    pub const MAX_NEAREST: usize = nearest::MAX_NEAREST;
+    pub const MAX_NEAREST: usize = limits::MAX_NEAREST;
     /// The largest number of points that a search visits.
-    pub const MAX_CANDIDATES: usize = nearest::MAX_CANDIDATES;
+    pub const MAX_CANDIDATES: usize = limits::MAX_CANDIDATES;
 
     /// The set of a table, with mean spacing 1 and seed 0.
     ///

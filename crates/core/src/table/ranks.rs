@@ -109,11 +109,11 @@ pub(crate) struct Order {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Cut {
     /// The number of positions whose blocks are kept whole.
-    whole: u32,
-    /// The blocks of dX and dY of the block at position `whole`.
+    pub(crate) whole: u32,
+    /// The interval of dX of the block at position `whole`, and its row.
     partial: [u32; 2],
     /// The index dX at which the strip of that block ends.
-    strip_end: u64,
+    pub(crate) strip_end: u64,
 }
 
 impl Order {
@@ -210,11 +210,10 @@ impl Order {
     /// The cut that keeps exactly the points of rank below `share`.
     pub(crate) fn cut(&self, map: &Map, share: f64) -> Cut {
         // A rank lies below the next floor.
-        let count = self.blocks.len();
-        let whole = self.floors[1..].partition_point(|&next| next <= share);
+        let whole = self.whole(share);
         let Some(&block) = self.blocks.get(whole) else {
             return Cut {
-                whole: count as u32,
+                whole: whole as u32,
                 partial: [u32::MAX; 2],
                 strip_end: 0,
             };

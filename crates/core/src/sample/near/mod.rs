@@ -8,7 +8,7 @@
 
 mod distance;
 mod ground;
-pub(super) mod limits;
+pub(crate) mod limits;
 mod mask;
 mod pairs;
 mod scan;
