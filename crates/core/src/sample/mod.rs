@@ -37,21 +37,21 @@ mod warp;
 pub(crate) use attribute::hash;
 pub(crate) use bounds::{Corner, bounds, check_limit, common, common_box};
 pub(crate) use kernel::Exactly;
-pub(crate) use lattice::Multiple;
+pub(crate) use lattice::{Multiple, lattice_of};
 pub(crate) use near::limits;
 pub(crate) use seed::split_mix;
+pub(crate) use set::placing;
+pub(crate) use warp::Waves;
 
 /// The parts of the plane that points in space share.
 pub(crate) mod space {
-    #[cfg(test)]
-    pub(crate) use super::warp::Stretch;
     pub(crate) use super::{
         kernel::{
-            Extents, GROUP, PICKS, PLANES, PlainLoop, SpaceShears, add_picked, compiled,
+            Extents, GROUP, PICKS, PLANES, PlainLoop, SpaceShears, add_picked, below, compiled,
             compiled_loop, lift_picked, pick_pairs, pick_triples, retain_parts, warp_all,
             warp_groups, warp_lists, write_triples,
         },
-        warp::{PatchShears, Shears},
+        warp::{PatchShears, Shears, Stretch},
     };
 }
 
@@ -64,7 +64,7 @@ pub use field::{Edges, Field, FieldSpec, Filter, Marks, Noise, Pixels, Raster, T
 pub use kernel::{Backend, Exact, F32, F64, Format, Offsets, Place, Points};
 pub use lattice::{Keep, LATTICE_LIMIT, Placement, Point, PointId, Settle, Spacing, VaryingKinds};
 pub use member::{Member, Members};
-pub use near::{Clearance, LeastDistance, Visits};
+pub use near::{Clearance, Visits};
 pub use periodic::{PeriodicBlocks, PeriodicPlan, PeriodicSet};
 pub use plan::Plan;
 pub use seed::Seed;

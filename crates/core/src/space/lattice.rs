@@ -64,6 +64,11 @@ impl Lattice {
         }
     }
 
+    /// This lattice at another placement.
+    pub(super) fn replaced(&self, placement: Placement) -> Self {
+        Self::new(self.table.clone(), placement)
+    }
+
     /// The mean spacing of the points that are kept, in world units.
     pub(super) fn spacing_kept(&self) -> f64 {
         self.placement.spacing.get() / libm::cbrt(self.placement.keep.get())

@@ -60,6 +60,7 @@ pub use set::SpaceSet;
 #[cfg(feature = "tables")]
 pub use shipped::BLUE;
 pub use table::Table;
+pub(crate) use warp::stretch;
 
 pub use crate::{
     LeastDistance,

@@ -28,7 +28,7 @@ impl Vector for [i16; 3] {
     ];
     type Held = Copies;
 
-    fn held(_: &Parts<Self>) -> Copies {
+    fn held(_: &[Self]) -> Copies {
         Copies([const { Once::new() }; Symmetry::<3>::ALL])
     }
 

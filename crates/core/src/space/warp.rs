@@ -7,7 +7,7 @@
 
 use crate::sample::{
     Backend, Seed, Warp,
-    space::{PLANES, PatchShears, PlainLoop, Shears, SpaceShears, compiled_loop},
+    space::{PLANES, PatchShears, PlainLoop, Shears, SpaceShears, Stretch, compiled_loop},
 };
 
 /// The warp of one seed.
@@ -95,12 +95,22 @@ impl PlainLoop for Moving<'_> {
     }
 }
 
+/// The bound of the effect of a warp on distances, the same for all seeds.
+pub(crate) fn stretch(warp: Warp) -> Stretch {
+    let planes = [0, 1, 2].map(|plane| Shears::in_space(warp, Seed(0), plane));
+    let [first, second, third] = planes.map(|shears| Stretch::of(shears.as_ref()));
+    Stretch {
+        factor: first.factor * second.factor * third.factor,
+        // Later planes stretch the errors of earlier ones.
+        slack: (first.slack * second.factor + second.slack) * third.factor + third.slack,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::sample::space::Stretch;
 
     proptest! {
         #[test]
@@ -143,7 +153,7 @@ mod tests {
         ) {
             let warp = Warp::new(strength).expect("in range");
             let Some(shears) = Shears3::new(warp, Seed(seed)) else { return Ok(()) };
-            let Stretch { factor, slack } = Stretch::in_space(warp);
+            let Stretch { factor, slack } = stretch(warp);
             let by = by.map(|v| v >> near);
             let [p, q] = [from, [0, 1, 2].map(|i| from[i] + by[i])].map(|at| shears.apply(at));
             let length = |v: [i64; 3]| v.iter().map(|&v| (v as f64) * (v as f64)).sum::<f64>().sqrt();

@@ -2,37 +2,33 @@
 
 use alloc::{sync::Arc, vec::Vec};
 
-use super::{Displacement, Labels, Order, Table, parts::Parts, symmetry::Symmetry};
+use super::{Displacement, Labels, Order, TableOf, symmetry::Symmetry};
 use crate::once::Once;
 
 /// What a table of the plane holds beside its parts.
 #[derive(Debug)]
-pub struct PlaneParts {
+pub struct Held {
     /// The least and the greatest displacement along x and y.
     reach: [[i32; 2]; 2],
-    /// The kinds of the points of each block.
-    pub(super) labels: Option<Labels>,
     /// The least squared distance of each pair of kinds, row by row.
     pub(super) least_of_kinds: Once<Arc<[u64]>>,
     /// The copies for the symmetries but the first, made when they are first needed.
     turned: [Once<Arc<Turned>>; Self::COPIES],
 }
 
-impl PlaneParts {
+impl Held {
     /// The number of copies that a table may come to hold.
     pub(super) const COPIES: usize = Symmetry::<2>::ALL - 1;
 
-    pub(super) fn new(parts: &Parts<Displacement>) -> Self {
+    pub(super) fn new(vectors: &[Displacement]) -> Self {
         let mut reach = [[i32::MAX, i32::MIN]; 2];
-        for vector in &parts.vectors {
+        for vector in vectors {
             for (ends, &v) in reach.iter_mut().zip(vector) {
                 *ends = [ends[0].min(v), ends[1].max(v)];
             }
         }
-        let labels = parts.mix.as_ref();
         Self {
             reach,
-            labels: labels.map(|mix| Labels::new(&parts.map, mix, |block| block)),
             least_of_kinds: Once::new(),
             turned: [const { Once::new() }; Self::COPIES],
         }
@@ -48,7 +44,7 @@ struct Turned {
 }
 
 impl Turned {
-    fn new(table: &Table, symmetry: Symmetry<2>) -> Self {
+    fn new(table: &TableOf<Displacement>, symmetry: Symmetry<2>) -> Self {
         let (map, vectors) = (table.map(), table.displacements());
         let source = |block: usize| symmetry.source(map.intervals(), block);
         let vector = |block| symmetry.turn(vectors[source(block)]);
@@ -66,13 +62,13 @@ impl Turned {
 pub(crate) struct TurnedTable {
     /// `None` for the table's own.
     turned: Option<Arc<Turned>>,
-    table: Table,
+    table: TableOf<Displacement>,
     /// The least and the greatest displacement along x and y.
     reach: [[i32; 2]; 2],
 }
 
 impl TurnedTable {
-    pub(crate) fn new(table: &Table, symmetry: Symmetry<2>) -> Self {
+    pub(crate) fn new(table: &TableOf<Displacement>, symmetry: Symmetry<2>) -> Self {
         let make = || Arc::new(Turned::new(table, symmetry));
         let copy = symmetry.number().checked_sub(1);
         let turned = copy.map(|copy| table.held().turned[copy].get_or(make));
@@ -113,12 +109,12 @@ impl TurnedTable {
     pub(crate) fn labels(&self) -> Option<&Labels> {
         match &self.turned {
             Some(turned) => turned.labels.as_ref(),
-            None => self.table.held().labels.as_ref(),
+            None => self.table.labels(),
         }
     }
 
     /// The table as it is.
-    pub(crate) const fn table(&self) -> &Table {
+    pub(crate) const fn table(&self) -> &TableOf<Displacement> {
         &self.table
     }
 
@@ -131,7 +127,7 @@ impl TurnedTable {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::Map;
+    use crate::{map::Map, table::Table};
 
     #[test]
     fn a_turned_table_reaches_as_far() {

@@ -15,8 +15,7 @@
 
 use core::ops::Range;
 
-use super::{Shears, Warp, shears::CELL_BITS};
-use crate::sample::Seed;
+use super::{Shears, shears::CELL_BITS};
 
 /// The least and the greatest movement along x and y, in fixed-point units.
 type Drift = [[i32; 2]; 2];
@@ -143,17 +142,6 @@ impl Stretch {
         Self {
             factor,
             slack: 2.0 * factor * missed,
-        }
-    }
-
-    /// The bound of the warps of three planes of space, one after another, which is the same for all seeds.
-    pub(crate) fn in_space(warp: Warp) -> Self {
-        let planes = [0, 1, 2].map(|plane| Shears::in_space(warp, Seed(0), plane));
-        let [first, second, third] = planes.map(|shears| Self::of(shears.as_ref()));
-        Self {
-            factor: first.factor * second.factor * third.factor,
-            // Later planes stretch the errors of earlier ones.
-            slack: (first.slack * second.factor + second.slack) * third.factor + third.slack,
         }
     }
 }

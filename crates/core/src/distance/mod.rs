@@ -17,16 +17,18 @@
 //! The warp shrinks distances by a bounded factor, so the guarantee holds for warped sets as well, less
 //! tightly. Thinning only widens distances.
 
+mod pairs;
+
 use alloc::string::String;
 
-use super::pairs::{densest, least_of_kinds, least_squared};
+use pairs::{densest, least_of_kinds, least_squared};
+
 use crate::{
     error::{Error, ErrorKind, number, rounded},
     pattern::Alpha,
     sample::{
-        Seed, Warp,
-        lattice::Spacing,
-        warp::{Shears, Stretch, Waves},
+        Seed, Spacing, Warp, Waves,
+        space::{Shears, Stretch},
     },
     space,
     table::{FRACTION_BITS, Table},
@@ -175,7 +177,7 @@ impl LeastDistance {
         // All seeds have the same amplitudes.
         let Stretch { factor, slack } = match self.waves {
             Some(waves) => Stretch::of(Shears::new(waves, warp, Seed(0)).as_ref()),
-            None => Stretch::in_space(warp),
+            None => space::stretch(warp),
         };
         let units = libm::sqrt(self.squared as f64) / factor - 2.0 * slack;
         units.max(0.0) / f64::from(1u32 << FRACTION_BITS) * self.set_side
@@ -240,15 +242,14 @@ impl LeastDistance {
         }
         let kept = self.with_warp(warp);
         if !self.is_useful() || kept <= 0.0 {
+            let packing = match self.waves {
+                Some(_) => "hexagonal",
+                None => "densest packing's",
+            };
             let problem = alloc::format!(
-                "the profile guarantees no least distance: its nearest points are {} of the {} \
+                "the profile guarantees no least distance: its nearest points are {} of the {packing} \
                  distance apart, and at least {} is needed",
                 rounded(self.relative_to_all(), 4),
-                if self.waves.is_some() {
-                    "hexagonal"
-                } else {
-                    "densest packing's"
-                },
                 number(Self::MIN_RELATIVE)
             );
             return Err(refused(ErrorKind::NoLeastDistance, String::new()).because(problem));
