@@ -62,7 +62,9 @@ impl<'a, const D: usize> Pairs<'a, D> {
             });
             (apart(&offset, [&all, &all]), offset)
         });
-        let mut offsets: Vec<_> = offsets.collect();
+        let mut offsets: Vec<_> = offsets
+            .filter(|(nearest, _)| *nearest as f64 <= most * most)
+            .collect();
         // Offsets that can be nearest come first; most of the others are never visited.
         sort::by_key(&mut offsets, |&(nearest, offset)| {
             (nearest, offset.map(|v| v * v).iter().sum::<i64>(), offset)

@@ -146,6 +146,7 @@ impl Table {
     pub fn memory_bytes(&self) -> usize {
         self.memory_with(Held::COPIES)
     }
+
     /// The least squared distance of each pair of kinds, computed once.
     pub(crate) fn least_of_kinds(&self, compute: impl FnOnce() -> Arc<[u64]>) -> Arc<[u64]> {
         self.held().least_of_kinds.get_or(compute)

@@ -6,7 +6,7 @@ use core::fmt;
 use super::{Digest, Labels, Order, Provenance, Ranks, file, parts::Parts, vector::Vector};
 use crate::{error::Error, map::Map, once::Once, pattern::Alpha};
 
-/// The displacement vectors of one noise profile for one neighborhood map, with their history: a [`Table`] of the plane,
+/// The displacement vectors of one noise profile for one neighborhood map, with their history: a [`Table`](crate::Table) of the plane,
 /// or one of [points in space](crate::space::Table).
 ///
 /// A table is immutable: its content has been checked, and its digest names it. Cloning shares the
@@ -51,14 +51,12 @@ impl<V: Vector> TableOf<V> {
     fn checked(parts: Parts<V>, digest: Digest) -> Self {
         let hashed = || Ranks::hashed(parts.vectors.len());
         let ranks = parts.ranks.clone().unwrap_or_else(hashed);
+        let mix = parts.mix.as_ref();
         Self(Arc::new(Content {
             digest,
             order: Order::new(&parts.map, V::AXES, &ranks),
             least_squared: Once::new(),
-            labels: parts
-                .mix
-                .as_ref()
-                .map(|mix| Labels::new(&parts.map, mix, |block| block)),
+            labels: mix.map(|mix| Labels::new(&parts.map, mix, |block| block)),
             held: V::held(&parts.vectors),
             parts,
         }))
@@ -67,7 +65,7 @@ impl<V: Vector> TableOf<V> {
     /// A table without displacements: the AA pattern itself.
     ///
     /// # Errors
-    /// As [`Table::new`], and [`ErrorKind::MapSize`](crate::ErrorKind::MapSize) if `radius` is too
+    /// As [`Table::new`](crate::Table::new), and [`ErrorKind::MapSize`](crate::ErrorKind::MapSize) if `radius` is too
     /// large.
     pub fn undisplaced(alpha: Alpha, radius: u32, profile: &str) -> Result<Self, Error> {
         let map = Map::new(alpha, radius)?;
