@@ -78,31 +78,32 @@ impl<'a, const D: usize> Pairs<'a, D> {
         })
     }
 
-    /// Calls `visit` with the numbers of both blocks and the squared distance of the pairs across an offset, but for rows
-    /// of blocks none of which is nearer than `below`; `visit` says what is from then on.
+    /// Folds a bound with the pairs across an offset, by the numbers of both blocks and their squared distance. Rows of
+    /// blocks none of which is nearer than the bound are left out.
     #[inline]
-    fn visit(
+    fn fold(
         &self,
         offset: &[i64; D],
-        mut below: u64,
-        mut visit: impl FnMut(usize, usize, u64) -> u64,
-    ) {
+        mut bound: u64,
+        fold: &mut impl FnMut(u64, [usize; 2], u64) -> u64,
+    ) -> u64 {
         let n = self.map.intervals();
         let columns = self.meetings.across(offset, 0);
         self.rows(offset, D - 1, [0, 0], &mut |rows| {
-            if apart(offset, rows.map(|row| &self.rows[row])) >= below {
+            if apart(offset, rows.map(|row| &self.rows[row])) >= bound {
                 return;
             }
-            for column in columns {
+            bound = columns.iter().fold(bound, |bound, column| {
                 let [a, b] = [0, 1].map(|i| rows[i] * n + column[i] as usize);
                 let by = |block: usize, axis: usize| i64::from(self.vectors[block][axis]);
                 let squared = (0..D).map(|axis| {
                     let d = (offset[axis] << FRACTION_BITS) + by(b, axis) - by(a, axis);
                     d * d
                 });
-                below = visit(a, b, squared.sum::<i64>() as u64);
-            }
+                fold(bound, [a, b], squared.sum::<i64>() as u64)
+            });
         });
+        bound
     }
 
     /// Calls `found` with the pairs of rows of blocks that meet across an offset: those of pairs of planes, and so on, that
@@ -163,10 +164,7 @@ pub(super) fn least_squared<const D: usize>(map: &Map, vectors: &[[i32; D]]) -> 
         if *nearest >= least {
             break;
         }
-        pairs.visit(offset, least, |_, _, squared| {
-            least = least.min(squared);
-            least
-        });
+        least = pairs.fold(offset, least, &mut |least, _, squared| least.min(squared));
     }
     least
 }
@@ -200,7 +198,7 @@ pub(super) fn least_of_kinds(table: &Table, shares: &Shares, labels: &Labels) ->
         if *nearest >= greatest {
             break;
         }
-        pairs.visit(offset, greatest, |a, b, squared| {
+        pairs.fold(offset, greatest, &mut |greatest, [a, b], squared| {
             if squared >= greatest {
                 return greatest;
             }
