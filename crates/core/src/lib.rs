@@ -64,6 +64,7 @@ extern crate std;
 mod batch;
 pub mod comparison;
 pub mod cookbook;
+mod distance;
 mod error;
 pub mod field;
 pub mod map;
@@ -79,14 +80,15 @@ mod stop;
 pub mod table;
 mod window;
 
+pub use distance::LeastDistance;
 pub use error::{Error, ErrorKind};
 pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
 pub use sample::{
     Attribute, Attributes, Backend, Blocks, BoundAttributes, Clearance, Column, Exact, F32, F64,
-    Field, Format, Keep, Kind, Kinds, LATTICE_LIMIT, LeastDistance, Member, Members, Neighbor,
-    Offsets, Place, Placement, Plan, Point, PointId, PointSet, Points, Raster, ScaleRange, Seed,
-    Settle, Spacing, Tile, UniformNumber, VariantScales, Variants, VaryingKinds, Warp,
+    Field, Format, Keep, Kind, Kinds, LATTICE_LIMIT, Member, Members, Neighbor, Offsets, Place,
+    Placement, Plan, Point, PointId, PointSet, Points, Raster, ScaleRange, Seed, Settle, Spacing,
+    Tile, UniformNumber, VariantScales, Variants, VaryingKinds, Warp,
 };
 pub use sample::{PeriodicBlocks, PeriodicPlan, PeriodicSet};
 pub use shape::{Area, Circle, Polygon, Region, Shape};

@@ -5,20 +5,24 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Types and traits that are public only because the sealed trait `Format` names them. They are not
+/// Types and traits that are public only because a sealed trait names them. They are not
 /// exported, and rustdoc does not show them.
-const SEALED: [&str; 11] = [
+const SEALED: [&str; 15] = [
     "Batch",
+    "Copies",
     "Double",
     "Emit",
     "Geometry",
+    "Held",
     "Lanes",
     "Outlined",
+    "Parts",
     "PatchShears",
     "Picks",
     "Row",
     "Scope",
     "Single",
+    "Vector",
 ];
 
 /// The sources of the library, as (path from `src`, text).

@@ -3,7 +3,7 @@
 //! The floors, each built on those before it:
 //!
 //! 1. `seed` and `warp`: which piece of the pattern, and how the plane is sheared;
-//! 2. `lattice`: which addresses have points, and where in the world these are;
+//! 2. `lattice`: which addresses have points, and where in the world these are, within `bounds`;
 //! 3. `near`: the points near a place (the parts of the plane in which points are requested are in `shape`);
 //! 4. `settle`: where points end that settle; `sieve` and `scope`: what the points of a request satisfy;
 //! 5. `count`: how many there are, without making them;
@@ -16,6 +16,7 @@
 
 mod amount;
 mod attribute;
+mod bounds;
 mod count;
 mod field;
 mod kernel;
@@ -34,16 +35,19 @@ mod walk;
 mod warp;
 
 pub(crate) use attribute::hash;
+pub(crate) use bounds::{Corner, bounds, check_limit, common, common_box};
 pub(crate) use kernel::Exactly;
-pub(crate) use lattice::Multiple;
-pub(crate) use near::limits::farthest;
+pub(crate) use lattice::{Multiple, lattice_of};
+pub(crate) use near::limits;
 pub(crate) use seed::split_mix;
+pub(crate) use set::placing;
+pub(crate) use warp::Waves;
 
 /// The parts of the plane that points in space share.
 pub(crate) mod space {
     pub(crate) use super::{
         kernel::{
-            Extents, GROUP, PICKS, PLANES, PlainLoop, SpaceShears, add_picked, compiled,
+            Extents, GROUP, PICKS, PLANES, PlainLoop, SpaceShears, add_picked, below, compiled,
             compiled_loop, lift_picked, pick_pairs, pick_triples, retain_parts, warp_all,
             warp_groups, warp_lists, write_triples,
         },
@@ -60,7 +64,7 @@ pub use field::{Edges, Field, FieldSpec, Filter, Marks, Noise, Pixels, Raster, T
 pub use kernel::{Backend, Exact, F32, F64, Format, Offsets, Place, Points};
 pub use lattice::{Keep, LATTICE_LIMIT, Placement, Point, PointId, Settle, Spacing, VaryingKinds};
 pub use member::{Member, Members};
-pub use near::{Clearance, LeastDistance, Visits};
+pub use near::{Clearance, Visits};
 pub use periodic::{PeriodicBlocks, PeriodicPlan, PeriodicSet};
 pub use plan::Plan;
 pub use seed::Seed;

@@ -2,16 +2,18 @@
 
 use core::ops::Range;
 
+pub(super) use super::bounds::Corner;
 use super::{
+    bounds::{Bounds, bounds, check_limit},
     field::constant,
-    lattice::{BAND_WIDTH, LATTICE_LIMIT, Lattice, Multiple, Span},
+    lattice::{BAND_WIDTH, LATTICE_LIMIT, Lattice, Span},
     near::Mask,
     settle::Settler,
     sieve::Sieve,
 };
 use crate::{
-    error::{Error, ErrorKind, exponential, number},
-    shape::{Area, Chunk, Region},
+    error::{Error, ErrorKind},
+    shape::{Area, Region},
     stop::Stop,
 };
 
@@ -28,79 +30,10 @@ pub(crate) struct Scope {
     /// The box around the area.
     pub(crate) region: Region,
     /// The place that offsets are relative to.
-    pub(crate) corner: Corner,
+    pub(crate) corner: Corner<2>,
     /// The lattice in its field, where that has the same share in all of the scope and
     /// [`lattice`](Self::lattice) has that share.
     in_field: Option<Lattice>,
-}
-
-/// The place that offsets of points are relative to, on the fixed-point grid.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Corner {
-    /// The place in world coordinates, rounded.
-    pub(crate) at: [f64; 2],
-    /// The first fixed-point coordinates from there on.
-    pub(crate) first: [i128; 2],
-    /// The distances from the exact place to [`first`](Self::first); see [`Multiple::gap`].
-    pub(crate) gap: [[f64; 2]; 2],
-    /// Offsets are below this.
-    pub(crate) extent: [f64; 2],
-}
-
-impl Corner {
-    /// The lower corner of a box, whose sides begin at these fixed-point coordinates.
-    fn of_box(lattice: &Lattice, region: Region, first: [i128; 2]) -> Self {
-        let (min, max) = (region.min(), region.max());
-        let gap = |axis: usize| {
-            let sign = if min[axis] < 0.0 { -1 } else { 1 };
-            let corner = Multiple::new(lattice.step, min[axis].abs(), sign);
-            // Reported coordinates decide which is first, so it is a little beside the corner far out.
-            let [gap, error] = corner.gap;
-            [gap, error + lattice.world(first[axis] - corner.first)]
-        };
-        Self {
-            at: min,
-            first,
-            gap: [gap(0), gap(1)],
-            extent: [0, 1].map(|axis| max[axis] - min[axis]),
-        }
-    }
-
-    /// The exact corner of a chunk.
-    fn of_chunk(lattice: &Lattice, Chunk { size, at }: Chunk<2>) -> Self {
-        let multiples = at.map(|index| Multiple::new(lattice.step, size, index));
-        Self {
-            at: at.map(|index| index as f64 * size),
-            first: multiples.map(|multiple| multiple.first),
-            gap: multiples.map(|multiple| multiple.gap),
-            extent: [size; 2],
-        }
-    }
-}
-
-/// The fixed-point coordinates of the points of an area along both axes: of its chunks exactly, of
-/// everything else by the reported coordinates. The bounds of the area are within the lattice's limit.
-fn bounds(lattice: &Lattice, chunks: &[Chunk<2>], rest: Option<&Area>) -> [Range<i128>; 2] {
-    let common = |a: Range<i128>, b: Range<i128>| a.start.max(b.start)..a.end.min(b.end);
-    let of_box = rest.and_then(Area::bounds).map(|region| {
-        let side = |i: usize| {
-            let ends = [region.min()[i], region.max()[i]].map(|bound| {
-                let limit = lattice.limit();
-                lattice.first_at_or_above(bound.clamp(-limit, limit))
-            });
-            ends[0]..ends[1]
-        };
-        [side(0), side(1)]
-    });
-    let of_chunks = chunks.iter().map(|chunk| {
-        chunk.at.map(|index| {
-            let first = |index| Multiple::new(lattice.step, chunk.size, index).first;
-            first(index)..first(index + 1)
-        })
-    });
-    let all = of_box.into_iter().chain(of_chunks);
-    let all = all.reduce(|[ax, ay], [bx, by]| [common(ax, bx), common(ay, by)]);
-    all.unwrap_or([0..0, 0..0])
 }
 
 /// The area with its [chunks](Area::chunks) as boxes that hold every point of them by its reported
@@ -120,7 +53,7 @@ fn around_chunks(area: &Area) -> Area {
 }
 
 /// The spans of the points between fixed-point bounds. The addresses of points that settle may lie farther off.
-fn spans(lattice: &Lattice, bounds: [Range<i128>; 2]) -> [Span; 2] {
+fn spans(lattice: &Lattice, bounds: Bounds<2>) -> [Span; 2] {
     let Some(settler) = Settler::new(lattice) else {
         return Span::of_box(lattice, bounds);
     };
@@ -147,21 +80,14 @@ impl Scope {
             Error::new(ErrorKind::Unbounded, field, value, "within a box")
         })?;
         let limit = lattice.limit();
-        for (name, value) in region.numbers() {
-            if value.abs() > limit {
-                let allowed = alloc::format!(
-                    "within ±{} with this spacing, where f64 coordinates still keep \
-                     neighbors apart",
-                    exponential(limit)
-                );
-                let error = Error::new(ErrorKind::TooFar, name, number(value), allowed);
-                return Err(error.because("too far from the origin").with_limit(limit));
-            }
-        }
+        check_limit(&region, limit)?;
         let (chunks, rest) = area.map_or_else(Default::default, |area| {
             (area.chunks(), area.beside_chunks())
         });
-        let [x, y] = spans(lattice, bounds(lattice, &chunks, rest.as_ref()));
+        let around_rest = rest.as_ref().and_then(Area::bounds);
+        let bounds = bounds((lattice.step, limit), &chunks, around_rest);
+        let corner = Corner::new(lattice.step, &chunks, &region, &bounds);
+        let [x, y] = spans(lattice, bounds);
         let piece = [x.all.clone(), y.all.clone()];
         let share = lattice
             .grade
@@ -181,10 +107,6 @@ impl Scope {
         debug_assert!(x.all.end < 2 * LATTICE_LIMIT && y.all.end < 2 * LATTICE_LIMIT);
         // Integers decide membership of a box, so it needs no sieve, except together with one.
         let is_box = matches!(rest, None | Some(Area::Region(_)));
-        let corner = match chunks.last() {
-            Some(chunk) => Corner::of_chunk(lattice, *chunk),
-            None => Corner::of_box(lattice, region, [x.bounds.start, y.bounds.start]),
-        };
         let sieve = if is_box && mask.clear.is_empty() && !lattice.picks() {
             None
         } else {

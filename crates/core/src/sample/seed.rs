@@ -30,11 +30,22 @@ impl Seed {
     }
 
     /// The symmetry by which the table is turned.
-    pub(crate) const fn symmetry(self) -> Symmetry {
-        if self.0 == 0 {
-            return Symmetry::from_bits(0);
+    pub(crate) const fn symmetry(self) -> Symmetry<2> {
+        Symmetry::<2>::numbered((self.symmetry_bits() >> 61) as usize)
+    }
+
+    /// The symmetry by which a table of points in space is turned.
+    pub(crate) const fn symmetry_in_space(self) -> Symmetry<3> {
+        let bits = self.symmetry_bits();
+        let order = ((bits & 0xffff_ffff) * 6) >> 32;
+        Symmetry::<3>::numbered(((order << 3) | (bits >> 61)) as usize)
+    }
+
+    const fn symmetry_bits(self) -> u64 {
+        match self.0 {
+            0 => 0,
+            seed => split_mix(seed ^ 0x5359_4d4d_4554_5259),
         }
-        Symmetry::from_bits(split_mix(self.0 ^ 0x5359_4d4d_4554_5259) >> 61)
     }
 }
 
@@ -50,6 +61,16 @@ pub(crate) const fn split_mix(state: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn seeds_choose_each_symmetry_of_the_cube() {
+        let mut chosen = [0; Symmetry::<3>::ALL];
+        for seed in 1..5000 {
+            chosen[Seed(seed).symmetry_in_space().number()] += 1;
+        }
+        let even = chosen.iter().all(|number| (50..170).contains(number));
+        assert!(even, "{chosen:?}");
+    }
 
     #[test]
     fn origins_are_pinned() {

@@ -17,7 +17,7 @@ use crate::{
     map::Numbers,
     pattern::AxisSet,
     sample::{Backend, space::compiled},
-    table::FRACTION_BITS,
+    table::{Cut, FRACTION_BITS},
 };
 
 /// The number of points of a box without warp at places of a box of the lattice, which is not empty.
@@ -301,10 +301,8 @@ impl<'a> Count<'a> {
         let Lattice {
             cut, turned, table, ..
         } = self.lattice;
-        let Some((cut, block)) = cut.and_then(|cut| {
-            let block = cut.partial as usize;
-            (block < table.vectors().len()).then_some((cut, block))
-        }) else {
+        let partial = |cut: Cut| Some((cut, turned.order.block_at(cut.whole as usize)?));
+        let Some((cut, block)) = cut.and_then(partial) else {
             return 0;
         };
         let ([i, j, k], [x, y, z]) = (self.lattice.intervals(block), turned.vector(block));

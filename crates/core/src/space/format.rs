@@ -12,7 +12,7 @@ use crate::{
     F32, F64, Offsets, Points,
     sample::{
         Backend, Exactly,
-        space::{PlainLoop, compiled_loop, pick_pairs, pick_triples, write_triples},
+        space::{PlainLoop, below, compiled_loop, pick_pairs, pick_triples, write_triples},
     },
     table::FRACTION_BITS,
 };
@@ -48,7 +48,7 @@ pub trait Emit: Copy + Send + Debug + 'static {
     /// How offsets along an axis become parts.
     type Axis: Copy + Send + Debug + 'static;
     /// Whether addresses are needed.
-    const HAS_IDS: bool;
+    const HAS_IDS: bool = false;
 
     /// How offsets from a lattice coordinate become parts.
     fn axis(scope: &Scope, axis: usize, origin: i64) -> Self::Axis;
@@ -223,12 +223,18 @@ pub struct Single {
     last: f32,
 }
 
-impl Single {
-    fn new(scope: &Scope, axis: usize, origin: i64) -> Self {
+impl Format for F32 {}
+
+impl Emit for F32 {
+    type Item = [f32; 3];
+    type Part = f32;
+    type Axis = Single;
+
+    fn axis(scope: &Scope, axis: usize, origin: i64) -> Single {
         let (corner, step) = (&scope.corner, scope.lattice.step);
         let [gap, error] = corner.gap[axis];
-        Self {
-            base: (fixed(origin) - corner.first[axis]) as f64,
+        Single {
+            base: (fixed(origin) - corner.first[axis] as i64) as f64,
             lead: ((gap + error) / step).max(0.0),
             step,
             last: below(corner.extent[axis]),
@@ -236,38 +242,10 @@ impl Single {
     }
 
     #[inline(always)]
-    fn of(self, offset: i32) -> f32 {
-        let place = (((self.base + f64::from(offset)) + self.lead) * self.step) as f32;
-        // Neither is NaN, so this is the minimum.
-        if place < self.last { place } else { self.last }
-    }
-}
-
-/// The largest `f32` below a positive extent, or 0 if there is none.
-fn below(extent: f64) -> f32 {
-    let nearest = extent as f32;
-    if f64::from(nearest) < extent {
-        nearest
-    } else {
-        nearest.next_down().max(0.0)
-    }
-}
-
-impl Format for F32 {}
-
-impl Emit for F32 {
-    type Item = [f32; 3];
-    type Part = f32;
-    type Axis = Single;
-    const HAS_IDS: bool = false;
-
-    fn axis(scope: &Scope, axis: usize, origin: i64) -> Single {
-        Single::new(scope, axis, origin)
-    }
-
-    #[inline(always)]
     fn part(how: Single, offset: i32) -> f32 {
-        how.of(offset)
+        let place = (((how.base + f64::from(offset)) + how.lead) * how.step) as f32;
+        // Neither is NaN, so this is the minimum.
+        if place < how.last { place } else { how.last }
     }
 
     #[inline(always)]
@@ -292,35 +270,23 @@ pub struct Double {
     step: f64,
 }
 
-impl Double {
-    fn new(scope: &Scope, origin: i64) -> Self {
-        Self {
-            base: fixed(origin) as f64,
-            step: scope.lattice.step,
-        }
-    }
-
-    #[inline(always)]
-    fn of(self, offset: i32) -> f64 {
-        (self.base + f64::from(offset)) * self.step
-    }
-}
-
 impl Format for F64 {}
 
 impl Emit for F64 {
     type Item = [f64; 3];
     type Part = f64;
     type Axis = Double;
-    const HAS_IDS: bool = false;
 
     fn axis(scope: &Scope, _: usize, origin: i64) -> Double {
-        Double::new(scope, origin)
+        Double {
+            base: fixed(origin) as f64,
+            step: scope.lattice.step,
+        }
     }
 
     #[inline(always)]
     fn part(how: Double, offset: i32) -> f64 {
-        how.of(offset)
+        (how.base + f64::from(offset)) * how.step
     }
 
     #[inline(always)]
@@ -340,11 +306,10 @@ impl Emit for Offsets {
     type Part = f64;
     /// Beside how offsets are rounded the distance of the origin from the anchor.
     type Axis = (Exactly, f64);
-    const HAS_IDS: bool = false;
 
     fn axis(scope: &Scope, axis: usize, origin: i64) -> (Exactly, f64) {
         let (corner, step) = (&scope.corner, scope.lattice.step);
-        let first = corner.first[axis];
+        let first = corner.first[axis] as i64;
         let exactly = Exactly::new(step, first.into(), corner.gap[axis], corner.extent[axis]);
         (exactly, fixed(origin - (first >> FRACTION_BITS)) as f64)
     }
@@ -368,13 +333,13 @@ impl Emit for Points {
     type Axis = Double;
     const HAS_IDS: bool = true;
 
-    fn axis(scope: &Scope, _: usize, origin: i64) -> Double {
-        Double::new(scope, origin)
+    fn axis(scope: &Scope, axis: usize, origin: i64) -> Double {
+        F64::axis(scope, axis, origin)
     }
 
     #[inline(always)]
     fn part(how: Double, offset: i32) -> f64 {
-        how.of(offset)
+        F64::part(how, offset)
     }
 
     #[inline(always)]

@@ -5,13 +5,12 @@ use alloc::sync::Arc;
 use super::{
     pattern::Pattern,
     point::{Point, PointId},
-    symmetry::Symmetry,
     table::{Table, Turned},
     warp::Shears3,
 };
 use crate::{
     sample::{Keep, Placement, space::PICKS},
-    table::FRACTION_BITS,
+    table::{Cut, FRACTION_BITS},
 };
 
 /// The largest absolute lattice coordinate of a region. Positions fit 64 bits, and `f64` coordinates keep neighbors a
@@ -42,17 +41,6 @@ pub(super) struct Lattice {
     pub(super) cut: Option<Cut>,
 }
 
-/// The points of ranks below a share: those of some whole blocks, and a strip of one more.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Cut {
-    /// The number of positions whose blocks are kept whole.
-    pub(super) whole: u32,
-    /// The block of which a strip is kept.
-    pub(super) partial: u32,
-    /// The dX at which the strip ends.
-    pub(super) strip_end: u64,
-}
-
 /// A lattice coordinate in fixed-point units.
 pub(super) const fn fixed(v: i64) -> i64 {
     v << FRACTION_BITS
@@ -61,8 +49,9 @@ pub(super) const fn fixed(v: i64) -> i64 {
 impl Lattice {
     pub(super) fn new(table: Table, placement: Placement) -> Self {
         let alpha = table.map().alpha();
-        let turned = table.turned(Symmetry::of(placement.seed));
-        let cut = (placement.keep != Keep::ALL).then(|| Cut::new(&table, &turned, placement.keep));
+        let turned = table.turned(placement.seed.symmetry_in_space());
+        let share = placement.keep.get();
+        let cut = (placement.keep != Keep::ALL).then(|| turned.order.cut(table.map(), share));
         let units = f64::from(1u32 << FRACTION_BITS);
         Self {
             placement,
@@ -73,6 +62,11 @@ impl Lattice {
             turned,
             table,
         }
+    }
+
+    /// This lattice at another placement.
+    pub(super) fn replaced(&self, placement: Placement) -> Self {
+        Self::new(self.table.clone(), placement)
     }
 
     /// The mean spacing of the points that are kept, in world units.
@@ -125,15 +119,16 @@ impl Lattice {
 
     /// Whether the cut keeps all points of a block.
     pub(super) fn is_whole(&self, block: usize) -> bool {
-        let is_before = |cut: Cut| (self.turned.order.position(block) as u32) < cut.whole;
-        self.cut.is_none_or(is_before)
+        let position = self.turned.order.position(block) as u32;
+        self.cut.is_none_or(|cut| cut.keeps(position, false))
     }
 
     /// Whether the cut keeps a point of a block.
     #[inline]
     pub(super) fn keeps(&self, block: usize, index_x: u64) -> bool {
-        let is_in_strip = |cut: Cut| block as u32 == cut.partial && index_x < cut.strip_end;
-        self.is_whole(block) || self.cut.is_some_and(is_in_strip)
+        let position = self.turned.order.position(block) as u32;
+        self.cut
+            .is_none_or(|cut| cut.keeps(position, index_x < cut.strip_end))
     }
 
     /// The rank of a point of the pattern; the greatest for other addresses.
@@ -188,62 +183,5 @@ impl Lattice {
     /// The largest absolute world coordinate of a region.
     pub(super) fn limit(&self) -> f64 {
         self.world(fixed(LATTICE_LIMIT))
-    }
-
-    /// The least fixed-point coordinate whose world coordinate is ≥ `bound`, for a bound within the limit. Exact: a
-    /// bisection on the conversion itself.
-    pub(super) fn first_at_or_above(&self, bound: f64) -> i64 {
-        let reaches = |k: i64| self.world(k) >= bound;
-        let guess = (bound / self.step) as i64;
-        let mut width = 2i64;
-        let (mut low, mut high) = (guess - 1, guess + 1);
-        while reaches(low) {
-            low -= width;
-            width *= 2;
-        }
-        while !reaches(high) {
-            high += width;
-            width *= 2;
-        }
-        while high - low > 1 {
-            let middle = low + (high - low) / 2;
-            if reaches(middle) {
-                high = middle
-            } else {
-                low = middle
-            }
-        }
-        high
-    }
-}
-
-impl Cut {
-    fn new(table: &Table, turned: &Turned, keep: Keep) -> Self {
-        let (order, share) = (&turned.order, keep.get());
-        let whole = order.whole(share);
-        let Some(block) = order.block_at(whole) else {
-            return Self {
-                whole: whole as u32,
-                partial: u32::MAX,
-                strip_end: 0,
-            };
-        };
-        let interval = table.map().interval(block % table.map().intervals());
-        let length = interval.end - interval.start;
-        // A bisection on the rank itself: below `low` all are kept, at `high` and above none.
-        let (mut low, mut high) = (0, length);
-        while low < high {
-            let middle = low + (high - low) / 2;
-            if order.rank(whole, middle, length) < share {
-                low = middle + 1
-            } else {
-                high = middle
-            }
-        }
-        Self {
-            whole: whole as u32,
-            partial: block as u32,
-            strip_end: interval.start + low,
-        }
     }
 }

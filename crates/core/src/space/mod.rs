@@ -13,12 +13,12 @@
 //! # Ok::<(), strew_core::Error>(())
 //! ```
 //!
-//! `pattern` and `symmetry` have the pattern, `table` the vectors, `warp` the shears, `lattice` which addresses have
+//! `pattern` has the pattern, `table` the vectors, `warp` the shears, `lattice` which addresses have
 //! points and where; `scope` what of a lattice is requested, `mask` what narrows a set.
 //! `walk` makes points row by row or batch by batch from `columns` of planes, `cells` and `template`s; `sieve` leaves out
 //! those that `clearance` finds too near other sets; `closed` and `count` count them. `plan` is a request made ready,
 //! `windows` are its parts, and `blocks` writes its points in a `format`; `attributes` are their further values.
-//! `lookups`, `nearest` and `distance` are about single points and neighbors. `set` is all of this, `shipped` the table
+//! `lookups` and `nearest` are about single points and neighbors. `set` is all of this, `shipped` the table
 //! that the crate has.
 
 mod attributes;
@@ -28,7 +28,6 @@ mod clearance;
 mod closed;
 mod columns;
 mod count;
-mod distance;
 mod format;
 mod lattice;
 mod lookups;
@@ -42,7 +41,6 @@ mod set;
 #[cfg(feature = "tables")]
 mod shipped;
 mod sieve;
-mod symmetry;
 mod table;
 mod template;
 mod walk;
@@ -51,7 +49,6 @@ mod windows;
 
 pub use attributes::BoundAttributes;
 pub use blocks::{Blocks, Members};
-pub use distance::LeastDistance;
 pub use format::Format;
 pub use lattice::LATTICE_LIMIT;
 pub use nearest::Neighbor;
@@ -62,8 +59,12 @@ pub use set::SpaceSet;
 #[cfg(feature = "tables")]
 pub use shipped::BLUE;
 pub use table::Table;
+pub(crate) use warp::stretch;
 
-pub use crate::shape::{Prism, Volume};
+pub use crate::{
+    LeastDistance,
+    shape::{Prism, Volume},
+};
 
 /// Points with their addresses, relative to an origin.
 type Batch = crate::batch::Batch<3, [i32; 3]>;

@@ -11,8 +11,14 @@ use super::{
     sieve::Sifted,
 };
 use crate::{
-    error::{Error, ErrorKind, number},
-    sample::{Visits, farthest},
+    error::Error,
+    sample::{
+        Visits,
+        limits::{
+            BORDER, MAX_CANDIDATES, check_neighbors, check_place, check_radius, check_reach,
+            farthest, too_many,
+        },
+    },
     stop::Stop,
 };
 
@@ -35,11 +41,6 @@ pub struct Neighbor {
     pub distance: f64,
 }
 
-/// The most neighbors that one search returns.
-pub(super) const MAX_NEAREST: usize = 10_000;
-/// The most points that a search visits.
-pub(super) const MAX_CANDIDATES: usize = 4_000_000;
-
 /// The `k` points nearest to a place, within a radius if there is one, nearest first; of equally near ones that with the
 /// smaller id.
 pub(super) fn nearest(
@@ -50,21 +51,10 @@ pub(super) fn nearest(
     within: Option<f64>,
     visits: &Visits,
 ) -> Result<Vec<Neighbor>, Error> {
-    for (name, value) in ["x", "y", "z"].into_iter().zip(at) {
-        if !value.is_finite() {
-            let (value, allowed) = (number(value), "a finite number");
-            return Err(Error::new(ErrorKind::Place, name, value, allowed));
-        }
-    }
-    if !(1..=MAX_NEAREST).contains(&k) {
-        let allowed = alloc::format!("an integer from 1 to {MAX_NEAREST}");
-        return Err(Error::new(ErrorKind::Neighbors, "k", k, allowed));
-    }
-    if let Some(radius) = within
-        && !(radius.is_finite() && radius >= 0.0)
-    {
-        let (value, allowed) = (number(radius), "a finite number, 0 or greater");
-        return Err(Error::new(ErrorKind::Radius, "radius", value, allowed));
+    check_place(at)?;
+    check_neighbors(k)?;
+    if let Some(radius) = within {
+        check_radius(radius)?;
     }
     let share = lattice.placement.keep.get();
     let spacing = lattice.placement.spacing.get() / libm::cbrt(share);
@@ -94,26 +84,11 @@ pub(super) fn nearest(
 
 /// Refuses a search that leaves the lattice's limit or visits too many points.
 fn check(lattice: &Lattice, at: [f64; 3], radius: f64) -> Result<(), Error> {
-    /// Lattice units kept free at the limit: more than the longest displacement and warp.
-    const BORDER: i64 = 1 << 20;
-    let limit = lattice.world(fixed(LATTICE_LIMIT - BORDER));
-    for (name, value) in ["x", "y", "z"].into_iter().zip(at) {
-        if value.abs() + radius > limit {
-            let allowed = alloc::format!(
-                "within ±{limit:e}, with the radius searched, where f64 coordinates with this spacing still keep \
-                 neighbors apart"
-            );
-            let error = Error::new(ErrorKind::TooFar, name, number(value), allowed);
-            return Err(error.because("too far from the origin").with_limit(limit));
-        }
-    }
+    check_reach(lattice.world(fixed(LATTICE_LIMIT - BORDER)), at, radius)?;
     let spacings = radius / lattice.placement.spacing.get();
     let about = 8.0 * spacings * spacings * spacings;
     if about > MAX_CANDIDATES as f64 {
-        let problem = alloc::format!("about {about:.0} points lie within");
-        let allowed = alloc::format!("a radius with at most {MAX_CANDIDATES} points");
-        let error = Error::new(ErrorKind::TooMany, "radius", number(radius), allowed);
-        return Err(error.because(problem).with_limit(MAX_CANDIDATES as f64));
+        return Err(too_many(radius, about, MAX_CANDIDATES));
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use core::{fmt, str::FromStr};
 
-use crate::error::{Error, ErrorKind, shown};
+use crate::{error::Error, sample::lattice_of};
 
 /// The stable id of a point: its lattice address. The text form is `x:y:z`, three decimal integers.
 ///
@@ -82,26 +82,14 @@ impl FromStr for PointId {
 
     fn from_str(text: &str) -> Result<Self, Error> {
         const ALLOWED: &str = "three integers joined by colons, such as -31:52:7";
-        let refused = || Error::new(ErrorKind::PointId, "id", shown(text), ALLOWED);
-        let mut parts = text.split(':');
-        let mut number = || {
-            let part = parts.next().and_then(|part| part.parse().ok());
-            part.ok_or_else(refused)
-        };
-        // An id has one text: no plus sign, no leading zeros, no minus zero.
-        let id = Self {
-            x: number()?,
-            y: number()?,
-            z: number()?,
-        };
-        let canonical = alloc::format!("{id}") == text;
-        canonical.then_some(id).ok_or_else(refused)
+        lattice_of(text, ALLOWED).map(Self::of)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ErrorKind;
 
     #[test]
     fn text_round_trips_and_is_unique() {

@@ -8,10 +8,10 @@ use super::{
     lattice::{Lattice, fixed},
     mask::{ClearOf, Mask},
 };
+pub(super) use crate::sample::common;
 use crate::{
-    error::{Error, ErrorKind, number},
-    sample::Multiple,
-    shape::Chunk,
+    error::{Error, ErrorKind},
+    sample::{Corner, bounds, check_limit, common_box},
     stop::Stop,
     table::FRACTION_BITS,
 };
@@ -31,24 +31,11 @@ pub struct Scope {
     /// The box around all points.
     pub(super) region: Region,
     /// The place that offsets are relative to.
-    pub(super) corner: Corner,
+    pub(super) corner: Corner<3>,
     /// The sets that points keep clear of.
     pub(super) clear: Arc<[ClearOf]>,
     /// Ends counting early.
     pub(super) stop: Stop,
-}
-
-/// The place that offsets of points are relative to, on the fixed-point grid.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Corner {
-    /// The place in world coordinates, rounded.
-    pub(super) at: [f64; 3],
-    /// The first fixed-point coordinates from there on.
-    pub(super) first: [i64; 3],
-    /// The distances from the exact place to these, in world units: the sums of two numbers.
-    pub(super) gap: [[f64; 2]; 3],
-    /// Offsets are below this.
-    pub(super) extent: [f64; 3],
 }
 
 /// Whether the points of a box of the lattice lie inside.
@@ -58,36 +45,6 @@ pub(super) enum State {
     Out,
     /// Each has to be tested, by this volume beside the bounds.
     Test(Option<Volume>),
-}
-
-impl Corner {
-    fn of_box(lattice: &Lattice, region: &Region, first: [i64; 3]) -> Self {
-        let (min, max) = (region.min(), region.max());
-        let gap = |axis: usize| {
-            let sign = if min[axis] < 0.0 { -1 } else { 1 };
-            let corner = Multiple::new(lattice.step, min[axis].abs(), sign);
-            // Reported coordinates decide which is first, so it is a little beside the corner far out.
-            let [gap, error] = corner.gap;
-            let beside = (i128::from(first[axis]) - corner.first) as f64 * lattice.step;
-            [gap, error + beside]
-        };
-        Self {
-            at: min,
-            first,
-            gap: [gap(0), gap(1), gap(2)],
-            extent: [0, 1, 2].map(|axis| max[axis] - min[axis]),
-        }
-    }
-
-    fn of_chunk(lattice: &Lattice, Chunk { size, at }: Chunk<3>) -> Self {
-        let multiples = at.map(|index| Multiple::new(lattice.step, size, index));
-        Self {
-            at: at.map(|index| index as f64 * size),
-            first: multiples.map(|multiple| multiple.first as i64),
-            gap: multiples.map(|multiple| multiple.gap),
-            extent: [size; 3],
-        }
-    }
 }
 
 impl Scope {
@@ -103,21 +60,13 @@ impl Scope {
             .bounds()
             .ok_or_else(|| Error::new(ErrorKind::Unbounded, "area", "unbounded", "within a box"))?;
         let limit = lattice.limit();
-        for (name, value) in region.numbers() {
-            if value.is_nan() || value.abs() > limit {
-                let allowed = alloc::format!(
-                    "within ±{limit:e} with this spacing, where f64 coordinates still keep neighbors apart"
-                );
-                let error = Error::new(ErrorKind::TooFar, name, number(value), allowed);
-                return Err(error.because("too far from the origin").with_limit(limit));
-            }
-        }
+        check_limit(&region, limit)?;
         let (chunks, rest) = (volume.chunks(), volume.beside_chunks());
-        let bounds = bounds(lattice, &chunks, rest.as_ref());
-        let corner = match chunks.last() {
-            Some(chunk) => Corner::of_chunk(lattice, *chunk),
-            None => Corner::of_box(lattice, &region, bounds.clone().map(|range| range.start)),
-        };
+        let around_rest = rest.as_ref().and_then(Volume::bounds);
+        let bounds = bounds((lattice.step, limit), &chunks, around_rest);
+        let corner = Corner::new(lattice.step, &chunks, &region, &bounds);
+        // Within the limit they fit 64 bits.
+        let bounds = bounds.map(|range| range.start as i64..range.end as i64);
         let volume = rest.filter(|rest| !matches!(rest, Volume::Region(_)));
         let before = before(lattice, &bounds);
         let all = [0, 1, 2].map(|axis| {
@@ -218,7 +167,7 @@ impl Scope {
 
     /// The box of the lattice that both have.
     pub(super) fn clip(&self, ranges: &[Range<i64>; 3]) -> [Range<i64>; 3] {
-        [0, 1, 2].map(|axis| common(&self.all[axis], &ranges[axis]))
+        common_box(&self.all, ranges)
     }
 
     /// About the number of points that are looked at for those of a box of the lattice.
@@ -229,33 +178,6 @@ impl Scope {
             .map(|range| (range.end - range.start).max(0) as f64 * t);
         sides.product()
     }
-}
-
-/// The part that two ranges have in common.
-pub(super) fn common(a: &Range<i64>, b: &Range<i64>) -> Range<i64> {
-    let start = a.start.max(b.start);
-    start..a.end.min(b.end).max(start)
-}
-
-/// The fixed-point coordinates of the points of a volume: of its chunks exactly, of everything else by the reported
-/// coordinates. The bounds of the volume are within the lattice's limit.
-fn bounds(lattice: &Lattice, chunks: &[Chunk<3>], rest: Option<&Volume>) -> [Range<i64>; 3] {
-    let of_box = rest.and_then(Volume::bounds).map(|region| {
-        [0, 1, 2].map(|axis| {
-            let limit = lattice.limit();
-            let end = |bound: f64| lattice.first_at_or_above(bound.clamp(-limit, limit));
-            end(region.min()[axis])..end(region.max()[axis])
-        })
-    });
-    let of_chunks = chunks.iter().map(|chunk| {
-        chunk.at.map(|index| {
-            let first = |index| Multiple::new(lattice.step, chunk.size, index).first as i64;
-            first(index)..first(index + 1)
-        })
-    });
-    let all = of_box.into_iter().chain(of_chunks);
-    let all = all.reduce(|a, b| [0, 1, 2].map(|axis| common(&a[axis], &b[axis])));
-    all.unwrap_or([0..0, 0..0, 0..0])
 }
 
 /// The positions from which the warp takes points into bounds.

@@ -4,13 +4,13 @@ use super::{
     Cursor, Region, Volume,
     lattice::Lattice,
     mask::{ClearOf, Mask},
-    nearest,
     plan::Plan,
     table::Table,
 };
 use crate::{
-    error::{Error, ErrorKind, number},
-    sample::{Keep, Placement, Seed, Spacing, Warp},
+    LeastDistance,
+    error::Error,
+    sample::{Keep, Placement, Seed, Spacing, Warp, limits, placing},
     stop::Stop,
 };
 
@@ -45,19 +45,11 @@ pub struct SpaceSet {
 
 impl SpaceSet {
     /// The largest number of points that [`nearest`](Self::nearest) returns.
-    pub const MAX_NEAREST: usize = nearest::MAX_NEAREST;
+    pub const MAX_NEAREST: usize = limits::MAX_NEAREST;
     /// The largest number of points that a search visits.
-    pub const MAX_CANDIDATES: usize = nearest::MAX_CANDIDATES;
+    pub const MAX_CANDIDATES: usize = limits::MAX_CANDIDATES;
 
     /// The set of a table, with mean spacing 1 and seed 0.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// assert_eq!(set.placement().spacing.get(), 1.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn new(table: Table) -> Self {
         Self {
@@ -99,148 +91,12 @@ impl SpaceSet {
         Table::from_bytes(bytes).map(Self::new)
     }
 
-    /// Sets the mean spacing, in world units: density^−⅓.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Spacing`] outside 10⁻¹⁰⁰ to 10¹⁰⁰.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// let count = set.clone().spacing(2.0)?.chunk(100.0, [0, 0, 0])?.count();
-    /// assert!((count as f64 / 125_000.0 - 1.0).abs() < 0.01);
-    /// assert!(set.spacing(0.0).is_err());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn spacing(self, spacing: f64) -> Result<Self, Error> {
-        let spacing = Spacing::new(spacing)?;
-        Ok(self.replaced(|placement| Placement {
-            spacing,
-            ..placement
-        }))
-    }
-
-    /// Sets the density, in points per world unit cubed.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Density`] outside 10⁻²⁰⁰ to 10²⁰⁰.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).density(8.0)?;
-    /// assert_eq!(set.placement().spacing.get(), 0.5);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn density(self, density: f64) -> Result<Self, Error> {
-        let (min, max) = (Spacing::MIN_DENSITY, Spacing::MAX_DENSITY);
-        if !(min..=max).contains(&density) {
-            let allowed = alloc::format!("a number from {min:e} to {max:e}");
-            let value = number(density);
-            return Err(Error::new(ErrorKind::Density, "density", value, allowed));
-        }
-        self.spacing(1.0 / libm::cbrt(density))
-    }
-
-    /// Sets the spacing at which no two points are nearer than `distance` world units, for the warp that the set has; so
-    /// choose seed and warp first.
-    ///
-    /// # Errors
-    /// As [`LeastDistance::spacing_for`](super::LeastDistance::spacing_for).
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).seed(7).min_distance(2.0)?;
-    /// assert!(set.least_distance() >= 2.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn min_distance(self, distance: f64) -> Result<Self, Error> {
-        let least = self.table().least_distance();
-        let spacing = least.spacing_for(distance, self.placement().warp)?;
-        Ok(self.replaced(|placement| Placement {
-            spacing,
-            ..placement
-        }))
-    }
-
-    /// Sets the seed: the origin in the pattern, one of the 48 symmetries of the cube, and a warp. Seed 0 is the plain
-    /// pattern, whose large windows show its quasi-periodic structure; every other seed warps space, unless
-    /// [`warp`](Self::warp) sets another strength.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// let first = |seed| set.clone().seed(seed).chunk(4.0, [0, 0, 0]).map(|plan| plan.to_vec()[0]);
-    /// assert_eq!(first(7)?, first(7)?);
-    /// assert_ne!(first(7)?, first(8)?);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn seed(self, seed: u64) -> Self {
-        let seed = Seed(seed);
-        let own = self.has_own_warp.then_some(self.lattice.placement.warp);
-        let warp = own.unwrap_or_else(|| Placement::default_warp(seed));
-        self.replaced(|placement| Placement {
-            seed,
-            warp,
-            ..placement
-        })
-    }
-
-    /// Sets the strength of the warp, from 0 (off) to 2; 1 is the default of seeds other than 0.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Warp`] outside that range.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).seed(7);
-    /// assert!(set.clone().warp(0.0)?.least_distance() > set.least_distance());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn warp(mut self, strength: f64) -> Result<Self, Error> {
-        let warp = Warp::new(strength)?;
-        self.has_own_warp = true;
-        Ok(self.replaced(|placement| Placement { warp, ..placement }))
-    }
-
-    /// Keeps a share of the points, from 10⁻⁶ to 1. Shares nest: a smaller one keeps a part of what a larger one keeps.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Keep`] outside that range.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let all = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).seed(7);
-    /// for point in all.clone().keep(0.5)?.chunk(8.0, [0, 0, 0])? {
-    ///     assert!(all.rank(point.id) < 0.5);
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn keep(self, share: f64) -> Result<Self, Error> {
-        let keep = Keep::new(share)?;
-        Ok(self.replaced(|placement| Placement { keep, ..placement }))
-    }
-
     pub(super) const fn lattice(&self) -> &Lattice {
         &self.lattice
     }
 
     pub(super) const fn mask(&self) -> &Mask {
         &self.mask
-    }
-
-    fn replaced(mut self, change: impl FnOnce(Placement) -> Placement) -> Self {
-        let placement = change(self.lattice.placement);
-        if placement != self.lattice.placement {
-            self.lattice = Lattice::new(self.lattice.table, placement);
-        }
-        self
     }
 
     /// Leaves only the points in a volume. Sets that keep clear of this one keep clear of these.
@@ -264,7 +120,7 @@ impl SpaceSet {
     /// The points of the other set near a point decide, wherever points are requested, so neighboring volumes agree.
     ///
     /// # Errors
-    /// [`ErrorKind::Clearance`] unless the distance is above 0 and at most 16 mean spacings of the other set.
+    /// [`ErrorKind::Clearance`](crate::ErrorKind::Clearance) unless the distance is above 0 and at most 16 mean spacings of the other set.
     ///
     /// ```
     /// use strew_core::space::{SpaceSet, Table};
@@ -289,8 +145,8 @@ impl SpaceSet {
     /// its surface.
     ///
     /// # Errors
-    /// [`ErrorKind::TooFar`] if the volume reaches beyond [`LATTICE_LIMIT`](super::LATTICE_LIMIT) at this spacing,
-    /// [`ErrorKind::Unbounded`] if it is not bounded.
+    /// [`ErrorKind::TooFar`](crate::ErrorKind::TooFar) if the volume reaches beyond [`LATTICE_LIMIT`](super::LATTICE_LIMIT) at this spacing,
+    /// [`ErrorKind::Unbounded`](crate::ErrorKind::Unbounded) if it is not bounded.
     ///
     /// ```
     /// use strew_core::space::{Ball, SpaceSet, Table};
@@ -307,7 +163,7 @@ impl SpaceSet {
     /// The points in a volume, whose counting stops once a flag is raised.
     ///
     /// # Errors
-    /// As [`within`](Self::within), and [`ErrorKind::Stopped`].
+    /// As [`within`](Self::within), and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
     ///
     /// ```
     /// use strew_core::{ErrorKind, server::Stop, space::{Region, SpaceSet, Table}};
@@ -393,18 +249,16 @@ impl SpaceSet {
     #[must_use]
     pub fn least_distance(&self) -> f64 {
         let Placement { spacing, warp, .. } = self.lattice.placement;
-        self.table().least_distance().with_warp(warp) * spacing.get()
+        self.table_distance().with_warp(warp) * spacing.get()
     }
 
-    /// The table.
-    #[must_use]
-    pub fn table(&self) -> &Table {
-        &self.lattice.table
-    }
-
-    /// Spacing, seed, warp and share.
-    #[must_use]
-    pub fn placement(&self) -> Placement {
-        self.lattice.placement
+    fn table_distance(&self) -> LeastDistance {
+        self.table().least_distance()
     }
 }
+
+placing!(
+    SpaceSet, Table, power: "⅓", 3,
+    "strew_core::space::SpaceSet::new(strew_core::space::Table::undisplaced(\"sqrt(3)\".parse()?, 5, \"pattern\")?)",
+    "[0, 0, 0]"
+);

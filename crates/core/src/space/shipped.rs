@@ -1,7 +1,7 @@
 //! The table built into this crate (feature `tables`).
 
 use super::table::Table;
-use crate::{error::Error, once::Once};
+use crate::{once::Once, table::shipped::shipped};
 
 /// The file of the default table of points in space: profile `blue`, α = (5−√3)/2, 21 intervals.
 ///
@@ -17,10 +17,8 @@ pub const BLUE: &[u8] = include_bytes!("../../tables/space-blue-5-sqrt3-over-2-r
 
 /// The default table.
 pub(super) fn blue() -> Table {
-    static READ: Once<Result<Table, Error>> = Once::new();
-    let table = READ.get_or(|| Table::from_bytes(BLUE));
-    // A test reads it.
-    table.unwrap_or_else(|error| unreachable!("the table built into the crate is valid: {error}"))
+    static READ: Once<Table> = Once::new();
+    READ.get_or(|| shipped(BLUE))
 }
 
 #[cfg(test)]

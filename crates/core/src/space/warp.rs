@@ -95,28 +95,14 @@ impl PlainLoop for Moving<'_> {
     }
 }
 
-/// Bounds of the warp's effect on distances, the same for all seeds.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Stretch3 {
-    /// The largest factor by which distances grow or shrink.
-    pub(super) factor: f64,
-    /// The distance of an integer position from that of the smooth warp, at most, in fixed-point units.
-    pub(super) slack: f64,
-}
-
-impl Stretch3 {
-    /// The bound of a strength.
-    pub(super) fn of(warp: Warp) -> Self {
-        let planes = [0, 1, 2].map(|number| {
-            let shears = Shears::in_space(warp, Seed(0), number);
-            Stretch::of(shears.as_ref())
-        });
-        let [first, second, third] = planes;
-        Self {
-            factor: first.factor * second.factor * third.factor,
-            // Later planes stretch the errors of earlier ones.
-            slack: (first.slack * second.factor + second.slack) * third.factor + third.slack,
-        }
+/// The bound of the effect of a warp on distances, the same for all seeds.
+pub(crate) fn stretch(warp: Warp) -> Stretch {
+    let planes = [0, 1, 2].map(|plane| Shears::in_space(warp, Seed(0), plane));
+    let [first, second, third] = planes.map(|shears| Stretch::of(shears.as_ref()));
+    Stretch {
+        factor: first.factor * second.factor * third.factor,
+        // Later planes stretch the errors of earlier ones.
+        slack: (first.slack * second.factor + second.slack) * third.factor + third.slack,
     }
 }
 
@@ -167,7 +153,7 @@ mod tests {
         ) {
             let warp = Warp::new(strength).expect("in range");
             let Some(shears) = Shears3::new(warp, Seed(seed)) else { return Ok(()) };
-            let Stretch3 { factor, slack } = Stretch3::of(warp);
+            let Stretch { factor, slack } = stretch(warp);
             let by = by.map(|v| v >> near);
             let [p, q] = [from, [0, 1, 2].map(|i| from[i] + by[i])].map(|at| shears.apply(at));
             let length = |v: [i64; 3]| v.iter().map(|&v| (v as f64) * (v as f64)).sum::<f64>().sqrt();

@@ -1,4 +1,4 @@
-//! Tables made from others: with ranks or kinds.
+//! Tables made from others: with kinds.
 
 use alloc::vec::Vec;
 
@@ -9,27 +9,6 @@ use super::{
 use crate::error::Error;
 
 impl Table {
-    /// This table with an order in which its blocks leave.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Table`](crate::ErrorKind::Table) unless there is a position for each block.
-    ///
-    /// ```
-    /// use strew_core::{Table, table::Ranks};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let blocks = table.displacements().len() as u32;
-    /// let ranked = table.with_ranks(Ranks::new((0..blocks).rev().collect())?)?;
-    /// assert_eq!(ranked.displacements(), table.displacements());
-    /// assert_ne!(ranked.digest(), table.digest());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn with_ranks(&self, ranks: Ranks) -> Result<Self, Error> {
-        let mut parts = self.parts().clone();
-        parts.ranks = Some(ranks);
-        Self::of_parts(parts)
-    }
-
     /// This table with kinds of points, and with ranks made for them: an order in which the kinds keep their
     /// shares as blocks leave.
     ///

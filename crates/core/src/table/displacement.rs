@@ -1,44 +1,57 @@
-//! The displacement table.
+//! The displacement table of the plane.
 
-use alloc::{sync::Arc, vec, vec::Vec};
-use core::{fmt, ops::Range};
+use alloc::{format, string::String, sync::Arc, vec::Vec};
+use core::ops::Range;
 
 use super::{
-    Digest, Displacement, Labels, Mix, Order, Provenance, Ranks, file, parts::Parts,
-    symmetry::TurnedCopies,
+    Displacement, FRACTION_BITS, MAX_DISPLACEMENT, Mix, Provenance, TableOf, parts::Parts,
+    to_grid_units, turned::Held, vector::Vector,
 };
-use crate::{error::Error, map::Map, once::Once, pattern::Alpha};
+use crate::{
+    error::{Error, number},
+    map::Map,
+    pattern::Alpha,
+};
 
-/// The displacement vectors of one noise profile for one neighborhood map, with their history.
-///
-/// A table is immutable: its content has been checked, and its digest names it. Cloning shares the
-/// content.
-///
-/// ```
-/// use strew_core::Table;
-///
-/// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-/// let file = table.to_bytes();
-/// assert_eq!(Table::from_bytes(&file)?, table);
-/// # Ok::<(), strew_core::Error>(())
-/// ```
-#[derive(Clone)]
-pub struct Table(Arc<Content>);
+/// The table of a point set of the plane, with a vector for each of the n² blocks of its map.
+pub type Table = TableOf<Displacement>;
 
-struct Content {
-    parts: Parts,
-    digest: Digest,
-    /// The least and the greatest displacement along x and y.
-    reach: [[i32; 2]; 2],
-    /// The order in which blocks leave.
-    order: Order,
-    /// The kinds of the points of each block.
-    labels: Option<Labels>,
-    /// The least squared distance between two points, once it has been computed.
-    least_squared: Once<u64>,
-    /// The least squared distance of each pair of kinds, row by row.
-    least_of_kinds: Once<Arc<[u64]>>,
-    turned: TurnedCopies,
+impl Vector for Displacement {
+    const AXES: u32 = 2;
+    const SECTION: [u8; 4] = *b"DISP";
+    const FOREIGN: &[([u8; 4], &str)] = &[
+        (*b"CUBE", "a table of points in space"),
+        (
+            *b"BASE",
+            "labels of another table: Table::with_labels reads them",
+        ),
+    ];
+    type Held = Held;
+
+    fn held(vectors: &[Self]) -> Held {
+        Held::new(vectors)
+    }
+
+    fn too_long(&self) -> Option<[String; 2]> {
+        let limit = (MAX_DISPLACEMENT as i32) << FRACTION_BITS;
+        self.iter().any(|v| !(-limit < *v && *v < limit)).then(|| {
+            let [x, y] = self.map(|v| number(to_grid_units(v)));
+            let most = number(MAX_DISPLACEMENT);
+            [
+                format!("({x}, {y})"),
+                format!("less than {most} grid units along an axis"),
+            ]
+        })
+    }
+
+    fn read(bytes: &[u8]) -> Self {
+        let (numbers, _) = bytes.as_chunks();
+        [0, 1].map(|axis| i32::from_le_bytes(numbers[axis]))
+    }
+
+    fn write(&self, section: &mut Vec<u8>) {
+        section.extend(self.iter().flat_map(|v| v.to_le_bytes()));
+    }
 }
 
 impl Table {
@@ -70,82 +83,12 @@ impl Table {
         let parts = Parts {
             map,
             profile: profile.into(),
-            displacements,
+            vectors: displacements,
             provenance,
             ranks: None,
             mix: None,
         };
         Self::of_parts(parts)
-    }
-
-    /// A table of parts to check.
-    pub(super) fn of_parts(parts: Parts) -> Result<Self, Error> {
-        parts.check()?;
-        let digest = file::digest(&parts)?;
-        Self::checked(parts, digest)
-    }
-
-    /// A table of checked parts.
-    fn checked(parts: Parts, digest: Digest) -> Result<Self, Error> {
-        let order = match &parts.ranks {
-            Some(ranks) => Order::new(&parts.map, ranks),
-            None => Order::new(&parts.map, &Ranks::hashed(parts.displacements.len())),
-        };
-        let labels = parts.mix.as_ref();
-        let labels = labels.map(|mix| Labels::new(&parts.map, mix, |block| block));
-        let mut reach = [[i32::MAX, i32::MIN]; 2];
-        for vector in &parts.displacements {
-            for (ends, &v) in reach.iter_mut().zip(vector) {
-                *ends = [ends[0].min(v), ends[1].max(v)];
-            }
-        }
-        Ok(Self(Arc::new(Content {
-            parts,
-            digest,
-            reach,
-            order,
-            labels,
-            least_squared: Once::new(),
-            least_of_kinds: Once::new(),
-            turned: TurnedCopies::new(),
-        })))
-    }
-
-    /// A table without displacements: the AA pattern itself.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new), and [`ErrorKind::MapSize`](crate::ErrorKind::MapSize) if `radius` is too
-    /// large.
-    pub fn undisplaced(alpha: Alpha, radius: u32, profile: &str) -> Result<Self, Error> {
-        let map = Map::new(alpha, radius)?;
-        let blocks = map.intervals() * map.intervals();
-        let provenance = Provenance {
-            optimizer: "none".into(),
-            ..Provenance::default()
-        };
-        Self::new(map, profile, vec![[0, 0]; blocks], provenance)
-    }
-
-    /// Reads a table file and checks everything in it.
-    ///
-    /// # Errors
-    /// One of the `Table…` kinds, [`ErrorKind::Alpha`](crate::ErrorKind::Alpha) or
-    /// [`ErrorKind::MapSize`](crate::ErrorKind::MapSize), naming the part of the file that is wrong.
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
-        let (parts, digest) = file::read(bytes)?;
-        Self::checked(parts, digest)
-    }
-
-    /// The table as a file. Equal tables have equal bytes.
-    #[must_use]
-    pub fn to_bytes(&self) -> Vec<u8> {
-        file::write(&self.0.parts)
-    }
-
-    /// The neighborhood map whose blocks the vectors belong to.
-    #[must_use]
-    pub fn map(&self) -> &Map {
-        &self.0.parts.map
     }
 
     /// The α of the pattern that the table displaces.
@@ -154,41 +97,16 @@ impl Table {
         self.map().alpha()
     }
 
-    /// The name of the noise profile: 1 to 32 characters of a-z, 0-9 and -.
-    #[must_use]
-    pub fn profile(&self) -> &str {
-        &self.0.parts.profile
-    }
-
     /// All n² vectors, row = interval of dY, column = interval of dX, in units of 2⁻²⁰ grid units.
     #[must_use]
     pub fn displacements(&self) -> &[Displacement] {
-        &self.0.parts.displacements
-    }
-
-    /// The history of the table: its making and its measurements.
-    #[must_use]
-    pub fn provenance(&self) -> &Provenance {
-        &self.0.parts.provenance
-    }
-
-    /// The BLAKE3 digest of the file without its last 32 bytes, which hold it. It names the table.
-    #[must_use]
-    pub fn digest(&self) -> Digest {
-        self.0.digest
-    }
-
-    /// The order in which blocks leave when a set is thinned, or `None` if the table has none. Blocks
-    /// then leave in a hashed order, which is no more even than a random choice.
-    #[must_use]
-    pub fn ranks(&self) -> Option<&Ranks> {
-        self.0.parts.ranks.as_ref()
+        &self.parts().vectors
     }
 
     /// The kinds of the points of each block, or `None` if the table has none.
     #[must_use]
     pub fn mix(&self) -> Option<&Mix> {
-        self.0.parts.mix.as_ref()
+        self.parts().mix.as_ref()
     }
 
     /// The ranks of the points of a block, in [0, 1]: below the start none of them is left, from the end
@@ -213,16 +131,6 @@ impl Table {
         order.floors(order.position(block))
     }
 
-    /// The order in which blocks leave, a hashed one for a table without ranks.
-    pub(crate) fn order(&self) -> &Order {
-        &self.0.order
-    }
-
-    /// The kinds of the points of each block.
-    pub(crate) fn labels(&self) -> Option<&Labels> {
-        self.0.labels.as_ref()
-    }
-
     /// About the memory that the table may come to hold, in bytes: seeds turn it, and each of the eight
     /// ways has a copy of the vectors and their order once it is used.
     ///
@@ -236,55 +144,11 @@ impl Table {
     /// ```
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
-        // A bound, a label and about two buckets for each interval.
-        let map = 32 * self.map().intervals();
-        let copies = TurnedCopies::MOST;
-        let vectors = (1 + copies) * size_of_val(self.displacements());
-        let order = self.0.order.memory_bytes(copies);
-        let mix = self.mix().map_or(0, |mix| mix.memory_bytes(1 + copies));
-        size_of::<Content>() + vectors + order + mix + map + 4096
-    }
-
-    /// The least and the greatest displacement along x and y.
-    pub(crate) fn reach(&self) -> [[i32; 2]; 2] {
-        self.0.reach
-    }
-
-    /// The parts of the table.
-    pub(super) fn parts(&self) -> &Parts {
-        &self.0.parts
-    }
-
-    /// The copies for the symmetries of seeds.
-    pub(super) fn turned(&self) -> &TurnedCopies {
-        &self.0.turned
-    }
-
-    /// The result of `compute` when it was first called.
-    pub(crate) fn least_squared(&self, compute: impl FnOnce() -> u64) -> u64 {
-        self.0.least_squared.get_or(compute)
+        self.memory_with(Held::COPIES)
     }
 
     /// The least squared distance of each pair of kinds, computed once.
     pub(crate) fn least_of_kinds(&self, compute: impl FnOnce() -> Arc<[u64]>) -> Arc<[u64]> {
-        self.0.least_of_kinds.get_or(compute)
-    }
-}
-
-impl fmt::Debug for Table {
-    /// Names the table; its vectors would fill pages.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Table")
-            .field("profile", &self.profile())
-            .field("alpha", &format_args!("{}", self.alpha()))
-            .field("map", &format_args!("{}", self.map().size()))
-            .field("digest", &self.digest())
-            .finish()
-    }
-}
-
-impl PartialEq for Table {
-    fn eq(&self, other: &Self) -> bool {
-        self.digest() == other.digest() && self.0.parts == other.0.parts
+        self.held().least_of_kinds.get_or(compute)
     }
 }

@@ -342,12 +342,8 @@ mod tests {
                 let n = map.intervals();
                 let mix = Mix::scattered(&map, shares.clone()).expect("near");
                 assert!(mix.splits().len() < shares.kinds());
-                for bits in 0..8 {
-                    let symmetry = Symmetry::from_bits(bits);
-                    let source = |place: usize| {
-                        let [x, y] = symmetry.source(n, [place % n, place / n]);
-                        y * n + x
-                    };
+                for number in 0..8 {
+                    let source = |block| Symmetry::<2>::numbered(number).source(n, block);
                     let turned = Labels::new(&map, &mix, source);
                     let side = map.alpha().set_side() as f64;
                     let areas = areas(&map, &turned, shares.kinds());

@@ -2,48 +2,50 @@
 
 use alloc::{format, string::String, vec::Vec};
 
-use super::{Displacement, FRACTION_BITS, MAX_DISPLACEMENT, Mix, Provenance, Ranks, to_grid_units};
+use super::{Mix, Provenance, Ranks, vector::Vector};
 use crate::{
-    error::{Error, ErrorKind, number, quoted},
+    error::{Error, ErrorKind, quoted},
     map::Map,
 };
 
 /// The content of a table: everything but its digest.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Parts {
-    pub(super) map: Map,
-    pub(super) profile: String,
-    /// n² vectors, row = interval of dY, column = interval of dX.
-    pub(super) displacements: Vec<Displacement>,
-    pub(super) provenance: Provenance,
+pub struct Parts<V> {
+    pub(crate) map: Map,
+    pub(crate) profile: String,
+    /// A vector for each block: along x first, then along y, and then along z in space.
+    pub(crate) vectors: Vec<V>,
+    pub(crate) provenance: Provenance,
     /// A position for each block.
-    pub(super) ranks: Option<Ranks>,
-    /// A mix of this map.
-    pub(super) mix: Option<Mix>,
+    pub(crate) ranks: Option<Ranks>,
+    /// A mix of this map, in the plane.
+    pub(crate) mix: Option<Mix>,
 }
 
-impl Parts {
+impl<V: Vector> Parts<V> {
+    /// The number of blocks of a map.
+    pub(crate) fn blocks(map: &Map) -> usize {
+        map.intervals().pow(V::AXES)
+    }
+
     /// Refuses a wrong number of vectors, vectors that are too long, a profile name that is not
     /// allowed, and a history beyond the format's limits.
     pub(super) fn check(&self) -> Result<(), Error> {
         let refused = |field, value: String, allowed: String| {
             Err(Error::new(ErrorKind::Table, field, value, allowed))
         };
-        let expected = self.map.intervals() * self.map.intervals();
-        if self.displacements.len() != expected {
-            let value = format!("{} vectors", self.displacements.len());
+        let expected = Self::blocks(&self.map);
+        if self.vectors.len() != expected {
+            let value = format!("{} vectors", self.vectors.len());
             let allowed = format!("{expected} vectors, the number of blocks");
             return refused("displacements", value, allowed);
         }
-        let limit = (MAX_DISPLACEMENT as i32) << FRACTION_BITS;
-        let too_long = |d: &Displacement| d.iter().any(|v| !(-limit < *v && *v < limit));
-        if let Some(block) = self.displacements.iter().position(too_long) {
-            let [x, y] = self.displacements[block].map(to_grid_units);
-            let most = number(MAX_DISPLACEMENT);
-            let allowed = format!("less than {most} grid units along an axis");
+        let mut vectors = self.vectors.iter().enumerate();
+        let long = vectors.find_map(|(block, vector)| Some((block, vector.too_long()?)));
+        if let Some((block, [vector, allowed])) = long {
             return refused(
                 "displacements",
-                format!("({}, {}) in block {block}", number(x), number(y)),
+                format!("{vector} in block {block}"),
                 allowed,
             );
         }
@@ -66,7 +68,7 @@ impl Parts {
 }
 
 /// Refuses the name of a profile that is not allowed.
-pub(super) fn check_profile(profile: &str) -> Result<(), Error> {
+fn check_profile(profile: &str) -> Result<(), Error> {
     let is_allowed = |c: u8| c.is_ascii_lowercase() || c.is_ascii_digit() || c == b'-';
     if (1..=32).contains(&profile.len()) && profile.bytes().all(is_allowed) {
         return Ok(());

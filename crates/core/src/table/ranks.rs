@@ -62,6 +62,15 @@ impl Ranks {
         &self.positions
     }
 
+    /// The block at each position.
+    fn blocks(&self) -> Vec<u32> {
+        let mut blocks = vec![0; self.positions.len()];
+        for (block, &position) in (0..).zip(&self.positions) {
+            blocks[position as usize] = block;
+        }
+        blocks
+    }
+
     /// A hashed order, for tables without ranks.
     pub(crate) fn hashed(blocks: usize) -> Self {
         let mut positions = vec![0; blocks];
@@ -100,40 +109,38 @@ pub(crate) struct Order {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Cut {
     /// The number of positions whose blocks are kept whole.
-    whole: u32,
-    /// The blocks of dX and dY of the block at position `whole`.
+    pub(crate) whole: u32,
+    /// The interval of dX of the block at position `whole`, and its row.
     partial: [u32; 2],
     /// The index dX at which the strip of that block ends.
-    strip_end: u64,
+    pub(crate) strip_end: u64,
 }
 
 impl Order {
-    /// The order of the blocks of a map; `ranks` has a position for each.
-    pub(super) fn new(map: &Map, ranks: &Ranks) -> Self {
+    /// The order of the blocks of a map along some axes; `ranks` has a position for each. The size of a block is the
+    /// product of the lengths of its intervals, each rounded down to 2²⁴ units along three axes: it has less than 126 bits.
+    pub(super) fn new(map: &Map, axes: u32, ranks: &Ranks) -> Self {
         let n = map.intervals();
+        let coarse = if axes == 2 { 0 } else { 24 };
         let length = |i: usize| {
             let interval = map.interval(i);
-            u128::from(interval.end - interval.start)
+            u128::from((interval.end - interval.start) >> coarse)
         };
-        // Exact: the set region has less than 2¹²⁶ units.
-        let side = u128::from(map.alpha().set_side());
-        Self::weighted(ranks, side * side, |block| {
-            length(block % n) * length(block / n)
-        })
-    }
-
-    /// The order of blocks of some sizes, whose sum is `all`.
-    pub(crate) fn weighted(ranks: &Ranks, all: u128, size: impl Fn(usize) -> u128) -> Self {
-        let mut blocks = vec![0; ranks.positions.len()];
-        for (block, &position) in (0..).zip(&ranks.positions) {
-            blocks[position as usize] = block;
-        }
-        let all = all as f64;
+        let size = |block: u32| {
+            let places = (0..axes).scan(block as usize, |rest, _| {
+                let place = *rest % n;
+                *rest /= n;
+                Some(place)
+            });
+            places.map(length).product::<u128>()
+        };
+        let blocks = ranks.blocks();
+        let all = (0..n).map(length).sum::<u128>().pow(axes) as f64;
         let mut below = 0u128;
         let mut floors = Vec::with_capacity(blocks.len() + 1);
         for &block in &blocks {
             floors.push(below as f64 / all);
-            below += size(block as usize);
+            below += size(block);
         }
         floors.push(1.0);
         Self {
@@ -147,14 +154,12 @@ impl Order {
     /// have the same size.
     pub(crate) fn turned(&self, source: impl Fn(usize) -> usize) -> Self {
         let positions = (0..self.positions.len()).map(|block| self.positions[source(block)]);
-        let positions: Vec<u32> = positions.collect();
-        let mut blocks = vec![0; positions.len()];
-        for (block, &position) in (0..).zip(&positions) {
-            blocks[position as usize] = block;
-        }
+        let ranks = Ranks {
+            positions: positions.collect(),
+        };
         Self {
-            positions,
-            blocks,
+            blocks: ranks.blocks(),
+            positions: ranks.positions,
             floors: self.floors.clone(),
         }
     }
@@ -205,11 +210,10 @@ impl Order {
     /// The cut that keeps exactly the points of rank below `share`.
     pub(crate) fn cut(&self, map: &Map, share: f64) -> Cut {
         // A rank lies below the next floor.
-        let count = self.blocks.len();
-        let whole = self.floors[1..].partition_point(|&next| next <= share);
+        let whole = self.whole(share);
         let Some(&block) = self.blocks.get(whole) else {
             return Cut {
-                whole: count as u32,
+                whole: whole as u32,
                 partial: [u32::MAX; 2],
                 strip_end: 0,
             };
@@ -270,7 +274,7 @@ mod tests {
     fn order(radius: u32) -> (Map, Order) {
         let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), radius).expect("small");
         let blocks = map.intervals() * map.intervals();
-        let order = Order::new(&map, &Ranks::hashed(blocks));
+        let order = Order::new(&map, 2, &Ranks::hashed(blocks));
         (map, order)
     }
 

@@ -1,6 +1,6 @@
 //! The tables built into this crate (feature `tables`).
 
-use super::{Shares, Table};
+use super::{Shares, Table, TableOf, Vector};
 use crate::{error::Error, once::Once};
 
 /// The file of the default table: profile `blue`, α = (5−√3)/2, R = 100.
@@ -17,10 +17,15 @@ pub const BLUE: &[u8] = include_bytes!("../../tables/blue-5-sqrt3-over-2-m.strew
 
 /// The default table.
 pub(crate) fn blue() -> Table {
-    static READ: Once<Result<Table, Error>> = Once::new();
-    let table = READ.get_or(|| Table::from_bytes(BLUE));
-    // A test reads it.
-    table.unwrap_or_else(|error| unreachable!("the table built into the crate is valid: {error}"))
+    static READ: Once<Table> = Once::new();
+    READ.get_or(|| shipped(BLUE))
+}
+
+/// A table built into the crate.
+pub(crate) fn shipped<V: Vector>(file: &[u8]) -> TableOf<V> {
+    // A test reads each.
+    TableOf::from_bytes(file)
+        .unwrap_or_else(|error| unreachable!("the table built into the crate is valid: {error}"))
 }
 
 /// A file from which a table follows, beside the default one.

@@ -1,122 +1,95 @@
-//! The symmetries of the square, and the copies of a table that are turned by them.
+//! The symmetries of the square and of the cube, by which seeds turn tables.
 //!
 //! The thresholds of a map are symmetric: a neighbor shift s and its opposite mirror each other about the
 //! middle of the set region. Reflecting the plane along an axis therefore reverses the order of the blocks of
 //! that axis, reflecting it about the diagonal swaps the axes of the blocks, and a table turned with them
 //! makes the reflected point set: the pattern is the same one with another origin. The order in which blocks
 //! leave and the kinds of points turn alike. Only the strips of blocks that are partly kept, or that have two
-//! kinds, run along dX in every turned table.
+//! kinds, run along dX in every turned table. In space all of this holds for three axes.
 
-use alloc::{sync::Arc, vec::Vec};
+use core::ops::Neg;
 
-use super::{Displacement, Labels, Mix, Order};
-use crate::{map::Map, once::Once};
-
-/// A symmetry of the square: an exchange of the axes, if any, and then reflections along x and y.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Symmetry {
-    is_swapped: bool,
-    is_reversed: [bool; 2],
+/// A symmetry of the square or of the cube: an exchange of the axes, if any, and then reflections along them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Symmetry<const D: usize> {
+    number: usize,
+    /// The axis of the table that each axis of the set shows.
+    axes: [usize; D],
 }
 
-/// The number of symmetries.
-const ALL: usize = 8;
+impl Symmetry<2> {
+    /// The number of symmetries of the square.
+    pub(crate) const ALL: usize = 8;
 
-impl Symmetry {
-    /// The symmetry of three bits: the lowest reverses x, the next y, the highest exchanges the axes.
-    pub(crate) const fn from_bits(bits: u64) -> Self {
-        Self {
-            is_swapped: bits & 4 != 0,
-            is_reversed: [bits & 1 != 0, bits & 2 != 0],
+    /// Symmetry number `number`: the lowest bits reverse x and y, the highest exchanges the axes.
+    pub(crate) const fn numbered(number: usize) -> Self {
+        let axes = [[0, 1], [1, 0]][number >> 2];
+        Self { number, axes }
+    }
+}
+
+impl Symmetry<3> {
+    /// The number of symmetries of the cube.
+    pub(crate) const ALL: usize = 48;
+    /// The orders of three axes.
+    const ORDERS: [[usize; 3]; 6] = [
+        [0, 1, 2],
+        [0, 2, 1],
+        [1, 0, 2],
+        [1, 2, 0],
+        [2, 0, 1],
+        [2, 1, 0],
+    ];
+
+    /// Symmetry number `number`: the lowest three bits reverse axes.
+    pub(crate) const fn numbered(number: usize) -> Self {
+        let axes = Self::ORDERS[number >> 3];
+        Self { number, axes }
+    }
+}
+
+impl<const D: usize> Symmetry<D> {
+    /// The number of the symmetry; 0 leaves the table as it is.
+    pub(crate) const fn number(self) -> usize {
+        self.number
+    }
+
+    const fn is_reversed(self, axis: usize) -> bool {
+        self.number >> axis & 1 != 0
+    }
+
+    /// The block of a map of `n` intervals whose entry a turned table has at a block.
+    pub(crate) fn source(self, n: usize, mut block: usize) -> usize {
+        let mut source = [0; D];
+        for (axis, &shown) in self.axes.iter().enumerate() {
+            let place = block % n;
+            block /= n;
+            source[shown] = if self.is_reversed(axis) {
+                n - 1 - place
+            } else {
+                place
+            };
         }
+        source
+            .iter()
+            .rev()
+            .fold(0, |block, place| block * n + place)
     }
 
-    const fn number(self) -> usize {
-        let [x, y] = self.is_reversed;
-        x as usize | (y as usize) << 1 | (self.is_swapped as usize) << 2
-    }
-
-    /// The column and row of a map of `n` intervals whose entry a turned table has at a column and row.
-    pub(crate) fn source(self, n: usize, block: [usize; 2]) -> [usize; 2] {
-        let [x, y] = [0, 1].map(|i| match self.is_reversed[i] {
-            true => n - 1 - block[i],
-            false => block[i],
-        });
-        if self.is_swapped { [y, x] } else { [x, y] }
-    }
-
-    /// A vector of the table, turned.
+    /// A vector of the table as one of the set.
     #[inline(always)]
-    pub(super) fn turn(self, [x, y]: Displacement) -> Displacement {
-        let [x, y] = if self.is_swapped { [y, x] } else { [x, y] };
-        let signed = |v: i32, is_reversed: bool| if is_reversed { -v } else { v };
-        [
-            signed(x, self.is_reversed[0]),
-            signed(y, self.is_reversed[1]),
-        ]
-    }
-}
-
-/// The entries of a table for each block, turned.
-#[derive(Debug)]
-pub(super) struct Turned {
-    pub(super) vectors: Vec<Displacement>,
-    pub(super) order: Order,
-    pub(super) labels: Option<Labels>,
-}
-
-/// The entries of a table before they are turned.
-#[derive(Clone, Copy)]
-pub(super) struct Upright<'a> {
-    pub(super) map: &'a Map,
-    pub(super) vectors: &'a [Displacement],
-    pub(super) order: &'a Order,
-    pub(super) mix: Option<&'a Mix>,
-}
-
-impl Turned {
-    fn new(symmetry: Symmetry, upright: Upright<'_>) -> Self {
-        let Upright {
-            map,
-            vectors,
-            order,
-            mix,
-        } = upright;
-        let n = map.intervals();
-        let source = |block: usize| {
-            let [x, y] = symmetry.source(n, [block % n, block / n]);
-            y * n + x
-        };
-        let vector = |block| symmetry.turn(vectors[source(block)]);
-        Self {
-            vectors: (0..n * n).map(vector).collect(),
-            order: order.turned(source),
-            labels: mix.map(|mix| Labels::new(map, mix, source)),
-        }
-    }
-}
-
-/// The turned copies of a table, made when they are first needed.
-#[derive(Debug)]
-pub(super) struct TurnedCopies([Once<Arc<Turned>>; ALL]);
-
-impl TurnedCopies {
-    /// The number of copies that a table may come to hold.
-    pub(super) const MOST: usize = ALL - 1;
-
-    pub(super) const fn new() -> Self {
-        Self([const { Once::new() }; ALL])
-    }
-
-    /// The copy for a symmetry; `None` for the table as it is.
-    pub(super) fn get(&self, symmetry: Symmetry, upright: Upright<'_>) -> Option<Arc<Turned>> {
-        let make = || Arc::new(Turned::new(symmetry, upright));
-        (symmetry != Symmetry::default()).then(|| self.0[symmetry.number()].get_or(make))
+    pub(crate) fn turn<T: Copy + Neg<Output = T>>(self, vector: [T; D]) -> [T; D] {
+        core::array::from_fn(|axis| {
+            let v = vector[self.axes[axis]];
+            if self.is_reversed(axis) { -v } else { v }
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use alloc::vec::Vec;
+
     use super::*;
     use crate::map::Map;
 
@@ -136,16 +109,24 @@ mod tests {
         }
     }
 
-    #[test]
-    fn symmetries_are_a_group_of_eight() {
-        let all: Vec<_> = (0..8).map(Symmetry::from_bits).collect();
-        let images = |s: &Symmetry| [[3, 1], [1, 0]].map(|v| s.turn(v));
+    /// All symmetries turn a vector of different components to different ones, and places as their blocks.
+    fn are_different<const D: usize>(all: Vec<Symmetry<D>>, vector: [i32; D]) {
         for (i, a) in all.iter().enumerate() {
             assert_eq!(a.number(), i);
-            assert!(all[..i].iter().all(|b| images(a) != images(b)));
-            // Turning a place and turning its block agree.
-            let [x, y] = a.source(5, [3, 1]).map(|v| v as i32 - 2);
-            assert_eq!(a.turn([x, y]), [1, -1]);
+            assert!(all[..i].iter().all(|b| b.turn(vector) != a.turn(vector)));
+            // A place from the middle of a map of 9 intervals, as a block.
+            let block = |at: [i32; D]| {
+                at.iter()
+                    .rev()
+                    .fold(0, |block, v| block * 9 + (v + 4) as usize)
+            };
+            assert_eq!(a.source(9, block(a.turn(vector))), block(vector));
         }
+    }
+
+    #[test]
+    fn symmetries_are_different() {
+        are_different((0..8).map(Symmetry::<2>::numbered).collect(), [3, 1]);
+        are_different((0..48).map(Symmetry::<3>::numbered).collect(), [1, -2, 3]);
     }
 }

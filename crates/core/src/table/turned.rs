@@ -1,32 +1,78 @@
 //! A table turned by a symmetry.
 
-use alloc::sync::Arc;
+use alloc::{sync::Arc, vec::Vec};
 
-use super::{
-    Displacement, Labels, Order, Table,
-    symmetry::{Symmetry, Turned, Upright},
-};
+use super::{Displacement, Labels, Order, TableOf, symmetry::Symmetry};
+use crate::once::Once;
+
+/// What a table of the plane holds beside its parts.
+#[derive(Debug)]
+pub struct Held {
+    /// The least and the greatest displacement along x and y.
+    reach: [[i32; 2]; 2],
+    /// The least squared distance of each pair of kinds, row by row.
+    pub(super) least_of_kinds: Once<Arc<[u64]>>,
+    /// The copies for the symmetries but the first, made when they are first needed.
+    turned: [Once<Arc<Turned>>; Self::COPIES],
+}
+
+impl Held {
+    /// The number of copies that a table may come to hold.
+    pub(super) const COPIES: usize = Symmetry::<2>::ALL - 1;
+
+    pub(super) fn new(vectors: &[Displacement]) -> Self {
+        let mut reach = [[i32::MAX, i32::MIN]; 2];
+        for vector in vectors {
+            for (ends, &v) in reach.iter_mut().zip(vector) {
+                *ends = [ends[0].min(v), ends[1].max(v)];
+            }
+        }
+        Self {
+            reach,
+            least_of_kinds: Once::new(),
+            turned: [const { Once::new() }; Self::COPIES],
+        }
+    }
+}
+
+/// The entries of a table for each block, turned.
+#[derive(Debug)]
+struct Turned {
+    vectors: Vec<Displacement>,
+    order: Order,
+    labels: Option<Labels>,
+}
+
+impl Turned {
+    fn new(table: &TableOf<Displacement>, symmetry: Symmetry<2>) -> Self {
+        let (map, vectors) = (table.map(), table.displacements());
+        let source = |block: usize| symmetry.source(map.intervals(), block);
+        let vector = |block| symmetry.turn(vectors[source(block)]);
+        let labels = table.mix();
+        Self {
+            vectors: (0..vectors.len()).map(vector).collect(),
+            order: table.order().turned(source),
+            labels: labels.map(|mix| Labels::new(map, mix, source)),
+        }
+    }
+}
 
 /// The vectors of a table and the order of its blocks under a symmetry.
 #[derive(Clone, Debug)]
 pub(crate) struct TurnedTable {
     /// `None` for the table's own.
     turned: Option<Arc<Turned>>,
-    table: Table,
+    table: TableOf<Displacement>,
     /// The least and the greatest displacement along x and y.
     reach: [[i32; 2]; 2],
 }
 
 impl TurnedTable {
-    pub(crate) fn new(table: &Table, symmetry: Symmetry) -> Self {
-        let upright = Upright {
-            map: table.map(),
-            vectors: table.displacements(),
-            order: table.order(),
-            mix: table.mix(),
-        };
-        let turned = table.turned().get(symmetry, upright);
-        let [x, y] = table.reach();
+    pub(crate) fn new(table: &TableOf<Displacement>, symmetry: Symmetry<2>) -> Self {
+        let make = || Arc::new(Turned::new(table, symmetry));
+        let copy = symmetry.number().checked_sub(1);
+        let turned = copy.map(|copy| table.held().turned[copy].get_or(make));
+        let [x, y] = table.held().reach;
         let ends = [0, 1].map(|end| symmetry.turn([x[end], y[end]]));
         Self {
             turned,
@@ -73,7 +119,7 @@ impl TurnedTable {
     }
 
     /// The table as it is.
-    pub(crate) const fn table(&self) -> &Table {
+    pub(crate) const fn table(&self) -> &TableOf<Displacement> {
         &self.table
     }
 
@@ -86,7 +132,7 @@ impl TurnedTable {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::Map;
+    use crate::{map::Map, table::Table};
 
     #[test]
     fn a_turned_table_reaches_as_far() {
@@ -95,7 +141,7 @@ mod tests {
         let vectors = (0..n * n).map(|i| [i * 37 % 101 - 20, i * 53 % 89 - 70]);
         let table = Table::new(map, "test", vectors.collect(), Default::default()).expect("valid");
         for bits in 0..8 {
-            let vectors = TurnedTable::new(&table, Symmetry::from_bits(bits));
+            let vectors = TurnedTable::new(&table, Symmetry::<2>::numbered(bits));
             let all = (0..n as usize).flat_map(|row| vectors.row(row));
             let mut reach = [[i32::MAX, i32::MIN]; 2];
             for v in all {

@@ -62,6 +62,7 @@ pub use offsets::Offsets;
 pub(crate) use retain::retain_parts;
 pub(super) use rows::fill_row;
 pub use singles::F32;
+pub(crate) use singles::below;
 pub(crate) use triples::{PICKS, add_picked, lift_picked, pick_pairs, pick_triples, write_triples};
 pub(super) use warped::{Extent, WarpedColumns, add_first_shear, fill_warped_row};
 pub(crate) use warped::{warp_all, warp_lists};

@@ -41,10 +41,8 @@ pub struct F32 {
 impl F32 {
     #[inline(always)]
     fn place(&self, axis: usize, base: f64, offset: i32) -> f32 {
-        let (place, last) = (
-            ((base + f64::from(offset)) * self.step) as f32,
-            self.last[axis],
-        );
+        let place = ((base + f64::from(offset)) * self.step) as f32;
+        let last = self.last[axis];
         // Neither is NaN, so this is the minimum.
         if place < last { place } else { last }
     }
@@ -122,7 +120,7 @@ impl Emit for F32 {
 }
 
 /// The largest `f32` below a positive extent, or 0 if there is none.
-fn below(extent: f64) -> f32 {
+pub(crate) fn below(extent: f64) -> f32 {
     let nearest = extent as f32;
     if f64::from(nearest) < extent {
         nearest

@@ -39,6 +39,7 @@ pub(super) use lines::{Columns, lines_of_class, places};
 pub(crate) use multiple::Multiple;
 pub(super) use patch::{BAND_WIDTH, PATCH_HEIGHT, Patch, clip_to_band};
 pub use placement::Placement;
+pub(crate) use point::lattice_of;
 pub use point::{Point, PointId};
 pub(super) use prefix::PrefixCounts;
 pub(super) use rank::{kind, rank};

@@ -7,11 +7,13 @@ use crate::sample::{Seed, Warp};
 /// of its lattice address; the share decides which points exist.
 ///
 /// ```
-/// use strew_core::{Placement, Seed, Spacing, Warp};
+/// use strew_core::{Keep, Placement, Seed, Settle, Spacing, Warp};
 ///
 /// let placement = Placement::new(Spacing::new(2.0)?, Seed(7));
 /// assert_eq!(placement.warp, Warp::ON);
-/// assert_eq!(placement.with_warp(Warp::OFF).warp, Warp::OFF);
+/// assert_eq!(placement.with_warp(Warp::OFF).warp, Placement::default_warp(Seed(0)));
+/// let far = placement.with_keep(Keep::new(0.5)?).with_lod(Keep::new(0.1)?).with_settle(Settle::OFF);
+/// assert_eq!((far.keep.get(), far.lod.get(), far.settle.steps()), (0.5, 0.1, 0));
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,54 +49,24 @@ impl Placement {
     }
 
     /// The default warp of a seed: off for seed 0, [`Warp::ON`] for every other.
-    ///
-    /// ```
-    /// use strew_core::{Placement, Seed, Warp};
-    ///
-    /// assert_eq!(Placement::default_warp(Seed(0)), Warp::OFF);
-    /// assert_eq!(Placement::default_warp(Seed(7)), Warp::ON);
-    /// ```
     #[must_use]
     pub const fn default_warp(seed: Seed) -> Warp {
         if seed.0 == 0 { Warp::OFF } else { Warp::ON }
     }
 
     /// This placement with another share.
-    ///
-    /// ```
-    /// use strew_core::{Keep, Placement, Seed, Spacing};
-    ///
-    /// let half = Placement::new(Spacing::ONE, Seed(7)).with_keep(Keep::new(0.5)?);
-    /// assert_eq!((half.seed, half.keep.get()), (Seed(7), 0.5));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn with_keep(self, keep: Keep) -> Self {
         Self { keep, ..self }
     }
 
     /// This placement with another number of steps by which points settle.
-    ///
-    /// ```
-    /// use strew_core::{Placement, Seed, Settle, Spacing};
-    ///
-    /// let still = Placement::new(Spacing::ONE, Seed(7)).with_settle(Settle::OFF);
-    /// assert_eq!(still.settle.steps(), 0);
-    /// ```
     #[must_use]
     pub const fn with_settle(self, settle: Settle) -> Self {
         Self { settle, ..self }
     }
 
     /// This placement with another level of detail.
-    ///
-    /// ```
-    /// use strew_core::{Keep, Placement, Seed, Spacing};
-    ///
-    /// let far = Placement::new(Spacing::ONE, Seed(7)).with_lod(Keep::new(0.1)?);
-    /// assert_eq!((far.keep, far.lod.get()), (Keep::ALL, 0.1));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn with_lod(self, lod: Keep) -> Self {
         Self { lod, ..self }

@@ -67,16 +67,23 @@ impl FromStr for PointId {
 
     fn from_str(text: &str) -> Result<Self, Error> {
         const ALLOWED: &str = "two integers joined by a colon, such as -31:52";
-        let refused = || Error::new(ErrorKind::PointId, "id", shown(text), ALLOWED);
-        let (x, y) = text.split_once(':').ok_or_else(refused)?;
-        // An id has one text: no plus sign, no leading zeros, no minus zero.
-        let id = Self {
-            x: x.parse().map_err(|_| refused())?,
-            y: y.parse().map_err(|_| refused())?,
-        };
-        let canonical = alloc::format!("{id}") == text;
-        canonical.then_some(id).ok_or_else(refused)
+        lattice_of(text, ALLOWED).map(|[x, y]| Self { x, y })
     }
+}
+
+/// The lattice address of an id's text: integers joined by colons.
+pub(crate) fn lattice_of<const D: usize>(
+    text: &str,
+    allowed: &'static str,
+) -> Result<[i64; D], Error> {
+    let mut parts = text.split(':');
+    let mut number = || parts.next().and_then(|part| part.parse().ok());
+    let at = [0; D].map(|zero| number().unwrap_or(zero));
+    // An id has one text: no plus sign, no leading zeros, no minus zero.
+    if at.map(|v: i64| alloc::format!("{v}")).join(":") == text {
+        return Ok(at);
+    }
+    Err(Error::new(ErrorKind::PointId, "id", shown(text), allowed))
 }
 
 #[cfg(test)]

@@ -31,18 +31,16 @@ impl Spacing {
     /// # Errors
     /// [`ErrorKind::Spacing`] outside that range and for NaN.
     pub fn new(spacing: f64) -> Result<Self, Error> {
-        if (Self::MIN..=Self::MAX).contains(&spacing) {
-            Ok(Self(spacing))
-        } else {
-            let [min, max] = [Self::MIN, Self::MAX].map(exponential);
-            let allowed = alloc::format!("a number from {min} to {max}");
-            Err(Error::new(
-                ErrorKind::Spacing,
-                "spacing",
-                number(spacing),
-                allowed,
-            ))
+        let (min, max) = (Self::MIN, Self::MAX);
+        if (min..=max).contains(&spacing) {
+            return Ok(Self(spacing));
         }
+        Err(out_of_range(
+            ErrorKind::Spacing,
+            "spacing",
+            spacing,
+            [min, max],
+        ))
     }
 
     /// The spacing of a density in points per world unit squared: 1/√density, from
@@ -51,22 +49,27 @@ impl Spacing {
     /// # Errors
     /// [`ErrorKind::Density`] outside that range and for NaN.
     pub fn from_density(density: f64) -> Result<Self, Error> {
-        if (Self::MIN_DENSITY..=Self::MAX_DENSITY).contains(&density) {
-            // Both operations round to nearest, so the spacing is the same on every machine. At the
-            // ends of the range it may round past them.
-            Ok(Self(
-                (1.0 / libm::sqrt(density)).clamp(Self::MIN, Self::MAX),
-            ))
-        } else {
-            let [min, max] = [Self::MIN_DENSITY, Self::MAX_DENSITY].map(exponential);
-            let allowed = alloc::format!("a number from {min} to {max}");
-            Err(Error::new(
+        Self::of_density(density, 2)
+    }
+
+    /// The spacing of a density in the plane or in space.
+    pub(crate) fn of_density(density: f64, dimensions: u32) -> Result<Self, Error> {
+        let (min, max) = (Self::MIN_DENSITY, Self::MAX_DENSITY);
+        if !(min..=max).contains(&density) {
+            return Err(out_of_range(
                 ErrorKind::Density,
                 "density",
-                number(density),
-                allowed,
-            ))
+                density,
+                [min, max],
+            ));
         }
+        // All operations round to nearest, so the spacing is the same on every machine. At the
+        // ends of the range it may round past them.
+        let spacing = match dimensions {
+            2 => 1.0 / libm::sqrt(density),
+            _ => 1.0 / libm::cbrt(density),
+        };
+        Ok(Self(spacing.clamp(Self::MIN, Self::MAX)))
     }
 
     /// The spacing in world units.
@@ -80,6 +83,13 @@ impl Spacing {
     pub fn density(self) -> f64 {
         1.0 / (self.0 * self.0)
     }
+}
+
+/// The error of a number outside its range.
+fn out_of_range(kind: ErrorKind, name: &'static str, value: f64, range: [f64; 2]) -> Error {
+    let [min, max] = range.map(exponential);
+    let allowed = alloc::format!("a number from {min} to {max}");
+    Error::new(kind, name, number(value), allowed)
 }
 
 #[cfg(test)]

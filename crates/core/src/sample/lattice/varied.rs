@@ -155,7 +155,7 @@ pub(super) struct Varied {
 }
 
 impl Varied {
-    pub(super) fn new(kinds: VaryingKinds, symmetry: Symmetry, only: Option<u8>) -> Self {
+    pub(super) fn new(kinds: VaryingKinds, symmetry: Symmetry<2>, only: Option<u8>) -> Self {
         Self {
             turned: TurnedTable::new(&kinds.order, symmetry),
             kinds,
@@ -164,7 +164,7 @@ impl Varied {
     }
 
     /// These kinds of a lattice whose table is turned.
-    pub(super) fn turned(&self, symmetry: Symmetry) -> Self {
+    pub(super) fn turned(&self, symmetry: Symmetry<2>) -> Self {
         Self::new(self.kinds.clone(), symmetry, self.only)
     }
 

@@ -14,6 +14,7 @@ use crate::{
     map::Map,
     pattern::{Axis, Class, Pattern},
     sample::{
+        bounds::world,
         field::Field,
         warp::{NearShears, Shears, Stretch, Waves},
     },
@@ -57,13 +58,6 @@ pub(crate) struct Lattice {
     pub(crate) stretch: Stretch,
     /// World units per fixed-point unit.
     pub(crate) step: f64,
-}
-
-/// Kept out of line, or both conversions would become the slow one.
-#[cold]
-#[inline(never)]
-fn wide(fixed: i128) -> f64 {
-    fixed as f64
 }
 
 impl Lattice {
@@ -435,12 +429,7 @@ impl Lattice {
     /// The world coordinate of a fixed-point one. Monotone.
     #[inline]
     pub(crate) fn world(&self, fixed: i128) -> f64 {
-        // Conversions from 64 bits are faster, and round alike.
-        let fixed = match i64::try_from(fixed) {
-            Ok(fixed) => fixed as f64,
-            Err(_) => wide(fixed),
-        };
-        fixed * self.step
+        world(self.step, fixed)
     }
 
     /// The largest absolute world coordinate of a region.
@@ -449,29 +438,9 @@ impl Lattice {
         LIMIT * self.step
     }
 
-    /// The least fixed-point coordinate whose world coordinate is ≥ `bound`, for a bound within the
-    /// limit. Exact: a bisection on the conversion itself.
+    /// The least fixed-point coordinate whose world coordinate is at or above a bound.
+    #[cfg(test)]
     pub(crate) fn first_at_or_above(&self, bound: f64) -> i128 {
-        let reaches = |k: i128| self.world(k) >= bound;
-        let guess = (bound / self.step) as i128;
-        let mut width = 2i128;
-        let (mut low, mut high) = (guess - 1, guess + 1);
-        while reaches(low) {
-            low -= width;
-            width *= 2;
-        }
-        while !reaches(high) {
-            high += width;
-            width *= 2;
-        }
-        while high - low > 1 {
-            let middle = low + (high - low) / 2;
-            if reaches(middle) {
-                high = middle
-            } else {
-                low = middle
-            }
-        }
-        high
+        crate::sample::bounds::first_at_or_above(self.step, bound)
     }
 }

@@ -13,16 +13,19 @@ pub(crate) const MAX_CANDIDATES: usize = 4_000_000;
 /// The most lattice lines that a search visits. Only an α next to 1 or 2 needs more.
 const MAX_LINES: f64 = 1e7;
 /// Lattice units kept free at the limit: more than the longest displacement and warp.
-const BORDER: i64 = 1 << 20;
+pub(crate) const BORDER: i64 = 1 << 20;
 
 /// The largest absolute coordinate that a search may reach.
 pub(crate) fn limit(lattice: &Lattice) -> f64 {
     lattice.world(fixed(LATTICE_LIMIT - BORDER))
 }
 
+/// The names of the coordinates of a place.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
 /// Refuses a place that is not finite.
-pub(super) fn check_place(at: [f64; 2]) -> Result<(), Error> {
-    for (name, value) in ["x", "y"].into_iter().zip(at) {
+pub(crate) fn check_place<const D: usize>(at: [f64; D]) -> Result<(), Error> {
+    for (name, value) in AXES.into_iter().zip(at) {
         if !value.is_finite() {
             let value = number(value);
             return Err(Error::new(ErrorKind::Place, name, value, "a finite number"));
@@ -31,10 +34,13 @@ pub(super) fn check_place(at: [f64; 2]) -> Result<(), Error> {
     Ok(())
 }
 
-/// Refuses a search that leaves the lattice's limit.
-pub(super) fn check_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> Result<(), Error> {
-    let limit = limit(lattice);
-    for (name, value) in ["x", "y"].into_iter().zip(at) {
+/// Refuses a search that leaves the limit of a lattice.
+pub(crate) fn check_reach<const D: usize>(
+    limit: f64,
+    at: [f64; D],
+    radius: f64,
+) -> Result<(), Error> {
+    for (name, value) in AXES.into_iter().zip(at) {
         if value.abs() + radius > limit {
             let allowed = alloc::format!(
                 "within ±{}, with the radius searched, where f64 coordinates with this spacing \
@@ -46,6 +52,15 @@ pub(super) fn check_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> Resul
         }
     }
     Ok(())
+}
+
+/// Refuses a number of neighbors that one search does not return.
+pub(crate) fn check_neighbors(k: usize) -> Result<(), Error> {
+    if (1..=MAX_NEAREST).contains(&k) {
+        return Ok(());
+    }
+    let allowed = alloc::format!("an integer from 1 to {MAX_NEAREST}");
+    Err(Error::new(ErrorKind::Neighbors, "k", k, allowed))
 }
 
 /// The greatest squared distance whose square root is at most a radius, as reported distances are: so a point is found with
@@ -62,7 +77,7 @@ pub(crate) fn farthest(radius: f64) -> f64 {
 }
 
 /// Refuses a radius that is negative or not finite.
-pub(super) fn check_radius(radius: f64) -> Result<(), Error> {
+pub(crate) fn check_radius(radius: f64) -> Result<(), Error> {
     if radius.is_finite() && radius >= 0.0 {
         return Ok(());
     }
@@ -105,7 +120,7 @@ pub(super) fn check_number(
 }
 
 /// The error of a radius within which about `about` points lie.
-pub(super) fn too_many(radius: f64, about: f64, limit: usize) -> Error {
+pub(crate) fn too_many(radius: f64, about: f64, limit: usize) -> Error {
     let problem = alloc::format!("about {} points lie within", rounded(about, 0));
     let allowed = alloc::format!("a radius with at most {limit} points");
     let error = Error::new(ErrorKind::TooMany, "radius", number(radius), allowed);

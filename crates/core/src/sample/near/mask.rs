@@ -9,7 +9,7 @@ use core::{cell::RefCell, ops::ControlFlow};
 
 use super::{
     ground::{Ground, Known, Marked},
-    limits::{check_number, check_place, check_radius, check_reach, check_work},
+    limits::{check_number, check_place, check_radius, check_reach, check_work, limit},
     scan::{Scratch, scan},
 };
 use crate::{
@@ -316,7 +316,7 @@ impl Clearance {
             distance,
             scratch,
         } = self;
-        if check_place(at).is_err() || check_reach(lattice, at, *distance).is_err() {
+        if check_place(at).is_err() || check_reach(limit(lattice), at, *distance).is_err() {
             return false;
         }
         let squared = *distance * *distance;
@@ -339,7 +339,7 @@ impl Clearance {
         let rounding = 4.0 * f64::EPSILON * (center[0].abs().max(center[1].abs()));
         let radius = libm::hypot(half[0], half[1]) * (1.0 + 1e-9) + rounding;
         check_place(center).ok()?;
-        check_reach(&self.lattice, center, radius + self.distance).ok()?;
+        check_reach(limit(&self.lattice), center, radius + self.distance).ok()?;
         Some((center, radius))
     }
 

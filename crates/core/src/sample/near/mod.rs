@@ -3,19 +3,15 @@
 //! `scan` visits the points around a place. `search` returns the nearest ones and those within a radius,
 //! and `limits` refuses what would take too long; `visits` counts and stops them. `mask` decides by such neighbors
 //! which points of a set exist: those in its area that keep clear of other sets. `ground` keeps the points of these
-//! around many places. `distance` is the least distance between any two points of a table, by the `pairs` of its
-//! blocks.
+//! around many places.
 
-mod distance;
 mod ground;
-pub(super) mod limits;
+pub(crate) mod limits;
 mod mask;
-mod pairs;
 mod scan;
 pub(super) mod search;
 mod visits;
 
-pub use distance::LeastDistance;
 pub use mask::Clearance;
 pub(super) use mask::{ClearOf, Guard, Mask};
 pub use visits::Visits;

@@ -8,15 +8,15 @@ use core::ops::ControlFlow;
 
 use super::{
     limits::{
-        MAX_CANDIDATES, MAX_NEAREST, check_number, check_place, check_radius, check_reach,
-        check_work, farthest, too_many,
+        MAX_CANDIDATES, check_neighbors, check_number, check_place, check_radius, check_reach,
+        check_work, farthest, limit as limit_of, too_many,
     },
     mask::Mask,
     scan::{Scratch, scan},
     visits::Visits,
 };
 use crate::{
-    error::{Error, ErrorKind},
+    error::Error,
     sample::lattice::{Lattice, Point},
     stop::Stop,
 };
@@ -33,10 +33,7 @@ pub(crate) fn nearest(
     most: Option<f64>,
     visits: &Visits,
 ) -> Result<Vec<Found>, Error> {
-    if !(1..=MAX_NEAREST).contains(&k) {
-        let allowed = alloc::format!("an integer from 1 to {MAX_NEAREST}");
-        return Err(Error::new(ErrorKind::Neighbors, "k", k, allowed));
-    }
+    check_neighbors(k)?;
     if let Some(most) = most {
         check_radius(most)?;
     }
@@ -71,7 +68,7 @@ pub(crate) fn within(
     let generous = limit.saturating_mul(2).max(100);
     check_number(lattice, radius, lattice.share(), generous)?;
     check_work(lattice, radius, visits.most())?;
-    check_reach(lattice, at, radius)?;
+    check_reach(limit_of(lattice), at, radius)?;
     let farthest = farthest(radius);
     let guards = mask.guards();
     let (mut found, mut inside) = (Vec::with_capacity(limit.min(12)), 0usize);

@@ -7,13 +7,13 @@ use alloc::{sync::Arc, vec, vec::Vec};
 
 use super::{PeriodicSet, made::Parts};
 use crate::{
+    LeastDistance,
     error::Error,
     sample::{
         attribute::{Attributes, BoundAttributes, Indices},
         field::Field,
         lattice::{Grade, Keep, Placement, Point, PointId, Spacing, check_kind},
         member::Member,
-        near::LeastDistance,
         warp::Warp,
     },
     stop::Stop,

@@ -4,13 +4,14 @@ use alloc::vec::Vec;
 
 use super::PointSet;
 use crate::{
+    LeastDistance,
     error::Error,
     pattern::Arrangement,
     sample::{
         attribute::{Attributes, BoundAttributes},
         lattice::{Placement, Point, PointId},
         member::Member,
-        near::{Clearance, LeastDistance, Visits, limits, search},
+        near::{Clearance, Visits, limits, search},
         settle::{Settler, weight},
     },
     shape::Region,

@@ -1,14 +1,16 @@
 //! The point set.
 //!
-//! A set is a table, a placement and a mask. This file has the set and the methods that change it;
-//! `requests` has the plans of areas, `lookups` single points, and `kinds` the points of kinds.
+//! A set is a table, a placement and a mask. This file has the set and the methods that change it, beside those in
+//! `placing`, which sets in space share; `requests` has the plans of areas, `lookups` single points, and `kinds` the points of kinds.
 
 mod kinds;
 mod lookups;
+mod placing;
 mod requests;
 
 pub use kinds::Kind;
 pub use lookups::Neighbor;
+pub(crate) use placing::placing;
 
 use alloc::sync::Arc;
 
@@ -60,16 +62,6 @@ pub struct PointSet {
 
 impl PointSet {
     /// The set of a table, with mean spacing 1 and seed 0.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// // A table without displacements: the AA pattern itself. Others come from files.
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table);
-    /// assert_eq!(set.placement().spacing.get(), 1.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn new(table: Table) -> Self {
         Self {
@@ -95,145 +87,6 @@ impl PointSet {
     #[must_use]
     pub fn blue() -> Self {
         Self::new(crate::table::shipped::blue())
-    }
-
-    /// Sets the mean spacing, in world units: density^−½.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Spacing`](crate::ErrorKind::Spacing) outside 10⁻¹⁰⁰ to 10¹⁰⁰.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table);
-    /// // A square of side 1000 at spacing 2.
-    /// let count = set.clone().spacing(2.0)?.chunk(1000.0, [0, 0])?.count();
-    /// assert!((count as f64 / (500.0 * 500.0) - 1.0).abs() < 0.01);
-    /// assert_eq!(set.spacing(0.0).unwrap_err().kind(), ErrorKind::Spacing);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn spacing(self, spacing: f64) -> Result<Self, Error> {
-        let spacing = Spacing::new(spacing)?;
-        Ok(self.replaced(|placement| Placement {
-            spacing,
-            ..placement
-        }))
-    }
-
-    /// Sets the density, in points per world unit squared.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Density`](crate::ErrorKind::Density) outside 10⁻²⁰⁰ to 10²⁰⁰.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).density(25.0)?;
-    /// assert_eq!(set.placement().spacing.get(), 0.2);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn density(self, density: f64) -> Result<Self, Error> {
-        let spacing = Spacing::from_density(density)?;
-        Ok(self.replaced(|placement| Placement {
-            spacing,
-            ..placement
-        }))
-    }
-
-    /// Sets the spacing at which no two points are nearer than `distance` world units, for the warp that
-    /// the set has; so choose seed and warp first. It holds for reported `f64` coordinates out to
-    /// [`LeastDistance::RANGE`](crate::LeastDistance::RANGE) times the distance from the origin.
-    ///
-    /// # Errors
-    /// As [`LeastDistance::spacing_for`](crate::LeastDistance::spacing_for).
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).seed(7).min_distance(2.0)?;
-    /// assert!(set.least_distance() >= 2.0);
-    /// assert_eq!(set.min_distance(-1.0).unwrap_err().kind(), ErrorKind::Distance);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn min_distance(self, distance: f64) -> Result<Self, Error> {
-        let least = self.table_distance();
-        let spacing = least.spacing_for(distance, self.placement().warp)?;
-        Ok(self.replaced(|placement| Placement {
-            spacing,
-            ..placement
-        }))
-    }
-
-    /// Sets the seed. Seed 0 is the plain pattern, whose large windows show its quasi-periodic structure;
-    /// every other seed warps the plane, unless [`warp`](Self::warp) sets another strength.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table);
-    /// let first = |seed| set.clone().seed(seed).chunk(8.0, [0, 0]).map(|plan| plan.to_vec()[0]);
-    /// assert_eq!(first(7)?, first(7)?);
-    /// assert_ne!(first(7)?, first(8)?);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn seed(self, seed: u64) -> Self {
-        let own = self.has_own_warp.then(|| self.placement().warp);
-        let seed = Seed(seed);
-        self.replaced(|placement| Placement {
-            seed,
-            warp: own.unwrap_or_else(|| Placement::default_warp(seed)),
-            ..placement
-        })
-    }
-
-    /// Sets the strength of the warp, from 0 (off) to 2; 1 is the default of seeds other than 0.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Warp`](crate::ErrorKind::Warp) outside that range.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).seed(7);
-    /// let plain = set.clone().warp(0.0)?;
-    /// assert!(plain.placement().warp.is_off());
-    /// // Without warp, distances are guaranteed in full.
-    /// assert!(plain.least_distance() > set.least_distance());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn warp(mut self, strength: f64) -> Result<Self, Error> {
-        let warp = Warp::new(strength)?;
-        self.has_own_warp = true;
-        Ok(self.replaced(|placement| placement.with_warp(warp)))
-    }
-
-    /// Keeps a share of the points, from 10⁻⁶ to 1. Shares nest: a smaller one keeps a part of what a
-    /// larger one keeps.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Keep`](crate::ErrorKind::Keep) outside that range.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let all = PointSet::new(table).seed(7);
-    /// let half = all.clone().keep(0.5)?;
-    /// for point in half.chunk(20.0, [0, 0])? {
-    ///     // The points that stay settle.
-    ///     assert!(all.point(point.id()).is_some());
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn keep(self, share: f64) -> Result<Self, Error> {
-        let keep = Keep::new(share)?;
-        Ok(self.replaced(|placement| placement.with_keep(keep)))
     }
 
     /// Sets the number of steps by which points settle in a [field](Self::in_field) and where not all are
@@ -375,27 +228,13 @@ impl PointSet {
             ..self.clone()
         }
     }
-
-    fn replaced(mut self, change: impl FnOnce(Placement) -> Placement) -> Self {
-        let placement = change(self.lattice.placement);
-        if placement != self.lattice.placement {
-            self.lattice = self.lattice.replaced(placement);
-        }
-        self
-    }
-
-    /// The table.
-    #[must_use]
-    pub const fn table(&self) -> &Table {
-        &self.lattice.table
-    }
-
-    /// Spacing, seed, warp and share.
-    #[must_use]
-    pub const fn placement(&self) -> Placement {
-        self.lattice.placement
-    }
 }
+
+placing!(
+    PointSet, Table, power: "½", 2,
+    "strew_core::PointSet::new(strew_core::Table::undisplaced(\"sqrt(3)\".parse()?, 20, \"pattern\")?)",
+    "[0, 0]"
+);
 
 #[cfg(test)]
 mod tests {

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::{freedom::local, step::WHOLE};
-use crate::sample::lattice::PointId;
+use crate::sample::{bounds::common_box, lattice::PointId};
 
 /// A point where it has settled.
 #[derive(Clone, Copy, Debug)]
@@ -70,14 +70,6 @@ pub(super) fn most_move(spacing: f64, shift: u32) -> i64 {
     (f64::from(WHOLE) * 1.000_01 * spacing) as i64 + (2 << shift)
 }
 
-/// The part of a box in another one.
-pub(crate) fn common(a: &Box2, b: &Box2) -> Box2 {
-    [0, 1].map(|i| {
-        let start = a[i].start.max(b[i].start);
-        start..a[i].end.min(b[i].end).max(start)
-    })
-}
-
 /// A box with some room on all sides.
 pub(crate) fn widened([x, y]: &Box2, room: i64) -> Box2 {
     let room = i128::from(room);
@@ -110,7 +102,7 @@ pub(crate) fn joined(boxes: impl Iterator<Item = Box2>, margin: i128) -> Vec<Box
     let mut all: Vec<Box2> = Vec::new();
     for mut next in boxes {
         while let Some(i) = all.iter().position(|other| {
-            let overlaps = !common(other, &next).iter().any(Range::is_empty);
+            let overlaps = !common_box(other, &next).iter().any(Range::is_empty);
             overlaps || area(&hull(other, &next)) <= area(other) + area(&next)
         }) {
             next = hull(&all.swap_remove(i), &next);

@@ -65,7 +65,9 @@ mod step;
 mod tiles;
 mod window;
 
-pub(crate) use boxes::{Box2, Placed, Settled, add_place, common, joined, widened};
+pub(crate) use boxes::{Box2, Placed, Settled, add_place, joined, widened};
+
+pub(crate) use super::bounds::common_box as common;
 pub(crate) use kin::weight;
 use step::Kernel;
 pub(crate) use tiles::SettledTiles;

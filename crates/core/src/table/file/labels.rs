@@ -6,7 +6,7 @@
 use alloc::{format, vec, vec::Vec};
 
 use super::{
-    layout::{BASE, HEADER_BYTES, MIX, RANKS},
+    layout::{BASE, MIX, RANKS},
     read::{mix, ranks, sections, wrong},
     wire::Reader,
     write::{framed, kind, rank},
@@ -31,10 +31,9 @@ pub(crate) fn write_labels(of: &Table, own: &Mix, order: &Ranks) -> Vec<u8> {
 /// The kinds and ranks in a file of labels of a table.
 pub(crate) fn read_labels(bytes: &[u8], of: &Table) -> Result<(Mix, Ranks), Error> {
     let (found, _) = sections(bytes)?;
-    let missing = |tag: &[u8]| wrong(tag, HEADER_BYTES, "missing".into());
-    let (base, base_at) = found.base.ok_or_else(|| missing(&BASE))?;
-    let rank = found.rank.ok_or_else(|| missing(&RANKS))?;
-    let kind = found.kind.ok_or_else(|| missing(&MIX))?;
+    let (base, base_at) = found.need(&BASE)?;
+    let rank = found.need(&RANKS)?;
+    let kind = found.need(&MIX)?;
     let mut reader = Reader::new(base);
     let digest = reader.array("a digest").and_then(|digest| {
         reader.end("a digest")?;

@@ -20,11 +20,11 @@
 //! Labels of a table that has none are a file of their own (`labels`): `BASE` with the digest of that table,
 //! `rank` and `kind`.
 //!
-//! A table of points in space has `CUBE` in place of `DISP` (`cube`).
+//! A table of points in space has `CUBE` in place of `DISP`: n³ triples of i16, in units of 2⁻¹² grid units. The block
+//! (i, j, k) of the intervals of dX, dY and dZ is number (k·n + j)·n + i.
 //!
 //! `write` and `read` are each other's inverse over the encodings of `wire`.
 
-mod cube;
 mod head;
 mod labels;
 mod layout;
@@ -34,7 +34,6 @@ mod tests;
 mod wire;
 mod write;
 
-pub(crate) use cube::CubeParts;
 pub use head::Head;
 pub(super) use labels::{read_labels, write_labels};
 pub use layout::{FORMAT_VERSION, MAX_FILE_BYTES};

@@ -11,11 +11,11 @@ use crate::{
     error::{Error, ErrorKind},
     map::{Map, Twin},
     pattern::Alpha,
-    table::{Digest, Figures, Mix, Provenance, Ranks, Shares, parts::Parts},
+    table::{Digest, Figures, Mix, Provenance, Ranks, Shares, parts::Parts, vector::Vector},
 };
 
 /// The content of a table file, and its digest.
-pub(crate) fn read(bytes: &[u8]) -> Result<(Parts, Digest), Error> {
+pub(crate) fn read<V: Vector>(bytes: &[u8]) -> Result<(Parts<V>, Digest), Error> {
     let (found, digest) = sections(bytes)?;
     Ok((found.into_parts()?, digest))
 }
@@ -59,74 +59,73 @@ fn check_frame(bytes: &[u8]) -> Result<(u32, Digest), Error> {
 /// A section's payload and where it starts.
 pub(super) type Payload<'a> = (&'a [u8], usize);
 
+/// The sections that this release knows.
+const KNOWN: [[u8; 4]; 7] = [*b"HEAD", *b"PROV", *b"DISP", CUBE, BASE, RANKS, MIX];
+
+/// The known sections of a file by their names.
 #[derive(Default)]
-pub(super) struct Sections<'a> {
-    pub(super) head: Option<Payload<'a>>,
-    pub(super) prov: Option<Payload<'a>>,
-    pub(super) disp: Option<Payload<'a>>,
-    pub(super) cube: Option<Payload<'a>>,
-    pub(super) base: Option<Payload<'a>>,
-    pub(super) rank: Option<Payload<'a>>,
-    pub(super) kind: Option<Payload<'a>>,
-}
+pub(super) struct Sections<'a>(Vec<([u8; 4], Payload<'a>)>);
 
 impl<'a> Sections<'a> {
     /// Files the section at `at`. Returns the place after it.
     fn add(&mut self, body: &'a [u8], at: usize) -> Result<usize, Error> {
         let mut reader = Reader::new(&body[at..]);
         let tag = reader
-            .take(4, "a section's name")
+            .array("a section's name")
             .map_err(|p| wrong(b"none", at, p))?;
         let length = reader
             .u64("a section's length")
-            .map_err(|p| wrong(tag, at, p))?;
+            .map_err(|p| wrong(&tag, at, p))?;
         let length = usize::try_from(length).unwrap_or(usize::MAX);
         let payload = reader
             .take(length, "its content")
-            .map_err(|p| wrong(tag, at, p))?;
-        let slot = match tag {
-            b"HEAD" => &mut self.head,
-            b"PROV" => &mut self.prov,
-            b"DISP" => &mut self.disp,
-            _ if tag == CUBE => &mut self.cube,
-            _ if tag == BASE => &mut self.base,
-            _ if tag == RANKS => &mut self.rank,
-            _ if tag == MIX => &mut self.kind,
-            _ if tag[0].is_ascii_lowercase() => return Ok(at + 12 + length),
-            _ => return Err(wrong(tag, at, "unknown to this release".into())),
-        };
-        if slot.replace((payload, at + 12)).is_some() {
-            return Err(wrong(tag, at, "occurs twice".into()));
+            .map_err(|p| wrong(&tag, at, p))?;
+        if KNOWN.contains(&tag) {
+            if self.get(&tag).is_some() {
+                return Err(wrong(&tag, at, "occurs twice".into()));
+            }
+            self.0.push((tag, (payload, at + 12)));
+        } else if !tag[0].is_ascii_lowercase() {
+            return Err(wrong(&tag, at, "unknown to this release".into()));
         }
         Ok(at + 12 + length)
     }
 
-    fn into_parts(self) -> Result<Parts, Error> {
-        if let Some((_, at)) = self.cube {
-            return Err(wrong(&CUBE, at, "a table of points in space".into()));
+    /// A section that may be missing.
+    pub(super) fn get(&self, tag: &[u8; 4]) -> Option<Payload<'a>> {
+        let found = self.0.iter().find(|(name, _)| name == tag);
+        found.map(|(_, payload)| *payload)
+    }
+
+    /// A section that may not be missing.
+    pub(super) fn need(&self, tag: &[u8; 4]) -> Result<Payload<'a>, Error> {
+        let missing = || wrong(tag, HEADER_BYTES, "missing".into());
+        self.get(tag).ok_or_else(missing)
+    }
+
+    fn into_parts<V: Vector>(self) -> Result<Parts<V>, Error> {
+        for (tag, problem) in V::FOREIGN {
+            if let Some((_, at)) = self.get(tag) {
+                return Err(wrong(tag, at, (*problem).into()));
+            }
         }
-        if let Some((_, at)) = self.base {
-            let problem = "labels of another table: Table::with_labels reads them";
-            return Err(wrong(&BASE, at, problem.into()));
-        }
-        let missing = |tag: &[u8]| wrong(tag, HEADER_BYTES, "missing".into());
-        let (head, head_at) = self.head.ok_or_else(|| missing(b"HEAD"))?;
-        let (prov, prov_at) = self.prov.ok_or_else(|| missing(b"PROV"))?;
-        let (disp, disp_at) = self.disp.ok_or_else(|| missing(b"DISP"))?;
+        let (head, head_at) = self.need(b"HEAD")?;
+        let (prov, prov_at) = self.need(b"PROV")?;
+        let (vectors, at) = self.need(&V::SECTION)?;
 
         let head = HeadSection::read(head, head_at)?;
         let map = head.map(head_at)?;
         let provenance = read_prov(prov).map_err(|p| wrong(b"PROV", prov_at, p))?;
-        let displacements =
-            read_disp(disp, map.intervals()).map_err(|p| wrong(b"DISP", disp_at, p))?;
-        let blocks = displacements.len();
-        let ranks = self.rank.map(|payload| ranks(payload, blocks));
-        let kind = self.kind.filter(|_| cfg!(feature = "kinds"));
+        let blocks = Parts::<V>::blocks(&map);
+        let vectors = of_blocks(vectors, blocks, size_of::<V>(), V::read)
+            .map_err(|p| wrong(&V::SECTION, at, p))?;
+        let ranks = self.get(&RANKS).map(|payload| ranks(payload, blocks));
+        let kind = self.get(&MIX).filter(|_| cfg!(feature = "kinds"));
         let mix = kind.map(|payload| mix(payload, &map));
         let parts = Parts {
             map,
             profile: head.profile,
-            displacements,
+            vectors,
             provenance,
             ranks: ranks.transpose()?,
             mix: mix.transpose()?,
@@ -222,42 +221,32 @@ pub(super) fn read_prov(bytes: &[u8]) -> Result<Provenance, String> {
     Ok(provenance)
 }
 
-fn read_disp(bytes: &[u8], intervals: usize) -> Result<Vec<[i32; 2]>, String> {
-    let mut reader = Reader::new(bytes);
-    let blocks = intervals * intervals;
-    if reader.remaining() != 8 * blocks {
-        return Err(format!(
-            "{} bytes; {blocks} blocks need {}",
-            bytes.len(),
-            8 * blocks
-        ));
+/// The entries of blocks, each of some bytes.
+fn of_blocks<T>(
+    bytes: &[u8],
+    blocks: usize,
+    width: usize,
+    read: impl Fn(&[u8]) -> T,
+) -> Result<Vec<T>, String> {
+    let need = width * blocks;
+    if bytes.len() == need {
+        return Ok(bytes.chunks_exact(width).map(read).collect());
     }
-    (0..blocks)
-        .map(|_| Ok([reader.i32("a vector")?, reader.i32("a vector")?]))
-        .collect()
+    Err(format!(
+        "{} bytes; {blocks} blocks need {need}",
+        bytes.len()
+    ))
 }
 
-pub(super) fn read_rank(bytes: &[u8], blocks: usize) -> Result<Vec<u32>, String> {
-    let width = position_bytes(blocks);
-    if bytes.len() != width * blocks {
-        let need = width * blocks;
-        return Err(format!(
-            "{} bytes; {blocks} blocks need {need}",
-            bytes.len()
-        ));
-    }
+/// The section `rank` of a map of some blocks.
+pub(super) fn ranks((bytes, at): Payload<'_>, blocks: usize) -> Result<Ranks, Error> {
     let position = |bytes: &[u8]| {
         let mut wide = [0; 4];
         wide[..bytes.len()].copy_from_slice(bytes);
         u32::from_le_bytes(wide)
     };
-    Ok(bytes.chunks_exact(width).map(position).collect())
-}
-
-/// The section `rank` of a map of some blocks.
-pub(super) fn ranks((bytes, at): Payload<'_>, blocks: usize) -> Result<Ranks, Error> {
-    let positions = read_rank(bytes, blocks).map_err(|p| wrong(&RANKS, at, p))?;
-    Ranks::new(positions)
+    let positions = of_blocks(bytes, blocks, position_bytes(blocks), position);
+    Ranks::new(positions.map_err(|p| wrong(&RANKS, at, p))?)
 }
 
 /// The section `kind` of a map.

@@ -17,10 +17,6 @@ impl Writer {
         self.bytes.extend(value.to_le_bytes());
     }
 
-    pub(super) fn i32(&mut self, value: i32) {
-        self.bytes.extend(value.to_le_bytes());
-    }
-
     pub(super) fn f64(&mut self, value: f64) {
         self.bytes.extend(value.to_le_bytes());
     }
@@ -73,10 +69,6 @@ impl<'a> Reader<'a> {
 
     pub(super) fn u64(&mut self, what: &str) -> Read<u64> {
         self.array(what).map(u64::from_le_bytes)
-    }
-
-    pub(super) fn i32(&mut self, what: &str) -> Read<i32> {
-        self.array(what).map(i32::from_le_bytes)
     }
 
     pub(super) fn f64(&mut self, what: &str) -> Read<f64> {

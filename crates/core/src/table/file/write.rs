@@ -11,11 +11,11 @@ use super::{
 use crate::{
     error::Error,
     map::Map,
-    table::{Digest, Mix, Provenance, Ranks, parts::Parts},
+    table::{Digest, Mix, Provenance, Ranks, parts::Parts, vector::Vector},
 };
 
 /// A table as a file.
-pub(crate) fn write(table: &Parts) -> Vec<u8> {
+pub(crate) fn write<V: Vector>(table: &Parts<V>) -> Vec<u8> {
     let mut bytes = body(table);
     let digest = Digest::of(&bytes);
     bytes.extend(digest.as_bytes());
@@ -23,18 +23,18 @@ pub(crate) fn write(table: &Parts) -> Vec<u8> {
 }
 
 /// The digest of the file that a table will have.
-pub(crate) fn digest(table: &Parts) -> Result<Digest, Error> {
+pub(crate) fn digest<V: Vector>(table: &Parts<V>) -> Result<Digest, Error> {
     let body = body(table);
     check_size((body.len() + DIGEST_BYTES) as u64)?;
     Ok(Digest::of(&body))
 }
 
 /// Everything before the digest.
-fn body(table: &Parts) -> Vec<u8> {
+fn body<V: Vector>(table: &Parts<V>) -> Vec<u8> {
     let mut sections = vec![
         (*b"HEAD", head(&table.map, &table.profile)),
         (*b"PROV", prov(&table.provenance)),
-        (*b"DISP", disp(table)),
+        (V::SECTION, vectors(&table.vectors)),
     ];
     sections.extend(table.ranks.as_ref().map(|ranks| (RANKS, rank(ranks))));
     sections.extend(table.mix.as_ref().map(|mix| (MIX, kind(mix))));
@@ -57,7 +57,7 @@ pub(super) fn framed(sections: Vec<([u8; 4], Vec<u8>)>) -> Vec<u8> {
     out.bytes
 }
 
-pub(super) fn head(map: &Map, profile: &str) -> Vec<u8> {
+fn head(map: &Map, profile: &str) -> Vec<u8> {
     let mut out = Writer::default();
     out.text(&alloc::format!("{}", map.alpha()));
     out.u32(map.radius());
@@ -66,7 +66,7 @@ pub(super) fn head(map: &Map, profile: &str) -> Vec<u8> {
     out.bytes
 }
 
-pub(super) fn prov(provenance: &Provenance) -> Vec<u8> {
+fn prov(provenance: &Provenance) -> Vec<u8> {
     let mut out = Writer::default();
     out.text(&provenance.optimizer);
     out.u64(provenance.seed);
@@ -94,13 +94,10 @@ pub(super) fn prov(provenance: &Provenance) -> Vec<u8> {
     out.bytes
 }
 
-fn disp(table: &Parts) -> Vec<u8> {
-    let mut out = Writer::default();
-    for [x, y] in &table.displacements {
-        out.i32(*x);
-        out.i32(*y);
-    }
-    out.bytes
+fn vectors<V: Vector>(vectors: &[V]) -> Vec<u8> {
+    let mut section = Vec::with_capacity(size_of_val(vectors));
+    vectors.iter().for_each(|vector| vector.write(&mut section));
+    section
 }
 
 pub(super) fn rank(ranks: &Ranks) -> Vec<u8> {

@@ -1,12 +1,12 @@
-//! The least distance between any two points of the plane: a guarantee, not a measurement.
+//! The least distance between any two points, of the plane or of space: a guarantee, not a measurement.
 //!
 //! A neighbor at lattice offset (i, j) has its index shifted by ((αi + j)/2, (αj + i)/2). So two blocks
-//! meet across that offset iff the shift carries a part of one's interval into the other's along both
+//! meet across that offset iff the shift carries a part of one's interval into the other's along all
 //! axes, and then they are |(i, j) + D_B − D_A| apart. Few such pairs are near each other, and the least
 //! of their distances is that of the whole pattern, to the bit, since an irrational α visits every part
 //! of index space. A window shows this distance, or a larger one if it is small.
 //!
-//! In mean spacings:
+//! In the plane, in mean spacings:
 //!
 //! | table, (5−√3)/2 | δ_min | no warp | strength 1 | 2 | seen at 1 |
 //! |---|---|---|---|---|---|
@@ -17,14 +17,20 @@
 //! The warp shrinks distances by a bounded factor, so the guarantee holds for warped sets as well, less
 //! tightly. Thinning only widens distances.
 
-use super::pairs::{HEXAGONAL, least_of_kinds, least_squared};
+mod pairs;
+
+use alloc::string::String;
+
+use pairs::{densest, least_of_kinds, least_squared};
+
 use crate::{
     error::{Error, ErrorKind, number, rounded},
+    pattern::Alpha,
     sample::{
-        Seed, Warp,
-        lattice::Spacing,
-        warp::{Shears, Stretch, Waves},
+        Seed, Spacing, Warp, Waves,
+        space::{Shears, Stretch},
     },
+    space,
     table::{FRACTION_BITS, Table},
 };
 
@@ -50,8 +56,8 @@ pub struct LeastDistance {
     set_side: f64,
     /// The share of all points that the distance is about: 1, or that of one kind.
     share: f64,
-    /// The waves of the table's warp.
-    waves: Waves,
+    /// The waves of the warp of a table of the plane.
+    waves: Option<Waves>,
 }
 
 impl Table {
@@ -72,12 +78,9 @@ impl Table {
     /// ```
     #[must_use]
     pub fn least_distance(&self) -> LeastDistance {
-        LeastDistance {
-            squared: self.least_squared(|| least_squared(self)),
-            set_side: self.alpha().set_side_f64(),
-            share: 1.0,
-            waves: Waves::of(self.profile()),
-        }
+        let vectors = self.displacements();
+        let squared = self.least_squared(|| least_squared(self.map(), vectors));
+        LeastDistance::new(squared, self.alpha(), Some(Waves::of(self.profile())))
     }
 
     /// The least distance between a point of one kind and one of another, or between two of the same kind; `None`
@@ -117,14 +120,33 @@ impl Table {
         let all = self.least_of_kinds(|| least_of_kinds(self, shares, labels).into());
         Some(LeastDistance {
             squared: all[row * shares.kinds() + column],
-            set_side: self.alpha().set_side_f64(),
             share: if a == b { shares.of(a) } else { 1.0 },
-            waves: Waves::of(self.profile()),
+            ..self.least_distance()
         })
     }
 }
 
+impl space::Table {
+    /// The least distance between any two points of the table's sets. The first call looks at the pairs of blocks that can
+    /// meet near each other.
+    #[must_use]
+    pub fn least_distance(&self) -> LeastDistance {
+        let squared = self.least_squared(|| least_squared(self.map(), &self.fixed_vectors()));
+        LeastDistance::new(squared, self.map().alpha(), None)
+    }
+}
+
 impl LeastDistance {
+    /// The least distance of all points; `waves` are those of a table of the plane.
+    fn new(squared: u64, alpha: Alpha, waves: Option<Waves>) -> Self {
+        Self {
+            squared,
+            set_side: alpha.set_side_f64(),
+            share: 1.0,
+            waves,
+        }
+    }
+
     /// The least [`relative`](Self::relative) distance that is useful.
     pub const MIN_RELATIVE: f64 = 0.3;
     /// Reported `f64` coordinates keep [`reported`](Self::reported) distances out to this many of them from
@@ -137,8 +159,9 @@ impl LeastDistance {
     /// twice, by 2⁻⁵³ of itself each, and a distance changes by up to 2√2 times that much.
     const ROUNDING: f64 = 1.0 / (1u64 << 50) as f64;
 
-    /// δ_min: the distance without warp in units of the hexagonal distance √(2/√3) at the same density;
-    /// at most 1. Within a kind the density is that of the kind, between two kinds that of all points.
+    /// δ_min: the distance without warp in units of that of the densest packing at the same density, √(2/√3) mean
+    /// spacings in the plane and 2^(1/6) in space; at most 1. Within a kind the density is that of the kind, between two
+    /// kinds that of all points.
     #[must_use]
     pub fn relative(&self) -> f64 {
         self.relative_to_all() * libm::sqrt(self.share)
@@ -152,8 +175,10 @@ impl LeastDistance {
     #[must_use]
     pub fn with_warp(&self, warp: Warp) -> f64 {
         // All seeds have the same amplitudes.
-        let shears = Shears::new(self.waves, warp, Seed(0));
-        let Stretch { factor, slack } = Stretch::of(shears.as_ref());
+        let Stretch { factor, slack } = match self.waves {
+            Some(waves) => Stretch::of(Shears::new(waves, warp, Seed(0)).as_ref()),
+            None => space::stretch(warp),
+        };
         let units = libm::sqrt(self.squared as f64) / factor - 2.0 * slack;
         units.max(0.0) / f64::from(1u32 << FRACTION_BITS) * self.set_side
     }
@@ -191,7 +216,8 @@ impl LeastDistance {
 
     /// δ_min at the density of all points.
     fn relative_to_all(&self) -> f64 {
-        self.with_warp(Warp::OFF) / HEXAGONAL
+        let dimensions = if self.waves.is_some() { 2 } else { 3 };
+        self.with_warp(Warp::OFF) / densest(dimensions)
     }
 
     /// The mean spacing at which no two points are nearer than `distance` world units, for a strength of
@@ -206,39 +232,32 @@ impl LeastDistance {
     /// [`ErrorKind::NoLeastDistance`] if the table's distance is not [useful](Self::is_useful), and
     /// [`ErrorKind::Spacing`] if the spacing would leave [`Spacing`]'s range.
     pub fn spacing_for(&self, distance: f64, warp: Warp) -> Result<Spacing, Error> {
+        let refused =
+            |kind, allowed: String| Error::new(kind, "min_distance", number(distance), allowed);
         if !(distance.is_finite() && distance > 0.0) {
-            let allowed = "a finite number greater than 0";
-            let value = number(distance);
-            return Err(Error::new(
+            return Err(refused(
                 ErrorKind::Distance,
-                "min_distance",
-                value,
-                allowed,
+                "a finite number greater than 0".into(),
             ));
         }
         let kept = self.with_warp(warp);
         if !self.is_useful() || kept <= 0.0 {
+            let packing = match self.waves {
+                Some(_) => "hexagonal",
+                None => "densest packing's",
+            };
             let problem = alloc::format!(
-                "the profile guarantees no least distance: its nearest points are {} of the hexagonal \
+                "the profile guarantees no least distance: its nearest points are {} of the {packing} \
                  distance apart, and at least {} is needed",
                 rounded(self.relative_to_all(), 4),
                 number(Self::MIN_RELATIVE)
             );
-            let error = Error::new(
-                ErrorKind::NoLeastDistance,
-                "min_distance",
-                number(distance),
-                "",
-            );
-            return Err(error.because(problem));
+            return Err(refused(ErrorKind::NoLeastDistance, String::new()).because(problem));
         }
         Spacing::new(distance / kept * (1.0 + Self::MARGIN)).map_err(|error| {
-            let allowed = alloc::format!("a distance with a {error}");
-            Error::new(
+            refused(
                 ErrorKind::Spacing,
-                "min_distance",
-                number(distance),
-                allowed,
+                alloc::format!("a distance with a {error}"),
             )
         })
     }
