@@ -9,7 +9,7 @@
 //! (what a proxy on the same machine calls it) and the host of `http.public_url` alone. Elsewhere it does not know its
 //! names: proxies, containers and clusters choose them.
 
-use std::net::{Ipv4Addr, Ipv6Addr};
+use std::net::{Ipv4Addr, Ipv6Addr, SocketAddr};
 
 use http::{HeaderMap, HeaderValue, Method, StatusCode, header, uri::Authority};
 use strew_error::{Denied, Error};
@@ -28,14 +28,11 @@ pub(super) enum Origins {
 impl Origins {
     /// From a setting: `*`, or origins with spaces or commas between them.
     pub(super) fn read(text: &str) -> Self {
-        let mut origins = text
-            .split([' ', ','])
-            .filter(|origin| !origin.is_empty())
-            .map(str::to_ascii_lowercase);
         if text.trim() == "*" {
             return Self::All;
         }
-        Self::Some(origins.by_ref().collect())
+        let origins = text.split([' ', ',']).filter(|origin| !origin.is_empty());
+        Self::Some(origins.map(str::to_ascii_lowercase).collect())
     }
 
     fn allowed(&self, origin: &HeaderValue) -> Option<HeaderValue> {
@@ -185,7 +182,9 @@ impl Hosts {
 
     /// Whether a host, perhaps with a port, is the daemon's.
     fn has_authority(&self, text: &[u8]) -> bool {
-        Authority::try_from(text).is_ok_and(|authority| self.has_name(authority.host()))
+        let text = str::from_utf8(text).unwrap_or_default();
+        text.parse::<SocketAddr>().is_ok()
+            || Authority::try_from(text).is_ok_and(|authority| self.has_name(authority.host()))
     }
 
     /// Whether a host is the daemon's whatever a server of names says.
