@@ -9,7 +9,7 @@ use super::tally::product;
 use crate::{
     sample::{
         kernel::Backend,
-        lattice::{BAND_WIDTH, Columns, Flat, Lattice, Patch, Span, places},
+        lattice::{BAND_WIDTH, Flat, Lattice, Patch, Span},
     },
     stop::Stop,
 };
@@ -20,7 +20,6 @@ pub(super) fn count(lattice: &Lattice, [x, y]: [&Span; 2], stop: &Stop) -> u128 
         lattice,
         spans: [x, y],
         stop,
-        columns: Columns::default(),
         flat: Flat::default(),
         backend: Backend::best(),
     };
@@ -40,7 +39,6 @@ struct Margins<'a> {
     lattice: &'a Lattice,
     spans: [&'a Span; 2],
     stop: &'a Stop,
-    columns: Columns,
     flat: Flat,
     backend: Backend,
 }
@@ -66,15 +64,15 @@ impl Margins<'_> {
                 break;
             }
             let band = columns.start.div_euclid(BAND_WIDTH);
-            self.columns.list(self.lattice, columns.clone());
             let mut rows = rows.clone();
             while !rows.is_empty() && !self.stop.is_raised() {
                 let patch = Patch::new(self.lattice, band, rows.start, x, y);
                 let mut in_patch = rows.start..rows.end.min(patch.end());
                 rows.start = in_patch.end;
                 while let Some(rows) = next_piece(&mut in_patch, PIECE[1]) {
-                    let mut columns = columns.clone();
-                    while let Some(columns) = next_piece(&mut columns, PIECE[0]) {
+                    let mut pieces = columns.clone();
+                    while let Some(piece) = next_piece(&mut pieces, PIECE[0]) {
+                        let columns = [&columns, &piece];
                         count += self.count_piece(&patch, columns, rows.clone()) as u128;
                     }
                 }
@@ -83,32 +81,30 @@ impl Margins<'_> {
         count
     }
 
-    fn count_piece(&mut self, patch: &Patch, columns: Range<i64>, rows: Range<i64>) -> usize {
-        let (lattice, backend) = (self.lattice, self.backend);
-        let [x, y] = Span::of_piece(lattice, self.spans, [columns, rows]);
+    /// The number of points inside in a piece of a patch, whose columns are a part of a range.
+    fn count_piece(
+        &mut self,
+        patch: &Patch,
+        [range, columns]: [&Range<i64>; 2],
+        rows: Range<i64>,
+    ) -> usize {
+        let (of, backend) = ((self.lattice, patch), self.backend);
+        let [x, y] = Span::of_piece(self.lattice, self.spans, [columns.clone(), rows]);
         let ([left, right], [below, above]) = (x.margins(), y.margins());
-        let mut count = self.count_inner(&x.inner, y.inner.clone());
-        let inner = &y.inner;
+        let mut count = self.flat.count(of, [range, &x.inner], y.inner.clone());
         for (columns, rows) in [
             (&x.all, &below),
             (&x.all, &above),
-            (&left, inner),
-            (&right, inner),
+            (&left, &y.inner),
+            (&right, &y.inner),
         ] {
-            self.flat
-                .list((lattice, patch), columns, rows.clone(), usize::MAX, backend);
-            count += self.flat.found.len();
+            if !columns.is_empty() && !rows.is_empty() {
+                let columns = [range, columns];
+                self.flat
+                    .list(of, columns, rows.clone(), usize::MAX, backend);
+                count += self.flat.found.len();
+            }
         }
         count
-    }
-
-    /// The number of points with addresses in some columns and rows.
-    fn count_inner(&mut self, columns: &Range<i64>, rows: Range<i64>) -> usize {
-        let rows = rows.filter_map(|y| self.lattice.row(y));
-        rows.map(|(class, block)| {
-            let all = self.columns.of_row(self.lattice, class, block);
-            places(all, columns).len()
-        })
-        .sum()
     }
 }

@@ -58,16 +58,20 @@ macro_rules! has {
 impl Backend {
     /// The backends of this machine, the fastest last.
     pub fn available() -> impl DoubleEndedIterator<Item = Self> {
+        #[cfg(target_arch = "x86_64")]
+        let has_all = |features: &[bool]| features.iter().all(|&has| has);
         let all = [
             Some(Self::Scalar),
             #[cfg(target_arch = "x86_64")]
-            (has!("avx2") && has!("popcnt")).then_some(Self::Avx2),
+            has_all(&[has!("avx2"), has!("popcnt")]).then_some(Self::Avx2),
             #[cfg(target_arch = "x86_64")]
-            (has!("avx512f")
-                && has!("avx512vl")
-                && has!("avx512dq")
-                && has!("avx2")
-                && has!("popcnt"))
+            has_all(&[
+                has!("avx512f"),
+                has!("avx512vl"),
+                has!("avx512dq"),
+                has!("avx2"),
+                has!("popcnt"),
+            ])
             .then_some(Self::Avx512),
             #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
             Some(Self::Neon),

@@ -3,7 +3,7 @@
 use super::{
     Format,
     format::{Emit, Geometry, Row},
-    lanes::{Lanes, stored},
+    lanes::Lanes,
     rows::vector_starts,
 };
 use crate::{
@@ -181,22 +181,5 @@ impl Emit for Points {
             }
         }
         length
-    }
-
-    #[inline(always)]
-    unsafe fn vector_items<L: Lanes>(
-        &self,
-        row: Row,
-        [x, y]: [L::Ints; 2],
-        lattice: &[i64],
-        out: &mut [Point],
-    ) {
-        // SAFETY: the machine has the instructions.
-        let [xs, ys] = [x, y].map(|v| unsafe { stored::<L>(v) });
-        let lanes = xs.into_iter().zip(ys).zip(lattice);
-        for (out, ((x, y), &column)) in out.iter_mut().zip(lanes) {
-            let column = self.column(row.base, x, column);
-            *out = self.item(row.base, column, y, row.lattice);
-        }
     }
 }

@@ -2,8 +2,7 @@
 
 use super::{
     Format,
-    format::{Emit, Geometry, Row},
-    lanes::{Lanes, stored},
+    format::{Emit, Geometry},
 };
 use crate::sample::lattice::PointId;
 
@@ -89,21 +88,6 @@ impl Emit for Exact {
             id: PointId { x: column, y: row },
             origin: base.map(|v| v as i64),
             offset: [x, y],
-        }
-    }
-
-    #[inline(always)]
-    unsafe fn vector_items<L: Lanes>(
-        &self,
-        row: Row,
-        position: [L::Ints; 2],
-        lattice: &[i64],
-        out: &mut [Place],
-    ) {
-        // SAFETY: the machine has the instructions.
-        let [xs, ys] = position.map(|v| unsafe { stored::<L>(v) });
-        for (out, ((x, y), &column)) in out.iter_mut().zip(xs.into_iter().zip(ys).zip(lattice)) {
-            *out = self.item(row.base, (x, column), y, row.lattice);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use core::fmt::Debug;
 
-use super::lanes::Lanes;
+use super::lanes::{Lanes, stored};
 
 /// A format of points: [`F32`](super::F32), [`F64`](super::F64) or [`Points`](super::Points).
 ///
@@ -89,11 +89,19 @@ pub trait Emit: Copy + Send + Debug + 'static {
     ///
     /// # Safety
     /// The machine has the instructions of `L`.
+    #[inline(always)]
     unsafe fn vector_items<L: Lanes>(
         &self,
         row: Row,
         position: [L::Ints; 2],
         lattice: &[i64],
         out: &mut [Self::Item],
-    );
+    ) {
+        // SAFETY: the machine has the instructions.
+        let [xs, ys] = position.map(|v| unsafe { stored::<L>(v) });
+        for (out, ((x, y), &column)) in out.iter_mut().zip(xs.into_iter().zip(ys).zip(lattice)) {
+            let column = self.column(row.base, x, column);
+            *out = self.item(row.base, column, y, row.lattice);
+        }
+    }
 }

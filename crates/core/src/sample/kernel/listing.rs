@@ -74,6 +74,14 @@ impl Listing {
         [0, 1, 2, 3].map(|class| class * most..ends[class])
     }
 
+    /// The places of those of some columns, which ascend, that lie in a range.
+    pub(crate) fn between(&self, columns: Range<usize>, range: Range<i64>) -> Range<usize> {
+        let all = &self.columns[0][columns.clone()];
+        let [start, end] = [range.start, range.end]
+            .map(|end| columns.start + all.partition_point(|&column| i64::from(column) < end));
+        start..end.max(start)
+    }
+
     /// Adds columns with the numbers of their vectors. Returns their places.
     pub(crate) fn add(&mut self, all: impl Iterator<Item = [u32; 2]>) -> Range<usize> {
         let [columns, vectors] = &mut self.columns;

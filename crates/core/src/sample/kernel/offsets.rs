@@ -2,8 +2,7 @@
 
 use super::{
     Format,
-    format::{Emit, Geometry, Row},
-    lanes::{Lanes, stored},
+    format::{Emit, Geometry},
 };
 use crate::table::{FRACTION_BITS, fixed};
 
@@ -151,21 +150,5 @@ impl Emit for Offsets {
     #[inline]
     fn item(&self, base: [f64; 2], x: f64, y: i32, _: i64) -> [f64; 2] {
         [x, self.axes[1].place(base[1], y)]
-    }
-
-    #[inline(always)]
-    unsafe fn vector_items<L: Lanes>(
-        &self,
-        row: Row,
-        position: [L::Ints; 2],
-        lattice: &[i64],
-        out: &mut [[f64; 2]],
-    ) {
-        // SAFETY: the machine has the instructions.
-        let [xs, ys] = position.map(|v| unsafe { stored::<L>(v) });
-        for (out, ((x, y), &column)) in out.iter_mut().zip(xs.into_iter().zip(ys).zip(lattice)) {
-            let column = self.column(row.base, x, column);
-            *out = self.item(row.base, column, y, row.lattice);
-        }
     }
 }

@@ -4,7 +4,7 @@
 use alloc::vec::Vec;
 use core::{iter, ops::Range};
 
-use super::{Columns, Lattice, Patch};
+use super::{Columns, Lattice, Patch, places};
 use crate::{
     batch::{Batch, Offset, pad},
     pattern::Axis,
@@ -56,24 +56,26 @@ impl Found {
 }
 
 impl Flat {
-    /// Lists the points of a patch in a range of columns that lie inside, from row `rows.start` on, until there are at
-    /// least `enough` candidates or the rows end. Returns the first row that is not listed. All patches have one lattice.
-    pub(crate) fn list(
+    /// Lists rows as [`list`](Self::list) does, and not their points yet.
+    fn list_rows(
         &mut self,
         (lattice, patch): (&Lattice, &Patch),
-        range: &Range<i64>,
+        [range, part]: [&Range<i64>; 2],
         rows: Range<i64>,
         enough: usize,
-        backend: Backend,
     ) -> i64 {
         let [left, bottom] = patch.origin();
         if self.listed.0 != *range {
             self.list_columns(lattice, range, left);
         }
-        let (found, listing) = (&mut self.found, &mut self.listing);
+        let listing = &mut self.listing;
         let has_all = lattice.has_all();
+        let mut all = self.listed.1.clone();
         if !has_all {
             listing.clear();
+        } else if part != range {
+            let [start, end] = [part.start, part.end].map(|at| at - left);
+            all = all.map(|class| listing.between(class, start..end));
         }
         listing.restart(length(&rows));
         let mut next = rows.end;
@@ -86,15 +88,43 @@ impl Flat {
                 continue;
             };
             let columns = if has_all {
-                self.listed.1[class.ordinal()].clone()
+                all[class.ordinal()].clone()
             } else {
-                let columns = self.columns.of_row(lattice, class, block).iter();
+                let columns = self.columns.of_row(lattice, class, block);
+                let columns = columns[places(columns, part)].iter();
                 listing.add(columns.map(|line| [(line.at - left) as u32, line.block]))
             };
             let first = block * lattice.map().intervals();
             listing.add_row((y - bottom) as i32, columns, first);
         }
-        found.restart([left, bottom]);
+        next
+    }
+
+    /// The number of all points of a patch in a part of a range of columns and in some rows.
+    pub(crate) fn count(
+        &mut self,
+        of: (&Lattice, &Patch),
+        columns: [&Range<i64>; 2],
+        rows: Range<i64>,
+    ) -> usize {
+        self.list_rows(of, columns, rows, usize::MAX);
+        self.listing.len()
+    }
+
+    /// Lists the points of a patch in a part of a range of columns that lie inside, from row `rows.start` on, until there
+    /// are at least `enough` candidates or the rows end. Returns the first row that is not listed. All patches have one
+    /// lattice; those of a range share its columns.
+    pub(crate) fn list(
+        &mut self,
+        (lattice, patch): (&Lattice, &Patch),
+        columns: [&Range<i64>; 2],
+        rows: Range<i64>,
+        enough: usize,
+        backend: Backend,
+    ) -> i64 {
+        let next = self.list_rows((lattice, patch), columns, rows, enough);
+        let (found, listing) = (&mut self.found, &self.listing);
+        found.restart(patch.origin());
         let ([xs, ys], ids) = (&mut found.places, &mut found.ids);
         listing.write(backend, lattice.turned.vectors(), [xs, ys, ids]);
         let length = found.len();

@@ -190,7 +190,7 @@ pub(super) fn find_few(scope: &Scope) -> Option<Few> {
             let end = y.all.end.min(patch.end());
             while next < end && !scope.stop.is_raised() {
                 let by = Backend::best();
-                next = flat.list((lattice, &patch), &range, next..end, enough, by);
+                next = flat.list((lattice, &patch), [&range; 2], next..end, enough, by);
                 if let Some(sieve) = &mut sieve {
                     sieve.retain(Scale::new(lattice, &patch), &mut flat.found);
                 }

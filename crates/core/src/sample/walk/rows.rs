@@ -178,9 +178,13 @@ impl<F: Format> RowWalk<F> {
         } = &mut self.bands;
         // Some two in three points of a small box's patches lie inside.
         let enough = (2 * out.len()).clamp(64, FLAT);
-        let next = self
-            .flat
-            .list((&scope.lattice, patch), &range, at.y..end, enough, *backend);
+        let next = self.flat.list(
+            (&scope.lattice, patch),
+            [&range; 2],
+            at.y..end,
+            enough,
+            *backend,
+        );
         let found = &self.flat.found;
         write_found(
             (&*format, *backend),

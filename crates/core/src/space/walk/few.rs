@@ -137,7 +137,7 @@ fn warp(scope: &Scope, batch: &mut Batch) {
     batch.pad(WHOLE);
     for (shears, [a, b]) in patch.planes.iter().zip(PLANES) {
         if let Ok(places) = batch.places.get_disjoint_mut([a, b]) {
-            warp_all(Backend::best(), shears, places.map(Vec::as_mut_slice));
+            warp_all(Backend::best(), shears, places.map(|list| &mut list[..]));
         }
     }
     batch
