@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use strew_core::Map;
 
 use super::overlap::Overlaps;
+use crate::thinned::longest;
 
 /// Lists have whole groups of this many pairs, so that the compiler can vectorize sums over them.
 /// The number also fixes the order of summation, so tables depend on it.
@@ -150,11 +151,7 @@ impl Neighbors {
 
     /// Builds the lists for these moves.
     pub(super) fn build(&mut self, moves: &[[f64; 2]]) {
-        let longest = moves
-            .iter()
-            .map(|m| m[0] * m[0] + m[1] * m[1])
-            .fold(0.0, f64::max)
-            .sqrt();
+        let longest = longest(moves);
         let range = self.cutoff + SKIN;
         let of_block: Vec<Vec<Pair>> = (0..moves.len())
             .into_par_iter()

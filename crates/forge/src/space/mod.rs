@@ -2,7 +2,7 @@
 //!
 //! A [`SpaceJob`] is worked off in phases (`job`): descents of a Gaussian energy (`descent`, `energy`), first on a coarse
 //! map, and pushes (`push`), each between two steps no more than a `state`, which checkpoints keep. The table is made on
-//! the exact frequencies of pairs of its blocks in the unbounded set (`meetings`, `pairs`), so no twin is favored, and
+//! the exact frequencies of pairs of its blocks in the unbounded set (`pairs`), so no twin is favored, and
 //! every periodic twin is one that it was not made on. `make` runs the phases, adds the `order` in which blocks leave and
 //! has the table judged; `measure` has the figures.
 
@@ -14,7 +14,6 @@ mod job;
 mod judge;
 mod make;
 mod measure;
-mod meetings;
 mod order;
 mod pairs;
 mod push;

@@ -4,6 +4,7 @@ mod ground;
 mod order;
 mod twin;
 
-pub(crate) use ground::{Ground, moves_of};
+pub(crate) use ground::{Ground, longest, moves_of};
 pub use order::with_ranks;
+pub(crate) use order::{Surroundings, positions};
 pub use twin::ThinnedTwin;
