@@ -202,6 +202,10 @@ mod tests {
     use super::*;
     use crate::forge;
 
+    fn of(alpha: &str) -> Alpha {
+        alpha.parse().expect("valid")
+    }
+
     #[test]
     fn bad_parts_are_refused_with_name_value_and_allowed_range() {
         let good = Job {
@@ -209,58 +213,24 @@ mod tests {
             steps: Some(1),
             ..Job::new("(5-sqrt(3))/2".parse().expect("valid"))
         };
-        let of = |alpha: &str| alpha.parse::<Alpha>().expect("valid");
-        for (job, words) in [
+        let bad: [(fn(&mut Job), _); 7] = [
+            (|job| job.alpha = of("3/2"), ["alpha", "3/2", "1.1"]),
+            (|job| job.alpha = of("1.01"), ["alpha", "101/100", "1.1"]),
+            (|job| job.steps = Some(0), ["steps", "0", "1 to 1000000"]),
             (
-                Job {
-                    alpha: of("3/2"),
-                    ..good.clone()
-                },
-                ["alpha", "3/2", "1.1"],
-            ),
-            (
-                Job {
-                    alpha: of("1.01"),
-                    ..good.clone()
-                },
-                ["alpha", "101/100", "1.1"],
-            ),
-            (
-                Job {
-                    steps: Some(0),
-                    ..good.clone()
-                },
-                ["steps", "0", "1 to 1000000"],
-            ),
-            (
-                Job {
-                    steps: Some(u32::MAX),
-                    ..good.clone()
-                },
+                |job| job.steps = Some(u32::MAX),
                 ["steps", "4294967295", "1000000"],
             ),
+            (|job| job.radius = 0, ["R", "0", "1 to 256"]),
+            (|job| job.radius = 257, ["R", "257", "1 to 256"]),
             (
-                Job {
-                    radius: 0,
-                    ..good.clone()
-                },
-                ["R", "0", "1 to 256"],
-            ),
-            (
-                Job {
-                    radius: 257,
-                    ..good.clone()
-                },
-                ["R", "257", "1 to 256"],
-            ),
-            (
-                Job {
-                    profile: "bleu".into(),
-                    ..good.clone()
-                },
+                |job| job.profile = "bleu".into(),
                 ["profile", "bleu", "blue"],
             ),
-        ] {
+        ];
+        for (change, words) in bad {
+            let mut job = good.clone();
+            change(&mut job);
             let refused = [
                 forge(&job, &()).expect_err("refused"),
                 job.estimate().expect_err("refused"),

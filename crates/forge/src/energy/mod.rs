@@ -10,12 +10,8 @@ mod gaussian;
 mod guard;
 mod lloyd;
 mod pair;
-mod pairwise;
-mod set;
 
 pub use gaussian::Gaussian;
 pub use guard::Guard;
 pub use lloyd::{Cell, Lloyd};
-pub use pair::PairEnergy;
-pub use pairwise::Pairwise;
-pub use set::SetEnergy;
+pub use pair::{PairEnergy, Pairwise, SetEnergy};

@@ -96,7 +96,7 @@ mod tests {
         let mut energy = Together::new(&table, &[1.0 / 3.0, 2.0 / 3.0], &kinds);
         let blocks = mix.labels().len();
         let mut moves = moves_of(&table);
-        for (to, by) in moves.iter_mut().zip(jitter(blocks, 0.4, 5)) {
+        for (to, by) in moves.iter_mut().zip(jitter::<2>(blocks, 0.4, 5)) {
             *to = [to[0] + by[0], to[1] + by[1]];
         }
         let mut slopes = vec![[0.0; 2]; blocks];

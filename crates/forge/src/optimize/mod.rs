@@ -15,10 +15,8 @@ mod pairs;
 mod radial;
 mod rings;
 mod sets;
-mod start;
-mod state;
 
-pub use descent::Descent;
+pub use descent::{Descent, DescentState, jitter};
 pub(crate) use neighbors::{CHUNK, LANES, Pair, sum};
 pub use objective::Objective;
 pub(crate) use overlap::Overlaps;
@@ -26,5 +24,3 @@ pub use pairs::Pairs;
 pub use radial::Radial;
 pub use rings::RadialWeights;
 pub use sets::Sets;
-pub use start::jitter;
-pub use state::DescentState;

@@ -189,40 +189,22 @@ pub(super) const JITTER: f64 = 0.2;
 mod tests {
     use super::*;
 
+    fn alpha(text: &str) -> Alpha {
+        text.parse().expect("valid")
+    }
+
     #[test]
     fn bad_parts_are_refused_with_name_value_and_allowed_range() {
         let good = SpaceJob::new(SpaceProfile::Blue);
-        let alpha = |text: &str| text.parse().expect("valid");
-        for (job, words) in [
-            (
-                SpaceJob {
-                    alpha: alpha("1.4"),
-                    ..good.clone()
-                },
-                ["alpha", "7/5", "1.51"],
-            ),
-            (
-                SpaceJob {
-                    radius: 0,
-                    ..good.clone()
-                },
-                ["R", "0", "1 to 22"],
-            ),
-            (
-                SpaceJob {
-                    radius: 23,
-                    ..good.clone()
-                },
-                ["R", "23", "1 to 22"],
-            ),
-            (
-                SpaceJob {
-                    steps: Some(0),
-                    ..good.clone()
-                },
-                ["steps", "0", "1 to 1000000"],
-            ),
-        ] {
+        let bad: [(fn(&mut SpaceJob), _); 4] = [
+            (|job| job.alpha = alpha("1.4"), ["alpha", "7/5", "1.51"]),
+            (|job| job.radius = 0, ["R", "0", "1 to 22"]),
+            (|job| job.radius = 23, ["R", "23", "1 to 22"]),
+            (|job| job.steps = Some(0), ["steps", "0", "1 to 1000000"]),
+        ];
+        for (change, words) in bad {
+            let mut job = good.clone();
+            change(&mut job);
             let error = job.maps().expect_err("refused").to_string();
             assert!(words.iter().all(|word| error.contains(word)), "{error}");
         }

@@ -1,6 +1,9 @@
 //! Push and pull: points that are too near push each other apart, until a target distance is kept everywhere.
 
-use super::{descent::single, pairs::Blocks, state::SpaceState};
+use super::{
+    descent::{SpaceState, single},
+    pairs::Blocks,
+};
 
 /// The target distances at the start and at the end, in mean spacings: 0.76 and 0.86 of the densest packing's.
 const TARGETS: [f64; 2] = [0.853, 0.965];
