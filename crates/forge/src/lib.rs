@@ -36,7 +36,6 @@
 
 mod checkpoint;
 pub mod curve;
-mod domain;
 pub mod energy;
 mod error;
 mod estimate;

@@ -8,10 +8,10 @@ use strew_core::{
 use crate::{
     ForgeError, Job, MAX_RADIUS, MAX_STEPS,
     curve::{LeastCorrelation, Target, to_parameters},
-    domain::Domain,
     judge::{Bound, Panel, bounds_of_curve},
     optimize::{Descent, jitter},
     profile::{Phase, Profile, Recipe},
+    twins::Domain,
 };
 
 /// The least side t of the set region, that of α = 1.1. Below it a map of any half-width covers too

@@ -6,12 +6,8 @@
 //! A [`SetEnergy`] is any function of a periodic point set, such as [`Lloyd`]. [`Pairwise`] makes a
 //! set energy of a pair energy.
 
-mod gaussian;
-mod guard;
 mod lloyd;
 mod pair;
 
-pub use gaussian::Gaussian;
-pub use guard::Guard;
 pub use lloyd::{Cell, Lloyd};
-pub use pair::{PairEnergy, Pairwise, SetEnergy};
+pub use pair::{Gaussian, Guard, PairEnergy, Pairwise, SetEnergy};

@@ -9,16 +9,14 @@
 
 mod descent;
 mod neighbors;
-mod objective;
 mod overlap;
 mod pairs;
 mod radial;
 mod rings;
 mod sets;
 
-pub use descent::{Descent, DescentState, jitter};
+pub use descent::{Descent, DescentState, Objective, jitter};
 pub(crate) use neighbors::{CHUNK, LANES, Pair, sum};
-pub use objective::Objective;
 pub(crate) use overlap::Overlaps;
 pub use pairs::Pairs;
 pub use radial::Radial;

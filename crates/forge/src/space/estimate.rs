@@ -5,12 +5,11 @@ use std::time::{Duration, Instant};
 use strew_core::Map;
 
 use super::{
-    descent::Descent,
+    descent::{Descent, push},
     job::{SpaceJob, Work},
     judge::planned_points,
     make::start,
     pairs::Blocks,
-    push::push,
 };
 use crate::ForgeError;
 

@@ -3,12 +3,11 @@
 use strew_core::{Map, space::Table, table::Provenance};
 
 use super::{
-    descent::{Descent, SpaceState},
+    descent::{Descent, SpaceState, push},
     job::{JITTER, SpaceJob, SpaceProfile, Work},
     judge::{Judge, complaints},
     order::with_ranks,
     pairs::{Blocks, longest},
-    push::push,
 };
 use crate::{
     Checkpoint, ForgeError, Meter, Outcome, Stage, Watch,
