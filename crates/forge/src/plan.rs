@@ -55,22 +55,21 @@ impl Plan {
             }
         };
         let mut steps = job.steps.unwrap_or(profile.steps);
-        in_range("steps", steps, MAX_STEPS)?;
+        ForgeError::unless_in_range("steps", steps, MAX_STEPS)?;
         if profile.recipe == Recipe::Undisplaced {
             steps = 0;
         }
         let most = target.as_ref().map_or(MAX_RADIUS, |_| MAX_RADIAL_RADIUS);
-        in_range("R", job.radius, most)?;
+        ForgeError::unless_in_range("R", job.radius, most)?;
         let map = Map::new(job.alpha, job.radius).map_err(ForgeError::Table)?;
         let mut domain = Domain::new(map);
         if domain.twins.is_empty() || domain.scale() < MIN_SIDE {
-            return Err(ForgeError::Field {
-                field: "alpha",
-                value: format!("{} ({})", job.alpha, job.prospect()),
-                allowed: "at least 1.1, and neither a fraction of small integers nor next to one: there the \
-                          map has ties, or an order of thresholds that no periodic twin of moderate size has"
-                    .into(),
-            });
+            return Err(ForgeError::field(
+                "alpha",
+                format!("{} ({})", job.alpha, job.prospect()),
+                "at least 1.1, and neither a fraction of small integers nor next to one: there the \
+                          map has ties, or an order of thresholds that no periodic twin of moderate size has",
+            ));
         }
         if let Recipe::Radial { .. } = profile.recipe {
             // Curves are followed on unbounded patterns.
@@ -169,10 +168,12 @@ impl Plan {
         provenance: Provenance,
     ) -> Result<Table, ForgeError> {
         let unit = 1.0 / self.domain.scale();
-        let too_long = || ForgeError::Field {
-            field: "displacement",
-            value: "too long".into(),
-            allowed: "vectors short enough for a table, as after fewer steps".into(),
+        let too_long = || {
+            ForgeError::field(
+                "displacement",
+                "too long",
+                "vectors short enough for a table, as after fewer steps",
+            )
         };
         let vectors = moves
             .iter()
@@ -182,17 +183,6 @@ impl Plan {
         let table = Table::new(self.domain.map.clone(), &self.name, vectors, provenance)?;
         Ok(table)
     }
-}
-
-fn in_range(field: &'static str, value: u32, most: u32) -> Result<(), ForgeError> {
-    if (1..=most).contains(&value) {
-        return Ok(());
-    }
-    Err(ForgeError::Field {
-        field,
-        value: value.to_string(),
-        allowed: format!("1 to {most}"),
-    })
 }
 
 #[cfg(test)]

@@ -163,13 +163,13 @@ pub(super) fn check_window(window: u32) -> Result<(), SettingError> {
     if WINDOWS.contains(&window) {
         return Ok(());
     }
-    Err(SettingError {
-        field: "window".into(),
-        value: window.to_string(),
-        allowed: format!(
+    Err(SettingError::new(
+        "window",
+        window,
+        format!(
             "an integer from {} to {} grid units",
             WINDOWS.start(),
             WINDOWS.end()
         ),
-    })
+    ))
 }

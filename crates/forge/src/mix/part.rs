@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::{
     energy::PairEnergy,
-    optimize::{CHUNK, LANES, Pair, sum},
+    optimize::{CHUNK, Pair, fill, sum},
     thinned::{Ground, longest},
 };
 
@@ -105,13 +105,7 @@ impl<E: PairEnergy> Part<E> {
                         list.push(Pair { weight, ..near });
                     }
                 });
-                let filler = Pair {
-                    to: block,
-                    i: 0,
-                    j: 0,
-                    weight: 0.0,
-                };
-                list.resize(list.len().next_multiple_of(LANES), filler);
+                fill(&mut list);
                 list
             })
             .collect();

@@ -16,7 +16,7 @@ mod rings;
 mod sets;
 
 pub use descent::{Descent, DescentState, Objective, jitter};
-pub(crate) use neighbors::{CHUNK, LANES, Pair, sum};
+pub(crate) use neighbors::{CHUNK, Pair, fill, sum};
 pub(crate) use overlap::Overlaps;
 pub use pairs::Pairs;
 pub use radial::Radial;

@@ -33,6 +33,17 @@ pub(crate) struct Pair {
     pub(crate) weight: f32,
 }
 
+/// Fills the last group of [`LANES`] with pairs of weight 0.
+pub(crate) fn fill(list: &mut Vec<Pair>) {
+    let weightless = Pair {
+        to: 0,
+        i: 0,
+        j: 0,
+        weight: 0.0,
+    };
+    list.resize(list.len().next_multiple_of(LANES), weightless);
+}
+
 /// The energy and the gradient of one instance of a block at the move `own`, lane by lane, over its list. `pair` is
 /// the [`PairEnergy`](crate::energy::PairEnergy) of a squared distance in mean spacings, of which `scale` make a
 /// grid unit.
@@ -206,8 +217,7 @@ impl Neighbors {
     }
 }
 
-/// One pair for each key, whose weight is the sum of its areas over that of the block. Pairs of
-/// weight 0 fill the last group of [`LANES`].
+/// One pair for each key, whose weight is the sum of its areas over that of the block.
 fn merge(mut found: Vec<(Key, f64)>, area: f64) -> Vec<Pair> {
     found.sort_by_key(|&(key, _)| key);
     let mut pairs: Vec<Pair> = Vec::with_capacity(found.len() / 2);
@@ -221,13 +231,7 @@ fn merge(mut found: Vec<(Key, f64)>, area: f64) -> Vec<Pair> {
             sum = 0.0;
         }
     }
-    let filler = Pair {
-        to: 0,
-        i: 0,
-        j: 0,
-        weight: 0.0,
-    };
-    pairs.resize(pairs.len().next_multiple_of(LANES), filler);
+    fill(&mut pairs);
     pairs
 }
 

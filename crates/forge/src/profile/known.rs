@@ -66,11 +66,11 @@ impl Profile {
     pub fn custom(name: &str) -> Result<&'static Self, ForgeError> {
         match Self::named(name) {
             Err(_) => Ok(&CUSTOM),
-            Ok(_) => Err(ForgeError::Field {
-                field: "profile",
-                value: format!("{name:?}"),
-                allowed: "for a custom curve, any name that no built-in profile has".into(),
-            }),
+            Ok(_) => Err(ForgeError::field(
+                "profile",
+                format!("{name:?}"),
+                "for a custom curve, any name that no built-in profile has",
+            )),
         }
     }
 
@@ -82,14 +82,16 @@ impl Profile {
         Self::ALL
             .iter()
             .find(|profile| profile.name == name)
-            .ok_or_else(|| ForgeError::Field {
-                field: "profile",
-                value: format!("{name:?}"),
-                allowed: Self::ALL
-                    .iter()
-                    .map(|profile| profile.name)
-                    .collect::<Vec<_>>()
-                    .join(", "),
+            .ok_or_else(|| {
+                ForgeError::field(
+                    "profile",
+                    format!("{name:?}"),
+                    Self::ALL
+                        .iter()
+                        .map(|profile| profile.name)
+                        .collect::<Vec<_>>()
+                        .join(", "),
+                )
             })
     }
 }
