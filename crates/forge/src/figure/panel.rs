@@ -163,13 +163,7 @@ pub(super) fn check_window(window: u32) -> Result<(), SettingError> {
     if WINDOWS.contains(&window) {
         return Ok(());
     }
-    Err(SettingError::new(
-        "window",
-        window,
-        format!(
-            "an integer from {} to {} grid units",
-            WINDOWS.start(),
-            WINDOWS.end()
-        ),
-    ))
+    let (least, most) = (WINDOWS.start(), WINDOWS.end());
+    let allowed = format!("an integer from {least} to {most} grid units");
+    Err(SettingError::new("window", window, allowed))
 }

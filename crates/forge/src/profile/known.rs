@@ -79,20 +79,11 @@ impl Profile {
     /// # Errors
     /// [`ForgeError::Field`] with the allowed names if there is none.
     pub fn named(name: &str) -> Result<&'static Self, ForgeError> {
-        Self::ALL
-            .iter()
-            .find(|profile| profile.name == name)
-            .ok_or_else(|| {
-                ForgeError::field(
-                    "profile",
-                    format!("{name:?}"),
-                    Self::ALL
-                        .iter()
-                        .map(|profile| profile.name)
-                        .collect::<Vec<_>>()
-                        .join(", "),
-                )
-            })
+        let found = Self::ALL.iter().find(|profile| profile.name == name);
+        found.ok_or_else(|| {
+            let names: Vec<&str> = Self::ALL.iter().map(|profile| profile.name).collect();
+            ForgeError::field("profile", format!("{name:?}"), names.join(", "))
+        })
     }
 }
 
