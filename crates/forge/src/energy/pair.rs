@@ -3,10 +3,7 @@
 
 use rayon::prelude::*;
 
-use crate::{
-    measure::{CellList, Sample},
-    numeric::exp,
-};
+use crate::{cell_list::CellList, measure::Sample, numeric::exp};
 
 /// An energy that is a sum over unordered pairs of points, at unit density.
 pub trait PairEnergy: Sync {

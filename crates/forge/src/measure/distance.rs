@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::{CellList, Sample};
+use super::Sample;
+use crate::cell_list::CellList;
 
 /// Nearest-neighbor distances in units of √(2/√3)·N^−½, the nearest-neighbor distance of the
 /// hexagonal lattice of the same density. The smallest distance is at most 1.

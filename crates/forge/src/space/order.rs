@@ -8,7 +8,7 @@ use strew_core::{Error, space::Table, table::Ranks};
 use super::pairs::{Blocks, Pairs};
 use crate::{
     numeric::exp32,
-    thinned::{Surroundings, positions},
+    order::{Surroundings, positions},
 };
 
 /// Below this share of the points neighbors are farther apart than pairs are listed.

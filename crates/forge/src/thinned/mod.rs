@@ -6,5 +6,4 @@ mod twin;
 
 pub(crate) use ground::{Ground, longest, moves_of};
 pub use order::with_ranks;
-pub(crate) use order::{Surroundings, positions};
 pub use twin::ThinnedTwin;

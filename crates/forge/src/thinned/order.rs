@@ -1,6 +1,4 @@
-//! The order in which blocks leave: void and cluster (Ulichney 1993) over blocks instead of points.
-//!
-//! Again and again the block of the highest potential leaves, a Gaussian sum over what is left. σ is
+//! The [order](crate::order) in which the blocks of a table leave. A potential is a Gaussian sum over what is left. σ is
 //! 0.6 of the mean spacing that is left. Frequencies are exact, vectors are the table's own, and no
 //! point moves.
 
@@ -8,7 +6,12 @@ use rayon::prelude::*;
 use strew_core::{Table, table::Ranks};
 
 use super::ground::{Ground, longest, moves_of};
-use crate::{ForgeError, numeric::exp, optimize::Pair};
+use crate::{
+    ForgeError,
+    numeric::exp,
+    optimize::Pair,
+    order::{Surroundings, positions},
+};
 
 /// σ in mean spacings of the thinned set. At 0.7 low power is about equal and pairs are nearer, at 0.9 low
 /// power is a third higher.
@@ -57,54 +60,6 @@ pub fn with_ranks(table: &Table) -> Result<Table, ForgeError> {
     };
     let positions = positions(&mut left, ground.blocks(), 1.0 - BATCH, FEWEST);
     Ok(table.with_ranks(Ranks::new(positions)?)?)
-}
-
-/// What presses on what while blocks leave.
-pub(crate) trait Surroundings {
-    /// The share of all points that a block has.
-    fn share(&self, block: usize) -> f64;
-
-    /// The potential of each block that is left. It serves until of the share `left` of all points only `target` is left.
-    fn potentials(&mut self, is_left: &[bool], left: f64, target: f64) -> Vec<f64>;
-
-    /// Calls `lose` for the blocks whose potentials fall when a block leaves, with how far.
-    fn leave(&self, block: usize, lose: impl FnMut(usize, f64));
-}
-
-/// The order in which a number of blocks leave, as the position of each: 0 for the one that leaves last. Potentials are
-/// made again when the part `kept` of what was left is left; the last `fewest` blocks are not told apart.
-pub(crate) fn positions(
-    around: &mut impl Surroundings,
-    blocks: usize,
-    kept: f64,
-    fewest: usize,
-) -> Vec<u32> {
-    let mut is_left = vec![true; blocks];
-    let mut positions = vec![0; blocks];
-    let (mut left, mut number) = (1.0, blocks);
-    while number > fewest {
-        let target = left * kept;
-        let mut potential = around.potentials(&is_left, left, target);
-        loop {
-            let fullest = (0..blocks)
-                .filter(|&b| is_left[b])
-                .max_by(|&a, &b| potential[a].total_cmp(&potential[b]).then(b.cmp(&a)));
-            let Some(block) = fullest else { break };
-            is_left[block] = false;
-            left -= around.share(block);
-            number -= 1;
-            positions[block] = number as u32;
-            around.leave(block, |to, by| potential[to] -= by);
-            if left <= target || number <= fewest {
-                break;
-            }
-        }
-    }
-    let rest = (0..blocks).rev().filter(|&b| is_left[b]);
-    for (position, block) in (0..).zip(rest) {
-        positions[block] = position;
-    }
-    positions
 }
 
 /// The blocks of a table that are left, and which of them influence each other.

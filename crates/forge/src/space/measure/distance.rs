@@ -1,7 +1,7 @@
 //! The distances between neighbors.
 
 use super::points::SpacePoints;
-use crate::measure::{CellList, least_and_mean};
+use crate::{cell_list::CellList, measure::least_and_mean};
 
 /// The distances of points to their nearest neighbors, over that of the densest packing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

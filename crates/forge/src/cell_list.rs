@@ -1,6 +1,6 @@
 //! A cell list, which finds the points near a place on a torus or in a box.
 
-use super::Sample;
+use crate::measure::Sample;
 
 /// Points sorted into square cells, in space into cubes.
 pub(crate) struct CellList<const D: usize = 2> {
