@@ -1,7 +1,8 @@
 //! Radial power curves: what a spectrum should be.
 //!
 //! A [`Target`] is read by `text`: from lines of two numbers, or through `pieces` from TOML, which
-//! turns power laws into points. The history of a table records its curve in the same form. [`LeastCorrelation`] shows whether a point set can have the curve at all.
+//! turns power laws into points. The history of a table records its curve in lines of two numbers,
+//! too. [`LeastCorrelation`] shows whether a point set can have the curve at all.
 
 mod correlation;
 mod pieces;

@@ -1,12 +1,10 @@
-//! The error of a radial power spectrum against its target.
+//! The error of a radial power spectrum against its target, and whether a custom curve was met.
 //!
 //! Each ring compares the mean power of its modes with the mean of the target over its area.
 //! Rings narrower than [`TARGET_RING`] would show the speckle of one point set, not its noise.
 //!
-//! Whether a custom curve was met, and how near a table came to it.
-//!
-//! The error counts in relation to what the curve demands, so that a random set does not meet a
-//! curve that hardly differs from 1. The bounds follow from the root mean square of the curve's
+//! For a custom curve the error counts in relation to what the curve demands, so that a random set does
+//! not meet a curve that hardly differs from 1. The bounds follow from the root mean square of the curve's
 //! departure from 1, over the same rings as the error ([`TARGET_RING`] wide, to ν = 4).
 
 use strew_core::table::Figures;

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use crate::thinned::{Ground, longest};
+use crate::{optimize::longest, thinned::Ground};
 
 /// √(2/√3), the hexagonal distance in mean spacings.
 const HEXAGONAL: f64 = 1.074_569_931_823_542;

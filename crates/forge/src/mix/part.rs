@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use crate::{
     energy::PairEnergy,
-    optimize::{CHUNK, Pair, fill, sum},
-    thinned::{Ground, longest},
+    optimize::{CHUNK, Pair, fill, longest, sum},
+    thinned::Ground,
 };
 
 /// The points of one kind.

@@ -9,14 +9,16 @@
 
 mod descent;
 mod neighbors;
+mod objective;
 mod overlap;
 mod pairs;
 mod radial;
 mod rings;
 mod sets;
 
-pub use descent::{Descent, DescentState, Objective, jitter};
-pub(crate) use neighbors::{CHUNK, Pair, fill, sum};
+pub use descent::Descent;
+pub(crate) use neighbors::{CHUNK, Pair, fill, longest, sum};
+pub use objective::{DescentState, Objective, jitter};
 pub(crate) use overlap::Overlaps;
 pub use pairs::Pairs;
 pub use radial::Radial;

@@ -10,7 +10,6 @@ use rayon::prelude::*;
 use strew_core::Map;
 
 use super::overlap::Overlaps;
-use crate::thinned::longest;
 
 /// Lists have whole groups of this many pairs, so that the compiler can vectorize sums over them.
 /// The number also fixes the order of summation, so tables depend on it.
@@ -31,6 +30,12 @@ pub(crate) struct Pair {
     pub(crate) j: i16,
     /// The mean number of such neighbors of an instance of the block.
     pub(crate) weight: f32,
+}
+
+/// The length of the longest move.
+pub(crate) fn longest(moves: &[[f64; 2]]) -> f64 {
+    let squared = moves.iter().map(|m| m[0] * m[0] + m[1] * m[1]);
+    squared.fold(0.0, f64::max).sqrt()
 }
 
 /// Fills the last group of [`LANES`] with pairs of weight 0.

@@ -1,39 +1,11 @@
-//! The definition of a noise profile, the list of all, and finding them by name.
+//! The list of profiles, and finding them by name.
 
 use super::{
-    Recipe,
+    Profile, Recipe,
     blue::{BLUE, LLOYD, SHARP, SPACED},
     curves::{CUSTOM, GREEN, PINK, SINGLE_PEAK, STEP},
 };
-use crate::{ForgeError, curve::Target, judge::Bound};
-
-/// A noise profile: how its tables are optimized, and what they must satisfy.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Profile {
-    /// The name, which table files record.
-    pub name: &'static str,
-    /// A description in one line.
-    pub summary: &'static str,
-    /// The way in which the tables are optimized.
-    pub recipe: Recipe,
-    /// The half-width, in mean spacings, of the square that the vectors of the random start fill.
-    pub jitter: f64,
-    /// The default number of optimizer steps.
-    pub steps: u32,
-    /// The bounds that the figures of every unseen point set must satisfy.
-    pub bounds: &'static [Bound],
-}
-
-impl Profile {
-    /// The radial power curve that the profile follows, if any.
-    #[must_use]
-    pub fn target(&self) -> Option<Target> {
-        match self.recipe {
-            Recipe::Radial { curve, .. } => Some(Target::fixed(curve)),
-            _ => None,
-        }
-    }
-}
+use crate::ForgeError;
 
 /// The AA pattern itself. Its figures have no bounds; they are recorded for comparison.
 const PATTERN: Profile = Profile {

@@ -1,10 +1,10 @@
 //! Tables of points in space: making and judging them.
 //!
-//! A [`SpaceJob`] is worked off in phases (`job`): descents of a Gaussian energy (`energy`), first on a coarse
-//! map, and pushes (both in `descent`), each between two steps no more than a state, which checkpoints keep. The table is made on
-//! the exact frequencies of pairs of its blocks in the unbounded set (`pairs`), so no twin is favored, and
-//! every periodic twin is one that it was not made on. `make` runs the phases, adds the `order` in which blocks leave and
-//! has the table judged; `measure` has the figures.
+//! A [`SpaceJob`] is worked off in phases (`job`): descents of a Gaussian energy (`energy`), first on a coarse map, and
+//! pushes (both in `descent`). Between two steps there is no more than a state, which checkpoints keep. The table is made
+//! on the exact frequencies of pairs of its blocks in the unbounded set (`pairs`), so no twin is favored, and every
+//! periodic twin is one that it was not made on. `make` runs the phases, adds the `order` in which blocks leave and has
+//! the table judged; `measure` has the figures.
 
 mod descent;
 mod energy;

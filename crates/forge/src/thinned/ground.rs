@@ -157,9 +157,3 @@ pub(crate) fn moves_of(table: &Table) -> Vec<[f64; 2]> {
         .map(|v| v.map(|c| to_grid_units(c) * scale))
         .collect()
 }
-
-/// The length of the longest move.
-pub(crate) fn longest(moves: &[[f64; 2]]) -> f64 {
-    let squared = moves.iter().map(|m| m[0] * m[0] + m[1] * m[1]);
-    squared.fold(0.0, f64::max).sqrt()
-}

@@ -4,6 +4,6 @@ mod ground;
 mod order;
 mod twin;
 
-pub(crate) use ground::{Ground, longest, moves_of};
+pub(crate) use ground::{Ground, moves_of};
 pub use order::with_ranks;
 pub use twin::ThinnedTwin;

@@ -1,15 +1,14 @@
-//! The [order](crate::order) in which the blocks of a table leave. A potential is a Gaussian sum over what is left. σ is
-//! 0.6 of the mean spacing that is left. Frequencies are exact, vectors are the table's own, and no
-//! point moves.
+//! The [order](crate::order) in which the blocks of a table leave. A potential is a Gaussian sum over what is left.
+//! σ is 0.6 of the mean spacing that is left. Frequencies are exact, vectors are the table's own, and no point moves.
 
 use rayon::prelude::*;
 use strew_core::{Table, table::Ranks};
 
-use super::ground::{Ground, longest, moves_of};
+use super::ground::{Ground, moves_of};
 use crate::{
     ForgeError,
     numeric::exp,
-    optimize::Pair,
+    optimize::{Pair, longest},
     order::{Surroundings, positions},
 };
 
