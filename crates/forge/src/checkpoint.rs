@@ -79,11 +79,11 @@ impl Checkpoint {
         }
         let differs = self.job.lines().zip(job.lines()).find(|(a, b)| a != b);
         let (theirs, ours) = differs.unwrap_or(("longer or shorter", "as described"));
-        Err(ForgeError::Field {
-            field: "checkpoint",
-            value: format!("one of another job ({theirs})"),
-            allowed: format!("one of this job ({ours})"),
-        })
+        Err(ForgeError::field(
+            "checkpoint",
+            format!("one of another job ({theirs})"),
+            format!("one of this job ({ours})"),
+        ))
     }
 
     /// The content of a checkpoint file.
@@ -231,13 +231,7 @@ impl Checkpoint {
     /// [`ForgeError::File`] if it cannot be read, [`ForgeError::NotACheckpoint`] if it is larger
     /// than any checkpoint or [`from_bytes`](Self::from_bytes) refuses it.
     pub fn read_file(path: &Path) -> Result<Option<Self>, ForgeError> {
-        let failed = |action| {
-            move |source| ForgeError::File {
-                action,
-                path: path.to_owned(),
-                source,
-            }
-        };
+        let failed = |action| ForgeError::file(action, path);
         let not = |error: ForgeError| ForgeError::NotACheckpoint {
             path: path.to_owned(),
             error: Box::new(error),
@@ -260,11 +254,11 @@ pub(crate) fn other_kind(of: &str) -> ForgeError {
 }
 
 fn wrong(value: String) -> ForgeError {
-    ForgeError::Field {
-        field: "checkpoint",
+    ForgeError::field(
+        "checkpoint",
         value,
-        allowed: "one written by this version of the forge".into(),
-    }
+        "one written by this version of the forge",
+    )
 }
 
 /// Takes values off the front of a file's content.

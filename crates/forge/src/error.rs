@@ -1,6 +1,9 @@
 //! Errors of making, reading and writing tables.
 
-use std::{io, path::PathBuf};
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
 
 use strew_core::table::MAX_FILE_BYTES;
 
@@ -30,6 +33,16 @@ impl From<strew_core::Error> for SettingError {
             field: error.field().into(),
             value: error.value().into(),
             allowed: error.allowed().into(),
+        }
+    }
+}
+
+impl SettingError {
+    pub(crate) fn new(field: &str, value: impl ToString, allowed: impl Into<String>) -> Self {
+        Self {
+            field: field.into(),
+            value: value.to_string(),
+            allowed: allowed.into(),
         }
     }
 }
@@ -91,4 +104,37 @@ pub enum ForgeError {
         /// The cause.
         source: io::Error,
     },
+}
+
+impl ForgeError {
+    /// The refusal of a part.
+    pub(crate) fn field(
+        field: &'static str,
+        value: impl ToString,
+        allowed: impl Into<String>,
+    ) -> Self {
+        Self::Field {
+            field,
+            value: value.to_string(),
+            allowed: allowed.into(),
+        }
+    }
+
+    /// Refuses a part that is 0 or more than `most`.
+    pub(crate) fn unless_in_range(field: &'static str, value: u32, most: u32) -> Result<(), Self> {
+        match (1..=most).contains(&value) {
+            true => Ok(()),
+            false => Err(Self::field(field, value, format!("1 to {most}"))),
+        }
+    }
+
+    /// The error of an operation on a file or folder, of its cause.
+    pub(crate) fn file(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::File {
+            action,
+            path,
+            source,
+        }
+    }
 }

@@ -75,13 +75,7 @@ pub(crate) fn is_space(bytes: &[u8]) -> bool {
 
 /// The content of a table file, at most one byte more than such files may have.
 pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, ForgeError> {
-    let failed = |action| {
-        move |source| ForgeError::File {
-            action,
-            path: path.to_owned(),
-            source,
-        }
-    };
+    let failed = |action| ForgeError::file(action, path);
     let file = File::open(path).map_err(failed("open"))?;
     let bytes = file.metadata().map_err(failed("examine"))?.len();
     if bytes > MAX_FILE_BYTES {
@@ -119,14 +113,6 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), ForgeError> {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let failed = |action, path: &Path| {
-        let path = path.to_owned();
-        move |source| ForgeError::File {
-            action,
-            path,
-            source,
-        }
-    };
     let mut builder = tempfile::Builder::new();
     builder.prefix(".strew-").suffix(".part");
     #[cfg(unix)]
@@ -137,16 +123,19 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), ForgeError> {
     }
     let mut file = builder
         .tempfile_in(folder)
-        .map_err(failed("create a file in", folder))?;
-    file.write_all(bytes).map_err(failed("write", path))?;
-    file.as_file().sync_all().map_err(failed("flush", path))?;
+        .map_err(ForgeError::file("create a file in", folder))?;
+    file.write_all(bytes)
+        .map_err(ForgeError::file("write", path))?;
+    file.as_file()
+        .sync_all()
+        .map_err(ForgeError::file("flush", path))?;
     file.persist(path)
-        .map_err(|e| failed("replace", path)(e.error))?;
+        .map_err(|e| ForgeError::file("replace", path)(e.error))?;
     // The rename is on the disk only once the folder is. Windows cannot flush folders and need not.
     #[cfg(unix)]
     File::open(folder)
         .and_then(|folder| folder.sync_all())
-        .map_err(failed("flush", folder))?;
+        .map_err(ForgeError::file("flush", folder))?;
     Ok(())
 }
 

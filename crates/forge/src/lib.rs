@@ -34,9 +34,9 @@
 //! a checkpoint. For an existing table, [`with_ranks`] makes the order in which its points leave, and [`labels`] and
 //! [`mix()`] make kinds of points. Apart from jobs, a [`Report`] measures any point set, and [`figure::report`] draws it.
 
+mod cell_list;
 mod checkpoint;
 pub mod curve;
-mod domain;
 pub mod energy;
 mod error;
 mod estimate;
@@ -50,6 +50,7 @@ pub mod measure;
 mod mix;
 pub mod numeric;
 pub mod optimize;
+mod order;
 mod plan;
 pub mod profile;
 mod prospect;

@@ -8,10 +8,10 @@ use strew_core::{
 use crate::{
     ForgeError, Job, MAX_RADIUS, MAX_STEPS,
     curve::{LeastCorrelation, Target, to_parameters},
-    domain::Domain,
     judge::{Bound, Panel, bounds_of_curve},
     optimize::{Descent, jitter},
     profile::{Phase, Profile, Recipe},
+    twins::Domain,
 };
 
 /// The least side t of the set region, that of α = 1.1. Below it a map of any half-width covers too
@@ -55,22 +55,21 @@ impl Plan {
             }
         };
         let mut steps = job.steps.unwrap_or(profile.steps);
-        in_range("steps", steps, MAX_STEPS)?;
+        ForgeError::unless_in_range("steps", steps, MAX_STEPS)?;
         if profile.recipe == Recipe::Undisplaced {
             steps = 0;
         }
         let most = target.as_ref().map_or(MAX_RADIUS, |_| MAX_RADIAL_RADIUS);
-        in_range("R", job.radius, most)?;
+        ForgeError::unless_in_range("R", job.radius, most)?;
         let map = Map::new(job.alpha, job.radius).map_err(ForgeError::Table)?;
         let mut domain = Domain::new(map);
         if domain.twins.is_empty() || domain.scale() < MIN_SIDE {
-            return Err(ForgeError::Field {
-                field: "alpha",
-                value: format!("{} ({})", job.alpha, job.prospect()),
-                allowed: "at least 1.1, and neither a fraction of small integers nor next to one: there the \
-                          map has ties, or an order of thresholds that no periodic twin of moderate size has"
-                    .into(),
-            });
+            return Err(ForgeError::field(
+                "alpha",
+                format!("{} ({})", job.alpha, job.prospect()),
+                "at least 1.1, and neither a fraction of small integers nor next to one: there the \
+                          map has ties, or an order of thresholds that no periodic twin of moderate size has",
+            ));
         }
         if let Recipe::Radial { .. } = profile.recipe {
             // Curves are followed on unbounded patterns.
@@ -169,10 +168,12 @@ impl Plan {
         provenance: Provenance,
     ) -> Result<Table, ForgeError> {
         let unit = 1.0 / self.domain.scale();
-        let too_long = || ForgeError::Field {
-            field: "displacement",
-            value: "too long".into(),
-            allowed: "vectors short enough for a table, as after fewer steps".into(),
+        let too_long = || {
+            ForgeError::field(
+                "displacement",
+                "too long",
+                "vectors short enough for a table, as after fewer steps",
+            )
         };
         let vectors = moves
             .iter()
@@ -184,23 +185,16 @@ impl Plan {
     }
 }
 
-fn in_range(field: &'static str, value: u32, most: u32) -> Result<(), ForgeError> {
-    if (1..=most).contains(&value) {
-        return Ok(());
-    }
-    Err(ForgeError::Field {
-        field,
-        value: value.to_string(),
-        allowed: format!("1 to {most}"),
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use strew_core::Alpha;
 
     use super::*;
     use crate::forge;
+
+    fn of(alpha: &str) -> Alpha {
+        alpha.parse().expect("valid")
+    }
 
     #[test]
     fn bad_parts_are_refused_with_name_value_and_allowed_range() {
@@ -209,58 +203,24 @@ mod tests {
             steps: Some(1),
             ..Job::new("(5-sqrt(3))/2".parse().expect("valid"))
         };
-        let of = |alpha: &str| alpha.parse::<Alpha>().expect("valid");
-        for (job, words) in [
+        let bad: [(fn(&mut Job), _); 7] = [
+            (|job| job.alpha = of("3/2"), ["alpha", "3/2", "1.1"]),
+            (|job| job.alpha = of("1.01"), ["alpha", "101/100", "1.1"]),
+            (|job| job.steps = Some(0), ["steps", "0", "1 to 1000000"]),
             (
-                Job {
-                    alpha: of("3/2"),
-                    ..good.clone()
-                },
-                ["alpha", "3/2", "1.1"],
-            ),
-            (
-                Job {
-                    alpha: of("1.01"),
-                    ..good.clone()
-                },
-                ["alpha", "101/100", "1.1"],
-            ),
-            (
-                Job {
-                    steps: Some(0),
-                    ..good.clone()
-                },
-                ["steps", "0", "1 to 1000000"],
-            ),
-            (
-                Job {
-                    steps: Some(u32::MAX),
-                    ..good.clone()
-                },
+                |job| job.steps = Some(u32::MAX),
                 ["steps", "4294967295", "1000000"],
             ),
+            (|job| job.radius = 0, ["R", "0", "1 to 256"]),
+            (|job| job.radius = 257, ["R", "257", "1 to 256"]),
             (
-                Job {
-                    radius: 0,
-                    ..good.clone()
-                },
-                ["R", "0", "1 to 256"],
-            ),
-            (
-                Job {
-                    radius: 257,
-                    ..good.clone()
-                },
-                ["R", "257", "1 to 256"],
-            ),
-            (
-                Job {
-                    profile: "bleu".into(),
-                    ..good.clone()
-                },
+                |job| job.profile = "bleu".into(),
                 ["profile", "bleu", "blue"],
             ),
-        ] {
+        ];
+        for (change, words) in bad {
+            let mut job = good.clone();
+            change(&mut job);
             let refused = [
                 forge(&job, &()).expect_err("refused"),
                 job.estimate().expect_err("refused"),

@@ -1,50 +1,17 @@
 //! Work that was stopped is resumed from its checkpoint, and by no other job.
 
+mod stopper;
+
 use std::sync::Mutex;
 
-use strew_forge::{Checkpoint, Job, Progress, Stage, Target, Watch, forge, resume};
+use stopper::Stopper;
+use strew_forge::{Checkpoint, Job, Progress, Stage, Watch, forge, resume};
 
 fn job(steps: u32) -> Job {
     Job {
         radius: 15,
         steps: Some(steps),
         ..Job::new("(5-sqrt(3))/2".parse().expect("valid"))
-    }
-}
-
-/// Keeps the last checkpoint, and stops a stage after a number of steps.
-struct Stopper {
-    stage: Stage,
-    after: u32,
-    seen: Mutex<Option<Progress>>,
-    kept: Mutex<Option<Checkpoint>>,
-}
-
-impl Stopper {
-    fn new(stage: Stage, after: u32) -> Self {
-        Self {
-            stage,
-            after,
-            seen: Mutex::default(),
-            kept: Mutex::default(),
-        }
-    }
-}
-
-impl Watch for Stopper {
-    fn progress(&self, progress: &Progress) {
-        *self.seen.lock().expect("no panic") = Some(*progress);
-    }
-
-    fn stop(&self) -> bool {
-        let seen = self.seen.lock().expect("no panic");
-        seen.is_some_and(|p| p.stage == self.stage && p.step >= self.after)
-    }
-
-    fn checkpoint(&self, checkpoint: &Checkpoint) {
-        // Through a file's bytes, as after a crash.
-        let back = Checkpoint::from_bytes(&checkpoint.to_bytes()).expect("valid");
-        *self.kept.lock().expect("no panic") = Some(back);
     }
 }
 
@@ -118,40 +85,26 @@ fn a_checkpoint_of_a_different_job_is_refused_with_the_difference() {
     let _ = forge(&job(9), &stopper).expect("a good job");
     let kept = stopper.kept.into_inner().expect("no panic").expect("kept");
     let good = job(9);
-    let target: Target = "0 0\n0.5 1".parse().expect("valid");
-    for (other, name) in [
-        (job(10), "steps"),
-        (Job { seed: 3, ..job(9) }, "seed = 3"),
+    let others: [(fn(&mut Job), _); 6] = [
+        (|job| job.steps = Some(10), "steps"),
+        (|job| job.seed = 3, "seed = 3"),
+        (|job| job.radius = 14, "radius = 14"),
+        (|job| job.profile = "sharp".into(), "profile = sharp"),
         (
-            Job {
-                radius: 14,
-                ..job(9)
-            },
-            "radius = 14",
-        ),
-        (
-            Job {
-                profile: "sharp".into(),
-                ..job(9)
-            },
-            "profile = sharp",
-        ),
-        (
-            Job {
-                alpha: "sqrt(3)".parse().expect("valid"),
-                ..job(9)
-            },
+            |job| job.alpha = "sqrt(3)".parse().expect("valid"),
             "sqrt(3)",
         ),
         (
-            Job {
-                profile: "mine".into(),
-                target: Some(target),
-                ..job(9)
+            |job| {
+                job.profile = "mine".into();
+                job.target = Some("0 0\n0.5 1".parse().expect("valid"));
             },
             "profile = mine",
         ),
-    ] {
+    ];
+    for (change, name) in others {
+        let mut other = good.clone();
+        change(&mut other);
         let refused = kept.is_of(&other).expect_err("another").to_string();
         assert!(refused.contains(name), "{refused}");
         assert!(resume(&other, kept.clone(), &()).is_err());

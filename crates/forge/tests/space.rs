@@ -1,11 +1,12 @@
 //! Tables of points in space: equal jobs make equal tables, stopped or not, and the shipped ones keep what their history
 //! says.
 
-use std::sync::Mutex;
+mod stopper;
 
+use stopper::Stopper;
 use strew_core::space::{SpaceSet, Table};
 use strew_forge::{
-    Checkpoint, Job, Progress, Stage, Watch,
+    Job, Stage,
     space::{
         LocalPower, SpaceDistances, SpaceJob, SpacePoints, SpacePower, SpaceProfile, forge, resume,
     },
@@ -16,31 +17,6 @@ fn job(profile: SpaceProfile) -> SpaceJob {
         radius: 4,
         steps: Some(40),
         ..SpaceJob::new(profile)
-    }
-}
-
-/// Stops after a step, and keeps the last checkpoint, through a file's bytes.
-#[derive(Default)]
-struct Stopper {
-    after: Option<u32>,
-    step: Mutex<u32>,
-    kept: Mutex<Option<Checkpoint>>,
-}
-
-impl Watch for Stopper {
-    fn progress(&self, progress: &Progress) {
-        if progress.stage == Stage::Optimizing {
-            *self.step.lock().expect("no panic") = progress.step;
-        }
-    }
-
-    fn stop(&self) -> bool {
-        self.after == Some(*self.step.lock().expect("no panic"))
-    }
-
-    fn checkpoint(&self, checkpoint: &Checkpoint) {
-        let back = Checkpoint::from_bytes(&checkpoint.to_bytes()).expect("valid");
-        *self.kept.lock().expect("no panic") = Some(back);
     }
 }
 
@@ -81,9 +57,9 @@ fn resumed_work_makes_the_same_table() {
     let steps = job.estimate().expect("allowed").steps;
     // In each phase, at its first step and at the end.
     for after in [0, 3, 7, 11, 25, 38, steps] {
-        let stopper = Stopper {
-            after: Some(after),
-            ..Stopper::default()
+        let stopper = match after == steps {
+            true => Stopper::new(Stage::Measuring, 0),
+            false => Stopper::new(Stage::Optimizing, after),
         };
         let stopped = forge(&job, &stopper).expect("allowed");
         assert!(stopped.interrupted && !stopped.accepted, "{after}");
@@ -95,10 +71,8 @@ fn resumed_work_makes_the_same_table() {
             whole,
             "{after}"
         );
-        let other = SpaceJob {
-            seed: 2,
-            ..job.clone()
-        };
+        let mut other = job.clone();
+        other.seed = 2;
         let error = resume(&other, kept.clone(), &())
             .expect_err("refused")
             .to_string();

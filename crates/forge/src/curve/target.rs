@@ -45,11 +45,7 @@ pub const MAX_POINTS: usize = 1_000;
 
 /// The error for a curve that is not allowed.
 pub(super) fn refuse(value: String, allowed: String) -> ForgeError {
-    ForgeError::Field {
-        field: "target",
-        value,
-        allowed,
-    }
+    ForgeError::field("target", value, allowed)
 }
 
 impl Target {

@@ -11,7 +11,7 @@
 use rayon::prelude::*;
 
 use super::SetEnergy;
-use crate::measure::{CellList, Sample};
+use crate::{cell_list::CellList, measure::Sample};
 
 /// The centroidal Voronoi energy.
 #[derive(Clone, Copy, Debug)]

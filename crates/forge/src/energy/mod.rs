@@ -6,16 +6,8 @@
 //! A [`SetEnergy`] is any function of a periodic point set, such as [`Lloyd`]. [`Pairwise`] makes a
 //! set energy of a pair energy.
 
-mod gaussian;
-mod guard;
 mod lloyd;
 mod pair;
-mod pairwise;
-mod set;
 
-pub use gaussian::Gaussian;
-pub use guard::Guard;
 pub use lloyd::{Cell, Lloyd};
-pub use pair::PairEnergy;
-pub use pairwise::Pairwise;
-pub use set::SetEnergy;
+pub use pair::{Gaussian, Guard, PairEnergy, Pairwise, SetEnergy};

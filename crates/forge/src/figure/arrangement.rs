@@ -6,10 +6,9 @@ use super::{
     Drawing, FigureError,
     drawing::{COLORS, GRAY},
     panel::{
-        Panel, THREAD, dot, note, places, points, set_region, sheet, tint, turns,
+        Panel, THREAD, check_window, dot, note, places, points, set_region, sheet, tint, turns,
         window as grid_window,
     },
-    window::check_window,
 };
 
 /// Draws a window of `window` × `window` grid places of AA(α), 8 to 200, with the occurrences of an

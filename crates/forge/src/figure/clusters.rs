@@ -8,8 +8,10 @@ use strew_core::{
 use super::{
     Drawing, FigureError,
     drawing::{Anchor, COLORS, Color, GRAY},
-    panel::{Panel, dot, note, points, set_region, sheet, tint, turns, window as grid_window},
-    window::check_window,
+    panel::{
+        Panel, check_window, dot, note, points, set_region, sheet, tint, turns,
+        window as grid_window,
+    },
 };
 
 /// The color of points in clusters that are too large to be distinguished.

@@ -5,8 +5,10 @@ use strew_core::{Alpha, Pattern};
 use super::{
     Drawing, FigureError,
     drawing::{Color, GRAY, INK},
-    panel::{Panel, dot, note, places, points, set_region, sheet, turns, window as grid_window},
-    window::check_window,
+    panel::{
+        Panel, check_window, dot, note, places, points, set_region, sheet, turns,
+        window as grid_window,
+    },
 };
 
 /// The colors at the corners of the set region: (0, 0), (t, 0), (0, t), (t, t).

@@ -28,11 +28,11 @@ const DARK: Color = [203, 214, 226];
 /// ```
 pub fn map(alpha: Alpha, radius: u32, block: [usize; 2]) -> Result<Drawing, FigureError> {
     if !(1..=200).contains(&radius) {
-        return Err(FigureError {
-            field: "radius".into(),
-            value: radius.to_string(),
-            allowed: "an integer from 1 to 200 grid units".into(),
-        });
+        return Err(FigureError::new(
+            "radius",
+            radius,
+            "an integer from 1 to 200 grid units",
+        ));
     }
     let (fine, coarse) = (Map::new(alpha, radius)?, Map::new(alpha, radius / 2)?);
     // Intervals that only the rounding of a fraction α makes are too narrow to see or to hold points.
@@ -45,11 +45,11 @@ pub fn map(alpha: Alpha, radius: u32, block: [usize; 2]) -> Result<Drawing, Figu
     let (intervals, parents) = (visible(&fine), visible(&coarse));
     let n = intervals.len();
     if block.iter().any(|&i| i >= n) {
-        return Err(FigureError {
-            field: "block".into(),
-            value: format!("{block:?}"),
-            allowed: format!("two integers from 0 to {}", n - 1),
-        });
+        return Err(FigureError::new(
+            "block",
+            format!("{block:?}"),
+            format!("two integers from 0 to {}", n - 1),
+        ));
     }
     let t = alpha.set_side_f64();
     let mut drawing = sheet(3, 2);

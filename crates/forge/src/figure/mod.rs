@@ -19,7 +19,6 @@ mod mask;
 mod paint;
 mod panel;
 mod report;
-mod window;
 
 pub use crate::SettingError as FigureError;
 pub use arrangement::arrangement;

@@ -28,11 +28,7 @@ impl Drawing {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn to_png(&self, size: u32) -> Result<Vec<u8>, FigureError> {
-        let wrong = |allowed| FigureError {
-            field: "size".into(),
-            value: size.to_string(),
-            allowed,
-        };
+        let wrong = |allowed: String| FigureError::new("size", size, allowed);
         if !SIZES.contains(&size) {
             let (least, most) = (SIZES.start(), SIZES.end());
             return Err(wrong(format!("an integer from {least} to {most} pixels")));

@@ -5,6 +5,7 @@ use std::ops::Range;
 use strew_core::Pattern;
 
 use super::drawing::{Anchor, Color, Drawing, GRAY, INK, PALE};
+use crate::SettingError;
 
 /// The side of a panel, in pixels.
 pub(super) const SIDE: f64 = 360.0;
@@ -153,3 +154,16 @@ pub(super) fn tint(color: Color, share: f64) -> Color {
 
 /// The color of the lines that connect marks.
 pub(super) const THREAD: Color = GRAY;
+
+/// The sides of windows that show single points, in grid units.
+const WINDOWS: std::ops::RangeInclusive<u32> = 8..=200;
+
+/// Refuses a window whose points would be too few or too small to see.
+pub(super) fn check_window(window: u32) -> Result<(), SettingError> {
+    if WINDOWS.contains(&window) {
+        return Ok(());
+    }
+    let (least, most) = (WINDOWS.start(), WINDOWS.end());
+    let allowed = format!("an integer from {least} to {most} grid units");
+    Err(SettingError::new("window", window, allowed))
+}

@@ -7,17 +7,15 @@
 //! A [`Panel`] holds these point sets and measures a table on each: the figures of `figure`, and
 //! those of `curve` if there is a power curve to follow. A [`Bound`] limits a figure; a table is
 //! accepted if there are no [`complaints`]. The bounds of custom curves, and how near a table came
-//! to its curve, are computed in `nearness`.
+//! to its curve, are computed in `curve`.
 
 mod bound;
 mod curve;
 mod figure;
-mod nearness;
 mod panel;
 
 pub use bound::{Bound, Complaint, Side, complaints, gravest};
-pub use curve::{TARGET_RING, curve_figures};
+pub use curve::{Nearness, TARGET_RING, bounds_of_curve, curve_figures};
 pub(crate) use figure::round;
 pub use figure::{Figure, RING_WIDTH, figures};
-pub use nearness::{Nearness, bounds_of_curve};
 pub use panel::{JUDGED_POINTS, Panel};

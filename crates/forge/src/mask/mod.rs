@@ -79,15 +79,9 @@ impl Mask {
         /// One of this number of pixels is left by the clusters: with fewer, voids are wider than the kernel.
         const FEW: usize = 56;
         if !(Self::LEAST_SIZE..=Self::MOST_SIZE).contains(&size) {
-            return Err(MaskError {
-                field: "size".into(),
-                value: size.to_string(),
-                allowed: format!(
-                    "an integer from {} to {} pixels",
-                    Self::LEAST_SIZE,
-                    Self::MOST_SIZE
-                ),
-            });
+            let [least, most] = [Self::LEAST_SIZE, Self::MOST_SIZE];
+            let allowed = format!("an integer from {least} to {most} pixels");
+            return Err(MaskError::new("size", size, allowed));
         }
         let pixels = (size * size) as usize;
         let first = first(table, size, seed)?;
@@ -141,11 +135,9 @@ impl Mask {
             None => false,
         };
         if ranks.len() != pixels || !ranks.iter().all(is_new) {
-            return Err(MaskError {
-                field: "ranks".into(),
-                value: format!("{} numbers", ranks.len()),
-                allowed: format!("each number below {pixels} once"),
-            });
+            let value = format!("{} numbers", ranks.len());
+            let allowed = format!("each number below {pixels} once");
+            return Err(MaskError::new("ranks", value, allowed));
         }
         Ok(Self { size, ranks })
     }
@@ -188,13 +180,7 @@ impl Mask {
         let (kind, bytes): (_, Vec<u8>) = match bits {
             8 => ("|u1", thresholds.map(|v| v as u8).collect()),
             16 => ("<u2", thresholds.flat_map(u16::to_le_bytes).collect()),
-            _ => {
-                return Err(MaskError {
-                    field: "bits".into(),
-                    value: bits.to_string(),
-                    allowed: "8 or 16".into(),
-                });
-            }
+            _ => return Err(MaskError::new("bits", bits, "8 or 16")),
         };
         let side = self.size;
         let text =
@@ -222,11 +208,6 @@ impl Mask {
     /// # Ok::<(), strew_forge::mask::MaskError>(())
     /// ```
     pub fn to_png(&self, bits: u8) -> Result<Vec<u8>, MaskError> {
-        let wrong = |allowed: String| MaskError {
-            field: "bits".into(),
-            value: bits.to_string(),
-            allowed,
-        };
         let thresholds = self.thresholds(bits);
         let (depth, bytes): (_, Vec<u8>) = match bits {
             8 => (png::BitDepth::Eight, thresholds.map(|v| v as u8).collect()),
@@ -234,7 +215,7 @@ impl Mask {
                 png::BitDepth::Sixteen,
                 thresholds.flat_map(u16::to_be_bytes).collect(),
             ),
-            _ => return Err(wrong("8 or 16".into())),
+            _ => return Err(MaskError::new("bits", bits, "8 or 16")),
         };
         let write = || {
             let mut file = vec![];
@@ -246,7 +227,7 @@ impl Mask {
             writer.finish()?;
             Ok::<_, png::EncodingError>(file)
         };
-        write().map_err(|error| wrong(error.to_string()))
+        write().map_err(|error| MaskError::new("bits", bits, error.to_string()))
     }
 }
 

@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::{CellList, Sample};
+use super::Sample;
+use crate::cell_list::CellList;
 
 /// Nearest-neighbor distances in units of √(2/√3)·N^−½, the nearest-neighbor distance of the
 /// hexagonal lattice of the same density. The smallest distance is at most 1.
@@ -25,43 +26,46 @@ impl Distances {
     /// single point of a periodic set has its own images as neighbors. Both figures are 0 if there are no points.
     #[must_use]
     pub fn of(set: &Sample) -> Self {
-        let cells = &CellList::of(set, 1.0);
-        let parts: Vec<(f64, f64, usize)> = cells
-            .members()
-            .par_chunks(CHUNK)
-            .map(|chunk| {
-                let (mut least, mut sum, mut counted) = (f64::INFINITY, 0.0, 0);
-                for (index, p) in chunk.iter().filter(|(_, p)| set.is_inner(MARGIN, p)) {
-                    let distance = nearest(cells, *index, *p);
-                    least = least.min(distance);
-                    sum += distance;
-                    counted += 1;
-                }
-                (least, sum, counted)
-            })
-            .collect();
-        let least = parts
-            .iter()
-            .map(|part| part.0)
-            .fold(f64::INFINITY, f64::min);
-        let sum: f64 = parts.iter().map(|part| part.1).sum();
-        let counted: usize = parts.iter().map(|part| part.2).sum();
+        let cells = CellList::of(set, 1.0);
+        let [least, mean] = least_and_mean(&cells, |p| set.is_inner(MARGIN, p));
         let unit = (2.0 / 3.0f64.sqrt()).sqrt();
-        if counted == 0 || !sum.is_finite() {
-            return Self {
-                delta_min: 0.0,
-                delta_avg: 0.0,
-            };
-        }
         Self {
             delta_min: least / unit,
-            delta_avg: sum / counted as f64 / unit,
+            delta_avg: mean / unit,
         }
     }
 }
 
+/// The least and the mean distance from the points that count to their nearest neighbors; 0 if there are none.
+pub(crate) fn least_and_mean<const D: usize>(
+    cells: &CellList<D>,
+    counts: impl Fn(&[f64; D]) -> bool + Sync,
+) -> [f64; 2] {
+    let of_chunk = |chunk: &[(u32, [f64; D])]| {
+        let (mut least, mut sum, mut counted) = (f64::INFINITY, 0.0, 0);
+        for (index, p) in chunk.iter().filter(|(_, p)| counts(p)) {
+            let distance = nearest(cells, *index, *p);
+            least = least.min(distance);
+            sum += distance;
+            counted += 1;
+        }
+        (least, sum, counted)
+    };
+    let parts: Vec<(f64, f64, usize)> = cells.members().par_chunks(CHUNK).map(of_chunk).collect();
+    let least = parts
+        .iter()
+        .map(|part| part.0)
+        .fold(f64::INFINITY, f64::min);
+    let sum: f64 = parts.iter().map(|part| part.1).sum();
+    let counted: usize = parts.iter().map(|part| part.2).sum();
+    match counted == 0 || !sum.is_finite() {
+        true => [0.0; 2],
+        false => [least, sum / counted as f64],
+    }
+}
+
 /// The distance from the point `p` to its nearest neighbor; infinite if it has none.
-fn nearest(cells: &CellList, index: u32, p: [f64; 2]) -> f64 {
+fn nearest<const D: usize>(cells: &CellList<D>, index: u32, p: [f64; D]) -> f64 {
     let mut least = f64::INFINITY;
     let rings = (cells.members().len() as f64).sqrt() as i64 * 2 + 2;
     for ring in 0..=rings {
@@ -70,8 +74,8 @@ fn nearest(cells: &CellList, index: u32, p: [f64; 2]) -> f64 {
         if far * far > least {
             break;
         }
-        cells.ring(p, ring, |other, [dx, dy]| {
-            let squared = dx * dx + dy * dy;
+        cells.ring(p, ring, |other, by| {
+            let squared = by[1..].iter().fold(by[0] * by[0], |sum, v| sum + v * v);
             // A point is not its own neighbor, but its images on a torus are.
             if squared < least && !(other == index && squared == 0.0) {
                 least = squared;

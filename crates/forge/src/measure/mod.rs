@@ -3,17 +3,15 @@
 //! A set is a [`Sample`]: one period of a periodic set, or a window of an unbounded one;
 //! [`twin_set`] and [`window_set`] make them from a table. [`Spectrum`] is computed by `nufft`,
 //! windows with the weights of `taper`; its [`Ring`]s yield the [`Summary`] and the [`Crispness`].
-//! [`Distances`] and [`Rdf`] look up neighbors in a `cell_list`, [`Voronoi`] in a triangulation. [`recurrence`] is how
+//! [`Distances`] and [`Rdf`] look up neighbors in a cell list, [`Voronoi`] in a triangulation. [`recurrence`] is how
 //! much of a set is found again elsewhere in it, [`Shared`] what two sets have in common.
 //!
 //! Everything is at unit density: lengths are in mean spacings, frequencies ν in cycles per mean
 //! spacing, and white noise has power 1. Of these results only figures rounded to four digits reach
 //! a table, so the platform's own math functions may be used.
 
-mod cell_list;
 mod crispness;
 mod distance;
-mod from_table;
 mod nufft;
 mod pair;
 mod rdf;
@@ -23,13 +21,12 @@ mod spectrum;
 mod taper;
 mod voronoi;
 
-pub(crate) use cell_list::CellList;
 pub use crispness::Crispness;
 pub use distance::Distances;
-pub use from_table::{twin_set, window_set};
+pub(crate) use distance::least_and_mean;
 pub use pair::Shared;
 pub use rdf::Rdf;
 pub use recurrence::recurrence;
-pub use set::Sample;
+pub use set::{Sample, twin_set, window_set};
 pub use spectrum::{BANDS, Ring, Spectrum, Summary};
 pub use voronoi::Voronoi;

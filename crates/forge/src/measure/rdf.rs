@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::{CellList, Sample};
+use super::Sample;
+use crate::cell_list::CellList;
 
 /// The largest distance counted, in mean spacings.
 const REACH: f64 = 5.0;

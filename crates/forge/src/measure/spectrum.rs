@@ -2,7 +2,8 @@
 //!
 //! Frequencies ν are in units of √N: ν = 1 is one cycle per mean spacing. White noise has power 1.
 
-use super::{Sample, cell_list::wrap, nufft::transform, taper};
+use super::{Sample, nufft::transform, taper};
+use crate::cell_list::wrap;
 
 /// The power P(k) = |Σ exp(−2πi k·x)|²/N at every integer k up to a largest frequency.
 #[derive(Clone, Debug)]

@@ -5,7 +5,8 @@
 
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
-use super::{Sample, cell_list::wrap};
+use super::Sample;
+use crate::cell_list::wrap;
 
 /// The figures of a Voronoi diagram.
 #[derive(Clone, Copy, Debug, PartialEq)]

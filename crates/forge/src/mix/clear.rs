@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use crate::thinned::Ground;
+use crate::{optimize::longest, thinned::Ground};
 
 /// √(2/√3), the hexagonal distance in mean spacings.
 const HEXAGONAL: f64 = 1.074_569_931_823_542;
@@ -87,8 +87,7 @@ fn pairs(
         .iter()
         .map(|&share| of_kind(share))
         .fold(all, f64::max);
-    let squares = moves.iter().map(|m| m[0] * m[0] + m[1] * m[1]);
-    let longest = squares.fold(0.0, f64::max).sqrt();
+    let reach = widest * SKIN + 2.0 * longest(moves);
     let scale = ground.scale();
     let lists: Vec<Vec<Near>> = (0..moves.len())
         .into_par_iter()
@@ -96,7 +95,7 @@ fn pairs(
             let mut list = Vec::new();
             let at = moves[own];
             let later = |to: usize| to > own;
-            ground.meets(own, widest * SKIN + 2.0 * longest, later, |meet| {
+            ground.meets(own, reach, later, |meet| {
                 let to = meet.to as usize;
                 let by = [meet.i, meet.j].map(|v| scale * f64::from(v));
                 let x = by[0] + moves[to][0] - at[0];

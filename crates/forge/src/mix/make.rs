@@ -62,11 +62,8 @@ impl MixJob {
 
     fn check(&self) -> Result<(), ForgeError> {
         if !(1..=MAX_STEPS).contains(&self.steps) {
-            return Err(ForgeError::Field {
-                field: "steps",
-                value: self.steps.to_string(),
-                allowed: format!("from 1 to {MAX_STEPS}"),
-            });
+            let allowed = format!("from 1 to {MAX_STEPS}");
+            return Err(ForgeError::field("steps", self.steps, allowed));
         }
         Ok(())
     }

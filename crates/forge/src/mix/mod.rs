@@ -3,7 +3,7 @@
 //! *Labels* leave a table's points where they are: `labels` sets up an annealing of blocks (`anneal`) by how
 //! much blocks press each other (`press`), a Gaussian summed by exact pair frequencies. So every twin is unseen,
 //! and all points together are the table itself. A *joint* table (`joint`) also moves the points: the energy of
-//! all of them and of each kind (`together`, `part`) is lowered by descent, then the few pairs that are too near
+//! all of them and of each kind (`part`) is lowered by descent, then the few pairs that are too near
 //! are pushed apart (`clear`). Either way blocks get an order of leaving made for the labels (`order`), because
 //! the table's own would remove some kinds before others; `fullest` finds the next one to leave. `second` makes the
 //! order from which kinds are cut whose shares vary. `judge` measures, `make` is the way in.
@@ -19,7 +19,6 @@ mod order;
 mod part;
 mod press;
 mod second;
-mod together;
 
 pub use make::{MixJob, MixOutcome, labels, mix, mix_file_name};
 pub use second::second_order;

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::{
     energy::PairEnergy,
-    optimize::{CHUNK, LANES, Pair, sum},
+    optimize::{CHUNK, Pair, fill, longest, sum},
     thinned::Ground,
 };
 
@@ -87,8 +87,7 @@ impl<E: PairEnergy> Part<E> {
 
     fn build(&mut self, ground: &Ground, moves: &[[f64; 2]]) {
         let range = (self.energy.cutoff() + Self::SKIN) / self.share.sqrt();
-        let squares = moves.iter().map(|m| m[0] * m[0] + m[1] * m[1]);
-        let longest = squares.fold(0.0, f64::max).sqrt();
+        let reach = range + 2.0 * longest(moves);
         let scale = ground.scale();
         let lists: Vec<Vec<Pair>> = self
             .blocks
@@ -96,28 +95,17 @@ impl<E: PairEnergy> Part<E> {
             .map(|&(block, _)| {
                 let own = moves[block as usize];
                 let mut list = Vec::with_capacity(128);
-                let reach = range + 2.0 * longest;
                 let is_of_kind = |to: usize| self.weights[to] > 0.0;
                 ground.neighbors(block as usize, reach, is_of_kind, |near| {
                     let to = moves[near.to as usize];
                     let x = scale * f64::from(near.i) + to[0] - own[0];
                     let y = scale * f64::from(near.j) + to[1] - own[1];
                     if x * x + y * y < range * range {
-                        list.push(Pair {
-                            to: near.to,
-                            i: near.i,
-                            j: near.j,
-                            weight: near.weight * self.weights[near.to as usize] as f32,
-                        });
+                        let weight = near.weight * self.weights[near.to as usize] as f32;
+                        list.push(Pair { weight, ..near });
                     }
                 });
-                let filler = Pair {
-                    to: block,
-                    i: 0,
-                    j: 0,
-                    weight: 0.0,
-                };
-                list.resize(list.len().next_multiple_of(LANES), filler);
+                fill(&mut list);
                 list
             })
             .collect();

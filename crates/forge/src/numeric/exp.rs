@@ -1,4 +1,4 @@
-//! An exponential that vectorizes.
+//! Exponentials that vectorize, in double and in single precision.
 //!
 //! Making a table spends most of its time in sums of exponentials over pairs. `libm`'s `exp` has
 //! the same bits on every machine, too, but its branches keep these sums from being vectorized. The
@@ -40,6 +40,25 @@ pub fn exp(x: f64) -> f64 {
     sum * power
 }
 
+/// eˣ in single precision for −80 ≤ x ≤ 80, within a relative error of 3·10⁻⁷.
+#[inline(always)]
+#[must_use]
+pub fn exp32(x: f32) -> f32 {
+    /// 1.5·2²³: adding it rounds a small number to an integer in the lowest bits.
+    const ROUNDER: f32 = 12_582_912.0;
+    /// ln 2 in two parts; the first has few bits, so that products with small integers are exact.
+    const LN_2_HIGH: f32 = 355.0 / 512.0;
+    const LN_2_LOW: f32 = -2.121_944_4e-4;
+    let shifted = x * core::f32::consts::LOG2_E + ROUNDER;
+    let k = shifted - ROUNDER;
+    let r = (x - k * LN_2_HIGH) - k * LN_2_LOW;
+    let mut sum = 1.0 / 720.0;
+    for c in [1.0 / 120.0, 1.0 / 24.0, 1.0 / 6.0, 0.5, 1.0, 1.0] {
+        sum = sum * r + c;
+    }
+    sum * f32::from_bits((shifted.to_bits() << 23).wrapping_add(127 << 23))
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -51,6 +70,12 @@ mod tests {
         fn agrees_with_the_standard_library(x in -700.0f64..700.0) {
             let expected = x.exp();
             prop_assert!((exp(x) - expected).abs() <= 4e-16 * expected, "{} {}", exp(x), expected);
+        }
+
+        #[test]
+        fn single_precision_agrees_with_the_standard_library(x in -80.0f32..80.0) {
+            let expected = f64::from(x).exp();
+            prop_assert!((f64::from(exp32(x)) - expected).abs() <= 3e-7 * expected);
         }
     }
 

@@ -6,12 +6,10 @@
 
 mod bessel;
 mod exp;
-mod exp32;
 mod random;
 mod spreading;
 
 pub use bessel::BesselJ0;
-pub use exp::exp;
-pub use exp32::exp32;
+pub use exp::{exp, exp32};
 pub use random::SplitMix;
 pub(crate) use spreading::Kernel;

@@ -15,16 +15,12 @@ mod pairs;
 mod radial;
 mod rings;
 mod sets;
-mod start;
-mod state;
 
 pub use descent::Descent;
-pub(crate) use neighbors::{CHUNK, LANES, Pair, sum};
-pub use objective::Objective;
+pub(crate) use neighbors::{CHUNK, Pair, fill, longest, sum};
+pub use objective::{DescentState, Objective, jitter};
 pub(crate) use overlap::Overlaps;
 pub use pairs::Pairs;
 pub use radial::Radial;
 pub use rings::RadialWeights;
 pub use sets::Sets;
-pub use start::jitter;
-pub use state::DescentState;

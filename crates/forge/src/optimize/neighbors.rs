@@ -32,6 +32,23 @@ pub(crate) struct Pair {
     pub(crate) weight: f32,
 }
 
+/// The length of the longest move.
+pub(crate) fn longest(moves: &[[f64; 2]]) -> f64 {
+    let squared = moves.iter().map(|m| m[0] * m[0] + m[1] * m[1]);
+    squared.fold(0.0, f64::max).sqrt()
+}
+
+/// Fills the last group of [`LANES`] with pairs of weight 0.
+pub(crate) fn fill(list: &mut Vec<Pair>) {
+    let weightless = Pair {
+        to: 0,
+        i: 0,
+        j: 0,
+        weight: 0.0,
+    };
+    list.resize(list.len().next_multiple_of(LANES), weightless);
+}
+
 /// The energy and the gradient of one instance of a block at the move `own`, lane by lane, over its list. `pair` is
 /// the [`PairEnergy`](crate::energy::PairEnergy) of a squared distance in mean spacings, of which `scale` make a
 /// grid unit.
@@ -150,11 +167,7 @@ impl Neighbors {
 
     /// Builds the lists for these moves.
     pub(super) fn build(&mut self, moves: &[[f64; 2]]) {
-        let longest = moves
-            .iter()
-            .map(|m| m[0] * m[0] + m[1] * m[1])
-            .fold(0.0, f64::max)
-            .sqrt();
+        let longest = longest(moves);
         let range = self.cutoff + SKIN;
         let of_block: Vec<Vec<Pair>> = (0..moves.len())
             .into_par_iter()
@@ -209,8 +222,7 @@ impl Neighbors {
     }
 }
 
-/// One pair for each key, whose weight is the sum of its areas over that of the block. Pairs of
-/// weight 0 fill the last group of [`LANES`].
+/// One pair for each key, whose weight is the sum of its areas over that of the block.
 fn merge(mut found: Vec<(Key, f64)>, area: f64) -> Vec<Pair> {
     found.sort_by_key(|&(key, _)| key);
     let mut pairs: Vec<Pair> = Vec::with_capacity(found.len() / 2);
@@ -224,13 +236,7 @@ fn merge(mut found: Vec<(Key, f64)>, area: f64) -> Vec<Pair> {
             sum = 0.0;
         }
     }
-    let filler = Pair {
-        to: 0,
-        i: 0,
-        j: 0,
-        weight: 0.0,
-    };
-    pairs.resize(pairs.len().next_multiple_of(LANES), filler);
+    fill(&mut pairs);
     pairs
 }
 

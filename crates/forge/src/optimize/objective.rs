@@ -1,4 +1,110 @@
-//! Objectives: what a descent lowers.
+//! What a descent lowers, its random start, and its state between two steps.
+
+use crate::numeric::SplitMix;
+
+/// The state of a descent between two steps. A descent resumed from it takes the same steps, bit
+/// for bit, as one that was not stopped.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DescentState {
+    /// The moves with the lowest energy so far.
+    pub moves: Vec<[f64; 2]>,
+    /// The energy of `moves`, per point.
+    pub energy: f64,
+    /// The number of evaluations done.
+    pub steps: u32,
+    /// The energy of the last evaluation; infinite before the first and after a restart.
+    pub(crate) last: f64,
+    /// Steps since the momentum was last dropped.
+    pub(crate) age: f64,
+    /// The current rate over the first one.
+    pub(crate) slowing: f64,
+    /// The moves after the last step, without momentum.
+    pub(crate) at: Vec<[f64; 2]>,
+    /// The moves after the last step, with momentum: where the next evaluation takes place.
+    pub(crate) ahead: Vec<[f64; 2]>,
+    /// The moves that the objective built its lists for; see
+    /// [`Objective::prepared_for`].
+    pub(crate) prepared_for: Vec<[f64; 2]>,
+}
+
+impl DescentState {
+    /// The state before any step.
+    #[must_use]
+    pub fn start(moves: Vec<[f64; 2]>) -> Self {
+        Self {
+            energy: f64::INFINITY,
+            steps: 0,
+            last: f64::INFINITY,
+            age: 0.0,
+            slowing: 1.0,
+            at: moves.clone(),
+            ahead: moves.clone(),
+            prepared_for: Vec::new(),
+            moves,
+        }
+    }
+
+    /// Takes a step, given the energy and its gradient at `ahead`.
+    pub(super) fn step(
+        &mut self,
+        first_rate: f64,
+        energy: f64,
+        gradient: &[[f64; 2]],
+        masses: &[f64],
+    ) {
+        if energy < self.energy {
+            self.energy = energy;
+            self.moves.clone_from(&self.ahead);
+        }
+        // If the energy rises, restart from the best moves. Without momentum to blame, the step was
+        // too long.
+        let rose = energy > self.last || energy.is_nan();
+        self.last = energy;
+        if rose {
+            self.slowing *= if self.age <= 1.0 { 0.5 } else { 1.0 };
+            (self.age, self.last) = (0.0, f64::INFINITY);
+            self.at.clone_from(&self.moves);
+            self.ahead.clone_from(&self.moves);
+            return;
+        }
+        let rate = first_rate * self.slowing;
+        let mut uphill = 0.0;
+        self.age += 1.0;
+        let momentum = self.age / (self.age + 3.0);
+        for (((at, ahead), slope), mass) in self
+            .at
+            .iter_mut()
+            .zip(&mut self.ahead)
+            .zip(gradient)
+            .zip(masses)
+        {
+            for axis in 0..2 {
+                let next = ahead[axis] - rate * slope[axis];
+                let by = next - at[axis];
+                uphill += mass * slope[axis] * by;
+                at[axis] = next;
+                ahead[axis] = next + momentum * by;
+            }
+        }
+        if uphill > 0.0 {
+            self.age = 0.0;
+            self.ahead.clone_from(&self.at);
+        }
+    }
+}
+
+/// Returns a vector for each block, uniformly random in a square or cube of half-width `jitter`.
+///
+/// The half-width should be small: from a large random start, pairs of blocks that seldom meet
+/// settle on top of each other.
+#[must_use]
+pub fn jitter<const D: usize>(blocks: usize, jitter: f64, seed: u64) -> Vec<[f64; D]> {
+    let mut random = SplitMix::new(seed);
+    let mut next = || (2.0 * random.next_f64() - 1.0) * jitter;
+    (0..blocks)
+        .map(|_| std::array::from_fn(|_| next()))
+        .collect()
+}
 
 /// An energy as a function of a table's vectors, which are in mean spacings and called *moves*.
 pub trait Objective {

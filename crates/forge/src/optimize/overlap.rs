@@ -95,7 +95,7 @@ impl Overlaps {
     }
 
     /// The largest offset along an axis.
-    pub(super) const fn reach(&self) -> i64 {
+    pub(crate) const fn reach(&self) -> i64 {
         self.reach
     }
 

@@ -80,9 +80,8 @@ mod tests {
 
     use super::*;
     use crate::{
-        energy::{Gaussian, Guard, Pairwise, SetEnergy},
-        measure::Sample,
-        optimize::jitter,
+        energy::{Gaussian, Guard, Pairwise},
+        optimize::{Sets, jitter},
     };
 
     fn map(radius: u32) -> Map {
@@ -103,36 +102,6 @@ mod tests {
         (Gaussian::new(1.0), Guard::new(0.8, 0.3))
     }
 
-    /// The definition: displaced sites, all pairs, the mean over each block's instances.
-    fn on_points(map: &Map, twin: Twin, moves: &[[f64; 2]]) -> (f64, Vec<[f64; 2]>) {
-        let n = map.intervals();
-        let sites = twin.sites(map).expect("a twin");
-        let block = |s: &strew_core::map::Site| s.block_y as usize * n + s.block_x as usize;
-        let scale = twin.t() as f64 / twin.period() as f64;
-        let points = sites
-            .iter()
-            .map(|s| {
-                let by = moves[block(s)];
-                [
-                    f64::from(s.x) * scale + by[0],
-                    f64::from(s.y) * scale + by[1],
-                ]
-            })
-            .collect();
-        let set = Sample::torus(twin.t() as f64, points);
-        let mut each = vec![[0.0; 2]; sites.len()];
-        let value = Pairwise(energy()).evaluate(&set, &mut each);
-        let mut mean = vec![[0.0; 3]; moves.len()];
-        for (site, slope) in sites.iter().zip(&each) {
-            let sum = &mut mean[block(site)];
-            *sum = [sum[0] + slope[0], sum[1] + slope[1], sum[2] + 1.0];
-        }
-        (
-            value,
-            mean.iter().map(|m| [m[0] / m[2], m[1] / m[2]]).collect(),
-        )
-    }
-
     #[test]
     fn frequencies_give_the_energy_and_the_gradient_of_the_points() {
         let map = map(9);
@@ -140,11 +109,14 @@ mod tests {
         for twin in uniform_twins(&map, 3) {
             let scale = twin.t() as f64 / twin.period() as f64;
             let mut pairs = Pairs::new(energy(), &[twin_map(&map, twin)], scale);
+            // The definition: displaced sites, all pairs, the mean over each block's instances.
+            let mut sets = Sets::new(Pairwise(energy()), &map, &[twin]);
+            assert!((sets.masses().iter().sum::<f64>() - 1.0).abs() < 1e-12);
             for (spread, seed) in [(0.1, 1), (0.9, 2), (0.95, 2)] {
                 let moves = jitter(n * n, spread, seed);
-                let mut gradient = vec![[0.0; 2]; n * n];
+                let [mut gradient, mut slopes] = [(); 2].map(|()| vec![[0.0; 2]; n * n]);
                 let value = pairs.evaluate(&moves, &mut gradient);
-                let (expected, slopes) = on_points(&map, twin, &moves);
+                let expected = sets.evaluate(&moves, &mut slopes);
                 assert!(
                     (value - expected).abs() < 1e-6 * expected,
                     "{twin}: {value} {expected}"

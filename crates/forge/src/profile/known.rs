@@ -1,12 +1,21 @@
 //! The list of profiles, and finding them by name.
 
 use super::{
-    Profile,
+    Profile, Recipe,
     blue::{BLUE, LLOYD, SHARP, SPACED},
     curves::{CUSTOM, GREEN, PINK, SINGLE_PEAK, STEP},
-    pattern::PATTERN,
 };
 use crate::ForgeError;
+
+/// The AA pattern itself. Its figures have no bounds; they are recorded for comparison.
+const PATTERN: Profile = Profile {
+    name: "pattern",
+    summary: "the AA pattern itself, without displacement",
+    recipe: Recipe::Undisplaced,
+    jitter: 0.0,
+    steps: 1,
+    bounds: &[],
+};
 
 impl Profile {
     /// All named profiles.
@@ -29,11 +38,11 @@ impl Profile {
     pub fn custom(name: &str) -> Result<&'static Self, ForgeError> {
         match Self::named(name) {
             Err(_) => Ok(&CUSTOM),
-            Ok(_) => Err(ForgeError::Field {
-                field: "profile",
-                value: format!("{name:?}"),
-                allowed: "for a custom curve, any name that no built-in profile has".into(),
-            }),
+            Ok(_) => Err(ForgeError::field(
+                "profile",
+                format!("{name:?}"),
+                "for a custom curve, any name that no built-in profile has",
+            )),
         }
     }
 
@@ -42,25 +51,17 @@ impl Profile {
     /// # Errors
     /// [`ForgeError::Field`] with the allowed names if there is none.
     pub fn named(name: &str) -> Result<&'static Self, ForgeError> {
-        Self::ALL
-            .iter()
-            .find(|profile| profile.name == name)
-            .ok_or_else(|| ForgeError::Field {
-                field: "profile",
-                value: format!("{name:?}"),
-                allowed: Self::ALL
-                    .iter()
-                    .map(|profile| profile.name)
-                    .collect::<Vec<_>>()
-                    .join(", "),
-            })
+        let found = Self::ALL.iter().find(|profile| profile.name == name);
+        found.ok_or_else(|| {
+            let names: Vec<&str> = Self::ALL.iter().map(|profile| profile.name).collect();
+            ForgeError::field("profile", format!("{name:?}"), names.join(", "))
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::profile::Recipe;
 
     #[test]
     fn an_unknown_name_is_refused_with_the_list_of_names() {

@@ -4,9 +4,9 @@ use std::slice;
 
 use crate::{
     curve::Target,
-    domain::Domain,
     energy::{Gaussian, Guard, Lloyd},
     optimize::{Descent, Objective, Pairs, Radial, RadialWeights, Sets},
+    twins::Domain,
 };
 
 /// The way in which the tables of a profile are optimized. Lengths are in mean spacings, rates in mean spacings moved per

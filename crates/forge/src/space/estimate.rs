@@ -5,14 +5,13 @@ use std::time::{Duration, Instant};
 use strew_core::Map;
 
 use super::{
-    descent::Descent,
-    job::{JITTER, SpaceJob, Work},
+    descent::{Descent, push},
+    job::{SpaceJob, Work},
     judge::planned_points,
+    make::start,
     pairs::Blocks,
-    push::push,
-    state::SpaceState,
 };
-use crate::{ForgeError, numeric::SplitMix};
+use crate::ForgeError;
 
 /// The size and the run time of a job.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,16 +43,10 @@ impl SpaceJob {
         let phases = self.phases();
         let measured_points = planned_points(&maps[1]);
         let mut time = MEASURING_A_POINT * measured_points as u32;
-        let mut random = SplitMix::new(self.seed);
         for (number, &phase) in phases.iter().enumerate() {
             let map: &Map = &maps[usize::from(number > 0)];
             let blocks = Blocks::new(map, phase.reach());
-            let mut jitter = || (2.0 * random.next_f64() - 1.0) * JITTER;
-            let vector = |_| [jitter(), jitter(), jitter()];
-            let mut state = SpaceState {
-                moves: (0..map.intervals().pow(3)).map(vector).collect(),
-                ..SpaceState::default()
-            };
+            let mut state = start(self, map);
             let began = Instant::now();
             match phase {
                 Work::Descent(phase) => {

@@ -79,31 +79,20 @@ impl SpaceJob {
 
     /// The maps of the coarse phase and of all others. Fails for a part of the job that is not allowed.
     pub(super) fn maps(&self) -> Result<[Map; 2], ForgeError> {
-        let refused = |field, value: String, allowed: String| {
-            Err(ForgeError::Field {
-                field,
-                value,
-                allowed,
-            })
-        };
         if longest(self.alpha) < LEAST_REACH {
             let allowed = "in space at least 1.51: below, vectors are too short";
-            return refused("alpha", self.alpha.to_string(), allowed.into());
+            return Err(ForgeError::field("alpha", self.alpha, allowed));
         }
-        if let Some(steps) = self.steps.filter(|steps| !(1..=MAX_STEPS).contains(steps)) {
-            return refused("steps", steps.to_string(), format!("1 to {MAX_STEPS}"));
-        }
-        let allowed = format!("1 to {MAX_SPACE_RADIUS}");
-        if !(1..=MAX_SPACE_RADIUS).contains(&self.radius) {
-            return refused("R", self.radius.to_string(), allowed);
-        }
+        ForgeError::unless_in_range("steps", self.steps.unwrap_or(1), MAX_STEPS)?;
+        ForgeError::unless_in_range("R", self.radius, MAX_SPACE_RADIUS)?;
         let coarse = (self.radius * 11).div_ceil(16).max(1);
         let map = Map::new(self.alpha, self.radius)?;
         let intervals = map.intervals();
         // Block numbers fit 16 bits.
         if intervals > MAX_INTERVALS {
             let value = format!("{}, of {intervals} intervals", self.radius);
-            return refused("R", value, format!("at most {MAX_INTERVALS} intervals"));
+            let allowed = format!("at most {MAX_INTERVALS} intervals");
+            return Err(ForgeError::field("R", value, allowed));
         }
         Ok([Map::new(self.alpha, coarse)?, map])
     }
@@ -189,40 +178,22 @@ pub(super) const JITTER: f64 = 0.2;
 mod tests {
     use super::*;
 
+    fn alpha(text: &str) -> Alpha {
+        text.parse().expect("valid")
+    }
+
     #[test]
     fn bad_parts_are_refused_with_name_value_and_allowed_range() {
         let good = SpaceJob::new(SpaceProfile::Blue);
-        let alpha = |text: &str| text.parse().expect("valid");
-        for (job, words) in [
-            (
-                SpaceJob {
-                    alpha: alpha("1.4"),
-                    ..good.clone()
-                },
-                ["alpha", "7/5", "1.51"],
-            ),
-            (
-                SpaceJob {
-                    radius: 0,
-                    ..good.clone()
-                },
-                ["R", "0", "1 to 22"],
-            ),
-            (
-                SpaceJob {
-                    radius: 23,
-                    ..good.clone()
-                },
-                ["R", "23", "1 to 22"],
-            ),
-            (
-                SpaceJob {
-                    steps: Some(0),
-                    ..good.clone()
-                },
-                ["steps", "0", "1 to 1000000"],
-            ),
-        ] {
+        let bad: [(fn(&mut SpaceJob), _); 4] = [
+            (|job| job.alpha = alpha("1.4"), ["alpha", "7/5", "1.51"]),
+            (|job| job.radius = 0, ["R", "0", "1 to 22"]),
+            (|job| job.radius = 23, ["R", "23", "1 to 22"]),
+            (|job| job.steps = Some(0), ["steps", "0", "1 to 1000000"]),
+        ];
+        for (change, words) in bad {
+            let mut job = good.clone();
+            change(&mut job);
             let error = job.maps().expect_err("refused").to_string();
             assert!(words.iter().all(|word| error.contains(word)), "{error}");
         }

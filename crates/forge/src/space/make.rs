@@ -3,18 +3,16 @@
 use strew_core::{Map, space::Table, table::Provenance};
 
 use super::{
-    descent::Descent,
+    descent::{Descent, SpaceState, push},
     job::{JITTER, SpaceJob, SpaceProfile, Work},
     judge::{Judge, complaints},
     order::with_ranks,
     pairs::{Blocks, longest},
-    push::push,
-    state::SpaceState,
 };
 use crate::{
     Checkpoint, ForgeError, Meter, Outcome, Stage, Watch,
     checkpoint::{State, other_kind},
-    numeric::SplitMix,
+    optimize::jitter,
 };
 
 /// Makes a table and judges it. A table that misses a bound is no error: see [`Outcome::accepted`].
@@ -178,12 +176,9 @@ fn optimize(
 }
 
 /// The random start on a map.
-fn start(job: &SpaceJob, map: &Map) -> SpaceState {
-    let mut random = SplitMix::new(job.seed);
-    let mut jitter = || (2.0 * random.next_f64() - 1.0) * JITTER;
-    let vector = |_| [jitter(), jitter(), jitter()];
+pub(super) fn start(job: &SpaceJob, map: &Map) -> SpaceState {
     SpaceState {
-        moves: (0..map.intervals().pow(3)).map(vector).collect(),
+        moves: jitter(map.intervals().pow(3), JITTER, job.seed),
         ..SpaceState::default()
     }
 }

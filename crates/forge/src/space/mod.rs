@@ -1,10 +1,10 @@
 //! Tables of points in space: making and judging them.
 //!
-//! A [`SpaceJob`] is worked off in phases (`job`): descents of a Gaussian energy (`descent`, `energy`), first on a coarse
-//! map, and pushes (`push`), each between two steps no more than a `state`, which checkpoints keep. The table is made on
-//! the exact frequencies of pairs of its blocks in the unbounded set (`meetings`, `pairs`), so no twin is favored, and
-//! every periodic twin is one that it was not made on. `make` runs the phases, adds the `order` in which blocks leave and
-//! has the table judged; `measure` has the figures.
+//! A [`SpaceJob`] is worked off in phases (`job`): descents of a Gaussian energy (`energy`), first on a coarse map, and
+//! pushes (both in `descent`). Between two steps there is no more than a state, which checkpoints keep. The table is made
+//! on the exact frequencies of pairs of its blocks in the unbounded set (`pairs`), so no twin is favored, and every
+//! periodic twin is one that it was not made on. `make` runs the phases, adds the `order` in which blocks leave and has
+//! the table judged; `measure` has the figures.
 
 mod descent;
 mod energy;
@@ -14,12 +14,10 @@ mod job;
 mod judge;
 mod make;
 mod measure;
-mod meetings;
 mod order;
 mod pairs;
-mod push;
-mod state;
 
+pub(crate) use descent::SpaceState;
 pub use estimate::SpaceEstimate;
 pub use file::{read_table, table_file_name, write_table};
 pub use job::{MAX_SPACE_RADIUS, SpaceJob, SpaceProfile};
@@ -30,4 +28,3 @@ pub use measure::{
 };
 pub use order::with_ranks;
 pub use pairs::LONGEST;
-pub(crate) use state::SpaceState;

@@ -6,6 +6,10 @@
 use strew_core::{Error, space::Table, table::Ranks};
 
 use super::pairs::{Blocks, Pairs};
+use crate::{
+    numeric::exp32,
+    order::{Surroundings, positions},
+};
 
 /// Below this share of the points neighbors are farther apart than pairs are listed.
 const FEW: f64 = 1.0 / 24.0;
@@ -24,11 +28,13 @@ pub fn with_ranks(table: &Table) -> Result<Table, Error> {
         .collect();
     let blocks = Blocks::new(map, REACH);
     let pairs = blocks.pairs(&moves, REACH);
-    let order = leave(&blocks, &pairs, &moves);
-    let mut positions = vec![0; order.len()];
-    for (position, &block) in (0..).zip(&order) {
-        positions[block] = position;
-    }
+    let mut left = Left {
+        blocks: &blocks,
+        pairs: &pairs,
+        moves: &moves,
+        scale: 0.0,
+    };
+    let positions = positions(&mut left, moves.len(), KEPT, 0);
     table.with_ranks(Ranks::new(positions)?)
 }
 
@@ -36,64 +42,64 @@ pub fn with_ranks(table: &Table) -> Result<Table, Error> {
 const REACH: f64 = 4.6;
 /// The scale of surroundings, in spacings of what is left.
 const SCALE: f64 = 0.55;
+/// The part of what was left that is left when surroundings are summed up anew, at another scale.
+const KEPT: f64 = 0.93;
 
-/// The blocks, the one that leaves last first.
-fn leave(blocks: &Blocks, pairs: &Pairs, moves: &[[f32; 3]]) -> Vec<usize> {
-    let number = moves.len();
-    let mut is_left = vec![true; number];
-    let mut left = 1.0f64;
-    let mut order = Vec::with_capacity(number);
-    // The scale changes in stages; at each the surroundings are summed up anew.
-    while order.len() < number {
-        let spacing = libm::cbrt(left.max(FEW)).recip();
-        let sigma = SCALE * spacing;
-        let scale = -0.5 / (sigma * sigma);
-        let weight = |block: usize, pair: usize| {
+/// The blocks that are left, and how they press each other.
+struct Left<'a> {
+    blocks: &'a Blocks,
+    pairs: &'a Pairs,
+    moves: &'a [[f32; 3]],
+    /// The exponent per squared distance.
+    scale: f64,
+}
+
+impl Left<'_> {
+    /// The pairs of a block: the other block, and the frequency of the pair times the Gaussian of its distance.
+    fn of(&self, block: usize) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
+        let Self { pairs, moves, .. } = self;
+        (pairs.starts[block]..pairs.starts[block + 1]).map(move |pair| {
             let other = usize::from(pairs.blocks[pair]);
             let squared: f64 = (0..3)
                 .map(|axis| {
-                    let by = f64::from(pairs.offsets[pair][axis]) * blocks.step;
+                    let by = f64::from(pairs.offsets[pair][axis]) * self.blocks.step;
                     let d = by + f64::from(moves[other][axis]) - f64::from(moves[block][axis]);
                     d * d
                 })
                 .sum();
-            (scale * squared).max(-40.0)
-        };
-        let mut density = vec![0.0f64; number];
-        for block in (0..number).filter(|&block| is_left[block]) {
-            for pair in pairs.starts[block]..pairs.starts[block + 1] {
-                if is_left[usize::from(pairs.blocks[pair])] {
-                    let exponent = weight(block, pair) as f32;
-                    density[block] += f64::from(pairs.shares[pair]) / blocks.shares[block]
-                        * f64::from(crate::numeric::exp32(exponent));
+            let exponent = (self.scale * squared).max(-40.0) as f32;
+            (
+                other,
+                f64::from(pairs.shares[pair]),
+                f64::from(exp32(exponent)),
+            )
+        })
+    }
+}
+
+impl Surroundings for Left<'_> {
+    fn share(&self, block: usize) -> f64 {
+        self.blocks.shares[block]
+    }
+
+    fn potentials(&mut self, is_left: &[bool], left: f64, _: f64) -> Vec<f64> {
+        let sigma = SCALE * libm::cbrt(left.max(FEW)).recip();
+        self.scale = -0.5 / (sigma * sigma);
+        let mut density = vec![0.0f64; is_left.len()];
+        for block in (0..is_left.len()).filter(|&block| is_left[block]) {
+            for (other, share, near) in self.of(block) {
+                if is_left[other] {
+                    density[block] += share / self.share(block) * near;
                 }
             }
         }
-        let stage = 0.93 * left;
-        loop {
-            let candidates = (0..number).filter(|&block| is_left[block]);
-            let next =
-                candidates.max_by(|&a, &b| density[a].total_cmp(&density[b]).then(b.cmp(&a)));
-            let Some(block) = next else {
-                break;
-            };
-            is_left[block] = false;
-            left -= blocks.shares[block];
-            order.push(block);
-            // The pair seen from the other point has the same frequency and distance.
-            for pair in pairs.starts[block]..pairs.starts[block + 1] {
-                let other = usize::from(pairs.blocks[pair]);
-                if is_left[other] {
-                    let exponent = weight(block, pair) as f32;
-                    density[other] -= f64::from(pairs.shares[pair]) / blocks.shares[other]
-                        * f64::from(crate::numeric::exp32(exponent));
-                }
-            }
-            if left < stage {
-                break;
-            }
+        density
+    }
+
+    fn leave(&self, block: usize, mut lose: impl FnMut(usize, f64)) {
+        // The pair seen from the other point has the same frequency and distance.
+        for (other, share, near) in self.of(block) {
+            lose(other, share / self.share(other) * near);
         }
     }
-    order.reverse();
-    order
 }

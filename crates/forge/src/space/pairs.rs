@@ -1,8 +1,9 @@
-//! The pairs of blocks whose points are near each other, with their exact frequencies.
+//! The pairs of blocks whose points are near each other, with their exact frequencies in the unbounded set: products of
+//! [overlaps](Overlaps) along three axes, since the index of a point is uniform over the set region.
 
 use strew_core::{Alpha, Map};
 
-use super::meetings::Meetings;
+use crate::optimize::Overlaps;
 
 /// Pairs within a distance, by the block of their first point.
 #[derive(Clone, Debug, Default)]
@@ -21,12 +22,11 @@ pub(super) struct Pairs {
 pub const LONGEST: f64 = 2.5;
 
 /// The geometry of a map's blocks.
-#[derive(Clone, Debug)]
 pub(super) struct Blocks {
     pub(super) intervals: usize,
     /// The share of points of each block.
     pub(super) shares: Vec<f64>,
-    meetings: Meetings,
+    overlaps: Overlaps,
     /// Mean spacings per grid unit.
     pub(super) step: f64,
     /// The greatest displacement, in mean spacings.
@@ -55,10 +55,20 @@ impl Blocks {
         Self {
             intervals: n,
             shares: (0..n.pow(3)).map(share).collect(),
-            meetings: Meetings::new(map, far),
+            overlaps: Overlaps::new(map, far),
             step,
             longest,
         }
+    }
+
+    /// The intervals that meet across an offset along an axis, given the sum of those along the others: from, to, and the
+    /// part of the set region from which they meet.
+    fn meetings(&self, own: i64, others: i64) -> Vec<(usize, usize, f32)> {
+        let of = |from: usize| {
+            let all = self.overlaps.of(own, others, from).iter();
+            all.map(move |o| (from, o.to as usize, (o.length / self.step) as f32))
+        };
+        (0..self.intervals).flat_map(of).collect()
     }
 
     /// Calls `each` for the pairs of blocks that can meet within `reach` mean spacings: with the block numbers, the
@@ -69,7 +79,7 @@ impl Blocks {
         reach: f64,
         mut each: impl FnMut(usize, usize, [i8; 3], f32),
     ) {
-        let (n, far) = (self.intervals, self.meetings.far());
+        let (n, far) = (self.intervals, self.overlaps.reach());
         let longest = moves
             .iter()
             .map(|v| v.iter().map(|v| f64::from(*v).powi(2)).sum::<f64>())
@@ -84,23 +94,20 @@ impl Blocks {
                     if squared > widest * widest || (x, y, z) == (0, 0, 0) {
                         continue;
                     }
-                    let along_x = self.meetings.across(x, y + z);
+                    let [along_x, along_y, along_z] = [(x, y + z), (y, x + z), (z, x + y)]
+                        .map(|(own, others)| self.meetings(own, others));
                     let offset = [x, y, z].map(|v| v as f32 * step);
-                    for k in self.meetings.across(z, x + y) {
-                        for j in self.meetings.across(y, x + z) {
-                            let share = k.share * j.share;
-                            let from = (usize::from(k.from) * n + usize::from(j.from)) * n;
-                            let to = (usize::from(k.to) * n + usize::from(j.to)) * n;
+                    for &(from_z, to_z, share_z) in &along_z {
+                        for &(from_y, to_y, share_y) in &along_y {
+                            let share = share_z * share_y;
+                            let (from, to) = ((from_z * n + from_y) * n, (to_z * n + to_y) * n);
                             let (from_row, to_row) = (&moves[from..from + n], &moves[to..to + n]);
-                            for i in along_x {
-                                let (a, b) =
-                                    (&from_row[usize::from(i.from)], &to_row[usize::from(i.to)]);
+                            for &(from_x, to_x, share_x) in &along_x {
+                                let (a, b) = (&from_row[from_x], &to_row[to_x]);
                                 let d = [0, 1, 2].map(|axis| offset[axis] + b[axis] - a[axis]);
                                 if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < limit {
-                                    let blocks =
-                                        (from + usize::from(i.from), to + usize::from(i.to));
                                     let at = [x as i8, y as i8, z as i8];
-                                    each(blocks.0, blocks.1, at, share * i.share);
+                                    each(from + from_x, to + to_x, at, share * share_x);
                                 }
                             }
                         }

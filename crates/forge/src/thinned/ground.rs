@@ -6,7 +6,7 @@
 
 use strew_core::{Map, Table, table::to_grid_units};
 
-use crate::optimize::Overlaps;
+use crate::optimize::{Overlaps, Pair};
 
 /// The exact pair frequencies of a map. Lengths are in mean spacings of the full set.
 pub(crate) struct Ground {
@@ -27,16 +27,6 @@ struct Meeting {
     offset: i16,
     to: u16,
     length: f64,
-}
-
-/// A neighbor of a block: an instance of block `to` at lattice offset (i, j).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Neighbor {
-    pub(crate) to: u32,
-    pub(crate) i: i16,
-    pub(crate) j: i16,
-    /// The mean number of such neighbors of an instance of the block, in the full set.
-    pub(crate) weight: f32,
 }
 
 /// Two blocks that meet across the lattice offset (i, j).
@@ -98,17 +88,17 @@ impl Ground {
     }
 
     /// Calls `visit` with every neighbor of a block within `reach` mean spacings along each axis of the
-    /// pattern, and its weight. `alive` says which blocks count.
+    /// pattern, and its weight in the full set. `alive` says which blocks count.
     pub(crate) fn neighbors(
         &self,
         block: usize,
         reach: f64,
         alive: impl Fn(usize) -> bool,
-        mut visit: impl FnMut(Neighbor),
+        mut visit: impl FnMut(Pair),
     ) {
         let area = self.shares[block] * self.scale * self.scale;
         self.meets(block, reach, alive, |meet| {
-            visit(Neighbor {
+            visit(Pair {
                 to: meet.to,
                 i: meet.i,
                 j: meet.j,

@@ -1,14 +1,16 @@
-//! The order in which blocks leave: void and cluster (Ulichney 1993) over blocks instead of points.
-//!
-//! Again and again the block of the highest potential leaves, a Gaussian sum over what is left. σ is
-//! 0.6 of the mean spacing that is left. Frequencies are exact, vectors are the table's own, and no
-//! point moves.
+//! The [order](crate::order) in which the blocks of a table leave. A potential is a Gaussian sum over what is left.
+//! σ is 0.6 of the mean spacing that is left. Frequencies are exact, vectors are the table's own, and no point moves.
 
 use rayon::prelude::*;
 use strew_core::{Table, table::Ranks};
 
-use super::ground::{Ground, Neighbor, moves_of};
-use crate::{ForgeError, numeric::exp};
+use super::ground::{Ground, moves_of};
+use crate::{
+    ForgeError,
+    numeric::exp,
+    optimize::{Pair, longest},
+    order::{Surroundings, positions},
+};
 
 /// σ in mean spacings of the thinned set. At 0.7 low power is about equal and pairs are nearer, at 0.9 low
 /// power is a third higher.
@@ -49,73 +51,61 @@ pub fn with_ranks(table: &Table) -> Result<Table, ForgeError> {
     let longest = longest(&moves);
     let reach = CUTOFF * SIGMA / LEAST.sqrt() + 2.0 * longest;
     let ground = Ground::new(table.map(), reach);
-    let left_last = leaving_order(&ground, &moves);
-    let mut positions = vec![0; ground.blocks()];
-    for (position, &block) in left_last.iter().rev().enumerate() {
-        positions[block] = position as u32;
-    }
+    let mut left = Left {
+        ground: &ground,
+        moves: &moves,
+        longest,
+        lists: Vec::new(),
+    };
+    let positions = positions(&mut left, ground.blocks(), 1.0 - BATCH, FEWEST);
     Ok(table.with_ranks(Ranks::new(positions)?)?)
 }
 
-/// The length of the longest move.
-fn longest(moves: &[[f64; 2]]) -> f64 {
-    let squared = moves.iter().map(|m| m[0] * m[0] + m[1] * m[1]);
-    squared.fold(0.0, f64::max).sqrt()
+/// The blocks of a table that are left, and which of them influence each other.
+struct Left<'a> {
+    ground: &'a Ground,
+    moves: &'a [[f64; 2]],
+    /// The length of the longest move.
+    longest: f64,
+    lists: Vec<Vec<Felt>>,
 }
 
-/// The blocks in the order in which they leave.
-fn leaving_order(ground: &Ground, moves: &[[f64; 2]]) -> Vec<usize> {
-    let blocks = ground.blocks();
-    let longest = longest(moves);
-    let mut is_left = vec![true; blocks];
-    let mut order = Vec::with_capacity(blocks);
-    let mut left = 1.0;
-    while blocks - order.len() > FEWEST {
-        let target = left * (1.0 - BATCH);
+impl Surroundings for Left<'_> {
+    fn share(&self, block: usize) -> f64 {
+        self.ground.share(block)
+    }
+
+    fn potentials(&mut self, is_left: &[bool], _: f64, target: f64) -> Vec<f64> {
         let spacing = 1.0 / target.max(LEAST).sqrt();
         let rate = -0.5 / (SIGMA * spacing * SIGMA * spacing);
         let range = CUTOFF * SIGMA * spacing;
-        // Which blocks influence each other, and how much.
-        let lists: Vec<Vec<Felt>> = (0..blocks)
-            .into_par_iter()
-            .map(|block| {
-                let mut list = Vec::new();
-                if is_left[block] {
-                    let felt = |n: &Neighbor| felt(ground, moves, block, n, range, rate);
-                    ground.neighbors(
-                        block,
-                        range + 2.0 * longest,
-                        |to| is_left[to],
-                        |neighbor| list.extend(felt(&neighbor)),
-                    );
-                }
-                list
-            })
-            .collect();
-        let mut potential: Vec<f64> = lists
-            .iter()
-            .map(|list| list.iter().map(|felt| felt.value + felt.press).sum())
-            .collect();
-        let mut first = true;
-        while (left > target || first) && blocks - order.len() > FEWEST {
-            first = false;
-            let fullest = (0..blocks)
-                .filter(|&b| is_left[b])
-                .max_by(|&a, &b| potential[a].total_cmp(&potential[b]).then(b.cmp(&a)));
-            let Some(block) = fullest else { break };
-            is_left[block] = false;
-            left -= ground.share(block);
-            order.push(block);
-            // The shares decide how many of these neighbors an instance of `to` has.
-            for felt in &lists[block] {
-                let to = felt.to as usize;
-                let ratio = ground.share(block) / ground.share(to);
-                potential[to] -= felt.value * ratio + felt.press;
+        let list = |block: usize| {
+            let mut list = Vec::new();
+            if is_left[block] {
+                let reach = range + 2.0 * self.longest;
+                let is_left = |to: usize| is_left[to];
+                self.ground.neighbors(block, reach, is_left, |neighbor| {
+                    list.extend(self.felt(block, &neighbor, range, rate));
+                });
             }
+            list
+        };
+        let blocks = 0..is_left.len();
+        self.lists = blocks.into_par_iter().map(list).collect();
+        let lists = self.lists.iter();
+        lists
+            .map(|list| list.iter().map(|felt| felt.value + felt.press).sum())
+            .collect()
+    }
+
+    fn leave(&self, block: usize, mut lose: impl FnMut(usize, f64)) {
+        // The shares decide how many of these neighbors an instance of `to` has.
+        for felt in &self.lists[block] {
+            let to = felt.to as usize;
+            let ratio = self.share(block) / self.share(to);
+            lose(to, felt.value * ratio + felt.press);
         }
     }
-    order.extend((0..blocks).filter(|&b| is_left[b]));
-    order
 }
 
 /// The force on an instance of a block from another block.
@@ -127,23 +117,19 @@ struct Felt {
     press: f64,
 }
 
-/// The force on an instance of a block from a neighbor, or `None` beyond the range.
-fn felt(
-    ground: &Ground,
-    moves: &[[f64; 2]],
-    block: usize,
-    neighbor: &Neighbor,
-    range: f64,
-    rate: f64,
-) -> Option<Felt> {
-    let (own, other) = (moves[block], moves[neighbor.to as usize]);
-    let dx = ground.scale() * f64::from(neighbor.i) + other[0] - own[0];
-    let dy = ground.scale() * f64::from(neighbor.j) + other[1] - own[1];
-    let squared = dx * dx + dy * dy;
-    let near = range * GUARD / (CUTOFF * SIGMA);
-    (squared < range * range).then(|| Felt {
-        to: neighbor.to,
-        value: f64::from(neighbor.weight) * exp(rate * squared),
-        press: PRESSURE * (1.0 - squared / (near * near)).max(0.0),
-    })
+impl Left<'_> {
+    /// The force on an instance of a block from a neighbor, or `None` beyond the range.
+    fn felt(&self, block: usize, neighbor: &Pair, range: f64, rate: f64) -> Option<Felt> {
+        let (own, other) = (self.moves[block], self.moves[neighbor.to as usize]);
+        let scale = self.ground.scale();
+        let dx = scale * f64::from(neighbor.i) + other[0] - own[0];
+        let dy = scale * f64::from(neighbor.j) + other[1] - own[1];
+        let squared = dx * dx + dy * dy;
+        let near = range * GUARD / (CUTOFF * SIGMA);
+        (squared < range * range).then(|| Felt {
+            to: neighbor.to,
+            value: f64::from(neighbor.weight) * exp(rate * squared),
+            press: PRESSURE * (1.0 - squared / (near * near)).max(0.0),
+        })
+    }
 }

@@ -5,16 +5,12 @@
 
 mod distance;
 mod fourier;
-mod local;
 mod points;
 mod power;
 mod shared;
-mod shells;
 mod transform;
 
 pub use distance::SpaceDistances;
-pub use local::LocalPower;
 pub use points::{SpacePoints, is_uniform_in_space};
-pub use power::SpacePower;
+pub use power::{LocalPower, Shell, SpacePower};
 pub use shared::SpaceShared;
-pub use shells::Shell;

@@ -1,10 +1,9 @@
-//! The power of a set over frequencies, in shells.
+//! The power of a set over frequencies, in shells, and that of small windows, which shows a leftover local lattice.
 
-use super::{
-    points::SpacePoints,
-    shells::{Shell, Shells},
-    transform::Sums,
-};
+use strew_core::{Error, space::SpaceSet};
+
+use super::{points::SpacePoints, transform::Sums};
+use crate::numeric::SplitMix;
 
 /// The power of a set, from its spectrum.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -77,10 +76,139 @@ impl SpacePower {
     }
 }
 
+/// The power of the frequencies in a shell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shell {
+    /// The middle of the shell.
+    pub frequency: f64,
+    /// The mean power.
+    pub power: f64,
+    /// The deviation over the mean.
+    pub deviation: f64,
+    /// The greatest power.
+    pub largest: f64,
+}
+
+impl Shell {
+    /// The anisotropy 10·log10(variance / mean²), in decibels: 0 for random phases.
+    #[must_use]
+    pub fn anisotropy(&self) -> f64 {
+        20.0 * libm::log10(self.deviation.max(1e-9))
+    }
+}
+
+/// The sums over shells of a spectrum.
+pub(super) struct Shells {
+    width: f64,
+    sums: Vec<[f64; 4]>,
+}
+
+impl Shells {
+    /// Shells of a width, from 0 to `highest`.
+    pub(super) fn new(width: f64, highest: f64) -> Self {
+        let count = (highest / width + 0.5) as usize;
+        Self {
+            width,
+            sums: vec![[0.0; 4]; count],
+        }
+    }
+
+    pub(super) fn add(&mut self, frequency: f64, power: f64) {
+        if let Some(sum) = self.sums.get_mut((frequency / self.width) as usize) {
+            let [number, total, squares, largest] = *sum;
+            *sum = [
+                number + 1.0,
+                total + power,
+                squares + power * power,
+                largest.max(power),
+            ];
+        }
+    }
+
+    /// The shells that have frequencies.
+    pub(super) fn each(&self) -> impl Iterator<Item = Shell> + '_ {
+        let all = self.sums.iter().enumerate();
+        let filled = all.filter(|(_, sum)| sum[0] > 0.0);
+        filled.map(|(i, &[number, total, squares, largest])| {
+            let mean = total / number;
+            let variance = (squares / number - mean * mean).max(0.0);
+            Shell {
+                frequency: (i as f64 + 0.5) * self.width,
+                power: mean,
+                deviation: variance.sqrt() / mean.max(1e-12),
+                largest,
+            }
+        })
+    }
+}
+
+/// The power in small windows, averaged over many places: a leftover local lattice shows as spots in the ring of the peak.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LocalPower {
+    /// The mean power in the ring of the peak.
+    pub peak: f64,
+    /// The deviation of its frequencies, divided by that mean.
+    pub deviation: f64,
+    /// The greatest power of one of its frequencies.
+    pub largest: f64,
+}
+
+/// The side of a small window, in mean spacings.
+const SIDE: f64 = 12.0;
+/// The width of a ring.
+const RING: f64 = 0.08;
+/// The peak lies beyond.
+const PEAK_FROM: f64 = 0.64;
+/// The side of the cube in which places are chosen, in mean spacings.
+const AROUND: f64 = 400.0;
+
+impl LocalPower {
+    /// The power of cubes of 12 spacings at `places` places of a set, chosen by `seed` in a cube of 400 spacings from `at` on.
+    /// `at` is in mean spacings of the whole set.
+    ///
+    /// # Errors
+    /// As [`SpaceSet::within`].
+    pub fn of(set: &SpaceSet, at: [f64; 3], places: u32, seed: u64) -> Result<Self, Error> {
+        let side = SIDE / libm::cbrt(set.placement().keep.get());
+        let modes = (HIGHEST * SIDE).ceil() as usize;
+        let mut random = SplitMix::new(seed);
+        let mut means: Vec<f64> = Vec::new();
+        let mut frequencies = Vec::new();
+        for _ in 0..places {
+            let at = at.map(|v| v + AROUND * random.next_f64());
+            let points = SpacePoints::of_window(set, at, side)?;
+            let weights = points.taper().unwrap_or_default();
+            let total = weights.iter().map(|w| w * w).sum::<f64>() * f64::from(places);
+            let sums = Sums::new(points.points(), Some(&weights), modes);
+            if means.is_empty() {
+                means = vec![0.0; sums.each().count()];
+                frequencies.extend(sums.each().map(|(k, _)| {
+                    let squared: i64 = k.iter().map(|k| k * k).sum();
+                    (squared as f64).sqrt() / SIDE
+                }));
+            }
+            for (mean, (_, [re, im])) in means.iter_mut().zip(sums.each()) {
+                let (re, im) = (f64::from(re), f64::from(im));
+                *mean += (re * re + im * im) / total.max(f64::MIN_POSITIVE);
+            }
+        }
+        let mut shells = Shells::new(RING, HIGHEST);
+        for (frequency, power) in frequencies.into_iter().zip(means) {
+            shells.add(frequency, power);
+        }
+        let rings = shells.each().filter(|ring| ring.frequency > PEAK_FROM);
+        let peak = rings.max_by(|a, b| a.power.total_cmp(&b.power));
+        Ok(peak.map_or(Self::default(), |ring| Self {
+            peak: ring.power,
+            deviation: ring.deviation,
+            largest: ring.largest,
+        }))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::SplitMix;
 
     #[test]
     fn white_noise_has_power_one_and_a_lattice_has_peaks() {
