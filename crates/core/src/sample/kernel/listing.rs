@@ -98,7 +98,7 @@ impl Listing {
     pub(crate) fn add_row(&mut self, row: i32, columns: Range<usize>, first: usize) {
         self.points += columns.len();
         self.last = self.last.max(first);
-        self.end = self.end.max(columns.end);
+        self.end = self.end.max(columns.end).max(columns.start);
         self.rows.push(ListedRow {
             row,
             columns,
