@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::{array::from_fn, ops::Range};
 
 /// An address relative to an origin.
-pub trait Offset<const D: usize>: Copy {
+pub(crate) trait Offset<const D: usize>: Copy {
     /// The distance from the origin, in lattice units.
     fn offset(self) -> [i64; D];
 }
