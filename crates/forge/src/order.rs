@@ -1,7 +1,7 @@
 //! Void and cluster (Ulichney 1993) over blocks instead of points: again and again the block of the highest potential
 //! leaves.
 
-/// What presses on what while blocks leave.
+/// The potentials of blocks, and how they change as blocks leave.
 pub(crate) trait Surroundings {
     /// The share of all points that a block has.
     fn share(&self, block: usize) -> f64;
@@ -14,7 +14,7 @@ pub(crate) trait Surroundings {
 }
 
 /// The order in which a number of blocks leave, as the position of each: 0 for the one that leaves last. Potentials are
-/// made again when the part `kept` of what was left is left; the last `fewest` blocks are not told apart.
+/// computed anew each time the share that is left has fallen by the factor `kept`; the last `fewest` blocks follow by number.
 pub(crate) fn positions(
     around: &mut impl Surroundings,
     blocks: usize,

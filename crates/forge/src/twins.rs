@@ -111,7 +111,7 @@ impl Domain {
     }
 
     /// The map at several α with their shares, which sum to 1: its own α first, then others on both
-    /// sides, as far as its large twins lie. Large maps are returned at their own α alone.
+    /// sides, within the range of its large twins. A large map is returned at its own α alone.
     pub(crate) fn spread(&self) -> Vec<(Map, f64)> {
         let mut maps = vec![(self.map.clone(), OWN_SHARE)];
         if self.map.radius() <= MAX_SPREAD_RADIUS {

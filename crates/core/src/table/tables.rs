@@ -177,7 +177,7 @@ impl<V: Vector> TableOf<V> {
         &self.0.parts
     }
 
-    /// What the table holds beside its parts.
+    /// What is derived from the vectors.
     pub(crate) fn held(&self) -> &V::Held {
         &self.0.held
     }

@@ -5,7 +5,7 @@ use alloc::{sync::Arc, vec::Vec};
 use super::{Displacement, Labels, Order, TableOf, symmetry::Symmetry};
 use crate::once::Once;
 
-/// What a table of the plane holds beside its parts.
+/// What is derived from the vectors of a table of the plane.
 #[derive(Debug)]
 pub struct Held {
     /// The least and the greatest displacement along x and y.

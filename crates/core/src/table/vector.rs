@@ -11,10 +11,10 @@ pub trait Vector: Copy + Debug + Default + PartialEq {
     const SECTION: [u8; 4];
     /// The sections that such a file may not have, and why.
     const FOREIGN: &[([u8; 4], &str)];
-    /// What a table holds beside its parts.
+    /// What is derived from the vectors and kept with the table.
     type Held;
 
-    /// What a table of some vectors holds beside its parts.
+    /// Derives it.
     fn held(vectors: &[Self]) -> Self::Held;
 
     /// The vector and what is allowed, if it is too long.

@@ -159,9 +159,9 @@ impl VectorLoop for Rows<'_> {
     #[inline(always)]
     unsafe fn run<L: Lanes>(&mut self) -> usize {
         let columns = self.listing.columns.each_ref().map(|list| list.as_ptr());
-        // SAFETY: the machine has the instructions. Rows have columns that are there and vectors of two numbers, as `write` has
-        // seen. The lists have room for all points, and those of a row are all written: in vectors
-        // that go back over those before, or one by one.
+        // SAFETY: the machine has the instructions. Rows have columns that are there and vectors of two numbers, as
+        // `write` has seen. The lists have room for all points, and those of a row are all written: in vectors, the last
+        // of which goes back over those before, or one by one.
         unsafe {
             let mut ends = self
                 .lists

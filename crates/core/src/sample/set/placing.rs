@@ -1,7 +1,7 @@
 //! The methods that lay a set into the world, the same in the plane and in space.
 
-/// Gives a set the methods that change its placement. It has a lattice, and says whether its warp was chosen; `$make` is
-/// an expression of a set for examples, and `$origin` the lower corner of its chunks.
+/// The methods that change the placement of a set, which has the fields `lattice` and `has_own_warp`. In the examples,
+/// `$make` makes a set and `$origin` is the place of a chunk.
 macro_rules! placing {
     ($Set:ty, $Table:ty, power: $power:literal, $dimensions:literal, $make:literal, $origin:literal) => {
         impl $Set {

@@ -214,13 +214,12 @@ impl<F: Format> RowWalk<F> {
             patch,
             piece: [x, span],
             base,
-            sieve,
             ..
         } = &mut self.bands;
         let (lattice, format, patch, base, by) =
             (&scope.lattice, &*format, &*patch, *base, *backend);
         let is_split = patch.is_warped() && !patch.columns_are_inner;
-        let is_flat = self.templates.are_short() && sieve.is_none();
+        let is_flat = self.templates.are_short();
         let mut filled = 0;
         while at.y < end && filled < out.len() {
             if is_flat && at.is_fresh() {
