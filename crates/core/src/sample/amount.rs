@@ -1,24 +1,32 @@
-//! The spacing at which an area holds a given number of points.
+//! The spacing at which an area or a volume holds a given number of points.
 
 use alloc::collections::VecDeque;
+use core::array::from_fn;
 
-use super::{
-    lattice::{Grade, Lattice, Placement, Spacing},
-    near::Mask,
-    plan::Plan,
-};
+use super::lattice::{Grade, Spacing};
 use crate::{
     error::{Error, ErrorKind, number},
-    shape::{Area, Region},
-    stop::Stop,
+    shape::Region,
+    window::Windowed,
 };
 
 /// More steps than a bisection of any bracket takes.
 const MOST_STEPS: usize = 400;
 
-/// A plan of exactly `count` points in an area, at the spacing that takes. The spacing of `lattice` is
-/// ignored. No spacing below `least` is tried: where counting takes time in proportion to the lattice
-/// rows, that bounds it.
+/// What is known of an area or a volume before it is counted.
+pub(crate) struct Sought<'a, const D: usize> {
+    pub(crate) count: u128,
+    /// A box around it, if it is bounded.
+    pub(crate) bounds: Option<Region<D>>,
+    /// No spacing below is tried.
+    pub(crate) least: f64,
+    pub(crate) grade: Option<&'a Grade<D>>,
+    /// The share of points that there are beside a field.
+    pub(crate) share: f64,
+}
+
+/// A plan of exactly `count` points, at the spacing that takes: `plan` makes that of a spacing. No spacing below `least` is
+/// tried: where counting takes time in proportion to the lattice rows, that bounds it.
 ///
 /// As the spacing shrinks, points enter an area mostly one at a time. Without warp those of one column
 /// and block have the same x, and two may enter a box at once. Then the plan is a window that leaves out
@@ -27,24 +35,19 @@ const MOST_STEPS: usize = 400;
 /// In a field the count does not fall with each step of the spacing, but it changes by a point at a time, so a
 /// bracket of too many and too few still has a spacing of the count in it. Counting visits points there, so
 /// the search begins at the mean share and interpolates: some ten counts.
-pub(super) fn exactly(
-    lattice: &Lattice,
-    mask: &Mask,
-    area: &Area,
-    count: u128,
-    least: f64,
-    stop: &Stop,
-) -> Result<Plan, Error> {
+pub(crate) fn exactly<const D: usize, P: Windowed>(
+    sought: &Sought<'_, D>,
+    plan: impl Fn(Spacing) -> Result<P, Error>,
+) -> Result<P, Error> {
+    let (count, least) = (sought.count, sought.least);
+    let is_in_field = sought.grade.is_some();
     if count == 0 {
         return Err(Error::new(ErrorKind::Count, "count", 0, "at least 1"));
     }
-    let bounds = mask.clone().and_within(area.clone()).area;
-    let bounds = bounds
-        .as_ref()
-        .and_then(Area::bounds)
+    let bounds = sought
+        .bounds
         .ok_or_else(|| Error::new(ErrorKind::Unbounded, "area", "unbounded", "within a box"))?;
-    let [width, height] = bounds.sides();
-    let share = match &lattice.grade {
+    let share = match sought.grade {
         Some(grade) => match sum_of_shares(grade, &bounds) {
             0.0 if is_zero(grade, bounds) => {
                 let allowed = "a region in which the field leaves points";
@@ -52,13 +55,15 @@ pub(super) fn exactly(
                 return Err(error.because("the field is 0 in all of the region"));
             }
             // At least a quarter of one place's.
-            sum => sum.max(0.25) / f64::from(SIDE * SIDE) * lattice.kind_share(),
+            sum => sum.max(0.25) / f64::from(LOOKS) * sought.share,
         },
-        None => lattice.share(),
+        None => sought.share,
     };
     let wanted = count as f64;
-    let mut guess = libm::sqrt(width) * libm::sqrt(height) * libm::sqrt(share / wanted);
-    let mut more: Option<Plan> = None;
+    let (min, max) = (bounds.min(), bounds.max());
+    let sides = (0..D).map(|axis| root::<D>(max[axis] - min[axis]));
+    let mut guess = sides.fold(1.0, |all, side| all * side) * root::<D>(share / wanted);
+    let mut more: Option<P> = None;
     // Spacings with too many points, and with too few.
     let (mut low, mut high) = (0.0, f64::INFINITY);
     // The counts there.
@@ -68,12 +73,7 @@ pub(super) fn exactly(
         let Ok(spacing) = Spacing::new(guess) else {
             break;
         };
-        let placement = Placement {
-            spacing,
-            ..lattice.placement
-        };
-        let trial = lattice.replaced(placement);
-        let plan = match Plan::new(&trial, mask, area.clone(), stop.clone(), None) {
+        let plan = match plan(spacing) {
             Ok(plan) => plan,
             // So dense that f64 coordinates of points coincide.
             Err(error) if error.kind() == ErrorKind::TooFar && high.is_finite() => {
@@ -86,19 +86,19 @@ pub(super) fn exactly(
             }
             Err(error) => return Err(error),
         };
-        let found = plan.total();
+        let found = plan.part().total;
         if found == count {
             return Ok(plan);
         }
         if found > count {
             (low, ends[0]) = (guess, found as f64);
-            if more.as_ref().is_none_or(|more| found < more.total()) {
+            if more.as_ref().is_none_or(|more| found < more.part().total) {
                 more = Some(plan);
             }
-        } else if guess <= least && (found > 0 || lattice.grade.is_some()) {
+        } else if guess <= least && (found > 0 || is_in_field) {
             let spacing = number(least);
             let (problem, allowed) = match found {
-                0 if lattice.grade.is_some() => (
+                0 if is_in_field => (
                     alloc::format!("no point is left here, down to a spacing of {spacing}"),
                     "a region in which the field leaves points",
                 ),
@@ -115,8 +115,8 @@ pub(super) fn exactly(
                 break;
             }
         }
-        // Counts go as spacing⁻², which leads near; from there the bracket is halved.
-        let law = guess * libm::sqrt(found.max(1) as f64 / wanted);
+        // Counts go as densities do, which leads near; from there the bracket is halved.
+        let law = guess * root::<D>(found.max(1) as f64 / wanted);
         let next = if high.is_infinite() {
             law.max(low * 1.000_001)
         } else if low == 0.0 {
@@ -125,8 +125,8 @@ pub(super) fn exactly(
             } else {
                 law.min(high * 0.999_999)
             }
-        } else if lattice.grade.is_some() && ends[0] > 0.0 && step % 3 != 0 {
-            let next = interpolated([low, high], ends, wanted);
+        } else if is_in_field && ends[0] > 0.0 && step % 3 != 0 {
+            let next = interpolated::<D>([low, high], ends, wanted);
             if low < next && next < high {
                 next
             } else {
@@ -143,7 +143,7 @@ pub(super) fn exactly(
         guess = next;
     }
     let more = more.ok_or_else(|| {
-        let (problem, allowed) = match ends[1] == 0.0 && lattice.grade.is_none() {
+        let (problem, allowed) = match ends[1] == 0.0 && !is_in_field {
             true => (
                 "the region has no area that holds a point",
                 "a region with an area",
@@ -152,25 +152,36 @@ pub(super) fn exactly(
         };
         Error::new(ErrorKind::Count, "count", count, allowed).because(problem)
     })?;
-    Ok(more.window(0, Some(count)))
+    Ok(more.window_from(0, Some(count)))
 }
 
-/// The first look at a field takes this number of rows and columns of places.
-const SIDE: u32 = 64;
+/// The side of a square, or of a cube.
+fn root<const D: usize>(content: f64) -> f64 {
+    match D {
+        2 => libm::sqrt(content),
+        _ => libm::cbrt(content),
+    }
+}
+
+/// The first look at a field takes this number of places, in rows and columns, in space layers, too.
+const LOOKS: u32 = 4096;
 
 /// The sum of the shares of a field at a grid of places in a box.
-fn sum_of_shares(grade: &Grade, bounds: &Region) -> f64 {
+fn sum_of_shares<const D: usize>(grade: &Grade<D>, bounds: &Region<D>) -> f64 {
     let (min, max) = (bounds.min(), bounds.max());
-    let along = |axis: usize, i: u32| {
-        let part = (f64::from(i) + 0.5) / f64::from(SIDE);
-        min[axis] + (max[axis] - min[axis]) * part
+    let side = root::<D>(f64::from(LOOKS)) as u32;
+    let place = |number: u32| {
+        from_fn(|axis| {
+            let along = number / side.pow(axis as u32) % side;
+            let part = (f64::from(along) + 0.5) / f64::from(side);
+            min[axis] + (max[axis] - min[axis]) * part
+        })
     };
-    let row = |y: u32| (0..SIDE).map(move |x| grade.share([along(0, x), along(1, y)]));
-    (0..SIDE).flat_map(row).sum()
+    (0..LOOKS).map(|number| grade.share(place(number))).sum()
 }
 
 /// Whether the bounds of a field say that it is 0 in all of a box, in smaller and smaller pieces of it.
-fn is_zero(grade: &Grade, bounds: Region) -> bool {
+fn is_zero<const D: usize>(grade: &Grade<D>, bounds: Region<D>) -> bool {
     /// The most pieces that are looked at: less than a millisecond.
     const MOST: usize = 4096;
     let mut open = VecDeque::from([bounds]);
@@ -192,21 +203,23 @@ fn is_zero(grade: &Grade, bounds: Region) -> bool {
     open.is_empty()
 }
 
-/// The halves of a box across its longer side.
-fn halves(piece: Region) -> Option<[Region; 2]> {
+/// The halves of a box across its longest side.
+fn halves<const D: usize>(piece: Region<D>) -> Option<[Region<D>; 2]> {
     let (min, max) = (piece.min(), piece.max());
-    let longer = usize::from(max[1] - min[1] > max[0] - min[0]);
+    let side = |axis: usize| max[axis] - min[axis];
+    let longest = (1..D).fold(0, |a, b| if side(b) > side(a) { b } else { a });
     let (mut end, mut start) = (max, min);
-    end[longer] = between(min[longer], max[longer]);
-    start[longer] = end[longer];
+    end[longest] = between(min[longest], max[longest]);
+    start[longest] = end[longest];
     Some([Region::new(min, end).ok()?, Region::new(start, max).ok()?])
 }
 
-/// The spacing between two at which a count lies as far between theirs, as counts go as spacing⁻².
-fn interpolated(spacings: [f64; 2], counts: [f64; 2], wanted: f64) -> f64 {
-    let [dense, sparse] = spacings.map(|spacing| 1.0 / (spacing * spacing));
+/// The spacing between two at which a count lies as far between theirs, as counts go as densities do.
+fn interpolated<const D: usize>(spacings: [f64; 2], counts: [f64; 2], wanted: f64) -> f64 {
+    let content = |spacing: f64| (1..D).fold(spacing, |all, _| all * spacing);
+    let [dense, sparse] = spacings.map(|spacing| 1.0 / content(spacing));
     let part = (wanted + 0.5 - counts[1]) / (counts[0] - counts[1]);
-    1.0 / libm::sqrt(sparse + (dense - sparse) * part)
+    1.0 / root::<D>(sparse + (dense - sparse) * part)
 }
 
 fn between(low: f64, high: f64) -> f64 {

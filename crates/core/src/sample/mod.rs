@@ -34,10 +34,11 @@ mod sieve;
 mod walk;
 mod warp;
 
+pub(crate) use amount::{Sought, exactly};
 pub(crate) use attribute::hash;
 pub(crate) use bounds::{Corner, bounds, check_limit, common, common_box};
 pub(crate) use kernel::Exactly;
-pub(crate) use lattice::{Multiple, lattice_of};
+pub(crate) use lattice::{Grade, Multiple, lattice_of};
 pub(crate) use near::limits;
 pub(crate) use seed::split_mix;
 pub(crate) use set::placing;

@@ -62,7 +62,9 @@ struct Walking {
 impl<F: Format> Blocks<F> {
     /// The next `left` points of a scope from a place on.
     pub(super) fn walk(scope: Arc<Scope>, start: Option<[i64; 3]>, left: u128) -> Self {
-        let source = if scope.lattice.shears.is_none() && scope.clear.is_empty() {
+        let lattice = &scope.lattice;
+        let is_plain = lattice.shears.is_none() && lattice.grade.is_none();
+        let source = if is_plain && scope.clear.is_empty() {
             Source::Rows(Box::new(Rows::new(scope.clone(), start)))
         } else {
             let walk = Sifted::new(scope.clone(), &scope.all, start, F::HAS_IDS);

@@ -1,15 +1,16 @@
 //! Which addresses have points, and where these are.
 
-use alloc::sync::Arc;
+use alloc::{sync::Arc, vec, vec::Vec};
 
 use super::{
+    Batch,
     pattern::Pattern,
     point::{Point, PointId},
     table::{Table, Turned},
     warp::Shears3,
 };
 use crate::{
-    sample::{Keep, Placement, space::PICKS},
+    sample::{Grade, Keep, Placement, space::PICKS},
     table::{Cut, FRACTION_BITS},
 };
 
@@ -39,6 +40,8 @@ pub(super) struct Lattice {
     pub(super) step: f64,
     /// The points that are kept, unless all are.
     pub(super) cut: Option<Cut>,
+    /// The field that decides which of these there are.
+    pub(super) grade: Option<Grade<3>>,
 }
 
 /// A lattice coordinate in fixed-point units.
@@ -50,8 +53,8 @@ impl Lattice {
     pub(super) fn new(table: Table, placement: Placement) -> Self {
         let alpha = table.map().alpha();
         let turned = table.turned(placement.seed.symmetry_in_space());
-        let share = placement.keep.get();
-        let cut = (placement.keep != Keep::ALL).then(|| turned.order.cut(table.map(), share));
+        let share = placement.shown();
+        let cut = (share < 1.0).then(|| turned.order.cut(table.map(), share));
         let units = f64::from(1u32 << FRACTION_BITS);
         Self {
             placement,
@@ -59,6 +62,7 @@ impl Lattice {
             shears: Shears3::new(placement.warp, placement.seed),
             step: placement.spacing.get() * alpha.set_side_f64() / units,
             cut,
+            grade: None,
             turned,
             table,
         }
@@ -66,7 +70,21 @@ impl Lattice {
 
     /// This lattice at another placement.
     pub(super) fn replaced(&self, placement: Placement) -> Self {
-        Self::new(self.table.clone(), placement)
+        Self {
+            grade: self
+                .grade
+                .as_ref()
+                .map(|grade| grade.times(placement.shown())),
+            ..Self::new(self.table.clone(), placement)
+        }
+    }
+
+    /// All points, whatever the level of detail shows.
+    pub(super) fn whole(&self) -> Self {
+        match self.placement.lod {
+            Keep::ALL => self.clone(),
+            _ => self.replaced(self.placement.with_lod(Keep::ALL)),
+        }
     }
 
     /// The mean spacing of the points that are kept, in world units.
@@ -76,7 +94,11 @@ impl Lattice {
 
     /// Whether another lattice has the same points.
     pub(super) fn is_same(&self, other: &Self) -> bool {
-        self.placement == other.placement && self.table == other.table
+        let is_graded = match (&self.grade, &other.grade) {
+            (Some(own), Some(other)) => own.is_same(other),
+            (own, other) => own.is_none() && other.is_none(),
+        };
+        is_graded && self.placement == other.placement && self.table == other.table
     }
 
     /// The blocks along the axes of an address, or `None` if the pattern has no point there.
@@ -158,14 +180,36 @@ impl Lattice {
         let number = self.number(self.block(id)?);
         let at = id.lattice();
         let is_kept = self.cut.is_none() || self.keeps(number, self.pattern.index(at)[0]);
-        is_kept.then(|| {
+        let place = is_kept.then(|| {
             let vector = self.turned.vector(number);
             let displaced = [0, 1, 2].map(|axis| fixed(at[axis]) + i64::from(vector[axis]));
             match &self.shears {
                 Some(shears) => shears.apply(displaced),
                 None => displaced,
             }
-        })
+        })?;
+        let has = |grade: &Grade<3>| self.rank(id) < grade.share(place.map(|k| self.world(k)));
+        self.grade.as_ref().is_none_or(has).then_some(place)
+    }
+
+    /// Leaves the points of a batch, which has ids, that the field leaves.
+    pub(super) fn sift(&self, batch: &mut Batch) {
+        let Some(grade) = &self.grade else {
+            return;
+        };
+        let origin = batch.origin;
+        let world = |axis: usize, place: i32| self.world(fixed(origin[axis]) + i64::from(place));
+        let at = |i: usize| [0, 1, 2].map(|axis| world(axis, batch.places[axis][i]));
+        let places: Vec<[f64; 3]> = (0..batch.len()).map(at).collect();
+        let mut shares = vec![0.0; places.len()];
+        grade.shares(&places, &mut shares);
+        let stays = |(id, &share): (&[i32; 3], &f64)| {
+            let id = [0, 1, 2].map(|axis| origin[axis] + i64::from(id[axis]));
+            share > 0.0 && self.rank(PointId::of(id)) < share
+        };
+        let stays: Vec<bool> = batch.ids.iter().zip(&shares).map(stays).collect();
+        let mut stays = stays.into_iter();
+        batch.retain(|_| stays.next() == Some(true));
     }
 
     /// The point at a fixed-point place.

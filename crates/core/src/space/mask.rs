@@ -37,7 +37,7 @@ impl ClearOf {
             return Err(Error::new(ErrorKind::Clearance, "distance", value, allowed));
         }
         Ok(Self {
-            lattice: lattice.clone(),
+            lattice: lattice.whole(),
             mask: mask.clone(),
             distance,
         })

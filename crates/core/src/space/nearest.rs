@@ -56,7 +56,7 @@ pub(super) fn nearest(
     if let Some(radius) = within {
         check_radius(radius)?;
     }
-    let share = lattice.placement.keep.get();
+    let share = lattice.placement.shown();
     let spacing = lattice.placement.spacing.get() / libm::cbrt(share);
     // A ball that holds k points on average, and a little more.
     let mut radius = spacing * (libm::cbrt(k as f64 * 0.239) + 0.7);

@@ -93,7 +93,13 @@ impl Scope {
     /// The states of the points of a box of the lattice, which is not empty, if their number is not known to be 0.
     pub(super) fn state(&self, ranges: &[Range<i64>; 3], volume: Option<&Volume>) -> State {
         let places = self.places(ranges);
-        let mut is_inside = true;
+        let grade = self.lattice.grade.as_ref();
+        let bounds = grade.map(|grade| grade.bounds(&self.between(places)));
+        let mut is_inside = match bounds {
+            Some([_, high]) if high <= 0.0 => return State::Out,
+            Some([low, _]) => low >= self.lattice.placement.shown(),
+            None => true,
+        };
         for ([least, most], bounds) in places.iter().zip(&self.bounds) {
             if *most < bounds.start || bounds.end <= *least {
                 return State::Out;
@@ -141,9 +147,9 @@ impl Scope {
         self.is_box() && self.clear.is_empty()
     }
 
-    /// Whether all that is requested lies in a box without warp.
+    /// Whether all that is requested lies in a box without warp and in no field.
     pub(super) fn is_box(&self) -> bool {
-        self.volume.is_none() && self.lattice.shears.is_none()
+        self.volume.is_none() && self.lattice.shears.is_none() && self.lattice.grade.is_none()
     }
 
     /// Whether it has few points, near each other, which are walked once in place of being counted.
@@ -162,7 +168,7 @@ impl Scope {
         const SURFACE: f64 = 2e6;
         let least = if self.is_closed() { CLOSED } else { SURFACE };
         let most = least.max(CLOSED * numbers as f64);
-        !self.clear.is_empty() || self.candidates(ranges) <= most
+        !self.clear.is_empty() || self.lattice.grade.is_some() || self.candidates(ranges) <= most
     }
 
     /// The box of the lattice that both have.

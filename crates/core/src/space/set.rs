@@ -1,16 +1,23 @@
 //! The point set.
 
+#[cfg(feature = "fields")]
+use alloc::sync::Arc;
+use core::ops::Range;
+
 use super::{
     Cursor, Region, Volume,
     lattice::Lattice,
     mask::{ClearOf, Mask},
     plan::Plan,
+    scope::Scope,
     table::Table,
 };
+#[cfg(feature = "fields")]
+use crate::sample::{Field, Grade};
 use crate::{
     LeastDistance,
     error::Error,
-    sample::{Keep, Placement, Seed, Spacing, Warp, limits, placing},
+    sample::{Keep, Placement, Seed, Sought, Spacing, Warp, exactly, limits, placing},
     stop::Stop,
 };
 
@@ -139,6 +146,31 @@ impl SpaceSet {
         Ok(self)
     }
 
+    /// The set in a field: the share of its points varies from place to place. The field replaces an earlier one, and
+    /// [`keep`](Self::keep) multiplies its shares. A point belongs to the set if its rank is below the share at its place;
+    /// counting visits them one by one where bounds of the field leave any.
+    ///
+    /// ```
+    /// use strew_core::{field::{FieldSpec, Noise}, space::{SpaceSet, Table}};
+    ///
+    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).seed(7);
+    /// let cloud = FieldSpec::radial([16.0, 16.0, 16.0], [4.0, 16.0], [1.0, 0.0])?;
+    /// let patches = FieldSpec::noise(Noise { seed: 1, wavelength: 9.0, octaves: 2, range: [0.0, 1.0] })?;
+    /// let droplets = set.in_field(FieldSpec::multiply(vec![cloud, patches])?);
+    /// let plan = droplets.chunk(32.0, [0, 0, 0])?;
+    /// assert!((1000..5000).contains(&plan.count()));
+    /// assert!(plan.iter().all(|point| droplets.point(point.id) == Some(point)));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[cfg(feature = "fields")]
+    #[must_use]
+    pub fn in_field(&self, field: impl Field<3> + 'static) -> Self {
+        let mut set = self.clone();
+        let share = set.lattice.placement.shown();
+        set.lattice.grade = Some(Grade::new(Arc::new(field), share));
+        set
+    }
+
     /// The points in a volume.
     ///
     /// A box without warp is counted in a fraction of a millisecond, whatever it holds; all else in time proportional to
@@ -243,6 +275,66 @@ impl SpaceSet {
     /// ```
     pub fn count(&self, volume: impl Into<Volume>) -> Result<u128, Error> {
         self.within(volume).map(|plan| plan.count())
+    }
+
+    /// Exactly `count` points in a volume, at the spacing that takes, whatever the set's: see
+    /// [`PointSet::exactly`](crate::PointSet::exactly). No spacing below `least` is tried, and counting stops once a flag is
+    /// raised.
+    ///
+    /// # Errors
+    /// As [`within_until`](Self::within_until), [`ErrorKind::Count`](crate::ErrorKind::Count) where no spacing has this
+    /// count, and [`ErrorKind::TooDense`](crate::ErrorKind::TooDense) where it takes one below `least`.
+    ///
+    /// ```
+    /// use strew_core::{server::Stop, space::{Ball, SpaceSet, Table}};
+    ///
+    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).seed(7);
+    /// let plan = set.exactly(1000, Ball::new([5.0; 3], 2.0)?, 0.0, &Stop::default())?;
+    /// assert_eq!(plan.count(), 1000);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn exactly(
+        &self,
+        count: u128,
+        volume: impl Into<Volume>,
+        least: f64,
+        stop: &Stop,
+    ) -> Result<Plan, Error> {
+        let volume = volume.into();
+        let sought = Sought {
+            count,
+            bounds: self.mask.narrowed(&volume).bounds(),
+            least,
+            grade: self.lattice.grade.as_ref(),
+            share: match &self.lattice.grade {
+                Some(_) => 1.0,
+                None => self.placement().shown(),
+            },
+        };
+        exactly(&sought, |spacing| {
+            let trial = self.clone().at_spacing(spacing);
+            trial.within_until(volume.clone(), stop.clone())
+        })
+    }
+
+    /// The columns, rows and planes of the lattice that hold all points of a volume, and a few more around it.
+    ///
+    /// # Errors
+    /// As [`within`](Self::within).
+    ///
+    /// ```
+    /// use strew_core::space::{Region, SpaceSet, Table};
+    ///
+    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
+    /// let region = Region::chunk(8.0, [0, 0, 0])?;
+    /// let [columns, ..] = set.addresses(region)?;
+    /// assert!(set.within(region)?.iter().all(|point| columns.contains(&point.id.x)));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn addresses(&self, volume: impl Into<Volume>) -> Result<[Range<i64>; 3], Error> {
+        let volume = volume.into();
+        let scope = Scope::new(&self.lattice, &self.mask, &volume, Stop::default())?;
+        Ok(scope.all)
     }
 
     /// The distance that no two points of the set are nearer than, in world units; with warp it is a bound.

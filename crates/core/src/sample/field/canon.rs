@@ -29,7 +29,7 @@ impl Canon {
     }
 
     /// Places, after their number.
-    pub(super) fn places(&mut self, places: &[[f64; 2]]) {
+    pub(super) fn places<const D: usize>(&mut self, places: &[[f64; D]]) {
         self.number(places.len() as u64);
         for place in places {
             self.numbers(place);

@@ -2,7 +2,7 @@
 
 use crate::shape::Region;
 
-/// A share of the points at each place: 1 keeps all, 0 none.
+/// A share of the points at each place of the plane, or with `D` = 3 of space: 1 keeps all, 0 none.
 ///
 /// Closures are fields. A field that knows its bounds over a box lets whole boxes be left out.
 ///
@@ -18,7 +18,7 @@ use crate::shape::Region;
 /// assert!(count(20.0)? > 2 * count(0.0)?);
 /// # Ok::<(), strew_core::Error>(())
 /// ```
-pub trait Field: Send + Sync {
+pub trait Field<const D: usize = 2>: Send + Sync {
     /// The share at a place, in world units. Below 0 and NaN count as 0, above 1 as 1. It must be the same
     /// each time.
     ///
@@ -28,7 +28,7 @@ pub trait Field: Send + Sync {
     /// let disk = |[x, y]: [f64; 2]| if x * x + y * y < 1.0 { 1.0 } else { 0.0 };
     /// assert_eq!([disk.share([0.5, 0.5]), disk.share([1.0, 1.0])], [1.0, 0.0]);
     /// ```
-    fn share(&self, at: [f64; 2]) -> f64;
+    fn share(&self, at: [f64; D]) -> f64;
 
     /// Writes the shares at some places into `shares`, which has their number: the same bits as
     /// [`share`](Self::share), for fields that are faster at many places than at one.
@@ -41,7 +41,7 @@ pub trait Field: Send + Sync {
     /// ramp.shares(&[[10.0, 3.0], [20.0, 5.0]], &mut shares);
     /// assert_eq!(shares, [0.25, 0.5]);
     /// ```
-    fn shares(&self, places: &[[f64; 2]], shares: &mut [f64]) {
+    fn shares(&self, places: &[[f64; D]], shares: &mut [f64]) {
         for (share, at) in shares.iter_mut().zip(places) {
             *share = self.share(*at);
         }
@@ -68,12 +68,12 @@ pub trait Field: Send + Sync {
     /// assert_eq!(Ramp.bounds(&Region::new([0.25, 0.0], [0.5, 9.0])?), [0.25, 0.5]);
     /// # Ok::<(), strew_core::Error>(())
     /// ```
-    fn bounds(&self, within: &Region) -> [f64; 2] {
+    fn bounds(&self, within: &Region<D>) -> [f64; 2] {
         let _ = within;
         [0.0, 1.0]
     }
 
-    /// Bounds of how much the share changes along x and along y for each world unit, within a box. Infinity is always
+    /// Bounds of how much the share changes along each axis for each world unit, within a box. Infinity is always
     /// right.
     ///
     /// ```
@@ -89,14 +89,14 @@ pub trait Field: Send + Sync {
     /// assert_eq!(closure.slopes(&region), [f64::INFINITY; 2]);
     /// # Ok::<(), strew_core::Error>(())
     /// ```
-    fn slopes(&self, within: &Region) -> [f64; 2] {
+    fn slopes(&self, within: &Region<D>) -> [f64; D] {
         let _ = within;
-        [f64::INFINITY; 2]
+        [f64::INFINITY; D]
     }
 }
 
-impl<F: Fn([f64; 2]) -> f64 + Send + Sync> Field for F {
-    fn share(&self, at: [f64; 2]) -> f64 {
+impl<const D: usize, F: Fn([f64; D]) -> f64 + Send + Sync> Field<D> for F {
+    fn share(&self, at: [f64; D]) -> f64 {
         self(at)
     }
 }

@@ -6,7 +6,7 @@ use super::{
     Field,
     grid::Grid,
     scale::{unit, widened},
-    spec::{FieldSpec, Shape},
+    spec::{FieldSpec, Shape, in_space},
 };
 use crate::{shape::Region, table::Digest};
 
@@ -27,6 +27,12 @@ impl FieldSpec {
     #[must_use]
     pub const fn depth(&self) -> usize {
         self.depth
+    }
+
+    /// Whether it has places of three numbers, and so is a field of space alone.
+    #[must_use]
+    pub const fn is_in_space(&self) -> bool {
+        self.is_in_space
     }
 
     /// The number of vertices.
@@ -115,35 +121,41 @@ impl fmt::Debug for FieldSpec {
     }
 }
 
-impl Field for FieldSpec {
-    fn share(&self, at: [f64; 2]) -> f64 {
-        if self.is_partial && self.is_missing(at) {
+impl FieldSpec {
+    fn share_at<const D: usize>(&self, at: [f64; D]) -> f64 {
+        let [x, y, z] = in_space(at);
+        if self.is_partial && self.is_missing([x, y]) {
             return 0.0;
         }
         let over = |parts: &[Self], first: f64, join: fn(f64, f64) -> f64| {
             parts
                 .iter()
-                .fold(first, |share, part| join(share, part.share(at)))
+                .fold(first, |share, part| join(share, part.share_at(at)))
         };
         match &*self.shape {
             Shape::Constant(share) => *share,
-            Shape::Ramp { from, per, shares } => along(*from, *per, *shares, at),
-            Shape::Radial { center, slide } => {
-                slide.share(length(at[0] - center[0], at[1] - center[1]))
+            Shape::Ramp { from, per, shares } => along(*from, *per, *shares, [x, y, z]),
+            Shape::Radial {
+                center,
+                is_flat,
+                slide,
+            } => {
+                let height = if *is_flat { 0.0 } else { z - center[2] };
+                slide.share(length([x - center[0], y - center[1], height]))
             }
-            Shape::Distance(measure, slide) => slide.share(measure.distance(at)),
+            Shape::Distance(measure, slide) => slide.share(measure.distance([x, y])),
             Shape::Noise(noise) => noise.share(at),
-            Shape::Raster(raster) => raster.share(at),
-            Shape::Terrain(terrain, slide) => terrain.share(slide, at),
+            Shape::Raster(raster) => raster.share([x, y]),
+            Shape::Terrain(terrain, slide) => terrain.share(slide, [x, y]),
             Shape::Multiply(parts) => over(parts, 1.0, |a, b| a * b),
             Shape::Min(parts) => over(parts, 1.0, f64::min),
             Shape::Max(parts) => over(parts, 0.0, f64::max),
-            Shape::Invert(part) => 1.0 - part.share(at),
-            Shape::Curve(part, points) => on(points, part.share(at)),
+            Shape::Invert(part) => 1.0 - part.share_at(at),
+            Shape::Curve(part, points) => on(points, part.share_at(at)),
         }
     }
 
-    fn shares(&self, places: &[[f64; 2]], shares: &mut [f64]) {
+    fn shares_at<const D: usize>(&self, places: &[[f64; D]], shares: &mut [f64]) {
         match &*self.shape {
             Shape::Constant(share) => shares.fill(*share),
             Shape::Ramp {
@@ -152,74 +164,83 @@ impl Field for FieldSpec {
                 shares: ends,
             } => {
                 for (share, at) in shares.iter_mut().zip(places) {
-                    *share = along(*from, *per, *ends, *at);
+                    *share = along(*from, *per, *ends, in_space(*at));
                 }
             }
-            Shape::Raster(raster) => raster.shares(places, shares),
-            Shape::Noise(noise) => noise.shares(places, shares),
+            Shape::Raster(raster) if D == 2 => {
+                raster.shares(places.as_flattened().as_chunks().0, shares)
+            }
+            Shape::Noise(noise) if D == 2 => {
+                noise.shares(places.as_flattened().as_chunks().0, shares)
+            }
             Shape::Multiply(parts) => together(parts, 1.0, |a, b| a * b, places, shares),
             Shape::Min(parts) => together(parts, 1.0, f64::min, places, shares),
             Shape::Max(parts) => together(parts, 0.0, f64::max, places, shares),
             Shape::Invert(part) => {
-                part.shares(places, shares);
+                part.shares_at(places, shares);
                 shares.iter_mut().for_each(|share| *share = 1.0 - *share);
             }
             Shape::Curve(part, points) => {
-                part.shares(places, shares);
+                part.shares_at(places, shares);
                 let map = |share: &mut f64| *share = on(points, *share);
                 shares.iter_mut().for_each(map);
             }
             _ => {
                 for (share, at) in shares.iter_mut().zip(places) {
-                    *share = self.share(*at);
+                    *share = self.share_at(*at);
                 }
             }
         }
         if self.is_partial {
             for (share, at) in shares.iter_mut().zip(places) {
-                if self.is_missing(*at) {
+                if self.is_missing([at[0], at[1]]) {
                     *share = 0.0;
                 }
             }
         }
     }
 
-    fn bounds(&self, within: &Region) -> [f64; 2] {
+    fn bounds_in<const D: usize>(&self, within: &Region<D>) -> [f64; 2] {
+        let (min, max) = (in_space(within.min()), in_space(within.max()));
+        let flat = &Region::between([min[0], min[1]], [max[0], max[1]]);
         let over = |parts: &[Self], first: f64, join: fn(f64, f64) -> f64| {
             parts.iter().fold([first; 2], |ends, part| {
-                let bounds = part.bounds(within);
+                let bounds = part.bounds_in(within);
                 [0, 1].map(|i| join(ends[i], bounds[i]))
             })
         };
         let ends = match &*self.shape {
             Shape::Constant(share) => [*share; 2],
             Shape::Ramp { from, per, shares } => {
-                // Monotone along both axes, rounding included.
-                let (min, max) = (within.min(), within.max());
+                // Monotone along all axes, rounding included.
                 let [low, high] = [0, 1].map(|end| {
                     let is_max = |axis: usize| (per[axis] < 0.0) != (end == 1);
-                    let at = [0, 1].map(|axis| if is_max(axis) { max[axis] } else { min[axis] });
+                    let at = [0, 1, 2].map(|axis| if is_max(axis) { max[axis] } else { min[axis] });
                     along(*from, *per, *shares, at)
                 });
                 widened([low.min(high), low.max(high)])
             }
-            Shape::Radial { center, slide } => {
-                let (near, far) = beside(*center, within);
-                slide.bounds([length(near[0], near[1]), length(far[0], far[1])])
+            Shape::Radial {
+                center,
+                is_flat,
+                slide,
+            } => {
+                let ends = beside(*center, (min, max));
+                slide.bounds(ends.map(|[x, y, z]| length([x, y, if *is_flat { 0.0 } else { z }])))
             }
-            Shape::Distance(measure, slide) => slide.bounds(measure.bounds(within)),
+            Shape::Distance(measure, slide) => slide.bounds(measure.bounds(flat)),
             Shape::Noise(noise) => noise.bounds(within),
-            Shape::Raster(raster) => raster.bounds(within),
-            Shape::Terrain(terrain, slide) => terrain.bounds(slide, within),
+            Shape::Raster(raster) => raster.bounds(flat),
+            Shape::Terrain(terrain, slide) => terrain.bounds(slide, flat),
             Shape::Multiply(parts) => over(parts, 1.0, |a, b| a * b),
             Shape::Min(parts) => over(parts, 1.0, f64::min),
             Shape::Max(parts) => over(parts, 0.0, f64::max),
             Shape::Invert(part) => {
-                let [low, high] = part.bounds(within);
+                let [low, high] = part.bounds_in(within);
                 [1.0 - high, 1.0 - low]
             }
             Shape::Curve(part, points) => {
-                let [low, high] = part.bounds(within);
+                let [low, high] = part.bounds_in(within);
                 let [a, b] = [on(points, low), on(points, high)];
                 let between = points.iter().filter(|[x, _]| low < *x && *x < high);
                 let ends = between.fold([a.min(b), a.max(b)], |ends, [_, y]| {
@@ -229,11 +250,25 @@ impl Field for FieldSpec {
             }
         };
         let [low, high] = ends.map(unit);
-        match self.missing(&|grid| grid.missing(within)) {
+        match self.missing(&|grid| grid.missing(flat)) {
             [_, true] => [0.0; 2],
             [true, _] => [0.0, high],
             _ => [low, high],
         }
+    }
+}
+
+impl Field for FieldSpec {
+    fn share(&self, at: [f64; 2]) -> f64 {
+        self.share_at(at)
+    }
+
+    fn shares(&self, places: &[[f64; 2]], shares: &mut [f64]) {
+        self.shares_at(places, shares);
+    }
+
+    fn bounds(&self, within: &Region) -> [f64; 2] {
+        self.bounds_in(within)
     }
 
     fn slopes(&self, within: &Region) -> [f64; 2] {
@@ -250,14 +285,14 @@ impl Field for FieldSpec {
             Shape::Constant(_) => [0.0; 2],
             Shape::Ramp { per, shares, .. } => {
                 let change = (shares[1] - shares[0]).abs() * (1.0 + 1e-9);
-                per.map(|per| per.abs() * change)
+                [0, 1].map(|axis| per[axis].abs() * change)
             }
-            Shape::Radial { center, slide } => {
-                let (near, far) = beside(*center, within);
-                let least = length(near[0], near[1]);
-                let slope = slide.slope([least, length(far[0], far[1])]);
+            Shape::Radial { center, slide, .. } => {
+                let [near, far] = beside(*center, (in_space(within.min()), in_space(within.max())));
+                let least = length(near);
+                let slope = slide.slope([least, length(far)]);
                 // Along an axis the distance changes by the part of it that lies along the axis.
-                far.map(|v| slope * (v.abs() / least).min(1.0))
+                [0, 1].map(|axis| slope * (far[axis].abs() / least).min(1.0))
             }
             Shape::Distance(measure, slide) => [slide.slope(measure.bounds(within)); 2],
             Shape::Noise(noise) => noise.slopes(within),
@@ -283,12 +318,27 @@ impl Field for FieldSpec {
     }
 }
 
+/// Noise fills space, places of three numbers lie in it, and all else is the same at all heights.
+impl Field<3> for FieldSpec {
+    fn share(&self, at: [f64; 3]) -> f64 {
+        self.share_at(at)
+    }
+
+    fn shares(&self, places: &[[f64; 3]], shares: &mut [f64]) {
+        self.shares_at(places, shares);
+    }
+
+    fn bounds(&self, within: &Region<3>) -> [f64; 2] {
+        self.bounds_in(within)
+    }
+}
+
 /// The shares of fields at some places, joined.
-fn together(
+fn together<const D: usize>(
     parts: &[FieldSpec],
     first: f64,
     join: fn(f64, f64) -> f64,
-    places: &[[f64; 2]],
+    places: &[[f64; D]],
     shares: &mut [f64],
 ) {
     const SOME: usize = 256;
@@ -297,7 +347,7 @@ fn together(
         shares.fill(first);
         for part in parts {
             let own = &mut own[..shares.len()];
-            part.shares(places, own);
+            part.shares_at(places, own);
             for (share, own) in shares.iter_mut().zip(own) {
                 *share = join(*share, *own);
             }
@@ -306,21 +356,21 @@ fn together(
 }
 
 /// The square root of a sum of squares. Rounds alike everywhere, unlike `hypot`.
-fn length(x: f64, y: f64) -> f64 {
-    libm::sqrt(x * x + y * y)
+fn length([x, y, z]: [f64; 3]) -> f64 {
+    libm::sqrt(x * x + y * y + z * z)
 }
 
-/// The least and the greatest distance of the places of a box from a place, along x and y.
-fn beside(center: [f64; 2], within: &Region) -> ([f64; 2], [f64; 2]) {
-    let (min, max) = (within.min(), within.max());
+/// The least and the greatest distance of the places of a box from a place, along each axis.
+fn beside(center: [f64; 3], (min, max): ([f64; 3], [f64; 3])) -> [[f64; 3]; 2] {
     let near = |i: usize| (min[i] - center[i]).max(center[i] - max[i]).max(0.0);
     let far = |i: usize| (max[i] - center[i]).max(center[i] - min[i]);
-    ([near(0), near(1)], [far(0), far(1)])
+    [[0, 1, 2].map(near), [0, 1, 2].map(far)]
 }
 
 /// The share of a ramp.
-fn along(from: [f64; 2], per: [f64; 2], [low, high]: [f64; 2], at: [f64; 2]) -> f64 {
-    let t = (at[0] - from[0]) * per[0] + (at[1] - from[1]) * per[1];
+fn along(from: [f64; 3], per: [f64; 3], [low, high]: [f64; 2], at: [f64; 3]) -> f64 {
+    let [x, y, z] = [0, 1, 2].map(|axis| (at[axis] - from[axis]) * per[axis]);
+    let t = x + y + z;
     if t >= 1.0 {
         high
     } else if t > 0.0 {

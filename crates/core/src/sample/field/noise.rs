@@ -1,5 +1,7 @@
 //! Noise.
 
+use core::array::from_fn;
+
 use super::{
     canon::Canon,
     scale::{check_numbers, check_share, unit, widened},
@@ -15,9 +17,10 @@ use crate::{
 
 /// Smooth patches of a size, of no end and without a pattern: value noise.
 ///
-/// Octave i has hashed numbers in [0, 1) at the corners of squares with a side of wavelength / 2ⁱ, joined
-/// by 6t⁵ − 15t⁴ + 10t³ along both axes, and half the weight of the octave before. Each octave is turned by
-/// atan ¾ from the one before. The weighted mean is laid between the two ends of `range`.
+/// Octave i has hashed numbers in [0, 1) at the corners of squares, in space of cubes, with a side of wavelength / 2ⁱ,
+/// joined by 6t⁵ − 15t⁴ + 10t³ along all axes, and half the weight of the octave before. Each octave is turned by
+/// atan ¾ from the one before, in space about z, then about x. The weighted mean is laid between the two ends of
+/// `range`.
 ///
 /// ```
 /// use strew_core::{Field, field::{FieldSpec, Noise}};
@@ -69,7 +72,7 @@ impl Noise {
     }
 
     #[inline]
-    pub(super) fn share(&self, at: [f64; 2]) -> f64 {
+    pub(super) fn share<const D: usize>(&self, at: [f64; D]) -> f64 {
         let mut place = at.map(|v| v / self.wavelength);
         let (mut sum, mut weight, mut weights) = (0.0, 1.0, 0.0);
         for octave in 0..self.octaves {
@@ -109,10 +112,8 @@ impl Noise {
         }
     }
 
-    pub(super) fn bounds(&self, within: &Region) -> [f64; 2] {
-        let (min, max) = (within.min(), within.max());
-        let mut center = [0, 1].map(|i| (0.5 * min[i] + 0.5 * max[i]) / self.wavelength);
-        let mut half = [0, 1].map(|i| (0.5 * max[i] - 0.5 * min[i]) / self.wavelength);
+    pub(super) fn bounds<const D: usize>(&self, within: &Region<D>) -> [f64; 2] {
+        let (mut center, mut half) = self.around(within);
         let (mut low, mut high, mut weight, mut weights) = (0.0, 0.0, 1.0, 0.0);
         for octave in 0..self.octaves {
             let ends = octave_between(self.key(octave), center, half);
@@ -131,9 +132,7 @@ impl Noise {
     pub(super) fn slopes(&self, within: &Region) -> [f64; 2] {
         // Of 6t⁵ − 15t⁴ + 10t³, at ½.
         const STEEPEST: f64 = 1.875;
-        let (min, max) = (within.min(), within.max());
-        let mut center = [0, 1].map(|i| (0.5 * min[i] + 0.5 * max[i]) / self.wavelength);
-        let mut half = [0, 1].map(|i| (0.5 * max[i] - 0.5 * min[i]) / self.wavelength);
+        let (mut center, mut half) = self.around(within);
         let (mut sums, mut weight, mut weights) = ([0.0; 2], 1.0, 0.0);
         // The axes of an octave, in wavelengths of the first.
         let mut axes = [1.0, 0.0];
@@ -152,6 +151,14 @@ impl Noise {
         // With room for what rounds.
         let factor = STEEPEST / weights / self.wavelength * range * (1.0 + 1e-9);
         sums.map(|sum| sum * factor)
+    }
+
+    /// The middle and the half sides of a box, in wavelengths.
+    fn around<const D: usize>(&self, within: &Region<D>) -> ([f64; D], [f64; D]) {
+        let (min, max) = (within.min(), within.max());
+        let center = from_fn(|i| (0.5 * min[i] + 0.5 * max[i]) / self.wavelength);
+        let half = from_fn(|i| (0.5 * max[i] - 0.5 * min[i]) / self.wavelength);
+        (center, half)
     }
 
     fn within_range(&self, v: f64) -> f64 {
@@ -220,8 +227,22 @@ impl PlainLoop for Batch<'_> {
 
 /// The place of a place in the next octave.
 #[inline(always)]
-fn next([x, y]: [f64; 2]) -> [f64; 2] {
-    [2.0 * (0.8 * x - 0.6 * y), 2.0 * (0.6 * x + 0.8 * y)]
+fn next<const D: usize>(mut place: [f64; D]) -> [f64; D] {
+    let [x, y] = [place[0], place[1]];
+    place[0] = 2.0 * (0.8 * x - 0.6 * y);
+    place[1] = 2.0 * (0.6 * x + 0.8 * y);
+    if D == 3 {
+        let [y, z] = [place[1], 2.0 * place[2]];
+        place[1] = 0.8 * y - 0.6 * z;
+        place[2] = 0.6 * y + 0.8 * z;
+    }
+    place
+}
+
+/// The key of the corners of a plane of space.
+#[inline(always)]
+const fn plane(key: u64, z: i64) -> u64 {
+    split_mix(key ^ (z as u64).wrapping_mul(0x9e6c_63d0_676a_9a99))
 }
 
 /// The number at a corner, in [0, 1).
@@ -250,7 +271,20 @@ fn eased(t: f64) -> f64 {
 }
 
 #[inline(always)]
-fn octave_at(key: u64, place: [f64; 2]) -> f64 {
+fn octave_at<const D: usize>(key: u64, place: [f64; D]) -> f64 {
+    let flat = [place[0], place[1]];
+    let Some(&height) = place.get(2) else {
+        return octave_in_plane(key, flat);
+    };
+    let cell = libm::floor(height);
+    let (z, w) = (cell as i64, eased(height - cell));
+    let planes = [plane(key, z), plane(key, z.wrapping_add(1))];
+    let [low, high] = planes.map(|key| octave_in_plane(key, flat));
+    low + (high - low) * w
+}
+
+#[inline(always)]
+fn octave_in_plane(key: u64, place: [f64; 2]) -> f64 {
     let cell = place.map(libm::floor);
     let [x, y] = cell.map(|v| v as i64);
     let (u, v) = (eased(place[0] - cell[0]), eased(place[1] - cell[1]));
@@ -262,11 +296,12 @@ fn octave_at(key: u64, place: [f64; 2]) -> f64 {
     low + (high - low) * v
 }
 
-/// The range of corners around the places of a box, from the first to the last along x and y; `None` if they are many.
-fn corners(center: [f64; 2], half: [f64; 2]) -> Option<[[i64; 2]; 2]> {
+/// The range of corners around the places of a box, from the first to the last along each axis; `None` if they are
+/// many.
+fn corners<const D: usize>(center: [f64; D], half: [f64; D]) -> Option<[[i64; 2]; D]> {
     // Room for what rounds.
     let room = 1e-9;
-    let ends = [0, 1].map(|i| {
+    let ends: [_; D] = from_fn(|i| {
         let (half, room) = (half[i] + room, 1e-12 * center[i].abs());
         [center[i] - half - room, center[i] + half + room].map(libm::floor)
     });
@@ -278,12 +313,21 @@ fn corners(center: [f64; 2], half: [f64; 2]) -> Option<[[i64; 2]; 2]> {
     Some(ends.map(|[first, last]| [first as i64, last as i64 + 1]))
 }
 
-fn octave_between(key: u64, center: [f64; 2], half: [f64; 2]) -> [f64; 2] {
-    let Some([[left, right], [bottom, top]]) = corners(center, half) else {
+fn octave_between<const D: usize>(key: u64, center: [f64; D], half: [f64; D]) -> [f64; 2] {
+    let Some(ends) = corners(center, half) else {
         return [0.0, 1.0];
     };
-    let all = (bottom..=top).flat_map(|y| (left..=right).map(move |x| corner(key, x, y)));
-    all.fold([1.0, 0.0], |[low, high], v| [low.min(v), high.max(v)])
+    let ([left, right], [bottom, top]) = (ends[0], ends[1]);
+    let in_plane = |found: [f64; 2], key: u64| {
+        let all = (bottom..=top).flat_map(|y| (left..=right).map(move |x| corner(key, x, y)));
+        all.fold(found, |[low, high], v| [low.min(v), high.max(v)])
+    };
+    match ends.get(2) {
+        Some(&[first, last]) => (first..=last)
+            .map(|z| plane(key, z))
+            .fold([1.0, 0.0], in_plane),
+        None => in_plane([1.0, 0.0], key),
+    }
 }
 
 /// The greatest differences of neighboring corners along x and y around the places of a box.
@@ -307,6 +351,14 @@ fn steps_between(key: u64, center: [f64; 2], half: [f64; 2]) -> [f64; 2] {
 }
 
 /// The half sides of a box around the places of a box in the next octave.
-fn next_half([x, y]: [f64; 2]) -> [f64; 2] {
-    [2.0 * (0.8 * x + 0.6 * y), 2.0 * (0.6 * x + 0.8 * y)]
+fn next_half<const D: usize>(mut half: [f64; D]) -> [f64; D] {
+    let [x, y] = [half[0], half[1]];
+    half[0] = 2.0 * (0.8 * x + 0.6 * y);
+    half[1] = 2.0 * (0.6 * x + 0.8 * y);
+    if D == 3 {
+        let [y, z] = [half[1], 2.0 * half[2]];
+        half[1] = 0.8 * y + 0.6 * z;
+        half[2] = 0.6 * y + 0.8 * z;
+    }
+    half
 }

@@ -1,6 +1,7 @@
 //! Fields that are described, and so can be kept, compared and named by a digest.
 
 use alloc::{format, sync::Arc, vec::Vec};
+use core::array::from_fn;
 
 use super::{
     canon::Canon,
@@ -43,19 +44,23 @@ pub struct FieldSpec {
     pub(super) vertices: usize,
     /// Whether pixels of it are missing.
     pub(super) is_partial: bool,
+    /// Whether it has places of three numbers.
+    pub(super) is_in_space: bool,
 }
 
 /// The checked parts of a description.
 pub(super) enum Shape {
     Constant(f64),
     Ramp {
-        from: [f64; 2],
+        from: [f64; 3],
         /// To the second place, divided by its squared length.
-        per: [f64; 2],
+        per: [f64; 3],
         shares: [f64; 2],
     },
     Radial {
-        center: [f64; 2],
+        center: [f64; 3],
+        /// Whether heights do not matter.
+        is_flat: bool,
         slide: Slide,
     },
     Distance(Measure, Slide),
@@ -97,6 +102,7 @@ impl FieldSpec {
             parts: 1 + sum(|part| part.parts),
             vertices: vertices + sum(|part| part.vertices),
             is_partial,
+            is_in_space: parts.iter().any(|part| part.is_in_space),
             shape: Arc::new(shape),
         };
         for (name, value, most) in [
@@ -110,6 +116,15 @@ impl FieldSpec {
             }
         }
         Ok(spec)
+    }
+
+    /// This field of places of some numbers: two or three.
+    fn of<const D: usize>(self) -> Self {
+        const { assert!(D == 2 || D == 3, "places have two or three numbers") };
+        Self {
+            is_in_space: D == 3,
+            ..self
+        }
     }
 
     /// A field with one share everywhere.
@@ -131,7 +146,8 @@ impl FieldSpec {
         Self::new(Shape::Constant(share), canon, 0)
     }
 
-    /// `shares[0]` at one place, `shares[1]` at another, linear between them, constant before and beyond.
+    /// `shares[0]` at one place, `shares[1]` at another, linear between them, constant before and beyond. Places of the
+    /// plane make a ramp that is the same at all heights of space.
     ///
     /// # Errors
     /// [`ErrorKind::Field`] unless the shares are from 0 to 1, the coordinates finite, and the places
@@ -144,16 +160,21 @@ impl FieldSpec {
     /// assert_eq!([-5.0, 2.5, 10.0].map(|x| ramp.share([x, 77.0])), [0.0, 0.25, 1.0]);
     /// # Ok::<(), strew_core::Error>(())
     /// ```
-    pub fn ramp(from: [f64; 2], to: [f64; 2], shares: [f64; 2]) -> Result<Self, Error> {
+    pub fn ramp<const D: usize>(
+        from: [f64; D],
+        to: [f64; D],
+        shares: [f64; 2],
+    ) -> Result<Self, Error> {
         check_numbers("from", &from)?;
         check_numbers("to", &to)?;
         check_share("shares", shares[0])?;
         check_share("shares", shares[1])?;
-        let way = [to[0] - from[0], to[1] - from[1]];
-        let square = way[0] * way[0] + way[1] * way[1];
+        let [start, end] = [from, to].map(in_space);
+        let way: [f64; 3] = from_fn(|axis| end[axis] - start[axis]);
+        let square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
         let per = way.map(|v| v / square);
         if !square.is_normal() || per.iter().any(|v| !v.is_finite()) {
-            let value = format!("[{}, {}]", number(to[0]), number(to[1]));
+            let value = format!("[{}]", to.map(number).join(", "));
             return Err(Error::new(
                 ErrorKind::Field,
                 "to",
@@ -164,10 +185,16 @@ impl FieldSpec {
         let mut canon = Canon::new("ramp");
         canon.places(&[from, to]);
         canon.numbers(&shares);
-        Self::new(Shape::Ramp { from, per, shares }, canon, 0)
+        let shape = Shape::Ramp {
+            from: start,
+            per,
+            shares,
+        };
+        Ok(Self::new(shape, canon, 0)?.of::<D>())
     }
 
-    /// `shares[0]` up to the first radius around a place, `shares[1]` from the second on, linear between.
+    /// `shares[0]` up to the first radius around a place, `shares[1]` from the second on, linear between. Around a place
+    /// of the plane heights of space do not matter.
     ///
     /// # Errors
     /// [`ErrorKind::Field`] unless the shares are from 0 to 1, the numbers finite, and the radii, from 0 on,
@@ -180,7 +207,11 @@ impl FieldSpec {
     /// assert_eq!([3.0, 7.5, 20.0].map(|x| glade.share([x, 0.0])), [0.0, 0.5, 1.0]);
     /// # Ok::<(), strew_core::Error>(())
     /// ```
-    pub fn radial(center: [f64; 2], radii: [f64; 2], shares: [f64; 2]) -> Result<Self, Error> {
+    pub fn radial<const D: usize>(
+        center: [f64; D],
+        radii: [f64; 2],
+        shares: [f64; 2],
+    ) -> Result<Self, Error> {
         check_numbers("center", &center)?;
         let slide = Slide::new("radii", radii, shares)?;
         if radii[0] < 0.0 {
@@ -188,8 +219,16 @@ impl FieldSpec {
             return Err(Error::new(ErrorKind::Field, "radii", value, allowed));
         }
         let mut canon = Canon::new("radial");
-        canon.places(&[center, radii, shares]);
-        Self::new(Shape::Radial { center, slide }, canon, 0)
+        canon.number(3);
+        canon.numbers(&center);
+        canon.numbers(&radii);
+        canon.numbers(&shares);
+        let shape = Shape::Radial {
+            center: in_space(center),
+            is_flat: D == 2,
+            slide,
+        };
+        Ok(Self::new(shape, canon, 0)?.of::<D>())
     }
 
     /// A share by the distance to marks: `shares[0]` up to `distances[0]`, `shares[1]` from `distances[1]` on,
@@ -397,6 +436,11 @@ impl FieldSpec {
         canon.places(&points);
         Self::new(Shape::Curve(self, points), canon, 0)
     }
+}
+
+/// A place of the plane at height 0, or one of space.
+pub(super) fn in_space<const D: usize>(at: [f64; D]) -> [f64; 3] {
+    from_fn(|axis| at.get(axis).copied().unwrap_or(0.0))
 }
 
 /// The encoding of a field made of others.

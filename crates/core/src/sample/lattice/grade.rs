@@ -7,20 +7,20 @@ use crate::{parts::FIELDS, sample::field::Field, shape::Region};
 
 /// The shares of a field, times the share of the set.
 #[derive(Clone)]
-pub(crate) struct Grade {
+pub(crate) struct Grade<const D: usize = 2> {
     /// `None` for the same share everywhere.
-    field: Option<Arc<dyn Field>>,
+    field: Option<Arc<dyn Field<D>>>,
     factor: f64,
 }
 
-impl fmt::Debug for Grade {
+impl<const D: usize> fmt::Debug for Grade<D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut all = f.debug_struct("Grade");
         all.field("factor", &self.factor).finish_non_exhaustive()
     }
 }
 
-impl Grade {
+impl<const D: usize> Grade<D> {
     /// The same share everywhere.
     pub(crate) const fn constant(share: f64) -> Self {
         Self {
@@ -29,7 +29,7 @@ impl Grade {
         }
     }
 
-    pub(crate) fn new(field: Arc<dyn Field>, factor: f64) -> Self {
+    pub(crate) fn new(field: Arc<dyn Field<D>>, factor: f64) -> Self {
         Self {
             field: Some(field),
             factor,
@@ -44,8 +44,17 @@ impl Grade {
         }
     }
 
+    /// Whether it has the same shares for the same reason.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        let is_field = match (&self.field, &other.field) {
+            (Some(own), Some(other)) => Arc::ptr_eq(own, other),
+            (own, other) => own.is_none() && other.is_none(),
+        };
+        is_field && self.factor == other.factor
+    }
+
     /// The field, if there is one.
-    fn field(&self) -> Option<&dyn Field> {
+    fn field(&self) -> Option<&dyn Field<D>> {
         self.field.as_deref().filter(|_| FIELDS)
     }
 
@@ -55,13 +64,13 @@ impl Grade {
     }
 
     /// The share at a place, within [0, 1].
-    pub(crate) fn share(&self, at: [f64; 2]) -> f64 {
+    pub(crate) fn share(&self, at: [f64; D]) -> f64 {
         self.field()
             .map_or(self.factor, |field| self.limited(field.share(at)))
     }
 
     /// The shares at some places.
-    pub(crate) fn shares(&self, places: &[[f64; 2]], shares: &mut [f64]) {
+    pub(crate) fn shares(&self, places: &[[f64; D]], shares: &mut [f64]) {
         let Some(field) = self.field() else {
             return shares.fill(self.factor);
         };
@@ -72,16 +81,16 @@ impl Grade {
     }
 
     /// Bounds of the shares over a box.
-    pub(crate) fn bounds(&self, within: &Region) -> [f64; 2] {
+    pub(crate) fn bounds(&self, within: &Region<D>) -> [f64; 2] {
         let Some(field) = self.field() else {
             return [self.factor; 2];
         };
         field.bounds(within).map(|share| self.limited(share))
     }
 
-    /// Bounds of the change of the shares along x and y for each world unit, over a box.
-    pub(crate) fn slopes(&self, within: &Region) -> [f64; 2] {
-        let slopes = self.field().map_or([0.0; 2], |field| field.slopes(within));
+    /// Bounds of the change of the shares along each axis for each world unit, over a box.
+    pub(crate) fn slopes(&self, within: &Region<D>) -> [f64; D] {
+        let slopes = self.field().map_or([0.0; D], |field| field.slopes(within));
         slopes.map(|slope| slope * self.factor)
     }
 

@@ -31,7 +31,7 @@ mod varied;
 mod world;
 
 pub(super) use flat::{Flat, Found};
-pub(super) use grade::Grade;
+pub(crate) use grade::Grade;
 pub use keep::Keep;
 pub(super) use kinds::{OneKind, check_kind};
 pub(super) use line::Line;

@@ -73,7 +73,7 @@ impl Placement {
     }
 
     /// The share of points that are kept and in the level of detail.
-    pub(super) const fn shown(&self) -> f64 {
+    pub(crate) const fn shown(&self) -> f64 {
         self.keep.get() * self.lod.get()
     }
 

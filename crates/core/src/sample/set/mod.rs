@@ -111,29 +111,6 @@ impl PointSet {
         Ok(self.replaced(|placement| placement.with_settle(settle)))
     }
 
-    /// Sets the level of detail: the part of the set's points that answers have, those of lowest rank at each place.
-    /// The others still exist: the points of a level are where they are among all points, so levels nest. By default
-    /// answers have all points.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Keep`](crate::ErrorKind::Keep) outside 10⁻⁶ to 1.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let forest = PointSet::new(table).seed(7).in_field(|[x, _]: [f64; 2]| 0.5 + 0.01 * x);
-    /// let far = forest.clone().lod(0.25)?;
-    /// for tree in far.chunk(20.0, [0, 0])? {
-    ///     assert_eq!(forest.point(tree.id()), Some(tree));
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn lod(self, part: f64) -> Result<Self, Error> {
-        let lod = Keep::new(part)?;
-        Ok(self.replaced(|placement| placement.with_lod(lod)))
-    }
-
     /// Sets spacing, seed, warp and share at once.
     ///
     /// ```

@@ -120,6 +120,26 @@ macro_rules! placing {
                 Ok(self.replaced(|placement| placement.with_keep(keep)))
             }
 
+            /// Sets the level of detail: the part of the set's points that answers have, those of lowest rank at each
+            /// place. The others still exist: the points of a level are where they are among all points, so levels
+            /// nest, and other sets keep clear of all of them. By default answers have all points.
+            ///
+            /// # Errors
+            /// [`ErrorKind::Keep`](crate::ErrorKind::Keep) outside 10⁻⁶ to 1.
+            ///
+            /// ```
+            #[doc = concat!("# let all = ", $make, ".seed(7).keep(0.5)?;")]
+            /// let far = all.clone().lod(0.25)?;
+            #[doc = concat!("for point in far.chunk(20.0, ", $origin, ")?.to_vec() {")]
+            ///     assert_eq!(all.point(point.id).map(|same| same.at()), Some(point.at()));
+            /// }
+            /// # Ok::<(), strew_core::Error>(())
+            /// ```
+            pub fn lod(self, part: f64) -> Result<Self, Error> {
+                let lod = Keep::new(part)?;
+                Ok(self.replaced(|placement| placement.with_lod(lod)))
+            }
+
             fn replaced(mut self, change: impl FnOnce(Placement) -> Placement) -> Self {
                 let placement = change(self.lattice.placement);
                 if placement != self.lattice.placement {

@@ -5,7 +5,7 @@ use core::ops::Range;
 use super::PointSet;
 use crate::{
     error::Error,
-    sample::{amount, field::candidates, plan::Plan, scope::Scope},
+    sample::{Placement, Sought, exactly, field::candidates, plan::Plan, scope::Scope},
     shape::{Area, Region},
     stop::Stop,
     window::Cursor,
@@ -171,6 +171,25 @@ impl PointSet {
         least: f64,
         stop: &Stop,
     ) -> Result<Plan, Error> {
-        amount::exactly(&self.lattice, &self.mask, area, count, least, stop)
+        let within = self.mask.clone().and_within(area.clone()).area;
+        let grade = self.lattice.grade.as_ref();
+        let sought = Sought {
+            count,
+            bounds: within.as_ref().and_then(Area::bounds),
+            least,
+            grade,
+            share: match grade {
+                Some(_) => self.lattice.kind_share(),
+                None => self.lattice.share(),
+            },
+        };
+        exactly(&sought, |spacing| {
+            let placement = Placement {
+                spacing,
+                ..self.lattice.placement
+            };
+            let trial = self.lattice.replaced(placement);
+            Plan::new(&trial, &self.mask, area.clone(), stop.clone(), None)
+        })
     }
 }

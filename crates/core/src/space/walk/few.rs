@@ -58,6 +58,7 @@ pub(in crate::space) fn few(scope: &Scope) -> Option<Batch> {
         let origin = batch.origin;
         batch.retain(|place| volume.contains(world(scope, origin, place)));
     }
+    scope.lattice.sift(&mut batch);
     Some(batch)
 }
 

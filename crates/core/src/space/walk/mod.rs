@@ -75,8 +75,9 @@ impl Walk {
         wants_ids: bool,
     ) -> Self {
         Self {
-            course: Course::new(scope, ranges, start),
-            wants_ids,
+            course: Course::new(scope.clone(), ranges, start),
+            // A field looks at the ranks of points.
+            wants_ids: wants_ids || scope.lattice.grade.is_some(),
             backend: Backend::best(),
             templates: Templates::default(),
             pending: Batch::default(),
@@ -108,6 +109,7 @@ impl Walk {
             };
             if is_complete {
                 self.finish(out);
+                self.course.scope.lattice.sift(out);
                 if !out.is_empty() {
                     return true;
                 }
