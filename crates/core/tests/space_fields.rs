@@ -71,16 +71,24 @@ fn any_volume() -> impl Strategy<Value = Volume> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// A point is there if its rank is below the share at its place.
+    /// A point is there if its rank is below the share at its place and no list has its id.
     #[test]
     fn the_points_of_a_field_are_those_of_its_definition(
         field in any_field(), seed in 0u64..3, keep in prop_oneof![Just(1.0), 0.05..1.0f64],
         lod in prop_oneof![Just(1.0), 0.05..1.0f64], volume in any_volume(), size in 1usize..400,
+        is_plain in any::<bool>(), felled in 1u64..9,
     ) {
         let all = set(seed);
         let thinned = all.clone().keep(keep).expect("a share").lod(lod).expect("a part");
-        let graded = thinned.in_field(field.clone());
-        let shown = |at, id| all.rank(id) < field.share(at).clamp(0.0, 1.0) * keep * lod;
+        let felled = |id: PointId| (id.x ^ id.y ^ id.z).unsigned_abs() % (felled + 1) == 0;
+        let share = |at| if is_plain { 1.0 } else { field.share(at).clamp(0.0, 1.0) };
+        let shown = |at, id| all.rank(id) < share(at) * keep * lod && !felled(id);
+        let graded = if is_plain { thinned } else { thinned.in_field(field.clone()) };
+        // In two lists, not in order, some in both.
+        let ids: Vec<_> = all.within(volume.clone()).expect("near").iter().map(|point| point.id)
+            .filter(|id| felled(*id)).collect();
+        let last = ids.iter().rev().copied().skip(ids.len() / 3);
+        let graded = graded.without(ids[ids.len() / 2..].to_vec()).without(last.collect::<Vec<_>>());
         let plan = graded.within(volume.clone()).expect("near");
         let expected: Vec<_> = all.within(volume).expect("near").into_iter()
             .filter(|point| shown(point.at(), point.id)).collect();

@@ -24,7 +24,7 @@ pub(super) fn count(scope: &Arc<Scope>, ranges: &[Range<i64>; 3]) -> u128 {
         return 0;
     }
     if scope.is_closed() {
-        return closed::count(scope, &ranges);
+        return closed::count(scope, &ranges) - scope.missing(&ranges);
     }
     let mut clearance = Clearance::new(scope);
     divide(scope, &mut clearance, ranges, scope.volume.as_ref())
@@ -43,7 +43,7 @@ fn divide(
     let near = match scope.state(&ranges, volume) {
         State::Out => return 0,
         State::In if scope.clear.is_empty() => {
-            return closed::count_all(&scope.lattice, &ranges);
+            return closed::count_all(&scope.lattice, &ranges) - scope.missing(&ranges);
         }
         State::In => None,
         State::Test(near) => near,

@@ -42,6 +42,8 @@ pub(super) struct Lattice {
     pub(super) cut: Option<Cut>,
     /// The field that decides which of these there are.
     pub(super) grade: Option<Grade<3>>,
+    /// The ids of points that are left out, each list sorted.
+    pub(super) without: Vec<Arc<[PointId]>>,
 }
 
 /// A lattice coordinate in fixed-point units.
@@ -63,6 +65,7 @@ impl Lattice {
             step: placement.spacing.get() * alpha.set_side_f64() / units,
             cut,
             grade: None,
+            without: Vec::new(),
             turned,
             table,
         }
@@ -75,6 +78,7 @@ impl Lattice {
                 .grade
                 .as_ref()
                 .map(|grade| grade.times(placement.shown())),
+            without: self.without.clone(),
             ..Self::new(self.table.clone(), placement)
         }
     }
@@ -98,7 +102,10 @@ impl Lattice {
             (Some(own), Some(other)) => own.is_same(other),
             (own, other) => own.is_none() && other.is_none(),
         };
-        is_graded && self.placement == other.placement && self.table == other.table
+        let all = self.without.iter().zip(&other.without);
+        let is_without = self.without.len() == other.without.len()
+            && all.into_iter().all(|(own, other)| Arc::ptr_eq(own, other));
+        is_graded && is_without && self.placement == other.placement && self.table == other.table
     }
 
     /// The blocks along the axes of an address, or `None` if the pattern has no point there.
@@ -189,23 +196,39 @@ impl Lattice {
             }
         })?;
         let has = |grade: &Grade<3>| self.rank(id) < grade.share(place.map(|k| self.world(k)));
-        self.grade.as_ref().is_none_or(has).then_some(place)
+        let is_there = self.grade.as_ref().is_none_or(has) && !self.lacks(id);
+        is_there.then_some(place)
     }
 
-    /// Leaves the points of a batch, which has ids, that the field leaves.
+    /// Whether a point is left out by its id.
+    fn lacks(&self, id: PointId) -> bool {
+        self.without
+            .iter()
+            .any(|ids| ids.binary_search(&id).is_ok())
+    }
+
+    /// Whether points are looked at one by one: those of a field, or some by their ids.
+    pub(super) fn is_sifted(&self) -> bool {
+        self.grade.is_some() || !self.without.is_empty()
+    }
+
+    /// Leaves the points of a batch, which has ids, that a field leaves and no list of ids leaves out.
     pub(super) fn sift(&self, batch: &mut Batch) {
-        let Some(grade) = &self.grade else {
+        if !self.is_sifted() {
             return;
-        };
+        }
         let origin = batch.origin;
         let world = |axis: usize, place: i32| self.world(fixed(origin[axis]) + i64::from(place));
         let at = |i: usize| [0, 1, 2].map(|axis| world(axis, batch.places[axis][i]));
-        let places: Vec<[f64; 3]> = (0..batch.len()).map(at).collect();
-        let mut shares = vec![0.0; places.len()];
-        grade.shares(&places, &mut shares);
+        let mut shares = vec![1.0; batch.len()];
+        if let Some(grade) = &self.grade {
+            let places: Vec<[f64; 3]> = (0..batch.len()).map(at).collect();
+            grade.shares(&places, &mut shares);
+        }
         let stays = |(id, &share): (&[i32; 3], &f64)| {
-            let id = [0, 1, 2].map(|axis| origin[axis] + i64::from(id[axis]));
-            share > 0.0 && self.rank(PointId::of(id)) < share
+            let id = PointId::of([0, 1, 2].map(|axis| origin[axis] + i64::from(id[axis])));
+            let is_left = self.grade.is_none() || (share > 0.0 && self.rank(id) < share);
+            is_left && !self.lacks(id)
         };
         let stays: Vec<bool> = batch.ids.iter().zip(&shares).map(stays).collect();
         let mut stays = stays.into_iter();

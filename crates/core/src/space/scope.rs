@@ -1,6 +1,6 @@
 //! Scopes: the part of a lattice that a request covers.
 
-use alloc::sync::Arc;
+use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
 use super::{
@@ -34,6 +34,8 @@ pub struct Scope {
     pub(super) corner: Corner<3>,
     /// The sets that points keep clear of.
     pub(super) clear: Arc<[ClearOf]>,
+    /// The addresses of the points inside that are left out by their ids.
+    pub(super) missing: Arc<[[i64; 3]]>,
     /// Ends counting early.
     pub(super) stop: Stop,
 }
@@ -77,7 +79,13 @@ impl Scope {
             let start = -((i64::from(most) - range.start) >> FRACTION_BITS);
             start..((range.end - 1 - i64::from(least)) >> FRACTION_BITS) + 1
         });
+        let missing = missing(lattice, &all, |place: [i64; 3]| {
+            let is_in = |volume: &Volume| volume.contains(place.map(|v| lattice.world(v)));
+            (0..3).all(|axis| bounds[axis].contains(&place[axis]))
+                && volume.as_ref().is_none_or(is_in)
+        });
         Ok(Self {
+            missing,
             lattice: lattice.clone(),
             bounds,
             before,
@@ -136,6 +144,12 @@ impl Scope {
         }
     }
 
+    /// The number of points of a box of the lattice that are inside, but for their ids.
+    pub(super) fn missing(&self, ranges: &[Range<i64>; 3]) -> u128 {
+        let is_there = |at: &&[i64; 3]| (0..3).all(|axis| ranges[axis].contains(&at[axis]));
+        self.missing.iter().filter(is_there).count() as u128
+    }
+
     fn between(&self, places: [[i64; 2]; 3]) -> Region {
         let [min, max] = [0, 1].map(|end| places.map(|ends| self.lattice.world(ends[end])));
         Region::between(min, max)
@@ -184,6 +198,36 @@ impl Scope {
             .map(|range| (range.end - range.start).max(0) as f64 * t);
         sides.product()
     }
+}
+
+/// The addresses of the points that a lattice lacks by their ids and that lie inside.
+fn missing(
+    lattice: &Lattice,
+    all: &[Range<i64>; 3],
+    is_inside: impl Fn([i64; 3]) -> bool,
+) -> Arc<[[i64; 3]]> {
+    if lattice.without.is_empty() {
+        return Arc::default();
+    }
+    let whole = Lattice {
+        without: Vec::new(),
+        ..lattice.clone()
+    };
+    let mut missing: Vec<[i64; 3]> = Vec::new();
+    for ids in &lattice.without {
+        let start = ids.partition_point(|id| id.x < all[0].start);
+        let end = ids.partition_point(|id| id.x < all[0].end);
+        for id in &ids[start..end.max(start)] {
+            let is_near = all[1].contains(&id.y) && all[2].contains(&id.z);
+            if is_near && whole.place(*id).is_some_and(&is_inside) {
+                missing.push(id.lattice());
+            }
+        }
+    }
+    // Several lists may have the same.
+    missing.sort_unstable();
+    missing.dedup();
+    missing.into()
 }
 
 /// The positions from which the warp takes points into bounds.

@@ -1,15 +1,12 @@
 //! The point set.
 
-#[cfg(feature = "fields")]
 use alloc::sync::Arc;
-use core::ops::Range;
 
 use super::{
-    Cursor, Region, Volume,
+    Cursor, PointId, Region, Volume,
     lattice::Lattice,
     mask::{ClearOf, Mask},
     plan::Plan,
-    scope::Scope,
     table::Table,
 };
 #[cfg(feature = "fields")]
@@ -119,6 +116,31 @@ impl SpaceSet {
     #[must_use]
     pub fn limited_to(mut self, volume: impl Into<Volume>) -> Self {
         self.mask = self.mask.and_within(volume.into());
+        self
+    }
+
+    /// Removes the points of some ids, beside those that are removed already. All others stay where they are. Ids without
+    /// a point do not matter.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).seed(7);
+    /// let mined = set.nearest([5.0; 3], 1)?[0].point;
+    /// let left = set.clone().without([mined.id]);
+    /// assert_eq!((left.point(mined.id), left.nearest([5.0; 3], 1)?[0]), (None, set.nearest([5.0; 3], 2)?[1]));
+    /// assert_eq!(left.chunk(16.0, [0, 0, 0])?.count() + 1, set.chunk(16.0, [0, 0, 0])?.count());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn without(mut self, ids: impl Into<Arc<[PointId]>>) -> Self {
+        let mut ids = ids.into();
+        if !ids.is_sorted() {
+            let mut sorted = ids.to_vec();
+            sorted.sort_unstable();
+            ids = sorted.into();
+        }
+        self.lattice.without.push(ids);
         self
     }
 
@@ -315,26 +337,6 @@ impl SpaceSet {
             let trial = self.clone().at_spacing(spacing);
             trial.within_until(volume.clone(), stop.clone())
         })
-    }
-
-    /// The columns, rows and planes of the lattice that hold all points of a volume, and a few more around it.
-    ///
-    /// # Errors
-    /// As [`within`](Self::within).
-    ///
-    /// ```
-    /// use strew_core::space::{Region, SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// let region = Region::chunk(8.0, [0, 0, 0])?;
-    /// let [columns, ..] = set.addresses(region)?;
-    /// assert!(set.within(region)?.iter().all(|point| columns.contains(&point.id.x)));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn addresses(&self, volume: impl Into<Volume>) -> Result<[Range<i64>; 3], Error> {
-        let volume = volume.into();
-        let scope = Scope::new(&self.lattice, &self.mask, &volume, Stop::default())?;
-        Ok(scope.all)
     }
 
     /// The distance that no two points of the set are nearer than, in world units; with warp it is a bound.

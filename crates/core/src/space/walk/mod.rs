@@ -76,8 +76,7 @@ impl Walk {
     ) -> Self {
         Self {
             course: Course::new(scope.clone(), ranges, start),
-            // A field looks at the ranks of points.
-            wants_ids: wants_ids || scope.lattice.grade.is_some(),
+            wants_ids: wants_ids || scope.lattice.is_sifted(),
             backend: Backend::best(),
             templates: Templates::default(),
             pending: Batch::default(),
