@@ -69,7 +69,7 @@ takes! {
         parameter.group == Group::Split || Answered::takes(parameter)
     };
     /// A set without a region, as for `GET /v1/points/{id}`.
-    Single = groups::SINGLE, in space groups::SPACE_SET;
+    Single = groups::SINGLE, in space groups::SPACE_SINGLE;
     /// A table whose periods are listed, as for `GET /v1/periods`.
     Listed = groups::PERIODS;
     Tabled = groups::TABLES;

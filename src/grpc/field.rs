@@ -5,11 +5,14 @@ use bytes::Bytes;
 use strew_catalog::field::{
     Document, NamedField,
     document::{
-        Curve, Distance, EdgesName, FilterName, Height, Noise, Parts, Pixels, Radial, Ramp, Slope,
+        Curve, Distance, EdgesName, FilterName, Height, Noise, Parts, Pixels, Place, Radial, Ramp,
+        Slope,
     },
 };
 
-use super::proto::{self, Field, FieldBox, FieldEdges, FieldFilter, FieldPair, field::Shape};
+use super::proto::{
+    self, Field, FieldBox, FieldEdges, FieldFilter, FieldPair, FieldPlace, field::Shape,
+};
 
 /// The document of a message. One without a shape is a field without a name, of which there is none.
 pub(super) fn document(field: &Field) -> Document {
@@ -20,12 +23,12 @@ pub(super) fn document(field: &Field) -> Document {
         Shape::Name(name) => Document::Name(name.clone()),
         Shape::Constant(share) => Document::Constant(*share),
         Shape::Ramp(ramp) => Document::Ramp(Box::new(Ramp {
-            from: pair(ramp.from),
-            to: pair(ramp.to),
+            from: place(ramp.from),
+            to: place(ramp.to),
             shares: ramp.shares.map_or([0.0, 1.0], numbers),
         })),
         Shape::Radial(radial) => Document::Radial(Box::new(Radial {
-            center: pair(radial.center),
+            center: place(radial.center),
             radii: pair(radial.radii),
             shares: radial.shares.map_or([1.0, 0.0], numbers),
         })),
@@ -106,6 +109,14 @@ fn joined(parts: &proto::FieldParts) -> Parts {
 
 const fn numbers(pair: FieldPair) -> [f64; 2] {
     [pair.first, pair.second]
+}
+
+/// A place that must be there; see [`pair`].
+fn place(place: Option<FieldPlace>) -> Place {
+    match place.unwrap_or_default() {
+        FieldPlace { x, y, z: None } => Place::Plane([x, y]),
+        FieldPlace { x, y, z: Some(z) } => Place::Space([x, y, z]),
+    }
 }
 
 /// Numbers that must be there; where they are not, the field refuses two zeros.

@@ -173,7 +173,7 @@ impl PointService for Points {
             let GetPointRequest { id, set } = *request.message;
             // An id in space has three parts.
             let groups = match id.matches(':').count() {
-                2 => groups::SPACE_SET,
+                2 => groups::SPACE_SINGLE,
                 _ => groups::SINGLE,
             };
             let read = move || Ok(set::values(set.as_ref(), groups, ""));

@@ -41,7 +41,7 @@ pub(super) fn by_id(service: &Arc<Service>, dimension: Dimension) -> Endpoint {
         "'/v1/points/0:0?spacing=1&attributes=angle'",
         "'/v1/space/points/0:0:0?spacing=1&attributes=rotation'",
     ];
-    let parameters = either(dimension, [groups::SINGLE, groups::SPACE_SET]);
+    let parameters = either(dimension, [groups::SINGLE, groups::SPACE_SINGLE]);
     let operation = Operation {
         id: either(dimension, ["getPoint", "getSpacePoint"]),
         summary: either(

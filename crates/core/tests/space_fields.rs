@@ -5,7 +5,7 @@ use strew_core::{
     Backend, ErrorKind, Field,
     field::{FieldSpec, Noise},
     server::Stop,
-    space::{Ball, PointId, Region, SpaceSet, Table, Volume},
+    space::{Ball, Point, PointId, Region, SpaceSet, Table, Volume},
 };
 
 fn set(seed: u64) -> SpaceSet {
@@ -143,6 +143,16 @@ fn large_plans_in_fields_are_those_of_their_parts() {
     let field = FieldSpec::multiply(parts).expect("valid");
     for seed in [0, 5] {
         let graded = set(seed).in_field(field.clone());
+        let some = set(seed).chunk(30.0, [1, 1, 1]).expect("near");
+        let some: Vec<_> = some.iter().map(|point| point.id).step_by(7).collect();
+        let whole = set(seed).chunk(70.0, [0, 0, 0]).expect("near");
+        let left = set(seed)
+            .without(some.clone())
+            .chunk(70.0, [0, 0, 0])
+            .expect("near");
+        assert_eq!(left.count() + some.len() as u128, whole.count());
+        let rest = |point: &Point| !some.contains(&point.id);
+        assert!(whole.iter().filter(rest).eq(left.iter()));
         let whole = graded.chunk(80.0, [0, 0, 0]).expect("near");
         let mut points = whole.to_vec();
         assert!(points.len() > 10_000);

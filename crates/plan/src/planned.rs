@@ -56,8 +56,10 @@ impl Placed {
         let table = set
             .space()
             .ok_or(Error::Internal("a set of the plane in space"))?;
-        let (points, density) = resolve::in_space(&set, table)?;
-        let spacing = points.placement().spacing;
+        let resolve::Resolved::Known(spacing, density) = resolve::in_space(&set, table)? else {
+            return Err(Error::Internal("a single point of a count"));
+        };
+        let points = set.points_in_space(table, spacing)?;
         let least = resolve::least_distance_in_space(&set, &points, 0.0);
         Ok(Self {
             resolved: set.resolved(&[], density, spacing, least, (&[], &[])),

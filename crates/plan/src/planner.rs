@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use strew_catalog::{Ready, except::MOST_HOLES};
+use strew_catalog::{
+    Ready,
+    except::{Id, MOST_HOLES},
+};
 use strew_config::Limits;
 use strew_core::{
     Area, Cursor, ErrorKind, Keep, Placement, Plan, PointId, PointSet, Spacing,
@@ -179,7 +182,9 @@ impl<'a> Planner<'a> {
         let Some(except) = &set.except else {
             return Ok(area);
         };
-        except.check(&set.name, &set.every_point(ready))?;
+        let every = set.every_point(ready);
+        let has = |id| matches!(id, Id::Plane(id) if every.block(id).is_some());
+        except.check(&set.name, has)?;
         if is_over {
             return Ok(area);
         }
@@ -293,11 +298,7 @@ impl<'a> Planner<'a> {
 
     /// The plan with exactly `count` points.
     fn count(&self, set: &Set, count: u64, selection: &mut Selection) -> Result<Plan, Error> {
-        let limit = self.limits.max_points;
-        if count > limit {
-            let count = count.into();
-            return Err(Error::TooManyPoints { count, limit });
-        }
+        self.check_count(count)?;
         // A guess of the spacing, to estimate the price of counting.
         let [min_x, min_y, max_x, max_y] = self.query.region.bbox();
         let side = (max_x - min_x).sqrt() * (max_y - min_y).sqrt();
@@ -318,19 +319,36 @@ impl<'a> Planner<'a> {
             set: points, area, ..
         } = &*selection;
         let plan = server::exactly(points, count.into(), area, least, self.stop);
-        plan.map_err(|error| match error.kind() {
-            ErrorKind::Count | ErrorKind::TooDense => {
-                let allowed = match error.allowed() {
-                    "" => parameters::COUNT.allowed(),
-                    allowed => allowed.into(),
-                };
-                set.fault("count", count, error.problem(), allowed)
-            }
-            _ => {
-                let spacing = points.placement().spacing;
-                self.query.region.too_far(spacing, &error)
-            }
-        })
+        plan.map_err(|error| self.no_count(set, count, (points.placement().spacing, &error)))
+    }
+
+    /// The error of a number of points that no spacing has, or that was counted near this spacing.
+    pub(super) fn no_count(
+        &self,
+        set: &Set,
+        count: u64,
+        (spacing, error): (Spacing, &strew_core::Error),
+    ) -> Error {
+        if !matches!(error.kind(), ErrorKind::Count | ErrorKind::TooDense) {
+            return self.query.region.too_far(spacing, error);
+        }
+        let allowed = match error.allowed() {
+            "" => parameters::COUNT.allowed(),
+            allowed => allowed.into(),
+        };
+        set.fault("count", count, error.problem(), allowed)
+    }
+
+    /// Refuses a number of points that no answer may have.
+    pub(super) fn check_count(&self, count: u64) -> Result<(), Error> {
+        let limit = self.limits.max_points;
+        match count > limit {
+            true => Err(Error::TooManyPoints {
+                count: count.into(),
+                limit,
+            }),
+            false => Ok(()),
+        }
     }
 
     /// Checks that the rows of a selection, counted `counts` times, stay within the limit.

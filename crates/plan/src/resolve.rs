@@ -59,27 +59,19 @@ pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Resolved, Error> {
     })
 }
 
-/// The set of some points in space at the spacing that its amount means, and its density.
-pub(super) fn in_space(set: &Set, table: &space::Table) -> Result<(SpaceSet, f64), Error> {
+/// What the amount of a set in space means.
+pub(super) fn in_space(set: &Set, table: &space::Table) -> Result<Resolved, Error> {
     let of_density = |density| {
         let placed = SpaceSet::new(table.clone()).density(density)?;
         Ok(placed.placement().spacing)
     };
     let for_distance = |distance| table.least_distance().spacing_for(distance, set.warp);
-    match resolved(set, of_density, for_distance, |spacing| {
-        spacing.get().powi(-3)
-    })? {
-        Resolved::Known(spacing, density) => Ok((set.points_in_space(table, spacing)?, density)),
-        Resolved::Count(count) => {
-            let allowed = "density, spacing or min_distance";
-            Err(set.fault(
-                parameters::COUNT.name,
-                count,
-                "not for points in space",
-                allowed,
-            ))
-        }
-    }
+    resolved(set, of_density, for_distance, density_in_space)
+}
+
+/// Points per unit of volume.
+pub(super) fn density_in_space(spacing: Spacing) -> f64 {
+    spacing.get().powi(-3)
 }
 
 /// The distance that the coordinates of a set in space within ±`reach` keep.

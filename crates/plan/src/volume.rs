@@ -2,17 +2,20 @@
 
 use std::sync::Arc;
 
+use strew_catalog::except::Id;
 use strew_core::{
     ErrorKind,
     space::{self, SpaceSet},
 };
 use strew_encode::Mark;
 use strew_error::{Error, number};
-use strew_query::{QueryVolume, Set};
+use strew_query::{Amount, QueryVolume, Set};
 
 use crate::{
-    PlannedSet, effort, planned_set::Least, planner::Planner, resolve::check_reach,
-    resolve::in_space as placed,
+    PlannedSet, effort,
+    planned_set::Least,
+    planner::Planner,
+    resolve::{Resolved, check_reach, density_in_space, in_space as placed},
 };
 
 impl Planner<'_> {
@@ -27,44 +30,92 @@ impl Planner<'_> {
         let region = &self.query.region;
         let own = set.region.as_ref().and_then(|own| own.volume.as_ref());
         let volume = whole.and(own);
-        let (points, density) = placed(set, table)?;
+        let resolved = placed(set, table)?;
         check_reach(set, region.reach())?;
-        let spacing = points.placement().spacing;
-        let test = self.chains.test(&points, &set.clear_of, &volume);
-        let rows = effort::rows_of_volume(&points, &volume, test);
-        let own_volume = own.map(|own| &own.volume);
-        self.chains.push(Some(&points), &set.clear_of, own_volume);
-        let points = self.keeping_clear_in_space(set, points)?;
         let cursor = self.query.window.cursor;
         let here = cursor.filter(|token| i == usize::from(token.set));
         let is_unwanted = self.query.only.is_some_and(|only| only != i);
         let is_over = is_unwanted || cursor.is_some_and(|token| i < usize::from(token.set));
-        let plan = match here.filter(|_| !is_unwanted) {
-            _ if is_over => points.resume(volume, NOTHING.in_space()),
-            Some(token) => points.resume(volume, token.mark.in_space()),
-            None => {
-                self.check_rows_in_space(rows)?;
-                points.within_until(volume, self.stop.clone())
+        let here = here.filter(|_| !is_unwanted);
+        let known = match resolved {
+            Resolved::Known(spacing, _) => Ok(spacing),
+            Resolved::Count(count) => here.and_then(|token| token.spacing).ok_or(count),
+        };
+        let spacing = known.or_else(|count| effort::guess_in_space(set, &volume, count));
+        let points = set.points_in_space(table, spacing.map_err(|_| OUT_OF_RANGE)?)?;
+        let test = effort::test_in_space(&self.chains, set, &points, (&volume, region.bounds));
+        let own_volume = own.map(|own| &own.volume);
+        let layer = self.keeping_clear_in_space(set, points)?;
+        let points = without(set, layer.clone())?;
+        let spacing = points.placement().spacing;
+        let plan = match (known, here) {
+            (Ok(spacing), _) if is_over || here.is_some() => {
+                let mark = here.map_or(NOTHING, |token| token.mark).in_space();
+                let plan = points.resume(volume.clone(), mark);
+                let plan = plan.map_err(|error| region.too_far(spacing, &error))?;
+                match set.amount {
+                    // The spacing may give a few points more.
+                    Amount::Count(count) => {
+                        plan.window(0, Some(u128::from(count).saturating_sub(mark.offset)))
+                    }
+                    _ => plan,
+                }
+            }
+            (Ok(spacing), _) => {
+                self.check_rows_in_space(effort::rows_of_volume(&points, &volume, test))?;
+                let plan = points.within_until(volume.clone(), self.stop.clone());
+                plan.map_err(|error| match error.kind() {
+                    ErrorKind::Stopped => {
+                        Error::Internal("a plan was stopped before its request ended")
+                    }
+                    _ => region.too_far(spacing, &error),
+                })?
+            }
+            (Err(count), _) => {
+                self.check_count(count)?;
+                let counts = effort::counts(set);
+                let rows =
+                    |points: &SpaceSet| effort::rows_of_volume(points, &volume, test) * counts;
+                self.check_rows_in_space(rows(&points))?;
+                let least = effort::least_in_space(&points, self.limits.max_rows as f64, rows);
+                let plan = points.exactly(count.into(), volume.clone(), least, self.stop);
+                let plan = plan.map_err(|error| self.no_count(set, count, (spacing, &error)))?;
+                plan.window(0, is_over.then_some(0))
             }
         };
-        let plan = plan.map_err(|error| match error.kind() {
-            ErrorKind::Stopped => Error::Internal("a plan was stopped before its request ended"),
-            _ => region.too_far(spacing, &error),
-        })?;
-        let least = Least::InSpace(Box::new(points.clone()), region.reach());
+        let placement = plan.placement();
+        let (spacing, points) = (placement.spacing, points.placed(placement));
+        let layer = layer.placed(placement);
+        let density = match resolved {
+            Resolved::Known(_, density) => density,
+            Resolved::Count(_) => density_in_space(spacing),
+        };
+        self.chains.push(Some(&layer), &set.clear_of, own_volume);
+        let rows = effort::rows_of_volume(&points, &volume, test);
+        let candidates = match set.field {
+            Some(_) => effort::candidates_in_space(&points, &volume),
+            None => 0,
+        };
+        let least = Least::InSpace(Box::new(points), region.reach());
         if i + 1 < self.query.sets.len() {
             self.volumes.push(match own {
-                Some(own) => points.limited_to(own.volume.clone()),
-                None => points,
+                Some(own) => layer.limited_to(own.volume.clone()),
+                None => layer,
             });
         }
         let plan = Arc::new(plan.stopped_by(self.stop.clone()));
-        let planned = PlannedSet::new(set.entry.clone(), (density, spacing), least, plan, 0);
+        let planned = PlannedSet::new(
+            set.entry.clone(),
+            (density, spacing),
+            least,
+            plan,
+            candidates,
+        );
         let planned = planned.priced(set, 0.0, region.bounds);
         // All points of the volume are tested for those that stay.
-        Ok(match test > 0.0 {
-            true => planned.after(rows),
-            false => planned,
+        Ok(match set.clear_of.is_empty() {
+            false => planned.after(rows),
+            true => planned,
         })
     }
 
@@ -92,6 +143,19 @@ impl Planner<'_> {
         }
     }
 }
+
+/// A set without its exceptions; the layers after it keep clear of these all the same.
+fn without(set: &Set, points: SpaceSet) -> Result<SpaceSet, Error> {
+    let Some(except) = &set.except else {
+        return Ok(points);
+    };
+    let has = |id| matches!(id, Id::Space(id) if points.block(id).is_some());
+    except.check(&set.name, has)?;
+    let parts = except.parts.iter().map(|part| part.in_space().clone());
+    Ok(parts.fold(points, SpaceSet::without))
+}
+
+const OUT_OF_RANGE: Error = Error::Internal("a guessed spacing is out of range");
 
 /// The place after the last point.
 const NOTHING: Mark = Mark {

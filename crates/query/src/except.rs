@@ -4,9 +4,8 @@ use std::{collections::BTreeSet, sync::Arc};
 
 use strew_catalog::{
     Catalog,
-    except::{Except, Ids, MOST_GIVEN, NamedList, split},
+    except::{Except, Id, Ids, MOST_GIVEN, NamedList, split},
 };
-use strew_core::PointId;
 use strew_error::{Checked, Fault, Faults, all, unknown};
 
 use super::{Set, Values, parameters::EXCEPT, rules, table::is_digest};
@@ -15,7 +14,7 @@ const GONE: &str = "a list that the server no longer holds must be sent again (P
 
 /// An item of `except`.
 enum Item {
-    Id(Option<String>, PointId),
+    Id(Option<String>, Id),
     List(Arc<NamedList>),
 }
 

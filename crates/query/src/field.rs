@@ -3,11 +3,11 @@
 use std::cell::{Cell, RefCell};
 
 use strew_catalog::{
-    Catalog,
+    Catalog, Dimension,
     field::{Allowance, Document},
 };
 use strew_core::field::FieldSpec;
-use strew_error::{Checked, Error};
+use strew_error::{Checked, Error, Fault};
 
 use super::{Values, parameters::FIELD};
 
@@ -22,6 +22,20 @@ pub struct SetField {
     pub digest: String,
     /// The code of EPSG of its plane, if a raster states it.
     pub epsg: Option<u16>,
+}
+
+impl SetField {
+    /// Refuses one with places of three numbers.
+    pub(super) fn of_plane(self, path: &str) -> Checked<Self> {
+        match self.spec.is_in_space() {
+            true => {
+                let (detail, allowed) =
+                    ("a place has a z: for points in space", "places of x and y");
+                Err(Fault::new(path, "", detail, allowed).into())
+            }
+            false => Ok(self),
+        }
+    }
 }
 
 /// The loaded fields, and the pixels and memory that the fields of a query may still take.
@@ -48,7 +62,11 @@ impl<'a> Loaded<'a> {
             return Ok(None);
         };
         let path = format!("{}{}", values.path(), FIELD.name);
-        self.built(&path, &document).map(Some)
+        let field = self.built(&path, &document)?;
+        match values.dimension() {
+            Dimension::Plane => field.of_plane(&path).map(Some),
+            Dimension::Space => Ok(Some(field)),
+        }
     }
 
     pub(super) fn built(&self, path: &str, document: &Document) -> Checked<SetField> {

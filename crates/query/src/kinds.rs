@@ -102,8 +102,8 @@ impl Kinds {
                 let allowed: Vec<&str> = names().collect();
                 return Err(Fault::new(&field, name, detail, allowed.join(", ")).into());
             }
-            let field = loaded.built(&field, document)?;
-            Ok((name.clone(), field))
+            let built = loaded.built(&field, document)?.of_plane(&field)?;
+            Ok((name.clone(), built))
         };
         self.fields = all(given.iter().map(field))?;
         Ok(())

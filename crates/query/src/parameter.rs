@@ -47,7 +47,7 @@ pub enum Group {
     Profile,
     Table,
     Points,
-    /// The part of a set of the plane that is there, from place to place, and how its points settle.
+    /// How the points of a thinned set of the plane settle.
     Thinned,
     Except,
     Attributes,
@@ -153,14 +153,26 @@ pub mod groups {
     pub const MASK: &[Group] = &[Mask, MaskFile, Profile, Table];
     /// `GET /v1/mask/spectrum.svg`.
     pub const MASK_SPECTRUM: &[Group] = &[Mask, Profile, Table];
-    pub const SPACE_SET: &[Group] = &[Amount, Profile, Table, Points, SpaceAttributes, Choices];
+    pub const SPACE_SET: &[Group] = &[
+        Amount,
+        Count,
+        Profile,
+        Table,
+        Points,
+        Except,
+        SpaceAttributes,
+        Choices,
+    ];
+    pub const SPACE_SINGLE: &[Group] = &[Amount, Profile, Table, Points, SpaceAttributes, Choices];
     /// `GET /v1/space/points`.
     pub const SPACE_POINTS: &[Group] = &[
         Volume,
         Amount,
+        Count,
         Profile,
         Table,
         Points,
+        Except,
         SpaceAttributes,
         Choices,
         Window,
@@ -170,9 +182,11 @@ pub mod groups {
     /// `GET /v1/space/chunks/…`, whose region is in the path, and bodies, in which it is a member.
     pub const SPACE_QUERY: &[Group] = &[
         Amount,
+        Count,
         Profile,
         Table,
         Points,
+        Except,
         SpaceAttributes,
         Choices,
         Window,
@@ -183,9 +197,11 @@ pub mod groups {
     pub const SPACE_COUNT: &[Group] = &[
         Volume,
         Amount,
+        Count,
         Profile,
         Table,
         Points,
+        Except,
         SpaceAttributes,
         Choices,
     ];

@@ -184,7 +184,7 @@ parameters! {
         is_echoed: true,
         ..Parameter::RARE
     });
-    LOD = parameter!("lod" of Thinned {
+    LOD = parameter!("lod" of Points {
         about: "The level of detail: the part of the points that the answer has, at each place those of the lowest \
                 rank. None of them moves, so a level has a part of the points of a finer one, in fields, of kinds \
                 and of layers, too. Beside layers: of all of them; they keep clear of all points of each other.",
@@ -197,7 +197,7 @@ parameters! {
         is_echoed: true,
         ..Parameter::RARE
     });
-    FIELD = parameter!("field" of Thinned {
+    FIELD = parameter!("field" of Points {
         about: "The field that thins the points out, from place to place: a share of the density, which is \
                 that where the field is 1. The list of fields shows what is loaded.",
         shape: Shape::Field,
@@ -210,11 +210,11 @@ parameters! {
                 by their digests. Other layers keep clear of them all the same. Beside layers ids are layer/column:row. \
                 The list of lists shows what is loaded.",
         shape: Shape::Names {
-            pattern: "^(.{1,64}/)?-?[0-9]+:-?[0-9]+$|^[A-Za-z0-9_.-]{1,64}$",
+            pattern: "^(.{1,64}/)?-?[0-9]+:-?[0-9]+(:-?[0-9]+)?$|^[A-Za-z0-9_.-]{1,64}$",
         },
         allowed: Some(
-            "at most 10000 ids of points (column:row, beside layers layer/column:row) and names of loaded \
-                       lists or digests of sent ones, joined by commas; not with count or periodic",
+            "at most 10000 ids of points (column:row, in space x:y:z, beside layers layer/column:row) and names of \
+                       loaded lists or digests of sent ones, joined by commas; not with count or periodic",
         ),
         default: Some("none"),
         example: "18:-17",

@@ -85,7 +85,8 @@ impl Query {
         }
         if let Some(volume) = &self.region.volume {
             let is_box = matches!(volume.volume, Volume::Region(_));
-            return is_box && is_small_in_space(set.amount, volume);
+            let is_plain = set.field.is_none() && set.except.is_none() && set.region.is_none();
+            return is_box && is_plain && is_small_in_space(set.amount, volume);
         }
         let spacing = match set.amount {
             Amount::Spacing(spacing) => spacing,

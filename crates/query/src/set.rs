@@ -84,9 +84,14 @@ impl Set {
                 .seed(self.seed.0)
                 .warp(self.warp.strength())?
                 .keep(self.keep.get())?
+                .lod(self.lod.get())?
                 .spacing(spacing.get())
         };
-        placed().map_err(|_| Error::Internal("a checked set is out of range"))
+        let set = placed().map_err(|_| Error::Internal("a checked set is out of range"))?;
+        Ok(match &self.field {
+            Some(field) => set.in_field(field.spec.clone()),
+            None => set,
+        })
     }
 
     /// Shows a part of its points, while other layers keep clear of all of them.

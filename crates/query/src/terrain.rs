@@ -33,7 +33,9 @@ pub(super) fn check(values: &Values, loaded: &Loaded<'_>) -> Checked<Option<Terr
     };
     let path = format!("{}{}", values.path(), TERRAIN.name);
     let (field, heights, normals, align) = (
-        loaded.built(&path, &document),
+        loaded
+            .built(&path, &document)
+            .and_then(|field| field.of_plane(&path)),
         heights(values),
         values.get::<bool>(&NORMALS),
         values.get::<f64>(&ALIGN),

@@ -34,7 +34,7 @@ impl Shaped for proto::ListFieldsRequest {
 impl Shaped for proto::ListWorldsRequest {
     const SHAPE: usize = 9;
 }
-pub(super) static SHAPES: [Shape; 44] = [
+pub(super) static SHAPES: [Shape; 45] = [
     Shape {
         bytes: size_of::<proto::StreamPointsRequest>(),
         is_field: false,
@@ -668,7 +668,7 @@ pub(super) static SHAPES: [Shape; 44] = [
             Field {
                 number: 3,
                 name: "shares",
-                kind: Kind::Message(41),
+                kind: Kind::Message(42),
                 most: most::ONCE,
             },
         ],
@@ -686,13 +686,13 @@ pub(super) static SHAPES: [Shape; 44] = [
             Field {
                 number: 2,
                 name: "radii",
-                kind: Kind::Message(41),
+                kind: Kind::Message(42),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "shares",
-                kind: Kind::Message(41),
+                kind: Kind::Message(42),
                 most: most::ONCE,
             },
         ],
@@ -704,31 +704,31 @@ pub(super) static SHAPES: [Shape; 44] = [
             Field {
                 number: 1,
                 name: "points",
-                kind: Kind::Message(41),
+                kind: Kind::Message(42),
                 most: most::FIELD_DISTANCE_POINTS,
             },
             Field {
                 number: 2,
                 name: "lines",
-                kind: Kind::Message(42),
+                kind: Kind::Message(43),
                 most: most::FIELD_DISTANCE_LINES,
             },
             Field {
                 number: 3,
                 name: "polygons",
-                kind: Kind::Message(42),
+                kind: Kind::Message(43),
                 most: most::FIELD_DISTANCE_POLYGONS,
             },
             Field {
                 number: 4,
                 name: "distances",
-                kind: Kind::Message(41),
+                kind: Kind::Message(42),
                 most: most::ONCE,
             },
             Field {
                 number: 5,
                 name: "shares",
-                kind: Kind::Message(41),
+                kind: Kind::Message(42),
                 most: most::ONCE,
             },
         ],
@@ -740,7 +740,7 @@ pub(super) static SHAPES: [Shape; 44] = [
             Field {
                 number: 4,
                 name: "range",
-                kind: Kind::Message(41),
+                kind: Kind::Message(42),
                 most: most::ONCE,
             },
         ],
@@ -764,7 +764,7 @@ pub(super) static SHAPES: [Shape; 44] = [
             Field {
                 number: 5,
                 name: "bbox",
-                kind: Kind::Message(43),
+                kind: Kind::Message(44),
                 most: most::ONCE,
             },
         ],
@@ -782,13 +782,13 @@ pub(super) static SHAPES: [Shape; 44] = [
             Field {
                 number: 2,
                 name: "heights",
-                kind: Kind::Message(41),
+                kind: Kind::Message(42),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "shares",
-                kind: Kind::Message(41),
+                kind: Kind::Message(42),
                 most: most::ONCE,
             },
         ],
@@ -806,13 +806,13 @@ pub(super) static SHAPES: [Shape; 44] = [
             Field {
                 number: 2,
                 name: "slopes",
-                kind: Kind::Message(41),
+                kind: Kind::Message(42),
                 most: most::ONCE,
             },
             Field {
                 number: 3,
                 name: "shares",
-                kind: Kind::Message(41),
+                kind: Kind::Message(42),
                 most: most::ONCE,
             },
         ],
@@ -842,7 +842,7 @@ pub(super) static SHAPES: [Shape; 44] = [
             Field {
                 number: 2,
                 name: "points",
-                kind: Kind::Message(41),
+                kind: Kind::Message(42),
                 most: most::FIELD_CURVE_POINTS,
             },
         ],
@@ -860,6 +860,11 @@ pub(super) static SHAPES: [Shape; 44] = [
         ],
     },
     Shape {
+        bytes: size_of::<proto::FieldPlace>(),
+        is_field: false,
+        fields: &[],
+    },
+    Shape {
         bytes: size_of::<proto::FieldPair>(),
         is_field: false,
         fields: &[],
@@ -871,7 +876,7 @@ pub(super) static SHAPES: [Shape; 44] = [
             Field {
                 number: 1,
                 name: "vertices",
-                kind: Kind::Message(41),
+                kind: Kind::Message(42),
                 most: most::FIELD_LINE_VERTICES,
             },
         ],

@@ -26,7 +26,7 @@ impl Except {
         };
         let mut rings: Vec<[[f64; 2]; 4]> = vec![];
         for part in &self.parts {
-            let ids = &part.sorted;
+            let ids = &part.plane;
             let start = ids.partition_point(|id| id.x < columns.start);
             let end = ids.partition_point(|id| id.x < columns.end);
             let near = ids[start..end.max(start)].iter();

@@ -1,6 +1,6 @@
 //! Lists of points with names: those of the configuration and of a folder, and those that clients have sent.
 //!
-//! A list is text, an id a line: `12:-3`, or `trees/12:-3` for a point of a layer. What follows `#` is a comment. Or
+//! A list is text, an id a line: `12:-3`, in space `12:-3:7`, or `trees/12:-3` for a point of a layer. What follows `#` is a comment. Or
 //! it is an object of JSON with these ids: `{"ids": ["12:-3"]}`.
 
 use std::{borrow::Cow, collections::BTreeMap, iter, mem::size_of, ops::Deref, sync::Arc};
@@ -8,10 +8,9 @@ use std::{borrow::Cow, collections::BTreeMap, iter, mem::size_of, ops::Deref, sy
 use schemars::JsonSchema;
 use serde::Deserialize;
 use strew_config::{Except as Settings, name::is_title};
-use strew_core::PointId;
 use strew_error::Fault;
 
-use super::Ids;
+use super::{Id, Ids};
 use crate::{
     bounded_list::look,
     named::{self, Loaded, NamedError, Names, Places, Reread},
@@ -43,7 +42,7 @@ pub struct NamedList {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "SentList")]
 pub struct Section<'a> {
-    /// Ids of points: column:row, or layer/column:row for a point of a layer.
+    /// Ids of points: column:row, in space x:y:z, or layer/column:row for a point of a layer.
     #[serde(borrow)]
     ids: Vec<Item<'a>>,
 }
@@ -97,7 +96,7 @@ impl Lists {
     /// The memory that it takes to read a list that is sent, at most, in bytes.
     pub fn reading(&self, body: &[u8]) -> usize {
         /// An id is held as text, then as a number, in lists that double as they grow.
-        const ID: usize = 3 * (size_of::<Item<'_>>() + size_of::<PointId>());
+        const ID: usize = 3 * (size_of::<Item<'_>>() + size_of::<Id>());
         let ends = body.iter().filter(|&&byte| matches!(byte, b'\n' | b','));
         // Text that is not Unicode is copied.
         4 * body.len() + ID * ends.take(self.most).count() + MOST_LAYERS * LAYER
@@ -219,19 +218,20 @@ impl Sendable for NamedList {
     fn size(&self) -> usize {
         /// The most bytes of a list, besides its layers.
         const LIST: usize = 4 << 10;
-        LIST + LAYER * self.by_layer.len() + size_of::<PointId>() * self.len()
+        let ids = self.by_layer.values().map(|ids| ids.size());
+        LIST + LAYER * self.by_layer.len() + ids.sum::<usize>()
     }
 }
 
 /// The ids of a list by layer, as they are read, and their number.
 #[derive(Default)]
-struct Unsorted(BTreeMap<String, Vec<PointId>>, usize);
+struct Unsorted(BTreeMap<String, Vec<Id>>, usize);
 
 impl Unsorted {
     /// Adds the item of a place.
     fn add(&mut self, item: &str, place: impl Fn() -> String) -> Result<(), Fault> {
         let Some((layer, id)) = split(item) else {
-            let allowed = "column:row, or layer/column:row";
+            let allowed = "column:row, in space x:y:z, or layer/column:row";
             return Err(Fault::new(&place(), item, "not an id", allowed));
         };
         let layer = layer.unwrap_or_default();
@@ -271,8 +271,8 @@ fn check_count(count: usize, most: usize) -> Result<(), Fault> {
     Err(Fault::new("ids", count, "too many", allowed))
 }
 
-/// The layer and the id of an item: `12:-3` or `trees/12:-3`.
-pub fn split(item: &str) -> Option<(Option<&str>, PointId)> {
+/// The layer and the id of an item: `12:-3`, `trees/12:-3` or in space `12:-3:7`.
+pub fn split(item: &str) -> Option<(Option<&str>, Id)> {
     let (layer, id) = match item.rsplit_once('/') {
         Some((layer, id)) if is_title(layer) => (Some(layer), id),
         Some(_) => return None,
@@ -314,13 +314,21 @@ mod tests {
             (3, vec!["oak"])
         );
         assert_eq!(
-            felled.of("").map(|ids| ids.sorted[0]),
-            Some(PointId { x: 1, y: 2 })
+            felled.of("").map(|ids| Id::Plane(ids.plane[0])),
+            "1:2".parse().ok()
         );
         let other = list("[felled]\nids = ['1:2', '3:4', 'oak/-5:6']").expect("valid");
         assert_eq!(other.digest, felled.digest);
         let other = list("[felled]\nids = ['1:2', '3:4', 'elm/-5:6']").expect("valid");
         assert_ne!(other.digest, felled.digest);
+        // Ids of the plane and of space may stand together.
+        let mined = list("[mined]\nids = ['7:8:9', '1:2', '-7:8:9']").expect("valid");
+        let ids = mined.of("").expect("of no layer");
+        let space: Vec<_> = ids.in_space().iter().map(ToString::to_string).collect();
+        assert_eq!(
+            (ids.len(), ids.plane.len(), space),
+            (3, 1, vec!["-7:8:9".into(), "7:8:9".into()])
+        );
     }
 
     #[test]

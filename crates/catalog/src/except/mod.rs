@@ -2,15 +2,16 @@
 //!
 //! A query names ids, and lists of the configuration, of a folder or of a client. A point that was taken away keeps its
 //! place: other layers still keep clear of it, and the attributes and ids of others stay. So nothing appears where a
-//! tree was felled. [`Except`] has the points that one set lacks; planning cuts a hole of one coordinate for each of
-//! its points that lie in the region, and counts, cursors and parts follow from the area that is left.
+//! tree was felled. [`Except`] has the points that one set lacks; in the plane planning cuts a hole of one coordinate for
+//! each of its points that lie in the region, and counts, cursors and parts follow from the area that is left. Sets in
+//! space lack points by themselves.
 
 mod holes;
 mod list;
 
-use std::sync::Arc;
+use std::{fmt, str::FromStr, sync::Arc};
 
-use strew_core::{PointId, PointSet};
+use strew_core::{PointId, space};
 use strew_error::Fault;
 
 pub use list::{Lists, NamedList, Section, split};
@@ -19,17 +20,43 @@ pub const MOST_GIVEN: usize = 10_000;
 /// The most points that all sets of a query together leave out within its region.
 pub const MOST_HOLES: usize = 10_000;
 
+/// The id of a point of the plane or in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Id {
+    Plane(PointId),
+    Space(space::PointId),
+}
+
+impl FromStr for Id {
+    type Err = strew_core::Error;
+
+    fn from_str(text: &str) -> Result<Self, strew_core::Error> {
+        let in_space = text.parse().map(Self::Space);
+        in_space.or_else(|_| text.parse().map(Self::Plane))
+    }
+}
+
+impl fmt::Display for Id {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Plane(id) => id.fmt(f),
+            Self::Space(id) => id.fmt(f),
+        }
+    }
+}
+
 /// Sorted ids, each once, with their digest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ids {
-    sorted: Vec<PointId>,
+    plane: Vec<PointId>,
+    space: Arc<[space::PointId]>,
     digest: String,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Except {
     /// The ids of the query, which must be points of the set, each with the name of its field.
-    pub given: Vec<(String, PointId)>,
+    pub given: Vec<(String, Id)>,
     pub names: Vec<String>,
     /// Whether the name of one may stand for another list later.
     pub may_change: bool,
@@ -37,28 +64,56 @@ pub struct Except {
 }
 
 impl Ids {
-    pub fn new(mut ids: Vec<PointId>) -> Self {
-        ids.sort_unstable_by_key(|id| (id.x, id.y));
-        ids.dedup();
-        ids.shrink_to_fit();
+    pub fn new(ids: Vec<Id>) -> Self {
+        let (mut plane, mut space) = (vec![], vec![]);
+        for id in ids {
+            match id {
+                Id::Plane(id) => plane.push(id),
+                Id::Space(id) => space.push(id),
+            }
+        }
+        plane.sort_unstable_by_key(|id: &PointId| (id.x, id.y));
+        plane.dedup();
+        plane.shrink_to_fit();
+        space.sort_unstable();
+        space.dedup();
         let mut hasher = blake3::Hasher::new();
-        for id in &ids {
-            hasher.update(&id.x.to_le_bytes());
-            hasher.update(&id.y.to_le_bytes());
+        for v in plane.iter().flat_map(|id| [id.x, id.y]) {
+            hasher.update(&v.to_le_bytes());
+        }
+        if !space.is_empty() {
+            hasher.update(b"in space");
+        }
+        for v in space
+            .iter()
+            .flat_map(|id: &space::PointId| [id.x, id.y, id.z])
+        {
+            hasher.update(&v.to_le_bytes());
         }
         Self {
             digest: hasher.finalize().to_hex().to_string(),
-            sorted: ids,
+            plane,
+            space: space.into(),
         }
     }
 
-    pub const fn len(&self) -> usize {
-        self.sorted.len()
+    pub fn len(&self) -> usize {
+        self.plane.len() + self.space.len()
     }
 
     /// Whether there are none.
-    pub const fn is_empty(&self) -> bool {
-        self.sorted.is_empty()
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The memory that they take, in bytes.
+    pub(super) fn size(&self) -> usize {
+        size_of_val(self.plane.as_slice()) + size_of::<space::PointId>() * self.space.len()
+    }
+
+    /// Those of points in space, sorted.
+    pub const fn in_space(&self) -> &Arc<[space::PointId]> {
+        &self.space
     }
 
     /// The digest of all of them, in hexadecimal.
@@ -82,13 +137,10 @@ impl Except {
         }
     }
 
-    /// Refuses ids of the query that are no points of a set's table. Those that the set leaves out anyway, by its
-    /// share or its field, are allowed.
-    pub fn check(&self, layer: &str, points: &PointSet) -> Result<(), Fault> {
-        let wrong = self
-            .given
-            .iter()
-            .find(|(_, id)| points.block(*id).is_none());
+    /// Refuses ids of the query that `has` says are no points of a set's table. Those that the set leaves out anyway, by
+    /// its share or its field, are allowed.
+    pub fn check(&self, layer: &str, has: impl Fn(Id) -> bool) -> Result<(), Fault> {
+        let wrong = self.given.iter().find(|(_, id)| !has(*id));
         let Some((field, id)) = wrong else {
             return Ok(());
         };

@@ -8,7 +8,7 @@ use strew_error::{Checked, Fault, Faults, Together as _, all};
 
 use super::{
     Document,
-    document::{Curve, Distance, Pixels},
+    document::{Curve, Distance, Pixels, Place},
     pixels,
     read::FIELD,
     sources::{Sources, problem},
@@ -23,10 +23,26 @@ pub fn build(path: &str, document: &Document, sources: &Sources<'_>) -> Checked<
         Document::Constant(share) => {
             FieldSpec::constant(*share).map_err(|error| at(path, "constant", &error))
         }
-        Document::Ramp(ramp) => FieldSpec::ramp(ramp.from, ramp.to, ramp.shares)
-            .map_err(|error| within(&inside("ramp"), &error)),
-        Document::Radial(radial) => FieldSpec::radial(radial.center, radial.radii, radial.shares)
-            .map_err(|error| within(&inside("radial"), &error)),
+        Document::Ramp(ramp) => {
+            let path = inside("ramp");
+            let spec = match (ramp.from, ramp.to) {
+                (Place::Plane(from), Place::Plane(to)) => FieldSpec::ramp(from, to, ramp.shares),
+                (Place::Space(from), Place::Space(to)) => FieldSpec::ramp(from, to, ramp.shares),
+                _ => {
+                    let (field, detail) = (format!("{path}.to"), "not as many numbers as from");
+                    let allowed = "two places of two numbers, or for points in space of three";
+                    return Err(Fault::new(&field, "", detail, allowed).into());
+                }
+            };
+            spec.map_err(|error| within(&path, &error))
+        }
+        Document::Radial(radial) => {
+            let spec = match radial.center {
+                Place::Plane(at) => FieldSpec::radial(at, radial.radii, radial.shares),
+                Place::Space(at) => FieldSpec::radial(at, radial.radii, radial.shares),
+            };
+            spec.map_err(|error| within(&inside("radial"), &error))
+        }
         Document::Distance(distance) => measured(&inside("distance"), distance),
         Document::Noise(noise) => {
             let spec = FieldSpec::noise(Noise {

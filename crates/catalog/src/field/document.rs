@@ -132,15 +132,37 @@ impl Document {
     }
 }
 
+/// x and y, or of a field for points in space x, y and z. In space what has places of two numbers is the same at all
+/// heights.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "FieldPlace")]
+pub enum Place {
+    /// x and y.
+    Plane([f64; 2]),
+    /// x, y and z.
+    Space([f64; 3]),
+}
+
+impl<'de> Deserialize<'de> for Place {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let numbers: Vec<f64> = list(deserializer, 2..=3, "numbers")?;
+        Ok(match numbers[..] {
+            [x, y, z] => Self::Space([x, y, z]),
+            _ => Self::Plane([numbers[0], numbers[1]]),
+        })
+    }
+}
+
 /// `shares[0]` at one place, `shares[1]` at another, linear between them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "FieldRamp")]
 pub struct Ramp {
-    /// x and y of the first place.
-    pub from: [f64; 2],
-    /// x and y of the second place.
-    pub to: [f64; 2],
+    /// The first place.
+    pub from: Place,
+    /// The second place.
+    pub to: Place,
     /// The shares at both; 0 and 1 by default.
     #[serde(default = "rising")]
     pub shares: [f64; 2],
@@ -151,8 +173,8 @@ pub struct Ramp {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "FieldRadial")]
 pub struct Radial {
-    /// x and y of the place.
-    pub center: [f64; 2],
+    /// The place.
+    pub center: Place,
     /// Two distances in ascending order.
     pub radii: [f64; 2],
     /// The shares at both; 1 and 0 by default.

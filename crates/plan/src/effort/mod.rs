@@ -30,7 +30,10 @@ pub use point::point;
 use strew_catalog::Ready;
 use strew_error::Error;
 use strew_query::{Amount, Query, Set};
-pub(super) use volume::Chains;
+pub(super) use volume::{
+    Chains, candidates as candidates_in_space, guess as guess_in_space, least as least_in_space,
+    test as test_in_space,
+};
 
 /// The approximate number of lattice units in a mean spacing.
 const UNITS: f64 = 3.0;

@@ -4,13 +4,14 @@
 //! keep clear of others are all made and tested.
 
 use strew_core::{
-    Placement, Warp,
+    Placement, Region, Spacing, Warp,
     space::{SpaceSet, Volume},
 };
 use strew_encode::Source;
 use strew_query::{Query, Set};
 
-use crate::resolve::in_space as placed;
+use super::{CANDIDATE, counts, look};
+use crate::resolve::{Resolved, in_space as placed};
 
 /// The nanoseconds that counting takes for each square of a spacing's side on the surface, without and with warp.
 const SURFACE: f64 = 350.0;
@@ -199,21 +200,73 @@ pub(super) fn counting(query: &Query) -> f64 {
     let window = &query.window;
     let (mut chains, mut all) = (Chains::default(), 0.0);
     for (i, set) in query.sets.iter().enumerate() {
-        // Planning refuses what cannot be planned.
-        let placed = set.space().and_then(|table| placed(set, table).ok());
-        let points = placed.map(|(points, _)| points);
         let own = set.region.as_ref().and_then(|own| own.volume.as_ref());
-        if let (Some(points), true) = (&points, query.is_counted(i)) {
-            let (volume, placement) = (whole.and(own), points.placement());
-            let test = chains.test(points, &set.clear_of, &volume);
-            let counted = counting_set(placement, &volume, test);
+        let volume = whole.and(own);
+        // Planning refuses what cannot be planned.
+        let points = set.space().and_then(|table| {
+            let (spacing, counts) = match placed(set, table).ok()? {
+                Resolved::Known(spacing, _) => (spacing, 1.0),
+                Resolved::Count(count) => (guess(set, &volume, count).ok()?, counts(set)),
+            };
+            Some((set.points_in_space(table, spacing).ok()?, counts))
+        });
+        if let (Some((points, counts)), true) = (&points, query.is_counted(i)) {
+            let placement = points.placement();
+            let test = test(&chains, set, points, (&volume, query.region.bounds));
+            let counted = counting_set(placement, &volume, test) * counts;
             let is_sought = window.offset > 0;
             let sought = is_sought.then(|| seeking(placement, &volume, (counted, test > 0.0), 1.0));
             all += counted + sought.unwrap_or(0.0);
         }
-        chains.push(points.as_ref(), &set.clear_of, own.map(|own| &own.volume));
+        let points = points.as_ref().map(|(points, _)| points);
+        chains.push(points, &set.clear_of, own.map(|own| &own.volume));
     }
     all
+}
+
+/// About the spacing at which a volume has a number of a set's points, or the number.
+pub fn guess(set: &Set, volume: &Volume, count: u64) -> Result<Spacing, u64> {
+    let [a, b, c] = sides(volume).map(f64::cbrt);
+    let guess = a * b * c * (set.share() / count.max(1) as f64).cbrt();
+    Spacing::new(guess).map_err(|_| count)
+}
+
+/// The least spacing at which counting takes at most `most` rows, searched downward from that of some points.
+pub fn least(points: &SpaceSet, most: f64, rows: impl Fn(&SpaceSet) -> f64) -> f64 {
+    /// Each step goes this far, and there are at most so many.
+    const STEP: f64 = 0.8;
+    const STEPS: i32 = 60;
+    let placement = points.placement();
+    let at = |step: i32| Spacing::new(placement.spacing.get() * STEP.powi(step)).ok();
+    let spacings = (1..STEPS).map_while(at);
+    let is_cheap = |spacing: &Spacing| {
+        let spacing = *spacing;
+        rows(&points.clone().placed(Placement {
+            spacing,
+            ..placement
+        })) <= most
+    };
+    let last = spacings.take_while(is_cheap).last();
+    last.unwrap_or(placement.spacing).get()
+}
+
+/// The nanoseconds that looking at each point of a set in a volume takes: at those of its field, and whether it is clear
+/// of other layers.
+pub fn test(
+    chains: &Chains,
+    set: &Set,
+    points: &SpaceSet,
+    (volume, within): (&Volume, Region),
+) -> f64 {
+    let field = set.field.as_ref();
+    let field = field.map_or(0.0, |field| CANDIDATE + look([&field.spec], within));
+    field + chains.test(points, &set.clear_of, volume)
+}
+
+/// The points that counting a set in a field looks at.
+pub fn candidates(points: &SpaceSet, volume: &Volume) -> u128 {
+    let placement = points.placement();
+    (points_in(volume, placement.spacing.get()) * placement.keep.get()) as u128
 }
 
 /// The nanoseconds that counting the points of a set in a volume takes, where testing one against others takes `test`.
@@ -277,21 +330,17 @@ pub(super) fn splitting(
     let placement = plan.space()?.placement();
     let own = set.region.as_ref().and_then(|own| own.volume.as_ref());
     let volume = query.region.volume.as_ref()?.and(own);
-    let counted = match set.clear_of.is_empty() {
+    let is_tested = !set.clear_of.is_empty() || set.field.is_some();
+    let counted = match !is_tested {
         true => counting_set(placement, &volume, 0.0),
         false => plan.total() as f64 * nanoseconds,
     };
-    Some(seeking(
-        placement,
-        &volume,
-        (counted, !set.clear_of.is_empty()),
-        parts,
-    ))
+    Some(seeking(placement, &volume, (counted, is_tested), parts))
 }
 
 #[cfg(test)]
 mod tests {
-    use strew_core::space::{Ball, Region};
+    use strew_core::space::{self, Ball};
 
     use super::*;
 
@@ -330,7 +379,7 @@ mod tests {
     #[test]
     fn many_parts_cost_no_more_than_a_walk() {
         let placement = SpaceSet::blue().placement();
-        let cube = Volume::from(Region::new([0.0; 3], [100.0; 3]).expect("a box"));
+        let cube = Volume::from(space::Region::new([0.0; 3], [100.0; 3]).expect("a box"));
         let sought = |numbers| seeking(placement, &cube, (BOX, false), numbers);
         assert!(sought(1.0) < sought(10_000.0) && sought(10_000.0) <= 1e6 * WALKED);
     }

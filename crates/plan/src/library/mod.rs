@@ -255,7 +255,7 @@ impl Library {
 
     /// The point in space of an id, in the set of an address: the text after `/v1/space/points/{id}?`.
     pub fn point_in_space(&self, id: &str, address: &str) -> Result<Found, Error> {
-        self.point_of(id, &parse_pairs(address, groups::SPACE_SET))
+        self.point_of(id, &parse_pairs(address, groups::SPACE_SINGLE))
     }
 
     fn point_of(&self, id: &str, set: &Values) -> Result<Found, Error> {

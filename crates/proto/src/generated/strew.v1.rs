@@ -68,15 +68,28 @@ pub struct FieldPair {
     #[prost(double, tag = "2")]
     pub second: f64,
 }
+/// A place. In space what has places without z is the same at all heights.
+#[derive(Clone, Copy, PartialEq, ::prost::Message)]
+pub struct FieldPlace {
+    /// Its x.
+    #[prost(double, tag = "1")]
+    pub x: f64,
+    /// Its y.
+    #[prost(double, tag = "2")]
+    pub y: f64,
+    /// Its z: of a field for points in space alone.
+    #[prost(double, optional, tag = "3")]
+    pub z: ::core::option::Option<f64>,
+}
 /// The first share at one place, the second at another, linear between them.
 #[derive(Clone, Copy, PartialEq, ::prost::Message)]
 pub struct FieldRamp {
     /// The first place. Required.
     #[prost(message, optional, tag = "1")]
-    pub from: ::core::option::Option<FieldPair>,
+    pub from: ::core::option::Option<FieldPlace>,
     /// The second place. Required.
     #[prost(message, optional, tag = "2")]
-    pub to: ::core::option::Option<FieldPair>,
+    pub to: ::core::option::Option<FieldPlace>,
     /// The shares; 0 and 1 by default.
     #[prost(message, optional, tag = "3")]
     pub shares: ::core::option::Option<FieldPair>,
@@ -86,7 +99,7 @@ pub struct FieldRamp {
 pub struct FieldRadial {
     /// The place; the origin by default.
     #[prost(message, optional, tag = "1")]
-    pub center: ::core::option::Option<FieldPair>,
+    pub center: ::core::option::Option<FieldPlace>,
     /// Two distances in ascending order. Required.
     #[prost(message, optional, tag = "2")]
     pub radii: ::core::option::Option<FieldPair>,
@@ -729,7 +742,7 @@ pub struct PointSet {
     /// have the rotation `qx`, `qy`, `qz`, `qw`, a quaternion, which the attribute `angle` is part of. None by default.
     #[prost(double, optional, tag = "24")]
     pub align: ::core::option::Option<f64>,
-    /// The points that are left out, at most 10,000 ids, `column:row` or for the common set beside layers
+    /// The points that are left out, at most 10,000 ids, `column:row`, in space `x:y:z`, or for the common set beside layers
     /// `layer/column:row`, and lists of the server by their names. Other layers keep clear of them all the same. Not with
     /// count. None by default.
     #[prost(string, repeated, tag = "25")]

@@ -167,11 +167,11 @@ fn faults_name_the_member_by_its_path() {
 
 #[test]
 fn parameters_of_the_plane_are_known_in_space() {
-    let body = r#"{"lod": 0.5, "sed": 1, "layers": [{"name": "a", "lod": 0.5, "periodic": 9, "limit": 3}]}"#;
+    let body = r#"{"settle": 2, "sed": 1, "layers": [{"name": "a", "settle": 2, "periodic": 9, "limit": 3}]}"#;
     let expected = [
-        "lod: not for points in space",
+        "settle: not for points in space",
         "sed: unknown member; did you mean `seed`?",
-        "layers[0].lod: not for points in space",
+        "layers[0].settle: not for points in space",
         "layers[0].periodic: not for points in space",
         "layers[0].limit: unknown member",
     ];

@@ -111,24 +111,6 @@ impl PointSet {
         Ok(self.replaced(|placement| placement.with_settle(settle)))
     }
 
-    /// Sets spacing, seed, warp and share at once.
-    ///
-    /// ```
-    /// use strew_core::{Placement, PointSet, Seed, Spacing, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let placement = Placement::new(Spacing::new(4.0)?, Seed(7));
-    /// let set = PointSet::new(table.clone()).placed(placement);
-    /// let same = PointSet::new(table).spacing(4.0)?.seed(7);
-    /// assert_eq!(set.chunk(64.0, [0, 0])?.to_vec(), same.chunk(64.0, [0, 0])?.to_vec());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn placed(mut self, placement: Placement) -> Self {
-        self.has_own_warp = true;
-        self.replaced(|_| placement)
-    }
-
     /// Removes the points outside an area.
     ///
     /// ```
