@@ -88,6 +88,10 @@ class SpaceQuery(Volumes, total=False):
     seed: Integer | None
     warp: str | Number | None
     keep: Number | None
+    lod: Number | None
+    field: str | Mapping[str, Any] | None
+    count: Integer | None
+    except_: str | Sequence[str] | None
     attributes: str | Sequence[str] | None
     scale_range: Numbers | None
     scale_ranges: Mapping[str, Numbers] | None
@@ -134,6 +138,13 @@ ABOUT_SPACE = {
     "seed": "Which set of points. Default: 0.",
     "warp": "The strength of the warp, from 0 to 2, ``'on'`` or ``'off'``.",
     "keep": "The share of points to keep, those of the lowest rank.",
+    "lod": "The level of detail: the part of the points that the answer has, those of the lowest rank.",
+    "field": (
+        "The field that thins the points out, from place to place: a name, or a document. Its places have three numbers, "
+        "or two, and then it is the same at all heights."
+    ),
+    "count": "The number of points in the volume.",
+    "except_": "The points that are left out, by their ids ``x:y:z``, and lists by their names.",
     "attributes": (
         "Further values of each point: rotation (a uniform unit quaternion, the columns qx, qy, qz and qw), "
         "scale, variant, rank, u1 to u16."

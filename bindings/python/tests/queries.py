@@ -129,6 +129,8 @@ def _set_in_space(chance: random.Random) -> dict[str, Any]:
         query["density"] = chance.uniform(0.1, 2)
     elif kind == 1:
         query["min_distance"] = chance.uniform(0.5, 2)
+    elif kind == 2:
+        query["count"] = chance.randint(1, 300)
     else:
         query["spacing"] = chance.uniform(0.8, 4)
     if chance.random() < 0.8:
@@ -139,6 +141,16 @@ def _set_in_space(chance: random.Random) -> dict[str, Any]:
         query["warp"] = chance.choice(["off", "on", 0.5])
     if chance.random() < 0.2:
         query["keep"] = chance.uniform(0.1, 1)
+    if chance.random() < 0.2:
+        query["lod"] = chance.uniform(0.1, 1)
+    if chance.random() < 0.2:
+        query["field"] = chance.choice(
+            [
+                {"noise": {"seed": chance.randrange(99), "wavelength": 8, "octaves": 2, "range": [0.3, 1]}},
+                {"ramp": {"from": [0, 0, -9], "to": [9, 9, 9], "shares": [0.4, 1]}},
+                {"multiply": [{"constant": 0.7}, {"radial": {"center": [0, 0], "radii": [1, 40], "shares": [0.5, 1]}}]},
+            ]
+        )
     if chance.random() < 0.4:
         names = ["rotation", "scale", "rank", "u1", "u16", "variant"]
         query["attributes"] = chance.sample(names, chance.randint(1, 4))

@@ -25,12 +25,12 @@ pub struct Token {
 }
 
 const SEAL: usize = 12;
-/// The first byte of a token without a spacing.
+/// The first byte of a token, without a spacing.
 const PLAIN: u8 = 1;
-/// The first byte of one with a spacing.
-const SPACED: u8 = 2;
-/// The first byte of one in space, where the address has a third coordinate other than 0.
-const IN_SPACE: u8 = 3;
+/// What a spacing adds to it.
+const SPACED: u8 = 1;
+/// What a third coordinate other than 0 adds.
+const IN_SPACE: u8 = 2;
 
 impl Token {
     /// The token of a place in the answer to the query with this identity.
@@ -59,7 +59,8 @@ impl Token {
         let mut rest = bytes.as_slice();
         let mut read = || -> Option<Self> {
             let [version] = take(&mut rest)?;
-            if !(PLAIN..=IN_SPACE).contains(&version) {
+            let parts = version.checked_sub(PLAIN)?;
+            if parts > SPACED + IN_SPACE {
                 return None;
             }
             Some(Self {
@@ -71,15 +72,15 @@ impl Token {
                     at: [
                         i64::from_le_bytes(take(&mut rest)?),
                         i64::from_le_bytes(take(&mut rest)?),
-                        match version {
-                            IN_SPACE => i64::from_le_bytes(take(&mut rest)?),
-                            _ => 0,
+                        match parts & IN_SPACE {
+                            0 => 0,
+                            _ => i64::from_le_bytes(take(&mut rest)?),
                         },
                     ],
                 },
-                spacing: match version {
-                    SPACED => Some(Spacing::new(f64::from_le_bytes(take(&mut rest)?)).ok()?),
-                    _ => None,
+                spacing: match parts & SPACED {
+                    0 => None,
+                    _ => Some(Spacing::new(f64::from_le_bytes(take(&mut rest)?)).ok()?),
                 },
                 seal: take(&mut rest)?,
             })
@@ -103,11 +104,8 @@ impl Token {
     fn content(&self) -> Vec<u8> {
         let Mark { offset, total, at } = self.mark;
         let [x, y, z] = at;
-        let mut bytes = vec![match (z, self.spacing) {
-            (0, None) => PLAIN,
-            (0, Some(_)) => SPACED,
-            _ => IN_SPACE,
-        }];
+        let spaced = SPACED * u8::from(self.spacing.is_some());
+        let mut bytes = vec![PLAIN + spaced + IN_SPACE * u8::from(z != 0)];
         bytes.extend(self.set.to_le_bytes());
         bytes.extend(self.before.to_le_bytes());
         bytes.extend(offset.to_le_bytes());
@@ -169,7 +167,8 @@ mod tests {
             at: [-5, i64::MAX, z],
         };
         let identity = [7; 32];
-        for (z, spacing) in [(0, None), (0, Spacing::new(0.25).ok()), (-9, None)] {
+        let spaced = Spacing::new(0.25).ok();
+        for (z, spacing) in [(0, None), (0, spaced), (-9, None), (-9, spaced)] {
             let token = Token::new(&identity, 3, 99, mark(z), spacing);
             let text = token.to_string();
             let read = Token::parse(&text).expect("whole");
@@ -187,7 +186,7 @@ mod tests {
                 assert!(Token::parse(bad).is_err(), "{bad}");
             }
         }
-        for bad in ["", "0", "01", "02", "03", "zz"] {
+        for bad in ["", "0", "00", "01", "02", "03", "04", "05", "zz"] {
             assert!(Token::parse(bad).is_err(), "{bad}");
         }
     }

@@ -3,7 +3,7 @@
 use serde_json::json;
 use strew::grpc::proto::{
     CountPointsRequest, Field, FieldLine, FieldNoise, FieldPair, FieldParts, FieldPixels,
-    FieldRamp, Layer, ListFieldsRequest, PointSet, StreamPointsRequest, field::Shape,
+    FieldPlace, FieldRamp, Layer, ListFieldsRequest, PointSet, StreamPointsRequest, field::Shape,
     point_service_client::PointServiceClient, point_set::Amount,
 };
 
@@ -64,8 +64,11 @@ async fn named_and_described_fields_are_those_of_rest() {
         ..FieldPixels::default()
     };
     let ramp = FieldRamp {
-        from: Some(pair(0.0, 0.0)),
-        to: Some(pair(0.0, 40.0)),
+        from: Some(FieldPlace::default()),
+        to: Some(FieldPlace {
+            y: 40.0,
+            ..FieldPlace::default()
+        }),
         shares: Some(pair(1.0, 0.25)),
     };
     let noise = FieldNoise {

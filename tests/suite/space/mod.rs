@@ -7,6 +7,7 @@ mod formats;
 mod paths;
 mod refusals;
 mod tables;
+mod varied;
 
 use strew_core::space::{Plan, Point, SpaceSet, Volume};
 use strew_testkit::http1;

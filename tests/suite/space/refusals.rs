@@ -45,14 +45,34 @@ fn addresses_with_faults_name_the_field_and_what_is_allowed() {
             &["out of range"],
         ),
         (
-            "points?bbox=0,0,0,1,1,1&count=5",
+            "points?bbox=0,0,0,1,1,1&count=0",
             "count",
+            &["an integer from 1"],
+        ),
+        (
+            "points?bbox=0,0,0,1,1,1&spacing=1&periodic=9",
+            "periodic",
             &["not for points in space"],
         ),
         (
-            "points?bbox=0,0,0,1,1,1&spacing=1&field=forest",
+            "points?bbox=0,0,0,1,1,1&spacing=1&field=jungle",
             "field",
-            &["not for points in space"],
+            &["no such field is loaded"],
+        ),
+        (
+            "points?bbox=0,0,0,9,9,9&spacing=1&except=8:8",
+            "except[0]",
+            &["no such point"],
+        ),
+        (
+            "points?bbox=0,0,0,9,9,9&spacing=1&except=8:8:8",
+            "except[0]",
+            &["no such point"],
+        ),
+        (
+            "points?bbox=0,0,0,9,9,9&count=5&except=8:8:-1",
+            "count",
+            &["not with except"],
         ),
         (
             "points?bbox=0,0,0,1,1,1&spacing=1&profile=pink",
