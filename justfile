@@ -49,7 +49,8 @@ soak seconds="300" *args:
 
 # Fuzz one subject of fuzz/subjects for some seconds (needs `cargo install cargo-fuzz` and a C++
 # compiler; the switch lets a stable toolchain instrument). What it finds is in fuzz/artifacts: make
-# it smaller with `cargo fuzz tmin`, and keep it in fuzz/regressions, where the tests run it.
+# it smaller with `cargo fuzz tmin`, and keep it in fuzz/regressions, where the tests run it. Keep
+# repetition as text, in a file named `….repeat`, which tests/fuzz/main.rs describes and expands.
 fuzz subject seconds="3600":
     mkdir -p fuzz/corpus/{{subject}}
     cd fuzz && RUSTC_BOOTSTRAP=1 cargo fuzz run -O {{subject}} corpus/{{subject}} seeds/{{subject}} \

@@ -60,8 +60,38 @@ fn inputs(folder: &str, name: &str) -> Vec<Vec<u8>> {
     };
     let mut paths: Vec<_> = entries.map(|e| e.expect("readable").path()).collect();
     paths.sort();
-    let read = |path| fs::read(path).expect("readable");
-    paths.into_iter().map(read).collect()
+    paths.iter().map(|path| input(path)).collect()
+}
+
+/// The input in a file. A file named `….repeat` describes one that is repetition. Its lines say how often to repeat which
+/// words; words are hexadecimal digits, and may be repeated themselves:
+///
+/// ```text
+/// # The byte 00, then 2000 times: 12 68, and 50 times 0a 00.
+/// 1 00
+/// 2000 1268 0a00*50
+/// ```
+fn input(path: &Path) -> Vec<u8> {
+    let bytes = fs::read(path).expect("readable");
+    if path.extension().is_none_or(|ending| ending != "repeat") {
+        return bytes;
+    }
+    let text = String::from_utf8(bytes).expect("UTF-8");
+    let lines = text.lines().filter(|line| !line.starts_with('#'));
+    let repeated = lines.map(|line| {
+        let (times, words) = line.split_once(' ').expect("a number and words");
+        let words: Vec<Vec<u8>> = words.split(' ').map(word).collect();
+        words.concat().repeat(times.parse().expect("a number"))
+    });
+    repeated.collect::<Vec<_>>().concat()
+}
+
+/// The bytes of `DIGITS` or `DIGITS*TIMES`.
+fn word(text: &str) -> Vec<u8> {
+    let (digits, times) = text.split_once('*').unwrap_or((text, "1"));
+    let byte = |at| u8::from_str_radix(&digits[at..at + 2], 16).expect("two digits");
+    let bytes: Vec<u8> = (0..digits.len()).step_by(2).map(byte).collect();
+    bytes.repeat(times.parse().expect("a number"))
 }
 
 #[test]

@@ -114,7 +114,10 @@ fn set(
     match random.below(10) {
         0 => set["density"] = json!(1.0 / (spacing * spacing)),
         1 if promising[at] => set["min_distance"] = json!(spacing * 0.6),
-        2 if counts => set["count"] = json!(1 + random.below(120)),
+        2 if counts => {
+            let most = if random.once_in(16) { 5000 } else { 120 };
+            set["count"] = json!(1 + random.below(most));
+        }
         _ => set["spacing"] = json!(spacing),
     }
     match random.below(3) {

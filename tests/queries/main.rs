@@ -46,6 +46,7 @@ fn check(library: &Library, random: &mut SplitMix, body: &Value) -> Option<usize
     };
     let all = lines(&whole, 1 << 14);
     assert_eq!(whole.count(), all.len() as u128, "{body}");
+    assert!(body.get("count").is_none_or(|count| *count == all.len()));
     assert_eq!(whole.offset(), 0, "{body}");
     assert!(whole.next().is_none(), "{body}");
     let of = |body: &Value| {

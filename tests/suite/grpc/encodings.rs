@@ -9,7 +9,7 @@ use strew_core::Point;
 use crate::support::{
     daemon::{Daemon, PROFILE},
     grpc::{boxed, collect},
-    library::{QUERY, assert_same, plan, points},
+    library::{assert_same, plan, points},
 };
 
 fn request(encoding: Encoding) -> StreamPointsRequest {
@@ -75,16 +75,5 @@ async fn the_default_encoding_has_fields_and_ids() {
             })
             .collect();
         assert_same(&got, &points(&plan));
-    }
-}
-
-#[tokio::test]
-async fn packed_encodings_are_the_bytes_of_rest() {
-    let daemon = Daemon::start(&[]);
-    let mut client = PointServiceClient::new(daemon.channel().await);
-    for (encoding, format) in [(Encoding::F64Le, "f64"), (Encoding::F32Le, "f32")] {
-        let bytes = collect(&mut client, request(encoding)).await.bytes();
-        let rest = daemon.get(&format!("{QUERY}&format={format}"));
-        assert!(!bytes.is_empty() && bytes == rest.body, "{format}");
     }
 }

@@ -30,28 +30,6 @@ fn a_least_distance_is_kept_by_all_pairs_with_and_without_warp() {
 }
 
 #[test]
-fn a_count_is_met_in_regions_of_all_kinds() {
-    let daemon = Daemon::start(&[]);
-    let regions = ["bbox=0,0,10,7", "circle=3,-5,2.5", "polygon=0,0,40,3,5,60"];
-    for region in regions {
-        for set in [
-            "",
-            "&seed=3",
-            "&profile=pink&keep=0.3",
-            "&profile=step&seed=1",
-        ] {
-            for count in [1, 2, 97, 5000] {
-                let query = format!("{region}&count={count}{set}");
-                let table = Csv::get(&daemon, &query);
-                assert_eq!(table.points.len(), count, "{query}");
-                let counted = daemon.get(&format!("/v1/count?{query}")).json();
-                assert_eq!(counted["count"], count, "{query}");
-            }
-        }
-    }
-}
-
-#[test]
 fn a_count_where_nothing_can_be_is_refused_with_the_reason() {
     let daemon = Daemon::start(&["limits.max_rows=100000"]);
     let far = json!({ "distance": { "distances": [2, 10], "points": [[16, 20]] } });

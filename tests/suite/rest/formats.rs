@@ -188,25 +188,6 @@ fn explicit_defaults_and_other_spellings_change_nothing() {
 }
 
 #[test]
-fn a_region_without_points_has_a_complete_answer() {
-    let daemon = Daemon::start(&[]);
-    let path = "/v1/points?bbox=0,0,1e-9,1e-9&density=1&profile=test";
-    let json = daemon.get(&format!("{path}&seed=3"));
-    assert_eq!(json.json()["count"], 0);
-    assert_eq!(json.json()["points"].as_array().map(Vec::len), Some(0));
-    assert_eq!(
-        daemon.get(&format!("{path}&seed=3&format=csv")).text(),
-        "id,x,y\n"
-    );
-    for format in ["f32", "f64"] {
-        let answer = daemon.get(&format!("{path}&seed=3&format={format}"));
-        assert_eq!(answer.header("content-length"), "0");
-        assert_eq!(answer.header("strew-count"), "0");
-        assert!(answer.body.is_empty());
-    }
-}
-
-#[test]
 fn decimals_take_no_point_out_of_its_box() {
     let daemon = Daemon::built_in();
     let chunk = "/v1/chunks/64/3/-2?spacing=0.5&decimals=1&format=";

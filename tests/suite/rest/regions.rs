@@ -43,39 +43,6 @@ fn polygons_by_get_and_post_and_their_holes() {
 }
 
 #[test]
-fn polygons_that_share_edges_share_no_point_and_lose_none() {
-    let daemon = Daemon::start(&[]);
-    let corner = json!([11.3, 9.1]);
-    let ring = [[0.0, 0.0], [25.0, -3.0], [31.0, 18.0], [4.0, 27.0]];
-    let whole = ask(&daemon, &polygon(&json!([ring])));
-    let mut parts = vec![];
-    for i in 0..ring.len() {
-        parts.extend(ask(
-            &daemon,
-            &polygon(&json!([[ring[i], ring[(i + 1) % 4], corner]])),
-        ));
-    }
-    assert_eq!(sorted(parts), sorted(whole));
-}
-
-#[test]
-fn circles_and_boxes_combine() {
-    let daemon = Daemon::start(&[]);
-    let (wide, disc) = (json!({ "bbox": [-9, -9, 12, 12] }), [1.0, 2.0, 6.5]);
-    let circle = json!({ "circle": { "center": [disc[0], disc[1]], "radius": disc[2] } });
-    let inside = |p: &Point| (p.x - disc[0]).powi(2) + (p.y - disc[1]).powi(2) < disc[2].powi(2);
-    let all = ask(&daemon, &wide);
-    let (within, beyond): (Vec<Point>, Vec<Point>) = all.iter().partition(|p| inside(p));
-    assert_eq!(ask(&daemon, &circle), within);
-    let without = json!({ "include": [wide], "exclude": [circle] });
-    assert_eq!(ask(&daemon, &without), beyond);
-    let again = json!({ "include": [without, circle, wide] });
-    assert_eq!(ask(&daemon, &again), all);
-    let nothing = json!({ "include": [circle], "exclude": [wide] });
-    assert_eq!(ask(&daemon, &nothing), []);
-}
-
-#[test]
 fn chunks_are_seamless_and_relative_to_their_corners() {
     let daemon = Daemon::start(&[]);
     for (size, at, rest) in [
