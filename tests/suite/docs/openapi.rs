@@ -44,8 +44,7 @@ fn outline(mut document: Value) -> String {
     let mut lines = vec![];
     for (path, method, operation) in operations(&document) {
         let mut parts = vec![format!("{method} {path}")];
-        let parameters = list(&operation["parameters"]).map(shape);
-        parts.push(joined(parameters, " "));
+        parts.push(joined(list(&operation["parameters"]).map(shape), " "));
         parts.extend(operation.get("requestBody").map(shape));
         for (status, answer) in operation["responses"].as_object().expect("an object") {
             parts.push(format!("{status} {}", shape(answer)));
@@ -73,9 +72,8 @@ fn shape(value: &Value) -> String {
         reference.rsplit('/').next().unwrap_or_default().into()
     } else if let Some(content) = value["content"].as_object() {
         let of = |(name, content): (&String, &Value)| {
-            format!("{name} {}", shape(&content["schema"]))
-                .trim_end()
-                .to_owned()
+            let text = format!("{name} {}", shape(&content["schema"]));
+            text.trim_end().to_owned()
         };
         joined(content.iter().map(of), ", ")
     } else if let Some(schema) = value.get("schema") {
