@@ -24,13 +24,11 @@ fn list(names: &[&str]) -> Attributes {
 fn numbers(attributes: &Attributes, seed: u64, points: &[Point]) -> Vec<Vec<f64>> {
     let bound = set(seed).attributes(attributes).expect("of any table");
     let columns = bound.columns(points.iter().map(|p| p.id));
-    columns
-        .into_iter()
-        .map(|column| match column {
-            Column::Numbers(values) => values,
-            Column::Variants(values) => values.into_iter().map(f64::from).collect(),
-        })
-        .collect()
+    let numbers = |column| match column {
+        Column::Numbers(values) => values,
+        Column::Variants(values) => values.into_iter().map(f64::from).collect(),
+    };
+    columns.into_iter().map(numbers).collect()
 }
 
 /// χ² of values in [0, 1) over equal bins, less its mean, in standard deviations.
@@ -110,21 +108,12 @@ fn neighbors_along_both_axes_are_independent() {
 #[test]
 fn variants_come_by_weight_and_scales_in_their_range() {
     let variants: Variants = "oak:3,birch:1,rare:0.001".parse().expect("valid");
-    let attributes = Attributes::new(vec![
-        Attribute::Variant(variants),
-        Attribute::scale(0.5, 2.0).expect("valid"),
-        Attribute::scale(0.5, 2.0).expect("valid"),
-    ]);
-    let error = attributes.expect_err("twice");
-    assert_eq!(
-        (error.kind(), error.value()),
-        (ErrorKind::Attribute, "scale")
-    );
-    let attributes = Attributes::new(vec![
-        Attribute::Variant("oak:3,birch:1,rare:0.001".parse().expect("valid")),
-        Attribute::scale(0.5, 2.0).expect("valid"),
-    ])
-    .expect("different");
+    let scale = Attribute::scale(0.5, 2.0).expect("valid");
+    let error = Attributes::new(vec![scale.clone(), scale.clone()]).expect_err("twice");
+    assert_eq!(error.kind(), ErrorKind::Attribute);
+    assert_eq!(error.value(), "scale");
+    let attributes = Attributes::new(vec![Attribute::Variant(variants), scale]);
+    let attributes = attributes.expect("different");
     let points = points(9, [0.0, 0.0], [300.0, 300.0]);
     let values = numbers(&attributes, 9, &points);
     let count = |index: f64| values[0].iter().filter(|&&v| v == index).count() as f64;
@@ -163,12 +152,8 @@ fn names_are_checked() {
         let error = name.parse::<Attribute>().expect_err(name).to_string();
         assert!(error.contains(part), "{error}");
     }
-    for (min, max) in [
-        (-1.0, 1.0),
-        (2.0, 1.0),
-        (f64::NAN, 1.0),
-        (0.0, f64::INFINITY),
-    ] {
+    let (nan, infinity) = (f64::NAN, f64::INFINITY);
+    for (min, max) in [(-1.0, 1.0), (2.0, 1.0), (nan, 1.0), (0.0, infinity)] {
         assert!(Attribute::scale(min, max).is_err());
     }
     assert!(Attribute::uniform(0).is_err() && Attribute::uniform(17).is_err());
@@ -245,48 +230,45 @@ fn values_are_pinned() {
     ])
     .expect("different");
     let bound = set(42).attributes(&attributes).expect("of any table");
-    let values = |x, y| -> Vec<f64> {
-        (0..6)
-            .filter_map(|i| bound.value(i, PointId { x, y }))
-            .collect()
-    };
     // From an independent program.
     let none = 1.0 - f64::EPSILON / 2.0;
-    assert_eq!(
-        values(0, 0),
+    let pinned = |[x, y]: [i64; 2], values: [f64; 6]| {
+        let found = [0, 1, 2, 3, 4, 5].map(|i| bound.value(i, PointId { x, y }));
+        assert_eq!(found, values.map(Some));
+    };
+    pinned(
+        [0, 0],
         [
             4.195754032065334,
             0.5067606996105573,
             0.0,
             none,
             0.11873508124973142,
-            0.5815156750741645
-        ]
+            0.5815156750741645,
+        ],
     );
-    assert_eq!(
-        values(-31, 1 << 50),
+    pinned(
+        [-31, 1 << 50],
         [
             5.247145616794338,
             1.1458591356331613,
             2.0,
             none,
             0.20459077190172592,
-            0.483999484139356
-        ]
+            0.483999484139356,
+        ],
     );
-    assert_eq!(
-        values(4, -9),
+    pinned(
+        [4, -9],
         [
             4.306217298483824,
             0.5647858354433963,
             1.0,
             none,
             0.5650814719622604,
-            0.42303441569219746
-        ]
+            0.42303441569219746,
+        ],
     );
-    assert_eq!(
-        bound.value(3, PointId { x: 0, y: 1 }),
-        Some(0.6101640903442529)
-    );
+    let rank = bound.value(3, PointId { x: 0, y: 1 });
+    assert_eq!(rank, Some(0.6101640903442529));
 }

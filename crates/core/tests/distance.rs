@@ -6,10 +6,10 @@ use std::collections::HashMap;
 
 use proptest::prelude::*;
 use strew_core::{
-    Alpha, ErrorKind, LeastDistance, Map, Placement, PointSet, Region, Seed, Spacing, Table, Warp,
+    Alpha, ErrorKind, LeastDistance, Map, Placement, PointSet, Seed, Spacing, Table, Warp,
     table::{FRACTION_BITS, Provenance},
 };
-use subject::{set, shipped};
+use subject::{plane::cube, set, shipped};
 
 /// Vectors of up to ± `most` grid units.
 fn wild(alpha: &str, radius: u32, most: i32) -> Table {
@@ -27,9 +27,11 @@ fn wild(alpha: &str, radius: u32, most: i32) -> Table {
 }
 
 fn points(table: &Table, placement: Placement, corner: [f64; 2], side: f64) -> Vec<[f64; 2]> {
-    let region = Region::new(corner, corner.map(|v| v + side)).expect("ordered");
-    let plan = set(table, placement).within(region).expect("near");
-    plan.iter().map(|member| member.at()).collect()
+    let plan = set(table, placement).within(cube(corner, side));
+    plan.expect("near")
+        .iter()
+        .map(|member| member.at())
+        .collect()
 }
 
 /// The least distance between any two points, by comparing those of neighboring cells of a grid.
@@ -57,21 +59,19 @@ fn unit(seed: u64, warp: f64) -> Placement {
 
 #[test]
 fn without_warp_the_guarantee_is_attained() {
-    let mut tables = vec![
+    let names = [
+        "blue-5-sqrt3-over-2-s",
+        "blue-sqrt3-s",
+        "spaced-5-sqrt3-over-2-s",
+        "spaced-1-plus-sqrt5-over-2-s",
+        "pattern-5-sqrt3-over-2-s",
+        "step-5-sqrt3-over-2-s",
+    ];
+    let wild = [
         wild("sqrt(3)", 9, 1 << (FRACTION_BITS - 2)),
         wild("(1+sqrt(5))/2", 6, 5 << FRACTION_BITS),
     ];
-    tables.extend(
-        [
-            "blue-5-sqrt3-over-2-s",
-            "blue-sqrt3-s",
-            "spaced-5-sqrt3-over-2-s",
-            "spaced-1-plus-sqrt5-over-2-s",
-            "pattern-5-sqrt3-over-2-s",
-            "step-5-sqrt3-over-2-s",
-        ]
-        .map(shipped),
-    );
+    let tables = wild.into_iter().chain(names.map(shipped));
     for table in tables {
         let least = table.least_distance().with_warp(Warp::OFF);
         let found = least_of(&points(&table, unit(0, 0.0), [0.0, 0.0], 500.0));
@@ -91,10 +91,8 @@ fn large_maps_are_exact_too() {
         assert!(least.is_useful(), "{least:?}");
         let found = least_of(&points(&table, unit(3, 0.0), [0.0, 0.0], 300.0));
         let least = least.with_warp(Warp::OFF);
-        assert!(
-            found >= least - 1e-12 && found < least + 0.03,
-            "{found} {least}"
-        );
+        let is_near = found >= least - 1e-12 && found < least + 0.03;
+        assert!(is_near, "{found} {least}");
     }
 }
 
@@ -142,8 +140,7 @@ fn least_far_out(set: &PointSet, reach: f64) -> f64 {
         [-0.71 * reach, reach - side],
     ];
     let least = corners.map(|corner| {
-        let region = Region::new(corner, corner.map(|v| v + side)).expect("ordered");
-        let plan = set.within(region).expect("near enough");
+        let plan = set.within(cube(corner, side)).expect("near enough");
         let scale = 1.0 / set.placement().spacing.get();
         // Differences of such numbers are exact.
         let relative = plan
@@ -192,19 +189,14 @@ fn far_beyond_the_limit_distances_are_not_kept() {
 
 #[test]
 fn profiles_without_distance_guarantee_none() {
-    for name in [
-        "pink-5-sqrt3-over-2-s",
-        "green-5-sqrt3-over-2-s",
-        "step-5-sqrt3-over-2-s",
-    ] {
-        let least = shipped(name).least_distance();
-        let error = least.spacing_for(1.0, Warp::OFF).expect_err(name);
+    for profile in ["pink", "green", "step"] {
+        let name = format!("{profile}-5-sqrt3-over-2-s");
+        let least = shipped(&name).least_distance();
+        let error = least.spacing_for(1.0, Warp::OFF).expect_err(profile);
         assert_eq!(error.kind(), ErrorKind::NoLeastDistance);
         assert!(least.relative() < 0.3);
-        assert!(
-            error.to_string().contains("guarantees no least distance"),
-            "{error}"
-        );
+        let text = error.to_string();
+        assert!(text.contains("guarantees no least distance"), "{text}");
     }
     let least = shipped("blue-5-sqrt3-over-2-s").least_distance();
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
@@ -224,10 +216,8 @@ fn the_sparsest_patterns_are_answered_at_once() {
     for alpha in ["1.000000000000001", "1.00001", "1.03", "1.999999999"] {
         let table = Table::undisplaced(alpha.parse().expect("valid"), 3, "pattern").expect("valid");
         let least = table.least_distance();
-        assert!(
-            (0.0..=1.0).contains(&least.relative()),
-            "{alpha}: {least:?}"
-        );
+        let is_part = (0.0..=1.0).contains(&least.relative());
+        assert!(is_part, "{alpha}: {least:?}");
         for warp in [0.0, 2.0] {
             let set = set(&table, unit(1, warp));
             let _ = set.nearest([0.5, 0.5], 3);

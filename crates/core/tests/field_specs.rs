@@ -98,6 +98,21 @@ fn marks() -> impl Strategy<Value = Marks> {
     ]
 }
 
+/// Noise of a seed, a wavelength, a number of octaves and a range.
+fn noise(
+    seed: u64,
+    wavelength: f64,
+    octaves: u32,
+    range: [f64; 2],
+) -> Result<FieldSpec, strew_core::Error> {
+    FieldSpec::noise(Noise {
+        seed,
+        wavelength,
+        octaves,
+        range,
+    })
+}
+
 fn raster() -> impl Strategy<Value = FieldSpec> {
     (region(), holes(), edges(), filter(), shares(), 0.2..4.0f64).prop_map(
         |(region, pixels, edges, filter, [low, high], gamma)| {
@@ -131,7 +146,7 @@ fn terrain() -> impl Strategy<Value = FieldSpec> {
 }
 
 fn simple() -> impl Strategy<Value = FieldSpec> {
-    let noise = (any::<u64>(), 0.5..100.0f64, 1..=8u32, shares());
+    let settings = (any::<u64>(), 0.5..100.0f64, 1..=8u32, shares());
     prop_oneof![
         share().prop_map(|share| FieldSpec::constant(share).expect("a share")),
         (place(), place(), shares())
@@ -141,14 +156,8 @@ fn simple() -> impl Strategy<Value = FieldSpec> {
         (marks(), range(-20.0, 30.0), shares()).prop_map(|(marks, range, shares)| {
             FieldSpec::distance(marks, range, shares).expect("valid")
         }),
-        noise.prop_map(|(seed, wavelength, octaves, range)| {
-            let noise = Noise {
-                seed,
-                wavelength,
-                octaves,
-                range,
-            };
-            FieldSpec::noise(noise).expect("valid")
+        settings.prop_map(|(seed, wavelength, octaves, range)| {
+            noise(seed, wavelength, octaves, range).expect("valid")
         }),
         raster(),
         terrain(),
@@ -272,43 +281,30 @@ fn each_setting_changes_the_digest_and_copies_do_not() {
     let raster = || Raster::of(unit, bytes(3)).expect("shares");
     let heights = || Terrain::new(unit, bytes(3)).expect("an inside");
     let triangle = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
-    let noise = Noise {
-        seed: 1,
-        wavelength: 2.0,
-        octaves: 3,
-        range: [0.0, 1.0],
-    };
     let make = || -> Result<Vec<FieldSpec>, strew_core::Error> {
         let half = FieldSpec::constant(0.5)?;
-        let ramp = FieldSpec::ramp([0.0, 0.0], [1.0, 0.0], [0.0, 1.0])?;
-        let distance = |marks, to| FieldSpec::distance(marks, [0.0, to], [0.0, 1.0]);
+        let shares = [0.0, 1.0];
+        let ramp = FieldSpec::ramp([0.0, 0.0], [1.0, 0.0], shares)?;
+        let distance = |marks, to| FieldSpec::distance(marks, [0.0, to], shares);
+        let radial = |to| FieldSpec::radial([0.0, 0.0], [1.0, to], shares);
         Ok(vec![
             half.clone(),
             FieldSpec::constant(0.25)?,
             ramp.clone(),
             FieldSpec::ramp([0.0, 0.0], [1.0, 0.0], [1.0, 0.0])?,
-            FieldSpec::ramp([0.0, 0.0], [0.0, 1.0], [0.0, 1.0])?,
-            FieldSpec::radial([0.0, 0.0], [1.0, 2.0], [0.0, 1.0])?,
-            FieldSpec::radial([0.0, 0.0], [1.0, 3.0], [0.0, 1.0])?,
+            FieldSpec::ramp([0.0, 0.0], [0.0, 1.0], shares)?,
+            radial(2.0)?,
+            radial(3.0)?,
             distance(Marks::Points(triangle.clone()), 1.0)?,
             distance(Marks::Points(triangle.clone()), 2.0)?,
             distance(Marks::Lines(vec![triangle.clone()]), 1.0)?,
             distance(Marks::Polygons(vec![triangle.clone()]), 1.0)?,
             distance(Marks::Polygons(vec![triangle.clone(); 2]), 1.0)?,
-            FieldSpec::noise(noise)?,
-            FieldSpec::noise(Noise { seed: 2, ..noise })?,
-            FieldSpec::noise(Noise {
-                wavelength: 3.0,
-                ..noise
-            })?,
-            FieldSpec::noise(Noise {
-                octaves: 2,
-                ..noise
-            })?,
-            FieldSpec::noise(Noise {
-                range: [0.0, 0.5],
-                ..noise
-            })?,
+            noise(1, 2.0, 3, shares)?,
+            noise(2, 2.0, 3, shares)?,
+            noise(1, 3.0, 3, shares)?,
+            noise(1, 2.0, 2, shares)?,
+            noise(1, 2.0, 3, [0.0, 0.5])?,
             FieldSpec::raster(raster())?,
             FieldSpec::raster(Raster::of(unit, bytes(4))?)?,
             FieldSpec::raster(Raster::of(Region::chunk(2.0, [0, 0])?, bytes(3))?)?,
@@ -338,23 +334,11 @@ fn each_setting_changes_the_digest_and_copies_do_not() {
 
 #[test]
 fn a_digest_and_a_share_are_those_of_every_machine() {
-    let noise = Noise {
-        seed: 7,
-        wavelength: 12.5,
-        octaves: 4,
-        range: [0.1, 0.9],
-    };
-    let field = FieldSpec::noise(noise).expect("valid");
-    assert_eq!(
-        (
-            field.digest().to_string(),
-            field.share([1.25, -7.5]).to_bits()
-        ),
-        (
-            "3810b03aa82435398a0798dfc9ef4aeb171d4c51f3db5bbdcb8d72fc47a63c8a".to_owned(),
-            4_603_272_320_237_672_945
-        )
-    );
+    let field = noise(7, 12.5, 4, [0.1, 0.9]).expect("valid");
+    let digest = "3810b03aa82435398a0798dfc9ef4aeb171d4c51f3db5bbdcb8d72fc47a63c8a";
+    assert_eq!(field.digest().to_string(), digest);
+    let share = field.share([1.25, -7.5]);
+    assert_eq!(share.to_bits(), 4_603_272_320_237_672_945);
 }
 
 #[test]
@@ -362,87 +346,46 @@ fn bad_descriptions_are_refused_by_name() {
     let (here, shares) = ([0.0, 0.0], [0.0, 1.0]);
     let half = || FieldSpec::constant(0.5).expect("a share");
     let many = Marks::Points(vec![here; FieldSpec::MAX_VERTICES + 1]);
-    let noise = Noise {
-        seed: 1,
-        wavelength: 2.0,
-        octaves: 3,
-        range: shares,
-    };
     let pixels = || Pixels::from_bytes(1, vec![1]).expect("a row");
     let deep = (0..FieldSpec::MAX_DEPTH).try_fold(half(), |field, _| field.invert());
     let flat = Region::new(here, [0.0, 1.0]).expect("ordered");
+    let ramp = |from, to| FieldSpec::ramp(from, to, shares);
+    let radial = |center, radii| FieldSpec::radial(center, radii, shares);
+    let distance = |marks, range| FieldSpec::distance(marks, range, shares);
+    let terrain = Terrain::new(Region::chunk(1.0, [0, 0]).expect("small"), pixels());
+    let heights = terrain.and_then(|terrain| FieldSpec::height(terrain, [1.0, 1.0], shares));
+    let raster = Raster::of(flat, pixels()).and_then(FieldSpec::raster);
     let cases = [
         ("share", FieldSpec::constant(f64::NAN)),
-        ("from", FieldSpec::ramp([f64::INFINITY, 0.0], here, shares)),
-        ("to", FieldSpec::ramp(here, here, shares)),
-        ("to", FieldSpec::ramp(here, [1e-200, 0.0], shares)),
+        ("from", ramp([f64::INFINITY, 0.0], here)),
+        ("to", ramp(here, here)),
+        ("to", ramp(here, [1e-200, 0.0])),
         ("shares", FieldSpec::ramp(here, [1.0, 0.0], [0.0, 1.1])),
-        ("radii", FieldSpec::radial(here, [2.0, 2.0], shares)),
-        ("radii", FieldSpec::radial(here, [-1.0, 2.0], shares)),
-        (
-            "center",
-            FieldSpec::radial([1e101, 0.0], [1.0, 2.0], shares),
-        ),
-        ("vertices", FieldSpec::distance(many, [0.0, 1.0], shares)),
-        (
-            "points",
-            FieldSpec::distance(Marks::Points(vec![]), [0.0, 1.0], shares),
-        ),
+        ("radii", radial(here, [2.0, 2.0])),
+        ("radii", radial(here, [-1.0, 2.0])),
+        ("center", radial([1e101, 0.0], [1.0, 2.0])),
+        ("vertices", distance(many, [0.0, 1.0])),
+        ("points", distance(Marks::Points(vec![]), [0.0, 1.0])),
         (
             "lines",
-            FieldSpec::distance(Marks::Lines(vec![vec![here]]), [0.0, 1.0], shares),
+            distance(Marks::Lines(vec![vec![here]]), [0.0, 1.0]),
         ),
-        (
-            "polygons",
-            FieldSpec::distance(Marks::Polygons(vec![]), [0.0, 1.0], shares),
-        ),
-        (
-            "distances",
-            FieldSpec::distance(Marks::Points(vec![here]), [1.0, 0.0], shares),
-        ),
-        (
-            "octaves",
-            FieldSpec::noise(Noise {
-                octaves: 0,
-                ..noise
-            }),
-        ),
-        (
-            "wavelength",
-            FieldSpec::noise(Noise {
-                wavelength: 0.0,
-                ..noise
-            }),
-        ),
-        (
-            "range",
-            FieldSpec::noise(Noise {
-                range: [-0.1, 1.0],
-                ..noise
-            }),
-        ),
+        ("polygons", distance(Marks::Polygons(vec![]), [0.0, 1.0])),
+        ("distances", distance(Marks::Points(vec![here]), [1.0, 0.0])),
+        ("octaves", noise(1, 2.0, 0, shares)),
+        ("wavelength", noise(1, 0.0, 3, shares)),
+        ("range", noise(1, 2.0, 3, [-0.1, 1.0])),
         ("multiply", FieldSpec::multiply(vec![])),
         ("parts", FieldSpec::min(vec![half(); FieldSpec::MAX_PARTS])),
         ("depth", deep),
         ("curve", half().curve(vec![[0.0, 0.0]])),
         ("curve", half().curve(vec![[0.0, 0.0], [1.0, f64::NAN]])),
-        (
-            "region",
-            Raster::of(flat, pixels()).and_then(FieldSpec::raster),
-        ),
-        (
-            "heights",
-            Terrain::new(Region::chunk(1.0, [0, 0]).expect("small"), pixels())
-                .and_then(|terrain| FieldSpec::height(terrain, [1.0, 1.0], shares)),
-        ),
+        ("region", raster),
+        ("heights", heights),
     ];
     for (name, result) in cases {
         let error = result.expect_err(name);
-        assert_eq!(
-            (error.field(), error.kind()),
-            (name, ErrorKind::Field),
-            "{error}"
-        );
+        assert_eq!((error.field(), error.kind()), (name, ErrorKind::Field));
         assert!(!error.allowed().is_empty());
     }
 }

@@ -4,14 +4,13 @@ mod subject;
 
 use proptest::prelude::*;
 use strew_core::{
-    Area, Circle, Field, Map, Placement, PointSet, Raster, Region, Seed, Settle, Spacing, Table,
-    Warp,
+    Area, Circle, Map, Placement, PointSet, Raster, Region, Seed, Settle, Spacing, Table, Warp,
     field::{FieldSpec, Pixels},
     table::{Provenance, Ranks},
 };
 use subject::{
     definition,
-    plane::{Parts, agree, any_parts, brute_force},
+    plane::{agree, any_parts, between, brute_force, cube, in_order, within},
 };
 
 /// A number that looks random.
@@ -52,49 +51,42 @@ fn hills([x, y]: [f64; 2]) -> f64 {
     1.4 * u * v + 0.3
 }
 
+/// The square around the origin that pixels cover.
+fn square() -> Region {
+    cube([-64.0; 2], 128.0)
+}
+
+/// Pixels over the square by their columns and rows.
+fn raster_of(width: usize, pixel: impl Fn([f64; 2]) -> f64) -> Raster {
+    let pixel = |i: usize| pixel([i % width, i / width].map(|v| v as f64)) as f32;
+    Raster::new(square(), width, (0..width * width).map(pixel).collect()).expect("shares")
+}
+
 /// Hills in pixels, so with bounds.
 fn raster() -> Raster {
-    let region = Region::new([-64.0, -64.0], [64.0, 64.0]).expect("ordered");
-    let pixel = |i: usize| {
-        let at = [i % 128, i / 128].map(|v| v as f64 - 63.5);
-        hills(at).clamp(0.0, 1.0) as f32
-    };
-    Raster::new(region, 128, (0..128 * 128).map(pixel).collect()).expect("shares")
+    raster_of(128, |at| hills(at.map(|v| v - 63.5)).clamp(0.0, 1.0))
 }
 
 /// Pixels of four spacings, about as steep as a field may be that counts as constant: less so in some places.
 fn dunes() -> Raster {
-    let region = Region::new([-64.0, -64.0], [64.0, 64.0]).expect("ordered");
-    let pixel = |i: usize| {
-        let [x, y] = [i % 32, i / 32].map(|v| v as f64);
-        (0.7 + 0.05 * (x * 0.2).sin() + 0.03 * (y * 0.3).cos()) as f32
-    };
-    Raster::new(region, 32, (0..32 * 32).map(pixel).collect()).expect("shares")
+    raster_of(32, |[x, y]| {
+        0.7 + 0.05 * (x * 0.2).sin() + 0.03 * (y * 0.3).cos()
+    })
 }
 
 /// Pixels of four units of which every third is missing, and all of a corner.
 fn holes() -> FieldSpec {
-    let pixels = Pixels::from_floats(
-        32,
-        (0..32 * 32).map(|i| 0.2 + (i % 7) as f32 * 0.1).collect(),
-    );
+    let pixels = (0..32 * 32).map(|i| 0.2 + (i % 7) as f32 * 0.1).collect();
+    let pixels = Pixels::from_floats(32, pixels).expect("numbers");
     let is_missing = |i: usize| i.is_multiple_of(3) || i % 32 < 12 && i < 12 * 32;
-    let region = Region::new([-64.0, -64.0], [64.0, 64.0]).expect("ordered");
-    let raster = Raster::of(region, pixels.expect("numbers").without(is_missing));
+    let raster = Raster::of(square(), pixels.without(is_missing));
     FieldSpec::raster(raster.expect("shares")).expect("a field")
 }
 
 fn any_region() -> impl Strategy<Value = Region> {
     let corner = prop::array::uniform2(-60.0..40.0f64);
     (corner, prop::array::uniform2(0.0..30.0f64))
-        .prop_map(|([x, y], [w, h])| Region::new([x, y], [x + w, y + h]).expect("ordered"))
-}
-
-fn agrees(set: &PointSet, field: impl Field + 'static, region: Region, parts: Parts) {
-    let graded = set.in_field(field);
-    let place = |id| graded.point(id).map(|member| member.at());
-    let expected = brute_force(&graded, &region.into(), 91, place);
-    agree(&graded, region, &expected, parts);
+        .prop_map(|([x, y], [w, h])| between([x, y], [x + w, y + h]))
 }
 
 proptest! {
@@ -107,14 +99,20 @@ proptest! {
         parts in any_parts(),
     ) {
         let set = set(seed, warp, spacing).keep(keep).expect("a share");
-        agrees(&set, hills, region, parts);
-        agrees(&set, raster(), region, parts);
-        agrees(&set, dunes(), region, parts);
-        agrees(&set, holes(), region, parts);
-        agrees(&set, holes().invert().expect("a field"), region, parts);
         let ramp = FieldSpec::ramp([0.0; 2], [500.0, 90.0], [0.9, 1.0]).expect("valid");
         let both = FieldSpec::multiply(vec![FieldSpec::raster(dunes()).expect("valid"), ramp]);
-        agrees(&set, both.expect("valid"), region, parts);
+        for graded in [
+            set.in_field(hills),
+            set.in_field(raster()),
+            set.in_field(dunes()),
+            set.in_field(holes()),
+            set.in_field(holes().invert().expect("a field")),
+            set.in_field(both.expect("valid")),
+        ] {
+            let place = |id| graded.point(id).map(|member| member.at());
+            let expected = brute_force(&graded, &region.into(), 91, place);
+            agree(&graded, region, &expected, parts);
+        }
     }
 
     #[test]
@@ -141,7 +139,7 @@ proptest! {
     ) {
         let kept = set(seed, warp, 1.0).keep(share).expect("a share");
         let max = [corner[0] + side, corner[1] + side * narrow];
-        let region = Region::new(corner, max).expect("ordered");
+        let region = between(corner, max);
         let circle = Circle::new(corner, radius * side).expect("round");
         for area in [Area::from(region), Area::from(circle), Area::from(region).and(circle.into())] {
             let plan = kept.within(area).expect("near");
@@ -152,29 +150,21 @@ proptest! {
     #[test]
     fn boxes_share_no_point_and_lose_none(cut in 0.0..1.0f64, region in any_region(), seed in 0u64..3) {
         let graded = set(seed, 1.0, 1.0).in_field(hills);
-        let ([x0, y0], [x1, y1]) = (region.min(), region.max());
-        let middle = x0 + (x1 - x0) * cut;
-        let of = |from: f64, to: f64| {
-            let part = Region::new([from, y0], [to, y1]).expect("ordered");
-            graded.within(part).expect("near").to_vec()
-        };
-        let mut parts = [of(x0, middle), of(middle, x1)].concat();
-        let mut whole = graded.within(region).expect("near").to_vec();
-        parts.sort_by_key(|point| point.id);
-        whole.sort_by_key(|point| point.id);
-        prop_assert_eq!(parts, whole);
+        let (min, max) = (region.min(), region.max());
+        let middle = min[0] + (max[0] - min[0]) * cut;
+        let halves = [between(min, [middle, max[1]]), between([middle, min[1]], max)];
+        let parts = halves.map(|half| within(&graded, half)).concat();
+        prop_assert_eq!(in_order(parts), within(&graded, region));
     }
-
 }
 
 #[test]
 fn shares_outside_the_range_and_nan_are_none_or_all() {
     let set = set(1, 1.0, 1.0);
-    let region = Region::new([0.0, 0.0], [20.0, 20.0]).expect("ordered");
+    let region = cube([0.0; 2], 20.0);
     let count = |share: f64| {
-        set.in_field(move |_: [f64; 2]| share)
-            .count(region)
-            .expect("near")
+        let graded = set.in_field(move |_: [f64; 2]| share);
+        graded.count(region).expect("near")
     };
     let all = set.count(region).expect("near");
     assert_eq!([count(1.0), count(7.0), count(f64::INFINITY)], [all; 3]);
@@ -183,7 +173,7 @@ fn shares_outside_the_range_and_nan_are_none_or_all() {
 
 #[test]
 fn bad_rasters_are_refused() {
-    let region = Region::new([0.0, 0.0], [20.0, 20.0]).expect("ordered");
+    let region = cube([0.0; 2], 20.0);
     for (width, pixels) in [
         (0, vec![0.5]),
         (3, vec![0.5; 4]),

@@ -48,20 +48,19 @@ fn of_kind(all: &[(Point, u8)], kind: u8) -> Vec<Point> {
 
 /// Compares the points of each kind in a box with those expected.
 fn agree_by_kind(set: &PointSet, region: Region, expected: &[(Point, u8)]) {
-    let mut counts = Vec::new();
-    for kind in 0..kinds(set) {
+    let counts = set.kind_counts(region).expect("near");
+    assert_eq!(counts.len(), usize::from(kinds(set)));
+    for (kind, count) in (0..).zip(counts) {
         let (own, points) = (only(set, kind), of_kind(expected, kind));
         let plan = own.within(region).expect("near");
         assert_eq!(plan.to_vec(), points);
-        assert_eq!(plan.count(), points.len() as u128);
-        counts.push(plan.count());
+        assert_eq!((plan.count(), count), (count, points.len() as u128));
         assert_eq!(own.kind(), Some(kind));
         for (point, of) in expected {
-            let found = own.point(point.id).map(|member| member.point());
+            let found = own.point(point.id).map(Point::from);
             assert_eq!(found, (*of == kind).then_some(*point));
         }
     }
-    assert_eq!(set.kind_counts(region).expect("near"), counts);
     for (point, kind) in expected {
         assert_eq!(set.kind_of(point.id), Some(*kind));
     }
@@ -115,12 +114,8 @@ fn split_blocks_have_points_of_both_kinds() {
         let [x, y] = set.block(point.id()).expect("a point");
         let has_both = seen.iter().all(|&number| number > 0);
         // The block of the whole map that is split is turned with the seed.
-        let turned = [
-            [x, y],
-            [n - 1 - x, y],
-            [x, n - 1 - y],
-            [n - 1 - x, n - 1 - y],
-        ];
+        let ends = [[x, y], [n - 1 - x, n - 1 - y]];
+        let turned = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[i, j]| [ends[i][0], ends[j][1]]);
         let mut places = turned.into_iter().flat_map(|[x, y]| [y * n + x, x * n + y]);
         if places.any(|place| place as u32 == split.block) && !has_both {
             seen[usize::from(kind)] += 1;
@@ -211,10 +206,8 @@ fn shares_are_exact() {
     let region = Region::new([-3e8, 1e7], [5e8, 9e8]).expect("ordered");
     for table in tables() {
         for seed in [0, 5, 12] {
-            let set = PointSet::new(table.clone())
-                .seed(seed)
-                .warp(0.0)
-                .expect("in range");
+            let set = PointSet::new(table.clone()).seed(seed);
+            let set = set.warp(0.0).expect("in range");
             let all = set.count(region).expect("near") as f64;
             let shares = table.mix().expect("a mix").shares();
             let counts = set.kind_counts(region).expect("near");
@@ -235,24 +228,15 @@ fn previews_and_chunks_are_of_the_kind() {
     let points = all::<Points>(&preview, 64);
     let other = set.spacing(2.0).expect("in range");
     assert!(points.len() > 50);
-    assert!(
-        points
-            .iter()
-            .all(|p| other.kind_of(p.id) == Some(1) && other.point(p.id).is_some())
-    );
+    let is_own = |id| other.kind_of(id) == Some(1) && other.point(id).is_some();
+    assert!(points.iter().all(|point| is_own(point.id)));
     // A chosen kind stays, whatever is changed later.
-    let changed = own
-        .seed(9)
-        .keep(0.5)
-        .expect("a share")
-        .warp(0.0)
-        .expect("in range");
+    let changed = own.seed(9).keep(0.5).expect("a share");
+    let changed = changed.warp(0.0).expect("in range");
     assert_eq!(changed.kind(), Some(1));
-    let ids = changed.chunk(60.0, [0, 0]).expect("near").to_vec();
-    assert!(
-        ids.iter()
-            .all(|p| changed.kind_of(p.id) == Some(1) && changed.rank(p.id) < 0.5)
-    );
+    let is_own = |id| changed.kind_of(id) == Some(1) && changed.rank(id) < 0.5;
+    let points = changed.chunk(60.0, [0, 0]).expect("near").to_vec();
+    assert!(points.iter().all(|point| is_own(point.id)));
 }
 
 #[test]
@@ -278,10 +262,8 @@ fn kinds_keep_their_distances() {
     for shares in ["1:1", "1:3:10"] {
         let table = mixed(&blue, shares);
         for (seed, warp) in [(0, 0.0), (7, 1.0)] {
-            let set = PointSet::new(table.clone())
-                .seed(seed)
-                .warp(warp)
-                .expect("in range");
+            let set = PointSet::new(table.clone()).seed(seed);
+            let set = set.warp(warp).expect("in range");
             let count = usize::from(kinds(&set));
             let points: Vec<_> = set.within(region).expect("near").iter().collect();
             let mut seen = vec![f64::INFINITY; count * count];
@@ -332,14 +314,11 @@ fn named_kinds_are_the_kinds() {
             assert_eq!(name, ["birch", "elm", "oak"][usize::from(kind)]);
         }
         // Scales that depend on the kind.
-        let ranges =
-            (0..3).map(|i| ScaleRange::new(f64::from(i), f64::from(i) + 0.5).expect("ordered"));
-        let scales = even.scales(ranges.collect()).expect("one for each");
-        let list = Attributes::new(vec![Attribute::VariantScale(scales)]).expect("different");
-        let scales = set
-            .attributes(&list)
-            .expect("the table's shares")
-            .columns(ids());
+        let range = |i: i32| ScaleRange::new(f64::from(i), f64::from(i) + 0.5).expect("ordered");
+        let scales = even.scales((0..3).map(range).collect());
+        let list = vec![Attribute::VariantScale(scales.expect("one for each"))];
+        let bound = set.attributes(&Attributes::new(list).expect("different"));
+        let scales = bound.expect("the table's shares").columns(ids());
         for (scale, &index) in scales[0].numbers().expect("numbers").iter().zip(indices) {
             assert_eq!(scale.floor(), f64::from(index));
         }

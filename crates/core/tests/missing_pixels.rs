@@ -1,7 +1,7 @@
 //! Pixels without data: empty, whatever is made of them, while their neighbors are means of those that are there.
 
 use strew_core::{
-    Field, Raster, Region,
+    Error, Field, Raster, Region,
     field::{Edges, FieldSpec, Filter, Pixels, Terrain},
 };
 
@@ -12,6 +12,11 @@ fn partial(edges: Edges, filter: Filter) -> FieldSpec {
     let region = Region::new([0.0, 0.0], [30.0, 20.0]).expect("ordered");
     let raster = Raster::of(region, pixels).expect("shares");
     FieldSpec::raster(raster.edges(edges).filter(filter)).expect("a field")
+}
+
+/// The shares at some places along a row.
+fn along(field: &FieldSpec, places: [f64; 4]) -> [f64; 4] {
+    places.map(|x| field.share([x, 5.0]))
 }
 
 #[test]
@@ -29,15 +34,12 @@ fn missing_pixels_are_empty_and_their_neighbors_are_means_of_those_that_are_ther
         ([9.9, 5.0], 1.0),
         ([20.0, 5.0], 0.5),
     ] {
-        assert!(
-            (field.share(at) - share).abs() < 1e-12,
-            "{at:?}: {}",
-            field.share(at)
-        );
+        let found = field.share(at);
+        assert!((found - share).abs() < 1e-12, "{at:?}: {found}");
     }
     let nearest = partial(Edges::Zero, Filter::Nearest);
     assert_eq!(
-        [9.9, 10.0, 20.0, 30.0].map(|x| nearest.share([x, 5.0])),
+        along(&nearest, [9.9, 10.0, 20.0, 30.0]),
         [1.0, 0.0, 0.5, 0.0]
     );
     let whole = Pixels::from_bytes(2, vec![1, 2]).expect("rows");
@@ -46,66 +48,34 @@ fn missing_pixels_are_empty_and_their_neighbors_are_means_of_those_that_are_ther
 }
 
 #[test]
-fn missing_stays_missing_in_all_that_is_made_of_it() {
+fn missing_stays_missing_in_all_that_is_made_of_it() -> Result<(), Error> {
     let one = || FieldSpec::constant(1.0).expect("a share");
     let holes = || partial(Edges::Clamp, Filter::Linear);
     let (hole, full) = ([15.0, 5.0], [5.0, 5.0]);
-    let inverted = holes().invert().expect("a field");
-    for (field, at_hole, at_full) in [
-        (inverted.clone(), 0.0, 0.0),
-        (inverted.clone().invert().expect("a field"), 0.0, 1.0),
-        (
-            holes()
-                .curve(vec![[0.0, 1.0], [1.0, 0.5]])
-                .expect("a curve"),
-            0.0,
-            0.5,
-        ),
-        (
-            FieldSpec::multiply(vec![one(), holes()]).expect("parts"),
-            0.0,
-            1.0,
-        ),
-        (
-            FieldSpec::min(vec![one(), holes()]).expect("parts"),
-            0.0,
-            1.0,
-        ),
+    let inverted = holes().invert()?;
+    let twice = FieldSpec::max(vec![holes(), holes()])?;
+    for (field, expected) in [
+        (inverted.clone(), [0.0, 0.0]),
+        (inverted.clone().invert()?, [0.0, 1.0]),
+        (holes().curve(vec![[0.0, 1.0], [1.0, 0.5]])?, [0.0, 0.5]),
+        (FieldSpec::multiply(vec![one(), holes()])?, [0.0, 1.0]),
+        (FieldSpec::min(vec![one(), holes()])?, [0.0, 1.0]),
         // The greatest of those that are there.
-        (
-            FieldSpec::max(vec![one(), holes()]).expect("parts"),
-            1.0,
-            1.0,
-        ),
-        (
-            FieldSpec::max(vec![inverted, holes()]).expect("parts"),
-            0.0,
-            1.0,
-        ),
-        (
-            FieldSpec::max(vec![holes(), holes()])
-                .expect("parts")
-                .invert()
-                .expect("a field"),
-            0.0,
-            0.0,
-        ),
+        (FieldSpec::max(vec![one(), holes()])?, [1.0, 1.0]),
+        (FieldSpec::max(vec![inverted, holes()])?, [0.0, 1.0]),
+        (twice.invert()?, [0.0, 0.0]),
     ] {
-        assert_eq!([field.share(hole), field.share(full)], [at_hole, at_full]);
+        assert_eq!([field.share(hole), field.share(full)], expected);
         let mut shares = [7.0; 2];
         field.shares(&[hole, full], &mut shares);
-        assert_eq!(shares, [at_hole, at_full]);
+        assert_eq!(shares, expected);
     }
     // Tones are those of numbers alone.
-    let pixels = Pixels::from_bytes(2, vec![0, 0])
-        .expect("rows")
-        .without(|at| at == 0);
-    let region = Region::new([0.0, 0.0], [2.0, 1.0]).expect("ordered");
-    let raster = Raster::of(region, pixels)
-        .expect("shares")
-        .tone(1.0, 0.0, 1.0)
-        .expect("once");
+    let pixels = Pixels::from_bytes(2, vec![0, 0])?.without(|at| at == 0);
+    let region = Region::new([0.0, 0.0], [2.0, 1.0])?;
+    let raster = Raster::of(region, pixels)?.tone(1.0, 0.0, 1.0)?;
     assert_eq!([0.5, 1.5].map(|x| raster.share([x, 0.5])), [0.0, 1.0]);
+    Ok(())
 }
 
 #[test]
@@ -116,14 +86,8 @@ fn heights_that_are_missing_are_no_heights_and_no_cliffs() {
         Terrain::new(region, heights.without(|at| at == 2)).expect("a terrain")
     };
     let low = FieldSpec::height(terrain(), [10.0, 30.0], [1.0, 0.0]).expect("a field");
-    assert_eq!(
-        [5.0, 19.0, 25.0, 31.0].map(|x| low.share([x, 5.0])),
-        [1.0, 1.0, 0.0, 0.0]
-    );
+    assert_eq!(along(&low, [5.0, 19.0, 25.0, 31.0]), [1.0, 1.0, 0.0, 0.0]);
     // A slope of 1 where two neighbors have heights, and none beside a hole where there is one.
     let steep = FieldSpec::slope(terrain(), [0.0, 2.0], [0.0, 1.0]).expect("a field");
-    assert_eq!(
-        [5.0, 15.0, 25.0, 35.0].map(|x| steep.share([x, 5.0])),
-        [0.5, 0.5, 0.0, 0.0]
-    );
+    assert_eq!(along(&steep, [5.0, 15.0, 25.0, 35.0]), [0.5, 0.5, 0.0, 0.0]);
 }

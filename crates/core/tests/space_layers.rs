@@ -3,33 +3,12 @@
 mod subject;
 
 use proptest::prelude::*;
-use strew_core::space::{Ball, Point, Region, SpaceSet, Volume};
+use strew_core::space::{Ball, Point, Region, SpaceSet};
 use subject::space::{around, clear_by_hand, cube, is_near};
 
 fn set(spacing: f64, seed: u64) -> SpaceSet {
     let set = SpaceSet::blue().seed(seed);
     set.spacing(spacing).expect("in range")
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
-
-    #[test]
-    fn others_that_are_limited_or_clear_themselves_decide_by_what_they_leave(
-        seed in 0u64..4, corner in prop::array::uniform3(-9.0f64..9.0), radius in 1.0f64..5.0,
-    ) {
-        let region = cube(corner, 6.0);
-        let center = corner.map(|v| v + 3.0);
-        let ball = Ball::new(center, radius).expect("a ball");
-        let first = set(1.5, seed + 20);
-        let second = set(1.0, seed + 30).limited_to(ball).clear_of(&first, 0.9).expect("in range");
-        let own = set(0.8, seed);
-        let clear = own.clone().clear_of(&second, 0.7).expect("in range");
-        let expected = clear_by_hand(&own, &second, 0.7, region);
-        prop_assert_eq!(clear.within(region).expect("near").to_vec(), expected);
-        let inside = second.within(Volume::from(cube(corner, 6.0))).expect("near");
-        prop_assert!(inside.iter().all(|point| ball.contains(point.at())));
-    }
 }
 
 /// The points of layer number `i` of a chain in a box by the definition, recursively: layers are those of `plain`, and
@@ -50,15 +29,15 @@ fn by_definition(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
     fn chains_and_all_pairs_leave_what_the_definition_leaves(
         layers in prop::collection::vec((0.8f64..2.0, 0u64..9, prop_oneof![Just(1.0), 0.2..1.0f64]), 2..6),
         parts in prop::collection::vec(0.1f64..0.5, 15), is_chain: bool, limited: Option<bool>,
-        corner in prop::array::uniform3(prop_oneof![-40.0f64..40.0, -2e6..2e6]), side in 1.0f64..3.0,
+        corner in prop::array::uniform3(prop_oneof![-40.0f64..40.0, -2e6..2e6]), side in 1.0f64..3.0, radius in 1.0f64..5.0,
     ) {
-        let ball = Ball::new(corner, 4.0).expect("a ball");
+        let ball = Ball::new(corner, radius).expect("a ball");
         let chunk = Region::chunk(7.5, corner.map(|v| (v / 7.5).floor() as i64)).expect("a chunk");
         let mut plain = vec![];
         for &(spacing, seed, share) in &layers {
@@ -116,10 +95,8 @@ fn a_chain_makes_each_layer_once() {
             seeing.fetch_add(1, Ordering::Relaxed);
         });
         let ball = Ball::new([0.0; 3], 2.0).expect("a ball");
-        sets.last()
-            .expect("some")
-            .within_until(ball, stop)
-            .expect("near");
+        let last = sets.last().expect("some");
+        last.within_until(ball, stop).expect("near");
         seen.load(Ordering::Relaxed)
     };
     for all in [false, true] {
