@@ -3,8 +3,8 @@
 //! A change here is a change of the algorithm: raise `ALGORITHM_VERSION` with it.
 
 use strew_core::{
-    ALGORITHM_VERSION, Alpha, F32, F64, Format, Map, Placement, Plan, PointId, PointSet, Points,
-    Region, Seed, Spacing, Table, Warp,
+    ALGORITHM_VERSION, Alpha, F32, F64, Format, Map, Plan, PointId, PointSet, Points, Region,
+    Table,
     table::{Digest, Provenance},
 };
 
@@ -27,14 +27,10 @@ fn of_profile(profile: &str, alpha: &str) -> Table {
     Table::new(map, profile, vectors, Provenance::default()).expect("valid")
 }
 
-fn unwarped(alpha: &str, spacing: f64, seed: u64) -> PointSet {
-    warped(alpha, spacing, seed, 0.0)
-}
-
 fn warped(alpha: &str, spacing: f64, seed: u64, strength: f64) -> PointSet {
-    let spacing = Spacing::new(spacing).expect("valid");
-    let warp = Warp::new(strength).expect("in range");
-    PointSet::new(table(alpha)).placed(Placement::new(spacing, Seed(seed)).with_warp(warp))
+    let set = PointSet::new(table(alpha)).seed(seed);
+    let set = set.spacing(spacing).expect("valid");
+    set.warp(strength).expect("in range")
 }
 
 fn items<F: Format>(plan: &Plan) -> Vec<F::Item> {
@@ -68,110 +64,38 @@ fn answers_have_these_bits() {
         ALGORITHM_VERSION, 3,
         "new golden vectors belong to a new algorithm version"
     );
-    let near = ([0.0, 0.0], [40.0, 30.0]);
-    let cases = [
-        ("(5-sqrt(3))/2", 1.0, 0, near, 1195, "29fef6808c0670b7"),
-        ("(5-sqrt(3))/2", 1.0, 1, near, 1205, "867d44fbd2fe028c"),
-        (
-            "sqrt(3)",
-            0.37,
-            42,
-            ([-20.0, -10.5], [3.3, 11.1]),
-            3670,
-            "43704215481dc35a",
-        ),
-        (
-            "(1+sqrt(5))/2",
-            2.5,
-            u64::MAX,
-            ([-1e9, 1e9], [-999_999_800.0, 1_000_000_123.0]),
-            3939,
-            "b44026ffd12077ea",
-        ),
-        (
-            "(5-sqrt(3))/2",
-            1e-6,
-            7,
-            ([123.0, 456.0], [123.000_1, 456.000_1]),
-            10005,
-            "0143059522d4db59",
-        ),
-        (
-            "sqrt(3)",
-            1e3,
-            9,
-            ([-1e15, 1e15], [-9.999_999_999e14, 1.000_000_000_2e15]),
-            20049,
-            "1262dbe0d07761cf",
-        ),
-        (
-            "sqrt(3)",
-            1.0,
-            3,
-            ([0.0, 0.0], [900.0, 700.0]),
-            629955,
-            "9ae03594bf5ee2a1",
-        ),
-    ];
-    let found: Vec<_> = cases
-        .iter()
-        .map(|&(alpha, spacing, seed, (min, max), ..)| {
-            let region = Region::new(min, max).expect("ordered");
-            let plan = unwarped(alpha, spacing, seed).within(region);
-            let plan = plan.expect("in range");
-            (plan.count(), digest(&plan))
-        })
-        .collect();
-    let expected: Vec<_> = cases
-        .iter()
-        .map(|&(.., count, digest)| (count, digest.to_string()))
-        .collect();
-    assert_eq!(found, expected);
-}
-
-#[test]
-fn warped_answers_have_these_bits() {
-    let cases = [
-        ("(5-sqrt(3))/2", 1.0, 1, 1.0, ([0.0, 0.0], [40.0, 30.0])),
-        (
-            "(5-sqrt(3))/2",
-            1.0,
-            7,
-            0.5,
-            ([-700.0, 30.0], [90.0, 700.5]),
-        ),
-        ("sqrt(3)", 0.37, 42, 2.0, ([-20.0, -10.5], [3.3, 11.1])),
-        (
-            "(1+sqrt(5))/2",
-            2.5,
-            u64::MAX,
-            1.0,
-            ([-1e9, 1e9], [-999_999_800.0, 1_000_000_123.0]),
-        ),
-        (
-            "sqrt(3)",
-            1e3,
-            9,
-            1.333,
-            ([-1e15, 1e15], [-9.999_999_999e14, 1.000_000_000_2e15]),
-        ),
-    ];
-    let found = cases.map(|(alpha, spacing, seed, strength, (min, max))| {
+    let [half, root, golden] = ["(5-sqrt(3))/2", "sqrt(3)", "(1+sqrt(5))/2"];
+    let near = [[0.0, 0.0], [40.0, 30.0]];
+    let tall = [[-20.0, -10.5], [3.3, 11.1]];
+    let far = [[-1e9, 1e9], [-999_999_800.0, 1_000_000_123.0]];
+    let farther = [[-1e15, 1e15], [-9.999_999_999e14, 1.000_000_000_2e15]];
+    let tiny = [[123.0, 456.0], [123.000_1, 456.000_1]];
+    let large = [[0.0, 0.0], [900.0, 700.0]];
+    let wide = [[-700.0, 30.0], [90.0, 700.5]];
+    // α, spacing, seed, strength of the warp, corners, count and digest.
+    for (alpha, spacing, seed, strength, [min, max], expected) in [
+        (half, 1.0, 0, 0.0, near, "1195 29fef6808c0670b7"),
+        (half, 1.0, 1, 0.0, near, "1205 867d44fbd2fe028c"),
+        (root, 0.37, 42, 0.0, tall, "3670 43704215481dc35a"),
+        (golden, 2.5, u64::MAX, 0.0, far, "3939 b44026ffd12077ea"),
+        (half, 1e-6, 7, 0.0, tiny, "10005 0143059522d4db59"),
+        (root, 1e3, 9, 0.0, farther, "20049 1262dbe0d07761cf"),
+        (root, 1.0, 3, 0.0, large, "629955 9ae03594bf5ee2a1"),
+        (half, 1.0, 1, 1.0, near, "1194 0623a98b1044d2ba"),
+        (half, 1.0, 7, 0.5, wide, "529625 b8753889dc742157"),
+        (root, 0.37, 42, 2.0, tall, "3653 45fc1461541b21bc"),
+        (golden, 2.5, u64::MAX, 1.0, far, "3951 ac4bf75795695bc4"),
+        (root, 1e3, 9, 1.333, farther, "20029 55e91805d87c78f1"),
+    ] {
         let region = Region::new(min, max).expect("ordered");
         let plan = warped(alpha, spacing, seed, strength).within(region);
-        let plan = plan.expect("in range");
-        format!("{} {}", plan.count(), digest(&plan))
-    });
-    assert_eq!(
-        found,
-        [
-            "1194 0623a98b1044d2ba",
-            "529625 b8753889dc742157",
-            "3653 45fc1461541b21bc",
-            "3951 ac4bf75795695bc4",
-            "20029 55e91805d87c78f1",
-        ]
-    );
+        assert_eq!(counted(&plan.expect("in range")), expected);
+    }
+}
+
+/// The number of points and their digest.
+fn counted(plan: &Plan) -> String {
+    format!("{} {}", plan.count(), digest(plan))
 }
 
 /// The warp of this profile has long waves as well.
@@ -180,16 +104,13 @@ fn warped_pink_has_these_bits() {
     let set = PointSet::new(of_profile("pink", "(5-sqrt(3))/2")).seed(7);
     let region = Region::new([-700.0, 30.0], [90.0, 230.5]).expect("ordered");
     let plan = set.within(region).expect("in range");
-    assert_eq!(
-        format!("{} {}", plan.count(), digest(&plan)),
-        "158492 fbbc07a5402d3677"
-    );
+    assert_eq!(counted(&plan), "158492 fbbc07a5402d3677");
 }
 
 #[test]
 fn single_points_have_these_bits() {
     let point = |seed, x, y| {
-        let set = unwarped("(5-sqrt(3))/2", 1.0, seed);
+        let set = warped("(5-sqrt(3))/2", 1.0, seed, 0.0);
         let member = set.point(PointId { x, y })?;
         Some((member.at()[0].to_bits(), member.at()[1].to_bits()))
     };
@@ -208,13 +129,9 @@ fn single_points_have_these_bits() {
 #[test]
 fn thinned_sets_have_these_bits() {
     let region = Region::new([0.0, 0.0], [60.0, 40.0]).expect("ordered");
-    let set = PointSet::blue().seed(7);
-    let plan = set
-        .keep(0.3)
-        .expect("a share")
-        .within(region)
-        .expect("near");
-    assert_eq!((plan.count(), &*digest(&plan)), (727, "dd5f5e941cead089"));
+    let set = PointSet::blue().seed(7).keep(0.3).expect("a share");
+    let plan = set.within(region).expect("near");
+    assert_eq!(counted(&plan), "727 dd5f5e941cead089");
 }
 
 #[cfg(feature = "tables")]
@@ -224,8 +141,7 @@ fn sets_in_fields_have_these_bits() {
     let of = |width: f64| {
         let ramp = move |[x, _]: [f64; 2]| 1.0 - x / width;
         let plan = PointSet::blue().seed(7).in_field(ramp).within(region);
-        let plan = plan.expect("near");
-        format!("{} {}", plan.count(), digest(&plan))
+        counted(&plan.expect("near"))
     };
     let expected = ["1373 0446547ba5c52d00", "2393 5eb20d3aaa53df59"];
     assert_eq!([of(70.0), of(9000.0)], expected);

@@ -4,7 +4,7 @@ mod subject;
 
 use proptest::prelude::*;
 use strew_core::{
-    Area, Circle, Keep, Placement, PointSet, Points, Region, Seed, Spacing,
+    Area, Circle, Keep, Placement, PointSet, Points, Region, Spacing, Table,
     server::{self, Stop},
 };
 use subject::{
@@ -132,26 +132,14 @@ proptest! {
 fn large_plans_are_made_piece_by_piece() {
     let [a, b, c] = subject::tables();
     let region = Region::new([-430.0, -70.0], [70.0, 60.0]).expect("ordered");
-    let other = |spacing: f64, seed: u64| {
-        set(
-            b,
-            Placement::new(Spacing::new(spacing).expect("valid"), Seed(seed)),
-        )
+    let of = |table: &Table, spacing: f64, seed: u64| {
+        let set = PointSet::new(table.clone()).seed(seed);
+        set.spacing(spacing).expect("valid")
     };
-    let rocks = other(30.0, 3);
-    let stones = set(
-        c,
-        Placement::new(Spacing::new(0.7).expect("valid"), Seed(4)),
-    );
-    let stones = stones.clear_of(&rocks, 10.0).expect("near");
+    let rocks = of(b, 30.0, 3);
+    let stones = of(c, 0.7, 4).clear_of(&rocks, 10.0).expect("near");
     for seed in [0, 8] {
-        let whole = set(
-            a,
-            Placement {
-                seed: Seed(seed),
-                ..unit(seed)
-            },
-        );
+        let whole = of(a, 1.0, seed);
         for (first, second) in [(8.0, 0.3), (0.5, 1.2)] {
             let clear = whole.clone().clear_of(&rocks, first).expect("near");
             let clear = clear.clear_of(&stones, second * 0.5).expect("near");
@@ -166,11 +154,8 @@ fn large_plans_are_made_piece_by_piece() {
 #[test]
 fn counting_stops() {
     let table = &subject::tables()[0];
-    let own = set(table, unit(3));
-    let clear = own
-        .clone()
-        .clear_of(&set(table, unit(4)), 0.4)
-        .expect("near");
+    let [own, other] = [3, 4].map(|seed| set(table, unit(seed)));
+    let clear = own.clear_of(&other, 0.4).expect("near");
     let stop = Stop::new();
     for side in [20.0, 2000.0] {
         let region = Region::new([0.0; 2], [side; 2]).expect("ordered");

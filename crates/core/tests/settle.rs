@@ -134,21 +134,27 @@ fn the_small_step_parts_near_points() {
     }
 }
 
+/// Compares sets in two fields with the reference, in boxes of these sides and with this room in noise.
+fn check_in_fields(kinds: &str, steps: u32, [wide, square]: [[f64; 2]; 2], room: f64) {
+    let noise = noise();
+    let hilly = set(kinds, 3, steps).in_field(hills);
+    check(&hilly, &hills, region([-10.0, -4.0], wide), 60.0);
+    let noisy = set(kinds, 11, steps).in_field(noise.clone());
+    let shares = |at| noise.share(at);
+    check(&noisy, &shares, region([100.0, 50.0], square), room);
+}
+
 #[test]
 fn points_of_fields_are_those_of_the_definition() {
-    let (noise, corner) = (noise(), [100.0, 50.0]);
-    let shares = |at| noise.share(at);
-    let plain = (1..=4).map(|steps| ("", steps));
-    for (kinds, steps) in plain.chain([("1:1:2", 1), ("1:3", 2), ("1:1", 3)]) {
-        let hilly = set(kinds, 3, steps).in_field(hills);
-        let noisy = set(kinds, 11, steps).in_field(noise.clone());
-        // Fewer points, and more room, where points push those of their kind.
-        let (wide, square, room) = match kinds {
-            "" => ([24.0, 20.0], [20.0, 24.0], 50.0),
-            _ => ([14.0, 12.0], [16.0, 14.0], 60.0),
-        };
-        check(&hilly, &hills, region([-10.0, -4.0], wide), 60.0);
-        check(&noisy, &shares, region(corner, square), room);
+    for steps in 1..=4 {
+        check_in_fields("", steps, [[24.0, 20.0], [20.0, 24.0]], 50.0);
+    }
+}
+
+#[test]
+fn kinds_in_fields_are_those_of_the_definition() {
+    for (kinds, steps) in [("1:1:2", 1), ("1:3", 2), ("1:1", 3)] {
+        check_in_fields(kinds, steps, [[14.0, 12.0], [16.0, 14.0]], 60.0);
     }
 }
 
