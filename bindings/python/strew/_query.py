@@ -117,7 +117,7 @@ ABOUT_MORE = {
         "change."
     ),
 }
-#: The meanings of the keywords in space.
+#: The meanings of the keywords in space, where they are not those of the plane.
 ABOUT_SPACE = {
     "bbox": "The region as a box: min_x, min_y, min_z, max_x, max_y, max_z.",
     "ball": "The region as a ball: x, y, z and its radius.",
@@ -128,33 +128,14 @@ ABOUT_SPACE = {
     "chunk": "size, x, y, z of a cube of the world grid; coordinates are relative to its corner.",
     "region": "Any volume as JSON has it, with ``include`` and ``exclude``.",
     "layers": "Several sets at once: a list of dicts with a ``name`` each.",
-    "density": "Points per unit of volume.",
-    "spacing": "The mean spacing in world units: density^-1/3.",
-    "min_distance": "The least distance of any two points in world units.",
     "profile": "The noise profile: blue or spaced, or what a daemon has.",
     "alpha": "The number α of the pattern.",
     "map": "The size of the neighborhood map, such as r16.",
-    "table": "The digest of the table that must answer.",
-    "seed": "Which set of points. Default: 0.",
-    "warp": "The strength of the warp, from 0 to 2, ``'on'`` or ``'off'``.",
-    "keep": "The share of points to keep, those of the lowest rank.",
-    "lod": "The level of detail: the part of the points that the answer has, those of the lowest rank.",
-    "field": (
-        "The field that thins the points out, from place to place: a name, or a document. Its places have three numbers, "
-        "or two, and then it is the same at all heights."
-    ),
-    "count": "The number of points in the volume.",
-    "except_": "The points that are left out, by their ids ``x:y:z``, and lists by their names.",
     "attributes": (
         "Further values of each point: rotation (a uniform unit quaternion, the columns qx, qy, qz and qw), "
         "scale, variant, rank, u1 to u16."
     ),
-    "scale_range": "The least and the greatest value of the attribute scale.",
-    "scale_ranges": "The least and the greatest value of the attribute scale for each variant.",
     "variants": "The names that the attribute variant chooses from, with their weights.",
-    "offset": "The number of points to leave out.",
-    "limit": "The greatest number of points.",
-    "cursor": "Where an earlier answer to the same query ended.",
     "crs": ABOUT_MORE["crs"],
 }
 

@@ -71,6 +71,8 @@ pub mod map;
 mod once;
 mod parts;
 pub mod pattern;
+mod planned;
+mod requested;
 mod sample;
 pub mod server;
 mod shape;

@@ -13,7 +13,9 @@ use super::{
     scope::Scope,
     table::Table,
 };
-use crate::{F32, F64, Placement, Points, error::Error, stop::Stop, window::Window};
+use crate::{
+    F32, F64, Placement, Points, error::Error, planned::planned, stop::Stop, window::Window,
+};
 
 /// The points of a volume, counted exactly before the first is made.
 ///
@@ -39,12 +41,13 @@ pub struct Plan {
 impl Plan {
     /// The plan of a volume, which is counted unless its count is known.
     pub(super) fn new(
-        (lattice, mask): (&Lattice, &Mask),
-        volume: &Volume,
+        lattice: &Lattice,
+        mask: &Mask,
+        volume: Volume,
         stop: Stop,
         total: Option<u128>,
     ) -> Result<Self, Error> {
-        let scope = Arc::new(Scope::new(lattice, mask, volume, stop)?);
+        let scope = Arc::new(Scope::new(lattice, mask, &volume, stop)?);
         let mut kept = None;
         let total = match total {
             Some(total) => total,
@@ -64,12 +67,6 @@ impl Plan {
             window: Window::whole(total),
             kept,
         })
-    }
-
-    /// The number of points.
-    #[must_use]
-    pub const fn count(&self) -> u128 {
-        self.window.count
     }
 
     /// The points in a format, block by block.
@@ -100,59 +97,10 @@ impl Plan {
         blocks.of(offset, total)
     }
 
-    /// The points as `f32` triples relative to [`origin`](Self::origin), block by block.
-    #[must_use]
-    pub fn blocks_f32(&self) -> Blocks<F32> {
-        self.blocks()
-    }
-
-    /// The points as `f64` triples in world coordinates, block by block.
-    #[must_use]
-    pub fn blocks_f64(&self) -> Blocks<F64> {
-        self.blocks()
-    }
-
-    /// The points with their ids, block by block.
-    #[must_use]
-    pub fn blocks_points(&self) -> Blocks<Points> {
-        self.blocks()
-    }
-
     /// The points, one by one.
     #[must_use]
     pub fn iter(&self) -> Members {
         Members::new(self.blocks())
-    }
-
-    /// All points.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [0, 0, 0])?;
-    /// assert_eq!(plan.to_vec().len() as u128, plan.count());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn to_vec(&self) -> Vec<Point> {
-        let count = usize::try_from(self.count()).unwrap_or(usize::MAX);
-        let mut points = vec![Point::default(); count];
-        let filled = self.blocks_points().fill(&mut points);
-        points.truncate(filled);
-        points
-    }
-
-    /// A box around all points: the requested region, if that was a box.
-    #[must_use]
-    pub fn region(&self) -> Region {
-        self.scope.region
-    }
-
-    /// The lower corner of the requested chunk, or else of the [region](Self::region), in world coordinates. `f32`
-    /// coordinates are relative to it.
-    #[must_use]
-    pub fn origin(&self) -> [f64; 3] {
-        self.scope.corner.at
     }
 
     pub(super) fn lattice(&self) -> &Lattice {
@@ -179,34 +127,11 @@ impl Plan {
         });
         self
     }
-
-    /// The table of the set.
-    #[must_use]
-    pub fn table(&self) -> &Table {
-        &self.scope.lattice.table
-    }
-
-    /// Spacing, seed, warp and share of the set.
-    #[must_use]
-    pub fn placement(&self) -> Placement {
-        self.scope.lattice.placement
-    }
 }
 
-impl IntoIterator for Plan {
-    type Item = Point;
-    type IntoIter = Members;
-
-    fn into_iter(self) -> Members {
-        self.iter()
-    }
-}
-
-impl IntoIterator for &Plan {
-    type Item = Point;
-    type IntoIter = Members;
-
-    fn into_iter(self) -> Members {
-        self.iter()
-    }
-}
+planned!(
+    Plan,
+    Table,
+    3,
+    "strew_core::space::SpaceSet::new(strew_core::space::Table::undisplaced(\"sqrt(3)\".parse()?, 5, \"pattern\")?).chunk(20.0, [0, 0, 0])?"
+);

@@ -6,6 +6,7 @@ use super::{
     Cursor, PointId, Region, Volume,
     lattice::Lattice,
     mask::{ClearOf, Mask},
+    nearest::Neighbor,
     plan::Plan,
     table::Table,
 };
@@ -14,7 +15,8 @@ use crate::sample::{Field, Grade};
 use crate::{
     LeastDistance,
     error::Error,
-    sample::{Keep, Placement, Seed, Sought, Spacing, Warp, exactly, limits, placing},
+    requested::requested,
+    sample::{Keep, Placement, Seed, Sought, Spacing, Visits, Warp, exactly, limits, placing},
     stop::Stop,
 };
 
@@ -48,11 +50,6 @@ pub struct SpaceSet {
 }
 
 impl SpaceSet {
-    /// The largest number of points that [`nearest`](Self::nearest) returns.
-    pub const MAX_NEAREST: usize = limits::MAX_NEAREST;
-    /// The largest number of points that a search visits.
-    pub const MAX_CANDIDATES: usize = limits::MAX_CANDIDATES;
-
     /// The set of a table, with mean spacing 1 and seed 0.
     #[must_use]
     pub fn new(table: Table) -> Self {
@@ -230,73 +227,7 @@ impl SpaceSet {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn within_until(&self, volume: impl Into<Volume>, stop: Stop) -> Result<Plan, Error> {
-        Plan::new((&self.lattice, &self.mask), &volume.into(), stop, None)
-    }
-
-    /// The points of the chunk at the place `at` of a grid of cubes with a side of `size` world units. Chunks share no
-    /// point and lose none.
-    ///
-    /// # Errors
-    /// As [`Region::chunk`] and [`within`](Self::within).
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).seed(7);
-    /// let corners = (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2]);
-    /// let parts = corners.map(|at| set.chunk(8.0, at).map(|plan| plan.count()));
-    /// assert_eq!(parts.sum::<Result<u128, _>>()?, set.chunk(16.0, [0, 0, 0])?.count());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn chunk(&self, size: f64, at: [i64; 3]) -> Result<Plan, Error> {
-        self.within(Region::chunk(size, at)?)
-    }
-
-    /// The points in a volume from a cursor on, found without counting. The cursor belongs to the same volume of the
-    /// same set.
-    ///
-    /// # Errors
-    /// As [`within`](Self::within).
-    ///
-    /// ```
-    /// use strew_core::space::{Region, SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).seed(7);
-    /// let region = Region::chunk(9.0, [0, 0, 0])?;
-    /// let mut page = set.within(region)?.window(0, Some(100));
-    /// let mut points = page.to_vec();
-    /// while let Some(cursor) = page.next_cursor() {
-    ///     page = set.resume(region, cursor)?.window(0, Some(100));
-    ///     points.extend(page.to_vec());
-    /// }
-    /// assert_eq!(points, set.within(region)?.to_vec());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn resume(&self, volume: impl Into<Volume>, cursor: Cursor) -> Result<Plan, Error> {
-        let plan = Plan::new(
-            (&self.lattice, &self.mask),
-            &volume.into(),
-            Stop::default(),
-            Some(cursor.total),
-        )?;
-        Ok(plan.from_cursor(cursor))
-    }
-
-    /// The number of points in a volume; see [`within`](Self::within) for what it costs.
-    ///
-    /// # Errors
-    /// As [`within`](Self::within).
-    ///
-    /// ```
-    /// use strew_core::space::{Region, SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// let count = set.count(Region::new([-5e8; 3], [5e8; 3])?)?;
-    /// assert!((count as f64 / 1e27 - 1.0).abs() < 1e-6);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn count(&self, volume: impl Into<Volume>) -> Result<u128, Error> {
-        self.within(volume).map(|plan| plan.count())
+        Plan::new(&self.lattice, &self.mask, volume.into(), stop, None)
     }
 
     /// Exactly `count` points in a volume, at the spacing that takes, whatever the set's: see
@@ -351,6 +282,15 @@ impl SpaceSet {
     }
 }
 
+requested!(
+    SpaceSet,
+    Volume,
+    Cursor,
+    3,
+    "strew_core::space::SpaceSet::new(strew_core::space::Table::undisplaced(\"sqrt(3)\".parse()?, 5, \"pattern\")?)",
+    "[0, 0, 0]",
+    "[10.0, 3.0, 5.0]"
+);
 placing!(
     SpaceSet, Table, power: "⅓", 3,
     "strew_core::space::SpaceSet::new(strew_core::space::Table::undisplaced(\"sqrt(3)\".parse()?, 5, \"pattern\")?)",

@@ -7,6 +7,7 @@ use alloc::{sync::Arc, vec::Vec};
 use super::PeriodicSet;
 use crate::{
     error::Error,
+    planned::windows,
     sample::{
         attribute::{Attributes, BoundAttributes},
         lattice::{Point, PointId},
@@ -141,62 +142,10 @@ impl PeriodicPlan {
         &self.set
     }
 
-    /// The exact number of points of the window.
-    #[must_use]
-    pub const fn count(&self) -> u128 {
-        self.window.count
-    }
-
-    /// The number of points of the whole period.
-    #[must_use]
-    pub const fn total(&self) -> u128 {
-        self.window.total
-    }
-
-    /// The number of points before the window.
-    #[must_use]
-    pub const fn offset(&self) -> u128 {
-        self.window.offset
-    }
-
-    /// Whether it is less than the whole period.
-    #[must_use]
-    pub const fn is_window(&self) -> bool {
-        self.window.count < self.window.total
-    }
-
     /// The box [0, L)².
     #[must_use]
     pub fn region(&self) -> Region {
         Region::between([0.0; 2], [self.set.length(); 2])
-    }
-
-    /// The points after the first `offset`, at most `limit`.
-    #[must_use]
-    pub fn window(&self, offset: u128, limit: Option<u128>) -> Self {
-        self.window_from(offset, limit)
-    }
-
-    /// The place of the first point, if any is left.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let plan = PeriodicSet::new(table, 5000)?.plan();
-    /// assert_eq!(plan.window(7, None).cursor().map(|cursor| cursor.offset), Some(7));
-    /// assert_eq!(plan.window(5041, None).cursor(), None);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn cursor(&self) -> Option<Cursor> {
-        self.first_cursor()
-    }
-
-    /// The place of the first point after the window, if there is one.
-    #[must_use]
-    pub fn next_cursor(&self) -> Option<Cursor> {
-        self.cursor_after()
     }
 
     /// The place of a point, by its number in the window.
@@ -251,6 +200,12 @@ impl PeriodicPlan {
         self.set.attributes(attributes)
     }
 }
+
+windows!(
+    PeriodicPlan,
+    Cursor,
+    "strew_core::PeriodicSet::new(strew_core::Table::undisplaced(\"(5-sqrt(3))/2\".parse()?, 49, \"pattern\")?, 5000)?.plan()"
+);
 
 /// The points of a [plan](PeriodicPlan) in blocks.
 ///

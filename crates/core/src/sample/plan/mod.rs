@@ -17,6 +17,7 @@ use super::{
 };
 use crate::{
     error::Error,
+    planned::planned,
     shape::{Area, Region},
     stop::Stop,
     table::Table,
@@ -78,51 +79,10 @@ impl Plan {
         })
     }
 
-    /// The number of points.
-    #[must_use]
-    pub const fn count(&self) -> u128 {
-        self.window.count
-    }
-
-    /// The number of points, or `None` if it does not fit `usize`.
-    #[must_use]
-    pub fn len(&self) -> Option<usize> {
-        usize::try_from(self.count()).ok()
-    }
-
-    /// Whether there are no points.
-    #[must_use]
-    pub const fn is_empty(&self) -> bool {
-        self.window.count == 0
-    }
-
     /// The points, one by one.
     #[must_use]
     pub fn iter(&self) -> Members {
         Members::new(self.blocks(), self.window.count, self.placement().seed)
-    }
-
-    /// All points as a vector, in order.
-    ///
-    /// # Panics
-    /// If they exceed the address space or the memory, as all vectors do; see [`len`](Self::len).
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).chunk(8.0, [0, 0])?;
-    /// let points = plan.to_vec();
-    /// assert_eq!(points.len() as u128, plan.count());
-    /// assert_eq!(plan.iter().next().map(|member| member.point()), points.first().copied());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn to_vec(&self) -> Vec<Point> {
-        let mut points = vec![Point::default(); self.len().unwrap_or(usize::MAX)];
-        let filled = self.blocks_points().fill(&mut points);
-        points.truncate(filled);
-        points
     }
 
     /// The points in one of the formats [`F32`], [`F64`], [`Offsets`](crate::Offsets) and [`Points`], block by block:
@@ -145,25 +105,6 @@ impl Plan {
             Some(kept) => Blocks::of_kept(self.scope.clone(), self.window, kept.clone()),
             None => Blocks::of_window(self.scope.clone(), self.window),
         }
-    }
-
-    /// The points as `f32` pairs relative to [`origin`](Self::origin), block by block; see
-    /// [`blocks`](Self::blocks).
-    #[must_use]
-    pub fn blocks_f32(&self) -> Blocks<F32> {
-        self.blocks()
-    }
-
-    /// The points as `f64` pairs in world coordinates, block by block; see [`blocks`](Self::blocks).
-    #[must_use]
-    pub fn blocks_f64(&self) -> Blocks<F64> {
-        self.blocks()
-    }
-
-    /// The points with their ids, block by block; see [`blocks`](Self::blocks).
-    #[must_use]
-    pub fn blocks_points(&self) -> Blocks<Points> {
-        self.blocks()
     }
 
     /// Exact places of points of this plan, in another format.
@@ -224,32 +165,6 @@ impl Plan {
     #[must_use]
     pub fn tile_blocks<F: Format>(&self, tile: &Tile) -> Blocks<F> {
         Blocks::of_tile(self.scope.clone(), tile)
-    }
-
-    /// A box around all points: the requested region, if that was a box.
-    #[must_use]
-    pub fn region(&self) -> Region {
-        self.scope.region
-    }
-
-    /// The lower corner of the requested chunk, or else of the [region](Self::region), in world coordinates. [`F32`]
-    /// coordinates and [`Offsets`](crate::Offsets) are relative to it; in a chunk to the exact corner, which this
-    /// rounds to `f64`.
-    #[must_use]
-    pub fn origin(&self) -> [f64; 2] {
-        self.scope.corner.at
-    }
-
-    /// The table of the set.
-    #[must_use]
-    pub fn table(&self) -> &Table {
-        &self.scope.lattice.table
-    }
-
-    /// Spacing, seed, warp and share of the set.
-    #[must_use]
-    pub fn placement(&self) -> Placement {
-        self.scope.lattice.placement
     }
 
     /// Attributes of the plan's points; see [`PointSet::attributes`](crate::PointSet::attributes).
@@ -322,20 +237,9 @@ impl Plan {
     }
 }
 
-impl IntoIterator for Plan {
-    type Item = super::Member;
-    type IntoIter = Members;
-
-    fn into_iter(self) -> Members {
-        self.iter()
-    }
-}
-
-impl IntoIterator for &Plan {
-    type Item = super::Member;
-    type IntoIter = Members;
-
-    fn into_iter(self) -> Members {
-        self.iter()
-    }
-}
+planned!(
+    Plan,
+    Table,
+    2,
+    "strew_core::PointSet::new(strew_core::Table::undisplaced(\"sqrt(3)\".parse()?, 20, \"pattern\")?).chunk(30.0, [0, 0])?"
+);

@@ -7,14 +7,18 @@ use crate::{
     LeastDistance,
     error::Error,
     pattern::Arrangement,
+    requested::requested,
     sample::{
         attribute::{Attributes, BoundAttributes},
         lattice::{Placement, Point, PointId},
         member::Member,
         near::{Clearance, Visits, limits, search},
+        plan::Plan,
         settle::{Settler, weight},
     },
-    shape::Region,
+    shape::{Area, Region},
+    stop::Stop,
+    window::Cursor,
 };
 
 /// A point of a set near a place, and its distance.
@@ -37,12 +41,17 @@ pub struct Neighbor {
     pub distance: f64,
 }
 
-impl PointSet {
-    /// The largest number of points that [`nearest`](Self::nearest) returns.
-    pub const MAX_NEAREST: usize = limits::MAX_NEAREST;
-    /// The largest number of points that a search visits: a few hundred milliseconds of work.
-    pub const MAX_CANDIDATES: usize = limits::MAX_CANDIDATES;
+requested!(
+    PointSet,
+    Area,
+    Cursor,
+    2,
+    "strew_core::PointSet::new(strew_core::Table::undisplaced(\"sqrt(3)\".parse()?, 20, \"pattern\")?)",
+    "[0, 0]",
+    "[10.0, 3.0]"
+);
 
+impl PointSet {
     /// The point of an id, or `None` if the set has none there.
     ///
     /// ```
@@ -94,26 +103,6 @@ impl PointSet {
         self.lattice.block(id)
     }
 
-    /// The rank of a point: a number in [0, 1), uniform over the pattern. [`keep`](Self::keep) keeps the
-    /// points whose rank is below the share. An id without a point has the greatest rank, 1 − 2⁻⁵³.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let all = PointSet::new(table).seed(7);
-    /// let third = all.clone().keep(1.0 / 3.0)?;
-    /// for point in all.chunk(20.0, [0, 0])? {
-    ///     let id = point.id();
-    ///     assert_eq!(third.point(id).is_some(), all.rank(id) < 1.0 / 3.0);
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn rank(&self, id: PointId) -> f64 {
-        self.lattice.rank(id)
-    }
-
     /// The share that decided to keep a point: the share of the [field](Self::in_field) at the point's place at full
     /// density, times the share of the set. `None` if the set is in no field, or has no such point.
     ///
@@ -132,55 +121,6 @@ impl PointSet {
     #[must_use]
     pub fn share(&self, id: PointId) -> Option<f64> {
         self.lattice.share_of(id)
-    }
-
-    /// The `k` nearest points of a place, nearest first; of equally near ones the smaller id first. Takes
-    /// microseconds for small `k`.
-    ///
-    /// Distances are those of the reported coordinates, compared as dx·dx + dy·dy in `f64`.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Neighbors`](crate::ErrorKind::Neighbors) unless `k` is from 1 to
-    /// [`MAX_NEAREST`](Self::MAX_NEAREST), [`ErrorKind::Place`](crate::ErrorKind::Place) if the place is
-    /// not finite, [`ErrorKind::TooFar`](crate::ErrorKind::TooFar) if the search leaves the
-    /// [limit](Self::search_limit), and [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) if the points are so
-    /// sparse that the search would visit more than [`MAX_CANDIDATES`](Self::MAX_CANDIDATES).
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let wells = PointSet::new(table).spacing(500.0)?.seed(3);
-    /// let near = wells.nearest([1234.5, -99.0], 3)?;
-    /// assert!(near.len() == 3 && near.is_sorted_by_key(|well| well.distance));
-    /// assert!(near[0].distance < 500.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn nearest(&self, at: [f64; 2], k: usize) -> Result<Vec<Neighbor>, Error> {
-        self.nearest_visiting(at, k, None, &Visits::any())
-    }
-
-    /// The `k` nearest points of a place among those within `radius`, nearest first; fewer where fewer lie there.
-    /// Nothing beyond the radius is searched.
-    ///
-    /// # Errors
-    /// As [`nearest`](Self::nearest) and [`around`](Self::around).
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let rare = PointSet::new(table).keep(1e-6)?;
-    /// assert!(rare.nearest_within([0.0, 0.0], 5, 10.0)?.is_empty());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn nearest_within(
-        &self,
-        at: [f64; 2],
-        k: usize,
-        radius: f64,
-    ) -> Result<Vec<Neighbor>, Error> {
-        self.nearest_visiting(at, k, Some(radius), &Visits::any())
     }
 
     /// All points within `radius` of a place, nearest first; of equally near ones the smaller id first. A point lies within

@@ -6,9 +6,8 @@ use super::PointSet;
 use crate::{
     error::Error,
     sample::{Placement, Sought, exactly, field::candidates, plan::Plan, scope::Scope},
-    shape::{Area, Region},
+    shape::Area,
     stop::Stop,
-    window::Cursor,
 };
 
 impl PointSet {
@@ -37,28 +36,6 @@ impl PointSet {
         self.within_until(area.into(), Stop::default())
     }
 
-    /// The points of the chunk in column `at[0]` and row `at[1]` of a grid of squares with a side of `size`
-    /// world units. Chunks share no point and lose none.
-    ///
-    /// # Errors
-    /// As [`Region::chunk`] and [`within`](Self::within).
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Region, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).seed(7);
-    /// let mut parts = 0;
-    /// for at in [[0, 0], [1, 0], [0, 1], [1, 1]] {
-    ///     parts += set.chunk(32.0, at)?.count();
-    /// }
-    /// assert_eq!(parts, set.chunk(64.0, [0, 0])?.count());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn chunk(&self, size: f64, at: [i64; 2]) -> Result<Plan, Error> {
-        self.within(Region::chunk(size, at)?)
-    }
-
     /// Exactly `count` points in an area. The search ignores the spacing of the set; the plan's
     /// [placement](Plan::placement) has the spacing that it found.
     ///
@@ -81,53 +58,6 @@ impl PointSet {
     /// ```
     pub fn exactly(&self, count: u128, area: impl Into<Area>) -> Result<Plan, Error> {
         self.exactly_until(count, &area.into(), 0.0, &Stop::default())
-    }
-
-    /// The points in an area from a cursor on, found without counting. The cursor belongs to the same area
-    /// of the same set.
-    ///
-    /// # Errors
-    /// As [`within`](Self::within).
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Region, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let (set, region) = (PointSet::new(table).seed(7), Region::chunk(64.0, [0, 0])?);
-    /// let mut page = set.within(region)?.window(0, Some(1000));
-    /// let mut points = page.to_vec();
-    /// while let Some(cursor) = page.next_cursor() {
-    ///     page = set.resume(region, cursor)?.window(0, Some(1000));
-    ///     points.extend(page.to_vec());
-    /// }
-    /// assert_eq!(points, set.within(region)?.to_vec());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn resume(&self, area: impl Into<Area>, cursor: Cursor) -> Result<Plan, Error> {
-        let (area, stop) = (area.into(), Stop::default());
-        let plan = Plan::new(&self.lattice, &self.mask, area, stop, Some(cursor.total))?;
-        Ok(plan.from_cursor(cursor))
-    }
-
-    /// The number of points in an area; see [`within`](Self::within) for what it costs.
-    ///
-    /// # Errors
-    /// As [`within`](Self::within).
-    ///
-    /// ```
-    /// use strew_core::{Area, Circle, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).seed(7);
-    /// let [outer, inner] = [Circle::new([0.0, 0.0], 50.0)?, Circle::new([0.0, 0.0], 40.0)?];
-    /// let ring = Area::from(outer).without([inner.into()]);
-    /// // At mean spacing 1 the count is near the area.
-    /// let area = std::f64::consts::PI * (50.0 * 50.0 - 40.0 * 40.0);
-    /// assert!((set.count(ring)? as f64 - area).abs() < 30.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn count(&self, area: impl Into<Area>) -> Result<u128, Error> {
-        self.within(area).map(|plan| plan.count())
     }
 
     /// The largest absolute coordinate of a requested area, in world units: 2⁵² lattice units.

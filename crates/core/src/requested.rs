@@ -1,0 +1,135 @@
+//! The methods of sets that find points, the same in the plane and in space.
+
+/// The requests of a set, which has `within`, `nearest_visiting`, and the fields `lattice` and `mask`. In the examples,
+/// `$make` makes a set, `$origin` is the place of a chunk and `$at` one of the world.
+macro_rules! requested {
+    ($Set:ty, $Area:ty, $Cursor:ty, $dimensions:literal, $make:literal, $origin:literal, $at:literal) => {
+        impl $Set {
+            /// The largest number of points that [`nearest`](Self::nearest) returns.
+            pub const MAX_NEAREST: usize = limits::MAX_NEAREST;
+            /// The largest number of points that a search visits: a few hundred milliseconds of work.
+            pub const MAX_CANDIDATES: usize = limits::MAX_CANDIDATES;
+
+            /// The points of the chunk at the place `at` of a grid of squares, or cubes, with a side of `size` world
+            /// units. Chunks share no point and lose none.
+            ///
+            /// # Errors
+            /// As [`Region::chunk`] and [`within`](Self::within).
+            ///
+            /// ```
+            #[doc = concat!("# let set = ", $make, ".seed(7);")]
+            #[doc = concat!("let (mut parts, whole) = (0, set.chunk(16.0, ", $origin, ")?);")]
+            #[doc = concat!("for i in 0..1 << ", stringify!($dimensions), " {")]
+            #[doc = concat!("    let mut at = ", $origin, ";")]
+            ///     for axis in 0..at.len() {
+            ///         at[axis] = i >> axis & 1;
+            ///     }
+            ///     parts += set.chunk(8.0, at)?.count();
+            /// }
+            /// assert_eq!(parts, whole.count());
+            /// # Ok::<(), strew_core::Error>(())
+            /// ```
+            pub fn chunk(&self, size: f64, at: [i64; $dimensions]) -> Result<Plan, Error> {
+                self.within(Region::chunk(size, at)?)
+            }
+
+            /// The requested points from a cursor on, found without counting. The cursor belongs to the same request of
+            /// the same set.
+            ///
+            /// # Errors
+            /// As [`within`](Self::within).
+            ///
+            /// ```
+            #[doc = concat!("# let set = ", $make, ".seed(7);")]
+            #[doc = concat!("let plan = set.chunk(16.0, ", $origin, ")?;")]
+            /// let mut page = plan.window(0, Some(100));
+            /// let mut points = page.to_vec();
+            /// while let Some(cursor) = page.next_cursor() {
+            ///     page = set.resume(plan.region(), cursor)?.window(0, Some(100));
+            ///     points.extend(page.to_vec());
+            /// }
+            /// assert_eq!(points, plan.to_vec());
+            /// # Ok::<(), strew_core::Error>(())
+            /// ```
+            pub fn resume(&self, area: impl Into<$Area>, cursor: $Cursor) -> Result<Plan, Error> {
+                let (area, stop) = (area.into(), Stop::default());
+                let plan = Plan::new(&self.lattice, &self.mask, area, stop, Some(cursor.total))?;
+                Ok(plan.from_cursor(cursor))
+            }
+
+            /// The number of requested points; see [`within`](Self::within) for what it costs.
+            ///
+            /// # Errors
+            /// As [`within`](Self::within).
+            pub fn count(&self, area: impl Into<$Area>) -> Result<u128, Error> {
+                self.within(area).map(|plan| plan.count())
+            }
+
+            /// The rank of a point: a number in [0, 1), uniform over the pattern. [`keep`](Self::keep) keeps the points
+            /// whose rank is below the share. An id without a point has the greatest rank, 1 − 2⁻⁵³.
+            ///
+            /// ```
+            #[doc = concat!("# let all = ", $make, ".seed(7);")]
+            /// let third = all.clone().keep(1.0 / 3.0)?;
+            #[doc = concat!("for point in all.chunk(16.0, ", $origin, ")?.to_vec() {")]
+            ///     assert_eq!(third.point(point.id).is_some(), all.rank(point.id) < 1.0 / 3.0);
+            /// }
+            /// # Ok::<(), strew_core::Error>(())
+            /// ```
+            #[must_use]
+            pub fn rank(&self, id: PointId) -> f64 {
+                self.lattice.rank(id)
+            }
+
+            /// The `k` nearest points of a place, nearest first; of equally near ones the smaller id first. Takes
+            /// microseconds for small `k`.
+            ///
+            /// Distances are those of the reported coordinates, compared as dx·dx + dy·dy (+ dz·dz) in `f64`.
+            ///
+            /// # Errors
+            /// [`ErrorKind::Neighbors`](crate::ErrorKind::Neighbors) unless `k` is from 1 to
+            /// [`MAX_NEAREST`](Self::MAX_NEAREST), [`ErrorKind::Place`](crate::ErrorKind::Place) if the place is not
+            /// finite, [`ErrorKind::TooFar`](crate::ErrorKind::TooFar) if the search leaves the lattice's limit, and
+            /// [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) if the points are so sparse that the search would visit
+            /// more than [`MAX_CANDIDATES`](Self::MAX_CANDIDATES).
+            ///
+            /// ```
+            #[doc = concat!("# let wells = ", $make, ".seed(3);")]
+            #[doc = concat!("let near = wells.nearest(", $at, ", 3)?;")]
+            /// assert!(near.len() == 3 && near.is_sorted_by_key(|well| well.distance));
+            /// # Ok::<(), strew_core::Error>(())
+            /// ```
+            pub fn nearest(
+                &self,
+                at: [f64; $dimensions],
+                k: usize,
+            ) -> Result<Vec<Neighbor>, Error> {
+                self.nearest_visiting(at, k, None, &Visits::any())
+            }
+
+            /// The `k` nearest points of a place among those within `radius`, its end included, nearest first; fewer where
+            /// fewer lie there. Nothing beyond the radius is searched.
+            ///
+            /// # Errors
+            /// As [`nearest`](Self::nearest), and [`ErrorKind::Radius`](crate::ErrorKind::Radius) unless the radius is a
+            /// finite number from 0 on.
+            ///
+            /// ```
+            #[doc = concat!("# let set = ", $make, ".seed(3);")]
+            #[doc = concat!("let near = set.nearest_within(", $at, ", 100, 2.0)?;")]
+            /// assert!(near.iter().all(|neighbor| neighbor.distance <= 2.0));
+            /// # Ok::<(), strew_core::Error>(())
+            /// ```
+            pub fn nearest_within(
+                &self,
+                at: [f64; $dimensions],
+                k: usize,
+                radius: f64,
+            ) -> Result<Vec<Neighbor>, Error> {
+                self.nearest_visiting(at, k, Some(radius), &Visits::any())
+            }
+        }
+    };
+}
+
+pub(crate) use requested;
