@@ -8,21 +8,21 @@ use super::files;
 
 /// A part, the endings of its files, and the most lines that it may have.
 const CEILINGS: &[(&str, &[&str], usize)] = &[
-    ("src", &["rs"], 21_503),
-    ("crates/catalog", &["rs"], 4949),
+    ("src", &["rs"], 21_513),
+    ("crates/catalog", &["rs"], 5047),
     ("crates/config", &["rs"], 1560),
-    ("crates/core", &["rs"], 49_869),
+    ("crates/core", &["rs"], 49_819),
     ("crates/encode", &["rs"], 8258),
     ("crates/error", &["rs"], 985),
     ("crates/forge", &["rs"], 19_474),
     ("crates/pages", &["rs"], 439),
-    ("crates/plan", &["rs"], 4168),
+    ("crates/plan", &["rs"], 4301),
     ("crates/proto", &["rs"], 337),
-    ("crates/query", &["rs"], 8736),
+    ("crates/query", &["rs"], 8776),
     ("crates/raster", &["rs"], 2976),
     ("crates/service", &["rs"], 5975),
     ("crates/testkit", &["rs"], 1197),
-    ("tests", &["rs", "py"], 32_167),
+    ("tests", &["rs", "py"], 32_429),
     ("engines", &["rs", "py", "gd", "cs", "c"], 3894),
     ("fuzz", &["rs"], 747),
     ("benches", &["rs", "py"], 2949),
@@ -30,7 +30,7 @@ const CEILINGS: &[(&str, &[&str], usize)] = &[
     (
         "bindings",
         &["py", "pyi", "js", "mjs", "ts", "rs", "c", "h", "hpp", "cpp"],
-        14_141,
+        14_145,
     ),
 ];
 
@@ -38,12 +38,12 @@ const CEILINGS: &[(&str, &[&str], usize)] = &[
 const MODULES: &[(&str, &str)] = &[
     (
         "crates/core/src",
-        "distance 527 map 1811 pattern 2085 shape 1870 space 5381 table 3612",
+        "distance 527 map 1811 pattern 2085 shape 1870 space 5296 table 3612",
     ),
     (
         "crates/core/src/sample",
-        "attribute 1442 count 667 field 3725 kernel 3777 lattice 2355 near 1340 \
-         periodic 1074 plan 658 set 1338 settle 2680 sieve 383 walk 2968 warp 1482",
+        "attribute 1442 count 667 field 3871 kernel 3777 lattice 2364 near 1340 \
+         periodic 1029 plan 462 set 1180 settle 2680 sieve 383 walk 2967 warp 1482",
     ),
     (
         "crates/forge/src",

@@ -1,9 +1,9 @@
 //! The methods of sets that find points, the same in the plane and in space.
 
-/// The requests of a set, which has `within`, `nearest_visiting`, and the fields `lattice` and `mask`. In the examples,
-/// `$make` makes a set, `$origin` is the place of a chunk and `$at` one of the world.
+/// The requests of a set, and what limits it, which has `within`, `nearest_visiting`, and the fields `lattice` and `mask`. In the examples,
+/// `$part` is of what keeps clear; `$make` makes a set, `$origin` is the place of a chunk and `$at` one of the world.
 macro_rules! requested {
-    ($Set:ty, $Area:ty, $Cursor:ty, $dimensions:literal, $make:literal, $origin:literal, $at:literal) => {
+    ($(#[$part:meta])? $Set:ty, $Area:ty, $Region:literal, $Cursor:ty, $dimensions:literal, $make:literal, $origin:literal, $at:literal) => {
         impl $Set {
             /// The largest number of points that [`nearest`](Self::nearest) returns.
             pub const MAX_NEAREST: usize = limits::MAX_NEAREST;
@@ -63,6 +63,48 @@ macro_rules! requested {
             /// As [`within`](Self::within).
             pub fn count(&self, area: impl Into<$Area>) -> Result<u128, Error> {
                 self.within(area).map(|plan| plan.count())
+            }
+
+            /// Leaves only the points in an area, or a volume. Sets that keep clear of this one keep clear of these.
+            ///
+            /// ```
+            /// use strew_core::{Region, space};
+            ///
+            #[doc = concat!("# let set = ", $make, ";")]
+            #[doc = concat!("let region = ", $Region, "::chunk(5.0, ", $origin, ")?;")]
+            #[doc = concat!("let island = set.limited_to(region).chunk(16.0, ", $origin, ")?;")]
+            /// assert!(island.to_vec().iter().all(|point| region.contains(point.at())));
+            /// # Ok::<(), strew_core::Error>(())
+            /// ```
+            #[must_use]
+            pub fn limited_to(mut self, area: impl Into<$Area>) -> Self {
+                self.mask = self.mask.and_within(area.into());
+                self
+            }
+
+            /// Removes the points nearer than `distance` world units to any point of another set.
+            ///
+            /// The points of the other set near a point decide, wherever points are requested, so neighboring regions
+            /// agree.
+            ///
+            /// # Errors
+            /// [`ErrorKind::Clearance`](crate::ErrorKind::Clearance) unless the distance is above 0 and at most 16 mean
+            /// spacings of the other set.
+            ///
+            /// ```
+            #[doc = concat!("# let set = ", $make, ";")]
+            /// let trees = set.clone().spacing(5.0)?.seed(1);
+            /// let flowers = set.seed(2).clear_of(&trees, 1.5)?;
+            #[doc = concat!("for flower in flowers.chunk(10.0, ", $origin, ")?.to_vec() {")]
+            ///     assert!(trees.nearest(flower.at(), 1)?[0].distance >= 1.5);
+            /// }
+            /// # Ok::<(), strew_core::Error>(())
+            /// ```
+            $(#[$part])?
+            pub fn clear_of(mut self, other: &Self, distance: f64) -> Result<Self, Error> {
+                let other = ClearOf::new(&other.lattice, &other.mask, distance)?;
+                self.mask = self.mask.and_clear_of(other);
+                Ok(self)
             }
 
             /// The rank of a point: a number in [0, 1), uniform over the pattern. [`keep`](Self::keep) keeps the points

@@ -80,7 +80,10 @@ impl Planner<'_> {
                 let least = effort::least_in_space(&points, self.limits.max_rows as f64, rows);
                 let plan = points.exactly(count.into(), volume.clone(), least, self.stop);
                 let plan = plan.map_err(|error| self.no_count(set, count, (spacing, &error)))?;
-                plan.window(0, is_over.then_some(0))
+                plan.window(
+                    here.map_or(0, |token| token.mark.offset),
+                    is_over.then_some(0),
+                )
             }
         };
         let placement = plan.placement();

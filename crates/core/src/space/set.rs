@@ -100,22 +100,6 @@ impl SpaceSet {
         &self.mask
     }
 
-    /// Leaves only the points in a volume. Sets that keep clear of this one keep clear of these.
-    ///
-    /// ```
-    /// use strew_core::space::{Ball, SpaceSet, Table};
-    ///
-    /// let ball = Ball::new([0.0; 3], 5.0)?;
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).limited_to(ball);
-    /// assert!(set.chunk(16.0, [0, 0, 0])?.iter().all(|point| ball.contains(point.at())));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn limited_to(mut self, volume: impl Into<Volume>) -> Self {
-        self.mask = self.mask.and_within(volume.into());
-        self
-    }
-
     /// Removes the points of some ids, beside those that are removed already. All others stay where they are. Ids without
     /// a point do not matter.
     ///
@@ -139,30 +123,6 @@ impl SpaceSet {
         }
         self.lattice.without.push(ids);
         self
-    }
-
-    /// Removes the points nearer than `distance` world units to any point of another set.
-    ///
-    /// The points of the other set near a point decide, wherever points are requested, so neighboring volumes agree.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Clearance`](crate::ErrorKind::Clearance) unless the distance is above 0 and at most 16 mean spacings of the other set.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// let stars = set.clone().spacing(4.0)?.seed(1);
-    /// let dust = set.seed(2).clear_of(&stars, 1.5)?;
-    /// for grain in dust.chunk(8.0, [0, 0, 0])? {
-    ///     assert!(stars.nearest(grain.at(), 1)?[0].distance >= 1.5);
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn clear_of(mut self, other: &Self, distance: f64) -> Result<Self, Error> {
-        let other = ClearOf::new(&other.lattice, &other.mask, distance)?;
-        self.mask = self.mask.and_clear_of(other);
-        Ok(self)
     }
 
     /// The set in a field: the share of its points varies from place to place. The field replaces an earlier one, and
@@ -285,6 +245,7 @@ impl SpaceSet {
 requested!(
     SpaceSet,
     Volume,
+    "space::Region",
     Cursor,
     3,
     "strew_core::space::SpaceSet::new(strew_core::space::Table::undisplaced(\"sqrt(3)\".parse()?, 5, \"pattern\")?)",

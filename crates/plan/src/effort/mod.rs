@@ -26,6 +26,8 @@ pub use making::block_lane;
 pub use making::considered;
 pub use making::splitting;
 pub use neighbors::Neighbors;
+use point::LOOKED_AT;
+pub(super) use point::counts;
 pub use point::point;
 use strew_catalog::Ready;
 use strew_error::Error;
@@ -41,8 +43,6 @@ const UNITS: f64 = 3.0;
 const COMPARISON: f64 = 6e-4;
 const SIDE: f64 = 0.5;
 
-/// Looking at a point of a field takes this many nanoseconds, besides the look at the field itself.
-const CANDIDATE: f64 = 30.0;
 /// Counting a row takes this many nanoseconds, and making a point to test whether it is clear of others this many.
 pub(super) const ROW: f64 = 1e3;
 const TESTED: f64 = 200.0;
@@ -51,18 +51,6 @@ const TESTED: f64 = 200.0;
 const ESTIMATE: f64 = 5e5;
 const BOUNDS: f64 = 100.0;
 const LEAST_PIECES: usize = 16;
-
-/// About how often an area is counted to find the spacing of a count; in a field less often.
-const COUNTS: f64 = 32.0;
-const COUNTS_IN_FIELD: f64 = 12.0;
-
-/// About how often an area is counted to find the spacing of a count of a set.
-pub(super) const fn counts(set: &Set) -> f64 {
-    match set.field {
-        Some(_) => COUNTS_IN_FIELD,
-        None => COUNTS,
-    }
-}
 
 /// How often an area is counted to know how many points of each kind it has.
 pub(super) fn kinds(set: &Set) -> f64 {
@@ -269,7 +257,7 @@ fn rows(selection: &Selection) -> f64 {
     let is_box = matches!(area, Area::Region(_));
     let is_closed = placement.warp == Warp::OFF && !selection.looks_at_all();
     let candidates = candidates(selection) as f64;
-    let looks = candidates * (CANDIDATE + selection.look) / ROW;
+    let looks = candidates * (LOOKED_AT + selection.look) / ROW;
     let Some(bounds) = area.bounds() else {
         return looks;
     };

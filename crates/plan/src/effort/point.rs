@@ -11,11 +11,23 @@ pub(super) const POINT: f64 = 50.0;
 const VALUE: f64 = 20.0;
 /// Those of a point that is thinned out by its rank, and of one that is compared with a field.
 const PASSED: f64 = 0.15;
-const LOOKED_AT: f64 = 30.0;
+pub(super) const LOOKED_AT: f64 = 30.0;
 /// The most tests against other layers for each point that remains: points that are too near are tested as well.
 const TESTED: f64 = 4.0;
 /// The heights that a normal needs, on four sides.
 const SLOPE: f64 = 4.0;
+
+/// About how often an area is counted to find the spacing of a count; in a field less often.
+const COUNTS: f64 = 32.0;
+const COUNTS_IN_FIELD: f64 = 12.0;
+
+/// About how often an area is counted to find the spacing of a count of a set.
+pub const fn counts(set: &Set) -> f64 {
+    match set.field {
+        Some(_) => COUNTS_IN_FIELD,
+        None => COUNTS,
+    }
+}
 
 /// The time to make a point of a set, in nanoseconds, where testing a place against other layers takes `test` and
 /// making one point looks at `looks` points.

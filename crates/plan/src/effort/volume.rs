@@ -10,7 +10,10 @@ use strew_core::{
 use strew_encode::Source;
 use strew_query::{Query, Set};
 
-use super::{CANDIDATE, counts, look};
+use super::{
+    layers::look,
+    point::{LOOKED_AT, counts},
+};
 use crate::resolve::{Resolved, in_space as placed};
 
 /// The nanoseconds that counting takes for each square of a spacing's side on the surface, without and with warp.
@@ -259,7 +262,7 @@ pub fn test(
     (volume, within): (&Volume, Region),
 ) -> f64 {
     let field = set.field.as_ref();
-    let field = field.map_or(0.0, |field| CANDIDATE + look([&field.spec], within));
+    let field = field.map_or(0.0, |field| LOOKED_AT + look([&field.spec], within));
     field + chains.test(points, &set.clear_of, volume)
 }
 

@@ -12,7 +12,7 @@ use crate::{
         attribute::{Attributes, BoundAttributes},
         lattice::{Placement, Point, PointId},
         member::Member,
-        near::{Clearance, Visits, limits, search},
+        near::{ClearOf, Clearance, Visits, limits, search},
         plan::Plan,
         settle::{Settler, weight},
     },
@@ -42,8 +42,10 @@ pub struct Neighbor {
 }
 
 requested!(
+    #[cfg(feature = "clearance")]
     PointSet,
     Area,
+    "Region",
     Cursor,
     2,
     "strew_core::PointSet::new(strew_core::Table::undisplaced(\"sqrt(3)\".parse()?, 20, \"pattern\")?)",

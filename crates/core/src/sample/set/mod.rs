@@ -18,11 +18,11 @@ use super::{
     attribute::Kinds,
     field::Field,
     lattice::{Keep, Lattice, Placement, Settle, Spacing},
-    near::{ClearOf, Mask},
+    near::Mask,
     seed::Seed,
     warp::Warp,
 };
-use crate::{error::Error, shape::Area, table::Table};
+use crate::{error::Error, table::Table};
 
 /// An unbounded set of points: a table at a spacing, with a seed and a warp.
 ///
@@ -109,51 +109,6 @@ impl PointSet {
     pub fn settle(self, steps: u32) -> Result<Self, Error> {
         let settle = Settle::new(steps)?;
         Ok(self.replaced(|placement| placement.with_settle(settle)))
-    }
-
-    /// Removes the points outside an area.
-    ///
-    /// ```
-    /// use strew_core::{Circle, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let island = PointSet::new(table).limited_to(Circle::new([0.0, 0.0], 9.0)?);
-    /// for p in island.chunk(16.0, [0, 0])? {
-    ///     assert!(p.at()[0].hypot(p.at()[1]) < 9.0);
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn limited_to(mut self, area: impl Into<Area>) -> Self {
-        self.mask = self.mask.and_within(area.into());
-        self
-    }
-
-    /// Removes the points nearer than `distance` world units to any point of another set.
-    ///
-    /// The points of the other set near a point decide, wherever points are requested, so neighboring
-    /// regions agree.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Clearance`](crate::ErrorKind::Clearance) unless the distance is above 0 and at most 16
-    /// mean spacings of the other set.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let trees = PointSet::new(table.clone()).spacing(5.0)?.seed(1);
-    /// let flowers = PointSet::new(table).seed(2).clear_of(&trees, 1.5)?;
-    /// for flower in flowers.chunk(20.0, [0, 0])? {
-    ///     assert!(trees.nearest(flower.at(), 1)?[0].distance >= 1.5);
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[cfg(feature = "clearance")]
-    pub fn clear_of(mut self, other: &Self, distance: f64) -> Result<Self, Error> {
-        let other = ClearOf::new(&other.lattice, &other.mask, distance)?;
-        self.mask = self.mask.and_clear_of(other);
-        Ok(self)
     }
 
     /// The set in a field: the share of its points varies from place to place. The field replaces an earlier one.
