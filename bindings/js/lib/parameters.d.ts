@@ -265,6 +265,11 @@ export interface SpaceParameters {
      */
     min_distance?: number;
     /**
+     * The exact number of points in the region: the density follows from it. Allowed: an integer from 1 to
+     * 18446744073709551615.
+     */
+    count?: number | bigint | `${number}`;
+    /**
      * The noise profile. The list of profiles shows what is loaded. Allowed: the name of a loaded profile. Default:
      * blue.
      */
@@ -301,6 +306,24 @@ export interface SpaceParameters {
      * number from 1e-6 to 1. Default: 1.
      */
     keep?: number;
+    /**
+     * The level of detail: the part of the points that the answer has, at each place those of the lowest rank. None of
+     * them moves, so a level has a part of the points of a finer one, in fields, of kinds and of layers, too. Beside
+     * layers: of all of them; they keep clear of all points of each other. Allowed: a number from 1e-6 to 1. Default:
+     * 1.
+     */
+    lod?: number;
+    /**
+     * The field that thins the points out, from place to place: a share of the density, which is that where the field
+     * is 1. The list of fields shows what is loaded. By its name, or as in JSON; see `raster`. Default: none.
+     */
+    field?: string | object;
+    /**
+     * The points that are left out, by their ids, lists of the server by their names, and lists that were sent by their
+     * digests. Other layers keep clear of them all the same. Beside layers ids are layer/column:row. The list of lists
+     * shows what is loaded. Default: none.
+     */
+    except?: string | readonly string[];
     /**
      * The least and the greatest value of the attribute scale. Allowed: two numbers min,max with 0 <= min <= max <=
      * 1e9, beside the attribute scale. Default: 0,1.
