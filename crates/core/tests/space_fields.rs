@@ -80,7 +80,7 @@ proptest! {
     ) {
         let all = set(seed);
         let thinned = all.clone().keep(keep).expect("a share").lod(lod).expect("a part");
-        let felled = |id: PointId| (id.x ^ id.y ^ id.z).unsigned_abs() % (felled + 1) == 0;
+        let felled = |id: PointId| (id.x ^ id.y ^ id.z).unsigned_abs().is_multiple_of(felled + 1);
         let share = |at| if is_plain { 1.0 } else { field.share(at).clamp(0.0, 1.0) };
         let shown = |at, id| all.rank(id) < share(at) * keep * lod && !felled(id);
         let graded = if is_plain { thinned } else { thinned.in_field(field.clone()) };
