@@ -95,7 +95,8 @@ def random_query_in_space(seed: int) -> dict[str, Any]:
     query: dict[str, Any] = _set_in_space(chance)
     if chance.random() < 0.15:
         layers = [dict(_set_in_space(chance), name=f"layer{i}") for i in range(2)]
-        if chance.random() < 0.5:
+        # What keeps clear of others has no exact number.
+        if chance.random() < 0.5 and "count" not in layers[-1]:
             layers[-1]["clear_of"] = {"layer0": chance.uniform(0.1, 1)}
         query = {"layers": layers}
     query["region"] = _volume(chance)
