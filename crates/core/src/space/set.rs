@@ -1,6 +1,6 @@
 //! The point set.
 
-use alloc::sync::Arc;
+use alloc::{sync::Arc, vec::Vec};
 
 use super::{
     Cursor, PointId, Region, Volume,
