@@ -59,7 +59,7 @@ pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Resolved, Error> {
     })
 }
 
-/// What the amount of a set in space means.
+/// The spacing and density of a set in space, or its number of points.
 pub(super) fn in_space(set: &Set, table: &space::Table) -> Result<Resolved, Error> {
     let of_density = |density| {
         let placed = SpaceSet::new(table.clone()).density(density)?;

@@ -44,13 +44,12 @@ impl Planner<'_> {
         let spacing = known.or_else(|count| effort::guess_in_space(set, &volume, count));
         let points = set.points_in_space(table, spacing.map_err(|_| OUT_OF_RANGE)?)?;
         let test = effort::test_in_space(&self.chains, set, &points, (&volume, region.bounds));
-        let own_volume = own.map(|own| &own.volume);
         let layer = self.keeping_clear_in_space(set, points)?;
         let points = without(set, layer.clone())?;
         let spacing = points.placement().spacing;
+        let mark = here.map_or(NOTHING, |token| token.mark).in_space();
         let plan = match (known, here) {
             (Ok(spacing), _) if is_over || here.is_some() => {
-                let mark = here.map_or(NOTHING, |token| token.mark).in_space();
                 let plan = points.resume(volume.clone(), mark);
                 let plan = plan.map_err(|error| region.too_far(spacing, &error))?;
                 match set.amount {
@@ -62,7 +61,8 @@ impl Planner<'_> {
                 }
             }
             (Ok(spacing), _) => {
-                self.check_rows_in_space(effort::rows_of_volume(&points, &volume, test))?;
+                let rows = effort::rows_of_volume(&points, &volume, test);
+                self.check_rows_in_space(rows + effort::lacking(set) / effort::ROW)?;
                 let plan = points.within_until(volume.clone(), self.stop.clone());
                 plan.map_err(|error| match error.kind() {
                     ErrorKind::Stopped => {
@@ -73,17 +73,14 @@ impl Planner<'_> {
             }
             (Err(count), _) => {
                 self.check_count(count)?;
-                let counts = effort::counts(set);
-                let rows =
-                    |points: &SpaceSet| effort::rows_of_volume(points, &volume, test) * counts;
+                let rows = |points: &SpaceSet| {
+                    effort::rows_of_volume(points, &volume, test) * effort::counts(set)
+                };
                 self.check_rows_in_space(rows(&points))?;
                 let least = effort::least_in_space(&points, self.limits.max_rows as f64, rows);
                 let plan = points.exactly(count.into(), volume.clone(), least, self.stop);
                 let plan = plan.map_err(|error| self.no_count(set, count, (spacing, &error)))?;
-                plan.window(
-                    here.map_or(0, |token| token.mark.offset),
-                    is_over.then_some(0),
-                )
+                plan.window(mark.offset, is_over.then_some(0))
             }
         };
         let placement = plan.placement();
@@ -93,12 +90,11 @@ impl Planner<'_> {
             Resolved::Known(_, density) => density,
             Resolved::Count(_) => density_in_space(spacing),
         };
+        let own_volume = own.map(|own| &own.volume);
         self.chains.push(Some(&layer), &set.clear_of, own_volume);
         let rows = effort::rows_of_volume(&points, &volume, test);
-        let candidates = match set.field {
-            Some(_) => effort::candidates_in_space(&points, &volume),
-            None => 0,
-        };
+        let looked_at = |_| effort::candidates_in_space(&points, &volume);
+        let candidates = set.field.as_ref().map_or(0, looked_at);
         let least = Least::InSpace(Box::new(points), region.reach());
         if i + 1 < self.query.sets.len() {
             self.volumes.push(match own {
@@ -107,13 +103,8 @@ impl Planner<'_> {
             });
         }
         let plan = Arc::new(plan.stopped_by(self.stop.clone()));
-        let planned = PlannedSet::new(
-            set.entry.clone(),
-            (density, spacing),
-            least,
-            plan,
-            candidates,
-        );
+        let entry = set.entry.clone();
+        let planned = PlannedSet::new(entry, (density, spacing), least, plan, candidates);
         let planned = planned.priced(set, 0.0, region.bounds);
         // All points of the volume are tested for those that stay.
         Ok(match set.clear_of.is_empty() {

@@ -25,11 +25,11 @@ pub struct Token {
 }
 
 const SEAL: usize = 12;
-/// The first byte of a token, without a spacing.
+/// The first byte of a token without the parts below.
 const PLAIN: u8 = 1;
-/// What a spacing adds to it.
+/// The bit of a token with a spacing.
 const SPACED: u8 = 1;
-/// What a third coordinate other than 0 adds.
+/// The bit of one whose third coordinate is not 0.
 const IN_SPACE: u8 = 2;
 
 impl Token {

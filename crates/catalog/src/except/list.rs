@@ -1,7 +1,7 @@
 //! Lists of points with names: those of the configuration and of a folder, and those that clients have sent.
 //!
-//! A list is text, an id a line: `12:-3`, in space `12:-3:7`, or `trees/12:-3` for a point of a layer. What follows `#` is a comment. Or
-//! it is an object of JSON with these ids: `{"ids": ["12:-3"]}`.
+//! A list is text, an id a line: `12:-3`, in space `12:-3:7`, or `trees/12:-3` for a point of a layer. What follows `#`
+//! is a comment. Or it is an object of JSON with these ids: `{"ids": ["12:-3"]}`.
 
 use std::{borrow::Cow, collections::BTreeMap, iter, mem::size_of, ops::Deref, sync::Arc};
 

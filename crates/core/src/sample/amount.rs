@@ -13,7 +13,7 @@ use crate::{
 /// More steps than a bisection of any bracket takes.
 const MOST_STEPS: usize = 400;
 
-/// What is known of an area or a volume before it is counted.
+/// A number of points to be found, and where.
 pub(crate) struct Sought<'a, const D: usize> {
     pub(crate) count: u128,
     /// A box around it, if it is bounded.

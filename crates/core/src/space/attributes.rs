@@ -166,7 +166,7 @@ impl SpaceSet {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
-        BoundAttributes::new(attributes, self.lattice())
+        BoundAttributes::new(attributes, &self.lattice)
     }
 }
 
@@ -184,7 +184,7 @@ impl Plan {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
-        BoundAttributes::new(attributes, self.lattice())
+        BoundAttributes::new(attributes, &self.scope.lattice)
     }
 }
 

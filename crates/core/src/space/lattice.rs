@@ -73,11 +73,9 @@ impl Lattice {
 
     /// This lattice at another placement.
     pub(super) fn replaced(&self, placement: Placement) -> Self {
+        let share = placement.shown();
         Self {
-            grade: self
-                .grade
-                .as_ref()
-                .map(|grade| grade.times(placement.shown())),
+            grade: self.grade.as_ref().map(|grade| grade.times(share)),
             without: self.without.clone(),
             ..Self::new(self.table.clone(), placement)
         }
@@ -102,9 +100,9 @@ impl Lattice {
             (Some(own), Some(other)) => own.is_same(other),
             (own, other) => own.is_none() && other.is_none(),
         };
-        let all = self.without.iter().zip(&other.without);
+        let mut lists = self.without.iter().zip(&other.without);
         let is_without = self.without.len() == other.without.len()
-            && all.into_iter().all(|(own, other)| Arc::ptr_eq(own, other));
+            && lists.all(|(own, other)| Arc::ptr_eq(own, other));
         is_graded && is_without && self.placement == other.placement && self.table == other.table
     }
 

@@ -23,7 +23,7 @@ impl SpaceSet {
     /// ```
     #[must_use]
     pub fn point(&self, id: PointId) -> Option<Point> {
-        sieve::point(self.lattice(), self.mask(), id)
+        sieve::point(&self.lattice, &self.mask, id)
     }
 
     /// The intervals of the three indices of a point, or `None` if the lattice has no point there.
@@ -38,7 +38,7 @@ impl SpaceSet {
     /// ```
     #[must_use]
     pub fn block(&self, id: PointId) -> Option<[usize; 3]> {
-        self.lattice().block(id)
+        self.lattice.block(id)
     }
 
     /// Runs [`nearest`](Self::nearest), or [`nearest_within`](Self::nearest_within) if there is a radius, until a flag is
@@ -63,6 +63,6 @@ impl SpaceSet {
         radius: Option<f64>,
         visits: &Visits,
     ) -> Result<Vec<Neighbor>, Error> {
-        nearest::nearest(self.lattice(), self.mask(), at, k, radius, visits)
+        nearest::nearest(&self.lattice, &self.mask, at, k, radius, visits)
     }
 }

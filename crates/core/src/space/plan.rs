@@ -14,7 +14,7 @@ use super::{
     table::Table,
 };
 use crate::{
-    F32, F64, Placement, Points, error::Error, planned::planned, stop::Stop, window::Window,
+    F32, F64, Placement, Points, error::Error, methods::planned, stop::Stop, window::Window,
 };
 
 /// The points of a volume, counted exactly before the first is made.
@@ -101,10 +101,6 @@ impl Plan {
     #[must_use]
     pub fn iter(&self) -> Members {
         Members::new(self.blocks())
-    }
-
-    pub(super) fn lattice(&self) -> &Lattice {
-        &self.scope.lattice
     }
 
     /// The plan with a flag that stops counting and making points, in place of the one it had. Once it is raised, blocks

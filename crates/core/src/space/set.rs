@@ -15,8 +15,8 @@ use crate::sample::{Field, Grade};
 use crate::{
     LeastDistance,
     error::Error,
-    requested::requested,
-    sample::{Keep, Placement, Seed, Sought, Spacing, Visits, Warp, exactly, limits, placing},
+    methods::{placing, requested},
+    sample::{Keep, Placement, Seed, Sought, Spacing, Visits, Warp, exactly, limits},
     stop::Stop,
 };
 
@@ -43,8 +43,8 @@ use crate::{
 /// ```
 #[derive(Clone, Debug)]
 pub struct SpaceSet {
-    lattice: Lattice,
-    mask: Mask,
+    pub(super) lattice: Lattice,
+    pub(super) mask: Mask,
     /// Whether the warp was chosen, and so stays when the seed changes.
     has_own_warp: bool,
 }
@@ -90,14 +90,6 @@ impl SpaceSet {
     /// ```
     pub fn from_table(bytes: &[u8]) -> Result<Self, Error> {
         Table::from_bytes(bytes).map(Self::new)
-    }
-
-    pub(super) const fn lattice(&self) -> &Lattice {
-        &self.lattice
-    }
-
-    pub(super) const fn mask(&self) -> &Mask {
-        &self.mask
     }
 
     /// Removes the points of some ids, beside those that are removed already. All others stay where they are. Ids without

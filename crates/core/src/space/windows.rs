@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::{Cursor, count, plan::Plan, point::PointId};
 use crate::{
-    planned::windows,
+    methods::windows,
     window::{Window, Windowed},
 };
 

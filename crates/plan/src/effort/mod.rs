@@ -33,8 +33,8 @@ use strew_catalog::Ready;
 use strew_error::Error;
 use strew_query::{Amount, Query, Set};
 pub(super) use volume::{
-    Chains, candidates as candidates_in_space, guess as guess_in_space, least as least_in_space,
-    test as test_in_space,
+    Chains, candidates as candidates_in_space, guess as guess_in_space, lacking,
+    least as least_in_space, test as test_in_space,
 };
 
 /// The approximate number of lattice units in a mean spacing.

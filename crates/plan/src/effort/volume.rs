@@ -36,6 +36,8 @@ const THINNED: f64 = 4.0;
 const MAKING: f64 = 60_000.0;
 const LISTED: f64 = 150.0;
 const TESTED: f64 = 150.0;
+/// Those of looking whether a point that is left out by its id lies inside.
+const LACKED: f64 = 200.0;
 /// Those of a comparison with a point, of which some decide.
 const COMPARED: f64 = 4.0;
 const MANY: f64 = 100.0;
@@ -216,7 +218,7 @@ pub(super) fn counting(query: &Query) -> f64 {
         if let (Some((points, counts)), true) = (&points, query.is_counted(i)) {
             let placement = points.placement();
             let test = test(&chains, set, points, (&volume, query.region.bounds));
-            let counted = counting_set(placement, &volume, test) * counts;
+            let counted = counting_set(placement, &volume, test) * counts + lacking(set);
             let is_sought = window.offset > 0;
             let sought = is_sought.then(|| seeking(placement, &volume, (counted, test > 0.0), 1.0));
             all += counted + sought.unwrap_or(0.0);
@@ -236,7 +238,7 @@ pub fn guess(set: &Set, volume: &Volume, count: u64) -> Result<Spacing, u64> {
 
 /// The least spacing at which counting takes at most `most` rows, searched downward from that of some points.
 pub fn least(points: &SpaceSet, most: f64, rows: impl Fn(&SpaceSet) -> f64) -> f64 {
-    /// Each step goes this far, and there are at most so many.
+    /// The ratio of a spacing to the one before, and the most steps.
     const STEP: f64 = 0.8;
     const STEPS: i32 = 60;
     let placement = points.placement();
@@ -264,6 +266,12 @@ pub fn test(
     let field = set.field.as_ref();
     let field = field.map_or(0.0, |field| LOOKED_AT + look([&field.spec], within));
     field + chains.test(points, &set.clear_of, volume)
+}
+
+/// The nanoseconds to find the points inside that are left out by their ids.
+pub fn lacking(set: &Set) -> f64 {
+    let parts = set.except.iter().flat_map(|except| &except.parts);
+    parts.map(|part| part.in_space().len()).sum::<usize>() as f64 * LACKED
 }
 
 /// The points that counting a set in a field looks at.

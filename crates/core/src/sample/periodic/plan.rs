@@ -7,7 +7,7 @@ use alloc::{sync::Arc, vec::Vec};
 use super::PeriodicSet;
 use crate::{
     error::Error,
-    planned::windows,
+    methods::windows,
     sample::{
         attribute::{Attributes, BoundAttributes},
         lattice::{Point, PointId},

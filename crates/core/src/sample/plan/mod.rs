@@ -17,7 +17,7 @@ use super::{
 };
 use crate::{
     error::Error,
-    planned::planned,
+    methods::planned,
     shape::{Area, Region},
     stop::Stop,
     table::Table,

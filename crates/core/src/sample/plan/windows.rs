@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::Plan;
 use crate::{
-    planned::windows,
+    methods::windows,
     sample::{
         lattice::PointId,
         seek::locate_all,

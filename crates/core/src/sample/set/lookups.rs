@@ -6,8 +6,8 @@ use super::PointSet;
 use crate::{
     LeastDistance,
     error::Error,
+    methods::requested,
     pattern::Arrangement,
-    requested::requested,
     sample::{
         attribute::{Attributes, BoundAttributes},
         lattice::{Placement, Point, PointId},

@@ -1,16 +1,14 @@
 //! The point set.
 //!
 //! A set is a table, a placement and a mask. This file has the set and the methods that change it, beside those in
-//! `placing`, which sets in space share; `requests` has the plans of areas, `lookups` single points, and `kinds` the points of kinds.
+//! `methods`, which sets in space share; `requests` has the plans of areas, `lookups` single points, and `kinds` the points of kinds.
 
 mod kinds;
 mod lookups;
-mod placing;
 mod requests;
 
 pub use kinds::Kind;
 pub use lookups::Neighbor;
-pub(crate) use placing::placing;
 
 use alloc::sync::Arc;
 
@@ -22,7 +20,7 @@ use super::{
     seed::Seed,
     warp::Warp,
 };
-use crate::{error::Error, table::Table};
+use crate::{error::Error, methods::placing, table::Table};
 
 /// An unbounded set of points: a table at a spacing, with a seed and a warp.
 ///
