@@ -106,4 +106,4 @@ pub use window::Cursor;
 /// let saved = (3, PointId { x: -31, y: 52 });
 /// assert_eq!(saved.0, ALGORITHM_VERSION, "made with other points");
 /// ```
-pub const ALGORITHM_VERSION: u32 = 3;
+pub const ALGORITHM_VERSION: u32 = 4;

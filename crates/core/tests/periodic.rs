@@ -1,13 +1,15 @@
 //! Periodic sets, parts of them (shares, kinds, fields) and their windows, against brute force: over the seam, and
 //! against the plane.
 
+mod definition;
 mod subject;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use definition::reference_of;
 use strew_core::{
-    Alpha, Attribute, Attributes, Cursor, ErrorKind, Kinds, Map, Member, PeriodicPlan, PeriodicSet,
-    Point, PointId, PointSet, Region, Table,
+    Alpha, Attribute, Attributes, Cursor, ErrorKind, Keep, Kinds, Map, Member, PeriodicPlan,
+    PeriodicSet, Placement, Point, PointId, PointSet, Region, Seed, Settle, Spacing, Table,
     table::{Mix, Ranks, from_grid_units},
 };
 use subject::shipped;
@@ -297,12 +299,27 @@ fn parts(tile: &PeriodicSet) -> Vec<PeriodicSet> {
 fn parts_are_those_points_that_their_definition_leaves() {
     let tile = tile();
     let all: Vec<_> = tile.iter().collect();
-    let kept = tile.clone().keep(0.3).expect("a share");
+    let still = tile.clone().settle(0).expect("0");
+    let kept = still.clone().keep(0.3).expect("a share");
     let expected = all.iter().filter(|p| tile.rank(p.id()) < Some(0.3));
     assert!(kept.iter().eq(expected.copied()));
+    // A part of the points that settle goes where they all go.
+    let whole = tile.clone().keep(0.3).expect("a share");
+    let level = whole.clone().lod(0.5).expect("a share");
+    let expected = whole.iter().filter(|p| tile.rank(p.id()) < Some(0.15));
+    assert!(level.iter().eq(expected));
     let mut counts = [0; 3];
     for kind in 0..3u8 {
         let only = tile.clone().only(kind).expect("a kind");
+        let of_whole = whole.iter().filter(|p| tile.kind_of(p.id()) == Some(kind));
+        assert!(
+            whole
+                .clone()
+                .only(kind)
+                .expect("a kind")
+                .iter()
+                .eq(of_whole)
+        );
         let expected = all.iter().filter(|p| tile.kind_of(p.id()) == Some(kind));
         assert!(only.iter().eq(expected.copied()));
         counts[usize::from(kind)] = only.count();
@@ -313,10 +330,10 @@ fn parts_are_those_points_that_their_definition_leaves() {
         let error = count as f64 / tile.len() as f64 - share / 14.0;
         assert!(error.abs() < 0.03, "{share}: {error}");
     }
-    // Points in a field stay where they are.
+    // Points in a field stay where they are, if they do not settle.
     let side = tile.length();
     let ramp = move |[x, _]: [f64; 2]| x / side;
-    let graded = tile.in_field(ramp);
+    let graded = still.in_field(ramp);
     let expected = all
         .iter()
         .filter(|p| tile.rank(p.id()) < Some(ramp(p.at())));
@@ -384,6 +401,97 @@ fn windows_cursors_and_ids_agree_with_the_whole() {
     }
 }
 
+/// A tile's points, settled by the definition, among those of all copies within some room around [0, L)².
+fn settled(tile: &PeriodicSet, placement: Placement, share: &dyn Fn([f64; 2]) -> f64, room: f64) {
+    let (twin, side) = (tile.twin(), tile.length());
+    let period = twin.period() as i64;
+    let unit = side / ((period << 20) as f64);
+    let still = tile.clone().settle(0).expect("0");
+    let (mut points, mut kinds) = (Vec::new(), Vec::new());
+    for point in still.iter() {
+        let kind = tile.kind_of(point.id());
+        let place = point.at().map(|v| (v / unit).round() as i64);
+        for copy in (0..9).map(|i| [i % 3 - 1, i / 3 - 1]) {
+            let [x, y] = [0, 1].map(|i| (place[i] + copy[i] * (period << 20)) as f64 * unit);
+            if [x, y].iter().all(|v| (-room..side + room).contains(v)) {
+                let [id_x, id_y] = [point.id().x, point.id().y];
+                let id = PointId {
+                    x: id_x + copy[0] * period,
+                    y: id_y + copy[1] * period,
+                };
+                points.push(Point { id, x, y });
+                kinds.push(kind);
+            }
+        }
+    }
+    let wrap = |v: f64| {
+        let k = (v / unit).round();
+        let whole = if k * unit == v {
+            k.rem_euclid((period << 20) as f64) * unit
+        } else {
+            v
+        };
+        Some(whole.rem_euclid(side))
+            .filter(|v| *v < side)
+            .unwrap_or(0.0)
+    };
+    let is_near = placement.keep.get() == 1.0;
+    let by = (tile.table(), placement, is_near);
+    let grid = [twin.t() as f64 / period as f64, unit];
+    let expected = reference_of(by, (points, kinds), grid, &|at| share(at.map(wrap)));
+    let ids = 0..period;
+    let expected: BTreeMap<PointId, [f64; 2]> = expected
+        .into_iter()
+        .filter(|p| ids.contains(&p.id.x) && ids.contains(&p.id.y))
+        .map(|p| (p.id, p.at().map(wrap)))
+        .collect();
+    let found: BTreeMap<PointId, [f64; 2]> = tile.iter().map(|p| (p.id(), p.at())).collect();
+    assert!(found.len() > 20 && found.len() == still.iter().count());
+    assert_eq!(found, expected);
+    let moved = still.iter().filter(|p| found[&p.id()] != p.at()).count();
+    assert!(
+        moved * 2 > found.len() || is_near && moved > 0,
+        "{moved} of {}",
+        found.len()
+    );
+}
+
+#[test]
+fn parts_settle_by_the_definition_across_the_seam() {
+    let plain = shipped("blue-5-sqrt3-over-2-s");
+    let kinds = subject::mixed::mixed(&plain, "1:3");
+    for (table, seed, steps, keep, room) in [
+        (&plain, 0, 2, 0.12, 12.0),
+        (&plain, 5, 3, 0.03, 12.0),
+        (&plain, 5, 1, 1.0, 4.0),
+        (&kinds, 6, 2, 0.07, 19.0),
+    ] {
+        let tile = PeriodicSet::new(table.clone(), 5000).expect("a period");
+        let side = tile.length() * 0.37;
+        let tile = tile
+            .side(side)
+            .expect("in range")
+            .seed(seed)
+            .keep(keep)
+            .expect("a share");
+        let tile = tile.settle(steps).expect("0 to 4");
+        let placement = Placement::new(Spacing::new(tile.spacing()).expect("in range"), Seed(seed))
+            .with_keep(Keep::new(keep).expect("a share"))
+            .with_settle(Settle::new(steps).expect("0 to 4"));
+        let room = room * tile.spacing() / keep.sqrt();
+        settled(&tile, placement, &|_| 1.0, room);
+        if keep < 1.0 {
+            // One that repeats, and one that jumps at the seam.
+            let turn = std::f64::consts::TAU / side;
+            let waves =
+                move |[x, y]: [f64; 2]| 0.6 + 0.3 * (turn * x).sin() * (2.0 * turn * y).cos();
+            settled(&tile.in_field(waves), placement, &waves, 2.0 * room);
+            let ramp = move |[x, _]: [f64; 2]| 0.3 + 0.7 * x / side;
+            settled(&tile.in_field(ramp), placement, &ramp, 2.0 * room);
+        }
+    }
+}
+
 #[test]
 fn a_field_with_the_period_is_followed_without_a_seam() {
     // The same points, whatever part of the plane the period is: the field is looked at modulo L.
@@ -439,7 +547,7 @@ fn attributes_are_those_of_the_points() {
 
 #[test]
 fn guaranteed_distances_hold_across_the_seam() {
-    let table = shipped("blue-5-sqrt3-over-2-m");
+    let table = shipped("blue-5-sqrt3-over-2-s");
     for seed in [0, 4] {
         let tile = PeriodicSet::new(table.clone(), 5000).expect("a period");
         let tile = tile.side(3.0).expect("in range").seed(seed);

@@ -100,10 +100,10 @@ impl Set {
         self.lod = Keep::new(product).unwrap_or(part);
     }
 
-    /// The number of steps by which points settle; `None` in sets whose points do not settle by default: periods, and
-    /// sets of all points or of a tiny part of them.
+    /// The number of steps by which points settle; `None` in sets whose points do not settle by default: those in space,
+    /// of all points, and of a tiny part of them.
     pub fn steps(&self) -> Option<u32> {
-        if self.period.is_some() || self.space().is_some() {
+        if self.space().is_some() {
             return None;
         }
         if self.field.is_some() {
@@ -168,7 +168,11 @@ impl Set {
         let set = set.side(period.side)?.seed(self.seed.0);
         let mut set = set
             .warp(self.warp.strength())?
-            .keep(self.keep.get() * self.lod.get())?;
+            .keep(self.keep.get())?
+            .lod(self.lod.get())?;
+        if self.settle != Settle::default() {
+            set = set.settle(self.settle.steps())?;
+        }
         if let Some((_, kind)) = self.kinds.as_ref().and_then(|kinds| kinds.only.as_ref()) {
             set = set.only(*kind)?;
         }

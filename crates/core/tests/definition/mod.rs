@@ -1,6 +1,6 @@
 //! Where points settle, by docs/algorithm.md alone and slowly.
 
-use strew_core::{Placement, Point, PointId, PointSet, Region};
+use strew_core::{Placement, Point, PointId, PointSet, Region, Table};
 
 /// The steps of docs/algorithm.md: ρ, a, γ, b.
 fn kernels(steps: u32) -> Vec<[f32; 4]> {
@@ -44,8 +44,8 @@ fn kernels_with_kinds(steps: u32) -> Vec<([f32; 4], [f32; 2])> {
 }
 
 /// The part of all points that a kind has, if its points push each other.
-fn part(set: &PointSet, kind: u8) -> Option<f64> {
-    let part = set.table().mix()?.shares().of(kind);
+fn part(table: &Table, kind: u8) -> Option<f64> {
+    let part = table.mix()?.shares().of(kind);
     (0.125..=0.8).contains(&part).then_some(part)
 }
 
@@ -135,20 +135,35 @@ fn past(
 
 /// Where the points of a box settle, by the definition alone: all points of the box step together, with all pairs.
 /// Points nearer to its rim than the reach of the steps are wrong.
+#[allow(dead_code, reason = "periodic sets list their points themselves")]
 pub fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -> Vec<Point> {
+    let still = set.clone().settle(0).expect("0");
+    let points = still.within(region).expect("near").to_vec();
+    let kinds = points.iter().map(|point| set.kind_of(point.id)).collect();
+    let side = set.table().alpha().set_side_f64();
+    // In fields points settle as well, but no distance is promised.
+    let is_near = set.least_distance() > 0.0 && set.placement().keep.get() == 1.0;
+    let step = set.placement().spacing.get() * side / f64::from(1u32 << 20);
+    let by = (set.table(), set.placement(), is_near);
+    reference_of(by, (points, kinds), [side, step], shares)
+}
+
+/// Where points that are listed with their kinds settle, in a pattern with a mean spacing of 1/`side` grid units, in
+/// fixed-point units of `step`.
+pub fn reference_of(
+    (table, placement, is_near): (&Table, Placement, bool),
+    (still, kinds): (Vec<Point>, Vec<Option<u8>>),
+    [side, step]: [f64; 2],
+    shares: &dyn Fn([f64; 2]) -> f64,
+) -> Vec<Point> {
     let Placement {
         spacing,
         keep,
         settle,
         warp,
         ..
-    } = set.placement();
-    let side = set.table().alpha().set_side_f64();
-    let step = spacing.get() * side / f64::from(1u32 << 20);
+    } = placement;
     let unit = f64::from(1u32 << 20) / side;
-    let still = set.clone().settle(0).expect("0");
-    // In fields points settle as well, but no distance is promised.
-    let is_near = set.least_distance() > 0.0 && keep.get() == 1.0;
     let share = |at: [f64; 2]| {
         let share = shares(at);
         if share > 0.0 {
@@ -158,7 +173,7 @@ pub fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Regio
         }
     };
     let mut points: Vec<Placed> = Vec::new();
-    for point in still.within(region).expect("near").to_vec() {
+    for (point, kind) in still.into_iter().zip(kinds) {
         let world = point.at();
         let at = world.map(|v| (v / step).round() as i64);
         assert_eq!(at.map(|v| v as f64 * step), world);
@@ -194,18 +209,16 @@ pub fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Regio
             world,
             share: own,
             freedom: (part * inside) as f32,
-            kind: set.kind_of(point.id),
+            kind,
         });
     }
-    let certified = set.table().least_distance().with_warp(warp) * unit / 128.0;
+    let unit_of_table = f64::from(1u32 << 20) / table.alpha().set_side_f64();
+    let certified = table.least_distance().with_warp(warp) * unit_of_table / 128.0;
     let clear = if is_near { 0.0 } else { certified as f32 };
     let reach_of_near = f64::from(NEAR[0]) * unit / 128.0;
     let unit = (unit / 128.0) as f32;
-    let kinds = set
-        .table()
-        .mix()
-        .map_or(0, |mix| mix.shares().kinds() as u8);
-    let has_kin = !is_near && (0..kinds).any(|kind| self::part(set, kind).is_some());
+    let kinds = table.mix().map_or(0, |mix| mix.shares().kinds() as u8);
+    let has_kin = !is_near && (0..kinds).any(|kind| self::part(table, kind).is_some());
     let steps = if has_kin {
         kernels_with_kinds(settle.steps())
     } else {
@@ -226,7 +239,7 @@ pub fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Regio
                 let share = own.share.max(1.0 / 400.0) as f32;
                 let mut sum = [0i32; 2];
                 let mut nearest = f32::INFINITY;
-                let part = own.kind.and_then(|kind| self::part(set, kind));
+                let part = own.kind.and_then(|kind| self::part(table, kind));
                 let mut of_kin = [0i32; 2];
                 for other in &points {
                     let [dx, dy] = [0, 1].map(|i| (own.at[i] - other.at[i]) as f32);

@@ -1,7 +1,6 @@
 //! World coordinates in `f64`: pairs, and points with ids.
 
 use super::{
-    Format,
     format::{Emit, Geometry, Row},
     lanes::Lanes,
     rows::vector_starts,
@@ -48,8 +47,6 @@ impl F64 {
         }
     }
 }
-
-impl Format for F64 {}
 
 impl Emit for F64 {
     type Item = [f64; 2];
@@ -126,8 +123,6 @@ impl Emit for F64 {
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Points(pub(super) F64);
-
-impl Format for Points {}
 
 impl Emit for Points {
     type Item = Point;

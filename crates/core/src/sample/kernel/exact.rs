@@ -1,9 +1,6 @@
 //! Places as they are before any format rounds them.
 
-use super::{
-    Format,
-    format::{Emit, Geometry},
-};
+use super::format::{Emit, Geometry};
 use crate::sample::lattice::PointId;
 
 /// Exact places with their ids, which [`Plan::converted`](crate::Plan::converted) turns into items of any other format.
@@ -60,8 +57,6 @@ impl Place {
         format.item(base, format.column(base, x, self.id.x), y, self.id.y)
     }
 }
-
-impl Format for Exact {}
 
 impl Emit for Exact {
     type Item = Place;

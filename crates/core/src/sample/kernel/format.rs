@@ -4,29 +4,6 @@ use core::fmt::Debug;
 
 use super::lanes::{Lanes, stored};
 
-/// A format of points: [`F32`](super::F32), [`F64`](super::F64) or [`Points`](super::Points).
-///
-/// `F::Item` is what a block holds: `[f32; 2]`, `[f64; 2]` or [`Point`](crate::Point). The trait is
-/// sealed.
-///
-/// ```
-/// use strew_core::{F32, F64, Format, Plan, PointSet, Points, Table};
-///
-/// fn first<F: Format>(plan: &Plan) -> F::Item {
-///     let mut block = [F::Item::default()];
-///     plan.blocks::<F>().fill(&mut block);
-///     block[0]
-/// }
-///
-/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-/// let plan = PointSet::new(table).chunk(8.0, [0, 0])?;
-/// let [x, y] = first::<F64>(&plan);
-/// assert_eq!(first::<F32>(&plan), [x as f32, y as f32]);
-/// assert_eq!(first::<Points>(&plan).at(), [x, y]);
-/// # Ok::<(), strew_core::Error>(())
-/// ```
-pub trait Format: Emit {}
-
 /// The geometry of a plan, as formats need it.
 #[derive(Clone, Copy, Debug)]
 pub struct Geometry {

@@ -1,9 +1,6 @@
 //! `f64` coordinates relative to the corner of a region, rounded once.
 
-use super::{
-    Format,
-    format::{Emit, Geometry},
-};
+use super::format::{Emit, Geometry};
 use crate::table::{FRACTION_BITS, fixed};
 
 /// Pairs of `f64` coordinates, or triples in space, relative to the region's lower corner
@@ -117,8 +114,6 @@ fn halves(v: f64) -> (f64, f64) {
     let high = scaled - (scaled - v);
     (high, v - high)
 }
-
-impl Format for Offsets {}
 
 impl Emit for Offsets {
     type Item = [f64; 2];

@@ -1,7 +1,6 @@
 //! Pairs of `f32` relative to the corner of a region.
 
 use super::{
-    Format,
     format::{Emit, Geometry, Row},
     lanes::Lanes,
     rows::vector_starts,
@@ -47,8 +46,6 @@ impl F32 {
         if place < last { place } else { last }
     }
 }
-
-impl Format for F32 {}
 
 impl Emit for F32 {
     type Item = [f32; 2];

@@ -6,8 +6,7 @@ use alloc::{vec, vec::Vec};
 
 use super::{
     Backend, Extent, F32, F64, Format, Geometry, Offsets, Points, Row, WarpedColumns,
-    add_first_shear, fill_row, fill_warped_row, format::Emit as _, rows::emit, warp_all,
-    write_numbers,
+    add_first_shear, format::Emit as _, rows::emit, warp_all, write_numbers,
 };
 use crate::sample::{
     Seed, Warp,
@@ -205,12 +204,12 @@ fn all_rows<F: Format, B: PartialEq + core::fmt::Debug>(
                 for backend in Backend::available() {
                     let note = alloc::format!("{format:?} {backend:?} {length} from {from}");
                     let fill = |out: &mut [F::Item]| {
-                        fill_row(&format, backend, *row, own, dys, out);
+                        format.fill_row(backend, *row, own, dys, out);
                         out.len()
                     };
                     assert_written(canary, bits, &plain, fill, &note);
                     let all = |out: &mut [F::Item]| {
-                        fill_warped_row(&format, backend, &shears, *row, warped, out);
+                        format.fill_warped_row(backend, &shears, *row, warped, out);
                         out.len()
                     };
                     assert_written(canary, bits, &moved, all, &note);
@@ -281,7 +280,7 @@ fn rows_end_where_the_shortest_slice_ends() {
             emit(&format, example.row, columns, dys, &mut expected);
             assert!(expected[least..].iter().all(|item| *item == [-1.5; 2]));
             let mut out = vec![[-1.5; 2]; room];
-            fill_row(&format, backend, example.row, columns, dys, &mut out);
+            format.fill_row(backend, example.row, columns, dys, &mut out);
             assert_eq!(out, expected, "{backend:?}");
         }
     }

@@ -31,7 +31,7 @@ const PASS: usize = 16;
 /// The columns of a warped row, in which each point moves by itself. All three slices have the same
 /// length.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct WarpedColumns<'a> {
+pub struct WarpedColumns<'a> {
     /// Their displaced x, relative to the patch's origin.
     pub(crate) displaced: &'a [i32],
     /// Their vertical displacements, with the first shear of the warp, which is the same in all rows.

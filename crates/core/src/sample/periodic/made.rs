@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use crate::{
     map::Twin,
     sample::{
-        lattice::{Grade, Keep},
+        lattice::{Grade, Keep, Settle},
         seed::Seed,
         warp::{Warp, Waves, WrappedShears},
     },
@@ -16,6 +16,8 @@ use crate::{
 #[derive(Clone, Debug, Default)]
 pub(super) struct Parts {
     pub(super) keep: Keep,
+    pub(super) settle: Settle,
+    pub(super) lod: Keep,
     pub(super) kind: Option<u8>,
     /// The field, whose shares are those of the whole set.
     pub(super) field: Option<Grade>,

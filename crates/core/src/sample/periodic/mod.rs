@@ -7,6 +7,7 @@
 mod made;
 mod parts;
 mod plan;
+mod torus;
 
 use alloc::sync::Arc;
 use core::ops::Range;
@@ -23,7 +24,9 @@ use crate::{
     table::Table,
 };
 use made::{Made, Parts};
+use plan::Walk;
 pub use plan::{PeriodicBlocks, PeriodicPlan};
+use torus::Strip;
 
 /// A point set with a period: the points of [0, L)² whose copies, moved by multiples of the side L, continue
 /// one another without a seam. It has the table's noise profile; for tileable textures, masks and stipples.
@@ -237,17 +240,8 @@ impl PeriodicSet {
     /// ```
     pub fn rows(&self, rows: Range<u64>) -> impl Iterator<Item = Member> + use<> {
         let set = self.clone();
-        (rows.start..rows.end.min(self.twin.period())).flat_map(move |y| {
-            let set = set.clone();
-            let found = set.row(y);
-            found.into_iter().flat_map(move |(parity, index_y)| {
-                let set = set.clone();
-                (0..set.columns(y, parity).len()).filter_map(move |i| {
-                    let (x, index_x) = set.columns(y, parity)[i];
-                    set.member([x, y], [index_x, index_y])
-                })
-            })
-        })
+        let mut walk = Walk::of_rows(&set, rows);
+        core::iter::from_fn(move || Some(Member::new(walk.next(&set)?, set.seed)))
     }
 
     /// The parity of the columns that have points in a row, with dY there; `None` for a row without points.
@@ -276,7 +270,11 @@ impl PeriodicSet {
     #[must_use]
     pub fn point(&self, id: PointId) -> Option<Member> {
         let (at, index) = self.indices(id)?;
-        self.member(at, index)
+        let point = self.point_at(at, index, |id, place| match Strip::new(self, 0) {
+            Some(mut strip) => strip.one(self, id, place),
+            None => self.wrapped(place),
+        })?;
+        Some(Member::new(point, self.seed))
     }
 
     /// The block of a point, as its intervals of dX and dY, or `None` if no point has the id.

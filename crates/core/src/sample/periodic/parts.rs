@@ -5,15 +5,14 @@
 
 use alloc::{sync::Arc, vec, vec::Vec};
 
-use super::{PeriodicSet, made::Parts};
+use super::PeriodicSet;
 use crate::{
     LeastDistance,
     error::Error,
     sample::{
         attribute::{Attributes, BoundAttributes, Indices},
         field::Field,
-        lattice::{Grade, Keep, Placement, Point, PointId, Spacing, check_kind},
-        member::Member,
+        lattice::{Grade, Keep, Placement, Point, PointId, Settle, Spacing, check_kind},
         warp::Warp,
     },
     stop::Stop,
@@ -34,10 +33,32 @@ impl PeriodicSet {
     /// let half = tile.clone().keep(0.5)?;
     /// assert!(half.iter().all(|p| tile.rank(p.id()) < Some(0.5)));
     /// assert!((half.count() as f64 / tile.len() as f64 - 0.5).abs() < 0.01);
+    /// // They settle, across the seam as well, unless they are to stay where ranks left them.
+    /// let far = half.clone().lod(0.5)?.point(half.iter().next().expect("points").id());
+    /// assert!(far.is_none_or(|p| half.point(p.id()) == Some(p) && tile.point(p.id()) != Some(p)));
+    /// assert!(half.settle(0)?.iter().all(|p| tile.point(p.id()) == Some(p)));
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn keep(mut self, share: f64) -> Result<Self, Error> {
         self.parts.keep = Keep::new(share)?;
+        Ok(self)
+    }
+
+    /// The level of detail: a share of the points that the set has otherwise, none of which moves.
+    ///
+    /// # Errors
+    /// As [`Keep::new`].
+    pub fn lod(mut self, share: f64) -> Result<Self, Error> {
+        self.parts.lod = Keep::new(share)?;
+        Ok(self)
+    }
+
+    /// The number of steps by which points settle, as [`PointSet::settle`](crate::PointSet::settle).
+    ///
+    /// # Errors
+    /// As [`Settle::new`].
+    pub fn settle(mut self, steps: u32) -> Result<Self, Error> {
+        self.parts.settle = Settle::new(steps)?;
         Ok(self)
     }
 
@@ -154,10 +175,15 @@ impl PeriodicSet {
     }
 
     /// The least distance between any two points, in the period or across its seam, in world units: a guarantee,
-    /// as [`PointSet::least_distance`](crate::PointSet::least_distance) is.
+    /// as [`PointSet::least_distance`](crate::PointSet::least_distance) is. 0 for points in a field that settle; where
+    /// others settle, those of a kind keep the distance of all.
     #[must_use]
     pub fn least_distance(&self) -> f64 {
-        let of_kind = self.parts.kind;
+        let settles = self.parts.settling().is_some();
+        if settles && self.parts.field.is_some() {
+            return 0.0;
+        }
+        let of_kind = self.parts.kind.filter(|_| !settles);
         let of_kind = of_kind.and_then(|kind| self.table.least_distance_of(kind, kind));
         let least = of_kind.unwrap_or_else(|| self.table.least_distance());
         self.reported(least)
@@ -217,8 +243,8 @@ impl PeriodicSet {
 
     /// Whether it has all points of the period.
     pub(super) fn has_all(&self) -> bool {
-        let Parts { keep, kind, field } = &self.parts;
-        *keep == Keep::ALL && kind.is_none() && field.is_none()
+        let parts = &self.parts;
+        [parts.keep, parts.lod] == [Keep::ALL; 2] && parts.kind.is_none() && parts.field.is_none()
     }
 
     /// The number of points in a row.
@@ -252,7 +278,7 @@ impl PeriodicSet {
         (index_x - start as u64, (end - start) as u64)
     }
 
-    fn rank_at(&self, index: [u64; 2]) -> f64 {
+    pub(super) fn rank_at(&self, index: [u64; 2]) -> f64 {
         let [block_x, block_y] = self.block_at(index);
         let order = self.made.turned.order();
         let position = order.position(block_y * self.table.map().intervals() + block_x);
@@ -272,50 +298,65 @@ impl PeriodicSet {
         Some(labels.kind(map.intervals(), [block_x, block_y], at))
     }
 
+    /// The displacement of all points with some indices.
+    pub(super) fn vector(&self, index: [u64; 2]) -> Displacement {
+        let [block_x, block_y] = self.block_at(index);
+        self.made.turned.row(block_y)[block_x]
+    }
+
     /// The displacement of the point of an address with some indices, or `None` if the set has none there.
     fn displacement(&self, at: [u64; 2], index: [u64; 2]) -> Option<Displacement> {
-        let Parts { keep, kind, field } = &self.parts;
-        if kind.is_some() && self.kind_at(index) != *kind {
+        let parts = &self.parts;
+        if parts.kind.is_some() && self.kind_at(index) != parts.kind {
             return None;
         }
-        if field.is_none() && *keep != Keep::ALL && self.rank_at(index) >= keep.get() {
-            return None;
-        }
-        let [block_x, block_y] = self.block_at(index);
-        let turned = &self.made.turned;
-        let full = turned.row(block_y)[block_x];
-        let Some(grade) = field else {
-            return Some(full);
+        let vector = self.vector(index);
+        let share = match &parts.field {
+            None if self.has_all() => return Some(vector),
+            None => parts.keep.get(),
+            Some(field) => {
+                let place = self.moved(at.map(|v| v as i64), vector);
+                field.times(parts.keep.get()).share(self.wrapped(place))
+            }
         };
-        let share = grade.times(keep.get()).share(self.place(at, full));
-        (self.rank_at(index) < share).then_some(full)
+        (self.rank_at(index) < parts.lod.get() * share).then_some(vector)
     }
 
-    /// The place of an address with a displacement, in [0, L)².
-    fn place(&self, at: [u64; 2], vector: Displacement) -> [f64; 2] {
-        let placed = at.map(|v| (v as i64) << FRACTION_BITS);
-        let placed = [0, 1].map(|i| placed[i] + i64::from(vector[i]));
-        let moved = match &self.made.shears {
+    /// The fixed-point place of an address with a displacement. Those of its copies differ by periods.
+    pub(super) fn moved(&self, at: [i64; 2], vector: Displacement) -> [i64; 2] {
+        let placed = [0, 1].map(|i| (at[i] << FRACTION_BITS) + i64::from(vector[i]));
+        match &self.made.shears {
             Some(shears) => shears.apply(placed),
             None => placed,
-        };
+        }
+    }
+
+    /// A fixed-point place in [0, L)².
+    pub(super) fn wrapped(&self, place: [i64; 2]) -> [f64; 2] {
         let period = (self.twin.period() as i64) << FRACTION_BITS;
-        // A period has less than 2⁴⁶ fixed-point units, so rounding never carries a coordinate to L.
-        let step = self.side / period as f64;
-        moved.map(|v| v.rem_euclid(period) as f64 * step)
+        let step = self.step();
+        place.map(|v| v.rem_euclid(period) as f64 * step)
     }
 
-    /// The point of an address with some indices, if the set has it.
-    pub(super) fn point_at(&self, at: [u64; 2], index: [u64; 2]) -> Option<Point> {
+    /// A fixed-point unit in world units. A period has less than 2⁴⁶ of them, so rounding never carries a coordinate
+    /// to L.
+    pub(super) fn step(&self) -> f64 {
+        self.side / ((self.twin.period() as i64) << FRACTION_BITS) as f64
+    }
+
+    /// The point of an address with some indices, if the set has it. `settled` says where it settles, with its
+    /// fixed-point place before.
+    pub(super) fn point_at(
+        &self,
+        at: [u64; 2],
+        index: [u64; 2],
+        settled: impl FnOnce(PointId, [i64; 2]) -> [f64; 2],
+    ) -> Option<Point> {
         let vector = self.displacement(at, index)?;
-        let [x, y] = self.place(at, vector);
-        let [id_x, id_y] = at.map(|v| v as i64);
-        let id = PointId { x: id_x, y: id_y };
+        let [x, y] = at.map(|v| v as i64);
+        let id = PointId { x, y };
+        let [x, y] = settled(id, self.moved([x, y], vector));
         Some(Point { id, x, y })
-    }
-
-    pub(super) fn member(&self, at: [u64; 2], index: [u64; 2]) -> Option<Member> {
-        Some(Member::new(self.point_at(at, index)?, self.seed))
     }
 }
 

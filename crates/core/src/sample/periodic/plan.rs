@@ -3,8 +3,9 @@
 //! The plan of a period: as a [`Plan`](crate::Plan), but in rows and then columns.
 
 use alloc::{sync::Arc, vec::Vec};
+use core::ops::Range;
 
-use super::PeriodicSet;
+use super::{PeriodicSet, torus::Strip};
 use crate::{
     error::Error,
     methods::windows,
@@ -158,9 +159,9 @@ impl PeriodicPlan {
             let wanted = self.window.offset as u64 + number;
             let y = before.partition_point(|&sum| sum <= wanted).max(1) - 1;
             left = wanted - before[y];
-            walk = Walk { y: y as u64, i: 0 };
+            (walk.y, walk.i) = (y as u64, 0);
         }
-        while left > 0 && walk.next(&self.set).is_some() {
+        while left > 0 && walk.skip(&self.set) {
             left -= 1;
         }
         walk.id(&self.set)
@@ -267,60 +268,84 @@ impl PeriodicBlocks {
 }
 
 /// A place in the walk: a row, and the number of a column among those that may have points.
-#[derive(Clone, Copy, Debug)]
-struct Walk {
+#[derive(Clone, Debug)]
+pub(super) struct Walk {
     y: u64,
     i: usize,
+    /// The end of the rows.
+    end: u64,
+    strip: Option<Strip>,
 }
 
 impl Walk {
-    /// The walk from an address on.
-    fn from(set: &PeriodicSet, at: PointId) -> Self {
-        let Ok(y) = u64::try_from(at.y) else {
-            return Self { y: 0, i: 0 };
-        };
-        let x = u64::try_from(at.x).unwrap_or_default();
-        let row = (y < set.twin.period()).then(|| set.row(y)).flatten();
-        let columns = row.map_or(&[][..], |(parity, _)| set.columns(y, parity));
-        let i = columns.partition_point(|&(column, _)| column < x);
-        Self { y, i }
-    }
-
-    /// The address of the next column that may have a point.
-    fn id(self, set: &PeriodicSet) -> PointId {
-        let row = (self.y < set.twin.period()).then(|| set.row(self.y));
-        let column = row.flatten().and_then(|(parity, _)| {
-            let columns = set.columns(self.y, parity);
-            Some(columns.get(self.i)?.0)
-        });
-        match column {
-            Some(x) => PointId {
-                x: x as i64,
-                y: self.y as i64,
-            },
-            None => PointId {
-                x: 0,
-                y: self.y as i64 + 1,
-            },
+    /// The walk through some rows.
+    pub(super) fn of_rows(set: &PeriodicSet, rows: Range<u64>) -> Self {
+        let end = rows.end.min(set.twin.period());
+        Self {
+            y: rows.start,
+            i: 0,
+            end,
+            strip: Strip::new(set, end),
         }
     }
 
+    /// The walk from an address on.
+    fn from(set: &PeriodicSet, at: PointId) -> Self {
+        let mut walk = Self::of_rows(set, 0..u64::MAX);
+        if let Ok(y) = u64::try_from(at.y) {
+            let x = u64::try_from(at.x).unwrap_or_default();
+            walk.y = y;
+            walk.i = walk.columns(set).map_or(0, |(columns, _)| {
+                columns.partition_point(|&(column, _)| column < x)
+            });
+        }
+        walk
+    }
+
+    /// The columns of the row that may have points, with their dX, and dY.
+    fn columns<'a>(&self, set: &'a PeriodicSet) -> Option<(&'a [(u64, u64)], u64)> {
+        let (parity, index_y) = (self.y < self.end).then(|| set.row(self.y)).flatten()?;
+        Some((set.columns(self.y, parity), index_y))
+    }
+
+    /// The address of the next column that may have a point.
+    fn id(&self, set: &PeriodicSet) -> PointId {
+        let y = self.y as i64;
+        match self
+            .columns(set)
+            .and_then(|(columns, _)| columns.get(self.i))
+        {
+            Some(&(x, _)) => PointId { x: x as i64, y },
+            None => PointId { x: 0, y: y + 1 },
+        }
+    }
+
+    /// Skips a point that is there, without settling it. `false` after the last one.
+    fn skip(&mut self, set: &PeriodicSet) -> bool {
+        let strip = self.strip.take();
+        let is_found = self.next(set).is_some();
+        self.strip = strip;
+        is_found
+    }
+
     /// The next point.
-    fn next(&mut self, set: &PeriodicSet) -> Option<Point> {
-        while self.y < set.twin.period() {
-            if let Some((parity, index_y)) = set.row(self.y) {
-                let columns = set.columns(self.y, parity);
+    pub(super) fn next(&mut self, set: &PeriodicSet) -> Option<Point> {
+        while self.y < self.end {
+            if let Some((columns, index_y)) = self.columns(set) {
                 while let Some(&(x, index_x)) = columns.get(self.i) {
                     self.i += 1;
-                    if let Some(point) = set.point_at([x, self.y], [index_x, index_y]) {
-                        return Some(point);
+                    let (at, index, strip) = ([x, self.y], [index_x, index_y], &mut self.strip);
+                    let point = set.point_at(at, index, |_, place| match strip {
+                        Some(strip) => strip.place(set, at),
+                        None => set.wrapped(place),
+                    });
+                    if point.is_some() {
+                        return point;
                     }
                 }
             }
-            *self = Self {
-                y: self.y + 1,
-                i: 0,
-            };
+            self.y += 1;
+            self.i = 0;
         }
         None
     }

@@ -42,9 +42,9 @@ use super::{
 use crate::{
     sample::{
         kernel::Backend,
-        lattice::{Lattice, PointId, Settle},
+        lattice::{Lattice, Settle},
     },
-    table::{Mix, Shares},
+    table::{Mix, Shares, Table},
 };
 
 /// The least and the greatest part of all points of a kind whose points push each other.
@@ -66,8 +66,6 @@ pub(super) struct Steps {
 /// The points of a window by kinds, and their pushes.
 #[derive(Clone, Debug)]
 pub(super) struct Kin {
-    /// A lattice that knows the kind of each point.
-    lattice: Lattice,
     steps: Steps,
     least_part: f64,
     kinds: Vec<Kind>,
@@ -88,12 +86,13 @@ struct Kind {
 }
 
 impl Kin {
-    /// The kinds of a lattice, if points of some of them push each other.
-    pub(super) fn new(lattice: &Lattice, settle: Settle) -> Option<Self> {
+    /// The kinds of a table, if points of some of them push each other. Kinds that vary leave points where those of
+    /// the table put them.
+    pub(super) fn new(table: &Table, settle: Settle) -> Option<Self> {
         if settle.is_near() {
             return None;
         }
-        let shares = lattice.table.mix()?.shares();
+        let shares = table.mix()?.shares();
         let least_part = least_part(shares)?;
         let kind = |kind: usize| {
             let part = shares.of(kind as u8);
@@ -109,8 +108,6 @@ impl Kin {
             steps: Steps::of(settle),
             least_part,
             kinds: (0..shares.kinds()).map(kind).collect(),
-            // Kinds that vary leave points where those of the table put them.
-            lattice: lattice.of_all_kinds(),
             cells: Cells::default(),
             sums: [Vec::new(), Vec::new()],
         })
@@ -138,10 +135,9 @@ impl Kin {
         }
     }
 
-    /// Adds point number `i` of the window.
-    pub(super) fn add(&mut self, i: usize, id: PointId, share: f64) {
-        let kind = self.lattice.kind_of(id).map(usize::from);
-        let kind = kind.and_then(|kind| self.kinds.get_mut(kind));
+    /// Adds point number `i` of the window, with its kind in the table.
+    pub(super) fn add(&mut self, i: usize, kind: Option<u8>, share: f64) {
+        let kind = kind.and_then(|kind| self.kinds.get_mut(usize::from(kind)));
         if let Some(kind) = kind.filter(|kind| kind.is_in) {
             let counted = kind.part * share.max(LEAST_SHARE);
             kind.points.push(i as u32);

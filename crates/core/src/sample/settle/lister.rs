@@ -1,4 +1,4 @@
-//! The points of a box where their ranks left them, many at a time.
+//! Sets that settle: the points of a box where their ranks left them, many at a time.
 
 use core::ops::Range;
 
@@ -9,30 +9,61 @@ use crate::{
         kernel::Backend,
         lattice::{BAND_WIDTH, Columns, Found, Grade, Lattice, Patch, PointId, Span, clip_to_band},
     },
-    table::fixed,
+    table::{Table, fixed},
 };
 
 /// The most candidates that are looked at together.
 const TOGETHER: usize = 2048;
 
-/// Lists points, with memory of its own.
+/// A set of all kinds whose points settle: one of the plane, or of a torus, by addresses that do not wrap.
+pub(crate) trait Settling: Clone {
+    fn table(&self) -> &Table;
+
+    /// The kind of a point in the table.
+    fn kind_of(&self, id: PointId) -> Option<u8>;
+
+    /// The inverse of the mean spacing at full density, in grid units.
+    fn side(&self) -> f64;
+
+    /// The same spacing in world units.
+    fn spacing(&self) -> f64;
+
+    /// A fixed-point unit in world units.
+    fn step(&self) -> f64;
+
+    /// The least distance of all points at full density, in fixed-point units.
+    fn certified(&self) -> f64;
+
+    /// The world coordinates at which the field is looked at for a fixed-point place.
+    fn looked_at(&self, place: [i128; 2]) -> [f64; 2];
+
+    /// Calls `visit` for the points of a grade that were placed in a box, some at a time, with places from a corner
+    /// near it.
+    fn list(
+        &mut self,
+        within: &Box2,
+        corner: [i128; 2],
+        by: (&Grade, Backend),
+        visit: impl FnMut(Points<'_>),
+    );
+}
+
+/// Lists points of the plane, with memory of its own.
 #[derive(Clone, Debug)]
-pub(super) struct Lister {
-    /// The points of all kinds.
-    pub(super) lattice: Lattice,
-    pub(super) grade: Grade,
-    pub(super) backend: Backend,
+pub(crate) struct Lister {
+    lattice: Lattice,
     columns: Columns,
     rows: FieldRows,
 }
 
 /// Some points and their shares.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Points<'a> {
-    pub(super) found: &'a [Found],
-    pub(super) shares: &'a [f64],
-    address: [i64; 2],
-    origin: [i64; 2],
+pub(crate) struct Points<'a> {
+    pub(crate) found: &'a [Found],
+    pub(crate) shares: &'a [f64],
+    /// The address of the origin, and its place from the corner in fixed-point units.
+    pub(crate) address: [i64; 2],
+    pub(crate) origin: [i64; 2],
 }
 
 impl Points<'_> {
@@ -54,29 +85,55 @@ impl Points<'_> {
 }
 
 impl Lister {
-    pub(super) fn new(lattice: Lattice, grade: Grade) -> Self {
+    pub(super) fn new(lattice: &Lattice) -> Self {
         Self {
-            lattice,
-            grade,
-            backend: Backend::best(),
+            lattice: lattice.of_all_kinds(),
             columns: Columns::default(),
             rows: FieldRows::default(),
         }
     }
+}
 
-    /// Calls `visit` for the points that were placed in a box, some at a time, with places from a corner near it.
-    pub(super) fn list(
+impl Settling for Lister {
+    fn table(&self) -> &Table {
+        &self.lattice.table
+    }
+
+    fn kind_of(&self, id: PointId) -> Option<u8> {
+        self.lattice.kind_of(id)
+    }
+
+    fn side(&self) -> f64 {
+        self.lattice.table.alpha().set_side_f64()
+    }
+
+    fn spacing(&self) -> f64 {
+        self.lattice.placement.spacing.get()
+    }
+
+    fn step(&self) -> f64 {
+        self.lattice.step
+    }
+
+    fn certified(&self) -> f64 {
+        self.lattice.certified()
+    }
+
+    fn looked_at(&self, place: [i128; 2]) -> [f64; 2] {
+        place.map(|k| self.lattice.world(k))
+    }
+
+    fn list(
         &mut self,
         within: &Box2,
         corner: [i128; 2],
+        (grade, backend): (&Grade, Backend),
         mut visit: impl FnMut(Points<'_>),
     ) {
         let Self {
             lattice,
-            grade,
             columns,
             rows,
-            backend,
         } = self;
         if within.iter().any(Range::is_empty) {
             return;
@@ -104,7 +161,7 @@ impl Lister {
                         spans: [&x, &y],
                         columns: (columns, &range),
                     };
-                    next = rows.list(source, next..end, TOGETHER, *backend);
+                    next = rows.list(source, next..end, TOGETHER, backend);
                     let (found, shares) = rows.with_shares();
                     visit(Points {
                         found,

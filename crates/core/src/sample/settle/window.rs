@@ -42,15 +42,16 @@ use super::{
     guess::guess,
     kernels,
     kin::Kin,
-    lister::Lister,
+    lister::{Lister, Settling},
     near::Near,
     reach::{Extent, Reach, reached, step_room},
     step::{Kernel, Scale},
 };
 use crate::{
     sample::{
+        bounds::world,
         kernel::Backend,
-        lattice::{Lattice, PointId},
+        lattice::{Grade, Lattice, PointId, Settle},
     },
     shape::Region,
     table::FRACTION_BITS,
@@ -68,8 +69,10 @@ const FARTHEST: i64 = 1 << 23;
 
 /// Settles points, with memory of its own.
 #[derive(Clone, Debug)]
-pub(crate) struct Settler {
-    lister: Lister,
+pub(crate) struct Settler<S = Lister> {
+    set: S,
+    grade: Grade,
+    backend: Backend,
     kernels: &'static [Kernel],
     /// The points by kinds, if those of a kind push each other.
     kin: Option<Kin>,
@@ -105,9 +108,23 @@ struct Listed {
 impl Settler {
     /// A settler of a lattice whose points settle; `None` of others.
     pub(crate) fn new(lattice: &Lattice) -> Option<Self> {
-        let settle = lattice.settle()?;
-        let grade = lattice.grade.clone()?;
-        let side = lattice.table.alpha().set_side_f64();
+        let (settle, grade) = (lattice.settle()?, lattice.grade.clone()?);
+        Some(Self::of(Lister::new(lattice), grade, settle))
+    }
+
+    /// The settled place of an address, or `None` if it has no point.
+    pub(crate) fn point(&mut self, lattice: &Lattice, id: PointId) -> Option<[i128; 2]> {
+        let place = lattice.place(id)?;
+        self.settled(place, |placed| {
+            placed.id == id && lattice.shows(id, placed.share)
+        })
+    }
+}
+
+impl<S: Settling> Settler<S> {
+    /// A settler of a set that a grade thins.
+    pub(crate) fn of(set: S, grade: Grade, settle: Settle) -> Self {
+        let side = set.side();
         // Up to some 350 spacings fit a window.
         let mut sparse = 0;
         while 400.0 / side > f64::from(1u32 << sparse) * 1500.0 {
@@ -115,7 +132,7 @@ impl Settler {
         }
         let shift = UNIT_BITS + sparse;
         let unit = f64::from(1u32 << FRACTION_BITS) / side;
-        let kin = Kin::new(lattice, settle);
+        let kin = Kin::new(set.table(), settle);
         let kernels = kin.as_ref().map_or(kernels(settle), |kin| kin.steps().all);
         let reach = |(t, kernel)| {
             let of_kin = kin.as_ref().map(|kin| (kin.kernel(t), kin.least_part()));
@@ -126,14 +143,16 @@ impl Settler {
         };
         let reaches: Vec<Reach> = kernels.iter().enumerate().map(reach).collect();
         let own = |v: f64| v / f64::from(1u32 << shift);
-        let clear = own(lattice.certified());
+        let clear = own(set.certified());
         let near = settle.is_near().then(|| {
             let reach = reaches.iter().map(Reach::widest).fold(0.0, f64::max);
             Near::new(clear, reach * own(unit))
         });
-        Some(Self {
+        Self {
             reaches,
-            lister: Lister::new(lattice.of_all_kinds(), grade),
+            set,
+            grade,
+            backend: Backend::best(),
             kernels,
             kin,
             scale: Scale {
@@ -148,17 +167,21 @@ impl Settler {
             cells: Cells::default(),
             freedoms: Freedoms::default(),
             slippery: Vec::new(),
-        })
+        }
+    }
+
+    pub(crate) const fn set(&self) -> &S {
+        &self.set
     }
 
     /// Works by another backend.
     pub(crate) const fn set_backend(&mut self, backend: Backend) {
-        self.lister.backend = backend;
+        self.backend = backend;
     }
 
     /// The greatest move of points that were placed in a box, in fixed-point units.
     pub(crate) fn most_move(&self, within: &Box2) -> i64 {
-        let low = self.lister.grade.bounds(&self.region(within))[0];
+        let low = self.grade.bounds(&self.region(within))[0];
         most_move(self.unit * local(low), self.shift)
     }
 
@@ -178,7 +201,7 @@ impl Settler {
 
     /// The greatest share in a box.
     pub(crate) fn greatest_share(&self, within: &Box2) -> f64 {
-        self.lister.grade.bounds(&self.region(within))[1]
+        self.grade.bounds(&self.region(within))[1]
     }
 
     /// The number of points of the last window.
@@ -186,23 +209,22 @@ impl Settler {
         self.listed.len()
     }
 
-    /// The settled place of an address, or `None` if it has no point.
-    pub(crate) fn point(&mut self, lattice: &Lattice, id: PointId) -> Option<[i128; 2]> {
-        let place = lattice.place(id)?;
-        let within = place.map(|k| k..k + 1);
+    /// Where a point settles that was placed somewhere, if it is wanted.
+    pub(crate) fn settled(
+        &mut self,
+        place: [i128; 2],
+        wants: impl FnMut(&Placed) -> bool,
+    ) -> Option<[i128; 2]> {
         let mut found = None;
-        self.settle(
-            &within,
-            |placed| placed.id == id && lattice.shows(id, placed.share),
-            |settled| found = Some(settled.place),
-        );
+        let within = place.map(|k| k..k + 1);
+        self.settle(&within, wants, |settled| found = Some(settled.place));
         found
     }
 
     /// The region of a box.
     pub(crate) fn region(&self, within: &Box2) -> Region {
         let [x, y] = within;
-        let world = |k: i128| self.lister.lattice.world(k);
+        let world = |k: i128| world(self.set.step(), k);
         Region::between(
             [world(x.start), world(y.start)],
             [world(x.end.max(x.start)), world(y.end.max(y.start))],
@@ -213,7 +235,8 @@ impl Settler {
     pub(crate) fn list(&mut self, within: &Box2, mut visit: impl FnMut(Placed)) {
         let (unit, shift) = (self.unit, self.shift);
         let corner = within.each_ref().map(|range| range.start);
-        self.lister.list(within, corner, |some| {
+        let by = (&self.grade, self.backend);
+        self.set.list(within, corner, by, |some| {
             for (found, &share) in some.found.iter().zip(some.shares) {
                 let (id, offset) = (some.id(found), some.offset(found));
                 let place = [0, 1].map(|i| corner[i] + i128::from(offset[i]));
@@ -242,7 +265,7 @@ impl Settler {
             max: [0, 1].map(|i| self.offset(corner, i, within[i].end - 1)),
         };
         let mut window = guess(
-            &self.lister.grade,
+            &self.grade,
             (self.region(within), own),
             &self.reaches,
             f64::from(self.scale.unit),
@@ -280,8 +303,8 @@ impl Settler {
 
     /// The world coordinates of the place at which point number `i` of the window was placed.
     fn placed(&self, corner: [i128; 2], i: usize) -> [f64; 2] {
-        let [x, y] = self.place(corner, i, &self.places.placed);
-        [self.lister.lattice.world(x), self.lister.lattice.world(y)]
+        self.set
+            .looked_at(self.place(corner, i, &self.places.placed))
     }
 
     /// Lists the points of a window.
@@ -298,15 +321,12 @@ impl Settler {
         });
         let mut listed = core::mem::take(&mut self.listed);
         let mut places = core::mem::take(&mut self.places);
-        let mut kin = self.kin.take();
         listed.clear();
         places.clear();
-        if let Some(kin) = &mut kin {
-            kin.clear();
-        }
         let (shift, unit) = (self.shift, self.unit);
         let below = (1 << shift) - 1;
-        self.lister.list(&within, corner, |some| {
+        let by = (&self.grade, self.backend);
+        self.set.list(&within, corner, by, |some| {
             let offsets = || some.found.iter().map(|found| some.offset(found));
             for (axis, list) in places.placed.iter_mut().enumerate() {
                 list.extend(offsets().map(|offset| (offset[axis] >> shift) as i32 as f32));
@@ -316,11 +336,6 @@ impl Settler {
                 .share
                 .extend(shares.map(|share| share.max(LEAST_SHARE) as f32));
             let points = some.found.iter().zip(some.shares);
-            if let Some(kin) = &mut kin {
-                for (i, (found, &share)) in (listed.len()..).zip(points.clone()) {
-                    kin.add(i, some.id(found), share);
-                }
-            }
             listed.extend(points.map(|(found, &share)| {
                 let (id, offset) = (some.id(found), some.offset(found));
                 let is_wanted = own.holds(offset.map(|v| (v >> shift) as i32 as f32)) && {
@@ -341,7 +356,13 @@ impl Settler {
         }
         places.freedom.resize(listed.len(), 0.0);
         places.until.resize(listed.len(), 0);
-        (self.listed, self.places, self.kin) = (listed, places, kin);
+        if let Some(kin) = &mut self.kin {
+            kin.clear();
+            for (i, listed) in listed.iter().enumerate() {
+                kin.add(i, self.set.kind_of(listed.id), listed.share);
+            }
+        }
+        (self.listed, self.places) = (listed, places);
     }
 
     /// Finds out which points move in which steps. Returns the extent of the points that matter to them; if it goes
@@ -351,7 +372,7 @@ impl Settler {
         let steps = self.reaches.len();
         let mut all = Extent::NONE;
         let mut from = Extent::NONE;
-        if let Some(share) = self.lister.grade.known() {
+        if let Some(share) = self.grade.known() {
             return self.prepare_alike(share);
         }
         for t in (0..steps).rev() {
@@ -425,14 +446,14 @@ impl Settler {
             });
         }
         let (spacing, per_unit) = (
-            self.lister.lattice.placement.spacing.get(),
-            self.lister.lattice.step * f64::from(1u32 << self.shift),
+            self.set.spacing(),
+            self.set.step() * f64::from(1u32 << self.shift),
         );
         let mut freedoms = core::mem::take(&mut self.freedoms);
         let mut freedom = core::mem::take(&mut self.places.freedom);
         let mut slippery = core::mem::take(&mut self.slippery);
         freedoms.find(
-            &self.lister.grade,
+            &self.grade,
             (spacing, per_unit),
             |i| self.placed(corner, i as usize),
             |i, free, is_gentle| {
@@ -450,7 +471,7 @@ impl Settler {
 
     fn take_steps(&mut self) {
         for (step, kernel) in (1..).zip(self.kernels) {
-            let backend = self.lister.backend;
+            let backend = self.backend;
             if let Some(kin) = &mut self.kin {
                 kin.push(&mut self.places, step, self.scale, backend);
             }
@@ -464,7 +485,7 @@ impl Settler {
 
     /// Puts points back that slipped over an edge.
     fn go_back(&mut self, corner: [i128; 2]) {
-        if self.lister.grade.known().is_some() {
+        if self.grade.known().is_some() {
             return;
         }
         for i in 0..self.listed.len() {
@@ -476,10 +497,7 @@ impl Settler {
             } = self.listed[i];
             if is_wanted && may_slip && self.places.freedom[i] > 0.0 {
                 let at = self.place(corner, i, &self.places.at);
-                let there = self
-                    .lister
-                    .grade
-                    .share(at.map(|k| self.lister.lattice.world(k)));
+                let there = self.grade.share(self.set.looked_at(at));
                 if slipped(share, there) {
                     for axis in 0..2 {
                         self.places.at[axis][i] = self.places.placed[axis][i];

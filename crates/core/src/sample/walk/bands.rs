@@ -47,9 +47,8 @@ impl Place {
 /// The bands of a scope or a tile, from left to right, and in the current band the patch of the current
 /// row.
 #[derive(Clone, Debug)]
-pub(super) struct Bands<F> {
+pub(super) struct Bands {
     pub(super) scope: Arc<Scope>,
-    pub(super) format: F,
     pub(super) backend: Backend,
     /// The bands still to come.
     ahead: Range<i64>,
@@ -65,19 +64,14 @@ pub(super) struct Bands<F> {
     pub(super) patch: Patch,
     /// The scope's spans in the patch.
     pub(super) piece: [Span; 2],
-    /// The patch's origin in the format's terms.
-    pub(super) base: [f64; 2],
 }
 
-impl<F: Format> Bands<F> {
+impl Bands {
     /// Some bands and rows of a scope, before the first band.
     fn new(scope: Arc<Scope>, bands: Range<i64>, rows: Range<i64>) -> Self {
         let Scope { lattice, x, y, .. } = &*scope;
         let patch = Patch::new(lattice, bands.start, rows.start, x, y);
-        let format: F = format_of(&scope);
         Self {
-            base: format.base(patch.origin()),
-            format,
             backend: Backend::best(),
             band: bands.start,
             ahead: bands,
@@ -177,7 +171,6 @@ impl<F: Format> Bands<F> {
     pub(super) fn next_patch(&mut self) {
         let Scope { lattice, x, y, .. } = &*self.scope;
         self.patch = Patch::new(lattice, self.band, self.at.y, x, y);
-        self.base = self.format.base(self.patch.origin());
         let (columns, rows) = (self.range(), self.at.y..self.patch_end());
         if self.patch.is_warped() {
             self.piece = Span::of_piece(lattice, [x, y], [columns.clone(), rows.clone()]);

@@ -56,7 +56,7 @@ use alloc::{boxed::Box, sync::Arc};
 #[cfg(feature = "fields")]
 use super::graded::FieldWalk;
 use super::{
-    bands::Bands,
+    bands::{Bands, format_of},
     few::{Few, Kept},
     rows::RowWalk,
     settled::{Pieces, SettledWalk},
@@ -91,6 +91,7 @@ pub struct Blocks<F: Format> {
     window: Option<Window<PointId>>,
     /// The number of points still to come.
     left: u128,
+    format: F,
     walk: Walk<F>,
 }
 
@@ -98,16 +99,16 @@ pub struct Blocks<F: Format> {
 #[derive(Clone, Debug)]
 enum Walk<F: Format> {
     /// The points were found when they were counted.
-    Kept(Kept<F>),
+    Kept(Kept),
     Rows(Box<RowWalk<F>>),
     #[cfg(feature = "fields")]
     Field(Box<FieldWalk<F>>),
-    Settled(Box<SettledWalk<F>>),
+    Settled(Box<SettledWalk>),
 }
 
 impl<F: Format> Walk<F> {
     /// A walk over some bands from an address on, or from the first one.
-    fn new(bands: Bands<F>, start: Option<PointId>) -> Self {
+    fn new(bands: Bands, start: Option<PointId>) -> Self {
         match bands.scope.lattice.grade {
             #[cfg(feature = "fields")]
             Some(_) => Self::Field(Box::new(FieldWalk::new(bands, start))),
@@ -124,6 +125,7 @@ impl<F: Format> Blocks<F> {
             None => Walk::new(Bands::from(scope.clone(), window.start), window.start),
         };
         Self {
+            format: format_of(&scope),
             scope,
             window: Some(window),
             left: window.count,
@@ -134,7 +136,8 @@ impl<F: Format> Blocks<F> {
     /// The points of a window, which were kept when they were counted.
     pub(crate) fn of_kept(scope: Arc<Scope>, window: Window<PointId>, kept: Arc<Few>) -> Self {
         Self {
-            walk: Walk::Kept(Kept::new(&scope, kept, window.offset as usize)),
+            walk: Walk::Kept(Kept::new(kept, window.offset as usize)),
+            format: format_of(&scope),
             scope,
             window: Some(window),
             left: window.count,
@@ -149,6 +152,7 @@ impl<F: Format> Blocks<F> {
         };
         Self {
             walk,
+            format: format_of(&scope),
             scope,
             window: None,
             left: u128::MAX,
@@ -190,12 +194,13 @@ impl<F: Format> Blocks<F> {
     pub fn fill(&mut self, out: &mut [F::Item]) -> usize {
         let most = usize::try_from(self.left).map_or(out.len(), |left| left.min(out.len()));
         let out = &mut out[..most];
+        let format = &self.format;
         let filled = match &mut self.walk {
-            Walk::Kept(kept) => kept.fill(out),
-            Walk::Rows(walk) => walk.fill(out),
+            Walk::Kept(kept) => kept.fill(format, out),
+            Walk::Rows(walk) => walk.fill(format, out),
             #[cfg(feature = "fields")]
-            Walk::Field(walk) => walk.fill(out),
-            Walk::Settled(walk) => walk.fill(out),
+            Walk::Field(walk) => walk.fill(format, out),
+            Walk::Settled(walk) => walk.fill(format, out),
         };
         self.left -= filled as u128;
         filled

@@ -4,7 +4,7 @@
 use alloc::{sync::Arc, vec, vec::Vec};
 
 use super::{
-    bands::Bands,
+    bands::{Bands, format_of},
     few::{FEW, FEW_GUARDED, Few, find_few},
     graded::{FieldWalk, Next},
     settled::{Pieces, count_settled, find_few_settled, locate_settled},
@@ -177,9 +177,9 @@ pub(crate) fn locate_graded(scope: &Arc<Scope>, mark: Option<Mark>, k: u128) -> 
                     walk.pass_constant();
                     continue;
                 }
-                let mut points = vec![Point::default(); FEW];
+                let (format, mut points) = (format_of(scope), vec![Point::default(); FEW]);
                 while k >= before {
-                    let filled = walk.write_constant(&mut points);
+                    let filled = walk.write_constant(&format, &mut points);
                     if k < before + filled as u128 {
                         return Some(points[(k - before) as usize].id);
                     }

@@ -3,7 +3,7 @@
 use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
-use super::bands::{format_of, write_found};
+use super::bands::write_found;
 use crate::{
     batch::{Batch, Offset},
     sample::{
@@ -108,21 +108,19 @@ impl Few {
 
 /// The points of a small plan that are still to be written.
 #[derive(Clone, Debug)]
-pub(super) struct Kept<F> {
+pub(super) struct Kept {
     few: Arc<Few>,
     /// The number of the next point.
     next: usize,
-    format: F,
     pub(super) backend: Backend,
 }
 
-impl<F: Format> Kept<F> {
+impl Kept {
     /// The points from number `next` on.
-    pub(super) fn new(scope: &Scope, few: Arc<Few>, next: usize) -> Self {
+    pub(super) fn new(few: Arc<Few>, next: usize) -> Self {
         Self {
             few,
             next,
-            format: format_of(scope),
             backend: Backend::best(),
         }
     }
@@ -140,7 +138,7 @@ impl<F: Format> Kept<F> {
     }
 
     /// Fills `out` with the next points, and only a part of it at the end. Returns the number written.
-    pub(super) fn fill(&mut self, out: &mut [F::Item]) -> usize {
+    pub(super) fn fill<F: Format>(&mut self, format: &F, out: &mut [F::Item]) -> usize {
         let mut written = 0;
         while self.next < self.few.len()
             && written < out.len()
@@ -149,8 +147,12 @@ impl<F: Format> Kept<F> {
             let number = (out.len() - written).min(end - self.next);
             let points = self.few.found.points(self.next..self.next + number);
             let points = points.map(|found| found.lifted(patch.lift));
-            let by = (&self.format, self.backend);
-            write_found(by, patch.origin, points, &mut out[written..]);
+            write_found(
+                (format, self.backend),
+                patch.origin,
+                points,
+                &mut out[written..],
+            );
             self.next += number;
             written += number;
         }

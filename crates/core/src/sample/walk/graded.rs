@@ -68,7 +68,7 @@ const MOST: usize = 2048;
 /// A walk in a field.
 #[derive(Clone, Debug)]
 pub(super) struct FieldWalk<F: Format> {
-    bands: Bands<F>,
+    bands: Bands,
     /// The points that were found in the patch.
     rows: FieldRows,
     /// The last rows of a band in which the field is constant.
@@ -98,7 +98,7 @@ pub(super) enum Next {
 
 impl<F: Format> FieldWalk<F> {
     /// A walk over some bands from an address on, or from the first one.
-    pub(super) fn new(bands: Bands<F>, start: Option<PointId>) -> Self {
+    pub(super) fn new(bands: Bands, start: Option<PointId>) -> Self {
         let mut walk = Self {
             bands,
             rows: FieldRows::default(),
@@ -119,14 +119,14 @@ impl<F: Format> FieldWalk<F> {
     }
 
     /// Fills `out` with the next points, and only a part of it at the end. Returns the number written.
-    pub(super) fn fill(&mut self, out: &mut [F::Item]) -> usize {
+    pub(super) fn fill(&mut self, format: &F, out: &mut [F::Item]) -> usize {
         let mut filled = 0;
         while filled < out.len() {
             let out = &mut out[filled..];
             filled += if !self.found().is_empty() {
-                self.write(out)
+                self.write(format, out)
             } else if self.has_constant() {
-                self.write_constant(out)
+                self.write_constant(format, out)
             } else if self.next(out.len()).is_some() {
                 0
             } else {
@@ -208,9 +208,9 @@ impl<F: Format> FieldWalk<F> {
     }
 
     /// Writes points that were found until `out` is full.
-    fn write(&mut self, out: &mut [F::Item]) -> usize {
+    fn write(&mut self, format: &F, out: &mut [F::Item]) -> usize {
         let number = self.found().len().min(out.len());
-        let by = (&self.bands.format, self.bands.backend);
+        let by = (format, self.bands.backend);
         write_found(by, self.origin(), self.found().iter().copied(), out);
         self.pass(number);
         number
@@ -223,11 +223,12 @@ impl<F: Format> FieldWalk<F> {
     }
 
     /// Writes points of rows in which the field is constant.
-    pub(super) fn write_constant(&mut self, out: &mut [F::Item]) -> usize {
+    pub(super) fn write_constant(&mut self, format: &F, out: &mut [F::Item]) -> usize {
         let Some(constant) = &mut self.constant else {
             return 0;
         };
-        let filled = constant.walk.as_mut().map_or(0, |walk| walk.fill(out));
+        let walk = constant.walk.as_mut();
+        let filled = walk.map_or(0, |walk| walk.fill(format, out));
         if filled < out.len() {
             constant.walk = None;
         }

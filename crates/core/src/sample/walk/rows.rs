@@ -56,7 +56,7 @@ const LOOK: i64 = 8;
 /// A walk outside fields.
 #[derive(Clone, Debug)]
 pub(super) struct RowWalk<F: Format> {
-    pub(super) bands: Bands<F>,
+    pub(super) bands: Bands,
     /// The columns that lie inside whatever their displacement, as places in the lists.
     inner: [Range<usize>; 4],
     templates: Templates<F>,
@@ -66,7 +66,7 @@ pub(super) struct RowWalk<F: Format> {
 
 impl<F: Format> RowWalk<F> {
     /// A walk over some bands from an address on, or from the first one.
-    pub(super) fn new(bands: Bands<F>, start: Option<PointId>) -> Self {
+    pub(super) fn new(bands: Bands, start: Option<PointId>) -> Self {
         let is_tall = bands.rows.end - bands.rows.start >= TALL;
         let kept = match &bands.sieve {
             Some(_) => Kept::All,
@@ -89,7 +89,7 @@ impl<F: Format> RowWalk<F> {
     }
 
     /// Fills `out` with the next points, and only a part of it at the end. Returns the number written.
-    pub(super) fn fill(&mut self, out: &mut [F::Item]) -> usize {
+    pub(super) fn fill(&mut self, format: &F, out: &mut [F::Item]) -> usize {
         let mut filled = 0;
         while filled < out.len() {
             let Some(end) = self.advance() else {
@@ -98,11 +98,11 @@ impl<F: Format> RowWalk<F> {
             let Bands { sieve, at, .. } = &self.bands;
             let out = &mut out[filled..];
             filled += if sieve.as_ref().is_some_and(|sieve| sieve.is_cut) {
-                self.fill_sifted(end, out)
+                self.fill_sifted(format, end, out)
             } else if self.templates.are_short() && at.is_fresh() {
-                self.fill_flat(end, out)
+                self.fill_flat(format, end, out)
             } else {
-                self.fill_rows(end, out)
+                self.fill_rows(format, end, out)
             };
         }
         filled
@@ -166,11 +166,10 @@ impl<F: Format> RowWalk<F> {
     }
 
     /// Writes points of a patch in which few rows share a template, until row `end` or until `out` is full.
-    fn fill_flat(&mut self, end: i64, out: &mut [F::Item]) -> usize {
+    fn fill_flat(&mut self, format: &F, end: i64, out: &mut [F::Item]) -> usize {
         let range = self.bands.range();
         let Bands {
             scope,
-            format,
             backend,
             at,
             patch,
@@ -187,7 +186,7 @@ impl<F: Format> RowWalk<F> {
         );
         let found = &self.flat.found;
         write_found(
-            (&*format, *backend),
+            (format, *backend),
             patch.origin(),
             found.points(0..found.len()),
             out,
@@ -204,20 +203,18 @@ impl<F: Format> RowWalk<F> {
     }
 
     /// Writes points of the patch's rows until row `end` or until `out` is full.
-    fn fill_rows(&mut self, end: i64, out: &mut [F::Item]) -> usize {
+    fn fill_rows(&mut self, format: &F, end: i64, out: &mut [F::Item]) -> usize {
         let Bands {
             scope,
-            format,
             backend,
             at,
             columns: listed,
             patch,
             piece: [x, span],
-            base,
             ..
         } = &mut self.bands;
-        let (lattice, format, patch, base, by) =
-            (&scope.lattice, &*format, &*patch, *base, *backend);
+        let (lattice, patch, by) = (&scope.lattice, &*patch, *backend);
+        let base = format.base(patch.origin());
         let is_split = patch.is_warped() && !patch.columns_are_inner;
         let is_flat = self.templates.are_short();
         let mut filled = 0;
@@ -278,24 +275,22 @@ impl<F: Format> RowWalk<F> {
     }
 
     /// Writes points of a patch that the sieve cuts, until row `end` or until `out` is full.
-    fn fill_sifted(&mut self, end: i64, out: &mut [F::Item]) -> usize {
+    fn fill_sifted(&mut self, format: &F, end: i64, out: &mut [F::Item]) -> usize {
         let range = self.bands.range();
         let Bands {
             scope,
-            format,
             backend,
             at,
             columns: listed,
             sieve: Some(sifting),
             patch,
-            base,
             ..
         } = &mut self.bands
         else {
             return 0;
         };
-        let (lattice, format, patch, base, by) =
-            (&scope.lattice, &*format, &*patch, *base, *backend);
+        let (lattice, patch, by) = (&scope.lattice, &*patch, *backend);
+        let base = format.base(patch.origin());
         let scale = Scale::new(lattice, patch);
         let mut filled = 0;
         while at.y < end && filled < out.len() {

@@ -40,7 +40,7 @@ use alloc::{sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
 use super::{
-    bands::{format_of, write_found},
+    bands::write_found,
     few::Few,
     inside::{Inside, Tiles},
     sifting::Halves,
@@ -276,9 +276,8 @@ fn holds([columns, rows]: &[Range<i64>; 2], id: PointId) -> bool {
 
 /// A walk over points that settle.
 #[derive(Clone, Debug)]
-pub(super) struct SettledWalk<F> {
+pub(super) struct SettledWalk {
     pieces: Pieces,
-    format: F,
     pub(super) backend: Backend,
     rows: Rows,
     /// The first address, if the walk begins within a piece.
@@ -288,7 +287,7 @@ pub(super) struct SettledWalk<F> {
     taken: usize,
 }
 
-impl<F: Format> SettledWalk<F> {
+impl SettledWalk {
     /// A walk over some bands and rows of a scope whose lattice settles, from an address on if there is one.
     fn new(pieces: Pieces, bands: Range<i64>, rows: Range<i64>, start: Option<PointId>) -> Self {
         let mut rows = Rows::new(bands, rows);
@@ -301,7 +300,6 @@ impl<F: Format> SettledWalk<F> {
             }
         }
         Self {
-            format: format_of(&pieces.scope),
             pieces,
             backend: Backend::best(),
             rows,
@@ -351,7 +349,7 @@ impl<F: Format> SettledWalk<F> {
     }
 
     /// Fills `out` with the next points, and only a part of it at the end. Returns the number written.
-    pub(super) fn fill(&mut self, out: &mut [F::Item]) -> usize {
+    pub(super) fn fill<F: Format>(&mut self, format: &F, out: &mut [F::Item]) -> usize {
         let mut filled = 0;
         while filled < out.len() {
             let left = &self.found[self.taken..];
@@ -362,13 +360,8 @@ impl<F: Format> SettledWalk<F> {
                 continue;
             }
             let number = left.len().min(out.len() - filled);
-            let by = (&self.format, self.backend);
-            write_found(
-                by,
-                self.origin,
-                left.iter().copied(),
-                &mut out[filled..][..number],
-            );
+            let (left, out) = (left.iter().copied(), &mut out[filled..][..number]);
+            write_found((format, self.backend), self.origin, left, out);
             self.taken += number;
             filled += number;
         }
@@ -440,7 +433,7 @@ pub(super) fn locate_settled(
     k: u128,
 ) -> Option<PointId> {
     let scope = pieces.scope.clone();
-    let mut walk = SettledWalk::<crate::sample::kernel::Points>::from(pieces, start);
+    let mut walk = SettledWalk::from(pieces, start);
     while !scope.stop.is_raised() {
         if !walk.next_piece() {
             return None;

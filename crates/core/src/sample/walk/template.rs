@@ -10,9 +10,7 @@ use core::{mem::take, ops::Range};
 use crate::{
     pattern::{Axis, Class},
     sample::{
-        kernel::{
-            Backend, Extent, Format, Row, WarpedColumns, add_first_shear, fill_row, fill_warped_row,
-        },
+        kernel::{Backend, Extent, Format, Row, WarpedColumns, add_first_shear},
         lattice::{Lattice, Line, Patch, Span},
     },
 };
@@ -209,10 +207,10 @@ impl<F: Format> Template<F> {
                 let out = &mut out[..written];
                 if let Some(shears) = shears {
                     let columns = self.warped(columns);
-                    fill_warped_row(format, backend, shears, row, columns, out);
+                    format.fill_warped_row(backend, shears, row, columns, out);
                 } else {
                     let dys = &self.displacements[columns.clone()];
-                    fill_row(format, backend, row, &self.columns[columns], dys, out);
+                    format.fill_row(backend, row, &self.columns[columns], dys, out);
                 }
                 Progress {
                     written,

@@ -67,6 +67,16 @@ impl WrappedShears {
         sum.div_euclid(2 * knot * knot) as i64
     }
 
+    /// The warp moves no place farther than this along an axis.
+    pub(crate) fn most(&self) -> i64 {
+        let most = |controls: &Vec<i32>| controls.iter().map(|v| i64::from(v.abs())).max();
+        self.controls
+            .iter()
+            .filter_map(most)
+            .map(|most| most + 1)
+            .sum()
+    }
+
     /// The place to which the warp moves a fixed-point position, on the torus.
     pub(crate) fn apply(&self, position: [i64; 2]) -> [i64; 2] {
         (0..4).fold(position, |p, i| shear(i, p, |s| self.noise(i, s)))
