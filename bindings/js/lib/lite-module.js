@@ -34,8 +34,7 @@ export class LiteModule {
     call(name, field, ...values) {
         const result = this.calls[name](...values);
         if (result !== -1) return result;
-        const words = DECODER.decode(this.output()).replace(BITS, decimal);
-        const [part, value, problem, allowed] = words.split("\0");
+        const [part, value, problem, allowed] = this.texts().map((words) => words.replace(BITS, decimal));
         const detail = problem || `${part} is ${value}`;
         throw new StrewError(`\`${field}\`: ${detail}; allowed: ${allowed}`, "invalid-query", [
             { field, value, detail, allowed },
@@ -48,6 +47,11 @@ export class LiteModule {
         const copy = this.calls.memory.buffer.slice(at, at + (this.calls.output_length() >>> 0));
         this.calls.free_output();
         return copy;
+    }
+
+    /** The texts of the output, which is freed. */
+    texts() {
+        return DECODER.decode(this.output()).split("\0");
     }
 
     /** The points of an output, as objects. */

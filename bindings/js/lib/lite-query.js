@@ -80,6 +80,21 @@ const KNOWN = {
         },
     },
 };
+/** The table that queries mean which name none, of every door. */
+const USUAL = { profile: "blue", alpha: "(5-sqrt(3))/2", map: "m" };
+
+/** The parameters that name a table, for one that is open; and those that a query must have so that it means this one. */
+export function naming(table) {
+    const odd = Object.keys(USUAL).filter((name) => table[name] !== USUAL[name]);
+    const named = ([name, own]) => {
+        const allowed = `${name}: "${own}", or open({ table }) with another file, as of the package strew-tables`;
+        const read = (value) => (String(value) === own ? own : new Wrong("is not that of the open table"));
+        return [name, { allowed, read }];
+    };
+    const known = Object.fromEntries(Object.entries(table).map(named));
+    return { known: { ...KNOWN, ...known }, needed: odd.length ? new Set([...odd, "map"]) : new Set() };
+}
+
 const SEARCH = {
     at: numbers(2, "two finite numbers x,y"),
     k: integer(1, 10000),
@@ -146,13 +161,17 @@ function area(region, faults) {
 }
 
 /** A checked query: the numbers of its set, which have a `key`, its region, and the place of a search. */
-export function read({ region, ...members }, search = {}) {
+export function read({ region, ...members }, { known: all, needed }, search = {}) {
     const [faults, is] = [new Faults(), {}];
-    for (const [values, known] of [[members, KNOWN], [search, SEARCH]]) {
-        for (const [name, value] of Object.entries(values).filter(([, value]) => value !== undefined)) {
+    for (const [values, known] of [[members, all], [search, SEARCH]]) {
+        for (const [name, value] of Object.entries(values).filter(([name, value]) => name === "at" || value !== undefined)) {
             if (Object.hasOwn(known, name)) is[name] = faults.read(name, value, known[name]);
             else faults.add(name, value, "no such parameter in strew/lite", Object.keys(known).join(", "));
         }
+    }
+    for (const name of needed) {
+        const usual = `is missing: without it the query means the table of ${name} ${USUAL[name]}, which is not open`;
+        if (members[name] === undefined) faults.add(name, undefined, usual, all[name].allowed);
     }
     const amounts = AMOUNTS.filter((name) => members[name] !== undefined);
     if (amounts.length !== 1) {
