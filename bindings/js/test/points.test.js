@@ -93,6 +93,11 @@ test("what is no query or no address says so", () => {
             assert.throws(call, /`query` = .*: not an object; allowed: such as \{ bbox/);
         }
     }
+    const forest = strew.points({ spacing: 1 });
+    for (const [wrong, words] of [[5, "`limits` = `5`: not an object"], [null, "`limits` = `null`"], [{ kk: 3 }, "`kk` = `3`: unknown limit"]]) {
+        assert.throws(() => forest.nearest([1, 2], wrong), ({ message }) => message.startsWith(words) && /{ k, radius }/.test(message));
+    }
+    assert.throws(() => forest.nearest(), /`at`: missing/);
     assert.throws(() => connect("127.0.0.1:8080"), /`url` = `127.0.0.1:8080`: http:\/\/ is missing; allowed: http/);
     assert.throws(() => connect(["http://localhost:1", "ftp://localhost"]), /`url` = `ftp:.*: no address of a daemon/);
 });
