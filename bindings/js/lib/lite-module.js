@@ -1,6 +1,7 @@
 // The small WebAssembly module, the crate in `lite/`: its calls and its memory.
 
 import { StrewError } from "./error.js";
+import { Held } from "./held.js";
 
 // The module writes numbers of its errors as their bits.
 const BITS = /#([0-9a-f]{16})/g;
@@ -15,7 +16,8 @@ const DECODER = new TextDecoder();
 
 /** A compiled module. Its functions take numbers, and read and write two buffers of their own. */
 export class LiteModule {
-    #plans = new FinalizationRegistry((plan) => this.calls.free_plan(plan));
+    /** Its plans, by their owners. */
+    plans = new Held((plan) => this.calls.free_plan(plan));
 
     constructor(instance) {
         this.calls = instance.exports;
@@ -68,16 +70,5 @@ export class LiteModule {
             });
             return point;
         });
-    }
-
-    /** Frees a plan once its owner is collected, unless `free` does so before. */
-    held(owner, plan) {
-        this.#plans.register(owner, plan, owner);
-    }
-
-    /** Frees a plan at once. */
-    free(owner, plan) {
-        this.#plans.unregister(owner);
-        this.calls.free_plan(plan);
     }
 }

@@ -124,12 +124,16 @@ class LitePlan {
         this.#module = module;
         this.#plan = plan;
         this.#set = set;
-        module.held(this, plan);
+        module.plans.add(this, plan);
+    }
+
+    get isFree() {
+        return this.#plan === undefined;
     }
 
     /** Frees the memory. The plan has no points afterwards. */
     free() {
-        if (this.#plan !== undefined) this.#module.free(this, this.#plan);
+        if (this.#plan !== undefined) this.#module.plans.remove(this, this.#plan);
         this.#plan = undefined;
     }
 
@@ -152,7 +156,8 @@ class LitePlan {
     #output(name, kind) {
         const count = this.#count();
         if (count > MOST_POINTS) {
-            throw new StrewError(`the answer has ${count} points; at most ${MOST_POINTS}`, "too-many-points");
+            const words = `the region holds ${count} points, and an array has room for at most ${MOST_POINTS}`;
+            throw new StrewError(`${words}: request a smaller region, or chunks`, "too-many-points");
         }
         this.#module.call(name, name, this.#at());
         return new kind(this.#module.output());

@@ -102,12 +102,16 @@ class Plan {
         this.#plan = plan;
         this.#calls = CALLS.get(dimension);
         this.#axes = dimension.axes.length;
-        module.held(this, plan);
+        module.plans.add(this, plan);
+    }
+
+    get isFree() {
+        return !this.#plan;
     }
 
     /** Frees the memory. The plan has no points afterwards. */
     free() {
-        if (this.#plan) this.#module.free(this, this.#plan);
+        if (this.#plan) this.#module.plans.remove(this, this.#plan);
         this.#plan = 0;
     }
 
@@ -120,10 +124,12 @@ class Plan {
         });
     }
 
-    /** The points that a buffer is made for. More are refused by the call, before it looks at the buffer. */
+    /** The number of points, for a buffer. The memory of a module has room for fewer than 2²⁸. */
     #few() {
         const count = this.count();
-        return typeof count === "number" && count < 2 ** 28 ? count : 0;
+        if (count < 2 ** 28) return count;
+        const words = `the region holds ${count} points, and an array has room for at most ${2 ** 28 - 1}`;
+        throw new StrewError(`${words}: request a smaller region, chunks, or parts by split`, "too-many-points");
     }
 
     /** An array with `each` numbers per point. */

@@ -89,7 +89,7 @@ class Points {
 
     /** The planned query of the set. */
     plan() {
-        this.#plan ??= this.#source.plan(text(this.#body), this.#body, this.#dimension);
+        if (!this.#plan || this.#plan.isFree) this.#plan = this.#source.plan(text(this.#body), this.#body, this.#dimension);
         return this.#plan;
     }
 

@@ -1,5 +1,6 @@
 // What compiles with the package's types, and what does not: `tsc --strict` over this file, by test/types.mjs.
-import { connect, open, raster, type Query } from "strew";
+import { open, raster, type Query } from "strew";
+import { connect } from "strew/connect";
 import { open as openLite } from "strew/lite";
 import { Chunks } from "strew/three";
 import blueSmall from "strew-tables/green-5-sqrt3-over-2-s";
