@@ -8,7 +8,13 @@ use std::{
 };
 
 use serde_json::json;
-use strew_error::{Error, Fault, Kind};
+use strew_error::{Door, Error, Fault, Kind};
+
+/// What callers can do about errors.
+pub const DOOR: Door = match cfg!(target_arch = "wasm32") {
+    true => Door::SCRIPT,
+    false => Door::C,
+};
 
 /// The result of a function.
 #[repr(C)]
@@ -79,7 +85,7 @@ impl Failure {
         Self {
             code,
             kind: error.kind().slug(),
-            message: error.to_string(),
+            message: error.told(&DOOR),
             faults: error.faults().to_vec(),
         }
     }

@@ -58,7 +58,9 @@ type OfSet<Of> = Omit<Plain<Of>, "world" | "world_digest" | "offset" | "limit" |
 export type Layer = Named & OfSet<Parameters> & OneOf<Amounts>;
 
 /** A set of its own, of several layers, or of a world. */
-type Sets<One, Amount> = (Amount & { layers?: undefined }) | (NoneOf<Amounts> & ({ layers: readonly One[] } | { world: string }));
+type Sets<One, Amount> =
+    | (Amount & { layers?: undefined })
+    | (NoneOf<Amounts> & ({ layers: readonly One[] } | { world: string }));
 
 /** Each feature of a collection as a layer, with the properties that hold its name and its number of points. */
 interface Features {
@@ -200,7 +202,10 @@ export class PointSet<Where extends "here" | "there" = "here"> {
 }
 
 /** What the set of a query without a region has: `within` and `chunk` are sets whose points can be made. */
-export type Whole<Set> = Pick<Set, keyof Set & ("body" | "within" | "chunk" | "nearest" | "point" | "free" | typeof Symbol.dispose)>;
+export type Whole<Set> = Pick<
+    Set,
+    keyof Set & ("body" | "within" | "chunk" | "nearest" | "point" | "free" | typeof Symbol.dispose)
+>;
 
 /** The points of a query in space, made when they are wanted. */
 export interface SpaceSet<Where extends "here" | "there" = "here"> extends Points<Where, SpacePoint, Volumes, Tuple<[x: number, y: number, z: number]>> {}

@@ -1,6 +1,6 @@
 // The queries of strew/lite: the members of REST's JSON that it knows, checked, as numbers for its module.
 
-import { StrewError } from "./error.js";
+import { fault, invalid } from "./error.js";
 import { text } from "./query.js";
 
 const MOST = 2n ** 64n - 1n;
@@ -83,7 +83,7 @@ const KNOWN = {
 /** The table that queries mean which name none, of every door. */
 const USUAL = { profile: "blue", alpha: "(5-sqrt(3))/2", map: "m" };
 
-/** The parameters that name a table, for one that is open; and those that a query must have so that it means this one. */
+/** The parameters that name the open table, and those that a query must have so that it means this one. */
 export function naming(table) {
     const odd = Object.keys(USUAL).filter((name) => table[name] !== USUAL[name]);
     const named = ([name, own]) => {
@@ -129,10 +129,7 @@ class Faults {
     }
 
     check() {
-        if (!this.#all.length) return;
-        const words = ({ field, value, detail, allowed }) =>
-            `\`${field}\`${value === null ? "" : ` = \`${value}\``}: ${detail}; allowed: ${allowed}`;
-        throw new StrewError(this.#all.map(words).join("; "), "invalid-query", this.#all);
+        if (this.#all.length) throw invalid(this.#all);
     }
 }
 
@@ -164,7 +161,8 @@ function area(region, faults) {
 export function read({ region, ...members }, { known: all, needed }, search = {}) {
     const [faults, is] = [new Faults(), {}];
     for (const [values, known] of [[members, all], [search, SEARCH]]) {
-        for (const [name, value] of Object.entries(values).filter(([name, value]) => name === "at" || value !== undefined)) {
+        for (const [name, value] of Object.entries(values)) {
+            if (value === undefined && name !== "at") continue;
             if (Object.hasOwn(known, name)) is[name] = faults.read(name, value, known[name]);
             else faults.add(name, value, "no such parameter in strew/lite", Object.keys(known).join(", "));
         }
@@ -206,9 +204,7 @@ const RANGE = 2 ** 30;
 export function checkReach(distance, reach) {
     if (distance === undefined || reach <= RANGE * distance) return;
     const near = RANGE * distance;
-    const faults = new Faults();
     const detail = `coordinates up to ${reach} are rounded too coarsely to keep it: it holds within ±${near}`;
     const allowed = `coordinates within ±${near}, a distance of at least ${reach / RANGE}, chunks, or spacing`;
-    faults.add("min_distance", distance, detail, allowed);
-    faults.check();
+    throw fault("min_distance", text(distance), detail, allowed);
 }

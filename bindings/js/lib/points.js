@@ -89,7 +89,8 @@ class Points {
 
     /** The planned query of the set. */
     plan() {
-        if (!this.#plan || this.#plan.isFree) this.#plan = this.#source.plan(text(this.#body), this.#body, this.#dimension);
+        const isThere = this.#plan && !this.#plan.isFree;
+        if (!isThere) this.#plan = this.#source.plan(text(this.#body), this.#body, this.#dimension);
         return this.#plan;
     }
 

@@ -23,7 +23,8 @@ strew.space.points({ prism: [[[0, 0], [9, 0], [0, 9]], 0, 4], spacing: 1 }).chun
 strew.points({ circle: { center: [0, 0], radius: 3 }, spacing: 1 }).within({ chunk: { size: 4, x: 1, y: 2 } });
 const remote: Promise<number> = connect("http://localhost:8080").points({ bbox, spacing: 1 }).count();
 const lite = await openLite();
-const few: number = lite.points({ chunk: [64, 0, 0], map: "s", spacing: 2, variants: { oak: 1 }, attributes: "variant" }).count();
+const kinds = { variants: { oak: 1 }, attributes: "variant" };
+const few: number = lite.points({ chunk: [64, 0, 0], map: "s", spacing: 2, ...kinds }).count();
 new Chunks(lite.points({ map: "s", spacing: 2 }), [], { side: 64 }).update;
 const angles: Float64Array = points.column("angle");
 const names: (string | null)[] = points.column("variant");
@@ -55,8 +56,6 @@ strew.points({ bbox, spacing: 1, seed: "seven" });
 // @ts-expect-error: a limit as a word
 strew.points({ bbox, spacing: 1, limit: "few" });
 // @ts-expect-error: no word of `spread`
-strew.points({ bbox, spacing: 1, spread: 5 });
-// @ts-expect-error: no word of `spread`
 strew.points({ bbox, spacing: 1, spread: "evn" });
 // @ts-expect-error: a range as text
 strew.points({ bbox, spacing: 1, scale_range: "huh" });
@@ -70,12 +69,8 @@ strew.points({ bbox, spacing: 1, variants: "oak:3" });
 strew.points({ bbox, spacing: 1, attributes: 1 });
 // @ts-expect-error: no word of `warp`
 strew.points({ bbox, spacing: 1, warp: "strong" });
-// @ts-expect-error: a number as `only`
-strew.points({ bbox, spacing: 1, only: 3 });
 // @ts-expect-error: a number as `world`
 strew.points({ bbox, spacing: 1, world: 3 });
-// @ts-expect-error: a number as `crs`
-strew.points({ bbox, spacing: 1, crs: 3857 });
 // @ts-expect-error: a function as a value
 strew.points({ bbox, spacing: 1, keep: () => 1 });
 // @ts-expect-error: null is no number
@@ -86,8 +81,6 @@ strew.points({ bbox, layers: [{ spacing: 1 }] });
 strew.points({ bbox, layers: [{ name: "trees", spacng: 1 }] });
 // @ts-expect-error: a place of three numbers in the plane
 points.nearest([0, 0, 0]);
-// @ts-expect-error: neighbors with a name that is misspelled
-points.nearest([0, 0], { count: 3 });
 // @ts-expect-error: a box of the plane, in space
 strew.space.points({ bbox: [0, 0, 9, 9], spacing: 1 });
 // @ts-expect-error: a ball without a radius

@@ -19,7 +19,7 @@ use strew_core::{
     space,
     table::{BLUE, joint_files},
 };
-use strew_error::{Checked, Error};
+use strew_error::{Checked, Door, Error};
 
 use crate::{
     entry::Entry,
@@ -28,7 +28,6 @@ use crate::{
     field::{self, Allowance, Document, Fields, NamedField},
     key::{Dimension, Key, MixKey, Source},
     named::files_of,
-    offer::Offer,
     patterns::Patterns,
     sent::Sent,
 };
@@ -53,7 +52,8 @@ pub struct Catalog {
     patterns: Arc<Patterns>,
     /// The bytes of files that are held.
     pub(crate) preload_bytes: u64,
-    offer: Offer,
+    /// That of a daemon by default.
+    door: Option<&'static Door>,
     /// The most pixels that a query may include, if not the default.
     most_pixels: Option<usize>,
 }
@@ -104,10 +104,7 @@ impl Catalog {
 
     /// The tables of these files, which a program has in memory, and no others.
     pub fn of_files(files: impl IntoIterator<Item = Vec<u8>>) -> Result<Self, CatalogError> {
-        let mut catalog = Self {
-            offer: Offer::Files,
-            ..Self::default()
-        };
+        let mut catalog = Self::default();
         let files = files.into_iter().enumerate();
         catalog.add(files.map(|(i, file)| Entry::read(file.into(), Source::Memory(i))))?;
         Ok(catalog)
@@ -127,9 +124,14 @@ impl Catalog {
         &self.except
     }
 
-    /// How tables can be had that are not loaded.
-    pub const fn offer(&self) -> Offer {
-        self.offer
+    /// The catalog for errors that are read at a door.
+    pub const fn with_door(mut self, door: &'static Door) -> Self {
+        self.door = Some(door);
+        self
+    }
+
+    pub fn door(&self) -> &'static Door {
+        self.door.unwrap_or(&Door::DAEMON)
     }
 
     pub fn fields(&self) -> &Fields {

@@ -7,6 +7,7 @@
 #![allow(missing_docs, reason = "internal: names say what items are")]
 
 mod denied;
+mod door;
 mod error;
 mod fault;
 pub mod faults;
@@ -14,6 +15,7 @@ pub mod integer;
 mod secret;
 
 pub use denied::{Denied, Level, Rate, Short};
+pub use door::Door;
 pub use error::{Error, Kind};
 pub use fault::{Fault, number, unknown};
 pub use faults::{Checked, Faults, Together, all};
