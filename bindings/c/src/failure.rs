@@ -8,12 +8,12 @@ use std::{
 };
 
 use serde_json::json;
-use strew_error::{Door, Error, Fault, Kind};
+use strew_error::{Audience, Error, Fault, Kind};
 
-/// What callers can do about errors.
-pub const DOOR: Door = match cfg!(target_arch = "wasm32") {
-    true => Door::SCRIPT,
-    false => Door::C,
+/// Who reads errors.
+pub const AUDIENCE: Audience = match cfg!(target_arch = "wasm32") {
+    true => Audience::SCRIPT,
+    false => Audience::C,
 };
 
 /// The result of a function.
@@ -85,7 +85,7 @@ impl Failure {
         Self {
             code,
             kind: error.kind().slug(),
-            message: error.told(&DOOR),
+            message: error.message_for(&AUDIENCE),
             faults: error.faults().to_vec(),
         }
     }

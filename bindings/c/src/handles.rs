@@ -14,7 +14,7 @@ use ::strew_plan::{Columns, Library, Planned};
 use strew_encode::Crs;
 
 use crate::{
-    failure::{Code, DOOR, Failure, guarded},
+    failure::{AUDIENCE, Code, Failure, guarded},
     memory::{borrowed, listed, place, text},
 };
 
@@ -64,7 +64,7 @@ pub unsafe extern "C" fn strew_library_open(
         };
         let opened = Library::open(folder.map(Path::new))
             .map_err(Failure::unavailable)?
-            .at(&DOOR);
+            .for_audience(&AUDIENCE);
         out.put(Box::into_raw(Box::new(strew_library(Arc::new(opened)))));
         Ok(())
     })
@@ -99,7 +99,7 @@ pub unsafe extern "C" fn strew_library_of_tables(
         let copied = copied.collect::<Result<Vec<_>, _>>()?;
         let opened = Library::of_tables(copied)
             .map_err(Failure::unavailable)?
-            .at(&DOOR);
+            .for_audience(&AUDIENCE);
         out.put(Box::into_raw(Box::new(strew_library(Arc::new(opened)))));
         Ok(())
     })

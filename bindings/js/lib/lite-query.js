@@ -80,7 +80,7 @@ const KNOWN = {
         },
     },
 };
-/** The table that queries mean which name none, of every door. */
+/** The table of queries that name none, the same everywhere. */
 const USUAL = { profile: "blue", alpha: "(5-sqrt(3))/2", map: "m" };
 
 /** The parameters that name the open table, and those that a query must have so that it means this one. */

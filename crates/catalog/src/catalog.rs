@@ -19,7 +19,7 @@ use strew_core::{
     space,
     table::{BLUE, joint_files},
 };
-use strew_error::{Checked, Door, Error};
+use strew_error::{Audience, Checked, Error};
 
 use crate::{
     entry::Entry,
@@ -52,8 +52,8 @@ pub struct Catalog {
     patterns: Arc<Patterns>,
     /// The bytes of files that are held.
     pub(crate) preload_bytes: u64,
-    /// That of a daemon by default.
-    door: Option<&'static Door>,
+    /// Who reads its errors, by default a daemon's clients.
+    audience: Option<&'static Audience>,
     /// The most pixels that a query may include, if not the default.
     most_pixels: Option<usize>,
 }
@@ -124,14 +124,14 @@ impl Catalog {
         &self.except
     }
 
-    /// The catalog for errors that are read at a door.
-    pub const fn with_door(mut self, door: &'static Door) -> Self {
-        self.door = Some(door);
+    /// The catalog with the audience of its errors.
+    pub const fn with_audience(mut self, audience: &'static Audience) -> Self {
+        self.audience = Some(audience);
         self
     }
 
-    pub fn door(&self) -> &'static Door {
-        self.door.unwrap_or(&Door::DAEMON)
+    pub fn audience(&self) -> &'static Audience {
+        self.audience.unwrap_or(&Audience::DAEMON)
     }
 
     pub fn fields(&self) -> &Fields {

@@ -1,7 +1,7 @@
 //! How a table that is not loaded can be had: in words, for the errors of queries that name one.
 
 use strew_core::{Alpha, map::Size};
-use strew_error::Door;
+use strew_error::Audience;
 use strew_forge::{
     Job, MAX_RADIUS, Profile,
     space::{SpaceJob, SpaceProfile},
@@ -11,7 +11,7 @@ use crate::Dimension;
 
 /// How a table that is not loaded can be had.
 #[derive(Clone, Copy, Debug)]
-pub struct Offer(pub &'static Door);
+pub struct Offer(pub &'static Audience);
 
 impl Offer {
     /// A remedy for a profile that is not loaded; empty if there is none.
@@ -98,13 +98,13 @@ mod tests {
     #[test]
     fn a_missing_table_comes_with_the_command_that_makes_it() {
         let alpha: Alpha = "sqrt(3)".parse().expect("valid");
-        let of = |door, dimension, map| {
+        let of = |audience, dimension, map| {
             let profile = ["blue", "spaced"][usize::from(dimension == Dimension::Space)];
-            Offer(door).of_table(dimension, profile, alpha, map)
+            Offer(audience).of_table(dimension, profile, alpha, map)
         };
-        let plane = |map| of(&Door::DAEMON, Dimension::Plane, map);
-        let space = |map| of(&Door::DAEMON, Dimension::Space, map);
-        let profile = |name| Offer(&Door::DAEMON).of_profile(Dimension::Space, name);
+        let plane = |map| of(&Audience::DAEMON, Dimension::Plane, map);
+        let space = |map| of(&Audience::DAEMON, Dimension::Space, map);
+        let profile = |name| Offer(&Audience::DAEMON).of_profile(Dimension::Space, name);
         for (text, command) in [
             (plane(None), "--profile blue --alpha 'sqrt(3)' --radius 49,"),
             (
@@ -132,6 +132,7 @@ mod tests {
         ] {
             assert_eq!(none, "");
         }
-        assert_eq!(Some(&*of(&Door::C, Dimension::Plane, None)), Door::C.table);
+        let way = of(&Audience::C, Dimension::Plane, None);
+        assert_eq!(Some(&*way), Audience::C.table);
     }
 }

@@ -3,7 +3,9 @@
 //! One type for both protocols; its [`Kind`] has the status on each. Text here is for clients; what only operators
 //! should see goes to the log where it happens.
 
-use crate::{denied::Denied, door::Door, fault::Fault, faults::Faults, secret::without_keys};
+use crate::{
+    audience::Audience, denied::Denied, fault::Fault, faults::Faults, secret::without_keys,
+};
 
 /// Why a request has no answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -11,9 +13,9 @@ use crate::{denied::Denied, door::Door, fault::Fault, faults::Faults, secret::wi
 pub enum Error {
     #[error("{}", joined(.0.as_slice()))]
     Invalid(Faults),
-    #[error("{}", self.told(&Door::DAEMON))]
+    #[error("{}", self.message_for(&Audience::DAEMON))]
     TooManyPoints { count: u128, limit: u64 },
-    #[error("{}", self.told(&Door::DAEMON))]
+    #[error("{}", self.message_for(&Audience::DAEMON))]
     TooManyRows { rows: u128, limit: u64 },
     #[error(
         "the body is longer than {limit} bytes, the limit of this server: send fewer vertices or \
@@ -176,8 +178,8 @@ kinds! {
 }
 
 impl Error {
-    /// The error in the words of a door; without one, in those of a daemon.
-    pub fn told(&self, Door { here, .. }: &Door) -> String {
+    /// The message for an audience; `Display` has that for a daemon's.
+    pub fn message_for(&self, Audience { here, .. }: &Audience) -> String {
         match self {
             Self::TooManyPoints { count, limit } => format!(
                 "the region holds {count} points, and {here} returns at most {limit} in one answer: \

@@ -6,16 +6,16 @@
 
 #![allow(missing_docs, reason = "internal: names say what items are")]
 
+mod audience;
 mod denied;
-mod door;
 mod error;
 mod fault;
 pub mod faults;
 pub mod integer;
 mod secret;
 
+pub use audience::Audience;
 pub use denied::{Denied, Level, Rate, Short};
-pub use door::Door;
 pub use error::{Error, Kind};
 pub use fault::{Fault, number, unknown};
 pub use faults::{Checked, Faults, Together, all};

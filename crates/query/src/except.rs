@@ -48,7 +48,7 @@ impl Items {
                     let list = lists.get(text).ok_or_else(|| {
                         let (detail, allowed) = (unknown("list", text, names), lists.names());
                         match is_digest(text) {
-                            true => wrong(detail + catalog.door().list, allowed),
+                            true => wrong(detail + catalog.audience().list, allowed),
                             false => wrong(detail, allowed),
                         }
                     })?;

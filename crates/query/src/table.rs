@@ -30,7 +30,7 @@ pub(super) fn check(
         let field = format!("{}{}", values.path(), parameter.name);
         Fault::new(&field, value, detail, allowed).into()
     };
-    let (dimension, offer) = (values.dimension(), Offer(catalog.door()));
+    let (dimension, offer) = (values.dimension(), Offer(catalog.audience()));
     let is_pattern = profile == PATTERN && dimension == Dimension::Plane;
     let is_known = is_pattern || catalog.has_profile(dimension, profile);
     let alpha = parse(alpha_text).map_err(|error| {

@@ -26,7 +26,7 @@ use strew_config::Layers;
 use strew_config::{ConfigError, Limits};
 use strew_core::{Table, server::Stop};
 use strew_encode::{Answer, Encoding, Output, Place};
-use strew_error::{Door, Error, Fault};
+use strew_error::{Audience, Error, Fault};
 use strew_query as query;
 use strew_query::{
     Assets, Draft, Group, Nearest, Options, Query, Set, Token, Values, groups, parse_pairs,
@@ -97,16 +97,16 @@ impl Library {
     pub fn of(catalog: Catalog, limits: Limits) -> Self {
         let catalog = catalog.with_room(ROOM).with_pixels(MOST_PIXELS);
         Self {
-            assets: catalog.with_door(&Door::PROCESS).into(),
+            assets: catalog.with_audience(&Audience::PROCESS).into(),
             limits,
             ready: Mutex::default(),
         }
     }
 
-    /// The library for a program whose words errors are in.
+    /// The library with the audience of its errors.
     #[must_use]
-    pub fn at(mut self, door: &'static Door) -> Self {
-        self.assets.catalog = self.assets.catalog.with_door(door);
+    pub fn for_audience(mut self, audience: &'static Audience) -> Self {
+        self.assets.catalog = self.assets.catalog.with_audience(audience);
         self
     }
 
@@ -392,7 +392,7 @@ pub fn hold_field(
     let field = NamedField::sent(document, spec?, built.bytes, built.frame);
     catalog.sent().hold(field, sender).ok_or_else(|| {
         let detail = format!("takes {} bytes, which there is no room for", built.bytes);
-        Fault::new("field", "", detail, catalog.door().field).into()
+        Fault::new("field", "", detail, catalog.audience().field).into()
     })
 }
 

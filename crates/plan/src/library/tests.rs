@@ -51,11 +51,8 @@ fn columns_are_the_rows_of_the_answer() {
         assert_eq!((columns.axes, planned.axes()), (axes, axes));
         assert_eq!(columns.len() as u128, planned.count(), "{query}");
         assert_eq!(library.coordinates(&planned), Ok(columns.at.clone()));
-        let json = library.document(&planned, options, Encoding::Json);
-        let json: Vec<u8> = json
-            .expect("written")
-            .flat_map(|block| block.expect("whole"))
-            .collect();
+        let json = (library.document(&planned, options, Encoding::Json)).expect("written");
+        let json: Vec<u8> = json.flat_map(|block| block.expect("whole")).collect();
         let json: serde_json::Value = serde_json::from_slice(&json).expect("JSON");
         let rows = json["points"].as_array().expect("a list");
         assert_eq!(rows.len(), columns.len());
@@ -234,7 +231,7 @@ fn tables_in_memory_have_the_points_of_the_built_in_ones() {
     assert_eq!(plan(&library), plan(&whole));
     let missing = library.plan_address("bbox=0,0,30,30&spacing=1&profile=step");
     let missing = missing.expect_err("not there").faults()[0].clone();
-    let way = Door::PROCESS.table.expect("a way");
+    let way = Audience::PROCESS.table.expect("a way");
     assert!(
         missing.field == "profile" && missing.detail.ends_with(way),
         "{missing}"

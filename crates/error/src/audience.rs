@@ -1,8 +1,8 @@
-//! Where an error is read, and what it can advise there.
+//! Who reads an error, and what it can advise them.
 
-/// A door: errors are in the words of what its callers can do.
+/// The readers of errors: advice is in the words of what they can do.
 #[derive(Clone, Copy, Debug)]
-pub struct Door {
+pub struct Audience {
     /// Whose limits they are.
     pub here: &'static str,
     /// How a table can be had that lies in a file; a daemon's operator can have any made.
@@ -13,7 +13,7 @@ pub struct Door {
     pub field: &'static str,
 }
 
-impl Door {
+impl Audience {
     /// A daemon, whose operator has the command line and settings.
     pub const DAEMON: Self = Self {
         here: "this server",
@@ -55,19 +55,16 @@ mod tests {
     fn advice_is_for_its_reader() {
         let points = Error::TooManyPoints { count: 9, limit: 8 };
         let rows = Error::TooManyRows { rows: 9, limit: 8 };
-        for (door, here, table, list) in [
-            (Door::DAEMON, "this server", "", "POST /v1/except"),
-            (Door::PROCESS, "this process", "connect", ""),
-            (Door::C, "this process", "share/strew/tables", ""),
-            (Door::SCRIPT, "this process", "open({ tables", ""),
+        for (of, here, table, list) in [
+            (Audience::DAEMON, "this server", "", "POST /v1/except"),
+            (Audience::PROCESS, "this process", "connect", ""),
+            (Audience::C, "this process", "share/strew/tables", ""),
+            (Audience::SCRIPT, "this process", "open({ tables", ""),
         ] {
-            let told = [points.told(&door), rows.told(&door)];
-            assert!(
-                told[0].contains(&format!("{here} returns at most 8")),
-                "{told:?}"
-            );
-            assert!(told[1].contains(&format!("{here} allows 8")), "{told:?}");
-            let own = [door.table.unwrap_or_default(), door.list, door.field];
+            let told = [&points, &rows].map(|error| error.message_for(&of));
+            let limits = ["returns at most 8", "allows 8"].map(|limit| format!("{here} {limit}"));
+            assert!((0..2).all(|i| told[i].contains(&limits[i])), "{told:?}");
+            let own = [of.table.unwrap_or_default(), of.list, of.field];
             assert!(own[0].contains(table) && own[1].contains(list), "{own:?}");
             // What only a daemon's clients and its operator can do.
             let foreign = ["server", "POST ", "max_sent_bytes", "strew forge"];
