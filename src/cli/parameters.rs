@@ -243,8 +243,21 @@ export type Tuple<List extends readonly number[]> = Readonly<List> | Float64Arra
 
 fn interface(section: &Section, table: &[&Parameter]) -> String {
     let Section { name, about, .. } = section;
-    let mut text = format!("\n/** {about} */\nexport interface {name} {{\n");
-    for parameter in section.of(table) {
+    // Parameters that queries of the plane have as well are written once.
+    let plane = &SECTIONS[1];
+    let known = plane.of(table);
+    let is_known = |of: &&Parameter| known.iter().any(|known| known.about == of.about);
+    let in_space = section.groups == groups::SPACE_QUERY;
+    let (shared, own): (Vec<&Parameter>, Vec<_>) =
+        (section.of(table).into_iter()).partition(|of| in_space && is_known(of));
+    let names = shared.iter().map(|of| format!("\"{}\"", of.name));
+    let names = wrapped(&names.collect::<Vec<_>>().join(" | "), "    ");
+    let base = match shared.as_slice() {
+        [] => String::new(),
+        _ => format!(" extends Pick<\n    {},\n{names}>", plane.name),
+    };
+    let mut text = format!("\n/** {about} */\nexport interface {name}{base} {{\n");
+    for parameter in own {
         let lines = wrapped(&paragraph(parameter, "`raster`"), "     * ");
         let (name, of) = (parameter.name, script_type(parameter));
         text += &format!("    /**\n{lines}     */\n    {name}?: {of};\n");

@@ -8,17 +8,17 @@ use super::files;
 
 /// A part, the endings of its files, and the most lines that it may have.
 const CEILINGS: &[(&str, &[&str], usize)] = &[
-    ("src", &["rs"], 21_513),
-    ("crates/catalog", &["rs"], 5047),
+    ("src", &["rs"], 21_526),
+    ("crates/catalog", &["rs"], 5040),
     ("crates/config", &["rs"], 1560),
-    ("crates/core", &["rs"], 49_814),
+    ("crates/core", &["rs"], 49_817),
     ("crates/encode", &["rs"], 8258),
-    ("crates/error", &["rs"], 985),
+    ("crates/error", &["rs"], 1073),
     ("crates/forge", &["rs"], 19_474),
     ("crates/pages", &["rs"], 439),
-    ("crates/plan", &["rs"], 4300),
+    ("crates/plan", &["rs"], 4201),
     ("crates/proto", &["rs"], 337),
-    ("crates/query", &["rs"], 8776),
+    ("crates/query", &["rs"], 8791),
     ("crates/raster", &["rs"], 2976),
     ("crates/service", &["rs"], 5975),
     ("crates/testkit", &["rs"], 1197),
@@ -30,7 +30,7 @@ const CEILINGS: &[(&str, &[&str], usize)] = &[
     (
         "bindings",
         &["py", "pyi", "js", "mjs", "ts", "rs", "c", "h", "hpp", "cpp"],
-        14_169,
+        14_229,
     ),
 ];
 

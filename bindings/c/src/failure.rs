@@ -8,7 +8,13 @@ use std::{
 };
 
 use serde_json::json;
-use strew_error::{Error, Fault, Kind};
+use strew_error::{Audience, Error, Fault, Kind};
+
+/// Who reads errors.
+pub const AUDIENCE: Audience = match cfg!(target_arch = "wasm32") {
+    true => Audience::SCRIPT,
+    false => Audience::C,
+};
 
 /// The result of a function.
 #[repr(C)]
@@ -79,7 +85,7 @@ impl Failure {
         Self {
             code,
             kind: error.kind().slug(),
-            message: error.to_string(),
+            message: error.message_for(&AUDIENCE),
             faults: error.faults().to_vec(),
         }
     }

@@ -14,7 +14,7 @@ use ::strew_plan::{Columns, Library, Planned};
 use strew_encode::Crs;
 
 use crate::{
-    failure::{Code, Failure, guarded},
+    failure::{AUDIENCE, Code, Failure, guarded},
     memory::{borrowed, listed, place, text},
 };
 
@@ -62,7 +62,9 @@ pub unsafe extern "C" fn strew_library_open(
             let folder = (!folder.is_null()).then(|| text(folder, "folder"));
             (place(library, "library")?, folder.transpose()?)
         };
-        let opened = Library::open(folder.map(Path::new)).map_err(Failure::unavailable)?;
+        let opened = Library::open(folder.map(Path::new))
+            .map_err(Failure::unavailable)?
+            .for_audience(&AUDIENCE);
         out.put(Box::into_raw(Box::new(strew_library(Arc::new(opened)))));
         Ok(())
     })
@@ -95,7 +97,9 @@ pub unsafe extern "C" fn strew_library_of_tables(
             .zip(lengths)
             .map(|(&file, &length)| unsafe { listed(file, length, "files").map(<[u8]>::to_vec) });
         let copied = copied.collect::<Result<Vec<_>, _>>()?;
-        let opened = Library::of_tables(copied).map_err(Failure::unavailable)?;
+        let opened = Library::of_tables(copied)
+            .map_err(Failure::unavailable)?
+            .for_audience(&AUDIENCE);
         out.put(Box::into_raw(Box::new(strew_library(Arc::new(opened)))));
         Ok(())
     })

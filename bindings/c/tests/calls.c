@@ -59,6 +59,7 @@ static void tables(void) {
     const char *green = "bbox=0,0,10,10&spacing=1&profile=green&map=s";
     EXPECT(strew_plan_query(library, green, &plan) == STREW_INVALID_QUERY);
     EXPECT(strcmp(strew_error_field(), "profile") == 0);
+    EXPECT(strstr(strew_error_message(), "open a folder that has its file") && !strstr(strew_error_message(), "forge"));
     strew_library *whole = NULL;
     EXPECT(strew_library_open(getenv("TABLES"), &whole) == STREW_OK);
     EXPECT(strew_plan_query(whole, green, &plan) == STREW_OK);

@@ -15,12 +15,15 @@ export class StrewError extends Error {
     }
 }
 
-/** What is wrong with one value, in the words of REST. */
-export function fault(field, value, detail, allowed) {
-    const shown = value === null ? "" : ` = \`${value}\``;
-    const faults = [{ field, value, detail, allowed }];
-    return new StrewError(`\`${field}\`${shown}: ${detail}; allowed: ${allowed}`, "invalid-query", faults);
+/** What is wrong with some values, in the words of REST. */
+export function invalid(faults) {
+    const words = ({ field, value, detail, allowed }) =>
+        `\`${field}\`${value === null ? "" : ` = \`${value}\``}: ${detail}; allowed: ${allowed}`;
+    return new StrewError(faults.map(words).join("; "), "invalid-query", faults);
 }
+
+/** What is wrong with one value. */
+export const fault = (field, value, detail, allowed) => invalid([{ field, value, detail, allowed }]);
 
 /** A daemon that cannot be reached, or whose answer broke off. */
 export class Disconnected extends Error {

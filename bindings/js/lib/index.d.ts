@@ -12,6 +12,25 @@ import type {
 } from "./parameters.js";
 export type { Neighbors, Numbers, Output, Parameters, Regions, SpaceParameters, Tuple };
 
+/** One of some members; the others are absent, or `None`. */
+export type OneOf<Members, None = undefined> = {
+    [Name in keyof Members]-?: { [Own in Name]-?: NonNullable<Members[Own]> } & NoneOf<Omit<Members, Name>, None>;
+}[keyof Members];
+
+/** None of some members. */
+export type NoneOf<Members, None = undefined> = { [Name in keyof Members]?: None | undefined };
+
+/** How densely points lie: a set has one of these. */
+export type Amounts = Pick<Parameters, "density" | "spacing" | "min_distance" | "count">;
+type Uncounted = OneOf<Omit<Amounts, "count">> & { count?: undefined };
+
+/** The columns of names. */
+export type NameColumn = "layer" | "variant";
+/** The columns of numbers: coordinates, attributes, and those of a terrain. */
+export type NumberColumn =
+    | "x" | "y" | "z" | "angle" | "scale" | "rank" | "nx" | "ny" | "nz" | "qx" | "qy" | "qz" | "qw"
+    | `u${1 | 2 | 3 | 4 | 5 | 6 | 7 | 8 | 9 | 10 | 11 | 12 | 13 | 14 | 15 | 16}`;
+
 /** The regions that are keywords. */
 export interface Shapes extends Regions {
     /** Size, column, row of a square of the world grid; coordinates are relative to its corner. */
@@ -23,21 +42,40 @@ export interface Shapes extends Regions {
 /** Members of a document that a body may have. */
 type Form = Output & { format?: string };
 
-/** A layer: a set of points with a name. */
-export interface Layer extends Omit<Parameters, "periodic" | "world" | "world_digest" | "offset" | "limit" | "cursor"> {
+/** What a layer has beside the parameters of its set. */
+interface Named {
     /** Its name. */
     name: string;
     /** The layers whose points it keeps away from, with the least distances. */
     clear_of?: Record<string, number> | readonly object[];
 }
 
-/** The keywords of a query: the members of REST's JSON, and the shapes of regions by themselves. */
-export interface Query extends Shapes, Parameters, Form {
-    /** Several sets at once. */
-    layers?: readonly Layer[];
-    /** Each feature of a collection as a layer of its own, with the properties that hold its name and its number of points. */
+/** Parameters of sets, without those of which there is one. */
+type Plain<Of> = Omit<Of, keyof Amounts | "periodic">;
+type OfSet<Of> = Omit<Plain<Of>, "world" | "world_digest" | "offset" | "limit" | "cursor">;
+
+/** A layer: a set of points with a name. */
+export type Layer = Named & OfSet<Parameters> & OneOf<Amounts>;
+
+/** A set of its own, of several layers, or of a world. */
+type Sets<One, Amount> =
+    | (Amount & { layers?: undefined })
+    | (NoneOf<Amounts> & ({ layers: readonly One[] } | { world: string }));
+
+/** Each feature of a collection as a layer, with the properties that hold its name and its number of points. */
+interface Features {
     features?: { of: object; id?: string; count?: string };
 }
+type Places = Shapes & Pick<Parameters, "periodic"> & Features;
+
+/** The keywords of a query without a region: of the whole plane. */
+export type Unplaced = Plain<Parameters> & Form & Sets<Layer, Uncounted> & NoneOf<Places, null>;
+
+/** The keywords of a query: the members of REST's JSON, and the shapes of regions by themselves. */
+export type Query =
+    | Unplaced
+    | (Plain<Parameters> & Form & Sets<Layer, OneOf<Amounts>> & OneOf<Places, null>)
+    | (Plain<Parameters> & Form & NoneOf<Amounts> & Required<Features> & NoneOf<Omit<Places, "features">, null>);
 
 /** The regions of space that are keywords. */
 export interface Volumes extends VolumeParameters {
@@ -50,18 +88,15 @@ export interface Volumes extends VolumeParameters {
 }
 
 /** A layer in space. */
-export interface SpaceLayer extends Omit<SpaceParameters, "offset" | "limit" | "cursor"> {
-    /** Its name. */
-    name: string;
-    /** The layers whose points it keeps away from, with the least distances. */
-    clear_of?: Record<string, number> | readonly object[];
-}
+export type SpaceLayer = Named & OfSet<SpaceParameters> & OneOf<Amounts>;
+
+/** The keywords of a query in space without a region. */
+export type UnplacedSpace = Plain<SpaceParameters> & Form & Sets<SpaceLayer, Uncounted> & NoneOf<Volumes, null>;
 
 /** The keywords of a query in space. */
-export interface SpaceQuery extends Volumes, SpaceParameters, Form {
-    /** Several sets at once. */
-    layers?: readonly SpaceLayer[];
-}
+export type SpaceQuery =
+    | UnplacedSpace
+    | (Plain<SpaceParameters> & Form & Sets<SpaceLayer, OneOf<Amounts>> & OneOf<Volumes, null>);
 
 /** One thing that is wrong with a query. */
 export interface Fault {
@@ -113,13 +148,15 @@ interface Points<Where extends "here" | "there", One, Regions, Place> extends It
     /** Two integers for each point, `x:y` as text; in space three, `x:y:z`. */
     ids(): Answer<Where, BigInt64Array>;
     /** The names of the columns beside ids and coordinates. */
-    names(): Answer<Where, string[]>;
-    /** Numbers, NaN where a layer lacks them; or names, null where they are lacking. */
-    column(name: string): Answer<Where, Float64Array | (string | null)[]>;
+    names(): Answer<Where, (NameColumn | NumberColumn)[]>;
+    /** Names, null where they are lacking; or numbers, NaN where a layer lacks them. */
+    column(name: NameColumn): Answer<Where, (string | null)[]>;
+    column(name: NumberColumn): Answer<Where, Float64Array>;
+    column(name: NameColumn | NumberColumn): Answer<Where, Float64Array | (string | null)[]>;
     /** A column of names as indices, −1 where it is lacking. */
-    codes(name: string): Answer<Where, { codes: Int32Array; names: string[] }>;
+    codes(name: NameColumn): Answer<Where, { codes: Int32Array; names: string[] }>;
     /** The same set in another region. */
-    within(shape: Regions): this;
+    within(shape: OneOf<Regions, null>): this;
     /** The points in at most `parts` parts of the same size, give or take one. */
     split(parts: number): Answer<Where, this[]>;
     /** The points nearest to a place, nearest first: one, or `k`, or all within `radius`. */
@@ -164,6 +201,12 @@ export class PointSet<Where extends "here" | "there" = "here"> {
     chunk(size: number, x: number, y: number): PointSet<Where>;
 }
 
+/** What the set of a query without a region has: `within` and `chunk` are sets whose points can be made. */
+export type Whole<Set> = Pick<
+    Set,
+    keyof Set & ("body" | "within" | "chunk" | "nearest" | "point" | "free" | typeof Symbol.dispose)
+>;
+
 /** The points of a query in space, made when they are wanted. */
 export interface SpaceSet<Where extends "here" | "there" = "here"> extends Points<Where, SpacePoint, Volumes, Tuple<[x: number, y: number, z: number]>> {}
 export class SpaceSet<Where extends "here" | "there" = "here"> {
@@ -182,6 +225,7 @@ export class SpaceSet<Where extends "here" | "there" = "here"> {
 export class Space<Where extends "here" | "there" = "here"> {
     private constructor();
     /** The points of a query in space by its keywords. */
+    points(query: UnplacedSpace): Whole<SpaceSet<Where>>;
     points(query: SpaceQuery): SpaceSet<Where>;
     /** The points of a query in JSON, the body of `POST /v1/space/points`. */
     query(body: object): SpaceSet<Where>;
@@ -191,6 +235,7 @@ export class Space<Where extends "here" | "there" = "here"> {
 export class Source<Where extends "here" | "there" = "here"> {
     protected constructor();
     /** The points of a query by its keywords. */
+    points(query: Unplaced): Whole<PointSet<Where>>;
     points(query: Query): PointSet<Where>;
     /** The points of a query in JSON, the body of `POST /v1/points:query`. */
     query(body: object): PointSet<Where>;

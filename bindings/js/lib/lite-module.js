@@ -1,6 +1,7 @@
 // The small WebAssembly module, the crate in `lite/`: its calls and its memory.
 
 import { StrewError } from "./error.js";
+import { Held } from "./held.js";
 
 // The module writes numbers of its errors as their bits.
 const BITS = /#([0-9a-f]{16})/g;
@@ -15,7 +16,8 @@ const DECODER = new TextDecoder();
 
 /** A compiled module. Its functions take numbers, and read and write two buffers of their own. */
 export class LiteModule {
-    #plans = new FinalizationRegistry((plan) => this.calls.free_plan(plan));
+    /** Its plans, by their owners. */
+    plans = new Held((plan) => this.calls.free_plan(plan));
 
     constructor(instance) {
         this.calls = instance.exports;
@@ -34,8 +36,7 @@ export class LiteModule {
     call(name, field, ...values) {
         const result = this.calls[name](...values);
         if (result !== -1) return result;
-        const words = DECODER.decode(this.output()).replace(BITS, decimal);
-        const [part, value, problem, allowed] = words.split("\0");
+        const [part, value, problem, allowed] = this.texts().map((words) => words.replace(BITS, decimal));
         const detail = problem || `${part} is ${value}`;
         throw new StrewError(`\`${field}\`: ${detail}; allowed: ${allowed}`, "invalid-query", [
             { field, value, detail, allowed },
@@ -48,6 +49,11 @@ export class LiteModule {
         const copy = this.calls.memory.buffer.slice(at, at + (this.calls.output_length() >>> 0));
         this.calls.free_output();
         return copy;
+    }
+
+    /** The texts of the output, which is freed. */
+    texts() {
+        return DECODER.decode(this.output()).split("\0");
     }
 
     /** The points of an output, as objects. */
@@ -64,16 +70,5 @@ export class LiteModule {
             });
             return point;
         });
-    }
-
-    /** Frees a plan once its owner is collected, unless `free` does so before. */
-    held(owner, plan) {
-        this.#plans.register(owner, plan, owner);
-    }
-
-    /** Frees a plan at once. */
-    free(owner, plan) {
-        this.#plans.unregister(owner);
-        this.calls.free_plan(plan);
     }
 }

@@ -1,6 +1,6 @@
 // The queries of strew/lite: the members of REST's JSON that it knows, checked, as numbers for its module.
 
-import { StrewError } from "./error.js";
+import { fault, invalid } from "./error.js";
 import { text } from "./query.js";
 
 const MOST = 2n ** 64n - 1n;
@@ -80,6 +80,21 @@ const KNOWN = {
         },
     },
 };
+/** The table of queries that name none, the same everywhere. */
+const USUAL = { profile: "blue", alpha: "(5-sqrt(3))/2", map: "m" };
+
+/** The parameters that name the open table, and those that a query must have so that it means this one. */
+export function naming(table) {
+    const odd = Object.keys(USUAL).filter((name) => table[name] !== USUAL[name]);
+    const named = ([name, own]) => {
+        const allowed = `${name}: "${own}", or open({ table }) with another file, as of the package strew-tables`;
+        const read = (value) => (String(value) === own ? own : new Wrong("is not that of the open table"));
+        return [name, { allowed, read }];
+    };
+    const known = Object.fromEntries(Object.entries(table).map(named));
+    return { known: { ...KNOWN, ...known }, needed: odd.length ? new Set([...odd, "map"]) : new Set() };
+}
+
 const SEARCH = {
     at: numbers(2, "two finite numbers x,y"),
     k: integer(1, 10000),
@@ -114,10 +129,7 @@ class Faults {
     }
 
     check() {
-        if (!this.#all.length) return;
-        const words = ({ field, value, detail, allowed }) =>
-            `\`${field}\`${value === null ? "" : ` = \`${value}\``}: ${detail}; allowed: ${allowed}`;
-        throw new StrewError(this.#all.map(words).join("; "), "invalid-query", this.#all);
+        if (this.#all.length) throw invalid(this.#all);
     }
 }
 
@@ -146,13 +158,18 @@ function area(region, faults) {
 }
 
 /** A checked query: the numbers of its set, which have a `key`, its region, and the place of a search. */
-export function read({ region, ...members }, search = {}) {
+export function read({ region, ...members }, { known: all, needed }, search = {}) {
     const [faults, is] = [new Faults(), {}];
-    for (const [values, known] of [[members, KNOWN], [search, SEARCH]]) {
-        for (const [name, value] of Object.entries(values).filter(([, value]) => value !== undefined)) {
+    for (const [values, known] of [[members, all], [search, SEARCH]]) {
+        for (const [name, value] of Object.entries(values)) {
+            if (value === undefined && name !== "at") continue;
             if (Object.hasOwn(known, name)) is[name] = faults.read(name, value, known[name]);
             else faults.add(name, value, "no such parameter in strew/lite", Object.keys(known).join(", "));
         }
+    }
+    for (const name of needed) {
+        const usual = `is missing: without it the query means the table of ${name} ${USUAL[name]}, which is not open`;
+        if (members[name] === undefined) faults.add(name, undefined, usual, all[name].allowed);
     }
     const amounts = AMOUNTS.filter((name) => members[name] !== undefined);
     if (amounts.length !== 1) {
@@ -187,9 +204,7 @@ const RANGE = 2 ** 30;
 export function checkReach(distance, reach) {
     if (distance === undefined || reach <= RANGE * distance) return;
     const near = RANGE * distance;
-    const faults = new Faults();
     const detail = `coordinates up to ${reach} are rounded too coarsely to keep it: it holds within ±${near}`;
     const allowed = `coordinates within ±${near}, a distance of at least ${reach / RANGE}, chunks, or spacing`;
-    faults.add("min_distance", distance, detail, allowed);
-    faults.check();
+    throw fault("min_distance", text(distance), detail, allowed);
 }

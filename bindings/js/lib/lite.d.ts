@@ -1,7 +1,7 @@
 /// <reference lib="esnext.disposable" />
 
 import type { Neighbors, Parameters, Regions, Tuple } from "./parameters.js";
-import type { Point, PointSet as Whole, StrewError } from "./index.js";
+import type { Amounts, NoneOf, OneOf, Point, PointSet as Full, StrewError, Whole } from "./index.js";
 export { StrewError };
 
 /** The regions that strew/lite knows. */
@@ -10,29 +10,20 @@ export interface LiteShapes extends Pick<Regions, "bbox" | "circle"> {
     chunk?: Tuple<[size: number, column: number, row: number]> | null;
 }
 
-/** The keywords of a query: a part of those of `strew`, with the same points where that has `map: "s"`. */
-export interface LiteQuery
-    extends LiteShapes,
-        Pick<
-            Parameters,
-            | "density"
-            | "spacing"
-            | "min_distance"
-            | "seed"
-            | "warp"
-            | "keep"
-            | "settle"
-            | "lod"
-            | "attributes"
-            | "scale_range"
-            | "variants"
-        > {}
+/** The names of a table: its profile, alpha and map. */
+export type TableNames = Pick<Parameters, "profile" | "alpha" | "map">;
+
+/** The keywords of a query: a part of those of `strew`, with the same points. `Names` are those of the table. */
+export type LiteQuery<Names = TableNames> = LiteSet<Names> & (OneOf<LiteShapes, null> | NoneOf<LiteShapes, null>);
+type LiteSet<Names> = OneOf<Omit<Amounts, "count">> &
+    Pick<Parameters, "seed" | "warp" | "keep" | "settle" | "lod" | "attributes" | "scale_range" | "variants"> &
+    Names;
 
 /** The points of a query, made when they are wanted. */
 export interface PointSet
-    extends Omit<Whole<"here">, "within" | "chunk" | "split" | "resolved" | "document" | "nearest" | "point"> {
+    extends Omit<Full<"here">, "within" | "chunk" | "split" | "resolved" | "document" | "nearest" | "point"> {
     /** The same set in another region. */
-    within(shape: LiteShapes): PointSet;
+    within(shape: OneOf<LiteShapes, null>): PointSet;
     /** The points of a square of the world grid. */
     chunk(size: number, column: number, row: number): PointSet;
     /** The points nearest to a place, nearest first: one, or `k`, or all within `radius`. */
@@ -42,13 +33,18 @@ export interface PointSet
 }
 
 /** Where points come from. */
-export interface LiteSource {
+export interface LiteSource<Names = TableNames> {
     /** The points of a query by its keywords. */
-    points(query: LiteQuery): PointSet;
+    points(query: LiteSet<Names> & NoneOf<LiteShapes, null>): Whole<PointSet>;
+    points(query: LiteQuery<Names>): PointSet;
 }
 
-/** Loads the module and its table: by default of the package, or addresses or bytes. */
-export function open(options?: {
-    table?: string | URL | ArrayBuffer | ArrayBufferView;
-    wasm?: string | URL | ArrayBuffer | ArrayBufferView | WebAssembly.Module;
-}): Promise<LiteSource>;
+/** An address, or bytes. */
+type File = string | URL | ArrayBuffer | ArrayBufferView;
+
+/**
+ * Loads the module and its table, of map s: queries name it, `map: "s"`, since without a map they mean map m. Another
+ * table is an address or bytes.
+ */
+export function open(options?: { wasm?: File | WebAssembly.Module }): Promise<LiteSource<{ map: "s" }>>;
+export function open(options: { table: File; wasm?: File | WebAssembly.Module }): Promise<LiteSource>;

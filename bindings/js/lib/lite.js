@@ -3,7 +3,7 @@
 import { StrewError, fault } from "./error.js";
 import { compile, content } from "./files.js";
 import { LiteModule } from "./lite-module.js";
-import { checkReach, read } from "./lite-query.js";
+import { checkReach, naming, read } from "./lite-query.js";
 import { PointSet, rowsOf } from "./points.js";
 import { PLANE, body, integers } from "./query.js";
 
@@ -23,11 +23,18 @@ class Lite {
     isLocal = true;
     #module;
     #table;
+    #naming;
     #sets = new Map();
 
-    constructor(module, table) {
+    constructor(module) {
         this.#module = module;
-        this.#table = table;
+        this.#table = module.call("table", "table");
+        const [profile, alpha, map] = module.texts();
+        this.#naming = naming({ profile, alpha, map });
+    }
+
+    #read(query, search) {
+        return read(query, this.#naming, search);
     }
 
     /** The points of a query by its keywords: `points({ bbox: [0, 0, 10, 10], spacing: 1, seed: 7 })`. */
@@ -35,7 +42,7 @@ class Lite {
         const query = body(keywords);
         // Sets without a region are checked as well.
         const { region, ...set } = query;
-        this.#set(read({ ...set, region }));
+        this.#set(this.#read({ ...set, region }));
         return PointSet.of(this, query);
     }
 
@@ -67,7 +74,7 @@ class Lite {
     }
 
     plan(_, query) {
-        const wanted = read(query);
+        const wanted = this.#read(query);
         if (!wanted.region) throw fault("region", null, "is missing", "one of bbox, chunk, circle");
         const set = this.#set(wanted);
         const { call, values, reach } = wanted.region;
@@ -78,7 +85,7 @@ class Lite {
 
     nearest(values) {
         const { at, k, radius, ...set } = values;
-        const wanted = read(set, { at, k, radius });
+        const wanted = this.#read(set, { at, k, radius });
         const known = this.#set(wanted);
         const [x, y] = wanted.at;
         const few = wanted.k ?? (wanted.radius === undefined ? 1 : 0);
@@ -87,7 +94,7 @@ class Lite {
     }
 
     point(id, set) {
-        const wanted = read(set);
+        const wanted = this.#read(set);
         const known = this.#set(wanted);
         const count = this.#module.call("point", "id", known.at, ...integers(id, PLANE));
         if (!count) throw new StrewError(`the set has no point ${id}`, "no-such-point");
@@ -117,12 +124,16 @@ class LitePlan {
         this.#module = module;
         this.#plan = plan;
         this.#set = set;
-        module.held(this, plan);
+        module.plans.add(this, plan);
+    }
+
+    get isFree() {
+        return this.#plan === undefined;
     }
 
     /** Frees the memory. The plan has no points afterwards. */
     free() {
-        if (this.#plan !== undefined) this.#module.free(this, this.#plan);
+        if (this.#plan !== undefined) this.#module.plans.remove(this, this.#plan);
         this.#plan = undefined;
     }
 
@@ -145,7 +156,8 @@ class LitePlan {
     #output(name, kind) {
         const count = this.#count();
         if (count > MOST_POINTS) {
-            throw new StrewError(`the answer has ${count} points; at most ${MOST_POINTS}`, "too-many-points");
+            const words = `the region holds ${count} points, and an array has room for at most ${MOST_POINTS}`;
+            throw new StrewError(`${words}: request a smaller region, or chunks`, "too-many-points");
         }
         this.#module.call(name, name, this.#at());
         return new kind(this.#module.output());
@@ -208,5 +220,5 @@ export async function open({ table, wasm } = {}) {
     const [compiled, file] = await Promise.all(files);
     const module = new LiteModule(await WebAssembly.instantiate(compiled, {}));
     module.write([], file);
-    return new Lite(module, module.call("table", "table"));
+    return new Lite(module);
 }

@@ -12,34 +12,20 @@ export const DEFAULT_TABLES = ["blue-5-sqrt3-over-2-m.strew"];
 /** The table for points in space that answers by default. */
 export const SPACE_TABLES = ["space-blue-5-sqrt3-over-2-r16.strew"];
 
-/** The calls of the module, and the bytes of a point. */
+/** The calls of the module by its prefixes, and the bytes of a point. */
+const calls = (of, ofPlan, { axes }) => ({
+    plan: `${of}plan_query`,
+    origin: `${ofPlan}origin`,
+    fill: `${ofPlan}fill_${axes}`,
+    near: `${ofPlan}fill_${axes}_f32`,
+    ids: `${ofPlan}fill_ids`,
+    nearest: `${of}nearest`,
+    point: `${of}point_by_id`,
+    bytes: 8 + 16 * axes.length,
+});
 const CALLS = new Map([
-    [
-        PLANE,
-        {
-            plan: "strew_plan_query",
-            origin: "strew_plan_origin",
-            fill: "strew_plan_fill_xy",
-            near: "strew_plan_fill_xy_f32",
-            ids: "strew_plan_fill_ids",
-            nearest: "strew_nearest",
-            point: "strew_point_by_id",
-            bytes: 40,
-        },
-    ],
-    [
-        SPACE,
-        {
-            plan: "strew_space_plan_query",
-            origin: "strew_space_origin",
-            fill: "strew_space_fill_xyz",
-            near: "strew_space_fill_xyz_f32",
-            ids: "strew_space_fill_ids",
-            nearest: "strew_space_nearest",
-            point: "strew_space_point_by_id",
-            bytes: 56,
-        },
-    ],
+    [PLANE, calls("strew_", "strew_plan_", PLANE)],
+    [SPACE, calls("strew_space_", "strew_space_", SPACE)],
 ]);
 
 /** This page or process. */
@@ -102,12 +88,16 @@ class Plan {
         this.#plan = plan;
         this.#calls = CALLS.get(dimension);
         this.#axes = dimension.axes.length;
-        module.held(this, plan);
+        module.plans.add(this, plan);
+    }
+
+    get isFree() {
+        return !this.#plan;
     }
 
     /** Frees the memory. The plan has no points afterwards. */
     free() {
-        if (this.#plan) this.#module.free(this, this.#plan);
+        if (this.#plan) this.#module.plans.remove(this, this.#plan);
         this.#plan = 0;
     }
 
@@ -120,10 +110,12 @@ class Plan {
         });
     }
 
-    /** The points that a buffer is made for. More are refused by the call, before it looks at the buffer. */
+    /** The number of points, for a buffer. The memory of a module has room for fewer than 2²⁸. */
     #few() {
         const count = this.count();
-        return typeof count === "number" && count < 2 ** 28 ? count : 0;
+        if (count < 2 ** 28) return count;
+        const words = `the region holds ${count} points, and an array has room for at most ${2 ** 28 - 1}`;
+        throw new StrewError(`${words}: request a smaller region, chunks, or parts by split`, "too-many-points");
     }
 
     /** An array with `each` numbers per point. */

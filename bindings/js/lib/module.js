@@ -1,6 +1,7 @@
 // The WebAssembly module: the C library of bindings/c, its calls and its memory.
 
 import { StrewError } from "./error.js";
+import { Held } from "./held.js";
 import { parsed } from "./query.js";
 
 const ENCODER = new TextEncoder();
@@ -8,7 +9,8 @@ const DECODER = new TextDecoder();
 
 /** A compiled module with its memory. Pointers are numbers: `>>> 0` makes those above 2 GiB positive. */
 export class Module {
-    #plans = new FinalizationRegistry((plan) => this.calls.strew_plan_free(plan));
+    /** Its plans, by their owners. */
+    plans = new Held((plan) => this.calls.strew_plan_free(plan));
 
     constructor(instance) {
         this.calls = instance.exports;
@@ -90,16 +92,5 @@ export class Module {
         const at = room(bytes);
         fill(at);
         return new kind(this.memory.slice(at, at + bytes));
-    }
-
-    /** Frees a plan once its owner is collected, unless `free` does so before. */
-    held(owner, plan) {
-        this.#plans.register(owner, plan, owner);
-    }
-
-    /** Frees a plan at once. */
-    free(owner, plan) {
-        this.#plans.unregister(owner);
-        this.calls.strew_plan_free(plan);
     }
 }

@@ -74,7 +74,8 @@ export interface Parameters {
     alpha?: string | number;
     /**
      * The size of the neighborhood map: larger maps have better quality and take more memory. Allowed: s, m or l, if
-     * the profile is loaded with it. Default: m, of pink l, if it is loaded, else s or the smallest.
+     * the profile is loaded with it. Default: m; of pink l; if it is not loaded, s or the smallest, unless profile and
+     * alpha are the default.
      */
     map?: string;
     /**
@@ -250,108 +251,11 @@ export interface VolumeParameters {
 }
 
 /** The parameters of a query in space: which points, and which part of them. */
-export interface SpaceParameters {
-    /**
-     * Points per unit of area, in space of volume. Allowed: a number from 1e-200 to 1e200.
-     */
-    density?: number;
-    /**
-     * The mean spacing in world units: density^-1/2, in space density^-1/3. Allowed: a number from 1e-100 to 1e100.
-     */
-    spacing?: number;
-    /**
-     * The least distance of any two points in world units: the density is the greatest that guarantees it, with the
-     * warp. Not for profiles that guarantee none. Allowed: a number from 1e-100 to 1e100.
-     */
-    min_distance?: number;
-    /**
-     * The exact number of points in the region: the density follows from it. Allowed: an integer from 1 to
-     * 18446744073709551615.
-     */
-    count?: number | bigint | `${number}`;
-    /**
-     * The noise profile. The list of profiles shows what is loaded. Allowed: the name of a loaded profile. Default:
-     * blue.
-     */
-    profile?: string;
-    /**
-     * The number α of the pattern, as a decimal, a fraction or a quadratic irrational. Allowed: a number for which the
-     * profile is loaded. Default: (5-sqrt(3))/2.
-     */
-    alpha?: string | number;
-    /**
-     * The size of the neighborhood map: larger maps have better quality and take more memory. Allowed: s, m or l, if
-     * the profile is loaded with it. Default: m, of pink l, if it is loaded, else s or the smallest.
-     */
-    map?: string;
-    /**
-     * The digest of the table that must answer: caches may keep the answer forever. If another table would answer, the
-     * query is refused. Allowed: 64 hexadecimal digits, as in the header strew-table. Default: any table that fits the
-     * query.
-     */
-    table?: string;
-    /**
-     * Which set of points. Seed 0 is the plain pattern, every other seed a set of its own. Beside layers: the common
-     * seed, from which each layer without a seed has one by its name. Allowed: an integer from 0 to
-     * 18446744073709551615. Default: 0.
-     */
-    seed?: number | bigint | `${number}`;
-    /**
-     * The strength of the warp that makes a set isotropic and unlike those of other seeds: 0 (off), 1 (on), or between
-     * 0 and 2. Allowed: off, on, or a number from 0 to 2. Default: off for seed 0, else on.
-     */
-    warp?: "on" | "off" | number;
-    /**
-     * The share of points to keep, those of the lowest rank. A smaller share keeps a subset of a larger one. Allowed: a
-     * number from 1e-6 to 1. Default: 1.
-     */
-    keep?: number;
-    /**
-     * The level of detail: the part of the points that the answer has, at each place those of the lowest rank. None of
-     * them moves, so a level has a part of the points of a finer one, in fields, of kinds and of layers, too. Beside
-     * layers: of all of them; they keep clear of all points of each other. Allowed: a number from 1e-6 to 1. Default:
-     * 1.
-     */
-    lod?: number;
-    /**
-     * The field that thins the points out, from place to place: a share of the density, which is that where the field
-     * is 1. The list of fields shows what is loaded. By its name, or as in JSON; see `raster`. Default: none.
-     */
-    field?: string | object;
-    /**
-     * The points that are left out, by their ids, lists of the server by their names, and lists that were sent by their
-     * digests. Other layers keep clear of them all the same. Beside layers ids are layer/column:row. The list of lists
-     * shows what is loaded. Default: none.
-     */
-    except?: string | readonly string[];
-    /**
-     * The least and the greatest value of the attribute scale. Allowed: two numbers min,max with 0 <= min <= max <=
-     * 1e9, beside the attribute scale. Default: 0,1.
-     */
-    scale_range?: Tuple<[min: number, max: number]>;
-    /**
-     * The least and the greatest value of the attribute scale for each variant. Default: scale_range for all.
-     */
-    scale_ranges?: Record<string, Tuple<[min: number, max: number]>>;
-    /**
-     * The names that the attribute variant chooses from, with their weights. Their order does not matter.
-     */
-    variants?: Record<string, number>;
-    /**
-     * The number of points to leave out, in the fixed order, from the start or after the cursor. Allowed: an integer
-     * from 0 to 18446744073709551615. Default: 0.
-     */
-    offset?: number | bigint | `${number}`;
-    /**
-     * The greatest number of points in the answer. The header strew-next is the cursor of the rest. Allowed: an integer
-     * from 1 to 18446744073709551615. Default: all.
-     */
-    limit?: number | bigint | `${number}`;
-    /**
-     * Where an earlier answer to the same query ended: the value of its header strew-next. Allowed: the cursor of an
-     * earlier answer to the same query. Default: the beginning.
-     */
-    cursor?: string;
+export interface SpaceParameters extends Pick<
+    Parameters,
+    "density" | "spacing" | "min_distance" | "count" | "profile" | "alpha" | "map" | "table" | "seed" | "warp" | "keep"
+    | "lod" | "field" | "except" | "scale_range" | "scale_ranges" | "variants" | "offset" | "limit" | "cursor"
+> {
     /**
      * Further values of each point, hashed from its id and the seed: rotation (a uniform unit quaternion, as qx, qy, qz
      * and qw), scale (within scale_range), variant (one of variants, by weight), rank (0 to 1, see keep), u1 to u16

@@ -2,7 +2,7 @@
 
 import { KINDS, WINDOW } from "./parameters.js";
 import { OF_ANSWERS, PLANE, SPACE, body, checked, isObject, text } from "./query.js";
-import { StrewError } from "./error.js";
+import { StrewError, fault } from "./error.js";
 
 /** Rows of coordinates with further columns. */
 export function rowsOf({ at, origin }, further) {
@@ -89,7 +89,8 @@ class Points {
 
     /** The planned query of the set. */
     plan() {
-        this.#plan ??= this.#source.plan(text(this.#body), this.#body, this.#dimension);
+        const isThere = this.#plan && !this.#plan.isFree;
+        if (!isThere) this.#plan = this.#source.plan(text(this.#body), this.#body, this.#dimension);
         return this.#plan;
     }
 
@@ -205,7 +206,11 @@ class Points {
     }
 
     /** The points nearest to a place, nearest first: one, or `k`, or all within `radius`. */
-    nearest(at, { k, radius } = {}) {
+    nearest(at, limits = {}) {
+        const allowed = "{ k, radius }: the number of points, and how far they are at most";
+        if (!isObject(limits)) throw fault("limits", text(limits), "not an object", allowed);
+        const { k, radius, ...others } = limits;
+        for (const name of Object.keys(others)) throw fault(name, text(others[name]) ?? null, "unknown limit", allowed);
         return after(this.#set({ at, k, radius }), (set) => this.#source.nearest(set, this.#dimension));
     }
 

@@ -23,7 +23,7 @@ ${hasTables ? 'import green from "strew-tables/green-5-sqrt3-over-2-s";' : ""}
 const query = ${JSON.stringify(QUERY)};
 export async function numbers() {
     const whole = (await open()).points(query).xy();
-    const lite = (await openLite()).points(query).xy();
+    const lite = (await openLite()).points({ ...query, map: "s" }).xy();
     const other = ${hasTables ? '(await open({ tables: [green] })).points({ ...query, profile: "green" }).xy()' : "[]"};
     return JSON.stringify([whole, lite, other].map((at) => [...at]));
 }

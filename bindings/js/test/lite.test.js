@@ -5,6 +5,7 @@ import { before, test } from "node:test";
 import { StrewError, open as openWhole } from "../lib/index.js";
 import { open as openEmbedded } from "../lib/lite-embedded.js";
 import { open } from "../lib/lite.js";
+import { ALL, whole as everything } from "./support.js";
 
 const SMALL = ["blue-5-sqrt3-over-2-s.strew"];
 
@@ -28,6 +29,7 @@ function query(draw) {
     const named = { attributes: ["angle", "rank", "u3"] };
     const all = { attributes: "variant, scale, angle", variants: { oak: 3, birch: 1.5, Elm: 0.2 }, scale_range: [0.5, 2] };
     return {
+        map: "s",
         ...amount[Math.floor(draw(0, 3))],
         seed: [0, Math.floor(draw(1, 1e9)), 2n ** 64n - 1n][Math.floor(draw(0, 3))],
         ...maybe({ warp: [0, 0.7, "on", "off", 2][Math.floor(draw(0, 5))] }),
@@ -53,7 +55,7 @@ test("random queries have the bits of the whole package", () => {
     let refused = 0;
     for (let i = 0; i < 150; i++) {
         const asked = query(draw);
-        const [ours, theirs] = [lite.points(asked), whole.points({ ...asked, map: "s" })];
+        const [ours, theirs] = [lite.points(asked), whole.points(asked)];
         const shape = region(draw);
         const about = JSON.stringify({ ...asked, seed: String(asked.seed), ...shape });
         const tried = (work) => {
@@ -100,7 +102,7 @@ test("what is wrong has its member, its value and what is allowed", () => {
         [{ spacing: 1, chunk: [4, 0.5, 1] }, "region.chunk"], [{ spacing: 1, polygon: [[0, 0]] }, "region"],
         [{ spacing: 1, circle: [0, 0, 0] }, "region.circle"], [{ spacing: 1, bbox: [0, 0, 1e300, 1] }, "region"],
     ]) {
-        assert.throws(() => lite.points(odd), (error) => {
+        assert.throws(() => lite.points({ map: "s", ...odd }), (error) => {
             assert.ok(error instanceof StrewError, error);
             assert.deepEqual([error.kind, error.faults.map((fault) => fault.field)], ["invalid-query", [field]]);
             assert.match(error.message, /allowed: /);
@@ -114,27 +116,49 @@ test("what is wrong has its member, its value and what is allowed", () => {
     ]) {
         const [own, full] = [lite, whole].map((strew) => {
             try {
-                return strew.points(odd).count();
+                return strew.points({ map: "s", ...odd }).count();
             } catch ({ faults }) {
                 return faults[0].detail;
             }
         });
         assert.equal(own, full);
     }
-    assert.throws(() => lite.points({ spacing: NaN }), /`spacing` = .*: must be a number/);
-    assert.throws(() => lite.points({ spacing: 1, bbox: [0, 0, 1] }), /expected 4 numbers, got 3/);
-    assert.deepEqual(lite.points({ spacing: 1, seed: "9", bbox }).xy(), lite.points({ spacing: 1, seed: 9, bbox }).xy());
-    assert.throws(() => lite.points({ spacing: 1 }).nearest([0, NaN]), /`at` = .*two finite numbers/);
-    assert.throws(() => lite.points({ spacing: 1 }).point("1:1"), { kind: "no-such-point" });
-    assert.throws(() => lite.points({ spacing: 1 }).count(), /one of bbox, chunk, circle/);
-    assert.throws(() => lite.points({ spacing: 1, bbox: [0, 0, 9, 9] }).document("csv"), { kind: "unsupported" });
+    const small = (keywords) => lite.points({ map: "s", ...keywords });
+    assert.throws(() => small({ spacing: NaN }), /`spacing` = .*: must be a number/);
+    assert.throws(() => small({ spacing: 1, bbox: [0, 0, 1] }), /expected 4 numbers, got 3/);
+    assert.deepEqual(small({ spacing: 1, seed: "9", bbox }).xy(), small({ spacing: 1, seed: 9, bbox }).xy());
+    assert.throws(() => small({ spacing: 1 }).nearest(), /`at`: .*two finite numbers/);
+    assert.throws(() => small({ spacing: 1 }).nearest([0, NaN]), /`at` = .*two finite numbers/);
+    assert.throws(() => small({ spacing: 1 }).point("1:1"), { kind: "no-such-point" });
+    assert.throws(() => small({ spacing: 1 }).count(), /one of bbox, chunk, circle/);
+    assert.throws(() => small({ spacing: 1, bbox: [0, 0, 9, 9] }).document("csv"), { kind: "unsupported" });
+});
+
+test("a query has the points that it has everywhere, or says what must be named", async () => {
+    const asked = { spacing: 1, seed: 7, bbox: [0, 0, 10, 10] };
+    const of = (name) => open({ table: ALL.find((url) => url.pathname.endsWith(`/${name}.strew`)) });
+    const [green, usual] = await Promise.all(["green-5-sqrt3-over-2-s", "blue-5-sqrt3-over-2-m"].map(of));
+    const there = await everything();
+    for (const [strew, named, wrong] of [
+        [lite, { map: "s" }, { map: "m" }], [usual, {}, { map: "s" }], [usual, { map: "m" }, { profile: "green" }],
+        [green, { profile: "green", map: "s" }, { profile: "green" }],
+        [green, { map: "s", profile: "green", alpha: "(5-sqrt(3))/2" }, { map: "s", profile: "green", alpha: 1.5 }],
+    ]) {
+        assert.deepEqual(strew.points({ ...asked, ...named }).ids(), there.points({ ...asked, ...named }).ids());
+        assert.throws(() => strew.points({ ...asked, ...wrong }), /or open\(\{ table \}\) with another file/);
+    }
+    assert.throws(() => lite.points(asked), {
+        message:
+            "`map`: is missing: without it the query means the table of map m, which is not open; allowed: " +
+            'map: "s", or open({ table }) with another file, as of the package strew-tables',
+    });
 });
 
 test("numbers of errors of the module are those of the whole package", () => {
-    const far = { spacing: 1, bbox: [0, 0, 1e300, 1] };
+    const far = { map: "s", spacing: 1, bbox: [0, 0, 1e300, 1] };
     const faults = [lite, whole].map((strew) => {
         try {
-            return strew.points({ ...far, ...(strew === whole && { map: "s" }) }).count();
+            return strew.points(far).count();
         } catch (error) {
             return error.faults[0];
         }
@@ -142,13 +166,14 @@ test("numbers of errors of the module are those of the whole package", () => {
     const limit = /within ±[\d.]+/;
     assert.equal(faults[0].value, "1e300");
     assert.deepEqual(faults[0].allowed.match(limit)[0], faults[1].allowed.match(limit)[0]);
-    assert.throws(() => lite.points({ spacing: 1 }).nearest([0, 0], { radius: 1000 }), /about 3141593 points lie within/);
+    const forest = lite.points({ map: "s", spacing: 1 });
+    assert.throws(() => forest.nearest([0, 0], { radius: 1000 }), /about 3141593 points lie within/);
 });
 
 test("sets that were dropped are made again, and freed plans have no points", () => {
-    const first = lite.points({ spacing: 2, seed: 3, bbox: [0, 0, 20, 20] });
+    const first = lite.points({ map: "s", spacing: 2, seed: 3, bbox: [0, 0, 20, 20] });
     const [xy, plan] = [first.xy(), first.plan()];
-    for (let seed = 0; seed < 40; seed++) lite.points({ spacing: 2, seed }).chunk(8, 0, 0).free();
+    for (let seed = 0; seed < 40; seed++) lite.points({ map: "s", spacing: 2, seed }).chunk(8, 0, 0).free();
     assert.deepEqual(first.xy(), xy);
     first.free();
     assert.throws(() => plan.count(), { kind: "invalid-argument" });
@@ -156,6 +181,6 @@ test("sets that were dropped are made again, and freed plans have no points", ()
 });
 
 test("the embedded module has the same points", async () => {
-    const [embedded, asked] = [await openEmbedded(), { spacing: 1, seed: 7, bbox: [0, 0, 10, 10] }];
+    const [embedded, asked] = [await openEmbedded(), { map: "s", spacing: 1, seed: 7, bbox: [0, 0, 10, 10] }];
     assert.deepEqual(embedded.points(asked).xy(), lite.points(asked).xy());
 });

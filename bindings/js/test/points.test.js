@@ -2,7 +2,8 @@
 import assert from "node:assert/strict";
 import { before, test } from "node:test";
 
-import { StrewError, connect, open, raster } from "../lib/index.js";
+import { DEFAULT_TABLES, SPACE_TABLES, StrewError, connect, open, raster } from "../lib/index.js";
+import { open as openLite } from "../lib/lite.js";
 import { Module } from "../lib/module.js";
 import { parsed } from "../lib/query.js";
 
@@ -41,6 +42,27 @@ test("a set without a region has chunks, neighbors and points by id", () => {
     assert.throws(() => forest.point("1:1"), { kind: "no-such-point" });
 });
 
+test("the tables by name have points in space", async () => {
+    const own = await open({ tables: [...DEFAULT_TABLES, ...SPACE_TABLES] });
+    const stars = own.space.points({ spacing: 2, seed: 5, attributes: "rotation" });
+    const chunk = stars.chunk(16, -3, 2, 1);
+    const { xyz, origin } = chunk.xyzF32();
+    assert.ok(xyz instanceof Float32Array && xyz.every((v) => v >= 0 && v < 16));
+    assert.deepEqual([origin, chunk.origin()], [[-48, 32, 16], [-48, 32, 16]]);
+    assert.deepEqual(chunk.names(), ["qx", "qy", "qz", "qw"]);
+    assert.equal(xyz.length, 3 * chunk.count());
+    const [first] = chunk;
+    assert.deepEqual([first.id, first.z], [[...chunk.ids().slice(0, 3)].join(":"), chunk.xyz()[2]]);
+    assert.deepEqual([...chunk.column("z")].slice(0, 3), [2, 5, 8].map((i) => chunk.xyz()[i]));
+    const [near] = stars.nearest([100, -3, 12]);
+    assert.equal(stars.point(near.id).z, near.z);
+    assert.throws(() => stars.point("1:2"), /three integers/);
+    assert.throws(() => stars.within({}), /bbox, ball, prism, chunk/);
+    assert.throws(() => own.space.points({ circle: [0, 0, 1], spacing: 1 }), { kind: "invalid-query" });
+    const prism = own.space.points({ prism: [[[0, 0], [9, 0], [0, 9]], 1, 4], spacing: 1 });
+    assert.ok(prism.column("z").every((z) => z >= 1 && z < 4));
+});
+
 test("parts are the whole, and their bodies are queries", () => {
     const points = strew.points({ bbox: [0, 0, 50, 50], spacing: 1, seed: 2 });
     const parts = points.split(3).map((part) => strew.query(structuredClone(part.body)));
@@ -50,8 +72,16 @@ test("parts are the whole, and their bodies are queries", () => {
 
 test("counts of any size are exact", () => {
     assert.equal(strew.points({ bbox: [-5e8, -5e8, 5e8, 5e8], spacing: 1 }).count(), 1000000000097677487n);
-    const many = strew.points({ bbox: [0, 0, 1e6, 1e6], spacing: 1 });
-    for (const call of ["xy", "xyF32", "ids"]) assert.throws(() => many[call](), { kind: "too-many-points" });
+    for (const many of [[0, 0, 1e6, 1e6], [0, 0, 3e4, 3e4]].map((bbox) => strew.points({ bbox, spacing: 1 }))) {
+        for (const call of ["xy", "xyF32", "ids"]) {
+            assert.throws(() => many[call](), (error) => {
+                assert.match(error.message, /\d+ points, and an array has room for at most 268435455: .* chunks/);
+                return error.kind === "too-many-points";
+            });
+        }
+    }
+    const document = () => strew.points({ bbox: [0, 0, 1e6, 1e6], spacing: 1 }).document("f64");
+    assert.throws(document, /and this process returns at most \d+ in one answer/);
 });
 
 test("fields of arrays thin out", () => {
@@ -93,6 +123,11 @@ test("what is no query or no address says so", () => {
             assert.throws(call, /`query` = .*: not an object; allowed: such as \{ bbox/);
         }
     }
+    const forest = strew.points({ spacing: 1 });
+    for (const [wrong, words] of [[5, /`limits` = `5`/], [null, /`limits` = `null`/], [{ kk: 3 }, /`kk` = `3`/]]) {
+        assert.throws(() => forest.nearest([1, 2], wrong), words);
+    }
+    assert.throws(() => forest.nearest(), /`at`: missing/);
     assert.throws(() => connect("127.0.0.1:8080"), /`url` = `127.0.0.1:8080`: http:\/\/ is missing; allowed: http/);
     assert.throws(() => connect(["http://localhost:1", "ftp://localhost"]), /`url` = `ftp:.*: no address of a daemon/);
 });
@@ -103,12 +138,14 @@ test("kinds that are evenly spread are made, and those of a table that is not lo
     assert.equal(kinds.filter((name) => name === "oak").length, Math.round(0.75 * kinds.length));
     assert.throws(() => strew.points({ ...query, spread: "joint" }), /load its file beside the others.*strew-tables/);
     assert.throws(() => strew.points({ ...query, map: "s" }), /load its file beside the others.*strew-tables/);
-    assert.throws(() => strew.points({ bbox: [0, 0, 9, 9], spacing: 1, profile: "green" }), /load its file/);
+    assert.throws(() => strew.points({ ...query, profile: "green" }), /load its file.*open\(\{ tables: \[/);
 });
 
 test("a module without the default table says what is loaded", async () => {
     const small = await open({ tables: ["blue-5-sqrt3-over-2-s.strew"] });
     assert.ok(small.points({ bbox: [0, 0, 9, 9], spacing: 1, map: "s" }).count() > 70);
+    const words = /`map`: missing, and the query means map m, which is not loaded; load its file.*; allowed: s$/;
+    assert.throws(() => small.points({ bbox: [0, 0, 9, 9], spacing: 1 }), words);
     await assert.rejects(open({ tables: [new Uint8Array(9)] }), StrewError);
     await assert.rejects(open({ tables: ["pink.strew"] }), /no table "pink.strew".* the package strew-tables/);
 });
@@ -183,6 +220,28 @@ test("memory does not grow when sets are freed", async (t) => {
     }
     assert.equal(memory.buffer.byteLength, before);
 });
+
+for (const [name, opened] of [["the package", open], ["strew/lite", openLite]]) {
+    test(`memory of ${name} stays flat in a loop that frees nothing, and all sets keep their points`, async (t) => {
+        const instantiate = t.mock.method(WebAssembly, "instantiate");
+        const map = name === "strew/lite" ? "s" : "m";
+        const forest = (await opened()).points({ map, spacing: 2, attributes: "angle" });
+        const { memory } = (await instantiate.mock.calls[0].result).exports;
+        const chunks = [];
+        const make = (count) => {
+            for (let i = 0; i < count; i++) {
+                chunks.push(forest.chunk(32, i, 0));
+                chunks.at(-1).column("angle");
+            }
+            return memory.buffer.byteLength;
+        };
+        const before = make(1500);
+        const after = make(2500);
+        assert.ok(after < 1.1 * before, `${before} and ${after} bytes`);
+        assert.deepEqual(chunks[0].within({ chunk: [32, 0, 0] }).xy(), chunks[0].xy());
+        assert.equal(chunks[0].count(), chunks[0].xy().length / 2);
+    });
+}
 
 test("pointers above 2 GiB are read", () => {
     const memory = new WebAssembly.Memory({ initial: 2 ** 15 + 1 });

@@ -4,6 +4,17 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { brotliCompressSync, gzipSync } from "node:zlib";
 
+test("strew/connect loads no module and no tables", () => {
+    const all = new Set();
+    const load = (name) => {
+        if (all.has(name)) return;
+        all.add(name);
+        for (const [, next] of String(lib(name)).matchAll(/ from "\.\/([^"]+)"/g)) load(next);
+    };
+    load("connect.js");
+    assert.ok(all.has("remote.js") && ![...all].some((name) => /new URL\("\./.test(lib(name))), [...all].join());
+});
+
 const lib = (name) => readFileSync(new URL(`../lib/${name}`, import.meta.url));
 const README = readFileSync(new URL("../README.md", import.meta.url), "utf8");
 

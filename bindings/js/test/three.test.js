@@ -7,7 +7,8 @@ import { open } from "../lib/lite.js";
 const three = await import("three").catch(() => undefined);
 const skip = three ? false : "the npm package three is missing";
 
-const SET = { spacing: 2, seed: 5, attributes: "angle, scale, variant, rank", variants: { oak: 3, birch: 1 } };
+const KINDS = { attributes: "angle, scale, variant, rank", variants: { oak: 3, birch: 1 } };
+const SET = { map: "s", spacing: 2, seed: 5, ...KINDS };
 const OPTIONS = { side: 16, near: 20, far: 60 };
 
 async function made(points, options = OPTIONS) {

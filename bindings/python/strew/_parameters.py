@@ -172,7 +172,8 @@ ABOUT = {
     ),
     "map": (
         "The size of the neighborhood map: larger maps have better quality and take more memory. Allowed: s, m or l, if "
-        "the profile is loaded with it. Default: m, of pink l, if it is loaded, else s or the smallest. "
+        "the profile is loaded with it. Default: m; of pink l; if it is not loaded, s or the smallest, unless profile and "
+        "alpha are the default. "
     ),
     "table": (
         "The digest of the table that must answer: caches may keep the answer forever. If another table would answer, the "

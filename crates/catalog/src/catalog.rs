@@ -19,7 +19,7 @@ use strew_core::{
     space,
     table::{BLUE, joint_files},
 };
-use strew_error::{Checked, Error};
+use strew_error::{Audience, Checked, Error};
 
 use crate::{
     entry::Entry,
@@ -28,7 +28,6 @@ use crate::{
     field::{self, Allowance, Document, Fields, NamedField},
     key::{Dimension, Key, MixKey, Source},
     named::files_of,
-    offer::Offer,
     patterns::Patterns,
     sent::Sent,
 };
@@ -53,7 +52,8 @@ pub struct Catalog {
     patterns: Arc<Patterns>,
     /// The bytes of files that are held.
     pub(crate) preload_bytes: u64,
-    offer: Offer,
+    /// Who reads its errors, by default a daemon's clients.
+    audience: Option<&'static Audience>,
     /// The most pixels that a query may include, if not the default.
     most_pixels: Option<usize>,
 }
@@ -104,10 +104,7 @@ impl Catalog {
 
     /// The tables of these files, which a program has in memory, and no others.
     pub fn of_files(files: impl IntoIterator<Item = Vec<u8>>) -> Result<Self, CatalogError> {
-        let mut catalog = Self {
-            offer: Offer::Files,
-            ..Self::default()
-        };
+        let mut catalog = Self::default();
         let files = files.into_iter().enumerate();
         catalog.add(files.map(|(i, file)| Entry::read(file.into(), Source::Memory(i))))?;
         Ok(catalog)
@@ -127,9 +124,14 @@ impl Catalog {
         &self.except
     }
 
-    /// How tables can be had that are not loaded.
-    pub const fn offer(&self) -> Offer {
-        self.offer
+    /// The catalog with the audience of its errors.
+    pub const fn with_audience(mut self, audience: &'static Audience) -> Self {
+        self.audience = Some(audience);
+        self
+    }
+
+    pub fn audience(&self) -> &'static Audience {
+        self.audience.unwrap_or(&Audience::DAEMON)
     }
 
     pub fn fields(&self) -> &Fields {

@@ -1,6 +1,7 @@
 //! How a table that is not loaded can be had: in words, for the errors of queries that name one.
 
 use strew_core::{Alpha, map::Size};
+use strew_error::Audience;
 use strew_forge::{
     Job, MAX_RADIUS, Profile,
     space::{SpaceJob, SpaceProfile},
@@ -9,12 +10,8 @@ use strew_forge::{
 use crate::Dimension;
 
 /// How a table that is not loaded can be had.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Offer {
-    #[default]
-    Forge,
-    Files,
-}
+#[derive(Clone, Copy, Debug)]
+pub struct Offer(pub &'static Audience);
 
 impl Offer {
     /// A remedy for a profile that is not loaded; empty if there is none.
@@ -84,23 +81,13 @@ impl Offer {
             Dimension::Plane => "",
             Dimension::Space => "--space ",
         };
-        match self {
-            Self::Forge => format!(
+        let made = || {
+            format!(
                 "; it can be made with strew forge {space}{flags}, and its file put into the folder of tables \
                  (tables.folder)"
-            ),
-            Self::Files => self.of_file().into(),
-        }
-    }
-
-    /// A remedy for a table that is shipped as a file; empty if tables are not handed over.
-    pub const fn of_file(self) -> &'static str {
-        match self {
-            Self::Files => {
-                "; load its file beside the others: those of the package strew-tables, or of share/strew/tables"
-            }
-            Self::Forge => "",
-        }
+            )
+        };
+        self.0.table.map_or_else(made, Into::into)
     }
 }
 
@@ -111,37 +98,41 @@ mod tests {
     #[test]
     fn a_missing_table_comes_with_the_command_that_makes_it() {
         let alpha: Alpha = "sqrt(3)".parse().expect("valid");
-        let plane = |map| Offer::Forge.of_table(Dimension::Plane, "blue", alpha, map);
-        let space = |map| Offer::Forge.of_table(Dimension::Space, "spaced", alpha, map);
+        let of = |audience, dimension, map| {
+            let profile = ["blue", "spaced"][usize::from(dimension == Dimension::Space)];
+            Offer(audience).of_table(dimension, profile, alpha, map)
+        };
+        let plane = |map| of(&Audience::DAEMON, Dimension::Plane, map);
+        let space = |map| of(&Audience::DAEMON, Dimension::Space, map);
+        let profile = |name| Offer(&Audience::DAEMON).of_profile(Dimension::Space, name);
         for (text, command) in [
-            (
-                plane(None),
-                "strew forge --profile blue --alpha 'sqrt(3)' --radius 49,",
-            ),
+            (plane(None), "--profile blue --alpha 'sqrt(3)' --radius 49,"),
             (
                 plane(Some("m")),
-                "strew forge --profile blue --alpha 'sqrt(3)' --radius 100,",
+                "--profile blue --alpha 'sqrt(3)' --radius 100,",
             ),
             (
                 space(None),
-                "strew forge --space --profile spaced --alpha 'sqrt(3)' --radius 16,",
+                "--space --profile spaced --alpha 'sqrt(3)' --radius 16,",
             ),
-            (
-                Offer::Forge.of_profile(Dimension::Space, "blue"),
-                "strew forge --space --profile blue,",
-            ),
+            (profile("blue"), "--space --profile blue,"),
         ] {
+            let is_whole = text.contains("tables.folder");
             assert!(
-                text.contains(command) && text.contains("tables.folder"),
+                is_whole && text.contains(&format!("strew forge {command}")),
                 "{text}"
             );
         }
         // Beyond the maps of the forge, and of a profile that it does not know.
-        for none in [plane(Some("r257")), plane(Some("huge")), space(Some("s"))] {
+        for none in [
+            plane(Some("r257")),
+            plane(Some("huge")),
+            space(Some("s")),
+            profile("pink"),
+        ] {
             assert_eq!(none, "");
         }
-        assert_eq!(Offer::Forge.of_profile(Dimension::Space, "pink"), "");
-        let file = Offer::Files.of_table(Dimension::Plane, "blue", alpha, None);
-        assert_eq!(file, Offer::Files.of_file());
+        let way = of(&Audience::C, Dimension::Plane, None);
+        assert_eq!(Some(&*way), Audience::C.table);
     }
 }

@@ -27,7 +27,7 @@
 //!
 //! An *AA pattern* (Ahmed, Huang, Deussen, "AA Patterns for Point Sets with Controlled Spectral
 //! Properties", SIGGRAPH Asia 2015) is an unbounded, structured subset of the integer grid with random
-//! access. A *displacement table* of some tens of kilobytes moves its points, which determines the noise
+//! access. A *displacement table*, of which the default has 0.2 MB, moves its points, which determines the noise
 //! profile of the set. The modules build on each other: [`pattern`] → [`map`] → [`table`] → the point set.
 //!
 //! # Features
@@ -36,6 +36,9 @@
 //!   Without it the crate needs `alloc` only; all results have the same bits.
 //! - `tables` (default): [`PointSet::blue`] and its table, 0.2 MB. Others are read from files by
 //!   [`Table::from_bytes`].
+//! - `clearance`, `fields`, `kinds`, `polygons`, `words` (default): sets that keep clear of others, sets in fields,
+//!   kinds of points, polygons, and decimal numbers in errors, for programs that need not be small.
+//! - `cells`: some results are kept without `std`, too.
 //! - `even-1-1`, `even-1-3`, `even-1-1-2`, `even-1-3-10`: labels of that table for [evenly spread kinds](Kinds::even) in
 //!   the ratio of the name, 50 kB each.
 //! - `joint-1-1`, `joint-1-3`, `joint-1-1-2`, `joint-1-3-10`: tables of [joint kinds](Kinds::joint), 0.19 MB each.

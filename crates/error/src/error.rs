@@ -3,7 +3,9 @@
 //! One type for both protocols; its [`Kind`] has the status on each. Text here is for clients; what only operators
 //! should see goes to the log where it happens.
 
-use crate::{denied::Denied, fault::Fault, faults::Faults, secret::without_keys};
+use crate::{
+    audience::Audience, denied::Denied, fault::Fault, faults::Faults, secret::without_keys,
+};
 
 /// Why a request has no answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -11,15 +13,9 @@ use crate::{denied::Denied, fault::Fault, faults::Faults, secret::without_keys};
 pub enum Error {
     #[error("{}", joined(.0.as_slice()))]
     Invalid(Faults),
-    #[error(
-        "the region holds {count} points, and this server returns at most {limit} in one answer: \
-         request a smaller region, fewer points, or pages with limit and cursor"
-    )]
+    #[error("{}", self.message_for(&Audience::DAEMON))]
     TooManyPoints { count: u128, limit: u64 },
-    #[error(
-        "counting takes about {rows} steps (lattice rows, or points that keep clear of others), and \
-         this server allows {limit}: request a smaller region, a wider spacing, or a box with warp=off"
-    )]
+    #[error("{}", self.message_for(&Audience::DAEMON))]
     TooManyRows { rows: u128, limit: u64 },
     #[error(
         "the body is longer than {limit} bytes, the limit of this server: send fewer vertices or \
@@ -182,6 +178,21 @@ kinds! {
 }
 
 impl Error {
+    /// The message for an audience; `Display` has that for a daemon's.
+    pub fn message_for(&self, Audience { here, .. }: &Audience) -> String {
+        match self {
+            Self::TooManyPoints { count, limit } => format!(
+                "the region holds {count} points, and {here} returns at most {limit} in one answer: \
+                 request a smaller region, fewer points, or pages with limit and cursor"
+            ),
+            Self::TooManyRows { rows, limit } => format!(
+                "counting takes about {rows} steps (lattice rows, or points that keep clear of others), and \
+                 {here} allows {limit}: request a smaller region, a wider spacing, or a box with warp=off"
+            ),
+            _ => self.to_string(),
+        }
+    }
+
     pub const fn kind(&self) -> Kind {
         match self {
             Self::Invalid(_) => Kind::Invalid,

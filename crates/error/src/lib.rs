@@ -6,6 +6,7 @@
 
 #![allow(missing_docs, reason = "internal: names say what items are")]
 
+mod audience;
 mod denied;
 mod error;
 mod fault;
@@ -13,6 +14,7 @@ pub mod faults;
 pub mod integer;
 mod secret;
 
+pub use audience::Audience;
 pub use denied::{Denied, Level, Rate, Short};
 pub use error::{Error, Kind};
 pub use fault::{Fault, number, unknown};

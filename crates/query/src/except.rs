@@ -10,8 +10,6 @@ use strew_error::{Checked, Fault, Faults, all, unknown};
 
 use super::{Set, Values, parameters::EXCEPT, rules, table::is_digest};
 
-const GONE: &str = "a list that the server no longer holds must be sent again (POST /v1/except)";
-
 /// An item of `except`.
 enum Item {
     Id(Option<String>, Id),
@@ -50,7 +48,7 @@ impl Items {
                     let list = lists.get(text).ok_or_else(|| {
                         let (detail, allowed) = (unknown("list", text, names), lists.names());
                         match is_digest(text) {
-                            true => wrong(format!("{detail}; {GONE}"), allowed),
+                            true => wrong(detail + catalog.audience().list, allowed),
                             false => wrong(detail, allowed),
                         }
                     })?;

@@ -176,7 +176,7 @@ impl Kinds {
             let detail = format!(
                 "no table with joint kinds of the shares {} is loaded{}",
                 self.shares(),
-                catalog.offer().of_file()
+                catalog.audience().table.unwrap_or_default()
             );
             let field = format!("{}{}", values.path(), SPREAD.name);
             Fault::new(&field, self.spread.name(), detail, allowed).into()

@@ -130,7 +130,7 @@ parameters! {
     MAP = parameter!("map" of Table {
         about: "The size of the neighborhood map: larger maps have better quality and take more memory.",
         allowed: Some("s, m or l, if the profile is loaded with it"),
-        default: Some("m, of pink l, if it is loaded, else s or the smallest"),
+        default: Some("m; of pink l; if it is not loaded, s or the smallest, unless profile and alpha are the default"),
         example: "s",
         is_echoed: true,
         ..Parameter::RARE

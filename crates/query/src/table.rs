@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use strew_catalog::{Catalog, Dimension, Entry, Key, MAX_PATTERN_RADIUS, PATTERN};
+use strew_catalog::{Catalog, Dimension, Entry, Key, MAX_PATTERN_RADIUS, Offer, PATTERN};
 use strew_core::{Alpha, map::Size};
 use strew_error::{Checked, Error, Fault, Faults, Together as _};
 
@@ -30,7 +30,7 @@ pub(super) fn check(
         let field = format!("{}{}", values.path(), parameter.name);
         Fault::new(&field, value, detail, allowed).into()
     };
-    let dimension = values.dimension();
+    let (dimension, offer) = (values.dimension(), Offer(catalog.audience()));
     let is_pattern = profile == PATTERN && dimension == Dimension::Plane;
     let is_known = is_pattern || catalog.has_profile(dimension, profile);
     let alpha = parse(alpha_text).map_err(|error| {
@@ -49,7 +49,7 @@ pub(super) fn check(
     let known = match is_known {
         true => Ok(()),
         false => {
-            let offer = catalog.offer().of_profile(dimension, profile);
+            let offer = offer.of_profile(dimension, profile);
             let detail = format!("no such profile is loaded{offer}");
             Err(fault(&PROFILE, profile, detail, loaded(catalog, dimension)))
         }
@@ -70,9 +70,16 @@ pub(super) fn check(
         return Ok((entry, pin));
     }
     let sizes = catalog.sizes(dimension, profile, alpha);
+    if size.is_none() && wanted.is_usual() && !sizes.is_empty() {
+        let offer = offer.of_table(dimension, profile, alpha, Some("m"));
+        let detail = format!("missing, and the query means map m, which is not loaded{offer}");
+        let allowed = some(sizes.iter().map(ToString::to_string));
+        let fault = Fault::missing(&format!("{}{}", values.path(), MAP.name), allowed);
+        return Err(Fault { detail, ..fault }.into());
+    }
     let size = size.filter(|_| is_pattern || !sizes.is_empty());
     let Some((text, size)) = size else {
-        let offer = (catalog.offer()).of_table(dimension, profile, alpha, map.as_deref());
+        let offer = offer.of_table(dimension, profile, alpha, map.as_deref());
         let detail = format!("the profile `{profile}` is not loaded for this alpha{offer}");
         let allowed = some(
             catalog
@@ -83,7 +90,7 @@ pub(super) fn check(
         return Err(fault(&ALPHA, alpha_text, detail, allowed));
     };
     let offer = size.map_or(String::new(), |_| {
-        (catalog.offer()).of_table(dimension, profile, alpha, Some(text))
+        offer.of_table(dimension, profile, alpha, Some(text))
     });
     let detail = format!("the profile `{profile}` is not loaded with this map size{offer}");
     let allowed = match is_pattern {
@@ -121,8 +128,18 @@ impl Wanted<'_> {
         self.loaded(size).or_else(|| self.derived(size))
     }
 
+    /// Whether the query means the table that it means everywhere: the one of map m.
+    fn is_usual(&self) -> bool {
+        let is_plane = self.dimension == Dimension::Plane;
+        let is_alpha = || parse(DEFAULT_ALPHA).is_ok_and(|usual| usual == self.alpha);
+        is_plane && *self.profile == *DEFAULT_PROFILE && is_alpha()
+    }
+
     /// The usual sizes first, then the smallest.
     fn of_any_size(&self) -> Option<Arc<Entry>> {
+        if self.is_usual() {
+            return self.loaded(Size::M);
+        }
         // Much power at low frequencies makes the returns of a small map conspicuous.
         let sizes: &[Size] = match &*self.profile {
             "pink" => &[Size::L, Size::M, Size::S],

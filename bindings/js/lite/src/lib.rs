@@ -14,7 +14,7 @@ mod describe;
 mod output;
 mod state;
 
-use alloc::vec::Vec;
+use alloc::{format, vec::Vec};
 use core::panic::PanicInfo;
 
 use dlmalloc::GlobalDlmalloc;
@@ -69,11 +69,13 @@ pub extern "C" fn output_length() -> usize {
     with(|state| state.output.bytes())
 }
 
-/// A table of the input, a table file.
+/// A table of the input, a table file. Outputs its profile, its alpha and its map, with zeros between them.
 #[unsafe(no_mangle)]
 pub extern "C" fn table() -> i32 {
     guarded(|state| {
         let table = Table::from_bytes(&state.input)?;
+        let (alpha, map) = (table.map().alpha(), table.map().size());
+        state.output = Output::Text(format!("{}\0{alpha}\0{map}", table.profile()));
         Ok(state.tables.add(table))
     })
 }

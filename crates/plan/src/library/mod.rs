@@ -26,7 +26,7 @@ use strew_config::Layers;
 use strew_config::{ConfigError, Limits};
 use strew_core::{Table, server::Stop};
 use strew_encode::{Answer, Encoding, Output, Place};
-use strew_error::{Error, Fault};
+use strew_error::{Audience, Error, Fault};
 use strew_query as query;
 use strew_query::{
     Assets, Draft, Group, Nearest, Options, Query, Set, Token, Values, groups, parse_pairs,
@@ -95,11 +95,19 @@ impl Library {
 
     #[must_use]
     pub fn of(catalog: Catalog, limits: Limits) -> Self {
+        let catalog = catalog.with_room(ROOM).with_pixels(MOST_PIXELS);
         Self {
-            assets: catalog.with_room(ROOM).with_pixels(MOST_PIXELS).into(),
+            assets: catalog.with_audience(&Audience::PROCESS).into(),
             limits,
             ready: Mutex::default(),
         }
+    }
+
+    /// The library with the audience of its errors.
+    #[must_use]
+    pub fn for_audience(mut self, audience: &'static Audience) -> Self {
+        self.assets.catalog = self.assets.catalog.with_audience(audience);
+        self
     }
 
     #[must_use]
@@ -384,17 +392,9 @@ pub fn hold_field(
     let field = NamedField::sent(document, spec?, built.bytes, built.frame);
     catalog.sent().hold(field, sender).ok_or_else(|| {
         let detail = format!("takes {} bytes, which there is no room for", built.bytes);
-        Fault::new(
-            "field",
-            "",
-            detail,
-            "a smaller field, or fields.max_sent_bytes raised",
-        )
-        .into()
+        Fault::new("field", "", detail, catalog.audience().field).into()
     })
 }
 
-#[cfg(test)]
-mod space_tests;
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,4 @@
-//! A library has the points, the documents and the words of a daemon's service.
+//! A library has the points, the documents and the words of a daemon's service, in the plane and in space.
 
 use strew_core::{Kinds, PointSet, Region};
 
@@ -8,129 +8,164 @@ fn library() -> Library {
     Library::new().expect("built-in tables")
 }
 
+const FLAT: [&str; 5] = [
+    "bbox=0.1,0.1,0.2,0.2&spacing=50&attributes=angle,variant&variants=oak:1,birch:1",
+    r#"{"region": {"chunk": {"size": 64, "x": -3, "y": 2}}, "spacing": 3}"#,
+    "bbox=-500,-300,200,210&spacing=0.9&seed=5&attributes=angle",
+    "circle=1e9,-7,20&spacing=0.8&keep=0.5",
+    r#"{"region": {"bbox": [0, 0, 40, 30]}, "layers": [{"name": "trees", "spacing": 2, "seed": 3,
+        "attributes": ["angle", "variant"], "variants": {"oak": 2, "birch": 1}},
+        {"name": "rocks", "spacing": 3, "clear_of": {"trees": 1}, "region": {"bbox": [9, 9, 20, 20]}}]}"#,
+];
+const IN_SPACE: [&str; 6] = [
+    "bbox=0.1,0.1,0.1,0.2,0.2,0.2&spacing=50&attributes=rotation",
+    r#"{"region": {"chunk": {"size": 16, "x": -3, "y": 2, "z": 1}}, "spacing": 2, "seed": 7}"#,
+    "bbox=-9,-8,-7,20,11,12&spacing=1.3&seed=5&attributes=rotation,u1",
+    "ball=1e6,-7,20,9&spacing=1.1&keep=0.5",
+    r#"{"region": {"prism": {"polygon": {"type": "Polygon", "coordinates": [[[0, 0], [19, 1], [2, 17], [0, 0]]]},
+        "bottom": -3, "top": 8}}, "spacing": 1.7, "attributes": ["variant"], "variants": {"gas": 1, "dust": 2}}"#,
+    r#"{"region": {"bbox": [3, 4, 5, 23, 24, 25]}, "layers": [
+        {"name": "a", "spacing": 2, "attributes": ["scale"]}, {"name": "b", "spacing": 3, "clear_of": {"a": 1}}]}"#,
+];
+
+/// All queries with the number of their axes.
+fn queries() -> impl Iterator<Item = (usize, &'static str)> {
+    let in_space = IN_SPACE.map(|query| (3, query));
+    FLAT.map(|query| (2, query)).into_iter().chain(in_space)
+}
+
+fn planned(library: &Library, (axes, query): (usize, &str)) -> (Planned, Options) {
+    let draft = match axes {
+        2 => Library::read(query),
+        _ => Library::read_in_space(query),
+    };
+    library.plan_draft(&draft.expect("read")).expect(query)
+}
+
 #[test]
 fn columns_are_the_rows_of_the_answer() {
     let library = library();
-    let layers = br#"{"region": {"bbox": [0, 0, 40, 30]}, "layers": [
-        {"name": "trees", "spacing": 2, "seed": 3, "attributes": ["angle", "variant"], "variants": {"oak": 2, "birch": 1}},
-        {"name": "rocks", "spacing": 3, "clear_of": {"trees": 1}}]}"#;
-    let (planned, options) = library.plan(layers).expect("valid");
-    let columns = library.columns(&planned).expect("few");
-    assert_eq!(columns.len() as u128, planned.count());
-    let csv = Options {
-        encoding: Some(Encoding::Csv),
-        ..options
-    };
-    let csv = library
-        .document(&planned, csv, Encoding::Json)
-        .expect("csv");
-    let csv: Vec<u8> = csv.flat_map(|block| block.expect("whole")).collect();
-    let mut lines = String::from_utf8(csv)
-        .expect("text")
-        .lines()
-        .map(Into::into)
-        .collect::<Vec<String>>();
-    assert_eq!(lines.remove(0), "layer,id,x,y,angle,variant");
-    assert_eq!(lines.len(), columns.len());
-    for (i, line) in lines.iter().enumerate() {
-        let [x, y] = [columns.at[2 * i], columns.at[2 * i + 1]];
-        let [a, b] = [columns.ids[2 * i], columns.ids[2 * i + 1]];
-        let value = |column: &Further| match &column.values {
-            FurtherValues::Numbers(v) if v[i].is_nan() => String::new(),
-            FurtherValues::Numbers(v) => strew_error::number(v[i]),
-            FurtherValues::Names(names, v) => {
-                usize::try_from(v[i]).map_or(String::new(), |index| names[index].to_string())
+    for (axes, query) in queries() {
+        let (planned, options) = planned(&library, (axes, query));
+        let columns = library.columns(&planned).expect("few");
+        assert_eq!((columns.axes, planned.axes()), (axes, axes));
+        assert_eq!(columns.len() as u128, planned.count(), "{query}");
+        assert_eq!(library.coordinates(&planned), Ok(columns.at.clone()));
+        let json = (library.document(&planned, options, Encoding::Json)).expect("written");
+        let json: Vec<u8> = json.flat_map(|block| block.expect("whole")).collect();
+        let json: serde_json::Value = serde_json::from_slice(&json).expect("JSON");
+        let rows = json["points"].as_array().expect("a list");
+        assert_eq!(rows.len(), columns.len());
+        let places = columns.at.chunks(axes).zip(columns.ids.chunks(axes));
+        for (i, (row, (at, id))) in rows.iter().zip(places).enumerate() {
+            let place = ["x", "y", "z"].map(|axis| row[axis].as_f64());
+            assert_eq!(
+                place[..axes],
+                at.iter().copied().map(Some).collect::<Vec<_>>()
+            );
+            let id: Vec<String> = id.iter().map(ToString::to_string).collect();
+            assert_eq!(row["id"], id.join(":"));
+            for column in &columns.further {
+                match &column.values {
+                    FurtherValues::Numbers(v) if v[i].is_nan() => {
+                        assert!(row[&column.name].is_null());
+                    }
+                    FurtherValues::Numbers(v) => assert_eq!(row[&column.name], v[i]),
+                    FurtherValues::Names(names, v) => {
+                        let name = usize::try_from(v[i]).ok().map(|i| &*names[i]);
+                        assert_eq!(row[&column.name].as_str(), name);
+                    }
+                }
             }
-        };
-        let mut values: Vec<String> = columns.further.iter().map(value).collect();
-        let at = format!(
-            "{a}:{b},{},{}",
-            strew_error::number(x),
-            strew_error::number(y)
-        );
-        values.insert(1, at);
-        let text = values.join(",");
-        let plain = |text: &str| text.replace(".0,", ",");
-        assert_eq!(plain(&text), plain(line));
+        }
     }
-    assert_eq!(library.coordinates(&planned), Ok(columns.at));
+    let names = |query| {
+        let columns = library.columns(&planned(&library, query).0).expect("few");
+        let names = columns.further.into_iter().map(|column| column.name);
+        names.collect::<Vec<_>>()
+    };
+    // Answers without points have their columns.
+    assert_eq!(names((3, IN_SPACE[0])), ["qx", "qy", "qz", "qw"]);
+    assert_eq!(names((2, FLAT[0])), ["angle", "variant"]);
+    assert_eq!(names((3, IN_SPACE[5])), ["layer", "scale"]);
+}
+
+#[test]
+fn offsets_are_those_of_the_format_f32_and_need_room() {
+    let library = library();
+    // The first ones have no points.
+    for (axes, query) in queries().filter(|(_, query)| !query.contains("spacing=50")) {
+        let (planned, options) = planned(&library, (axes, query));
+        let count = usize::try_from(planned.count()).expect("few");
+        let mut at = vec![0_f32; axes * (count + 1)];
+        let (filled, origin) = library.fill_offsets(&planned, &mut at).expect("room");
+        assert_eq!((filled, &at[axes * count..]), (count, &[0.0; 3][..axes]));
+        let answer = library.document(&planned, options, Encoding::F32);
+        let answer = answer.expect("written");
+        assert_eq!(answer.origin(), Some(origin));
+        let bytes: Vec<u8> = answer.flat_map(|block| block.expect("whole")).collect();
+        for (record, at) in bytes.chunks(bytes.len() / count).zip(at.chunks(axes)) {
+            let expected: Vec<u8> = at.iter().flat_map(|v| v.to_le_bytes()).collect();
+            assert_eq!(record[..4 * axes], expected);
+        }
+        let few = library.fill_coordinates(&planned, &mut vec![0.0; axes * count - 1]);
+        assert_eq!(few.expect_err("no room").faults()[0].field, "capacity");
+    }
 }
 
 #[test]
 fn many_threads_make_the_points_of_one() {
     let library = library();
     for query in [
-        "bbox=-200,-200,200,210&spacing=0.7&seed=5&attributes=angle",
-        "circle=0,0,250&spacing=0.8",
+        (
+            2,
+            "bbox=-200,-200,200,210&spacing=0.7&seed=5&attributes=angle",
+        ),
+        (2, "circle=0,0,250&spacing=0.8"),
+        (
+            3,
+            "bbox=-30,-30,-30,30,31,32&spacing=1&seed=5&attributes=u1",
+        ),
     ] {
-        let (planned, _) = library.plan_address(query).expect("valid");
+        let (planned, _) = planned(&library, query);
         assert!(planned.count() > 3 * (1 << 16), "{}", planned.count());
-        let alone = rayon::ThreadPoolBuilder::new()
-            .num_threads(1)
-            .build()
-            .expect("a thread");
-        let many = rayon::ThreadPoolBuilder::new()
-            .num_threads(3)
-            .build()
-            .expect("threads");
-        let one = alone.install(|| library.columns(&planned)).expect("few");
-        let three = many.install(|| library.columns(&planned)).expect("few");
+        let pool = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            pool.expect("threads")
+        };
+        let one = pool(1).install(|| library.columns(&planned)).expect("few");
+        let three = pool(3).install(|| library.columns(&planned)).expect("few");
         assert_eq!(one, three);
-        assert_eq!(many.install(|| library.coordinates(&planned)), Ok(one.at));
+        assert_eq!(
+            pool(3).install(|| library.coordinates(&planned)),
+            Ok(one.at)
+        );
     }
 }
 
 #[test]
 fn chunks_are_relative_to_their_corner_and_parts_are_the_whole() {
     let library = library();
-    let body = |more: &str| {
-        format!(r#"{{"region": {{"chunk": {{"size": 64, "x": -3, "y": 2}}}}, "spacing": 3{more}}}"#)
-    };
-    let plan = |more: &str| library.plan(body(more).as_bytes()).expect("valid").0;
-    let whole = library.columns(&plan("")).expect("few");
-    assert_eq!(whole.origin, Some(Place::Plane([-192.0, 128.0])));
-    assert!(whole.at.iter().all(|v| (0.0..64.0).contains(v)));
-    let mut joined = vec![];
-    for (cursor, count) in library.split(&plan(""), "3").expect("three") {
-        let part = plan(&format!(r#", "cursor": "{cursor}", "limit": {count}"#));
-        let part = library.columns(&part).expect("few");
-        assert_eq!(part.len() as u64, count);
-        joined.extend(part.at);
-    }
-    assert_eq!(joined, whole.at);
-    let fault = library.split(&plan(""), "0").expect_err("too few");
-    assert_eq!(fault.faults()[0].field, "parts");
-}
-
-#[test]
-fn offsets_are_those_of_the_format_f32_and_need_room() {
-    let library = library();
-    for query in [
-        "bbox=-500,-300,200,210&spacing=0.9&seed=5&attributes=angle",
-        "circle=1e9,-7,20&spacing=0.8&keep=0.5",
-        r#"{"region": {"chunk": {"size": 64, "x": -3, "y": 2}}, "spacing": 3}"#,
-        r#"{"region": {"bbox": [3, 4, 40, 30]}, "layers": [
-            {"name": "a", "spacing": 2}, {"name": "b", "spacing": 3, "region": {"bbox": [9, 9, 20, 20]}}]}"#,
+    for (query, corner, side) in [
+        ((2, FLAT[1]), Place::Plane([-192.0, 128.0]), 64.0),
+        ((3, IN_SPACE[1]), Place::Space([-48.0, 32.0, 16.0]), 16.0),
     ] {
-        let draft = Library::read(query).expect("read");
-        let (planned, options) = library.plan_draft(&draft).expect(query);
-        let count = library.columns(&planned).expect("few").len();
-        let mut at = vec![0_f32; 2 * (count + 1)];
-        let (filled, origin) = library.fill_offsets(&planned, &mut at).expect("room");
-        assert_eq!((filled, &at[2 * count..]), (count, &[0.0; 2][..]));
-        let answer = library.document(&planned, options, Encoding::F32);
-        let answer = answer.expect("written");
-        assert_eq!(answer.origin(), Some(origin));
-        let bytes: Vec<u8> = answer.flat_map(|block| block.expect("whole")).collect();
-        let record = bytes.len() / count;
-        for (record, at) in bytes.chunks(record).zip(at.chunks(2)) {
-            assert_eq!(
-                record[..8],
-                [at[0].to_le_bytes(), at[1].to_le_bytes()].concat()
-            );
+        let (whole, (axes, body)) = (planned(&library, query).0, query);
+        let columns = library.columns(&whole).expect("few");
+        assert_eq!(columns.origin, Some(corner));
+        assert!(columns.at.iter().all(|v| (0.0..side).contains(v)));
+        let mut joined = vec![];
+        for (cursor, count) in library.split(&whole, "3").expect("three") {
+            let body = body.strip_suffix('}').expect("an object");
+            let part = format!(r#"{body}, "cursor": "{cursor}", "limit": {count}}}"#);
+            let part = library.columns(&planned(&library, (axes, &part)).0);
+            let part = part.expect("few");
+            assert_eq!(part.len() as u64, count);
+            joined.extend(part.ids);
         }
-        let few = library.fill_coordinates(&planned, &mut vec![0.0; 2 * count - 1]);
-        assert_eq!(few.expect_err("no room").faults()[0].field, "capacity");
+        assert_eq!(joined, columns.ids);
+        let fault = library.split(&whole, "0").expect_err("too few");
+        assert_eq!(fault.faults()[0].field, "parts");
     }
 }
 
@@ -185,17 +220,6 @@ fn kinds_of_the_core_are_those_of_queries() {
 }
 
 #[test]
-fn an_empty_answer_has_its_columns() {
-    let library = library();
-    let query = "bbox=0.1,0.1,0.2,0.2&spacing=50&attributes=angle,variant&variants=oak:1,birch:1";
-    let (planned, _) = library.plan_address(query).expect("valid");
-    let columns = library.columns(&planned).expect("none");
-    assert!(columns.is_empty());
-    let names: Vec<&str> = columns.further.iter().map(|column| &*column.name).collect();
-    assert_eq!(names, ["angle", "variant"]);
-}
-
-#[test]
 fn tables_in_memory_have_the_points_of_the_built_in_ones() {
     let whole = library();
     let library = Library::of_tables([strew_core::table::BLUE.to_vec()]).expect("a table");
@@ -206,7 +230,12 @@ fn tables_in_memory_have_the_points_of_the_built_in_ones() {
     };
     assert_eq!(plan(&library), plan(&whole));
     let missing = library.plan_address("bbox=0,0,30,30&spacing=1&profile=step");
-    assert_eq!(missing.expect_err("not there").faults()[0].field, "profile");
+    let missing = missing.expect_err("not there").faults()[0].clone();
+    let way = Audience::PROCESS.table.expect("a way");
+    assert!(
+        missing.field == "profile" && missing.detail.ends_with(way),
+        "{missing}"
+    );
     let damaged = Library::of_tables([vec![1, 2, 3]]).expect_err("no table");
     assert!(
         damaged.to_string().contains("table 0 in memory"),
@@ -234,6 +263,28 @@ fn single_points_fields_and_faults() {
     let refused = refused.expect_err("three faults");
     let fields: Vec<&str> = refused.faults().iter().map(|fault| &*fault.field).collect();
     assert_eq!(fields, ["sed", "region.bbox", "spacing"]);
+}
+
+#[test]
+fn single_points_in_space_and_faults() {
+    let library = library();
+    let set = "spacing=1&seed=4&attributes=rotation";
+    let found = library.nearest_in_space(&format!("at=5,5,5&k=2&{set}"));
+    let found = found.expect("two");
+    let again = library.point_in_space(&found[0].id, set).expect("there");
+    assert_eq!(
+        (again.x, again.y, again.z),
+        (found[0].x, found[0].y, found[0].z)
+    );
+    assert!(again.z.is_some() && again.attributes.contains_key("qw"));
+    let flat = library.nearest_in_space("at=5,5&spacing=1");
+    assert_eq!(flat.expect_err("no z").faults()[0].field, "at");
+    let flat = library.point_in_space("1:2", "spacing=1");
+    assert_eq!(flat.expect_err("no z").faults()[0].field, "id");
+    let refused = library.plan_in_space(br#"{"region": {"bbox": [0, 0, 0, 1]}, "settle": 1}"#);
+    let refused = refused.expect_err("faults");
+    let fields: Vec<&str> = refused.faults().iter().map(|fault| &*fault.field).collect();
+    assert_eq!(fields, ["settle", "region.bbox", "spacing"]);
 }
 
 #[test]
