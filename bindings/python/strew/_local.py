@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._errors import fault
 from ._native import native
 from ._query import PLANE, SPACE, Body, Dimension, text
 from ._source import Plan, Source
@@ -73,3 +74,23 @@ class Local(Source):
 
 
 LOCAL = Local()
+
+
+def limits(
+    *, points: int | None = None, rows: int | None = None, vertices: int | None = None, pixels: int | None = None
+) -> dict[str, int]:
+    """Sets limits of this process for the calls that follow, and returns all of them.
+
+    ``points`` is the most points of an answer, ``rows`` the most steps of counting, such as for ``count=`` in fields and
+    for :func:`stipple`, ``vertices`` the most vertices of a region, and ``pixels`` the most pixels of a query. Other
+    processes have limits of their own, and daemons those of their settings.
+
+    >>> import strew
+    >>> strew.limits()["rows"]
+    5000000
+    """
+    for name, most in {"points": points, "rows": rows, "vertices": vertices, "pixels": pixels}.items():
+        if most is not None and not 1 <= most < 2**63:
+            raise fault(name, most, "out of range", "an integer from 1 to 2**63 - 1")
+    set_now: dict[str, int] = native().limits((points, rows, vertices, pixels))
+    return set_now

@@ -11,7 +11,10 @@ pub mod measured;
 use std::{
     collections::HashMap,
     path::Path,
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
 };
 
 use strew_catalog::{
@@ -24,7 +27,10 @@ use strew_catalog::{
 #[cfg(feature = "shipped")]
 use strew_config::Layers;
 use strew_config::{ConfigError, Limits};
-use strew_core::{Table, server::Stop};
+use strew_core::{
+    Table,
+    server::{Stop, Visits},
+};
 use strew_encode::{Answer, Encoding, Output, Place};
 use strew_error::{Error, Fault};
 use strew_query as query;
@@ -42,12 +48,48 @@ pub use columns::{Columns, Further, FurtherValues};
 #[cfg(feature = "measure")]
 pub use measured::{Measured, measure};
 
-#[derive(Debug)]
+/// Clones have the same tables and fields.
+#[derive(Clone, Debug)]
 pub struct Library {
-    assets: Assets,
+    assets: Arc<Assets>,
     limits: Limits,
+    work: Work,
     /// Tables that were used, by their digests; mixes by those and their shares.
-    ready: Mutex<HashMap<String, Ready>>,
+    ready: Arc<Mutex<HashMap<String, Ready>>>,
+}
+
+/// The work of a call, which other threads may stop and follow.
+#[derive(Clone, Debug, Default)]
+pub struct Work {
+    /// Once it is raised, the call ends early with an error.
+    pub stop: Stop,
+    /// The number of points made so far.
+    pub points: Arc<AtomicU64>,
+}
+
+impl Work {
+    /// Work that can be stopped.
+    #[must_use]
+    pub fn new() -> Self {
+        let stop = Stop::new();
+        Self {
+            stop,
+            ..Self::default()
+        }
+    }
+
+    /// Adds points that were made. Returns whether to make more.
+    pub fn goes_on(&self, points: usize) -> bool {
+        self.points.fetch_add(points as u64, Ordering::Relaxed);
+        !self.stop.is_raised()
+    }
+
+    fn finished<T>(&self, made: T) -> Result<T, Error> {
+        match self.stop.is_raised() {
+            true => Err(Error::Internal("the work was stopped")),
+            false => Ok(made),
+        }
+    }
 }
 
 /// Why there is no library.
@@ -63,7 +105,7 @@ pub enum Unavailable {
 }
 
 /// The most pixels that a query of a program may include: a program has them in memory anyway.
-const MOST_PIXELS: usize = 1 << 28;
+pub const MOST_PIXELS: usize = 1 << 28;
 /// The most memory of fields that are held to be named, in bytes.
 const ROOM: usize = 1 << 30;
 
@@ -96,20 +138,41 @@ impl Library {
     #[must_use]
     pub fn of(catalog: Catalog, limits: Limits) -> Self {
         Self {
-            assets: catalog.with_room(ROOM).with_pixels(MOST_PIXELS).into(),
+            assets: Arc::new(catalog.with_room(ROOM).with_pixels(MOST_PIXELS).into()),
             limits,
-            ready: Mutex::default(),
+            work: Work::default(),
+            ready: Arc::default(),
+        }
+    }
+
+    /// This library for work that may be stopped, with limits of its own.
+    #[must_use]
+    pub fn with(&self, work: Work, limits: Limits, pixels: usize) -> Self {
+        let mut own = self.clone();
+        if pixels != own.catalog().most_pixels() {
+            let assets = Arc::make_mut(&mut own.assets);
+            assets.catalog = assets.catalog.clone().with_pixels(pixels);
+        }
+        Self {
+            work,
+            limits,
+            ..own
         }
     }
 
     #[must_use]
-    pub const fn catalog(&self) -> &Catalog {
+    pub fn catalog(&self) -> &Catalog {
         &self.assets.catalog
     }
 
     #[must_use]
     pub const fn limits(&self) -> &Limits {
         &self.limits
+    }
+
+    #[must_use]
+    pub const fn work(&self) -> &Work {
+        &self.work
     }
 
     /// Plans the query of a body of `POST /v1/points:query`: its points are counted and not made yet.
@@ -166,7 +229,7 @@ impl Library {
         let flat = query.sets.iter().filter(|set| set.space().is_none());
         let tables = flat.map(|set| store::ready(set, self));
         let tables = tables.collect::<Result<Vec<_>, _>>()?;
-        Planned::new(query, &tables, &self.limits)
+        Planned::unless_stopped(query, &tables, &self.limits, &self.work.stop)
     }
 
     /// The points of a planned query.
@@ -174,7 +237,7 @@ impl Library {
     /// # Errors
     /// [`Error::TooManyPoints`] over the limit, [`Error::Internal`] without memory for them.
     pub fn columns(&self, planned: &Planned) -> Result<Columns, Error> {
-        Columns::of(planned, self.count_to_make(planned)?)
+        Columns::of(planned, self.count_to_make(planned)?, &self.work)
     }
 
     /// The coordinates of a planned query's points alone, which takes a fraction of the time: as many numbers for each
@@ -183,7 +246,7 @@ impl Library {
     /// # Errors
     /// As [`columns`](Self::columns).
     pub fn coordinates(&self, planned: &Planned) -> Result<Vec<f64>, Error> {
-        columns::coordinates(planned, self.count_to_make(planned)?)
+        columns::coordinates(planned, self.count_to_make(planned)?, &self.work)
     }
 
     /// Writes the coordinates of a planned query's points to the beginning of `at`, and returns their number.
@@ -192,7 +255,7 @@ impl Library {
     /// As [`columns`](Self::columns); [`Error::Invalid`] if `at` is too short.
     pub fn fill_coordinates(&self, planned: &Planned, at: &mut [f64]) -> Result<usize, Error> {
         let at = self.places(planned, at)?;
-        columns::fill_coordinates(planned, at)?;
+        columns::fill_coordinates(planned, at, &self.work)?;
         Ok(at.len() / planned.axes())
     }
 
@@ -275,7 +338,8 @@ impl Library {
 
     fn nearest_of(&self, values: &Values) -> Result<Vec<Found>, Error> {
         let (set, nearest) = Nearest::of_set(values, &self.assets.catalog)?;
-        self.placed(set)?.nearest(nearest)
+        let visits = Visits::new(usize::MAX, self.work.stop.clone());
+        self.placed(set)?.nearest_visiting(nearest, &visits)
     }
 
     /// Holds a field, a body of `POST /v1/fields`, and returns the digest by which queries name it.
@@ -284,7 +348,7 @@ impl Library {
         let held = hold_field(
             &self.assets.catalog,
             document,
-            MOST_PIXELS,
+            self.assets.catalog.most_pixels(),
             Allowance::UNLIMITED,
             Sender::default(),
         )?;
@@ -359,7 +423,7 @@ impl Store for Library {
     fn make(&self, plain: &Ready, what: &Made) -> Result<Table, Error> {
         let name = format!("{} {what}", plain.entry.digest);
         let made = self.kept(&name, || {
-            let table = mix::make(&plain.table, what, &Stop::default())?;
+            let table = mix::make(&plain.table, what, &self.work.stop)?;
             Ok(Ready::new(plain.entry.clone(), table))
         })?;
         Ok(made.table)
