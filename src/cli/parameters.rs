@@ -7,7 +7,7 @@
 use strew_encode::Encoding;
 use strew_query::{
     Group, Parameter, SPACE_PARAMETERS, Shape, groups,
-    parameters::{BBOX, CRS, FORMAT, PARAMETERS},
+    parameters::{ATTRIBUTES, BBOX, CRS, FORMAT, PARAMETERS},
 };
 
 use super::{Failure, output};
@@ -304,7 +304,7 @@ const HEAD: &str = "\
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypedDict, Union
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, Union
 
 import numpy as np
 
@@ -314,7 +314,25 @@ if TYPE_CHECKING:
 Number: TypeAlias = \"Union[float, np.integer[Any], np.floating[Any]]\"
 Integer: TypeAlias = \"Union[int, np.integer[Any]]\"
 Numbers: TypeAlias = \"Union[Sequence[Number], np.ndarray[Any, Any]]\"
+Attribute: TypeAlias = Literal[
+    \"angle\", \"scale\", \"variant\", \"rank\", \"u1\", \"u2\", \"u3\", \"u4\", \"u5\", \"u6\", \"u7\", \"u8\", \"u9\", \"u10\", \"u11\",
+    \"u12\", \"u13\", \"u14\", \"u15\", \"u16\",
+]
 ";
+
+/// Classes of which calls in Python have one parameter, which their types name one by one.
+const APART: [(&str, &str, &[Group]); 2] = [
+    (
+        "Amounts",
+        "How densely points lie: a set has one of them.",
+        &[Group::Amount, Group::Count],
+    ),
+    (
+        "World",
+        "What a query may leave everything open to.",
+        &[Group::World],
+    ),
+];
 
 /// Words of the language, which cannot be keywords of calls.
 const RESERVED: [&str; 32] = [
@@ -325,7 +343,17 @@ const RESERVED: [&str; 32] = [
 
 fn python(table: &[&Parameter]) -> String {
     let mut text = HEAD.to_owned();
-    text.extend(of_query().iter().map(|section| class(section, table)));
+    for section in of_query() {
+        let mut parameters = section.of(table);
+        for (name, about, groups) in APART {
+            let own = parameters.extract_if(.., |parameter| groups.contains(&parameter.group));
+            let own: Vec<_> = own.collect();
+            if !own.is_empty() {
+                text += &class(name, about, own);
+            }
+        }
+        text += &class(section.name, section.about, parameters);
+    }
     let [regions, window, output, kinds] = lists(table, "\"");
     let placed: String = (Encoding::every().filter(|encoding| encoding.has_crs()))
         .map(|encoding| format!("\"{}\", ", encoding.name()))
@@ -357,11 +385,10 @@ ABOUT = {{
     )
 }
 
-fn class(section: &Section, table: &[&Parameter]) -> String {
-    let Section { name, about, .. } = section;
+fn class(name: &str, about: &str, parameters: Vec<&Parameter>) -> String {
     let mut text =
         format!("\n\nclass {name}(TypedDict, total=False):\n    \"\"\"{about}\"\"\"\n\n");
-    for parameter in section.of(table) {
+    for parameter in parameters {
         let name = keyword(parameter);
         text += &format!("    {name}: {} | None\n", python_type(parameter));
     }
@@ -393,6 +420,7 @@ fn python_type(parameter: &Parameter) -> &'static str {
         }
         // A code, a name, or an object of pyproj.
         _ if *parameter == CRS => "Any",
+        _ if *parameter == ATTRIBUTES => "Attribute | Sequence[Attribute]",
         shape => words(shape)[2],
     }
 }

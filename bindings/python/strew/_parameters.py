@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypedDict, Union
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, Union
 
 import numpy as np
 
@@ -13,6 +13,10 @@ if TYPE_CHECKING:
 Number: TypeAlias = "Union[float, np.integer[Any], np.floating[Any]]"
 Integer: TypeAlias = "Union[int, np.integer[Any]]"
 Numbers: TypeAlias = "Union[Sequence[Number], np.ndarray[Any, Any]]"
+Attribute: TypeAlias = Literal[
+    "angle", "scale", "variant", "rank", "u1", "u2", "u3", "u4", "u5", "u6", "u7", "u8", "u9", "u10", "u11",
+    "u12", "u13", "u14", "u15", "u16",
+]
 
 
 class Regions(TypedDict, total=False):
@@ -23,15 +27,25 @@ class Regions(TypedDict, total=False):
     polygon: Any | None
 
 
-class Parameters(TypedDict, total=False):
-    """The parameters of a query: which points, and which part of them."""
+class Amounts(TypedDict, total=False):
+    """How densely points lie: a set has one of them."""
 
-    periodic: Integer | None
     density: Number | None
     spacing: Number | None
     min_distance: Number | None
     count: Integer | None
+
+
+class World(TypedDict, total=False):
+    """What a query may leave everything open to."""
+
     world: str | None
+
+
+class Parameters(TypedDict, total=False):
+    """The parameters of a query: which points, and which part of them."""
+
+    periodic: Integer | None
     world_digest: str | None
     profile: str | None
     alpha: str | Number | None
@@ -44,7 +58,7 @@ class Parameters(TypedDict, total=False):
     lod: Number | None
     field: str | Mapping[str, Any] | None
     except_: str | Sequence[str] | None
-    attributes: str | Sequence[str] | None
+    attributes: Attribute | Sequence[Attribute] | None
     scale_range: Numbers | None
     scale_ranges: Mapping[str, Numbers] | None
     variants: Mapping[str, Number] | None

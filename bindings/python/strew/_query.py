@@ -8,18 +8,22 @@ from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from keyword import iskeyword
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Any, Literal, TypedDict
 from urllib.parse import quote
 
 import numpy as np
 
 from ._crs import Placed, named
 from ._errors import fault
-from ._parameters import KINDS, OUTPUT, REGIONS, WINDOW, Integer, Number, Numbers, Parameters, Regions
+from ._parameters import (
+    KINDS, OUTPUT, REGIONS, WINDOW, Amounts, Attribute, Integer, Number, Numbers, Parameters, Regions, World,
+)
 
 if TYPE_CHECKING:
-    from typing_extensions import TypeAlias
+    from typing_extensions import Required, TypeAlias
 
+#: An attribute of a point in space.
+SpaceAttribute: TypeAlias = "Attribute | Literal['rotation']"
 #: A query as the body of ``POST /v1/points:query``.
 Body: TypeAlias = "dict[str, Any]"
 #: The regions of the plane that are keywords.
@@ -46,41 +50,57 @@ PLANE = Dimension("xy", SHAPES, "/v1", "/v1/points:query")
 SPACE = Dimension("xyz", VOLUMES, "/v1/space", "/v1/space/points")
 
 
-class Shapes(Regions, total=False):
-    """The regions that are keywords."""
-
-    chunk: Numbers | Mapping[str, Any] | None
-
-
-class Query(Shapes, Parameters, total=False):
+class Query(Regions, Amounts, World, Parameters, total=False):
     """The keywords of a query: the members of REST's JSON, and the shapes of regions by themselves.
 
     ``except`` is a word of Python: its keyword is ``except_``.
     """
 
+    chunk: Numbers | Mapping[str, Any] | None
     region: Mapping[str, Any] | None
     features: Mapping[str, Any] | None
     layers: Sequence[Mapping[str, Any]] | None
     crs: Any
 
 
+class OfWorld(Regions, Amounts, Parameters, total=False):
+    """The keywords beside a world."""
+
+    chunk: Numbers | Mapping[str, Any] | None
+    region: Mapping[str, Any] | None
+    crs: Any
+
+
+class Boxed(Parameters, total=False):
+    """The keywords beside an amount, with a box as the region."""
+
+    bbox: Required[Numbers]
+    circle: None
+    polygon: None
+    chunk: None
+    region: None
+    crs: Any
+
+
+class Shaped(Parameters, total=False):
+    """The keywords beside an amount, with another region, or none."""
+
+    bbox: None
+    circle: Numbers | Mapping[str, Any] | None
+    polygon: Any
+    chunk: Numbers | Mapping[str, Any] | None
+    region: Mapping[str, Any] | None
+    crs: Any
+
+
 class Volumes(TypedDict, total=False):
-    """The regions of space that are keywords."""
+    """The keywords of a query in space beside an amount; those that the plane has, too, mean the same."""
 
     bbox: Numbers | None
     ball: Numbers | Mapping[str, Any] | None
     prism: tuple[Any, Number, Number] | Mapping[str, Any] | None
     chunk: Numbers | Mapping[str, Any] | None
     region: Mapping[str, Any] | None
-
-
-class SpaceQuery(Volumes, total=False):
-    """The keywords of a query in space; those that the plane has, too, mean the same: see :class:`Query`."""
-
-    layers: Sequence[Mapping[str, Any]] | None
-    density: Number | None
-    spacing: Number | None
-    min_distance: Number | None
     profile: str | None
     alpha: str | Number | None
     map: str | None
@@ -90,9 +110,8 @@ class SpaceQuery(Volumes, total=False):
     keep: Number | None
     lod: Number | None
     field: str | Mapping[str, Any] | None
-    count: Integer | None
     except_: str | Sequence[str] | None
-    attributes: str | Sequence[str] | None
+    attributes: SpaceAttribute | Sequence[SpaceAttribute] | None
     scale_range: Numbers | None
     scale_ranges: Mapping[str, Numbers] | None
     variants: Mapping[str, Number] | None
@@ -100,6 +119,12 @@ class SpaceQuery(Volumes, total=False):
     limit: Integer | None
     cursor: str | None
     crs: Any
+
+
+class SpaceQuery(Volumes, Amounts, total=False):
+    """The keywords of a query in space: see :class:`Query`."""
+
+    layers: Sequence[Mapping[str, Any]] | None
 
 
 #: The meanings of the keywords that are no parameters of addresses.
