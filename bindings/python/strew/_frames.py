@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 from typing import TYPE_CHECKING, Any
 
@@ -58,6 +59,16 @@ def geopandas(points: Points[Any], crs: str | None) -> Any:
     at = absolute(points)
     z = frame.pop("z") if "z" in frame else None
     return gpd.GeoDataFrame(frame, geometry=gpd.points_from_xy(at[:, 0], at[:, 1], z), crs=crs)
+
+
+def file(points: Points[Any], format: str, crs: str | None, options: dict[str, Any]) -> bytes:
+    """A GeoParquet or an Arrow file with the columns that the command line writes."""
+    frame = geopandas(points, crs)
+    for i, (axis, values) in enumerate(zip(points._dimension.axes, absolute(points).T), 1):
+        frame.insert(i, axis, values)
+    content = io.BytesIO()
+    getattr(frame, f"to_{format}")(content, **{"compression": "zstd", "schema_version": "1.1.0", **options})
+    return content.getvalue()
 
 
 def plot(points: Points[Any], ax: Any, by: str | None, style: dict[str, Any]) -> Any:

@@ -15,7 +15,7 @@ from . import _frames
 from ._crs import Placed, is_name, joined, named
 from ._errors import fault
 from ._parameters import KINDS, PLACED, WINDOW
-from ._query import OF_ANSWERS, PLANE, Body, Dimension, address, body, text
+from ._query import OF_ANSWERS, PLANE, Body, Dimension, address, body, features, text
 
 if TYPE_CHECKING:
     import geopandas
@@ -77,7 +77,10 @@ class Points(Generic[P]):
         """The points of a query, which is checked at once where that costs no request."""
         if not isinstance(query, Mapping):
             text(query)
-        return cls(source, Placed.query(query))._checked()
+        placed = Placed.query(query)
+        if "features" in placed:
+            placed["features"] = features(placed["features"])
+        return cls(source, placed)._checked()
 
     def _checked(self) -> Self:
         if self._source.checks_at_once and "region" in self._body:
@@ -375,10 +378,11 @@ class Points(Generic[P]):
     # -- documents ---------------------------------------------------------------------------------------------
 
     def document(self, format: str, **options: Unpack[Output]) -> bytes:
-        """The points in a format of REST: ``json``, ``csv``, ``geojson``, ``ply``, ``npy``, ``svg``, ``png``, …
+        """The points in a format of REST: ``json``, ``csv``, ``geojson``, ``ply``, ``npy``, ``svg``, ``png``, …, or as
+        a GeoParquet (``parquet``) or an Arrow file (``feather``), which geopandas writes.
 
-        The options are the members of ``Output``, such as ``decimals`` for texts and ``size`` for pictures. Formats
-        that state a reference system, such as ``geojson``, have that of the points.
+        The options are the members of ``Output``, such as ``decimals`` for texts and ``size`` for pictures, or those of
+        geopandas. Formats that state a reference system, such as ``geojson``, have that of the points.
 
         >>> import strew
         >>> print(strew.points(bbox=(0, 0, 2, 1), spacing=1, seed=1).document("csv", decimals=2).decode())
@@ -390,6 +394,9 @@ class Points(Generic[P]):
         """
         given = {"format": format, **options}
         crs = self._crs_or(options.get("crs"))
+        if format in FILES:
+            given = {name: value for name, value in options.items() if name != "crs"}
+            return _frames.file(self, format, crs, given)
         if crs is not None and (format in PLACED or "crs" in options):
             if not is_name(crs):
                 way_out = "one with an authority and a code, or points.to_geopandas().to_file(path)"
@@ -399,22 +406,13 @@ class Points(Generic[P]):
         return self.plan().document(texts)
 
     def write(self, path: str | Path, format: str | None = None, **options: Unpack[Output]) -> None:
-        """Writes a document; the ending of the path is the format, as of ``strew sample -o``, also with ``.gz``.
-
-        ``.parquet`` is GeoParquet, and ``.arrow`` an Arrow file with the same columns: both by geopandas, of which
-        ``options`` has those of its own.
-        """
+        """Writes a document; the ending of the path is the format, as of ``strew sample -o``, also with ``.gz``."""
         inner = Path(path)
         is_packed = inner.suffix.lower() == ".gz"
         if is_packed:
             inner = inner.with_suffix("")
         ending = inner.suffix.lstrip(".").lower()
         format = format or _ENDINGS.get(ending, ending)
-        if format in FILES and not is_packed:
-            more: dict[str, Any] = dict(options)
-            frame = self.to_geopandas(more.pop("crs", None))
-            getattr(frame, f"to_{format}")(path, **more)
-            return
         content = self.document(format, **options)
         Path(path).write_bytes(gzip.compress(content, mtime=0) if is_packed else content)
 

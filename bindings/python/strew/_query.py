@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
@@ -219,8 +220,6 @@ def text(body: Mapping[str, Any]) -> str:
     """A body as JSON. Raises :class:`StrewError` with the member that has no form in JSON."""
     if not isinstance(body, Mapping):
         raise fault("query", body, "not a body of REST", "a dict such as {'region': {'bbox': [0, 0, 9, 9]}, 'spacing': 1}")
-    if "features" in body:
-        body = {**body, "features": _features(body["features"])}
     for name, value in body.items():
         _check(name, value)
     try:
@@ -231,21 +230,29 @@ def text(body: Mapping[str, Any]) -> str:
         raise
 
 
-def _features(features: Any) -> Any:
-    """Features without the properties that are not read: columns of a frame may have values that JSON lacks."""
+def features(features: Any) -> Any:
+    """Features without the properties that are not read: columns of a frame may have values that JSON lacks. Those of a
+    frame are named by its index, if by no column."""
     of = features.get("of") if isinstance(features, Mapping) else None
+    is_frame = hasattr(of, "__geo_interface__")
     of = getattr(of, "__geo_interface__", of)
     if not isinstance(of, Mapping) or not isinstance(of.get("features"), (list, tuple)):
         return features
-    names = (features.get("id"), features.get("count"))
-
-    def read(feature: Any) -> Any:
-        properties = feature.get("properties") if isinstance(feature, Mapping) else None
-        if not isinstance(properties, Mapping):
-            return feature
-        return {**feature, "properties": {name: properties[name] for name in properties if name in names}}
-
-    return {**features, "of": {**of, "features": [read(feature) for feature in of["features"]]}}
+    if is_frame and features.get("id") is None:
+        features = {**features, "id": "index"}
+    id, count = features.get("id"), features.get("count")
+    read, bare = [], []
+    for feature in of["features"]:
+        own = feature.get("properties") if isinstance(feature, Mapping) else None
+        if isinstance(own, Mapping):
+            own = {**own, "index": feature["id"]} if is_frame and id == "index" and "index" not in own else own
+            feature = {**feature, "properties": {name: own[name] for name in own if name in (id, count)}}
+            if feature.get("geometry") is None:
+                bare.append(str(own.get(id)))
+        read.append(feature)
+    if bare:
+        warnings.warn(f"features without a geometry have no points: {', '.join(bare)}", stacklevel=5)
+    return {**features, "of": {**of, "features": read}}
 
 
 def _check(name: str, value: Any) -> None:

@@ -175,8 +175,6 @@ def test_endings_are_those_of_the_command(tmp_path: Path) -> None:
     assert (tmp_path / "a.jsonl").read_bytes() == points.document("ndjson")
     points.write(tmp_path / "a.csv.gz")
     assert gzip.decompress((tmp_path / "a.csv.gz").read_bytes()) == points.document("csv")
-    with pytest.raises(ValueError, match="only `strew sample` writes it"):
-        points.document("parquet")
 
 
 def test_large_masks_are_taken_in_process() -> None:
@@ -231,8 +229,6 @@ def test_documents_and_iteration(tmp_path: Path) -> None:
     assert (tmp_path / "points.geojson").read_bytes() == points.document("geojson")
     for format in ("csv", "ndjson", "ply", "npy", "f32", "svg", "png"):
         assert points.document(format)
-    with pytest.raises(strew.StrewError, match="only `strew sample`"):
-        points.document("parquet")
     with pytest.raises(strew.StrewError, match="unknown format"):
         points.document("txt")
     listed = list(points)
