@@ -320,8 +320,9 @@ Attribute: TypeAlias = Literal[
 ]
 ";
 
-/// Classes of which calls in Python have one parameter, which their types name one by one.
-const APART: [(&str, &str, &[Group]); 2] = [
+/// Parameters that are classes of their own in Python: calls have one of the first and of the second, which their types
+/// name one by one, and those of points in space have the last as well.
+const APART: [(&str, &str, &[Group]); 3] = [
     (
         "Amounts",
         "How densely points lie: a set has one of them.",
@@ -331,6 +332,18 @@ const APART: [(&str, &str, &[Group]); 2] = [
         "World",
         "What a query may leave everything open to.",
         &[Group::World],
+    ),
+    (
+        "Common",
+        "The parameters of queries of the plane and in space.",
+        &[
+            Group::Profile,
+            Group::Table,
+            Group::Points,
+            Group::Except,
+            Group::Choices,
+            Group::Window,
+        ],
     ),
 ];
 
@@ -355,6 +368,8 @@ fn python(table: &[&Parameter]) -> String {
         text += &class(section.name, section.about, parameters);
     }
     let [regions, window, output, kinds] = lists(table, "\"");
+    // A kind stays beside its name.
+    let kinds = wrapped(&kinds.replace(": ", ":~"), "    ").replace(":~", ": ");
     let placed: String = (Encoding::every().filter(|encoding| encoding.has_crs()))
         .map(|encoding| format!("\"{}\", ", encoding.name()))
         .collect();
@@ -401,15 +416,25 @@ fn keyword(parameter: &Parameter) -> String {
     format!("{name}{mark}")
 }
 
+/// What sets have in Python in place of the headers of answers.
+const ATTRIBUTES_FOR_HEADERS: [(&str, &str); 3] = [
+    ("The header strew-next is", "`points.next` is"),
+    ("the value of its header strew-next", "its `points.next`"),
+    ("the header strew-table", "`points.tables`"),
+];
+
 /// The entry of a parameter among the texts: its keyword, and its paragraph as a text of several lines.
 fn about(parameter: &Parameter) -> String {
-    let paragraph = paragraph(parameter, "`strew.raster`");
-    let mut text = format!("    {:?}: (\n", keyword(parameter));
+    let mut paragraph = paragraph(parameter, "`strew.raster`");
+    for (header, own) in ATTRIBUTES_FOR_HEADERS {
+        paragraph = paragraph.replace(header, own);
+    }
+    let mut text = format!("    {:?}:", keyword(parameter));
     for line in wrapped(&paragraph, "        ").lines() {
         let line = format!("{} ", line.trim());
-        text += &format!("        {line:?}\n");
+        text += &format!("\n        {line:?}");
     }
-    text + "    ),\n"
+    text + ",\n"
 }
 
 fn python_type(parameter: &Parameter) -> &'static str {
@@ -484,7 +509,7 @@ mod tests {
             (Form::Dts, "     */\n    added?: number;\n"),
             (Form::Js, "    added: \"integer\",\n"),
             (Form::Py, "    added: Integer | None\n"),
-            (Form::Py, "    \"added\": \"integer\",\n"),
+            (Form::Py, "\"added\": \"integer\","),
             (
                 Form::Md,
                 "| `added` | Made for a test. | an integer from 1 to 9 | 1 |\n",

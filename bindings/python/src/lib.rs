@@ -38,31 +38,45 @@ fn library() -> PyResult<&'static Library> {
 #[pyfunction]
 #[pyo3(name = "plan")]
 fn planned(py: Python<'_>, body: String, in_space: bool) -> PyResult<Plan> {
-    let made = work::done(py, None, move |library| match in_space {
-        false => library.plan(body.as_bytes()),
-        true => library.plan_in_space(body.as_bytes()),
-    });
-    made.map(Plan::new)
+    let plan = if in_space {
+        Library::plan_in_space
+    } else {
+        Library::plan
+    };
+    work::done(py, None, move |library| plan(library, body.as_bytes())).map(Plan::new)
 }
 
 /// The document of `GET /v1/points/{id}`, or of `GET /v1/space/points/{id}`, without its query.
 #[pyfunction]
-fn point(py: Python<'_>, id: String, address: String, in_space: bool) -> PyResult<String> {
-    let found = work::done(py, None, move |library| match in_space {
-        false => library.point(&id, &address),
-        true => library.point_in_space(&id, &address),
-    });
-    json(&found?)
+fn point(
+    py: Python<'_>,
+    id: String,
+    address: String,
+    in_space: bool,
+) -> PyResult<Bound<'_, PyAny>> {
+    let find = if in_space {
+        Library::point_in_space
+    } else {
+        Library::point
+    };
+    loaded(
+        py,
+        &work::done(py, None, move |library| find(library, &id, &address))?,
+    )
 }
 
 /// The list of `GET /v1/nearest`, or of `GET /v1/space/nearest`.
 #[pyfunction]
-fn nearest(py: Python<'_>, address: String, in_space: bool) -> PyResult<String> {
-    let found = work::done(py, None, move |library| match in_space {
-        false => library.nearest(&address),
-        true => library.nearest_in_space(&address),
-    });
-    json(&found?)
+fn nearest(py: Python<'_>, address: String, in_space: bool) -> PyResult<Bound<'_, PyAny>> {
+    let find = if in_space {
+        Library::nearest_in_space
+    } else {
+        Library::nearest
+    };
+    loaded(
+        py,
+        &work::done(py, None, move |library| find(library, &address))?,
+    )
 }
 
 /// Holds a field, a body of `POST /v1/fields`, and returns its digest.
@@ -91,9 +105,11 @@ fn darkness<'py>(
     Ok((width, height, PyBytes::new(py, &bytes)))
 }
 
-/// A value as JSON text.
-fn json(value: &impl serde::Serialize) -> PyResult<String> {
-    serde_json::to_string(value).map_err(|error| PyRuntimeError::new_err(error.to_string()))
+/// A value as what `json.loads` makes of it.
+fn loaded<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
+    let text = serde_json::to_string(value);
+    let text = text.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+    py.import("json")?.call_method1("loads", (text,))
 }
 
 #[pymodule]

@@ -6,7 +6,7 @@ use pyo3::{exceptions::PyValueError, prelude::*};
 use strew_forge::{Resolution, figure};
 use strew_plan::library::measured::{self, Measured, document};
 
-use crate::{json, work};
+use crate::{loaded, work};
 
 /// The measures of a set of points.
 #[pyclass(frozen, module = "strew._strew")]
@@ -14,11 +14,12 @@ pub struct Report(Arc<Mutex<strew_forge::Report>>);
 
 #[pymethods]
 impl Report {
-    /// The figures and curves as JSON.
-    fn document(&self) -> PyResult<String> {
-        json(&document(
-            &self.0.lock().unwrap_or_else(PoisonError::into_inner),
-        ))
+    /// The figures and curves, as in JSON.
+    fn document<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        loaded(
+            py,
+            &document(&self.0.lock().unwrap_or_else(PoisonError::into_inner)),
+        )
     }
 
     /// Points, spectrum and curves as SVG.

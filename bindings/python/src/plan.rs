@@ -6,12 +6,12 @@ use pyo3::{prelude::*, types::PyBytes};
 use strew_encode::{Crs, Encoding};
 use strew_error::Error;
 use strew_plan::{Library, Planned};
-use strew_query::{Options, Values, groups, options};
+use strew_query::{Options, Values, groups};
 
 use crate::{
     array::{Array, Owner},
     columns::Columns,
-    json, work,
+    loaded, work,
 };
 
 /// A planned query, and the plane that it is in.
@@ -45,9 +45,9 @@ impl Plan {
         self.0.count()
     }
 
-    /// The query with everything filled in, as JSON.
-    fn query(&self) -> PyResult<String> {
-        json(&self.0.resolved())
+    /// The query with everything filled in, as a `dict`.
+    fn query<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        loaded(py, &self.0.resolved())
     }
 
     /// The digests of its tables.
@@ -75,7 +75,8 @@ impl Plan {
     }
 
     /// The parts: the cursor at which each begins, and its count.
-    fn split(&self, py: Python<'_>, parts: String) -> PyResult<Vec<(String, u64)>> {
+    fn split(&self, py: Python<'_>, parts: &Bound<'_, PyAny>) -> PyResult<Vec<(String, u64)>> {
+        let parts = parts.str()?.to_string();
         let parts = self.done(py, false, move |library, planned| {
             library.split(planned, &parts)
         })?;
@@ -89,16 +90,16 @@ impl Plan {
     fn document<'py>(
         &self,
         py: Python<'py>,
-        given: Vec<(String, String)>,
+        options: Vec<(String, String)>,
     ) -> PyResult<Bound<'py, PyBytes>> {
         let plane = self.1.clone();
         let written = self.done(py, false, move |library, planned| {
             let mut values = Values::new(groups::OUTPUT, "");
-            for (name, text) in &given {
+            for (name, text) in &options {
                 values.add_text(name, text);
             }
             values.read()?;
-            let options = options(&values)?.of_plane(plane)?;
+            let options = strew_query::options(&values)?.of_plane(plane)?;
             let answer = library.document(planned, options, Encoding::Json)?;
             let mut whole = vec![];
             for block in answer {

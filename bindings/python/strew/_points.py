@@ -207,7 +207,7 @@ class Points(Generic[P]):
 
     def _coordinates(self) -> Floats:
         if self._at is None:
-            self._at = self.plan().coordinates() if self._made is None else np.asarray(self._made.at())
+            self._at = np.asarray(self.plan().coordinates() if self._made is None else self._made.at())
         return self._at
 
     @property

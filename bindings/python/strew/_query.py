@@ -9,16 +9,14 @@ from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from keyword import iskeyword
-from typing import TYPE_CHECKING, Any, Literal, TypedDict
+from typing import TYPE_CHECKING, Any, Literal
 from urllib.parse import quote
 
 import numpy as np
 
 from ._crs import Placed, named
 from ._errors import fault
-from ._parameters import (
-    KINDS, OUTPUT, REGIONS, WINDOW, Amounts, Attribute, Integer, Number, Numbers, Parameters, Regions, World,
-)
+from ._parameters import KINDS, OUTPUT, REGIONS, WINDOW, Amounts, Attribute, Common, Number, Numbers, Parameters, Regions, World
 
 if TYPE_CHECKING:
     from typing_extensions import Required, TypeAlias
@@ -51,7 +49,7 @@ PLANE = Dimension("xy", SHAPES, "/v1", "/v1/points:query")
 SPACE = Dimension("xyz", VOLUMES, "/v1/space", "/v1/space/points")
 
 
-class Query(Regions, Amounts, World, Parameters, total=False):
+class Query(Regions, Amounts, World, Common, Parameters, total=False):
     """The keywords of a query: the members of REST's JSON, and the shapes of regions by themselves.
 
     ``except`` is a word of Python: its keyword is ``except_``.
@@ -64,7 +62,7 @@ class Query(Regions, Amounts, World, Parameters, total=False):
     crs: Any
 
 
-class OfWorld(Regions, Amounts, Parameters, total=False):
+class OfWorld(Regions, Amounts, Common, Parameters, total=False):
     """The keywords beside a world."""
 
     chunk: Numbers | Mapping[str, Any] | None
@@ -72,7 +70,7 @@ class OfWorld(Regions, Amounts, Parameters, total=False):
     crs: Any
 
 
-class Boxed(Parameters, total=False):
+class Boxed(Common, Parameters, total=False):
     """The keywords beside an amount, with a box as the region."""
 
     bbox: Required[Numbers]
@@ -83,7 +81,7 @@ class Boxed(Parameters, total=False):
     crs: Any
 
 
-class Shaped(Parameters, total=False):
+class Shaped(Common, Parameters, total=False):
     """The keywords beside an amount, with another region, or none."""
 
     bbox: None
@@ -94,7 +92,7 @@ class Shaped(Parameters, total=False):
     crs: Any
 
 
-class Volumes(TypedDict, total=False):
+class Volumes(Common, total=False):
     """The keywords of a query in space beside an amount; those that the plane has, too, mean the same."""
 
     bbox: Numbers | None
@@ -102,23 +100,7 @@ class Volumes(TypedDict, total=False):
     prism: tuple[Any, Number, Number] | Mapping[str, Any] | None
     chunk: Numbers | Mapping[str, Any] | None
     region: Mapping[str, Any] | None
-    profile: str | None
-    alpha: str | Number | None
-    map: str | None
-    table: str | None
-    seed: Integer | None
-    warp: str | Number | None
-    keep: Number | None
-    lod: Number | None
-    field: str | Mapping[str, Any] | None
-    except_: str | Sequence[str] | None
     attributes: SpaceAttribute | Sequence[SpaceAttribute] | None
-    scale_range: Numbers | None
-    scale_ranges: Mapping[str, Numbers] | None
-    variants: Mapping[str, Number] | None
-    offset: Integer | None
-    limit: Integer | None
-    cursor: str | None
     crs: Any
 
 
