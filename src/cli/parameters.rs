@@ -429,12 +429,15 @@ fn about(parameter: &Parameter) -> String {
     for (header, own) in ATTRIBUTES_FOR_HEADERS {
         paragraph = paragraph.replace(header, own);
     }
-    let mut text = format!("    {:?}:", keyword(parameter));
-    for line in wrapped(&paragraph, "        ").lines() {
-        let line = format!("{} ", line.trim());
-        text += &format!("\n        {line:?}");
-    }
-    text + ",\n"
+    let name = format!("    {:?}: ", keyword(parameter));
+    let indent = " ".repeat(name.len());
+    // Quotes and the space between words take three more places.
+    let lines = wrapped(&paragraph, &format!("{indent}   "));
+    let lines = lines
+        .lines()
+        .map(|line| format!("{:?}", format!("{} ", line.trim())));
+    let lines: Vec<String> = lines.collect();
+    format!("{name}{},\n", lines.join(&format!("\n{indent}")))
 }
 
 fn python_type(parameter: &Parameter) -> &'static str {

@@ -1,8 +1,10 @@
 //! Errors of the library as `strew.StrewError`, in words for Python: limits are those of this process, which has no
 //! folder of tables.
 
-use pyo3::{prelude::*, types::PyDict};
+use pyo3::prelude::*;
 use strew_error::{Error, Fault, Kind};
+
+use crate::loaded;
 
 /// Words of faults that a limit causes, and the limit.
 const CAUSED: [(&str, &str); 3] = [
@@ -18,15 +20,6 @@ pub fn raised(py: Python<'_>, error: &Error) -> PyErr {
 
 fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
     let faults: Vec<Fault> = error.faults().iter().cloned().map(reworded).collect();
-    let told = faults.iter().map(|fault| {
-        let told = PyDict::new(py);
-        told.set_item("field", &fault.field)?;
-        told.set_item("value", &fault.value)?;
-        told.set_item("detail", &fault.detail)?;
-        told.set_item("allowed", &fault.allowed)?;
-        Ok(told)
-    });
-    let told = told.collect::<PyResult<Vec<_>>>()?;
     let plain = error.to_string().replace("this server", "this process");
     let message = match error.kind() {
         Kind::Invalid => faults
@@ -39,7 +32,7 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
         _ => plain,
     };
     let refusal = py.import("strew._errors")?.getattr("refusal")?;
-    let made = refusal.call1((message, error.kind().slug(), told))?;
+    let made = refusal.call1((message, error.kind().slug(), loaded(py, &faults)?))?;
     Ok(PyErr::from_value(made))
 }
 

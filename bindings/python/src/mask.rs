@@ -2,7 +2,7 @@
 
 use pyo3::{prelude::*, types::PyBytes};
 use strew_error::{Error, Fault};
-use strew_forge::mask::{Mask, MaskError};
+use strew_forge::mask::Mask;
 use strew_query::{chosen, groups, parse_pairs};
 
 use crate::work;
@@ -21,7 +21,15 @@ pub fn mask<'py>(
     let made = work::done(py, Some(total), move |library| {
         let entry = chosen(&parse_pairs(&address, groups::TABLES), library.catalog())?;
         let goes_on = || library.work().goes_on(1000);
-        let made = Mask::new_while(&entry.table()?, size, seed, goes_on).map_err(refused)?;
+        let made = Mask::new_while(&entry.table()?, size, seed, goes_on);
+        let made = made.map_err(|error| {
+            Fault::new(
+                &error.field,
+                error.value,
+                "no mask can be made",
+                error.allowed,
+            )
+        })?;
         made.ok_or(Error::Internal("the mask was stopped"))
     })?;
     let bytes: Vec<u8> = made
@@ -30,13 +38,4 @@ pub fn mask<'py>(
         .flat_map(|rank| rank.to_ne_bytes())
         .collect();
     Ok(PyBytes::new(py, &bytes))
-}
-
-fn refused(error: MaskError) -> Error {
-    let MaskError {
-        field,
-        value,
-        allowed,
-    } = error;
-    Fault::new(&field, value, "no mask can be made", allowed).into()
 }

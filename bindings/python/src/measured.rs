@@ -2,11 +2,11 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use pyo3::{exceptions::PyValueError, prelude::*};
+use pyo3::prelude::*;
 use strew_forge::{Resolution, figure};
 use strew_plan::library::measured::{self, Measured, document};
 
-use crate::{loaded, work};
+use crate::{columns::numbers, loaded, work};
 
 /// The measures of a set of points.
 #[pyclass(frozen, module = "strew._strew")]
@@ -43,12 +43,7 @@ pub fn measure(
     nu_max: f64,
     ring_width: Option<f64>,
 ) -> PyResult<Report> {
-    let (pairs, []) = points.as_chunks::<16>() else {
-        return Err(PyValueError::new_err("points must be pairs of numbers"));
-    };
-    let number = |bytes: &[u8]| bytes.try_into().map_or(f64::NAN, f64::from_ne_bytes);
-    let pair = |pair: &[u8; 16]| [number(&pair[..8]), number(&pair[8..])];
-    let pairs: Vec<[f64; 2]> = pairs.iter().map(pair).collect();
+    let pairs = numbers(points, f64::from_ne_bytes)?.as_chunks().0.to_vec();
     let measured = work::done(py, None, move |_| {
         let plain = Resolution::default();
         let of = Measured {

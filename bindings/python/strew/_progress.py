@@ -30,13 +30,21 @@ def progress(follower: Follower | None = None) -> Iterator[None]:
     >>> with strew.progress(lambda points, total: print(f"{points} of {total}")):
     ...     points = strew.points(bbox=(0, 0, 9, 9), spacing=1).xy
     """
-    line = _Line()
-    token = _FOLLOWER.set(follower or (line.show if sys.stderr.isatty() else None))
+    begun, is_shown = monotonic(), False
+
+    def show(points: int, total: int | None) -> None:
+        nonlocal is_shown
+        is_shown = True
+        share = f"{100 * points // total} % of {total}, " if total and points else ""
+        print(f"\r\033[Kstrew: {share}{monotonic() - begun:.0f} s", end="", file=sys.stderr, flush=True)
+
+    token = _FOLLOWER.set(follower or (show if sys.stderr.isatty() else None))
     try:
         yield
     finally:
         _FOLLOWER.reset(token)
-        line.clear()
+        if is_shown:
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
 
 
 def report(points: int, total: int | None) -> None:
@@ -44,19 +52,3 @@ def report(points: int, total: int | None) -> None:
     follower = _FOLLOWER.get()
     if follower is not None:
         follower(points, total)
-
-
-class _Line:
-    """A line of a terminal."""
-
-    def __init__(self) -> None:
-        self._begun, self._is_shown = monotonic(), False
-
-    def show(self, points: int, total: int | None) -> None:
-        share = f"{100 * points // max(total, 1)} % of {total}, " if total and points else ""
-        print(f"\r\033[Kstrew: {share}{monotonic() - self._begun:.0f} s", end="", file=sys.stderr, flush=True)
-        self._is_shown = True
-
-    def clear(self) -> None:
-        if self._is_shown:
-            print("\r\033[K", end="", file=sys.stderr, flush=True)

@@ -49,25 +49,22 @@ PLANE = Dimension("xy", SHAPES, "/v1", "/v1/points:query")
 SPACE = Dimension("xyz", VOLUMES, "/v1/space", "/v1/space/points")
 
 
-class Query(Regions, Amounts, World, Common, Parameters, total=False):
-    """The keywords of a query: the members of REST's JSON, and the shapes of regions by themselves.
-
-    ``except`` is a word of Python: its keyword is ``except_``.
-    """
-
-    chunk: Numbers | Mapping[str, Any] | None
-    region: Mapping[str, Any] | None
-    features: Mapping[str, Any] | None
-    layers: Sequence[Mapping[str, Any]] | None
-    crs: Any
-
-
 class OfWorld(Regions, Amounts, Common, Parameters, total=False):
     """The keywords beside a world."""
 
     chunk: Numbers | Mapping[str, Any] | None
     region: Mapping[str, Any] | None
     crs: Any
+
+
+class Query(OfWorld, World, total=False):
+    """The keywords of a query: the members of REST's JSON, and the shapes of regions by themselves.
+
+    ``except`` is a word of Python: its keyword is ``except_``.
+    """
+
+    features: Mapping[str, Any] | None
+    layers: Sequence[Mapping[str, Any]] | None
 
 
 class Boxed(Common, Parameters, total=False):

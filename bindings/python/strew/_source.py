@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Protocol, overload
+from typing import TYPE_CHECKING, Any, overload
 
 from ._fields import darkness, raster
 from ._help import documented
@@ -13,23 +13,15 @@ from ._query import PLANE, Body, Boxed, Dimension, OfWorld, Query, Shaped, body
 from ._space import Space
 
 if TYPE_CHECKING:
-    from typing_extensions import Unpack
+    from typing_extensions import TypeAlias, Unpack
 
-    from ._columns import Columns
+    from . import _strew
     from ._parameters import Integer, Number
+    from ._remote import Asked
 
 
-class Plan(Protocol):
-    """A query that is understood, and counted when that is wanted."""
-
-    def count(self) -> int: ...
-    def query(self) -> dict[str, Any]: ...
-    def tables(self) -> list[str]: ...
-    def next(self) -> str | None: ...
-    def columns(self) -> Columns: ...
-    def coordinates(self) -> Any: ...
-    def split(self, parts: int) -> list[tuple[str, int]]: ...
-    def document(self, options: list[tuple[str, str]]) -> bytes: ...
+#: A query that is understood, and counted when that is wanted.
+Plan: TypeAlias = "_strew.Plan | Asked"
 
 
 class Source:

@@ -13,7 +13,6 @@ class Columns:
         ids: bytes,
         at: bytes,
         further: list[tuple[str, bool, bytes, list[str] | None]],
-        origin: tuple[float, ...] | None,
     ) -> Columns: ...
     def __len__(self) -> int: ...
     @property

@@ -26,14 +26,12 @@ strew.space.points(ball=(0, 0, 0, 9), spacing=np.float64(1))
 strew.points(bbox=box, spacing=1, density=1)  # refused
 strew.points(bbox=box, count=1, min_distance=1)  # refused
 strew.points(bbox=box)  # refused
-strew.points(bbox=box, seed=7)  # refused
 strew.points(bbox=box, polygon=[(0, 0), (9, 0), (0, 9)], spacing=1)  # refused
 strew.points(bbox=box, circle=(0, 0, 9), count=7)  # refused
 strew.points(bbox=box, spacing="1")  # refused
 strew.points(bbox=box, spacing=1, attributes=["angel"])  # refused
 strew.points(bbox=box, spacing=1, attributes="u17")  # refused
 strew.points(bbox=box, spacing=1, sede=7)  # refused
-daemon.points(bbox=box, spacing=1, density=1)  # refused
 strew.space.points(bbox=cube)  # refused
 strew.space.points(bbox=cube, spacing=1, density=1)  # refused
 strew.space.points(bbox=cube, spacing=1, circle=(0, 0, 9))  # refused

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import urllib.error
 import urllib.request
 from typing import Any
@@ -13,12 +14,20 @@ from queries import random_query, random_query_in_space
 
 import strew
 
+NOISE = {"noise": {"wavelength": 9}}
+
 
 def asked(url: str, path: str, body: Any = None) -> bytes:
     data = None if body is None else strew._query.text(body).encode()
     with urllib.request.urlopen(urllib.request.Request(url + path, data)) as response:
         content: bytes = response.read()
         return content
+
+
+def answered(url: str, route: str) -> int:
+    """How many requests for a route a daemon has answered."""
+    lines = asked(url, "/metrics").decode().splitlines()
+    return sum(int(line.rsplit(" ", 1)[1]) for line in lines if re.match(rf'strew_requests_total.*[/"]{route}"', line))
 
 
 def same(a: Any, b: Any) -> None:
@@ -161,21 +170,29 @@ def test_too_many_points_are_refused(remote: strew.Daemon) -> None:
         assert kind == "too-many-points" and str(here.count()) in message
 
 
-def test_single_points_are_those_of_the_daemon(remote: strew.Daemon) -> None:
-    noise = {"noise": {"wavelength": 9}}
-    for more in ({}, {"attributes": ["angle", "variant"], "variants": {"oak": 3, "fir": 1.5}}, {"field": noise}):
-        for seed in range(5):
-            here, there = (source.points(spacing=1.5, seed=seed, **more) for source in (strew, remote))
-            for at in ((0, 0), (1e6, -3.25)):
-                found = here.nearest(at, k=3, radius=20)
-                assert found == there.nearest(at, k=3, radius=20)
-                assert found and here.point(found[0].id) == there.point(found[0].id)
-    counted = remote.points(bbox=(0, 0, 9, 9), count=7, seed=1)
-    assert counted.nearest((4, 4)) == strew.points(bbox=(0, 0, 9, 9), count=7, seed=1).nearest((4, 4))
-    for source in (strew, remote):
+@pytest.mark.parametrize(
+    ("path", "more", "at", "lost"),
+    [("/v1", {"attributes": "angle"}, (0, 0), "1:1"), ("/v1/space", {"attributes": "rotation"}, (0, 0, 7), "1:0:0")],
+)
+def test_single_points_are_those_of_the_daemon(
+    remote: strew.Daemon, path: str, more: dict[str, Any], at: Any, lost: str
+) -> None:
+    sources = of(strew, path), of(remote, path)
+    for more in ({}, {**more, "keep": 0.5}, {"attributes": "variant", "variants": {"oak": 3, "fir": 1.5}}, {"field": NOISE}):
+        for seed in range(4):
+            here, there = (source.points(spacing=1.5, seed=seed, **more) for source in sources)
+            for place in (at, (1e6, -3.25, 7)[: len(at)]):
+                found = here.nearest(place, k=3, radius=20)
+                assert len(found) == 3 and found == there.nearest(place, k=3, radius=20)
+                again = here.point(found[0].id)
+                assert again == there.point(found[0].id) and again.attributes == found[0].attributes
+    for source in sources:
         assert refusal(lambda: source.points(spacing=1).point("1:x"))[2][0]["field"] == "id"
-        assert refusal(lambda: source.points(spacing=1).point("1:1"))[1] == "no-such-point"
-        assert refusal(lambda: source.points(spacing=1).nearest((0, 0), k=0))[2][0]["field"] == "k"
+        assert refusal(lambda: source.points(spacing=1).point(lost))[1] == "no-such-point"
+        assert refusal(lambda: source.points(spacing=1).nearest(at, k=0))[2][0]["field"] == "k"
+        assert refusal(lambda: source.points(spacing=1).nearest((0,)))[2][0]["field"] == "at"
+    counted = [source.points(bbox=(0, 0, 9, 9), count=7, seed=1) for source in (strew, remote)]
+    assert counted[0].nearest((4, 4)) == counted[1].nearest((4, 4))
 
 
 def test_parts_and_chunks(remote: strew.Daemon) -> None:

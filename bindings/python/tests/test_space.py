@@ -7,26 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_daemon import refusal
 
 import strew
-
-
-def test_single_points_are_those_of_the_daemon(remote: strew.Daemon) -> None:
-    for more in ({}, {"attributes": ["rotation", "variant"], "variants": {"oak": 3, "fir": 1.5}}, {"keep": 0.5}):
-        for seed in range(3):
-            here, there = (source.space.points(spacing=1.5, seed=seed, **more) for source in (strew, remote))
-            for at in ((0, 0, 0), (1e6, -3.25, 7)):
-                found = here.nearest(at, k=3, radius=20)
-                assert found == there.nearest(at, k=3, radius=20)
-                assert len(found) == 3
-                again = here.point(found[0].id)
-                assert again == there.point(found[0].id)
-                assert (again.z, again.attributes) == (found[0].z, found[0].attributes)
-    for source in (strew, remote):
-        assert refusal(lambda: source.space.points(spacing=1).point("1:2"))[2][0]["field"] == "id"
-        assert refusal(lambda: source.space.points(spacing=1).point("1:0:0"))[1] == "no-such-point"
-        assert refusal(lambda: source.space.points(spacing=1).nearest((0, 0)))[2][0]["field"] == "at"
 
 
 def test_a_set_has_columns_rows_and_chunks() -> None:

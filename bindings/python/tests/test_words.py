@@ -40,6 +40,7 @@ def test_signatures_and_docstrings_list_every_keyword() -> None:
     ("keywords", "words"),
     [
         ({"spacing": math.nan}, "`spacing` = `nan`: not finite; allowed: finite numbers"),
+        ({"region": {"bbox": (0, 0, math.inf, 9)}}, "`region`.*not finite"),
         ({"attributes": {"angle"}}, r"`attributes` = `{'angle'}`: a query cannot hold a set; allowed: what JSON has"),
         ({"field": np.ones((4, 4))}, r"`field`.*allowed: strew.raster\(array"),
         ({"variant_fields": {"oak": np.ones((4, 4))}}, r"`variant_fields`.*allowed: strew.raster\(array"),
@@ -48,7 +49,7 @@ def test_signatures_and_docstrings_list_every_keyword() -> None:
     ],
 )
 def test_wrong_values_are_refused_by_name(keywords: Any, words: str) -> None:
-    region = {} if "polygon" in keywords else {"bbox": (0, 0, 9, 9)}
+    region = {} if "polygon" in keywords or "region" in keywords else {"bbox": (0, 0, 9, 9)}
     with pytest.raises(strew.StrewError, match=words) as raised:
         strew.points(**{**region, "spacing": 1, **keywords}).count()
     assert raised.value.kind == "invalid-query" and raised.value.faults[0]["field"] == next(iter(keywords))

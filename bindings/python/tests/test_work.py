@@ -34,15 +34,15 @@ LONG: dict[str, Callable[[], Any]] = {
 
 
 @pytest.fixture
-def raised() -> Iterator[None]:
+def limits() -> Iterator[dict[str, int]]:
     before = strew.limits()
-    strew.limits(rows=10**12)
-    yield
+    yield before
     strew.limits(**before)
 
 
 @pytest.mark.parametrize("kind", LONG)
-def test_an_interrupt_ends_a_call(kind: str, raised: None) -> None:
+def test_an_interrupt_ends_a_call(kind: str, limits: dict[str, int]) -> None:
+    strew.limits(rows=10**12)
     has_begun = threading.Event()
     times: list[float] = []
 
@@ -102,16 +102,12 @@ def test_a_terminal_has_a_line_of_progress(monkeypatch: pytest.MonkeyPatch, caps
         ({"pixels": 80}, lambda: strew.points(bbox=(0, 0, 9, 9), spacing=1, field=strew.raster(NOISE[:9, :9]))),
     ],
 )
-def test_limits_can_be_raised(limit: dict[str, int], call: Callable[[], Any]) -> None:
-    before = strew.limits()
+def test_limits_can_be_raised(limit: dict[str, int], call: Callable[[], Any], limits: dict[str, int]) -> None:
     [name] = limit
-    try:
-        assert strew.limits(**limit) == {**before, **limit}
-        with pytest.raises(strew.StrewError, match=rf"strew.limits\({name}=…\)"):
-            call()
-        strew.limits(**{name: 10**7})
+    assert strew.limits(**limit) == {**limits, **limit}
+    with pytest.raises(strew.StrewError, match=rf"strew.limits\({name}=…\)"):
         call()
-    finally:
-        strew.limits(**before)
+    strew.limits(**{name: 10**7})
+    call()
     with pytest.raises(strew.StrewError, match=f"`{name}` = `0`: out of range"):
         strew.limits(**{name: 0})
