@@ -10,7 +10,13 @@ use crate::loaded;
 const CAUSED: [(&str, &str); 3] = [
     ("take a spacing below", "rows"),
     ("too many vertices", "vertices"),
-    ("pixels", "pixels"),
+    ("pixels; allowed", "pixels"),
+];
+
+/// What errors advise users of daemons, up to its end.
+const ADVICE: [(&str, &str); 2] = [
+    ("it can be made with strew forge", "(tables.folder)"),
+    ("a list that the server", "(POST /v1/except)"),
 ];
 
 /// The Python exception of an error.
@@ -21,12 +27,9 @@ pub fn raised(py: Python<'_>, error: &Error) -> PyErr {
 fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
     let faults: Vec<Fault> = error.faults().iter().cloned().map(reworded).collect();
     let plain = error.to_string().replace("this server", "this process");
+    let told: Vec<String> = faults.iter().map(Fault::to_string).collect();
     let message = match error.kind() {
-        Kind::Invalid => faults
-            .iter()
-            .map(Fault::to_string)
-            .collect::<Vec<_>>()
-            .join("; "),
+        Kind::Invalid => told.join("; "),
         Kind::TooManyPoints => plain + ", or raise strew.limits(points=…)",
         Kind::TooManyRows => plain + ", or raise strew.limits(rows=…)",
         _ => plain,
@@ -37,15 +40,16 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
 }
 
 fn reworded(mut fault: Fault) -> Fault {
-    if let Some(at) = fault.detail.find("; it can be made with strew forge") {
-        fault.detail.truncate(at);
-        fault.detail +=
-            "; other tables than the built-in ones take a daemon that has them: strew.connect(url)";
+    for text in [&mut fault.detail, &mut fault.allowed] {
+        for (advice, end) in ADVICE {
+            if let Some(at) = text.find(advice) {
+                let end = text.find(end).map_or(text.len(), |found| found + end.len());
+                text.replace_range(at..end, "a daemon may have others: strew.connect(url)");
+            }
+        }
     }
-    let limit = CAUSED
-        .iter()
-        .find(|(words, _)| fault.detail.contains(words));
-    if let Some((_, limit)) = limit {
+    let is_cause = |(words, _): &&(&str, &str)| fault.detail.contains(words);
+    if let Some((_, limit)) = CAUSED.iter().find(is_cause) {
         fault.allowed += &format!(", or strew.limits({limit}=…) raised");
     }
     fault

@@ -62,11 +62,18 @@ def geopandas(points: Points[Any], crs: str | None) -> Any:
 
 
 def file(points: Points[Any], format: str, crs: str | None, options: dict[str, Any]) -> bytes:
-    """A GeoParquet or an Arrow file with the columns that the command line writes."""
+    """A GeoParquet or an Arrow file with the columns that the command line writes, or an Arrow stream."""
+    content = io.BytesIO()
+    if format == "arrow":
+        import pyarrow as pa
+
+        table = pa.table(points)
+        with pa.ipc.new_stream(content, table.schema, **options) as stream:
+            stream.write_table(table)
+        return content.getvalue()
     frame = geopandas(points, crs)
     for i, (axis, values) in enumerate(zip(points._dimension.axes, absolute(points).T), 1):
         frame.insert(i, axis, values)
-    content = io.BytesIO()
     getattr(frame, f"to_{format}")(content, **{"compression": "zstd", "schema_version": "1.1.0", **options})
     return content.getvalue()
 

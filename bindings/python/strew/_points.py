@@ -33,8 +33,8 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 #: The most points that a row by its number makes, and keeps.
 FEW = 1_000_000
-#: The formats of files that geopandas writes.
-FILES = ("parquet", "feather")
+#: The formats that geopandas and pyarrow write.
+FILES = ("parquet", "feather", "arrow")
 
 # Endings of files that are not the names of formats.
 _ENDINGS = {"jsonl": "ndjson", "geojsons": "geojsonseq", "geojsonl": "geojsonseq", "arrow": "feather", "arrows": "arrow"}
@@ -379,7 +379,7 @@ class Points(Generic[P]):
 
     def document(self, format: str, **options: Unpack[Output]) -> bytes:
         """The points in a format of REST: ``json``, ``csv``, ``geojson``, ``ply``, ``npy``, ``svg``, ``png``, …, or as
-        a GeoParquet (``parquet``) or an Arrow file (``feather``), which geopandas writes.
+        a GeoParquet (``parquet``), an Arrow file (``feather``) or stream (``arrow``), by geopandas and pyarrow.
 
         The options are the members of ``Output``, such as ``decimals`` for texts and ``size`` for pictures, or those of
         geopandas. Formats that state a reference system, such as ``geojson``, have that of the points.

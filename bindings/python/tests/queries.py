@@ -8,14 +8,14 @@ from typing import Any
 NAMES = ["oak", "birch", "fir"]
 
 
-def random_query(seed: int) -> dict[str, Any]:
+def random_query(seed: int, in_space: bool = False) -> dict[str, Any]:
     """A valid query of up to a few hundred points."""
     chance = random.Random(seed)
-    query: dict[str, Any] = _set(chance)
-    region = _region(chance)
+    query: dict[str, Any] = _set(chance, in_space)
     if chance.random() < 0.15:
-        layers = [dict(_set(chance), name=f"layer{i}") for i in range(chance.randint(2, 3))]
-        for layer in layers:
+        layers = [dict(_set(chance, in_space), name=f"layer{i}") for i in range(chance.randint(2, 3))]
+        # What keeps clear of others, and layers of the plane, have no exact number.
+        for layer in layers[-1:] if in_space else layers:
             if layer.pop("count", None):
                 layer["spacing"] = 2
         if chance.random() < 0.5:
@@ -23,10 +23,9 @@ def random_query(seed: int) -> dict[str, Any]:
         query = {"layers": layers}
     elif query.get("spread") and chance.random() < 0.3:
         query["only"] = "birch"
-    query["region"] = region
-    if chance.random() < 0.1 and "layers" not in query:
-        query["terrain"] = {"noise": {"wavelength": 30}}
-        query["align"] = chance.random()
+    query["region"] = _volume(chance) if in_space else _region(chance)
+    if chance.random() < 0.1 and "layers" not in query and not in_space:
+        query |= {"terrain": {"noise": {"wavelength": 30}}, "align": chance.random()}
     if chance.random() < 0.1:
         query["lod"] = chance.uniform(0.1, 1)
     if chance.random() < 0.1:
@@ -79,8 +78,7 @@ def _set(chance: random.Random, in_space: bool = False) -> dict[str, Any]:
     if chance.random() < 0.2:
         query["warp"] = chance.choice(["off", "on", 0.5])
     if chance.random() < 0.2:
-        query["keep"] = chance.uniform(0.1, 1)
-        query |= {"lod": chance.uniform(0.1, 1)} if in_space else {"settle": chance.randint(0, 4)}
+        query |= {"keep": chance.uniform(0.1, 1)} if in_space else {"keep": 0.5, "settle": chance.randint(0, 4)}
     if chance.random() < 0.4:
         query["attributes"] = chance.sample(ATTRIBUTES[in_space], chance.randint(1, 4))
         if "variant" in query["attributes"]:
@@ -89,24 +87,6 @@ def _set(chance: random.Random, in_space: bool = False) -> dict[str, Any]:
                 query |= {"spread": chance.choice(["even", "joint"]), "variants": {"oak": 3, "birch": 1}}
     if chance.random() < 0.2 and amount != "min_distance":
         query["field"] = chance.choice(FIELDS[in_space])
-    return query
-
-
-def random_query_in_space(seed: int) -> dict[str, Any]:
-    """A valid query in space of up to a few hundred points."""
-    chance = random.Random(seed)
-    query: dict[str, Any] = _set(chance, True)
-    if chance.random() < 0.15:
-        layers = [dict(_set(chance, True), name=f"layer{i}") for i in range(2)]
-        # What keeps clear of others has no exact number.
-        if chance.random() < 0.5 and "count" not in layers[-1]:
-            layers[-1]["clear_of"] = {"layer0": chance.uniform(0.1, 1)}
-        query = {"layers": layers}
-    query["region"] = _volume(chance)
-    if chance.random() < 0.1:
-        query["offset"] = chance.randint(0, 20)
-    if chance.random() < 0.1:
-        query["limit"] = chance.randint(1, 50)
     return query
 
 

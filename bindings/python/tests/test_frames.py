@@ -59,7 +59,7 @@ def test_frames_of_geopandas() -> None:
 
 def test_files_of_parquet_have_the_columns_of_the_command(tmp_path: Path) -> None:
     geopandas = pytest.importorskip("geopandas")
-    parquet = pytest.importorskip("pyarrow.parquet")
+    pyarrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
     flags = "--bbox 0,0,20,10 --spacing 1 --attributes angle,variant --variants oak:3,fir:1 --crs EPSG:32633 -q".split()
     subprocess.run([program(), "sample", *flags, "-o", tmp_path / "a.parquet"], check=True)
     strew.points(**QUERY, crs=32633).write(tmp_path / "b.parquet")
@@ -72,6 +72,8 @@ def test_files_of_parquet_have_the_columns_of_the_command(tmp_path: Path) -> Non
     read = geopandas.read_parquet(io.BytesIO(stars.document("parquet")))
     assert read.geometry.z.tolist() == read["z"].tolist() == stars.z.tolist() and read.crs.to_epsg() == 32633
     assert geopandas.read_feather(io.BytesIO(stars.document("feather"))).equals(read)
+    streamed = pyarrow.ipc.open_stream(stars.document("arrow")).read_all()
+    assert streamed.equals(stars.to_arrow()) and streamed.schema.metadata[b"strew.count"] == b"77"
 
 
 def test_pictures_of_matplotlib() -> None:

@@ -71,6 +71,14 @@ def test_errors_are_named_as_they_are_imported() -> None:
         strew.points(bbox=(0, 0, 1e6, 1e6), spacing=1).columns()
 
 
+@pytest.mark.parametrize("query", [{"map": "r77"}, {"alpha": "sqrt(3)", "map": "l"}, {"except_": "0" * 64}])
+def test_errors_give_no_advice_for_other_programs(query: Any) -> None:
+    with pytest.raises(strew.StrewError) as raised:
+        strew.points(bbox=(0, 0, 9, 9), spacing=1, **query)
+    told = f"{raised.value} {raised.value.faults}"
+    assert not any(words in told for words in ("strew forge", "tables.folder", "server", "/v1/"))
+
+
 def test_rows_by_number(remote: strew.Daemon) -> None:
     for source in (strew, remote):
         points = source.points(bbox=(0, 0, 20, 20), spacing=1, seed=3, attributes=["angle"])
