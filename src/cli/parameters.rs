@@ -315,8 +315,8 @@ Number: TypeAlias = \"Union[float, np.integer[Any], np.floating[Any]]\"
 Integer: TypeAlias = \"Union[int, np.integer[Any]]\"
 Numbers: TypeAlias = \"Union[Sequence[Number], np.ndarray[Any, Any]]\"
 Attribute: TypeAlias = Literal[
-    \"angle\", \"scale\", \"variant\", \"rank\", \"u1\", \"u2\", \"u3\", \"u4\", \"u5\", \"u6\", \"u7\", \"u8\", \"u9\", \"u10\", \"u11\",
-    \"u12\", \"u13\", \"u14\", \"u15\", \"u16\",
+    \"angle\", \"scale\", \"variant\", \"rank\", \"u1\", \"u2\", \"u3\", \"u4\", \"u5\", \"u6\",
+    \"u7\", \"u8\", \"u9\", \"u10\", \"u11\", \"u12\", \"u13\", \"u14\", \"u15\", \"u16\",
 ]
 ";
 

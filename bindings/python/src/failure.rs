@@ -10,7 +10,7 @@ use crate::loaded;
 const CAUSED: [(&str, &str); 3] = [
     ("take a spacing below", "rows"),
     ("too many vertices", "vertices"),
-    ("pixels; allowed", "pixels"),
+    (" × ", "pixels"),
 ];
 
 /// What errors advise users of daemons, up to its end.

@@ -45,8 +45,8 @@ def limits(
 ) -> dict[str, int]:
     """Sets limits of this process for the calls that follow, and returns all of them.
 
-    ``points`` is the most points of an answer, ``rows`` the most steps of counting, such as for ``count=`` in fields and
-    for :func:`stipple`, ``vertices`` the most vertices of a region, and ``pixels`` the most pixels of a query. Other
+    ``points`` is the most points of an answer, ``rows`` the most steps of counting, as for ``count=`` in fields and for
+    :func:`stipple`, ``vertices`` the most vertices of a region, and ``pixels`` the most pixels of a query. Other
     processes have limits of their own, and daemons those of their settings.
 
     >>> import strew

@@ -16,7 +16,8 @@ import numpy as np
 
 from ._crs import Placed, named
 from ._errors import fault
-from ._parameters import KINDS, OUTPUT, REGIONS, WINDOW, Amounts, Attribute, Common, Number, Numbers, Parameters, Regions, World
+from ._parameters import KINDS, OUTPUT, REGIONS, WINDOW
+from ._parameters import Amounts, Attribute, Common, Number, Numbers, Parameters, Regions, World
 
 if TYPE_CHECKING:
     from typing_extensions import Required, TypeAlias

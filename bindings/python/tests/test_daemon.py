@@ -173,7 +173,8 @@ def test_single_points_are_those_of_the_daemon(
     remote: strew.Daemon, path: str, more: dict[str, Any], at: Any, lost: str
 ) -> None:
     sources = of(strew, path), of(remote, path)
-    for more in ({}, {**more, "keep": 0.5}, {"attributes": "variant", "variants": {"oak": 3, "fir": 1.5}}, {"field": NOISE}):
+    kinds = {"attributes": "variant", "variants": {"oak": 3, "fir": 1.5}}
+    for more in ({}, {**more, "keep": 0.5}, kinds, {"field": NOISE}):
         for seed in range(4):
             here, there = (source.points(spacing=1.5, seed=seed, **more) for source in sources)
             for place in (at, (1e6, -3.25, 7)[: len(at)]):
