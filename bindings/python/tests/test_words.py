@@ -7,13 +7,13 @@ import math
 import pickle
 import traceback
 from decimal import Decimal
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
 
 import strew
-from strew._parameters import Parameters
+from strew._parameters import Attribute, Parameters
 from strew._query import SpaceQuery
 
 
@@ -77,6 +77,12 @@ def test_errors_give_no_advice_for_other_programs(query: Any) -> None:
         strew.points(bbox=(0, 0, 9, 9), spacing=1, **query)
     told = f"{raised.value} {raised.value.faults}"
     assert not any(words in told for words in ("strew forge", "tables.folder", "server", "/v1/"))
+
+
+def test_types_name_the_attributes_that_there_are() -> None:
+    names: Any = get_args(Attribute)
+    points = strew.points(bbox=(0, 0, 9, 9), spacing=1, attributes=names, variants={"oak": 1})
+    assert sorted(points.names) == sorted(names) and len(names) == 20
 
 
 def test_rows_by_number(remote: strew.Daemon) -> None:
