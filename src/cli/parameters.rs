@@ -7,7 +7,7 @@
 use strew_encode::Encoding;
 use strew_query::{
     Group, Parameter, SPACE_PARAMETERS, Shape, groups,
-    parameters::{BBOX, CRS, FORMAT, PARAMETERS},
+    parameters::{ATTRIBUTES, BBOX, CRS, FORMAT, PARAMETERS},
 };
 
 use super::{Failure, output};
@@ -317,7 +317,7 @@ const HEAD: &str = "\
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypedDict, Union
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, Union
 
 import numpy as np
 
@@ -327,7 +327,38 @@ if TYPE_CHECKING:
 Number: TypeAlias = \"Union[float, np.integer[Any], np.floating[Any]]\"
 Integer: TypeAlias = \"Union[int, np.integer[Any]]\"
 Numbers: TypeAlias = \"Union[Sequence[Number], np.ndarray[Any, Any]]\"
+Attribute: TypeAlias = Literal[
+    \"angle\", \"scale\", \"variant\", \"rank\", \"u1\", \"u2\", \"u3\", \"u4\", \"u5\", \"u6\",
+    \"u7\", \"u8\", \"u9\", \"u10\", \"u11\", \"u12\", \"u13\", \"u14\", \"u15\", \"u16\",
+]
 ";
+
+/// Parameters that are classes of their own in Python: calls have one of the first and of the second, which their types
+/// name one by one, and those of points in space have the last as well.
+const APART: [(&str, &str, &[Group]); 3] = [
+    (
+        "Amounts",
+        "How densely points lie: a set has one of them.",
+        &[Group::Amount, Group::Count],
+    ),
+    (
+        "World",
+        "What a query may leave everything open to.",
+        &[Group::World],
+    ),
+    (
+        "Common",
+        "The parameters of queries of the plane and in space.",
+        &[
+            Group::Profile,
+            Group::Table,
+            Group::Points,
+            Group::Except,
+            Group::Choices,
+            Group::Window,
+        ],
+    ),
+];
 
 /// Words of the language, which cannot be keywords of calls.
 const RESERVED: [&str; 32] = [
@@ -338,8 +369,20 @@ const RESERVED: [&str; 32] = [
 
 fn python(table: &[&Parameter]) -> String {
     let mut text = HEAD.to_owned();
-    text.extend(of_query().iter().map(|section| class(section, table)));
+    for section in of_query() {
+        let mut parameters = section.of(table);
+        for (name, about, groups) in APART {
+            let own = parameters.extract_if(.., |parameter| groups.contains(&parameter.group));
+            let own: Vec<_> = own.collect();
+            if !own.is_empty() {
+                text += &class(name, about, own);
+            }
+        }
+        text += &class(section.name, section.about, parameters);
+    }
     let [regions, window, output, kinds] = lists(table, "\"");
+    // A kind stays beside its name.
+    let kinds = wrapped(&kinds.replace(": ", ":~"), "    ").replace(":~", ": ");
     let placed: String = (Encoding::every().filter(|encoding| encoding.has_crs()))
         .map(|encoding| format!("\"{}\", ", encoding.name()))
         .collect();
@@ -370,11 +413,10 @@ ABOUT = {{
     )
 }
 
-fn class(section: &Section, table: &[&Parameter]) -> String {
-    let Section { name, about, .. } = section;
+fn class(name: &str, about: &str, parameters: Vec<&Parameter>) -> String {
     let mut text =
         format!("\n\nclass {name}(TypedDict, total=False):\n    \"\"\"{about}\"\"\"\n\n");
-    for parameter in section.of(table) {
+    for parameter in parameters {
         let name = keyword(parameter);
         text += &format!("    {name}: {} | None\n", python_type(parameter));
     }
@@ -387,15 +429,28 @@ fn keyword(parameter: &Parameter) -> String {
     format!("{name}{mark}")
 }
 
+/// What sets have in Python in place of the headers of answers.
+const ATTRIBUTES_FOR_HEADERS: [(&str, &str); 3] = [
+    ("The header strew-next is", "`points.next` is"),
+    ("the value of its header strew-next", "its `points.next`"),
+    ("the header strew-table", "`points.tables`"),
+];
+
 /// The entry of a parameter among the texts: its keyword, and its paragraph as a text of several lines.
 fn about(parameter: &Parameter) -> String {
-    let paragraph = paragraph(parameter, "`strew.raster`");
-    let mut text = format!("    {:?}: (\n", keyword(parameter));
-    for line in wrapped(&paragraph, "        ").lines() {
-        let line = format!("{} ", line.trim());
-        text += &format!("        {line:?}\n");
+    let mut paragraph = paragraph(parameter, "`strew.raster`");
+    for (header, own) in ATTRIBUTES_FOR_HEADERS {
+        paragraph = paragraph.replace(header, own);
     }
-    text + "    ),\n"
+    let name = format!("    {:?}: ", keyword(parameter));
+    let indent = " ".repeat(name.len());
+    // Quotes and the space between words take three more places.
+    let lines = wrapped(&paragraph, &format!("{indent}   "));
+    let lines = lines
+        .lines()
+        .map(|line| format!("{:?}", format!("{} ", line.trim())));
+    let lines: Vec<String> = lines.collect();
+    format!("{name}{},\n", lines.join(&format!("\n{indent}")))
 }
 
 fn python_type(parameter: &Parameter) -> &'static str {
@@ -406,6 +461,7 @@ fn python_type(parameter: &Parameter) -> &'static str {
         }
         // A code, a name, or an object of pyproj.
         _ if *parameter == CRS => "Any",
+        _ if *parameter == ATTRIBUTES => "Attribute | Sequence[Attribute]",
         shape => words(shape)[2],
     }
 }
@@ -469,7 +525,7 @@ mod tests {
             (Form::Dts, "     */\n    added?: number;\n"),
             (Form::Js, "    added: \"integer\",\n"),
             (Form::Py, "    added: Integer | None\n"),
-            (Form::Py, "    \"added\": \"integer\",\n"),
+            (Form::Py, "\"added\": \"integer\","),
             (
                 Form::Md,
                 "| `added` | Made for a test. | an integer from 1 to 9 | 1 |\n",

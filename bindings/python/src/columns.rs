@@ -8,7 +8,6 @@ use pyo3::{
     pybacked::PyBackedBytes,
     types::{PyCapsule, PyDict},
 };
-use strew_encode::Place;
 use strew_plan::library::{Further, FurtherValues};
 
 use crate::{
@@ -25,22 +24,12 @@ type Received = (String, bool, PyBackedBytes, Option<Vec<String>>);
 
 #[pymethods]
 impl Columns {
-    /// Columns that a daemon has sent, as bytes in the order of this machine. Points have `axes` coordinates, 2 or 3.
+    /// Columns that a daemon has sent, as bytes in the order of this machine, for their stream. Points have `axes`
+    /// coordinates, 2 or 3.
     #[staticmethod]
-    fn received(
-        axes: usize,
-        ids: &[u8],
-        at: &[u8],
-        further: Vec<Received>,
-        origin: Option<Vec<f64>>,
-    ) -> PyResult<Self> {
+    fn received(axes: usize, ids: &[u8], at: &[u8], further: Vec<Received>) -> PyResult<Self> {
         let ids = numbers(ids, i64::from_ne_bytes)?;
         let at = numbers(at, f64::from_ne_bytes)?;
-        let origin = origin.map(|origin| match (axes, origin.as_slice()) {
-            (2, &[x, y]) => Ok(Place::Plane([x, y])),
-            (3, &[x, y, z]) => Ok(Place::Space([x, y, z])),
-            _ => Err(damaged()),
-        });
         if !(2..=3).contains(&axes) || at.len() % axes != 0 || ids.len() != at.len() {
             return Err(damaged());
         }
@@ -54,12 +43,10 @@ impl Columns {
             };
             let (length, is_known) = match &values {
                 FurtherValues::Numbers(values) => (values.len(), true),
-                FurtherValues::Names(names, values) => (
-                    values.len(),
-                    values
-                        .iter()
-                        .all(|i| *i == -1 || usize::try_from(*i).is_ok_and(|i| i < names.len())),
-                ),
+                FurtherValues::Names(names, values) => {
+                    let known = -1..i32::try_from(names.len()).unwrap_or(i32::MAX);
+                    (values.len(), values.iter().all(|i| known.contains(i)))
+                }
             };
             if length != count || !is_known {
                 return Err(damaged());
@@ -72,7 +59,7 @@ impl Columns {
         };
         let columns = strew_plan::Columns {
             axes,
-            origin: origin.transpose()?,
+            origin: None,
             ids,
             at,
             further: further.into_iter().map(column).collect::<PyResult<_>>()?,
@@ -82,6 +69,14 @@ impl Columns {
 
     fn __len__(&self) -> usize {
         self.0.len()
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<{} points: id, coordinates, {:?}>",
+            self.0.len(),
+            self.names()
+        )
     }
 
     /// The place that coordinates are relative to, if it is not the world's origin.
@@ -132,7 +127,7 @@ fn damaged() -> PyErr {
     PyValueError::new_err("columns of different lengths")
 }
 
-fn numbers<T, const N: usize>(bytes: &[u8], read: fn([u8; N]) -> T) -> PyResult<Vec<T>> {
+pub fn numbers<T, const N: usize>(bytes: &[u8], read: fn([u8; N]) -> T) -> PyResult<Vec<T>> {
     let (whole, []) = bytes.as_chunks::<N>() else {
         return Err(damaged());
     };

@@ -1,35 +1,34 @@
 //! Figures and curves of points.
 
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex, PoisonError};
 
-use pyo3::{exceptions::PyValueError, prelude::*};
+use pyo3::prelude::*;
 use strew_forge::{Resolution, figure};
 use strew_plan::library::measured::{self, Measured, document};
 
-use crate::{failure::raised, json};
+use crate::{columns::numbers, loaded, work};
 
 /// The measures of a set of points.
 #[pyclass(frozen, module = "strew._strew")]
-pub struct Report(Mutex<strew_forge::Report>);
+pub struct Report(Arc<Mutex<strew_forge::Report>>);
 
 #[pymethods]
 impl Report {
-    /// The figures and curves as JSON.
-    fn document(&self) -> PyResult<String> {
-        let report = self
-            .0
-            .lock()
-            .map_err(|error| PyValueError::new_err(error.to_string()))?;
-        json(&document(&report))
+    /// The figures and curves, as in JSON.
+    fn document<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        loaded(
+            py,
+            &document(&self.0.lock().unwrap_or_else(PoisonError::into_inner)),
+        )
     }
 
     /// Points, spectrum and curves as SVG.
-    fn svg(&self, title: &str) -> PyResult<String> {
-        let report = self
-            .0
-            .lock()
-            .map_err(|error| PyValueError::new_err(error.to_string()))?;
-        Ok(figure::report(&report, title, None).to_svg())
+    fn svg(&self, py: Python<'_>, title: String) -> PyResult<String> {
+        let report = self.0.clone();
+        work::done(py, None, move |_| {
+            let report = report.lock().unwrap_or_else(PoisonError::into_inner);
+            Ok(figure::report(&report, &title, None).to_svg())
+        })
     }
 }
 
@@ -44,12 +43,8 @@ pub fn measure(
     nu_max: f64,
     ring_width: Option<f64>,
 ) -> PyResult<Report> {
-    let (pairs, []) = points.as_chunks::<16>() else {
-        return Err(PyValueError::new_err("points must be pairs of numbers"));
-    };
-    let number = |bytes: &[u8]| bytes.try_into().map_or(f64::NAN, f64::from_ne_bytes);
-    let pair = |pair: &[u8; 16]| [number(&pair[..8]), number(&pair[8..])];
-    let measured = py.detach(|| {
+    let pairs = numbers(points, f64::from_ne_bytes)?.as_chunks().0.to_vec();
+    let measured = work::done(py, None, move |_| {
         let plain = Resolution::default();
         let of = Measured {
             bbox,
@@ -60,8 +55,7 @@ pub fn measure(
                 ring_width: ring_width.unwrap_or(plain.ring_width),
             },
         };
-        measured::measure(pairs.iter().map(pair).collect(), &of)
+        measured::measure(pairs, &of)
     });
-    let report = measured.map_err(|error| raised(py, &error))?;
-    Ok(Report(Mutex::new(report)))
+    Ok(Report(Arc::new(Mutex::new(measured?))))
 }

@@ -18,10 +18,11 @@ functions and the same points. The package ``strew-client`` is this one without 
 
 from ._errors import Disconnected, NoSuchPoint, StrewError
 from ._fields import pixels, raster
-from ._local import LOCAL
+from ._local import LOCAL, limits
 from ._mask import mask
 from ._measure import Measured, measure
 from ._points import Point, PointSet
+from ._progress import progress
 from ._query import Query, SpaceQuery
 from ._remote import Daemon, connect
 from ._source import Source
@@ -48,10 +49,12 @@ __all__ = [
     "StrewError",
     "__version__",
     "connect",
+    "limits",
     "mask",
     "measure",
     "pixels",
     "points",
+    "progress",
     "query",
     "raster",
     "space",

@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ._native import is_there, native
 
+if TYPE_CHECKING:
+    from typing_extensions import TypeAlias
+
+    from . import _strew
+
 Array = np.ndarray[Any, Any]
 
 
-class Columns(Protocol):
-    """All columns of a set, as memory that numpy looks at."""
-
-    def __len__(self) -> int: ...
-    @property
-    def origin(self) -> Any: ...
-    def ids(self) -> Any: ...
-    def at(self) -> Any: ...
-    def names(self) -> list[str]: ...
-    def further(self, i: int) -> tuple[Any, list[str] | None]: ...
-    def arrow_stream(self, metadata: dict[str, str]) -> object: ...
+#: All columns of a set, as memory that numpy looks at.
+Columns: TypeAlias = "_strew.Columns | Received"
 
 
 @dataclass
@@ -62,8 +58,7 @@ class Received:
         if not is_there():
             return self._table(metadata).__arrow_c_stream__()
         further = [(one.name, one.is_optional, one.values.tobytes(), one.names) for one in self._further]
-        origin = None if self.origin is None else tuple(self.origin)
-        made = native().Columns.received(self._axes, self._ids.tobytes(), self._at.tobytes(), further, origin)
+        made = native().Columns.received(self._axes, self._ids.tobytes(), self._at.tobytes(), further)
         stream: object = made.arrow_stream(metadata)
         return stream
 

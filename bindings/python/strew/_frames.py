@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import io
 import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from ._points import Points, PointSet
+    from ._points import Points
 
 
-def arrow(points: Points, geometry: bool, crs: str | None) -> Any:
+def arrow(points: Points[Any], geometry: bool, crs: str | None) -> Any:
     """A ``pyarrow.Table``."""
     import pyarrow as pa
 
@@ -31,14 +32,14 @@ def arrow(points: Points, geometry: bool, crs: str | None) -> Any:
     return kept.append_column(field, values.cast(field.type))
 
 
-def absolute(points: Points) -> np.ndarray[Any, Any]:
+def absolute(points: Points[Any]) -> np.ndarray[Any, Any]:
     """The coordinates from the world's origin, also of chunks."""
     at = np.asarray(points)
     origin = points.columns().origin
     return at if origin is None else at + np.asarray(origin, np.float64)
 
 
-def pandas(points: Points) -> Any:
+def pandas(points: Points[Any]) -> Any:
     """A ``pandas.DataFrame``."""
     import pandas as pd
 
@@ -50,7 +51,7 @@ def pandas(points: Points) -> Any:
     return pd.DataFrame(columns)
 
 
-def geopandas(points: Points, crs: str | None) -> Any:
+def geopandas(points: Points[Any], crs: str | None) -> Any:
     """A ``geopandas.GeoDataFrame``."""
     import geopandas as gpd
 
@@ -60,24 +61,41 @@ def geopandas(points: Points, crs: str | None) -> Any:
     return gpd.GeoDataFrame(frame, geometry=gpd.points_from_xy(at[:, 0], at[:, 1], z), crs=crs)
 
 
-def plot(points: PointSet, ax: Any, by: str | None, style: dict[str, Any]) -> Any:
+def file(points: Points[Any], format: str, crs: str | None, options: dict[str, Any]) -> bytes:
+    """A GeoParquet or an Arrow file with the columns that the command line writes, or an Arrow stream."""
+    content = io.BytesIO()
+    if format == "arrow":
+        import pyarrow as pa
+
+        table = pa.table(points)
+        with pa.ipc.new_stream(content, table.schema, **options) as stream:
+            stream.write_table(table)
+        return content.getvalue()
+    frame = geopandas(points, crs)
+    for i, (axis, values) in enumerate(zip(points._dimension.axes, absolute(points).T), 1):
+        frame.insert(i, axis, values)
+    getattr(frame, f"to_{format}")(content, **{"compression": "zstd", "schema_version": "1.1.0", **options})
+    return content.getvalue()
+
+
+def plot(points: Points[Any], ax: Any, by: str | None, style: dict[str, Any]) -> Any:
     """The axes of matplotlib with the points on them."""
+    at = absolute(points).T
     if ax is None:
         import matplotlib.pyplot as plt
 
-        ax = plt.gca()
+        ax = plt.gca() if len(at) == 2 else plt.gcf().add_subplot(projection="3d")
     # About half of the mean spacing, for a picture of 5 inches at 72 points each.
-    style.setdefault("s", min(20.0, (180.0 / max(len(points), 1) ** 0.5) ** 2))
+    style.setdefault("s", min(20.0, (180.0 / max(len(points), 1) ** (1 / len(at))) ** 2))
     style.setdefault("linewidths", 0)
-    at = absolute(points)
     values, names = (None, None) if by is None else points._further(by)
-    if names is None:
-        drawn = ax.scatter(at[:, 0], at[:, 1], c=values, **style) if by else ax.scatter(at[:, 0], at[:, 1], **style)
-        if by:
-            ax.figure.colorbar(drawn, ax=ax, label=by)
-    else:
+    if names is not None:
         for code, name in enumerate(names):
-            ax.scatter(*at[values == code].T, label=name, **style)
+            ax.scatter(*at[:, values == code], label=name, **style)
         ax.legend(title=by)
+    elif by is not None:
+        ax.figure.colorbar(ax.scatter(*at, c=values, **style), ax=ax, label=by)
+    else:
+        ax.scatter(*at, **style)
     ax.set_aspect("equal")
     return ax

@@ -2,48 +2,12 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import numpy as np
-
+from ._errors import fault
 from ._native import native
 from ._query import PLANE, SPACE, Body, Dimension, text
 from ._source import Plan, Source
-
-if TYPE_CHECKING:
-    from . import _strew
-
-
-class _Planned:
-    def __init__(self, plan: _strew.Plan) -> None:
-        self._plan = plan
-
-    def count(self) -> int:
-        return self._plan.count()
-
-    def query(self) -> dict[str, Any]:
-        query: dict[str, Any] = json.loads(self._plan.query())
-        return query
-
-    def tables(self) -> list[str]:
-        return self._plan.tables()
-
-    def next(self) -> str | None:
-        return self._plan.next()
-
-    def columns(self) -> _strew.Columns:
-        return self._plan.columns()
-
-    def coordinates(self) -> np.ndarray[Any, np.dtype[np.float64]]:
-        return np.asarray(self._plan.coordinates())
-
-    def split(self, parts: int) -> list[tuple[str, int]]:
-        return self._plan.split(str(parts))
-
-    def document(self, options: Sequence[tuple[str, str]]) -> bytes:
-        return self._plan.document(list(options))
 
 
 class Local(Source):
@@ -52,14 +16,15 @@ class Local(Source):
     checks_at_once = True
 
     def plan(self, query: Body, dimension: Dimension = PLANE) -> Plan:
-        return _Planned(native().plan(text(query), dimension is SPACE))
+        plan: Plan = native().plan(text(query), dimension is SPACE)
+        return plan
 
     def point(self, id: str, address: str, dimension: Dimension = PLANE) -> dict[str, Any]:
-        point: dict[str, Any] = json.loads(native().point(id, address, dimension is SPACE))
+        point: dict[str, Any] = native().point(id, address, dimension is SPACE)
         return point
 
     def nearest(self, address: str, dimension: Dimension = PLANE) -> list[dict[str, Any]]:
-        neighbors: list[dict[str, Any]] = json.loads(native().nearest(address, dimension is SPACE))
+        neighbors: list[dict[str, Any]] = native().nearest(address, dimension is SPACE)
         return neighbors
 
     def hold_field(self, field: Any) -> str:
@@ -73,3 +38,23 @@ class Local(Source):
 
 
 LOCAL = Local()
+
+
+def limits(
+    *, points: int | None = None, rows: int | None = None, vertices: int | None = None, pixels: int | None = None
+) -> dict[str, int]:
+    """Sets limits of this process for the calls that follow, and returns all of them.
+
+    ``points`` is the most points of an answer, ``rows`` the most steps of counting, as for ``count=`` in fields and for
+    :func:`stipple`, ``vertices`` the most vertices of a region, and ``pixels`` the most pixels of a query. Other
+    processes have limits of their own, and daemons those of their settings.
+
+    >>> import strew
+    >>> strew.limits()["rows"]
+    5000000
+    """
+    for name, most in {"points": points, "rows": rows, "vertices": vertices, "pixels": pixels}.items():
+        if most is not None and not 1 <= most < 2**63:
+            raise fault(name, most, "out of range", "an integer from 1 to 2**63 - 1")
+    set_now: dict[str, int] = native().limits((points, rows, vertices, pixels))
+    return set_now

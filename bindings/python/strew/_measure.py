@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 import numpy as np
@@ -92,4 +91,4 @@ def measure(
         raise ValueError(f"bbox has four numbers, not {len(corners)}")
     inputs = (np.ascontiguousarray(at).tobytes(), corners, density, bool(periodic), nu_max, ring_width)
     report = native().measure(*inputs)
-    return Measured(json.loads(report.document()), inputs, report)
+    return Measured(report.document(), inputs, report)

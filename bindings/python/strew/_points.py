@@ -7,7 +7,7 @@ import operator
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, overload
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, SupportsIndex, TypeVar, overload
 
 import numpy as np
 
@@ -15,9 +15,13 @@ from . import _frames
 from ._crs import Placed, is_name, joined, named
 from ._errors import fault
 from ._parameters import KINDS, PLACED, WINDOW
-from ._query import OF_ANSWERS, PLANE, Body, Dimension, address, body, text
+from ._query import OF_ANSWERS, PLANE, Body, Dimension, address, body, features, text
 
 if TYPE_CHECKING:
+    import geopandas
+    import matplotlib.axes
+    import pandas
+    import pyarrow
     from typing_extensions import Self, Unpack
 
     from ._parameters import Output
@@ -29,8 +33,8 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 #: The most points that a row by its number makes, and keeps.
 FEW = 1_000_000
-#: The formats of files that geopandas writes.
-FILES = ("parquet", "feather")
+#: The formats that geopandas and pyarrow write.
+FILES = ("parquet", "feather", "arrow")
 
 # Endings of files that are not the names of formats.
 _ENDINGS = {"jsonl": "ndjson", "geojsons": "geojsonseq", "geojsonl": "geojsonseq", "arrow": "feather", "arrows": "arrow"}
@@ -49,17 +53,17 @@ class Point:
     #: Its attributes by name.
     attributes: Mapping[str, Any] = field(default_factory=dict)
 
-    @classmethod
-    def _of(cls, found: dict[str, Any]) -> Point:
-        own = {name: found.pop(name) for name in ("id", "x", "y", "distance") if name in found}
-        found.pop("block", None)
-        return cls(**own, attributes=found)
+
+#: A point of the plane, or in space.
+P = TypeVar("P")
 
 
-class Points:
+class Points(Generic[P]):
     """The points of a query, of the plane or in space: what :class:`PointSet` and ``SpaceSet`` have in common."""
 
     _dimension: ClassVar[Dimension] = PLANE
+    #: The class of a point.
+    _kind: ClassVar[Any]
 
     def __init__(self, source: Source, query: Placed) -> None:
         self._source = source
@@ -73,7 +77,10 @@ class Points:
         """The points of a query, which is checked at once where that costs no request."""
         if not isinstance(query, Mapping):
             text(query)
-        return cls(source, Placed.query(query))._checked()
+        placed = Placed.query(query)
+        if "features" in placed:
+            placed["features"] = features(placed["features"])
+        return cls(source, placed)._checked()
 
     def _checked(self) -> Self:
         if self._source.checks_at_once and "region" in self._body:
@@ -173,12 +180,22 @@ class Points:
                 values[name] = self._source.hold_field(value)
         return address({name: value for name, value in values.items() if value is not None})
 
-    def _nearest(self, at: Any, k: int | None, radius: float | None) -> list[dict[str, Any]]:
-        return self._source.nearest(self._set(at=list(at), k=k, radius=radius), self._dimension)
+    def nearest(self, at: Any, k: int | None = None, radius: float | None = None) -> list[P]:
+        """The points nearest to a place, nearest first: one, or ``k``, or all within ``radius``."""
+        found = self._source.nearest(self._set(at=list(at), k=k, radius=radius), self._dimension)
+        return [self._described(point) for point in found]
 
-    def _point(self, id: Any) -> dict[str, Any]:
+    def point(self, id: Any) -> P:
+        """The point of an id: a text, or the integers as in :attr:`ids`. Raises :class:`NoSuchPoint`."""
         id = id if isinstance(id, str) else ":".join(str(int(part)) for part in id)
-        return self._source.point(id, self._set(), self._dimension)
+        return self._described(self._source.point(id, self._set(), self._dimension))
+
+    def _described(self, found: dict[str, Any]) -> P:
+        names = ("id", *self._dimension.axes, "distance")
+        own = {name: found.pop(name) for name in names if name in found}
+        found.pop("block", None)
+        point: P = self._kind(**own, attributes=found)
+        return point
 
     # -- columns -----------------------------------------------------------------------------------------------
 
@@ -190,8 +207,24 @@ class Points:
 
     def _coordinates(self) -> Floats:
         if self._at is None:
-            self._at = self.plan().coordinates() if self._made is None else np.asarray(self._made.at())
+            self._at = np.asarray(self.plan().coordinates() if self._made is None else self._made.at())
         return self._at
+
+    @property
+    def x(self) -> Floats:
+        """The first coordinates."""
+        return self._coordinates()[:, 0]
+
+    @property
+    def y(self) -> Floats:
+        """The second coordinates."""
+        return self._coordinates()[:, 1]
+
+    @property
+    def origin(self) -> tuple[float, ...] | None:
+        """The place that coordinates are relative to, the corner of a chunk; `None` for the world's origin."""
+        origin = self.columns().origin
+        return None if origin is None else tuple(origin)
 
     @property
     def ids(self) -> np.ndarray[Any, np.dtype[np.int64]]:
@@ -218,8 +251,8 @@ class Points:
     @overload
     def __getitem__(self, name: slice) -> Self: ...
     @overload
-    def __getitem__(self, name: int) -> Any: ...
-    def __getitem__(self, name: str | int | slice) -> Any:
+    def __getitem__(self, name: SupportsIndex) -> P: ...
+    def __getitem__(self, name: str | SupportsIndex | slice) -> Any:
         """A column by its name, a point by its number, or a set of the rows of a slice.
 
         A column is of numbers, or of names; where a layer lacks it there is NaN, or the empty name. ``"id"`` is the
@@ -258,7 +291,7 @@ class Points:
             raise fault("slice", rows, "has no rows", "at least one row")
         return self._with(offset=self._body.get("offset", 0) + first, limit=end - first)
 
-    def _row(self, i: int) -> Any:
+    def _row(self, i: int) -> P:
         count = self.count()
         if not -count <= i < count:
             raise IndexError(f"row {i} of {count} points")
@@ -275,19 +308,16 @@ class Points:
             raise KeyError(f"{name!r} is a column of numbers")
         return values, names
 
-    def _iterate(self, first: int = 0, end: int | None = None) -> Iterator[Any]:
-        """The points of some rows."""
-        raise NotImplementedError
-
-    def __iter__(self) -> Iterator[Any]:
+    def __iter__(self) -> Iterator[P]:
         return self._iterate()
 
-    def _rows(self, first: int, end: int | None) -> Iterator[tuple[str, list[float], dict[str, Any]]]:
-        """The id, the coordinates and the attributes of each point."""
+    def _iterate(self, first: int = 0, end: int | None = None) -> Iterator[P]:
+        """The points of some rows."""
         rows = slice(first, end)
         columns = {name: self[name][rows] for name in self.names}
         for i, (id, at) in enumerate(zip(self.ids[rows].tolist(), self._coordinates()[rows].tolist())):
-            yield ":".join(map(str, id)), at, {name: values[i].item() for name, values in columns.items()}
+            attributes = {name: values[i].item() for name, values in columns.items()}
+            yield self._kind(":".join(map(str, id)), *at, attributes=attributes)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray[Any, Any]:
         at = self._coordinates()
@@ -306,24 +336,33 @@ class Points:
         }
         return self.columns().arrow_stream(metadata)
 
-    def to_arrow(self, *, geometry: bool = False, crs: Any = None) -> Any:
+    def to_arrow(self, *, geometry: bool = False, crs: Any = None) -> pyarrow.Table:
         """A ``pyarrow.Table`` of all columns. With ``geometry`` a column of GeoArrow points replaces the coordinates.
 
         ``crs`` is the reference system of that column, :attr:`crs` by default.
         """
         return _frames.arrow(self, geometry, self._crs_or(crs))
 
-    def to_pandas(self) -> Any:
+    def to_pandas(self) -> pandas.DataFrame:
         """A ``pandas.DataFrame`` of all columns: ids as text, names as categories."""
         return _frames.pandas(self)
 
-    def to_geopandas(self, crs: Any = None) -> Any:
+    def to_geopandas(self, crs: Any = None) -> geopandas.GeoDataFrame:
         """A ``geopandas.GeoDataFrame``: ids, attributes, and points as geometry, with their height if they have one.
 
         ``crs`` is the reference system, by default :attr:`crs`. Coordinates do not
         change; points of chunks get those from the world's origin.
         """
         return _frames.geopandas(self, self._crs_or(crs))
+
+    def plot(self, ax: Any = None, *, by: str | None = None, **style: Any) -> matplotlib.axes.Axes:
+        """Draws the points by matplotlib, on ``ax`` or the current axes, which are returned. Those of points in space
+        are of three dimensions.
+
+        ``by`` names the column that colors them. ``style`` is passed on to ``Axes.scatter``.
+        """
+        axes: matplotlib.axes.Axes = _frames.plot(self, ax, by, style)
+        return axes
 
     @property
     def crs(self) -> str | None:
@@ -339,10 +378,11 @@ class Points:
     # -- documents ---------------------------------------------------------------------------------------------
 
     def document(self, format: str, **options: Unpack[Output]) -> bytes:
-        """The points in a format of REST: ``json``, ``csv``, ``geojson``, ``ply``, ``npy``, ``svg``, ``png``, …
+        """The points in a format of REST: ``json``, ``csv``, ``geojson``, ``ply``, ``npy``, ``svg``, ``png``, …, or as
+        a GeoParquet (``parquet``), an Arrow file (``feather``) or stream (``arrow``), by geopandas and pyarrow.
 
-        The options are the members of ``Output``, such as ``decimals`` for texts and ``size`` for pictures. Formats
-        that state a reference system, such as ``geojson``, have that of the points.
+        The options are the members of ``Output``, such as ``decimals`` for texts and ``size`` for pictures, or those of
+        geopandas. Formats that state a reference system, such as ``geojson``, have that of the points.
 
         >>> import strew
         >>> print(strew.points(bbox=(0, 0, 2, 1), spacing=1, seed=1).document("csv", decimals=2).decode())
@@ -354,6 +394,9 @@ class Points:
         """
         given = {"format": format, **options}
         crs = self._crs_or(options.get("crs"))
+        if format in FILES:
+            given = {name: value for name, value in options.items() if name != "crs"}
+            return _frames.file(self, format, crs, given)
         if crs is not None and (format in PLACED or "crs" in options):
             if not is_name(crs):
                 way_out = "one with an authority and a code, or points.to_geopandas().to_file(path)"
@@ -363,22 +406,13 @@ class Points:
         return self.plan().document(texts)
 
     def write(self, path: str | Path, format: str | None = None, **options: Unpack[Output]) -> None:
-        """Writes a document; the ending of the path is the format, as of ``strew sample -o``, also with ``.gz``.
-
-        ``.parquet`` is GeoParquet, and ``.arrow`` an Arrow file with the same columns: both by geopandas, of which
-        ``options`` has those of its own.
-        """
+        """Writes a document; the ending of the path is the format, as of ``strew sample -o``, also with ``.gz``."""
         inner = Path(path)
         is_packed = inner.suffix.lower() == ".gz"
         if is_packed:
             inner = inner.with_suffix("")
         ending = inner.suffix.lstrip(".").lower()
         format = format or _ENDINGS.get(ending, ending)
-        if format in FILES and not is_packed:
-            more: dict[str, Any] = dict(options)
-            frame = self.to_geopandas(more.pop("crs", None))
-            getattr(frame, f"to_{format}")(path, **more)
-            return
         content = self.document(format, **options)
         Path(path).write_bytes(gzip.compress(content, mtime=0) if is_packed else content)
 
@@ -407,7 +441,7 @@ class Points:
         return type(self), (self._source, self._body)
 
 
-class PointSet(Points):
+class PointSet(Points[Point]):
     """The points of a query of the plane, made when they are first needed.
 
     A query without a region is the whole plane: it has :meth:`chunk`, :meth:`within`, :meth:`nearest` and
@@ -423,46 +457,13 @@ class PointSet(Points):
     True
     """
 
+    _kind = Point
+
     def chunk(self, size: float, x: int, y: int) -> Self:
         """The points of a square of the world grid. Coordinates are relative to its corner, :attr:`origin`."""
         return self.within(chunk=(size, x, y))
-
-    def nearest(self, at: Any, k: int | None = None, radius: float | None = None) -> list[Point]:
-        """The points nearest to a place, nearest first: one, or ``k``, or all within ``radius``."""
-        return [Point._of(point) for point in self._nearest(at, k, radius)]
-
-    def point(self, id: Any) -> Point:
-        """The point of an id: a text, or a pair of integers as in :attr:`ids`. Raises :class:`NoSuchPoint`."""
-        return Point._of(self._point(id))
-
-    def plot(self, ax: Any = None, *, by: str | None = None, **style: Any) -> Any:
-        """Draws the points by matplotlib, on ``ax`` or the current axes, which are returned.
-
-        ``by`` names the column that colors them. ``style`` is passed on to ``Axes.scatter``.
-        """
-        return _frames.plot(self, ax, by, style)
 
     @property
     def xy(self) -> Floats:
         """The coordinates: an array of pairs, read only."""
         return self._coordinates()
-
-    @property
-    def x(self) -> Floats:
-        """The first coordinates."""
-        return self.xy[:, 0]
-
-    @property
-    def y(self) -> Floats:
-        """The second coordinates."""
-        return self.xy[:, 1]
-
-    @property
-    def origin(self) -> tuple[float, float] | None:
-        """The place that coordinates are relative to, the corner of a chunk; `None` for the world's origin."""
-        origin = self.columns().origin
-        return None if origin is None else (origin[0], origin[1])
-
-    def _iterate(self, first: int = 0, end: int | None = None) -> Iterator[Point]:
-        for id, [x, y], attributes in self._rows(first, end):
-            yield Point(id, x, y, attributes=attributes)

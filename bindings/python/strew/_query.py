@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from keyword import iskeyword
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Any, Literal
 from urllib.parse import quote
 
 import numpy as np
 
 from ._crs import Placed, named
 from ._errors import fault
-from ._parameters import KINDS, OUTPUT, REGIONS, WINDOW, Integer, Number, Numbers, Parameters, Regions
+from ._parameters import KINDS, OUTPUT, REGIONS, WINDOW
+from ._parameters import Amounts, Attribute, Common, Number, Numbers, Parameters, Regions, World
 
 if TYPE_CHECKING:
-    from typing_extensions import TypeAlias
+    from typing_extensions import Required, TypeAlias
 
+#: An attribute of a point in space.
+SpaceAttribute: TypeAlias = "Attribute | Literal['rotation']"
 #: A query as the body of ``POST /v1/points:query``.
 Body: TypeAlias = "dict[str, Any]"
 #: The regions of the plane that are keywords.
@@ -46,60 +50,62 @@ PLANE = Dimension("xy", SHAPES, "/v1", "/v1/points:query")
 SPACE = Dimension("xyz", VOLUMES, "/v1/space", "/v1/space/points")
 
 
-class Shapes(Regions, total=False):
-    """The regions that are keywords."""
+class OfWorld(Regions, Amounts, Common, Parameters, total=False):
+    """The keywords beside a world."""
 
     chunk: Numbers | Mapping[str, Any] | None
+    region: Mapping[str, Any] | None
+    crs: Any
 
 
-class Query(Shapes, Parameters, total=False):
+class Query(OfWorld, World, total=False):
     """The keywords of a query: the members of REST's JSON, and the shapes of regions by themselves.
 
     ``except`` is a word of Python: its keyword is ``except_``.
     """
 
-    region: Mapping[str, Any] | None
     features: Mapping[str, Any] | None
     layers: Sequence[Mapping[str, Any]] | None
+
+
+class Boxed(Common, Parameters, total=False):
+    """The keywords beside an amount, with a box as the region."""
+
+    bbox: Required[Numbers]
+    circle: None
+    polygon: None
+    chunk: None
+    region: None
     crs: Any
 
 
-class Volumes(TypedDict, total=False):
-    """The regions of space that are keywords."""
+class Shaped(Common, Parameters, total=False):
+    """The keywords beside an amount, with another region, or none."""
+
+    bbox: None
+    circle: Numbers | Mapping[str, Any] | None
+    polygon: Any
+    chunk: Numbers | Mapping[str, Any] | None
+    region: Mapping[str, Any] | None
+    crs: Any
+
+
+class Volumes(Common, total=False):
+    """The keywords of a query in space beside an amount; those that the plane has, too, mean the same."""
 
     bbox: Numbers | None
     ball: Numbers | Mapping[str, Any] | None
     prism: tuple[Any, Number, Number] | Mapping[str, Any] | None
     chunk: Numbers | Mapping[str, Any] | None
     region: Mapping[str, Any] | None
+    attributes: SpaceAttribute | Sequence[SpaceAttribute] | None
+    crs: Any
 
 
-class SpaceQuery(Volumes, total=False):
-    """The keywords of a query in space; those that the plane has, too, mean the same: see :class:`Query`."""
+class SpaceQuery(Volumes, Amounts, total=False):
+    """The keywords of a query in space: see :class:`Query`."""
 
     layers: Sequence[Mapping[str, Any]] | None
-    density: Number | None
-    spacing: Number | None
-    min_distance: Number | None
-    profile: str | None
-    alpha: str | Number | None
-    map: str | None
-    table: str | None
-    seed: Integer | None
-    warp: str | Number | None
-    keep: Number | None
-    lod: Number | None
-    field: str | Mapping[str, Any] | None
-    count: Integer | None
-    except_: str | Sequence[str] | None
-    attributes: str | Sequence[str] | None
-    scale_range: Numbers | None
-    scale_ranges: Mapping[str, Numbers] | None
-    variants: Mapping[str, Number] | None
-    offset: Integer | None
-    limit: Integer | None
-    cursor: str | None
-    crs: Any
 
 
 #: The meanings of the keywords that are no parameters of addresses.
@@ -194,8 +200,6 @@ def text(body: Mapping[str, Any]) -> str:
     """A body as JSON. Raises :class:`StrewError` with the member that has no form in JSON."""
     if not isinstance(body, Mapping):
         raise fault("query", body, "not a body of REST", "a dict such as {'region': {'bbox': [0, 0, 9, 9]}, 'spacing': 1}")
-    if "features" in body:
-        body = {**body, "features": _features(body["features"])}
     for name, value in body.items():
         _check(name, value)
     try:
@@ -206,21 +210,29 @@ def text(body: Mapping[str, Any]) -> str:
         raise
 
 
-def _features(features: Any) -> Any:
-    """Features without the properties that are not read: columns of a frame may have values that JSON lacks."""
+def features(features: Any) -> Any:
+    """Features without the properties that are not read: columns of a frame may have values that JSON lacks. Those of a
+    frame are named by its index, if by no column."""
     of = features.get("of") if isinstance(features, Mapping) else None
+    is_frame = hasattr(of, "__geo_interface__")
     of = getattr(of, "__geo_interface__", of)
     if not isinstance(of, Mapping) or not isinstance(of.get("features"), (list, tuple)):
         return features
-    names = (features.get("id"), features.get("count"))
-
-    def read(feature: Any) -> Any:
-        properties = feature.get("properties") if isinstance(feature, Mapping) else None
-        if not isinstance(properties, Mapping):
-            return feature
-        return {**feature, "properties": {name: properties[name] for name in properties if name in names}}
-
-    return {**features, "of": {**of, "features": [read(feature) for feature in of["features"]]}}
+    if is_frame and features.get("id") is None:
+        features = {**features, "id": "index"}
+    id, count = features.get("id"), features.get("count")
+    read, bare = [], []
+    for feature in of["features"]:
+        own = feature.get("properties") if isinstance(feature, Mapping) else None
+        if isinstance(own, Mapping):
+            own = {**own, "index": feature["id"]} if is_frame and id == "index" and "index" not in own else own
+            feature = {**feature, "properties": {name: own[name] for name in own if name in (id, count)}}
+            if feature.get("geometry") is None:
+                bare.append(str(own.get(id)))
+        read.append(feature)
+    if bare:
+        warnings.warn(f"features without a geometry have no points: {', '.join(bare)}", stacklevel=5)
+    return {**features, "of": {**of, "features": read}}
 
 
 def _check(name: str, value: Any) -> None:

@@ -149,7 +149,7 @@ class Daemon(Source):
         return json.loads(self.read(method, path, body))
 
     def plan(self, query: Body, dimension: Dimension = PLANE) -> Plan:
-        return _Asked(self, query, dimension)
+        return Asked(self, query, dimension)
 
     def point(self, id: str, address: str, dimension: Dimension = PLANE) -> dict[str, Any]:
         found: dict[str, Any] = self.json("GET", f"{dimension.root}/points/{quote(id, safe=':')}?{address}")["point"]
@@ -217,7 +217,7 @@ def _refusal(response: http.client.HTTPResponse, content: bytes) -> StrewError:
         return StrewError(f"HTTP {response.status}: {shown or response.reason}", f"http-{response.status}")
 
 
-class _Asked:
+class Asked:
     """A query of a daemon."""
 
     def __init__(self, daemon: Daemon, query: Body, dimension: Dimension) -> None:

@@ -3,34 +3,25 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Protocol
-
-import numpy as np
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, overload
 
 from ._fields import darkness, raster
 from ._help import documented
 from ._points import PointSet
-from ._query import PLANE, Body, Dimension, Query, body
+from ._query import PLANE, Body, Boxed, Dimension, OfWorld, Query, Shaped, body
 from ._space import Space
 
 if TYPE_CHECKING:
-    from typing_extensions import Unpack
+    from typing_extensions import TypeAlias, Unpack
 
-    from ._columns import Columns
+    from . import _strew
+    from ._parameters import Integer, Number
+    from ._remote import Asked
 
 
-class Plan(Protocol):
-    """A query that is understood, and counted when that is wanted."""
-
-    def count(self) -> int: ...
-    def query(self) -> dict[str, Any]: ...
-    def tables(self) -> list[str]: ...
-    def next(self) -> str | None: ...
-    def columns(self) -> Columns: ...
-    def coordinates(self) -> np.ndarray[Any, np.dtype[np.float64]]: ...
-    def split(self, parts: int) -> list[tuple[str, int]]: ...
-    def document(self, options: Sequence[tuple[str, str]]) -> bytes: ...
+#: A query that is understood, and counted when that is wanted.
+Plan: TypeAlias = "_strew.Plan | Asked"
 
 
 class Source:
@@ -51,8 +42,33 @@ class Source:
     #: Whether a query is checked when it is made, and not when its answer is first needed.
     checks_at_once = False
 
+    # One amount, or sets that have their own; one region.
+    @overload
+    def points(self, *, spacing: Number, **query: Unpack[Boxed]) -> PointSet: ...
+    @overload
+    def points(self, *, spacing: Number, **query: Unpack[Shaped]) -> PointSet: ...
+    @overload
+    def points(self, *, density: Number, **query: Unpack[Boxed]) -> PointSet: ...
+    @overload
+    def points(self, *, density: Number, **query: Unpack[Shaped]) -> PointSet: ...
+    @overload
+    def points(self, *, count: Integer, **query: Unpack[Boxed]) -> PointSet: ...
+    @overload
+    def points(self, *, count: Integer, **query: Unpack[Shaped]) -> PointSet: ...
+    @overload
+    def points(self, *, min_distance: Number, **query: Unpack[Boxed]) -> PointSet: ...
+    @overload
+    def points(self, *, min_distance: Number, **query: Unpack[Shaped]) -> PointSet: ...
+    @overload
+    def points(self, *, layers: Sequence[Mapping[str, Any]], **query: Unpack[Boxed]) -> PointSet: ...
+    @overload
+    def points(self, *, layers: Sequence[Mapping[str, Any]], **query: Unpack[Shaped]) -> PointSet: ...
+    @overload
+    def points(self, *, features: Mapping[str, Any], **query: Unpack[Shaped]) -> PointSet: ...
+    @overload
+    def points(self, *, world: str, **query: Unpack[OfWorld]) -> PointSet: ...
     @documented(Query)
-    def points(self, **query: Unpack[Query]) -> PointSet:
+    def points(self, **query: Any) -> PointSet:
         """The points of a query: of a region, or without one the whole plane.
 
         >>> import strew

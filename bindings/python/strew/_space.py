@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, overload
 
 from ._help import documented
 from ._points import Floats, Points
-from ._query import SPACE, Body, Dimension, SpaceQuery, body
+from ._query import SPACE, Body, Dimension, SpaceQuery, Volumes, body
 
 if TYPE_CHECKING:
     from typing_extensions import Self, Unpack
 
+    from ._parameters import Integer, Number
     from ._source import Source
 
 
@@ -30,13 +31,8 @@ class SpacePoint:
     #: Its attributes by name.
     attributes: Mapping[str, Any] = field(default_factory=dict)
 
-    @classmethod
-    def _of(cls, found: dict[str, Any]) -> SpacePoint:
-        own = {name: found.pop(name) for name in ("id", "x", "y", "z", "distance") if name in found}
-        return cls(**own, attributes=found)
 
-
-class SpaceSet(Points):
+class SpaceSet(Points[SpacePoint]):
     """The points of a query in space, made when they are first needed.
 
     A query without a region is all of space: it has :meth:`chunk`, :meth:`within`, :meth:`nearest` and :meth:`point`.
@@ -53,18 +49,11 @@ class SpaceSet(Points):
     """
 
     _dimension: ClassVar[Dimension] = SPACE
+    _kind = SpacePoint
 
     def chunk(self, size: float, x: int, y: int, z: int) -> Self:
         """The points of a cube of the world grid. Coordinates are relative to its corner, :attr:`origin`."""
         return self.within(chunk=(size, x, y, z))
-
-    def nearest(self, at: Any, k: int | None = None, radius: float | None = None) -> list[SpacePoint]:
-        """The points nearest to a place, nearest first: one, or ``k``, or all within ``radius``."""
-        return [SpacePoint._of(point) for point in self._nearest(at, k, radius)]
-
-    def point(self, id: Any) -> SpacePoint:
-        """The point of an id: a text, or three integers as in :attr:`ids`. Raises :class:`NoSuchPoint`."""
-        return SpacePoint._of(self._point(id))
 
     @property
     def xyz(self) -> Floats:
@@ -72,29 +61,9 @@ class SpaceSet(Points):
         return self._coordinates()
 
     @property
-    def x(self) -> Floats:
-        """The first coordinates."""
-        return self.xyz[:, 0]
-
-    @property
-    def y(self) -> Floats:
-        """The second coordinates."""
-        return self.xyz[:, 1]
-
-    @property
     def z(self) -> Floats:
         """The third coordinates."""
         return self.xyz[:, 2]
-
-    @property
-    def origin(self) -> tuple[float, float, float] | None:
-        """The place that coordinates are relative to, the corner of a chunk; `None` for the world's origin."""
-        origin = self.columns().origin
-        return None if origin is None else (origin[0], origin[1], origin[2])
-
-    def _iterate(self, first: int = 0, end: int | None = None) -> Iterator[SpacePoint]:
-        for id, [x, y, z], attributes in self._rows(first, end):
-            yield SpacePoint(id, x, y, z, attributes=attributes)
 
 
 class Space:
@@ -103,8 +72,18 @@ class Space:
     def __init__(self, source: Source) -> None:
         self._source = source
 
+    @overload
+    def points(self, *, spacing: Number, **query: Unpack[Volumes]) -> SpaceSet: ...
+    @overload
+    def points(self, *, density: Number, **query: Unpack[Volumes]) -> SpaceSet: ...
+    @overload
+    def points(self, *, count: Integer, **query: Unpack[Volumes]) -> SpaceSet: ...
+    @overload
+    def points(self, *, min_distance: Number, **query: Unpack[Volumes]) -> SpaceSet: ...
+    @overload
+    def points(self, *, layers: Sequence[Mapping[str, Any]], **query: Unpack[Volumes]) -> SpaceSet: ...
     @documented(SpaceQuery)
-    def points(self, **query: Unpack[SpaceQuery]) -> SpaceSet:
+    def points(self, **query: Any) -> SpaceSet:
         """The points of a query in space.
 
         >>> import strew

@@ -63,7 +63,6 @@ from ._source import Source
 from ._tasks import BATCH, batches, schema, split
 
 
-
 def _warn() -> None:
     """Warns where workers on this machine would run another Python than this one."""
     others = shutil.which("python3")

@@ -6,6 +6,7 @@ import os
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -37,6 +38,16 @@ def daemon(*settings: str, listen: str = "127.0.0.1:0") -> tuple[subprocess.Pope
     line = process.stdout.readline()
     assert line.startswith("listening on "), line
     return process, line.removeprefix("listening on ").strip()
+
+
+def assert_equal(found: Any, points: strew.PointSet) -> None:
+    """Fails unless a table has the rows of a set, bit for bit, in any order."""
+    import pyarrow as pa
+
+    wanted = pa.table(points).cast(found.schema).replace_schema_metadata(None)
+    order = [(name, "ascending") for name in ("layer", "id") if name in found.column_names]
+    assert found.num_rows == wanted.num_rows
+    assert found.replace_schema_metadata(None).sort_by(order).equals(wanted.sort_by(order))
 
 
 @pytest.fixture(scope="session")

@@ -8,14 +8,14 @@ from typing import Any
 NAMES = ["oak", "birch", "fir"]
 
 
-def random_query(seed: int) -> dict[str, Any]:
+def random_query(seed: int, in_space: bool = False) -> dict[str, Any]:
     """A valid query of up to a few hundred points."""
     chance = random.Random(seed)
-    query: dict[str, Any] = _set(chance)
-    region = _region(chance)
+    query: dict[str, Any] = _set(chance, in_space)
     if chance.random() < 0.15:
-        layers = [dict(_set(chance), name=f"layer{i}") for i in range(chance.randint(2, 3))]
-        for layer in layers:
+        layers = [dict(_set(chance, in_space), name=f"layer{i}") for i in range(chance.randint(2, 3))]
+        # What keeps clear of others, and layers of the plane, have no exact number.
+        for layer in layers[-1:] if in_space else layers:
             if layer.pop("count", None):
                 layer["spacing"] = 2
         if chance.random() < 0.5:
@@ -23,10 +23,9 @@ def random_query(seed: int) -> dict[str, Any]:
         query = {"layers": layers}
     elif query.get("spread") and chance.random() < 0.3:
         query["only"] = "birch"
-    query["region"] = region
-    if chance.random() < 0.1 and "layers" not in query:
-        query["terrain"] = {"noise": {"wavelength": 30}}
-        query["align"] = chance.random()
+    query["region"] = _volume(chance) if in_space else _region(chance)
+    if chance.random() < 0.1 and "layers" not in query and not in_space:
+        query |= {"terrain": {"noise": {"wavelength": 30}}, "align": chance.random()}
     if chance.random() < 0.1:
         query["lod"] = chance.uniform(0.1, 1)
     if chance.random() < 0.1:
@@ -50,60 +49,44 @@ def _region(chance: random.Random) -> dict[str, Any]:
     return {"bbox": [x, y, x + size, y + chance.uniform(2, 30)]}
 
 
-def _set(chance: random.Random) -> dict[str, Any]:
-    query: dict[str, Any] = {}
-    kind = chance.randrange(8)
-    if kind == 0:
-        query["density"] = chance.uniform(0.1, 2)
-    elif kind == 1:
-        query["count"] = chance.randint(1, 200)
-    elif kind == 2:
-        query["min_distance"] = chance.uniform(0.5, 2)
-    else:
-        query["spacing"] = chance.uniform(0.7, 4)
+#: The profiles, fields and attributes of sets of the plane, and of those in space.
+PROFILES = (["spaced", "step", "green", "pattern"], ["spaced"])
+FIELDS: Any = (
+    [
+        {"noise": {"wavelength": 11, "seed": 5}},
+        {"radial": {"center": [0, 0], "radii": [5, 50]}},
+        {"invert": {"ramp": {"from": [0, 0], "to": [9, 9]}}},
+        {"multiply": [{"constant": 0.7}, {"distance": {"points": [[0, 0], [5, 5]], "distances": [1, 40]}}]},
+    ],
+    [
+        {"noise": {"seed": 7, "wavelength": 8, "octaves": 2, "range": [0.3, 1]}},
+        {"ramp": {"from": [0, 0, -9], "to": [9, 9, 9], "shares": [0.4, 1]}},
+        {"multiply": [{"constant": 0.7}, {"radial": {"center": [0, 0], "radii": [1, 40], "shares": [0.5, 1]}}]},
+    ],
+)
+ATTRIBUTES = (["angle", "scale", "rank", "u1", "u16", "variant"], ["rotation", "scale", "rank", "u1", "u16", "variant"])
+
+
+def _set(chance: random.Random, in_space: bool = False) -> dict[str, Any]:
+    amount = chance.choice(["density", "count", "min_distance", *["spacing"] * 5])
+    ranges = {"density": (0.1, 2), "min_distance": (0.5, 2), "spacing": (0.7, 4)}
+    query: dict[str, Any] = {amount: chance.randint(1, 200) if amount == "count" else chance.uniform(*ranges[amount])}
     if chance.random() < 0.8:
         query["seed"] = chance.choice([chance.randrange(1 << 64), chance.randrange(100)])
-    if chance.random() < 0.2 and kind != 2:
-        query["profile"] = chance.choice(["spaced", "step", "green", "pattern"])
+    if chance.random() < 0.2 and amount != "min_distance":
+        query["profile"] = chance.choice(PROFILES[in_space])
     if chance.random() < 0.2:
         query["warp"] = chance.choice(["off", "on", 0.5])
     if chance.random() < 0.2:
-        query["keep"] = chance.uniform(0.1, 1)
-        query["settle"] = chance.randint(0, 4)
+        query |= {"keep": chance.uniform(0.1, 1)} if in_space else {"keep": 0.5, "settle": chance.randint(0, 4)}
     if chance.random() < 0.4:
-        query["attributes"] = chance.sample(["angle", "scale", "rank", "u1", "u16", "variant"], chance.randint(1, 4))
+        query["attributes"] = chance.sample(ATTRIBUTES[in_space], chance.randint(1, 4))
         if "variant" in query["attributes"]:
             query["variants"] = {name: chance.uniform(0.5, 3) for name in chance.sample(NAMES, chance.randint(1, 3))}
-            if "profile" not in query and chance.random() < 0.5:
-                query["spread"] = chance.choice(["even", "joint"])
-                query["variants"] = {"oak": 3, "birch": 1}
-    if chance.random() < 0.15 and kind != 2:
-        query["field"] = chance.choice(
-            [
-                {"noise": {"wavelength": chance.uniform(5, 20), "seed": chance.randrange(9)}},
-                {"radial": {"center": [0, 0], "radii": [5, 50]}},
-                {"invert": {"ramp": {"from": [0, 0], "to": [9, 9]}}},
-                {"multiply": [{"constant": 0.7}, {"distance": {"points": [[0, 0], [5, 5]], "distances": [1, 40]}}]},
-            ]
-        )
-    return query
-
-
-def random_query_in_space(seed: int) -> dict[str, Any]:
-    """A valid query in space of up to a few hundred points."""
-    chance = random.Random(seed)
-    query: dict[str, Any] = _set_in_space(chance)
-    if chance.random() < 0.15:
-        layers = [dict(_set_in_space(chance), name=f"layer{i}") for i in range(2)]
-        # What keeps clear of others has no exact number.
-        if chance.random() < 0.5 and "count" not in layers[-1]:
-            layers[-1]["clear_of"] = {"layer0": chance.uniform(0.1, 1)}
-        query = {"layers": layers}
-    query["region"] = _volume(chance)
-    if chance.random() < 0.1:
-        query["offset"] = chance.randint(0, 20)
-    if chance.random() < 0.1:
-        query["limit"] = chance.randint(1, 50)
+            if "profile" not in query and not in_space and chance.random() < 0.5:
+                query |= {"spread": chance.choice(["even", "joint"]), "variants": {"oak": 3, "birch": 1}}
+    if chance.random() < 0.2 and amount != "min_distance":
+        query["field"] = chance.choice(FIELDS[in_space])
     return query
 
 
@@ -121,40 +104,3 @@ def _volume(chance: random.Random) -> dict[str, Any]:
         polygon = {"type": "Polygon", "coordinates": [ring]}
         return {"prism": {"polygon": polygon, "bottom": z, "top": z + size}}
     return {"bbox": [x, y, z, x + size, y + chance.uniform(2, 12), z + chance.uniform(2, 12)]}
-
-
-def _set_in_space(chance: random.Random) -> dict[str, Any]:
-    query: dict[str, Any] = {}
-    kind = chance.randrange(8)
-    if kind == 0:
-        query["density"] = chance.uniform(0.1, 2)
-    elif kind == 1:
-        query["min_distance"] = chance.uniform(0.5, 2)
-    elif kind == 2:
-        query["count"] = chance.randint(1, 300)
-    else:
-        query["spacing"] = chance.uniform(0.8, 4)
-    if chance.random() < 0.8:
-        query["seed"] = chance.choice([chance.randrange(1 << 64), chance.randrange(100)])
-    if chance.random() < 0.2 and kind != 1:
-        query["profile"] = "spaced"
-    if chance.random() < 0.2:
-        query["warp"] = chance.choice(["off", "on", 0.5])
-    if chance.random() < 0.2:
-        query["keep"] = chance.uniform(0.1, 1)
-    if chance.random() < 0.2:
-        query["lod"] = chance.uniform(0.1, 1)
-    if chance.random() < 0.2:
-        query["field"] = chance.choice(
-            [
-                {"noise": {"seed": chance.randrange(99), "wavelength": 8, "octaves": 2, "range": [0.3, 1]}},
-                {"ramp": {"from": [0, 0, -9], "to": [9, 9, 9], "shares": [0.4, 1]}},
-                {"multiply": [{"constant": 0.7}, {"radial": {"center": [0, 0], "radii": [1, 40], "shares": [0.5, 1]}}]},
-            ]
-        )
-    if chance.random() < 0.4:
-        names = ["rotation", "scale", "rank", "u1", "u16", "variant"]
-        query["attributes"] = chance.sample(names, chance.randint(1, 4))
-        if "variant" in query["attributes"]:
-            query["variants"] = {name: chance.uniform(0.5, 3) for name in chance.sample(NAMES, chance.randint(1, 3))}
-    return query

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from conftest import ROOT
 from queries import random_query
-from test_daemon import asked, same
+from test_daemon import answered, same
 
 import strew
 
@@ -52,13 +52,6 @@ def cache(folder: Path, urls: list[str]) -> Iterator[str]:
     finally:
         process.kill()
         process.wait()
-
-
-def answered(url: str, route: str) -> int:
-    """How many requests for a route a daemon has answered."""
-    lines = asked(url, "/metrics").decode().splitlines()
-    counts = [line.rsplit(" ", 1)[1] for line in lines if re.match(rf'strew_requests_total.*route="{route}"', line)]
-    return sum(map(int, counts))
 
 
 def test_the_points_of_queries_pass_and_what_is_requested_again_is_kept(tmp_path: Path, url: str) -> None:

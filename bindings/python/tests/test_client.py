@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import subprocess
-
 import venv
 from pathlib import Path
 
+import numpy as np
 import pytest
+from test_points import LAYERS
 
 import strew
 
@@ -39,8 +40,6 @@ if importlib.util.find_spec("pyarrow"):
 
 
 def test_the_client_talks_with_a_daemon(url: str, tmp_path: Path) -> None:
-    import numpy as np
-
     home = tmp_path / "venv"
     venv.create(home, with_pip=True)
     python = home / "bin/python"
@@ -69,11 +68,7 @@ def test_the_client_talks_with_a_daemon(url: str, tmp_path: Path) -> None:
 
 def test_arrow_of_the_client_is_that_of_the_native_part(remote: strew.Daemon, monkeypatch: pytest.MonkeyPatch) -> None:
     pyarrow = pytest.importorskip("pyarrow")
-    layers = [
-        {"name": "trees", "spacing": 2, "attributes": ["angle", "variant"], "variants": {"oak": 2, "fir": 1}},
-        {"name": "rocks", "spacing": 3, "attributes": ["u1"]},
-    ]
-    points = remote.points(bbox=(0, 0, 30, 30), layers=layers)
+    points = remote.points(**LAYERS)
     native = pyarrow.table(points)
     monkeypatch.setattr("strew._columns.is_there", lambda: False)
     plain = pyarrow.table(points)
@@ -86,12 +81,8 @@ def test_versions_are_one() -> None:
 
 
 def test_a_refusal_of_a_large_body_is_read(url: str) -> None:
-    import numpy as np
-
     box = (0, 0, 2000, 2000)
     field = strew.raster(np.random.default_rng(1).random((2300, 2300)), bbox=box)
     for _ in range(5):
         with pytest.raises(strew.StrewError, match="bytes, the limit of this server"):
             strew.connect(url).points(bbox=box, spacing=1, field=field).count()
-
-

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import io
+import json
+import subprocess
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from conftest import program
 
 import strew
 
@@ -52,6 +57,25 @@ def test_frames_of_geopandas() -> None:
         inside.to_geopandas(crs=4326)
 
 
+def test_files_of_parquet_have_the_columns_of_the_command(tmp_path: Path) -> None:
+    geopandas = pytest.importorskip("geopandas")
+    pyarrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    flags = "--bbox 0,0,20,10 --spacing 1 --attributes angle,variant --variants oak:3,fir:1 --crs EPSG:32633 -q".split()
+    subprocess.run([program(), "sample", *flags, "-o", tmp_path / "a.parquet"], check=True)
+    strew.points(**QUERY, crs=32633).write(tmp_path / "b.parquet")
+    one, other = (parquet.ParquetFile(tmp_path / f"{name}.parquet") for name in "ab")
+    assert one.schema_arrow.names == other.schema_arrow.names
+    assert [json.loads(file.metadata.metadata[b"geo"])["version"] for file in (one, other)] == ["1.1.0", "1.1.0"]
+    theirs, ours = (geopandas.read_parquet(tmp_path / f"{name}.parquet") for name in "ab")
+    assert ours.crs == theirs.crs and ours.to_wkt().values.tolist() == theirs.to_wkt().values.tolist()
+    stars = strew.space.points(bbox=(0, 0, 0, 5, 5, 5), count=77, crs=32633)
+    read = geopandas.read_parquet(io.BytesIO(stars.document("parquet")))
+    assert read.geometry.z.tolist() == read["z"].tolist() == stars.z.tolist() and read.crs.to_epsg() == 32633
+    assert geopandas.read_feather(io.BytesIO(stars.document("feather"))).equals(read)
+    streamed = pyarrow.ipc.open_stream(stars.document("arrow")).read_all()
+    assert streamed.equals(stars.to_arrow()) and streamed.schema.metadata[b"strew.count"] == b"77"
+
+
 def test_pictures_of_matplotlib() -> None:
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("agg")
@@ -65,4 +89,8 @@ def test_pictures_of_matplotlib() -> None:
         assert sorted(map(tuple, drawn)) == sorted(map(tuple, points.xy))
         assert axes.get_aspect() == 1
     assert points.plot() is pyplot.gca()
+    pyplot.close("all")
+    stars = strew.space.points(bbox=(0, 0, 0, 5, 5, 5), count=77, attributes="u1")
+    [drawn, *_] = stars.plot(by="u1").collections
+    assert np.array(drawn._offsets3d).T.tolist() == stars.xyz.tolist()
     pyplot.close("all")

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from conftest import ROOT, daemon
-from test_daemon import asked
+from test_daemon import answered
 
 grpc = pytest.importorskip("grpc", reason="grpcio is not installed")
 
@@ -28,13 +28,6 @@ def channel(urls: list[str]) -> Any:
     return names["channel"]
 
 
-def answered(url: str) -> int:
-    """How many calls a daemon has answered."""
-    lines = asked(url, "/metrics").decode().splitlines()
-    counts = [line.rsplit(" ", 1)[1] for line in lines if line.startswith("strew_requests_total") and "ListProfiles" in line]
-    return sum(map(int, counts))
-
-
 def test_calls_take_turns_and_none_fails_while_replicas_die_and_stop() -> None:
     running = [daemon() for _ in range(3)]
     try:
@@ -52,12 +45,12 @@ def take_turns(running: list[Any]) -> None:
         # The first that is ready answers alone until the others are.
         for _ in range(1000):
             call(b"", timeout=20, wait_for_ready=True)
-            before = [answered(url) for url in urls]
+            before = [answered(url, "ListProfiles") for url in urls]
             if min(before) > 0:
                 break
         for _ in range(60):
             assert len(call(b"", timeout=20, wait_for_ready=True)) > 100
-        counts = [answered(url) - first for url, first in zip(urls, before)]
+        counts = [answered(url, "ListProfiles") - first for url, first in zip(urls, before)]
         assert sum(counts) == 60 and min(counts) >= 5, counts
         running[0][0].kill()
         for _ in range(30):

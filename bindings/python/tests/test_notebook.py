@@ -44,7 +44,7 @@ def test_the_comparison_runs() -> None:
     assert "Bridson" in run.stdout
 
 
-@pytest.mark.parametrize("module", ["", "_errors", "_fields", "_mask", "_measure", "_points", "_query", "_source", "_space"])
+@pytest.mark.parametrize("module", ["", *"_errors _fields _local _mask _measure _points _progress _query _source _space".split()])
 def test_examples_of_the_documentation(module: str) -> None:
     import importlib
 

@@ -170,6 +170,14 @@ def test_columns_of_features_that_are_not_read_may_be_of_any_type(source: Any) -
     assert points.crs == "EPSG:2154"
 
 
+def test_features_are_named_by_the_index_and_need_a_geometry(source: Any) -> None:
+    frame = arguments("EPSG:2154")["features.of"]["features"]["of"]
+    frame = geopandas.GeoDataFrame({"n": [7, 5]}, geometry=[frame.geometry[0], None], index=["Île", "sea"], crs=2154)
+    with pytest.warns(UserWarning, match="features without a geometry have no points: sea$"):
+        points = source.points(features={"of": frame, "count": "n"})
+    assert points["layer"].tolist() == ["Île"] * 7 and points.crs == "EPSG:2154"
+
+
 def test_sets_of_other_systems_differ() -> None:
     query: Any = {"bbox": BOX, "spacing": 2}
     assert strew.points(**query) == strew.points(**query)

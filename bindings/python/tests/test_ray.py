@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import assert_equal
 
 import strew
 
@@ -39,14 +40,6 @@ def source() -> Iterator[Any]:
     ray.shutdown()
 
 
-def assert_same(found: Any, points: strew.PointSet) -> None:
-    """Fails unless a table has the same rows, bit for bit, in any order."""
-    wanted = pa.table(points).cast(found.schema).replace_schema_metadata(None)
-    order = [(name, "ascending") for name in ("layer", "id") if name in found.column_names]
-    assert found.num_rows == wanted.num_rows
-    assert found.replace_schema_metadata(None).sort_by(order).equals(wanted.sort_by(order))
-
-
 def table(dataset: Any) -> Any:
     import ray
 
@@ -63,7 +56,7 @@ def test_the_union_of_the_tasks_is_the_set(source: Any) -> None:
         strew.query({"region": {"bbox": [0, 0, 200, 200]}, "layers": layers}),
         strew.points(**QUERY, offset=100, limit=5000),
     ):
-        assert_same(table(source.read(points, tasks=7, batch=3000)), points)
+        assert_equal(table(source.read(points, tasks=7, batch=3000)), points)
 
 
 def test_empty_sets_limits_and_wrong_numbers(source: Any) -> None:
@@ -117,7 +110,7 @@ def test_a_killed_worker_loses_and_doubles_nothing(source: Any) -> None:
         waited.wait(0.2)
     job.join(300)
     assert killed and len(results) == 1
-    assert_same(results[0], points)
+    assert_equal(results[0], points)
 
 
 def test_dask_as_the_readme_shows_it() -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import assert_equal
 
 import strew
 
@@ -51,12 +52,7 @@ def load(spark: SparkSession, **options: Any) -> Any:
 
 
 def assert_same(frame: Any, points: strew.PointSet) -> None:
-    """Fails unless a frame has the same rows, bit for bit, in any order."""
-    found = frame.toArrow()
-    wanted = pa.table(points).cast(found.schema).replace_schema_metadata(None)
-    order = [(name, "ascending") for name in ("layer", "id") if name in found.column_names]
-    assert found.num_rows == wanted.num_rows
-    assert found.replace_schema_metadata(None).sort_by(order).equals(wanted.sort_by(order))
+    assert_equal(frame.toArrow(), points)
 
 
 def woods() -> strew.PointSet:

@@ -7,13 +7,13 @@ import math
 import pickle
 import traceback
 from decimal import Decimal
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
 
 import strew
-from strew._parameters import Parameters
+from strew._parameters import Attribute, Parameters
 from strew._query import SpaceQuery
 
 
@@ -40,6 +40,7 @@ def test_signatures_and_docstrings_list_every_keyword() -> None:
     ("keywords", "words"),
     [
         ({"spacing": math.nan}, "`spacing` = `nan`: not finite; allowed: finite numbers"),
+        ({"region": {"bbox": (0, 0, math.inf, 9)}}, "`region`.*not finite"),
         ({"attributes": {"angle"}}, r"`attributes` = `{'angle'}`: a query cannot hold a set; allowed: what JSON has"),
         ({"field": np.ones((4, 4))}, r"`field`.*allowed: strew.raster\(array"),
         ({"variant_fields": {"oak": np.ones((4, 4))}}, r"`variant_fields`.*allowed: strew.raster\(array"),
@@ -48,7 +49,7 @@ def test_signatures_and_docstrings_list_every_keyword() -> None:
     ],
 )
 def test_wrong_values_are_refused_by_name(keywords: Any, words: str) -> None:
-    region = {} if "polygon" in keywords else {"bbox": (0, 0, 9, 9)}
+    region = {} if "polygon" in keywords or "region" in keywords else {"bbox": (0, 0, 9, 9)}
     with pytest.raises(strew.StrewError, match=words) as raised:
         strew.points(**{**region, "spacing": 1, **keywords}).count()
     assert raised.value.kind == "invalid-query" and raised.value.faults[0]["field"] == next(iter(keywords))
@@ -68,6 +69,20 @@ def test_errors_are_named_as_they_are_imported() -> None:
     assert traceback.format_exception_only(raised.type, raised.value)[0].startswith("strew.StrewError: `spacing`")
     with pytest.raises(strew.StrewError, match="this process returns at most"):
         strew.points(bbox=(0, 0, 1e6, 1e6), spacing=1).columns()
+
+
+@pytest.mark.parametrize("query", [{"map": "r77"}, {"alpha": "sqrt(3)", "map": "l"}, {"except_": "0" * 64}])
+def test_errors_give_no_advice_for_other_programs(query: Any) -> None:
+    with pytest.raises(strew.StrewError) as raised:
+        strew.points(bbox=(0, 0, 9, 9), spacing=1, **query)
+    told = f"{raised.value} {raised.value.faults}"
+    assert not any(words in told for words in ("strew forge", "tables.folder", "server", "/v1/"))
+
+
+def test_types_name_the_attributes_that_there_are() -> None:
+    names: Any = get_args(Attribute)
+    points = strew.points(bbox=(0, 0, 9, 9), spacing=1, attributes=names, variants={"oak": 1})
+    assert sorted(points.names) == sorted(names) and len(names) == 20
 
 
 def test_rows_by_number(remote: strew.Daemon) -> None:

@@ -7,6 +7,7 @@ use strew_core::{F32, F64};
 use strew_encode::{Batch, Coordinates, Kind, Part, Place, Rows, Source, Values};
 use strew_error::Error;
 
+use super::Work;
 use crate::Planned;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -40,24 +41,26 @@ pub enum FurtherValues {
 
 /// Rows that are made at once.
 const BATCH: usize = 4096;
+/// Values that are written over at once.
+const AT_ONCE: usize = 1 << 22;
 /// Fewer points than this are made by one thread.
 const FEW: usize = 1 << 16;
 
 impl Columns {
     /// The `count` points of a plan.
-    pub(super) fn of(planned: &Planned, count: usize) -> Result<Self, Error> {
+    pub(super) fn of(planned: &Planned, count: usize, work: &Work) -> Result<Self, Error> {
         let parts = planned.parts()?;
         let (axes, coordinates) = (planned.axes(), coordinates_of(planned));
         let numbers = count.saturating_mul(axes);
-        let (mut ids, mut at) = (room::<i64>(numbers)?, room::<f64>(numbers)?);
+        let (mut ids, mut at) = (room::<i64>(numbers, work)?, room::<f64>(numbers, work)?);
         let size = piece(count);
         let pieces = ids.par_chunks_mut(axes * size);
         let pieces = pieces.zip(at.par_chunks_mut(axes * size));
         let pieces = pieces.enumerate().map(|(i, (ids, at))| {
             let mut rows = Rows::new(window(&parts, i * size, at.len() / axes), coordinates);
-            fill(&mut rows, ids, at)
+            fill(&mut rows, ids, at, work)
         });
-        let pieces: Vec<Vec<Further>> = pieces.collect();
+        let pieces: Vec<Vec<Further>> = work.finished(pieces.collect())?;
         let mut pieces = pieces.into_iter();
         // Columns exist even without points.
         let empty = || columns(&Rows::new(window(&parts, 0, 0), coordinates));
@@ -87,14 +90,18 @@ impl Columns {
 }
 
 /// The coordinates of the `count` points of a plan, as many numbers for each as it has axes.
-pub(super) fn coordinates(planned: &Planned, count: usize) -> Result<Vec<f64>, Error> {
-    let mut at = room::<f64>(count.saturating_mul(planned.axes()))?;
-    fill_coordinates(planned, &mut at)?;
+pub(super) fn coordinates(planned: &Planned, count: usize, work: &Work) -> Result<Vec<f64>, Error> {
+    let mut at = room::<f64>(count.saturating_mul(planned.axes()), work)?;
+    fill_coordinates(planned, &mut at, work)?;
     Ok(at)
 }
 
 /// Writes the coordinates of a plan's points to `at`, which has exactly the room for them.
-pub(super) fn fill_coordinates(planned: &Planned, at: &mut [f64]) -> Result<(), Error> {
+pub(super) fn fill_coordinates(
+    planned: &Planned,
+    at: &mut [f64],
+    work: &Work,
+) -> Result<(), Error> {
     let (axes, coordinates) = (planned.axes(), coordinates_of(planned));
     let parts = bare(planned)?;
     let size = piece(at.len() / axes);
@@ -102,7 +109,7 @@ pub(super) fn fill_coordinates(planned: &Planned, at: &mut [f64]) -> Result<(), 
     pieces.for_each(|(i, at)| {
         let parts = window(&parts, i * size, at.len() / axes);
         if let ([part], Coordinates::World) = (parts.as_slice(), coordinates)
-            && write_world(&*part.plan, at)
+            && write_world(&*part.plan, at, work)
         {
             return;
         }
@@ -111,21 +118,34 @@ pub(super) fn fill_coordinates(planned: &Planned, at: &mut [f64]) -> Result<(), 
         while let Some(batch) = rows.next(BATCH) {
             write_places(&batch, &mut at[filled..]);
             filled += axes * batch.points.len();
+            if !work.goes_on(batch.points.len()) {
+                return;
+            }
         }
     });
-    Ok(())
+    work.finished(())
 }
 
 /// Writes coordinates of the world as the kernel makes them. Returns false, without them, for a period.
-fn write_world(plan: &dyn Source, at: &mut [f64]) -> bool {
+fn write_world(plan: &dyn Source, at: &mut [f64], work: &Work) -> bool {
     if let Some(plan) = plan.plane() {
-        plan.blocks::<F64>().fill(at.as_chunks_mut().0);
+        let mut blocks = plan.blocks::<F64>();
+        fill_by_batches(at.as_chunks_mut().0, work, |at| blocks.fill(at));
     } else if let Some(plan) = plan.space() {
-        plan.blocks::<F64>().fill(at.as_chunks_mut().0);
+        let mut blocks = plan.blocks::<F64>();
+        fill_by_batches(at.as_chunks_mut().0, work, |at| blocks.fill(at));
     } else {
         return false;
     }
     true
+}
+
+fn fill_by_batches<T>(at: &mut [T], work: &Work, mut fill: impl FnMut(&mut [T]) -> usize) {
+    for at in at.chunks_mut(BATCH) {
+        if !work.goes_on(fill(at)) {
+            return;
+        }
+    }
 }
 
 /// Writes the offsets of a plan's points to `at`, which has exactly the room for them. Returns their origin.
@@ -184,11 +204,14 @@ const fn coordinates_of(planned: &Planned) -> Coordinates {
 }
 
 /// Values to be written over, if there is memory for them.
-fn room<T: Clone + Default>(count: usize) -> Result<Vec<T>, Error> {
+fn room<T: Clone + Default>(count: usize, work: &Work) -> Result<Vec<T>, Error> {
     let mut values = vec![];
     let reserved = values.try_reserve_exact(count);
     reserved.map_err(|_| Error::Internal("there is not enough memory for all points"))?;
-    values.resize(count, T::default());
+    while values.len() < count {
+        values.resize(count.min(values.len() + AT_ONCE), T::default());
+        work.finished(())?;
+    }
     Ok(values)
 }
 
@@ -227,7 +250,7 @@ fn columns(rows: &Rows) -> Vec<Further> {
 }
 
 /// Writes all rows; returns the values of their columns.
-fn fill(rows: &mut Rows, ids: &mut [i64], at: &mut [f64]) -> Vec<Further> {
+fn fill(rows: &mut Rows, ids: &mut [i64], at: &mut [f64], work: &Work) -> Vec<Further> {
     let mut further = columns(rows);
     let heights = usize::from(rows.schema().is_in_space());
     let axes = 2 + heights;
@@ -240,6 +263,9 @@ fn fill(rows: &mut Rows, ids: &mut [i64], at: &mut [f64]) -> Vec<Further> {
             column.values.extend(values, count);
         }
         filled += axes * count;
+        if !work.goes_on(count) {
+            break;
+        }
     }
     further
 }

@@ -11,7 +11,10 @@ pub mod measured;
 use std::{
     collections::HashMap,
     path::Path,
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
 };
 
 use strew_catalog::{
@@ -24,7 +27,10 @@ use strew_catalog::{
 #[cfg(feature = "shipped")]
 use strew_config::Layers;
 use strew_config::{ConfigError, Limits};
-use strew_core::{Table, server::Stop};
+use strew_core::{
+    Table,
+    server::{Stop, Visits},
+};
 use strew_encode::{Answer, Encoding, Output, Place};
 use strew_error::{Audience, Error, Fault};
 use strew_query as query;
@@ -42,12 +48,48 @@ pub use columns::{Columns, Further, FurtherValues};
 #[cfg(feature = "measure")]
 pub use measured::{Measured, measure};
 
-#[derive(Debug)]
+/// Clones have the same tables and fields.
+#[derive(Clone, Debug)]
 pub struct Library {
-    assets: Assets,
+    assets: Arc<Assets>,
     limits: Limits,
+    work: Work,
     /// Tables that were used, by their digests; mixes by those and their shares.
-    ready: Mutex<HashMap<String, Ready>>,
+    ready: Arc<Mutex<HashMap<String, Ready>>>,
+}
+
+/// The work of a call, which other threads may stop and follow.
+#[derive(Clone, Debug, Default)]
+pub struct Work {
+    /// Once it is raised, the call ends early with an error.
+    pub stop: Stop,
+    /// The number of points made so far.
+    pub points: Arc<AtomicU64>,
+}
+
+impl Work {
+    /// Work that can be stopped.
+    #[must_use]
+    pub fn new() -> Self {
+        let stop = Stop::new();
+        Self {
+            stop,
+            ..Self::default()
+        }
+    }
+
+    /// Adds points that were made. Returns whether to make more.
+    pub fn goes_on(&self, points: usize) -> bool {
+        self.points.fetch_add(points as u64, Ordering::Relaxed);
+        !self.stop.is_raised()
+    }
+
+    fn finished<T>(&self, made: T) -> Result<T, Error> {
+        match self.stop.is_raised() {
+            true => Err(Error::Internal("the work was stopped")),
+            false => Ok(made),
+        }
+    }
 }
 
 /// Why there is no library.
@@ -63,7 +105,7 @@ pub enum Unavailable {
 }
 
 /// The most pixels that a query of a program may include: a program has them in memory anyway.
-const MOST_PIXELS: usize = 1 << 28;
+pub const MOST_PIXELS: usize = 1 << 28;
 /// The most memory of fields that are held to be named, in bytes.
 const ROOM: usize = 1 << 30;
 
@@ -97,27 +139,49 @@ impl Library {
     pub fn of(catalog: Catalog, limits: Limits) -> Self {
         let catalog = catalog.with_room(ROOM).with_pixels(MOST_PIXELS);
         Self {
-            assets: catalog.with_audience(&Audience::PROCESS).into(),
+            assets: Arc::new(catalog.with_audience(&Audience::PROCESS).into()),
             limits,
-            ready: Mutex::default(),
+            work: Work::default(),
+            ready: Arc::default(),
+        }
+    }
+
+    /// This library for work that may be stopped, with limits of its own.
+    #[must_use]
+    pub fn with(&self, work: Work, limits: Limits, pixels: usize) -> Self {
+        let mut own = self.clone();
+        if pixels != own.catalog().most_pixels() {
+            let assets = Arc::make_mut(&mut own.assets);
+            assets.catalog = assets.catalog.clone().with_pixels(pixels);
+        }
+        Self {
+            work,
+            limits,
+            ..own
         }
     }
 
     /// The library with the audience of its errors.
     #[must_use]
     pub fn for_audience(mut self, audience: &'static Audience) -> Self {
-        self.assets.catalog = self.assets.catalog.with_audience(audience);
+        let assets = Arc::make_mut(&mut self.assets);
+        assets.catalog = assets.catalog.clone().with_audience(audience);
         self
     }
 
     #[must_use]
-    pub const fn catalog(&self) -> &Catalog {
+    pub fn catalog(&self) -> &Catalog {
         &self.assets.catalog
     }
 
     #[must_use]
     pub const fn limits(&self) -> &Limits {
         &self.limits
+    }
+
+    #[must_use]
+    pub const fn work(&self) -> &Work {
+        &self.work
     }
 
     /// Plans the query of a body of `POST /v1/points:query`: its points are counted and not made yet.
@@ -174,7 +238,7 @@ impl Library {
         let flat = query.sets.iter().filter(|set| set.space().is_none());
         let tables = flat.map(|set| store::ready(set, self));
         let tables = tables.collect::<Result<Vec<_>, _>>()?;
-        Planned::new(query, &tables, &self.limits)
+        Planned::unless_stopped(query, &tables, &self.limits, &self.work.stop)
     }
 
     /// The points of a planned query.
@@ -182,7 +246,7 @@ impl Library {
     /// # Errors
     /// [`Error::TooManyPoints`] over the limit, [`Error::Internal`] without memory for them.
     pub fn columns(&self, planned: &Planned) -> Result<Columns, Error> {
-        Columns::of(planned, self.count_to_make(planned)?)
+        Columns::of(planned, self.count_to_make(planned)?, &self.work)
     }
 
     /// The coordinates of a planned query's points alone, which takes a fraction of the time: as many numbers for each
@@ -191,7 +255,7 @@ impl Library {
     /// # Errors
     /// As [`columns`](Self::columns).
     pub fn coordinates(&self, planned: &Planned) -> Result<Vec<f64>, Error> {
-        columns::coordinates(planned, self.count_to_make(planned)?)
+        columns::coordinates(planned, self.count_to_make(planned)?, &self.work)
     }
 
     /// Writes the coordinates of a planned query's points to the beginning of `at`, and returns their number.
@@ -200,7 +264,7 @@ impl Library {
     /// As [`columns`](Self::columns); [`Error::Invalid`] if `at` is too short.
     pub fn fill_coordinates(&self, planned: &Planned, at: &mut [f64]) -> Result<usize, Error> {
         let at = self.places(planned, at)?;
-        columns::fill_coordinates(planned, at)?;
+        columns::fill_coordinates(planned, at, &self.work)?;
         Ok(at.len() / planned.axes())
     }
 
@@ -283,7 +347,8 @@ impl Library {
 
     fn nearest_of(&self, values: &Values) -> Result<Vec<Found>, Error> {
         let (set, nearest) = Nearest::of_set(values, &self.assets.catalog)?;
-        self.placed(set)?.nearest(nearest)
+        let visits = Visits::new(usize::MAX, self.work.stop.clone());
+        self.placed(set)?.nearest_visiting(nearest, &visits)
     }
 
     /// Holds a field, a body of `POST /v1/fields`, and returns the digest by which queries name it.
@@ -292,7 +357,7 @@ impl Library {
         let held = hold_field(
             &self.assets.catalog,
             document,
-            MOST_PIXELS,
+            self.assets.catalog.most_pixels(),
             Allowance::UNLIMITED,
             Sender::default(),
         )?;
@@ -367,7 +432,7 @@ impl Store for Library {
     fn make(&self, plain: &Ready, what: &Made) -> Result<Table, Error> {
         let name = format!("{} {what}", plain.entry.digest);
         let made = self.kept(&name, || {
-            let table = mix::make(&plain.table, what, &Stop::default())?;
+            let table = mix::make(&plain.table, what, &self.work.stop)?;
             Ok(Ready::new(plain.entry.clone(), table))
         })?;
         Ok(made.table)

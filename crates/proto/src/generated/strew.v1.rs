@@ -749,7 +749,7 @@ pub struct PointSet {
     pub except: ::prost::alloc::vec::Vec<::prost::alloc::string::String>,
     /// The steps, 0 to 4, by which the points of a set that is thinned or in a field move apart, so that they are spread
     /// evenly; 2 by default. 0 leaves them where their ranks have them. Sets with all points stay by default; for them 1
-    /// is one small step that moves the nearest points apart, and more count as 1. Periods do not settle.
+    /// is one small step that moves the nearest points apart, and more count as 1.
     #[prost(uint64, optional, tag = "26")]
     pub settle: ::core::option::Option<u64>,
     /// The level of detail: the part of the points that the answer has, 1e-6 to 1, at each place those of the lowest
