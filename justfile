@@ -28,6 +28,10 @@ lines:
 bench:
     cargo bench -p strew-core
 
+# The benches still run; how fast they are is not looked at.
+bench-check:
+    cargo test --workspace --bench '*' --locked --quiet -- --quick | grep --line-buffered ^==
+
 # What requests cost a daemon as images have it: instructions and allocations of each, beside those that are kept (needs
 # valgrind).
 instructions *args:

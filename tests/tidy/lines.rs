@@ -8,17 +8,17 @@ use super::files;
 
 /// A part, the endings of its files, and the most lines that it may have.
 const CEILINGS: &[(&str, &[&str], usize)] = &[
-    ("src", &["rs"], 21_526),
+    ("src", &["rs"], 21_599),
     ("crates/catalog", &["rs"], 5040),
     ("crates/config", &["rs"], 1560),
-    ("crates/core", &["rs"], 49_817),
+    ("crates/core", &["rs"], 50_422),
     ("crates/encode", &["rs"], 8258),
     ("crates/error", &["rs"], 1073),
     ("crates/forge", &["rs"], 19_474),
     ("crates/pages", &["rs"], 439),
-    ("crates/plan", &["rs"], 4201),
+    ("crates/plan", &["rs"], 4297),
     ("crates/proto", &["rs"], 337),
-    ("crates/query", &["rs"], 8791),
+    ("crates/query", &["rs"], 8795),
     ("crates/raster", &["rs"], 2976),
     ("crates/service", &["rs"], 5975),
     ("crates/testkit", &["rs"], 1197),
@@ -30,7 +30,7 @@ const CEILINGS: &[(&str, &[&str], usize)] = &[
     (
         "bindings",
         &["py", "pyi", "js", "mjs", "ts", "rs", "c", "h", "hpp", "cpp"],
-        14_229,
+        14_477,
     ),
 ];
 
@@ -42,8 +42,8 @@ const MODULES: &[(&str, &str)] = &[
     ),
     (
         "crates/core/src/sample",
-        "attribute 1442 count 667 field 3871 kernel 3777 lattice 2364 near 1340 \
-         periodic 1029 plan 462 set 995 settle 2680 sieve 383 walk 2967 warp 1482",
+        "attribute 1442 count 667 field 3871 kernel 3819 lattice 2364 near 1340 \
+         periodic 1404 plan 462 set 995 settle 2751 sieve 383 walk 2954 warp 1492",
     ),
     (
         "crates/forge/src",

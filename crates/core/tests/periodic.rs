@@ -1,15 +1,13 @@
 //! Periodic sets, parts of them (shares, kinds, fields) and their windows, against brute force: over the seam, and
 //! against the plane.
 
-mod definition;
 mod subject;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use definition::reference_of;
 use strew_core::{
-    Alpha, Attribute, Attributes, Cursor, ErrorKind, Keep, Kinds, Map, Member, PeriodicPlan,
-    PeriodicSet, Placement, Point, PointId, PointSet, Region, Seed, Settle, Spacing, Table,
+    Alpha, Attribute, Attributes, Cursor, ErrorKind, Kinds, Map, Member, PeriodicPlan, PeriodicSet,
+    Point, PointId, PointSet, Region, Table,
     table::{Mix, Ranks, from_grid_units},
 };
 use subject::shipped;
@@ -398,97 +396,6 @@ fn windows_cursors_and_ids_agree_with_the_whole() {
             at,
         };
         assert!(listed(&set.resume(odd), 100).len() <= whole.len());
-    }
-}
-
-/// A tile's points, settled by the definition, among those of all copies within some room around [0, L)².
-fn settled(tile: &PeriodicSet, placement: Placement, share: &dyn Fn([f64; 2]) -> f64, room: f64) {
-    let (twin, side) = (tile.twin(), tile.length());
-    let period = twin.period() as i64;
-    let unit = side / ((period << 20) as f64);
-    let still = tile.clone().settle(0).expect("0");
-    let (mut points, mut kinds) = (Vec::new(), Vec::new());
-    for point in still.iter() {
-        let kind = tile.kind_of(point.id());
-        let place = point.at().map(|v| (v / unit).round() as i64);
-        for copy in (0..9).map(|i| [i % 3 - 1, i / 3 - 1]) {
-            let [x, y] = [0, 1].map(|i| (place[i] + copy[i] * (period << 20)) as f64 * unit);
-            if [x, y].iter().all(|v| (-room..side + room).contains(v)) {
-                let [id_x, id_y] = [point.id().x, point.id().y];
-                let id = PointId {
-                    x: id_x + copy[0] * period,
-                    y: id_y + copy[1] * period,
-                };
-                points.push(Point { id, x, y });
-                kinds.push(kind);
-            }
-        }
-    }
-    let wrap = |v: f64| {
-        let k = (v / unit).round();
-        let whole = if k * unit == v {
-            k.rem_euclid((period << 20) as f64) * unit
-        } else {
-            v
-        };
-        Some(whole.rem_euclid(side))
-            .filter(|v| *v < side)
-            .unwrap_or(0.0)
-    };
-    let is_near = placement.keep.get() == 1.0;
-    let by = (tile.table(), placement, is_near);
-    let grid = [twin.t() as f64 / period as f64, unit];
-    let expected = reference_of(by, (points, kinds), grid, &|at| share(at.map(wrap)));
-    let ids = 0..period;
-    let expected: BTreeMap<PointId, [f64; 2]> = expected
-        .into_iter()
-        .filter(|p| ids.contains(&p.id.x) && ids.contains(&p.id.y))
-        .map(|p| (p.id, p.at().map(wrap)))
-        .collect();
-    let found: BTreeMap<PointId, [f64; 2]> = tile.iter().map(|p| (p.id(), p.at())).collect();
-    assert!(found.len() > 20 && found.len() == still.iter().count());
-    assert_eq!(found, expected);
-    let moved = still.iter().filter(|p| found[&p.id()] != p.at()).count();
-    assert!(
-        moved * 2 > found.len() || is_near && moved > 0,
-        "{moved} of {}",
-        found.len()
-    );
-}
-
-#[test]
-fn parts_settle_by_the_definition_across_the_seam() {
-    let plain = shipped("blue-5-sqrt3-over-2-s");
-    let kinds = subject::mixed::mixed(&plain, "1:3");
-    for (table, seed, steps, keep, room) in [
-        (&plain, 0, 2, 0.12, 12.0),
-        (&plain, 5, 3, 0.03, 12.0),
-        (&plain, 5, 1, 1.0, 4.0),
-        (&kinds, 6, 2, 0.07, 19.0),
-    ] {
-        let tile = PeriodicSet::new(table.clone(), 5000).expect("a period");
-        let side = tile.length() * 0.37;
-        let tile = tile
-            .side(side)
-            .expect("in range")
-            .seed(seed)
-            .keep(keep)
-            .expect("a share");
-        let tile = tile.settle(steps).expect("0 to 4");
-        let placement = Placement::new(Spacing::new(tile.spacing()).expect("in range"), Seed(seed))
-            .with_keep(Keep::new(keep).expect("a share"))
-            .with_settle(Settle::new(steps).expect("0 to 4"));
-        let room = room * tile.spacing() / keep.sqrt();
-        settled(&tile, placement, &|_| 1.0, room);
-        if keep < 1.0 {
-            // One that repeats, and one that jumps at the seam.
-            let turn = std::f64::consts::TAU / side;
-            let waves =
-                move |[x, y]: [f64; 2]| 0.6 + 0.3 * (turn * x).sin() * (2.0 * turn * y).cos();
-            settled(&tile.in_field(waves), placement, &waves, 2.0 * room);
-            let ramp = move |[x, _]: [f64; 2]| 0.3 + 0.7 * x / side;
-            settled(&tile.in_field(ramp), placement, &ramp, 2.0 * room);
-        }
     }
 }
 

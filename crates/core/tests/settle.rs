@@ -4,11 +4,14 @@
 mod definition;
 mod subject;
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
-use definition::reference;
+use definition::{reference, reference_of};
 use proptest::prelude::*;
-use strew_core::{Circle, Field, Point, PointId, PointSet, Region, Table, field::FieldSpec};
+use strew_core::{
+    Circle, Field, Keep, PeriodicSet, Placement, Point, PointId, PointSet, Region, Seed, Settle,
+    Spacing, Table, field::FieldSpec,
+};
 use subject::{
     plane::{Parts, agree, agree_around, between, within},
     shipped,
@@ -114,18 +117,19 @@ fn dense(name: &str) -> PointSet {
     set.spacing(0.37).expect("in range")
 }
 
+/// The least distance of any two points.
+fn least_apart(points: &[Point]) -> f64 {
+    let apart = |a: &Point, b: &Point| (a.x - b.x).hypot(a.y - b.y);
+    let pairs = points.iter().enumerate();
+    let pairs = pairs.flat_map(|(i, a)| points[..i].iter().map(move |b| apart(a, b)));
+    pairs.fold(f64::INFINITY, f64::min)
+}
+
 #[test]
 fn the_small_step_parts_near_points() {
     let area = region([-500.0, 0.0], [90.0, 90.0]);
     for seed in [7, 8] {
-        let least = |set: &PointSet| {
-            let next = |point: &Point| set.nearest(point.at(), 2).expect("found")[1].distance;
-            let nearest = within(set, area)
-                .iter()
-                .map(next)
-                .fold(f64::INFINITY, f64::min);
-            nearest / 1.074_569_931_823_542
-        };
+        let least = |set: &PointSet| least_apart(&within(set, area)) / 1.074_569_931_823_542;
         let still = set("", seed, 0);
         let near = still.clone().settle(1).expect("1");
         assert_eq!(near.least_distance(), still.least_distance());
@@ -173,6 +177,97 @@ fn rare_kinds_settle_with_the_others_alone() {
         for point in within(&kinds.clone().only(0).expect("a kind"), area) {
             let found = kinds.point(point.id).map(Point::from);
             assert_eq!(found, Some(point));
+        }
+    }
+}
+
+/// A tile's points, settled by the definition, among those of all copies within some room around [0, L)².
+fn settled(tile: &PeriodicSet, placement: Placement, share: &dyn Fn([f64; 2]) -> f64, room: f64) {
+    let (twin, side) = (tile.twin(), tile.length());
+    let period = twin.period() as i64;
+    let unit = side / ((period << 20) as f64);
+    let still = tile.clone().settle(0).expect("0");
+    let (mut points, mut kinds) = (Vec::new(), Vec::new());
+    for point in still.iter() {
+        let kind = tile.kind_of(point.id());
+        let place = point.at().map(|v| (v / unit).round() as i64);
+        for copy in (0..9).map(|i| [i % 3 - 1, i / 3 - 1]) {
+            let [x, y] = [0, 1].map(|i| (place[i] + copy[i] * (period << 20)) as f64 * unit);
+            if [x, y].iter().all(|v| (-room..side + room).contains(v)) {
+                let [id_x, id_y] = [point.id().x, point.id().y];
+                let id = PointId {
+                    x: id_x + copy[0] * period,
+                    y: id_y + copy[1] * period,
+                };
+                points.push(Point { id, x, y });
+                kinds.push(kind);
+            }
+        }
+    }
+    let wrap = |v: f64| {
+        let k = (v / unit).round();
+        let whole = if k * unit == v {
+            k.rem_euclid((period << 20) as f64) * unit
+        } else {
+            v
+        };
+        Some(whole.rem_euclid(side))
+            .filter(|v| *v < side)
+            .unwrap_or(0.0)
+    };
+    let is_near = placement.keep.get() == 1.0;
+    let by = (tile.table(), placement, is_near);
+    let grid = [twin.t() as f64 / period as f64, unit];
+    let expected = reference_of(by, (points, kinds), grid, &|at| share(at.map(wrap)));
+    let ids = 0..period;
+    let expected: BTreeMap<PointId, [f64; 2]> = expected
+        .into_iter()
+        .filter(|p| ids.contains(&p.id.x) && ids.contains(&p.id.y))
+        .map(|p| (p.id, p.at().map(wrap)))
+        .collect();
+    let found: BTreeMap<PointId, [f64; 2]> = tile.iter().map(|p| (p.id(), p.at())).collect();
+    assert!(found.len() > 20 && found.len() == still.iter().count());
+    assert_eq!(found, expected);
+    let moved = still.iter().filter(|p| found[&p.id()] != p.at()).count();
+    assert!(
+        moved * 2 > found.len() || is_near && moved > 0,
+        "{moved} of {}",
+        found.len()
+    );
+}
+
+#[test]
+fn parts_settle_by_the_definition_across_the_seam() {
+    let plain = blue();
+    let kinds = subject::mixed::mixed(&plain, "1:3");
+    for (table, seed, steps, keep, room) in [
+        (&plain, 0, 2, 0.12, 12.0),
+        (&plain, 5, 3, 0.03, 12.0),
+        (&plain, 5, 1, 1.0, 4.0),
+        (&kinds, 6, 2, 0.07, 19.0),
+    ] {
+        let tile = PeriodicSet::new(table.clone(), 5000).expect("a period");
+        let side = tile.length() * 0.37;
+        let tile = tile
+            .side(side)
+            .expect("in range")
+            .seed(seed)
+            .keep(keep)
+            .expect("a share");
+        let tile = tile.settle(steps).expect("0 to 4");
+        let placement = Placement::new(Spacing::new(tile.spacing()).expect("in range"), Seed(seed))
+            .with_keep(Keep::new(keep).expect("a share"))
+            .with_settle(Settle::new(steps).expect("0 to 4"));
+        let room = room * tile.spacing() / keep.sqrt();
+        settled(&tile, placement, &|_| 1.0, room);
+        if keep < 1.0 {
+            // One that repeats, and one that jumps at the seam.
+            let turn = std::f64::consts::TAU / side;
+            let waves =
+                move |[x, y]: [f64; 2]| 0.6 + 0.3 * (turn * x).sin() * (2.0 * turn * y).cos();
+            settled(&tile.in_field(waves), placement, &waves, 2.0 * room);
+            let ramp = move |[x, _]: [f64; 2]| 0.3 + 0.7 * x / side;
+            settled(&tile.in_field(ramp), placement, &ramp, 2.0 * room);
         }
     }
 }
@@ -290,10 +385,8 @@ fn distances_of_thinned_sets_are_kept() {
         let set = kept(kinds, 3, steps, keep);
         let least = set.least_distance();
         assert!(least > 0.5);
-        for point in within(&set, region([0.0, 0.0], [50.0, 50.0])) {
-            let next = set.nearest(point.at(), 2).expect("found")[1];
-            assert!(next.distance >= least, "{} {least}", next.distance);
-        }
+        let found = least_apart(&within(&set, region([0.0, 0.0], [50.0, 50.0])));
+        assert!(found >= least, "{found} {least}");
     }
 }
 

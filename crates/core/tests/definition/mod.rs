@@ -135,7 +135,6 @@ fn past(
 
 /// Where the points of a box settle, by the definition alone: all points of the box step together, with all pairs.
 /// Points nearer to its rim than the reach of the steps are wrong.
-#[allow(dead_code, reason = "periodic sets list their points themselves")]
 pub fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -> Vec<Point> {
     let still = set.clone().settle(0).expect("0");
     let points = still.within(region).expect("near").to_vec();

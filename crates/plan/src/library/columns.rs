@@ -7,7 +7,7 @@ use strew_core::{F32, F64};
 use strew_encode::{Batch, Coordinates, Kind, Part, Place, Rows, Source, Values};
 use strew_error::Error;
 
-use super::Work;
+use super::work::Work;
 use crate::Planned;
 
 #[derive(Clone, Debug, PartialEq)]

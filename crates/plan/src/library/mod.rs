@@ -7,14 +7,12 @@
 mod columns;
 #[cfg(feature = "measure")]
 pub mod measured;
+mod work;
 
 use std::{
     collections::HashMap,
     path::Path,
-    sync::{
-        Arc, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicU64, Ordering},
-    },
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
 use strew_catalog::{
@@ -27,10 +25,7 @@ use strew_catalog::{
 #[cfg(feature = "shipped")]
 use strew_config::Layers;
 use strew_config::{ConfigError, Limits};
-use strew_core::{
-    Table,
-    server::{Stop, Visits},
-};
+use strew_core::{Table, server::Visits};
 use strew_encode::{Answer, Encoding, Output, Place};
 use strew_error::{Audience, Error, Fault};
 use strew_query as query;
@@ -47,6 +42,7 @@ use crate::{
 pub use columns::{Columns, Further, FurtherValues};
 #[cfg(feature = "measure")]
 pub use measured::{Measured, measure};
+pub use work::Work;
 
 /// Clones have the same tables and fields.
 #[derive(Clone, Debug)]
@@ -56,40 +52,6 @@ pub struct Library {
     work: Work,
     /// Tables that were used, by their digests; mixes by those and their shares.
     ready: Arc<Mutex<HashMap<String, Ready>>>,
-}
-
-/// The work of a call, which other threads may stop and follow.
-#[derive(Clone, Debug, Default)]
-pub struct Work {
-    /// Once it is raised, the call ends early with an error.
-    pub stop: Stop,
-    /// The number of points made so far.
-    pub points: Arc<AtomicU64>,
-}
-
-impl Work {
-    /// Work that can be stopped.
-    #[must_use]
-    pub fn new() -> Self {
-        let stop = Stop::new();
-        Self {
-            stop,
-            ..Self::default()
-        }
-    }
-
-    /// Adds points that were made. Returns whether to make more.
-    pub fn goes_on(&self, points: usize) -> bool {
-        self.points.fetch_add(points as u64, Ordering::Relaxed);
-        !self.stop.is_raised()
-    }
-
-    fn finished<T>(&self, made: T) -> Result<T, Error> {
-        match self.stop.is_raised() {
-            true => Err(Error::Internal("the work was stopped")),
-            false => Ok(made),
-        }
-    }
 }
 
 /// Why there is no library.

@@ -10,11 +10,9 @@ mod plan;
 mod torus;
 
 use alloc::sync::Arc;
-use core::ops::Range;
 
 use super::{
     lattice::{Placement, PointId},
-    member::Member,
     seed::Seed,
     warp::Warp,
 };
@@ -24,9 +22,7 @@ use crate::{
     table::Table,
 };
 use made::{Made, Parts};
-use plan::Walk;
 pub use plan::{PeriodicBlocks, PeriodicPlan};
-use torus::Strip;
 
 /// A point set with a period: the points of [0, L)² whose copies, moved by multiples of the side L, continue
 /// one another without a seam. It has the table's noise profile; for tileable textures, masks and stipples.
@@ -220,30 +216,6 @@ impl PeriodicSet {
         &self.table
     }
 
-    /// The points of a period, in the order of their ids: rows of the lattice, then columns. They are made one
-    /// by one; memory does not grow with their number.
-    pub fn iter(&self) -> impl Iterator<Item = Member> + use<> {
-        self.rows(0..self.twin.period())
-    }
-
-    /// The points with a row of the lattice in a range, for work in parallel. Rows from the
-    /// [period](Twin::period) on have none.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?;
-    /// let [low, high] = [0..100, 100..224].map(|rows| tile.rows(rows).count() as u64);
-    /// assert_eq!(low + high, tile.len());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn rows(&self, rows: Range<u64>) -> impl Iterator<Item = Member> + use<> {
-        let set = self.clone();
-        let mut walk = Walk::of_rows(&set, rows);
-        core::iter::from_fn(move || Some(Member::new(walk.next(&set)?, set.seed)))
-    }
-
     /// The parity of the columns that have points in a row, with dY there; `None` for a row without points.
     fn row(&self, y: u64) -> Option<(u64, u64)> {
         let index_y = |parity: u64| self.made.index_y(self.twin, parity, y);
@@ -254,27 +226,6 @@ impl PeriodicSet {
     fn columns(&self, y: u64, parity: u64) -> &[(u64, u64)] {
         let [row, column] = [y, parity].map(|v| (v % 2) as usize);
         &self.made.columns[row][column]
-    }
-
-    /// The point with an id, or `None` if there is none in the period.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, PointId, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?.seed(7);
-    /// assert!(tile.iter().all(|p| tile.point(p.id()) == Some(p)));
-    /// assert_eq!(tile.point(PointId { x: -1, y: 0 }), None);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn point(&self, id: PointId) -> Option<Member> {
-        let (at, index) = self.indices(id)?;
-        let point = self.point_at(at, index, |id, place| match Strip::new(self, 0) {
-            Some(mut strip) => strip.one(self, id, place),
-            None => self.wrapped(place),
-        })?;
-        Some(Member::new(point, self.seed))
     }
 
     /// The block of a point, as its intervals of dX and dY, or `None` if no point has the id.

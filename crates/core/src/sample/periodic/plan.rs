@@ -1,4 +1,4 @@
-//! Plans of periods: an exact count, windows and cursors, and blocks of points.
+//! The points of periods, and their plans: an exact count, windows and cursors, and blocks of points.
 //!
 //! The plan of a period: as a [`Plan`](crate::Plan), but in rows and then columns.
 
@@ -12,6 +12,7 @@ use crate::{
     sample::{
         attribute::{Attributes, BoundAttributes},
         lattice::{Point, PointId},
+        member::Member,
     },
     shape::Region,
     stop::Stop,
@@ -45,6 +46,51 @@ pub struct PeriodicPlan {
 const ORIGIN: PointId = PointId { x: 0, y: 0 };
 
 impl PeriodicSet {
+    /// The points of a period, in the order of their ids: rows of the lattice, then columns. They are made one
+    /// by one; memory does not grow with their number.
+    pub fn iter(&self) -> impl Iterator<Item = Member> + use<> {
+        self.rows(0..self.twin.period())
+    }
+
+    /// The points with a row of the lattice in a range, for work in parallel. Rows from the
+    /// [period](Twin::period) on have none.
+    ///
+    /// ```
+    /// use strew_core::{PeriodicSet, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// let tile = PeriodicSet::new(table, 5000)?;
+    /// let [low, high] = [0..100, 100..224].map(|rows| tile.rows(rows).count() as u64);
+    /// assert_eq!(low + high, tile.len());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn rows(&self, rows: Range<u64>) -> impl Iterator<Item = Member> + use<> {
+        let set = self.clone();
+        let mut walk = Walk::of_rows(&set, rows);
+        core::iter::from_fn(move || Some(Member::new(walk.next(&set)?, set.seed)))
+    }
+
+    /// The point with an id, or `None` if there is none in the period.
+    ///
+    /// ```
+    /// use strew_core::{PeriodicSet, PointId, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// let tile = PeriodicSet::new(table, 5000)?.seed(7);
+    /// assert!(tile.iter().all(|p| tile.point(p.id()) == Some(p)));
+    /// assert_eq!(tile.point(PointId { x: -1, y: 0 }), None);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn point(&self, id: PointId) -> Option<Member> {
+        let (at, index) = self.indices(id)?;
+        let point = self.point_at(at, index, |id, place| match Strip::new(self, 0) {
+            Some(mut strip) => strip.one(self, id, place),
+            None => self.wrapped(place),
+        })?;
+        Some(Member::new(point, self.seed))
+    }
+
     /// The period, counted. A set that has [parts](Self::keep) of the period only is counted point by point.
     ///
     /// ```
@@ -269,7 +315,7 @@ impl PeriodicBlocks {
 
 /// A place in the walk: a row, and the number of a column among those that may have points.
 #[derive(Clone, Debug)]
-pub(super) struct Walk {
+struct Walk {
     y: u64,
     i: usize,
     /// The end of the rows.
@@ -279,7 +325,7 @@ pub(super) struct Walk {
 
 impl Walk {
     /// The walk through some rows.
-    pub(super) fn of_rows(set: &PeriodicSet, rows: Range<u64>) -> Self {
+    fn of_rows(set: &PeriodicSet, rows: Range<u64>) -> Self {
         let end = rows.end.min(set.twin.period());
         Self {
             y: rows.start,
@@ -329,7 +375,7 @@ impl Walk {
     }
 
     /// The next point.
-    pub(super) fn next(&mut self, set: &PeriodicSet) -> Option<Point> {
+    fn next(&mut self, set: &PeriodicSet) -> Option<Point> {
         while self.y < self.end {
             if let Some((columns, index_y)) = self.columns(set) {
                 while let Some(&(x, index_x)) = columns.get(self.i) {

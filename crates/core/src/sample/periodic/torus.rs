@@ -28,6 +28,8 @@ const ADDRESSES: u64 = 1 << 22;
 #[derive(Clone, Debug)]
 pub(super) struct Strip {
     settler: Settler<Torus>,
+    /// [`Torus::reach`].
+    reach: [[i64; 2]; 2],
     rows: Range<u64>,
     /// Strips end here.
     end: u64,
@@ -40,8 +42,10 @@ impl Strip {
     pub(super) fn new(set: &PeriodicSet, end: u64) -> Option<Self> {
         let settle = set.parts.settling()?;
         let grade = set.parts.grade(set.side);
+        let torus = Torus::new(set);
         Some(Self {
-            settler: Settler::of(Torus::new(set), grade, settle),
+            reach: torus.reach(),
+            settler: Settler::of(torus, grade, settle),
             rows: 0..0,
             end,
             points: Vec::new(),
@@ -71,9 +75,9 @@ impl Strip {
         let next = 2 * (self.rows.end - self.rows.start);
         self.rows = rows.start..rows.end.min(rows.start + next.clamp(LEAST_ROWS, most));
         self.points.clear();
-        let reach = self.settler.set().reach();
+        let reach = self.reach.map(|ends| ends.map(i128::from));
         let around = |start: u64, end: u64, axis: usize| {
-            let [least, most] = reach[axis].map(i128::from);
+            let [least, most] = reach[axis];
             fixed(start as i64) + least..fixed(end as i64) + most
         };
         for start in (0..period).step_by(BAND_WIDTH as usize) {

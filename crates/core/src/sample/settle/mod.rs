@@ -31,10 +31,10 @@
 //! # The files
 //!
 //! `window` finds the points that matter to some others and settles these; `reach` says how far they lie, `guess` how
-//! large a window is likely to be, `lister` lists its points. `step` is one step, over points that `cells` has sorted.
-//! `freedom` has f. `near` limits the step of sets with all points. `kin` adds the pushes of points of a kind, and
-//! `past` lets these go past near neighbors. `boxes` has points before and after they settle, `tiles` keeps settled
-//! points for places that follow.
+//! large a window is likely to be, `lister` lists its points, of the plane (`plane`) or of a set that is given. `step`
+//! is one step, over points that `cells` has sorted. `freedom` has f. `near` limits the step of sets with all points.
+//! `kin` adds the pushes of points of a kind, and `past` lets these go past near neighbors. `boxes` has points before
+//! and after they settle, `tiles` keeps settled points for places that follow.
 //!
 //! # Invariants
 //!
@@ -60,6 +60,7 @@ mod lister;
 mod near;
 mod past;
 mod plain;
+mod plane;
 mod reach;
 mod step;
 mod tiles;

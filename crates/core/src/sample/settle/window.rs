@@ -51,7 +51,7 @@ use crate::{
     sample::{
         bounds::world,
         kernel::Backend,
-        lattice::{Grade, Lattice, PointId, Settle},
+        lattice::{Grade, PointId, Settle},
     },
     shape::Region,
     table::FRACTION_BITS,
@@ -105,22 +105,6 @@ struct Listed {
     may_slip: bool,
 }
 
-impl Settler {
-    /// A settler of a lattice whose points settle; `None` of others.
-    pub(crate) fn new(lattice: &Lattice) -> Option<Self> {
-        let (settle, grade) = (lattice.settle()?, lattice.grade.clone()?);
-        Some(Self::of(Lister::new(lattice), grade, settle))
-    }
-
-    /// The settled place of an address, or `None` if it has no point.
-    pub(crate) fn point(&mut self, lattice: &Lattice, id: PointId) -> Option<[i128; 2]> {
-        let place = lattice.place(id)?;
-        self.settled(place, |placed| {
-            placed.id == id && lattice.shows(id, placed.share)
-        })
-    }
-}
-
 impl<S: Settling> Settler<S> {
     /// A settler of a set that a grade thins.
     pub(crate) fn of(set: S, grade: Grade, settle: Settle) -> Self {
@@ -136,10 +120,8 @@ impl<S: Settling> Settler<S> {
         let kernels = kin.as_ref().map_or(kernels(settle), |kin| kin.steps().all);
         let reach = |(t, kernel)| {
             let of_kin = kin.as_ref().map(|kin| (kin.kernel(t), kin.least_part()));
-            Reach::new(
-                kernel,
-                of_kin.as_ref().map(|(kernel, part)| (kernel, *part)),
-            )
+            let of_kin = of_kin.as_ref().map(|(kernel, part)| (kernel, *part));
+            Reach::new(kernel, of_kin)
         };
         let reaches: Vec<Reach> = kernels.iter().enumerate().map(reach).collect();
         let own = |v: f64| v / f64::from(1u32 << shift);
@@ -168,10 +150,6 @@ impl<S: Settling> Settler<S> {
             freedoms: Freedoms::default(),
             slippery: Vec::new(),
         }
-    }
-
-    pub(crate) const fn set(&self) -> &S {
-        &self.set
     }
 
     /// Works by another backend.
