@@ -106,7 +106,7 @@ pub use window::Cursor;
 /// use strew_core::{ALGORITHM_VERSION, PointId};
 ///
 /// // A saved game that keeps ids keeps the version with them.
-/// let saved = (3, PointId { x: -31, y: 52 });
+/// let saved = (4, PointId { x: -31, y: 52 });
 /// assert_eq!(saved.0, ALGORITHM_VERSION, "made with other points");
 /// ```
 pub const ALGORITHM_VERSION: u32 = 4;

@@ -7,7 +7,7 @@ use std::{
 
 /// Types and traits that are public only because a sealed trait names them. They are not
 /// exported, and rustdoc does not show them.
-const SEALED: [&str; 15] = [
+const SEALED: [&str; 16] = [
     "Batch",
     "Copies",
     "Double",
@@ -23,6 +23,7 @@ const SEALED: [&str; 15] = [
     "Scope",
     "Single",
     "Vector",
+    "WarpedColumns",
 ];
 
 /// The sources of the library, as (path from `src`, text).
