@@ -18,10 +18,10 @@ import strew
 NOISE = np.random.default_rng(1).random((2000, 2000))
 FIELD: Any = {"noise": {"wavelength": 30}}
 EVEN: Any = {"map": "l", "attributes": "variant", "variants": {"a": 1, "b": 2.7, "c": 3.1}, "spread": "even"}
-#: Calls of ten seconds and more.
+#: Calls of a second and more, of up to 3 GB.
 LONG: dict[str, Callable[[], Any]] = {
-    "coordinates": lambda: strew.points(bbox=(0, 0, 3e4, 3e4), spacing=1, seed=1).xy,
-    "columns": lambda: strew.points(bbox=(0, 0, 2e4, 2e4), spacing=1, seed=1, attributes="angle").columns(),
+    "coordinates": lambda: strew.points(bbox=(0, 0, 12e3, 12e3), spacing=1, seed=1).xy,
+    "columns": lambda: strew.points(bbox=(0, 0, 6e3, 6e3), spacing=1, seed=1, attributes="angle").columns(),
     "fields": lambda: strew.points(bbox=(0, 0, 8e3, 8e3), spacing=1, seed=1, field=FIELD).xy,
     "counts": lambda: strew.points(bbox=(0, 0, 4e4, 4e4), spacing=1, seed=1, field=FIELD).count(),
     "labels": lambda: strew.points(bbox=(0, 0, 9, 9), spacing=1, **EVEN),
@@ -29,7 +29,7 @@ LONG: dict[str, Callable[[], Any]] = {
     "masks": lambda: strew.mask(1024),
     "measures": lambda: strew.measure(NOISE.reshape(-1, 2)[:400_000], bbox=(0, 0, 1, 1)),
     "pictures": lambda: strew.stipple(NOISE, 1_000_000).xy,
-    "space": lambda: strew.space.points(bbox=(0, 0, 0, 900, 900, 900), spacing=1, seed=1).xyz,
+    "space": lambda: strew.space.points(bbox=(0, 0, 0, 400, 400, 400), spacing=1, seed=1).xyz,
 }
 
 
