@@ -35,6 +35,11 @@ def random_query(seed: int, in_space: bool = False) -> dict[str, Any]:
     return query
 
 
+def random_query_in_space(seed: int) -> dict[str, Any]:
+    """The same in space: tests of other bindings call it by its name."""
+    return random_query(seed, in_space=True)
+
+
 def _region(chance: random.Random) -> dict[str, Any]:
     x, y = (chance.uniform(-1, 1) * 10 ** chance.randint(0, 6) for _ in "xy")
     size = chance.uniform(2, 30)
