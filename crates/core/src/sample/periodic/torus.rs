@@ -242,11 +242,17 @@ pub(super) struct Repeated {
 }
 
 impl Repeated {
+    /// A coordinate in [0, L], as of `rem_euclid`, which is only in std.
+    fn wrapped(&self, v: f64) -> f64 {
+        let rest = v % self.side;
+        if rest < 0.0 { rest + self.side } else { rest }
+    }
+
     /// The parts of a box in [0, L)², and whether it is one part, without a seam.
     fn parts(&self, within: &Region) -> (Vec<Region>, bool) {
         let along = |i: usize| {
             let (min, max) = (within.min()[i], within.max()[i]);
-            let start = min.rem_euclid(self.side);
+            let start = self.wrapped(min);
             let end = start + (max - min);
             match (end - start >= self.side, end > self.side) {
                 (true, _) => alloc::vec![[0.0, self.side]],
@@ -273,7 +279,7 @@ impl Repeated {
 impl Field for Repeated {
     fn share(&self, at: [f64; 2]) -> f64 {
         // What is a little below 0 rounds to L.
-        let wrapped = at.map(|v| v.rem_euclid(self.side));
+        let wrapped = at.map(|v| self.wrapped(v));
         self.field
             .share(wrapped.map(|v| if v < self.side { v } else { 0.0 }))
     }
