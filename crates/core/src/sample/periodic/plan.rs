@@ -53,7 +53,7 @@ impl PeriodicSet {
     }
 
     /// The points with a row of the lattice in a range, for work in parallel. Rows from the
-    /// [period](Twin::period) on have none.
+    /// [period](crate::Twin::period) on have none.
     ///
     /// ```
     /// use strew_core::{PeriodicSet, Table};
