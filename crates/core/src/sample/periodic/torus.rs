@@ -16,7 +16,7 @@ use crate::{
         settle::{Box2, Placed, Points, Settler, Settling},
     },
     shape::Region,
-    table::{FRACTION_BITS, Table, fixed},
+    table::{FRACTION_BITS, Mix, fixed},
 };
 
 /// Strips have so many rows, and at most about so many addresses.
@@ -63,7 +63,7 @@ impl Strip {
 
     /// Where the point of an address has settled that was placed somewhere, without its row.
     pub(super) fn one(&mut self, set: &PeriodicSet, id: PointId, place: [i64; 2]) -> [f64; 2] {
-        let wants = |placed: &Placed| placed.id == id;
+        let wants = |placed: &Placed| placed.id() == id;
         let settled = self.settler.settled(place.map(i128::from), wants);
         set.wrapped(settled.map_or(place, |settled| settled.map(|k| k as i64)))
     }
@@ -86,8 +86,7 @@ impl Strip {
                 around(columns.start, columns.end, 0),
                 around(self.rows.start, self.rows.end, 1),
             ];
-            let address = |id: PointId| [id.x, id.y].map(|v| u64::try_from(v).ok());
-            let wanted = |id: PointId| match address(id) {
+            let wanted = |address: [i64; 2]| match address.map(|v| u64::try_from(v).ok()) {
                 [Some(x), Some(y)] if columns.contains(&x) && self.rows.contains(&y) => {
                     Some([y, x])
                 }
@@ -96,10 +95,10 @@ impl Strip {
             let points = &mut self.points;
             self.settler.settle(
                 &within,
-                |placed| wanted(placed.id).is_some(),
+                |placed| wanted(placed.address).is_some(),
                 |settled| {
                     let at = settled.place.map(|k| k as i64);
-                    points.extend(wanted(settled.id).map(|id| (id, set.wrapped(at))));
+                    points.extend(wanted(settled.address).map(|id| (id, set.wrapped(at))));
                 },
             );
         }
@@ -152,14 +151,16 @@ impl Torus {
     }
 }
 
-impl Settling for Torus {
-    fn table(&self) -> &Table {
-        &self.set.table
+impl Settling<2> for Torus {
+    type Found = Found;
+
+    fn mix(&self) -> Option<&Mix> {
+        self.set.table.mix()
     }
 
-    fn kind_of(&self, id: PointId) -> Option<u8> {
+    fn kind_of(&self, address: [i64; 2]) -> Option<u8> {
         let period = self.set.twin.period() as i64;
-        let [x, y] = [id.x, id.y].map(|v| v.rem_euclid(period));
+        let [x, y] = address.map(|v| v.rem_euclid(period));
         self.set.kind_of(PointId { x, y })
     }
 
@@ -190,7 +191,7 @@ impl Settling for Torus {
         within: &Box2,
         corner: [i128; 2],
         (grade, _): (&Grade, Backend),
-        mut visit: impl FnMut(Points<'_>),
+        mut visit: impl FnMut(Points<'_, Found, 2>),
     ) {
         let reach = self.reach();
         let [columns, rows] = [0, 1].map(|i| {

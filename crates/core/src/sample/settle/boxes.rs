@@ -1,42 +1,42 @@
 //! Points before and after they settle, and boxes of them.
 
 use alloc::vec::Vec;
-use core::ops::Range;
+use core::{array::from_fn, ops::Range};
 
 use super::{freedom::local, step::WHOLE};
-use crate::sample::{bounds::common_box, lattice::PointId};
+use crate::sample::bounds::common_box;
 
 /// A point where it has settled.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Settled {
-    pub(crate) id: PointId,
+pub(crate) struct Settled<const D: usize = 2> {
+    pub(crate) address: [i64; D],
     /// In fixed-point units.
-    pub(crate) place: [i128; 2],
+    pub(crate) place: [i128; D],
     /// The share at its place at full density.
     pub(crate) share: f64,
 }
 
-/// A box of places, in fixed-point units.
+/// A box of places of the plane, in fixed-point units.
 pub(crate) type Box2 = [Range<i128>; 2];
 
 /// A point where its rank left it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Placed {
-    pub(crate) id: PointId,
+pub(crate) struct Placed<const D: usize = 2> {
+    pub(crate) address: [i64; D],
     /// In fixed-point units.
-    pub(crate) place: [i128; 2],
+    pub(crate) place: [i128; D],
     pub(crate) share: f64,
     /// Fixed-point units of a mean spacing at full density, and the bits of a window's unit.
     scale: (f64, u32),
 }
 
-impl Placed {
+impl<const D: usize> Placed<D> {
     pub(super) const fn new(
-        (id, place, share): (PointId, [i128; 2], f64),
+        (address, place, share): ([i64; D], [i128; D], f64),
         scale: (f64, u32),
     ) -> Self {
         Self {
-            id,
+            address,
             place,
             share,
             scale,
@@ -46,11 +46,11 @@ impl Placed {
     /// The greatest move along each axis, in fixed-point units.
     fn most_move(&self) -> i64 {
         let (unit, shift) = self.scale;
-        most_move(unit * local(self.share), shift)
+        most_move(unit * local::<D>(self.share), shift)
     }
 
     /// Whether the point is in a box wherever it goes, in none of it, or either.
-    pub(crate) fn side(&self, bounds: &Box2) -> Option<bool> {
+    pub(crate) fn side(&self, bounds: &[Range<i128>; D]) -> Option<bool> {
         let most = i128::from(self.most_move());
         let mut is_sure = true;
         for (range, place) in bounds.iter().zip(self.place) {
@@ -71,13 +71,13 @@ pub(super) fn most_move(spacing: f64, shift: u32) -> i64 {
 }
 
 /// A box with some room on all sides.
-pub(crate) fn widened([x, y]: &Box2, room: i64) -> Box2 {
+pub(crate) fn widened<const D: usize>(within: &[Range<i128>; D], room: i64) -> [Range<i128>; D] {
     let room = i128::from(room);
-    [x.start - room..x.end + room, y.start - room..y.end + room]
+    (within.each_ref()).map(|range| range.start - room..range.end + room)
 }
 
 /// Adds a place to a box.
-pub(crate) fn add_place(within: &mut Option<Box2>, place: [i128; 2]) {
+pub(crate) fn add_place<const D: usize>(within: &mut Option<[Range<i128>; D]>, place: [i128; D]) {
     let own = place.map(|k| k..k + 1);
     *within = Some(match within.take() {
         Some(within) => hull(&within, &own),
@@ -86,20 +86,23 @@ pub(crate) fn add_place(within: &mut Option<Box2>, place: [i128; 2]) {
 }
 
 /// The box around two boxes.
-fn hull(a: &Box2, b: &Box2) -> Box2 {
-    [0, 1].map(|i| a[i].start.min(b[i].start)..a[i].end.max(b[i].end))
+fn hull<const D: usize>(a: &[Range<i128>; D], b: &[Range<i128>; D]) -> [Range<i128>; D] {
+    from_fn(|i| a[i].start.min(b[i].start)..a[i].end.max(b[i].end))
 }
 
 /// Joins boxes that overlap, and those where a common window is smaller than one for each, by the margin around a
 /// window.
-pub(crate) fn joined(boxes: impl Iterator<Item = Box2>, margin: i128) -> Vec<Box2> {
-    let area = |within: &Box2| -> f64 {
+pub(crate) fn joined<const D: usize>(
+    boxes: impl Iterator<Item = [Range<i128>; D]>,
+    margin: i128,
+) -> Vec<[Range<i128>; D]> {
+    let area = |within: &[Range<i128>; D]| -> f64 {
         let sides = within
             .each_ref()
             .map(|range| range.end - range.start + 2 * margin);
-        sides[0] as f64 * sides[1] as f64
+        sides.iter().map(|side| *side as f64).product()
     };
-    let mut all: Vec<Box2> = Vec::new();
+    let mut all: Vec<[Range<i128>; D]> = Vec::new();
     for mut next in boxes {
         while let Some(i) = all.iter().position(|other| {
             let overlaps = !common_box(other, &next).iter().any(Range::is_empty);

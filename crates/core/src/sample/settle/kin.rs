@@ -44,7 +44,7 @@ use crate::{
         kernel::Backend,
         lattice::{Lattice, Settle},
     },
-    table::{Mix, Shares, Table},
+    table::{Mix, Shares},
 };
 
 /// The least and the greatest part of all points of a kind whose points push each other.
@@ -65,34 +65,34 @@ pub(super) struct Steps {
 
 /// The points of a window by kinds, and their pushes.
 #[derive(Clone, Debug)]
-pub(super) struct Kin {
+pub(super) struct Kin<const D: usize> {
     steps: Steps,
     least_part: f64,
-    kinds: Vec<Kind>,
-    cells: Cells,
-    sums: [Vec<i32>; 2],
+    kinds: Vec<Kind<D>>,
+    cells: Cells<D>,
+    sums: [Vec<i32>; D],
 }
 
 #[derive(Clone, Debug)]
-struct Kind {
+struct Kind<const D: usize> {
     part: f64,
     is_in: bool,
     /// The factor of its pushes.
     strength: f64,
     /// The numbers of its points in the window.
     points: Vec<u32>,
-    /// Its points; shares are those of the kind.
-    places: Places,
+    /// Its points; weights are those of shares of the kind.
+    places: Places<D>,
 }
 
-impl Kin {
-    /// The kinds of a table, if points of some of them push each other. Kinds that vary leave points where those of
+impl<const D: usize> Kin<D> {
+    /// The kinds of a table's mix, if points of some of them push each other. Kinds that vary leave points where those of
     /// the table put them.
-    pub(super) fn new(table: &Table, settle: Settle) -> Option<Self> {
+    pub(super) fn new(mix: Option<&Mix>, settle: Settle) -> Option<Self> {
         if settle.is_near() {
             return None;
         }
-        let shares = table.mix()?.shares();
+        let shares = mix?.shares();
         let least_part = least_part(shares)?;
         let kind = |kind: usize| {
             let part = shares.of(kind as u8);
@@ -109,7 +109,7 @@ impl Kin {
             least_part,
             kinds: (0..shares.kinds()).map(kind).collect(),
             cells: Cells::default(),
-            sums: [Vec::new(), Vec::new()],
+            sums: [const { Vec::new() }; D],
         })
     }
 
@@ -141,13 +141,13 @@ impl Kin {
         if let Some(kind) = kind.filter(|kind| kind.is_in) {
             let counted = kind.part * share.max(LEAST_SHARE);
             kind.points.push(i as u32);
-            kind.places.share.push(counted.max(LEAST_OF_KIN) as f32);
+            kind.places.weight.push(counted.max(LEAST_OF_KIN) as f32);
         }
     }
 
     /// Sums the pushes of the points of each kind in a step, which counts from 1.
-    pub(super) fn push(&mut self, all: &mut Places, step: u8, scale: Scale, backend: Backend) {
-        let mut of_kin = core::mem::take(&mut all.of_kin);
+    pub(super) fn push(&mut self, all: &mut Places<D>, step: u8, scale: Scale, backend: Backend) {
+        let mut of_kin = core::mem::replace(&mut all.of_kin, [const { Vec::new() }; D]);
         for list in &mut of_kin {
             list.clear();
             list.resize(all.len(), 0);
@@ -161,7 +161,7 @@ impl Kin {
             for (list, sums) in of_kin.iter_mut().zip(&self.sums) {
                 for (&i, &sum) in kind.points.iter().zip(sums) {
                     let i = i as usize;
-                    let most = (MOST * (scale.unit / all.share[i].sqrt_())) as i32;
+                    let most = (MOST * (scale.unit / all.weight[i].sqrt_())) as i32;
                     list[i] = sum.clamp(-most, most);
                 }
             }
@@ -170,9 +170,9 @@ impl Kin {
     }
 }
 
-impl Kind {
+impl<const D: usize> Kind<D> {
     /// Puts the points where they are among all of them.
-    fn follow(&mut self, all: &Places) {
+    fn follow(&mut self, all: &Places<D>) {
         let Self { points, places, .. } = self;
         let numbers = || points.iter().map(|&i| i as usize);
         for (own, all) in places.at.iter_mut().zip(&all.at) {

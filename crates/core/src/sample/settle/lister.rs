@@ -1,6 +1,6 @@
 //! Sets that settle: the points of a box where their ranks left them, many at a time.
 
-use core::ops::Range;
+use core::{array::from_fn, ops::Range};
 
 use super::Box2;
 use crate::{
@@ -9,18 +9,22 @@ use crate::{
         kernel::Backend,
         lattice::{BAND_WIDTH, Columns, Found, Grade, Lattice, Patch, PointId, Span, clip_to_band},
     },
-    table::{Table, fixed},
+    table::{Mix, fixed},
 };
 
 /// The most candidates that are looked at together.
 const TOGETHER: usize = 2048;
 
-/// A set of all kinds whose points settle: one of the plane, or of a torus, by addresses that do not wrap.
-pub(crate) trait Settling: Clone {
-    fn table(&self) -> &Table;
+/// A set of all kinds whose points settle: one of the plane or of space, or of a torus, by addresses that do not wrap.
+pub(crate) trait Settling<const D: usize>: Clone {
+    /// A point of a list.
+    type Found: Listed<D>;
+
+    /// The kinds of its table, if it has some.
+    fn mix(&self) -> Option<&Mix>;
 
     /// The kind of a point in the table.
-    fn kind_of(&self, id: PointId) -> Option<u8>;
+    fn kind_of(&self, address: [i64; D]) -> Option<u8>;
 
     /// The inverse of the mean spacing at full density, in grid units.
     fn side(&self) -> f64;
@@ -35,17 +39,38 @@ pub(crate) trait Settling: Clone {
     fn certified(&self) -> f64;
 
     /// The world coordinates at which the field is looked at for a fixed-point place.
-    fn looked_at(&self, place: [i128; 2]) -> [f64; 2];
+    fn looked_at(&self, place: [i128; D]) -> [f64; D];
 
     /// Calls `visit` for the points of a grade that were placed in a box, some at a time, with places from a corner
     /// near it.
     fn list(
         &mut self,
-        within: &Box2,
-        corner: [i128; 2],
-        by: (&Grade, Backend),
-        visit: impl FnMut(Points<'_>),
+        within: &[Range<i128>; D],
+        corner: [i128; D],
+        by: (&Grade<D>, Backend),
+        visit: impl FnMut(Points<'_, Self::Found, D>),
     );
+}
+
+/// A point by its offsets from those of a list.
+pub(crate) trait Listed<const D: usize> {
+    /// The lattice coordinates.
+    fn address(&self) -> [i64; D];
+
+    /// The place in fixed-point units.
+    fn place(&self) -> [i32; D];
+}
+
+impl Listed<2> for Found {
+    #[inline(always)]
+    fn address(&self) -> [i64; 2] {
+        Found::address(*self)
+    }
+
+    #[inline(always)]
+    fn place(&self) -> [i32; 2] {
+        self.place
+    }
 }
 
 /// Lists points of the plane, with memory of its own.
@@ -58,29 +83,26 @@ pub(crate) struct Lister {
 
 /// Some points and their shares.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Points<'a> {
-    pub(crate) found: &'a [Found],
+pub(crate) struct Points<'a, F, const D: usize> {
+    pub(crate) found: &'a [F],
     pub(crate) shares: &'a [f64],
     /// The address of the origin, and its place from the corner in fixed-point units.
-    pub(crate) address: [i64; 2],
-    pub(crate) origin: [i64; 2],
+    pub(crate) address: [i64; D],
+    pub(crate) origin: [i64; D],
 }
 
-impl Points<'_> {
+impl<F: Listed<D>, const D: usize> Points<'_, F, D> {
     #[inline(always)]
-    pub(super) fn id(&self, found: &Found) -> PointId {
-        let [column, row] = found.address();
-        PointId {
-            x: self.address[0] + column,
-            y: self.address[1] + row,
-        }
+    pub(super) fn address(&self, found: &F) -> [i64; D] {
+        let offset = found.address();
+        from_fn(|i| self.address[i] + offset[i])
     }
 
     /// The place from the corner, in fixed-point units.
     #[inline(always)]
-    pub(super) fn offset(&self, found: &Found) -> [i64; 2] {
-        let [x, y] = found.place.map(i64::from);
-        [self.origin[0] + x, self.origin[1] + y]
+    pub(super) fn offset(&self, found: &F) -> [i64; D] {
+        let place = found.place();
+        from_fn(|i| self.origin[i] + i64::from(place[i]))
     }
 }
 
@@ -94,13 +116,15 @@ impl Lister {
     }
 }
 
-impl Settling for Lister {
-    fn table(&self) -> &Table {
-        &self.lattice.table
+impl Settling<2> for Lister {
+    type Found = Found;
+
+    fn mix(&self) -> Option<&Mix> {
+        self.lattice.table.mix()
     }
 
-    fn kind_of(&self, id: PointId) -> Option<u8> {
-        self.lattice.kind_of(id)
+    fn kind_of(&self, [x, y]: [i64; 2]) -> Option<u8> {
+        self.lattice.kind_of(PointId { x, y })
     }
 
     fn side(&self) -> f64 {
@@ -128,7 +152,7 @@ impl Settling for Lister {
         within: &Box2,
         corner: [i128; 2],
         (grade, backend): (&Grade, Backend),
-        mut visit: impl FnMut(Points<'_>),
+        mut visit: impl FnMut(Points<'_, Found, 2>),
     ) {
         let Self {
             lattice,

@@ -70,7 +70,7 @@ pub(crate) use boxes::{Box2, Placed, Settled, add_place, joined, widened};
 
 pub(crate) use super::bounds::common_box as common;
 pub(crate) use kin::weight;
-pub(crate) use lister::{Points, Settling};
+pub(crate) use lister::{Listed, Points, Settling};
 use step::Kernel;
 pub(crate) use tiles::SettledTiles;
 pub(crate) use window::Settler;
@@ -84,8 +84,9 @@ pub(crate) const LEAST_SHARE: f64 = 1.0 / 400.0;
 pub(crate) const MOST_MOVE: f64 = 8.0;
 
 /// The pushes of each step.
-const fn kernels(settle: Settle) -> &'static [Kernel] {
+const fn kernels<const D: usize>(settle: Settle) -> &'static [Kernel] {
     match settle.steps() {
+        steps if D == 3 => SPACE.split_at(steps as usize).0,
         _ if settle.is_near() => &NEAR,
         0 => &[],
         1 => &ONE,
@@ -104,6 +105,8 @@ const fn kernel([reach, push, near, guard]: [f32; 4]) -> Kernel {
     }
 }
 
+/// The steps in space.
+const SPACE: [Kernel; 4] = [kernel([2.0, 0.69, 0.8, 0.0]); 4];
 /// The step of sets with all points.
 const NEAR: [Kernel; 1] = [kernel([0.8, 1.249, 0.8, 0.0])];
 const ONE: [Kernel; 1] = [kernel([2.395, 0.7388, 0.999, 0.605])];

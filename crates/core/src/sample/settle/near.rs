@@ -26,6 +26,7 @@
 //! - Lengths are computed in `f64` and counted short by [`SURELY`], and D long by [`SPARE`], by more than they round.
 
 use alloc::vec::Vec;
+use core::array::from_fn;
 
 use super::{
     cells::Places,
@@ -39,56 +40,58 @@ const SPARE: f64 = 4.0;
 /// A factor for lengths: less than 1 by more than their rounding errors.
 const SURELY: f64 = 1.0 - 1.0 / 262_144.0;
 
-/// The limit of a near step, with memory to find neighbors: the points by square cells about as large as its reach.
+/// The limit of a near step, with memory to find neighbors: the points by cells about as large as its reach.
 #[derive(Clone, Debug)]
-pub(super) struct Near {
+pub(super) struct Near<const D: usize> {
     /// The distances in the units of a window: D, and the reach.
     clear: f64,
     reach: f64,
-    corner: [f32; 2],
-    columns: usize,
+    corner: [f32; D],
+    /// The cells along each axis.
+    across: [usize; D],
     /// By cell: the place of its first point; one more for the end.
     starts: Vec<u32>,
     points: Vec<u32>,
 }
 
-impl Near {
+impl<const D: usize> Near<D> {
     pub(super) fn new(clear: f64, reach: f64) -> Self {
         Self {
             clear,
             reach,
-            corner: [0.0; 2],
-            columns: 0,
+            corner: [0.0; D],
+            across: [0; D],
             starts: Vec::new(),
             points: Vec::new(),
         }
     }
 
     /// Shortens the moves of the points of a window from the places where they were placed.
-    pub(super) fn limit(&mut self, places: &mut Places) {
+    pub(super) fn limit(&mut self, places: &mut Places<D>) {
         if places.len() == 0 {
             return;
         }
         self.sort(&places.placed);
         let Places { at, placed, .. } = places;
         for i in 0..placed[0].len() {
-            let own = [placed[0][i], placed[1][i]];
-            let go = [0, 1].map(|k| f64::from(at[k][i]) - f64::from(own[k]));
-            if go != [0.0; 2] {
+            let own = placed.each_ref().map(|list| list[i]);
+            let go: [f64; D] = from_fn(|k| f64::from(at[k][i]) - f64::from(own[k]));
+            if go != [0.0; D] {
                 let go = self.limited(placed, own, go);
-                at[0][i] = own[0] + go[0];
-                at[1][i] = own[1] + go[1];
+                for (k, list) in at.iter_mut().enumerate() {
+                    list[i] = own[k] + go[k];
+                }
             }
         }
     }
 
     /// The move of a point, shortened.
-    fn limited(&self, placed: &[Vec<f32>; 2], own: [f32; 2], go: [f64; 2]) -> [f32; 2] {
+    fn limited(&self, placed: &[Vec<f32>; D], own: [f32; D], go: [f64; D]) -> [f32; D] {
         let free = |far: f64| (far * SURELY - self.clear - SPARE).max(0.0) * 0.5;
-        let length = root(go[0] * go[0] + go[1] * go[1]);
+        let length = root(product(go, go));
         let mut part = (free(self.reach) / length).min(1.0);
         self.visit(placed, own, |offset, far| {
-            let approach = (go[0] * offset[0] + go[1] * offset[1]) / far;
+            let approach = product(go, offset) / far;
             let free = free(far);
             if free <= 0.0 {
                 part = 0.0;
@@ -100,52 +103,70 @@ impl Near {
         // Rounding may have turned the move a little.
         let mut is_clear = true;
         self.visit(placed, own, |offset, far| {
-            let approach = f64::from(go[0]) * offset[0] + f64::from(go[1]) * offset[1];
+            let approach = product(go.map(f64::from), offset);
             is_clear &= approach <= free(far) * far;
         });
-        if is_clear { go } else { [0.0; 2] }
+        if is_clear { go } else { [0.0; D] }
     }
 
     /// Calls `visit` with the offsets and distances of all points within reach of one.
-    fn visit(&self, placed: &[Vec<f32>; 2], own: [f32; 2], mut visit: impl FnMut([f64; 2], f64)) {
-        let [column, row] = self.cell(own);
-        let rows = (self.starts.len() - 1) / self.columns;
-        let columns = column.saturating_sub(1)..(column + 2).min(self.columns);
-        for row in row.saturating_sub(1)..(row + 2).min(rows) {
-            let [from, to] =
-                [columns.start, columns.end].map(|c| self.starts[row * self.columns + c] as usize);
+    fn visit(&self, placed: &[Vec<f32>; D], own: [f32; D], mut visit: impl FnMut([f64; D], f64)) {
+        let cell = self.cell(own);
+        let [first, end]: [[usize; D]; 2] = [
+            cell.map(|v| v.saturating_sub(1)),
+            from_fn(|axis| (cell[axis] + 2).min(self.across[axis])),
+        ];
+        let mut row = first;
+        while row[D - 1] < end[D - 1] {
+            let [from, to] = [first[0], end[0]].map(|column| {
+                row[0] = column;
+                self.starts[self.number(row)] as usize
+            });
             for &other in &self.points[from..to] {
-                let at = [0, 1].map(|k: usize| placed[k][other as usize]);
-                let offset = [0, 1].map(|k: usize| f64::from(at[k]) - f64::from(own[k]));
-                let far = root(offset[0] * offset[0] + offset[1] * offset[1]);
+                let offset = from_fn(|k| f64::from(placed[k][other as usize]) - f64::from(own[k]));
+                let far = root(product(offset, offset));
                 if far > 0.0 && far < self.reach {
                     visit(offset, far);
+                }
+            }
+            row[1] += 1;
+            for axis in 1..D - 1 {
+                if row[axis] == end[axis] {
+                    row[axis] = first[axis];
+                    row[axis + 1] += 1;
                 }
             }
         }
     }
 
-    /// The column and the row of the cell of a place.
-    fn cell(&self, at: [f32; 2]) -> [usize; 2] {
+    /// The cell of a place along each axis.
+    fn cell(&self, at: [f32; D]) -> [usize; D] {
         // Somewhat larger than the reach, for what rounds.
         let side = self.reach + 1.0;
-        [0, 1].map(|k: usize| ((f64::from(at[k]) - f64::from(self.corner[k])) / side) as usize)
+        from_fn(|k| ((f64::from(at[k]) - f64::from(self.corner[k])) / side) as usize)
+    }
+
+    /// The number of a cell.
+    fn number(&self, cell: [usize; D]) -> usize {
+        (0..D)
+            .rev()
+            .fold(0, |number, axis| number * self.across[axis] + cell[axis])
     }
 
     /// Sorts places by cells.
-    fn sort(&mut self, placed: &[Vec<f32>; 2]) {
+    fn sort(&mut self, placed: &[Vec<f32>; D]) {
         let least = |list: &[f32]| list.iter().fold(f32::INFINITY, |a, &b| lesser(b, a));
         let most = |list: &[f32]| list.iter().fold(-f32::INFINITY, |a, &b| greater(b, a));
-        self.corner = [0, 1].map(|k: usize| least(&placed[k]));
-        let [last_column, last_row] = self.cell([0, 1].map(|k: usize| most(&placed[k])));
-        self.columns = last_column + 1;
+        self.corner = placed.each_ref().map(|list| least(list));
+        self.across = self
+            .cell(placed.each_ref().map(|list| most(list)))
+            .map(|last| last + 1);
         self.starts.clear();
-        self.starts.resize(self.columns * (last_row + 1) + 1, 0);
+        self.starts
+            .resize(self.across.iter().product::<usize>() + 1, 0);
         let number = placed[0].len();
-        let cell = |near: &Self, i: usize| {
-            let [column, row] = near.cell([placed[0][i], placed[1][i]]);
-            row * near.columns + column
-        };
+        let cell =
+            |near: &Self, i: usize| near.number(near.cell(placed.each_ref().map(|list| list[i])));
         for i in 0..number {
             let cell = cell(self, i);
             self.starts[cell] += 1;
@@ -164,4 +185,9 @@ impl Near {
             self.points[place] = i as u32;
         }
     }
+}
+
+/// The scalar product of two vectors.
+fn product<const D: usize>(a: [f64; D], b: [f64; D]) -> f64 {
+    (1..D).fold(a[0] * b[0], |sum, i| sum + a[i] * b[i])
 }

@@ -1,14 +1,16 @@
 //! How points go past near neighbors, in sets with kinds whose points push each other.
 
+use core::array::from_fn;
+
 use super::{
     cells::Cells,
-    plain::{Root, SPARE, SURELY, above_zero, lesser, whole_number, within},
+    plain::{Root, SPARE, SURELY, above_zero, lesser, squares, whole_number, within},
 };
 
 /// A neighbor counts as near below the root of this, in local spacings.
 const NEAR: f32 = 0.4;
 
-impl Cells {
+impl<const D: usize> Cells<D> {
     /// Where a point goes that would go farther than half of what separates it from the distance that is kept: past its
     /// nearest neighbor, and up to half of what separates it from the next one. `None` where it may go as it likes, and
     /// where it would leave the box around its place.
@@ -19,56 +21,58 @@ impl Cells {
     #[inline(always)]
     pub(super) fn pass(
         &self,
-        (at, placed): ([f32; 2], [f32; 2]),
-        (wish, nearest): ([f32; 2], f32),
+        (at, placed): ([f32; D], [f32; D]),
+        (wish, nearest): ([f32; D], f32),
         whole: f32,
         clear: f32,
-    ) -> Option<[f32; 2]> {
+    ) -> Option<[f32; D]> {
         let free = |squared: f32| above_zero((squared.sqrt_() * SURELY - clear) * 0.5 - SPARE);
-        if (wish[0] * wish[0] + wish[1] * wish[1]).sqrt_() <= free(nearest) {
+        if squares(wish).sqrt_() <= free(nearest) {
             return None;
         }
-        let offset = [0, 1].map(|i| at[i] - placed[i]);
-        let [mut x, mut y] = [0, 1].map(|i| within(offset[i] + wish[i], whole) - offset[i]);
-        let length = (x * x + y * y).sqrt_();
+        let offset: [f32; D] = from_fn(|i| at[i] - placed[i]);
+        let mut go: [f32; D] = from_fn(|i| within(offset[i] + wish[i], whole) - offset[i]);
+        let length = squares(go).sqrt_();
         // Those farther off leave it free.
         let far = (2.0 * length + clear + 2.0 * SPARE) * 1.001;
-        let ([dx, dy], nearest, next) = self.nearest_two(at, far);
+        let (away, nearest, next) = self.nearest_two(at, far);
         if length <= free(nearest) {
             return None;
         }
         let most = free(next);
         if length > most {
             let part = most / length;
-            (x, y) = (x * part, y * part);
+            go = go.map(|v| v * part);
         }
         let (distance, most) = (nearest.sqrt_(), free(nearest));
-        let toward = -(x * dx + y * dy) / distance;
+        let mut along = go[0] * away[0];
+        for i in 1..D {
+            along += go[i] * away[i];
+        }
+        let toward = -along / distance;
         if toward > most {
             let back = (toward - most) / distance;
-            (x, y) = (x + back * dx, y + back * dy);
+            go = from_fn(|i| go[i] + back * away[i]);
         }
-        let is_inside = (offset[0] + x).abs() <= whole && (offset[1] + y).abs() <= whole;
-        is_inside.then(|| [at[0] + whole_number(x), at[1] + whole_number(y)])
+        let is_inside = (0..D).all(|i| (offset[i] + go[i]).abs() <= whole);
+        is_inside.then(|| from_fn(|i| at[i] + whole_number(go[i])))
     }
 
     /// The offset from the nearest point within a distance, its square, and that of the next one. Of equally near
     /// points the one of the lesser offset counts.
     #[inline(always)]
-    fn nearest_two(&self, [x, y]: [f32; 2], far: f32) -> ([f32; 2], f32, f32) {
-        let [columns, rows] =
-            [(0, x), (1, y)].map(|(axis, v)| self.along[axis].cells(v - far, v + far));
-        let (mut offset, mut nearest, mut next) = ([0.0; 2], f32::INFINITY, f32::INFINITY);
-        for row in rows {
+    fn nearest_two(&self, at: [f32; D], far: f32) -> ([f32; D], f32, f32) {
+        let cells = from_fn(|axis| self.along[axis].cells(at[axis] - far, at[axis] + far));
+        let (mut offset, mut nearest, mut next) = ([0.0; D], f32::INFINITY, f32::INFINITY);
+        for row in self.rows_between(&cells) {
             let start = |column: usize| self.starts[row * self.along[0].cells + column] as usize;
-            for other in &self.points[start(columns.start)..start(columns.end)] {
-                let dx = x - other.at[0];
-                let dy = y - other.at[1];
-                let squared = dx * dx + dy * dy;
+            for other in &self.points[start(cells[0].start)..start(cells[0].end)] {
+                let away = from_fn(|axis| at[axis] - other.at[axis]);
+                let squared = squares(away);
                 if squared > 0.0 && squared <= next {
-                    let is_less = [dx, dy] < offset;
+                    let is_less = away < offset;
                     if squared < nearest || (squared == nearest && is_less) {
-                        (offset, next, nearest) = ([dx, dy], nearest, squared);
+                        (offset, next, nearest) = (away, nearest, squared);
                     } else {
                         next = squared;
                     }

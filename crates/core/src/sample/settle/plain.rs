@@ -44,6 +44,16 @@ pub(super) fn above_zero(v: f32) -> f32 {
     if v > 0.0 { v } else { 0.0 }
 }
 
+/// The sum of the squares of some numbers.
+#[inline(always)]
+pub(super) fn squares<const D: usize>(v: [f32; D]) -> f32 {
+    let mut sum = v[0] * v[0];
+    for v in &v[1..] {
+        sum += v * v;
+    }
+    sum
+}
+
 /// The square root, which rounds alike everywhere.
 pub(super) trait Root {
     fn sqrt_(self) -> Self;

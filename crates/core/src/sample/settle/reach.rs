@@ -1,9 +1,10 @@
 //! How far points reach: which others matter to where they go.
 
+use core::array::from_fn;
+
 use super::{
-    LEAST_SHARE,
     cells::Places,
-    freedom::{local, root},
+    freedom::root,
     kin::LEAST_OF_KIN,
     plain::{greater, lesser},
     step::{Kernel, STEP, WHOLE},
@@ -40,10 +41,11 @@ impl Reach {
         self.all.max(kin)
     }
 
-    /// The greatest reach of points of some counted shares, in spacings at full density.
+    /// The greatest reach of points of some weights, in spacings at full density.
     fn between(&self, [a, b]: [f64; 2]) -> f64 {
         let all = self.all * root(2.0 / (a + b));
         self.kin.map_or(all, |[reach, part]| {
+            // In the plane, where there are kinds, weights are shares.
             let counted = |share: f64| (part * share).max(LEAST_OF_KIN);
             // With room for shares that round.
             all.max(reach * 1.000_001 * root(2.0 / (counted(a) + counted(b))))
@@ -56,57 +58,61 @@ fn moved_before(t: usize) -> f64 {
     f64::from(WHOLE).min(f64::from(STEP) * t as f64)
 }
 
-/// How far from a point of a share, along each axis, others may be that push it in step number `t`, which counts from
+/// How far from a point of a weight, along each axis, others may be that push it in step number `t`, which counts from
 /// 0, if none is sparser than `least`: by the places where they were placed, in spacings at full density.
-fn room(reach: &Reach, t: usize, shares: [f64; 2]) -> f64 {
-    let [a, b] = shares.map(local);
-    reach.between(shares.map(|share| share.max(LEAST_SHARE))) + moved_before(t) * (a + b)
+fn room(reach: &Reach, t: usize, weights: [f64; 2]) -> f64 {
+    let [a, b] = weights.map(|weight| 1.0 / root(weight));
+    reach.between(weights) + moved_before(t) * (a + b)
 }
 
 /// [`room`] in units of a window, and a little for what rounds.
-pub(super) fn step_room(reach: &Reach, t: usize, shares: [f64; 2], unit: f64) -> i64 {
-    (room(reach, t, shares) * unit) as i64 + ROOM
+pub(super) fn step_room(reach: &Reach, t: usize, weights: [f64; 2], unit: f64) -> i64 {
+    (room(reach, t, weights) * unit) as i64 + ROOM
 }
 
 /// How far from a point others may be that matter to where it goes in all steps, in units of a window.
-pub(super) fn whole_room(reaches: &[Reach], shares: [f64; 2], unit: f64) -> i64 {
+pub(super) fn whole_room(reaches: &[Reach], weights: [f64; 2], unit: f64) -> i64 {
     let steps = reaches.iter().enumerate();
     steps
-        .map(|(t, reach)| step_room(reach, t, shares, unit))
+        .map(|(t, reach)| step_room(reach, t, weights, unit))
         .sum()
 }
 
-/// The ranges of a box along both axes, from a window's corner.
+/// The ranges of a box along its axes, from a window's corner.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Extent {
-    pub(super) min: [i64; 2],
-    pub(super) max: [i64; 2],
+pub(super) struct Extent<const D: usize> {
+    pub(super) min: [i64; D],
+    pub(super) max: [i64; D],
 }
 
-impl Extent {
+impl<const D: usize> Extent<D> {
     pub(super) const NONE: Self = Self {
-        min: [i64::MAX; 2],
-        max: [i64::MIN; 2],
+        min: [i64::MAX; D],
+        max: [i64::MIN; D],
     };
 
     /// Adds places between some ends, with room around them.
-    pub(super) fn add(&mut self, [min, max]: [[f32; 2]; 2], room: i64) {
-        for i in 0..2 {
+    pub(super) fn add(&mut self, [min, max]: [[f32; D]; 2], room: i64) {
+        for i in 0..D {
             self.min[i] = self.min[i].min(min[i] as i64 - room);
             self.max[i] = self.max[i].max(max[i] as i64 + room);
         }
     }
 
     #[inline(always)]
-    pub(super) fn holds(&self, [x, y]: [f32; 2]) -> bool {
+    pub(super) fn holds(&self, at: [f32; D]) -> bool {
         // Beyond what single precision holds there are no points.
         let [min, max] = [self.min, self.max].map(|v| v.map(|v| v as f32));
-        (min[0] <= x) & (x <= max[0]) & (min[1] <= y) & (y <= max[1])
+        let mut holds = true;
+        for i in 0..D {
+            holds &= (min[i] <= at[i]) & (at[i] <= max[i]);
+        }
+        holds
     }
 
     /// A place, by parts of the sides.
-    pub(super) fn place(&self, parts: [f64; 2]) -> Self {
-        let place = [0, 1].map(|i| {
+    pub(super) fn place(&self, parts: [f64; D]) -> Self {
+        let place = from_fn(|i| {
             let side = self.max[i] - self.min[i];
             self.min[i] + (parts[i] * side as f64) as i64
         });
@@ -125,48 +131,58 @@ impl Extent {
     }
 
     pub(super) fn is_within(&self, other: &Self) -> bool {
-        (0..2).all(|i| other.min[i] <= self.min[i] && self.max[i] <= other.max[i])
+        (0..D).all(|i| other.min[i] <= self.min[i] && self.max[i] <= other.max[i])
     }
 
     pub(super) fn and(self, other: Self) -> Self {
         Self {
-            min: [0, 1].map(|i| self.min[i].min(other.min[i])),
-            max: [0, 1].map(|i| self.max[i].max(other.max[i])),
+            min: from_fn(|i| self.min[i].min(other.min[i])),
+            max: from_fn(|i| self.max[i].max(other.max[i])),
         }
     }
 }
 
-/// The extent of the points that matter to those that move in step number `t`, which counts from 0, and the least share
+/// The extent of the points that matter to those that move in step number `t`, which counts from 0, and the least weight
 /// of these.
-pub(super) fn reached(places: &Places, (reach, t): (&Reach, usize), unit: f64) -> (Extent, f64) {
+pub(super) fn reached<const D: usize>(
+    places: &Places<D>,
+    (reach, t): (&Reach, usize),
+    unit: f64,
+) -> (Extent<D>, f64) {
     let step = t as u8 + 1;
     let Places {
-        placed: [xs, ys],
-        share,
+        placed,
+        weight,
         freedom,
         until,
         ..
     } = places;
-    let least = f64::from(share.iter().fold(1.0, |a, &b| lesser(b, a)));
+    let least = f64::from(weight.iter().fold(1.0, |a, &b| lesser(b, a)));
     let mut extent = Extent::NONE;
     let mut sparsest = 1.0f64;
-    let lists = xs.chunks(NEAR).zip(ys.chunks(NEAR)).zip(share.chunks(NEAR));
-    let lists = lists.zip(freedom.chunks(NEAR).zip(until.chunks(NEAR)));
-    for (((xs, ys), shares), (freedom, until)) in lists {
-        let (mut min, mut max) = ([f32::INFINITY; 2], [-f32::INFINITY; 2]);
+    let chunks = weight
+        .chunks(NEAR)
+        .zip(freedom.chunks(NEAR).zip(until.chunks(NEAR)));
+    for (number, (weights, (freedom, until))) in chunks.enumerate() {
+        let placed = placed
+            .each_ref()
+            .map(|list| &list[number * NEAR..][..weights.len()]);
+        let (mut min, mut max) = ([f32::INFINITY; D], [-f32::INFINITY; D]);
         let mut low = f32::INFINITY;
-        let points = xs.iter().zip(ys).zip(shares).zip(freedom.iter().zip(until));
-        for (((&x, &y), &share), (&freedom, &until)) in points {
+        let points = weights.iter().zip(freedom.iter().zip(until));
+        for (k, (&weight, (&freedom, &until))) in points.enumerate() {
             if until >= step && freedom > 0.0 {
-                min = [lesser(x, min[0]), lesser(y, min[1])];
-                max = [greater(x, max[0]), greater(y, max[1])];
-                low = lesser(share, low);
+                for i in 0..D {
+                    min[i] = lesser(placed[i][k], min[i]);
+                    max[i] = greater(placed[i][k], max[i]);
+                }
+                low = lesser(weight, low);
             }
         }
         if low <= 1.0 {
-            let share = f64::from(low);
-            extent.add([min, max], step_room(reach, t, [share, least], unit));
-            sparsest = sparsest.min(share);
+            let weight = f64::from(low);
+            extent.add([min, max], step_room(reach, t, [weight, least], unit));
+            sparsest = sparsest.min(weight);
         }
     }
     (extent, sparsest)

@@ -50,7 +50,8 @@ use super::{
     cells::{Cells, MOVES, Places, Sorted},
     past::eased,
     plain::{
-        ROUNDER, Root, SPARE, SURELY, above_zero, greater, lesser, rounded, whole_number, within,
+        ROUNDER, Root, SPARE, SURELY, above_zero, greater, lesser, rounded, squares, whole_number,
+        within,
     },
 };
 use crate::sample::kernel::{Backend, PlainLoop, compiled_loop};
@@ -86,11 +87,11 @@ pub(super) struct Scale {
     pub(super) clear: f32,
 }
 
-impl Cells {
+impl<const D: usize> Cells<D> {
     /// Moves the points that move in step number `step`, which counts from 1.
     pub(super) fn step(
         &mut self,
-        places: &mut Places,
+        places: &mut Places<D>,
         (kernel, step): (&Kernel, u8),
         scale: Scale,
         backend: Backend,
@@ -112,11 +113,11 @@ impl Cells {
     /// Sums the pushes on the points that move in a step, and moves none.
     pub(super) fn pushes(
         &mut self,
-        places: &mut Places,
+        places: &mut Places<D>,
         (kernel, step): (&Kernel, u8),
         scale: Scale,
         backend: Backend,
-        sums: &mut [Vec<i32>; 2],
+        sums: &mut [Vec<i32>; D],
     ) {
         for list in sums.iter_mut() {
             list.clear();
@@ -137,7 +138,7 @@ impl Cells {
     }
 }
 
-/// A kernel for squared distances in units, times the weights of both points, which are their shares times `weight`:
+/// A kernel for squared distances in units, times the weights of both points, which are those of their shares times `weight`:
 /// W = max(0, push − a)⁴ + max(0, guard − a · ratio)².
 #[derive(Clone, Copy, Debug)]
 struct Prepared {
@@ -181,37 +182,35 @@ impl Prepared {
 }
 
 /// Some points of a row that move, and the sums of the pushes on them.
-struct Group {
+struct Group<const D: usize> {
     number: usize,
     point: [u32; LANES],
-    x: [f32; LANES],
-    y: [f32; LANES],
+    at: [[f32; LANES]; D],
     weight: [f32; LANES],
     /// The sums of the pushes, with the bits of a rounder for each.
-    push_x: [i32; LANES],
-    push_y: [i32; LANES],
+    push: [[i32; LANES]; D],
     /// The squared distance of the nearest point, as bits, less 1.
     nearest: [u32; LANES],
     /// The number of pushes that were summed.
     number_of_pushes: usize,
 }
 
-struct Step<'a> {
-    cells: &'a mut Cells,
-    places: &'a mut Places,
+struct Step<'a, const D: usize> {
+    cells: &'a mut Cells<D>,
+    places: &'a mut Places<D>,
     kernel: Prepared,
     step: u8,
     scale: Scale,
     /// Where the pushes of points go if these do not move.
-    sums: Option<&'a mut [Vec<i32>; 2]>,
+    sums: Option<&'a mut [Vec<i32>; D]>,
 }
 
-impl PlainLoop for Step<'_> {
+impl<const D: usize> PlainLoop for Step<'_, D> {
     #[inline(always)]
     fn run(&mut self) {
         let Prepared { widest, weight, .. } = self.kernel;
         self.cells.sort(self.places, (widest, weight), self.step);
-        let [columns, rows] = self.cells.along.map(|along| along.cells);
+        let (columns, rows) = (self.cells.along[0].cells, self.cells.rows());
         let far = WIDEST * self.cells.side;
         for row in 0..rows {
             let first = self.cells.starts[row * columns] as usize;
@@ -245,22 +244,19 @@ impl PlainLoop for Step<'_> {
     }
 }
 
-impl Step<'_> {
+impl<const D: usize> Step<'_, D> {
     /// Sums the pushes on a group.
     #[inline(always)]
-    fn sum(&self, group: &mut Group) {
+    fn sum(&self, group: &mut Group<D>) {
         let Cells {
-            along: [x, _],
+            along,
             starts,
             points,
             ..
         } = &*self.cells;
         let least = |list: &[f32; LANES]| list.iter().fold(f32::INFINITY, |a, &b| lesser(b, a));
         let most = |list: &[f32; LANES]| list.iter().fold(-f32::INFINITY, |a, &b| greater(b, a));
-        let ends = [
-            [least(&group.x), most(&group.x)],
-            [least(&group.y), most(&group.y)],
-        ];
+        let ends = group.at.each_ref().map(|list| [least(list), most(list)]);
         let sparse = least(&group.weight);
         let mut around = self.around(ends, sparse, self.cells.least);
         if !self.cells.are_alike {
@@ -268,118 +264,119 @@ impl Step<'_> {
             let least = self.cells.least_in(&around);
             around = self.around(ends, sparse, least);
         }
-        let [columns, rows] = around;
-        for row in rows {
-            let first = row * x.cells;
-            let start = starts[first + columns.start] as usize;
-            let end = starts[first + columns.end] as usize;
+        for row in self.cells.rows_between(&around) {
+            let first = row * along[0].cells;
+            let start = starts[first + around[0].start] as usize;
+            let end = starts[first + around[0].end] as usize;
             group.add_pushes(&self.kernel, &points[start..end]);
         }
     }
 
-    /// The columns and rows of cells that may push points between some ends.
+    /// The cells along each axis that may push points between some ends.
     #[inline(always)]
-    fn around(&self, ends: [[f32; 2]; 2], sparse: f32, least: f32) -> [Range<usize>; 2] {
+    fn around(&self, ends: [[f32; 2]; D], sparse: f32, least: f32) -> [Range<usize>; D] {
         let reach = (self.kernel.most / (sparse + least)).sqrt_();
-        let [[left, right], [bottom, top]] = ends;
-        let [x, y] = self.cells.along;
-        [
-            x.cells(left - reach, right + reach),
-            y.cells(bottom - reach, top + reach),
-        ]
+        core::array::from_fn(|axis| {
+            let [start, end] = ends[axis];
+            self.cells.along[axis].cells(start - reach, end + reach)
+        })
     }
 
     /// Moves a group by its pushes.
     #[inline(always)]
-    fn go(&mut self, group: &Group) {
+    fn go(&mut self, group: &Group<D>) {
         let Scale { unit, clear } = self.scale;
         let reach = self.kernel.reach;
         let mut freedom = [0.0; LANES];
-        let mut share = [0.0; LANES];
-        let mut placed = [[0.0; LANES]; 2];
+        let mut spacing = [0.0; LANES];
+        let mut placed = [[0.0; LANES]; D];
         for k in 0..LANES {
             let i = group.point[k] as usize;
             freedom[k] = self.places.freedom[i];
-            share[k] = self.places.share[i];
-            placed[0][k] = self.places.placed[0][i];
-            placed[1][k] = self.places.placed[1][i];
+            spacing[k] = self.places.weight[i];
+            for (placed, list) in placed.iter_mut().zip(&self.places.placed) {
+                placed[k] = list[i];
+            }
         }
-        let [mut push_x, mut push_y] = group.pushes();
+        for spacing in &mut spacing {
+            *spacing = unit / spacing.sqrt_();
+        }
+        let mut push = group.pushes();
         let mut nearest = [0.0; LANES];
         for (nearest, bits) in nearest.iter_mut().zip(group.nearest) {
             *nearest = f32::from_bits(bits.wrapping_add(1));
         }
-        if let [xs, ys] = &self.places.of_kin
-            && !xs.is_empty()
-        {
+        let has_kin = !self.places.of_kin[0].is_empty();
+        if has_kin {
             for k in 0..LANES {
                 let i = group.point[k] as usize;
-                push_x[k] = push_x[k].wrapping_add(xs[i]);
-                push_y[k] = push_y[k].wrapping_add(ys[i]);
-                let spacing = unit / share[k].sqrt_();
-                freedom[k] = eased(freedom[k], nearest[k], spacing);
+                for (push, list) in push.iter_mut().zip(&self.places.of_kin) {
+                    push[k] = push[k].wrapping_add(list[i]);
+                }
+                freedom[k] = eased(freedom[k], nearest[k], spacing[k]);
             }
         }
-        let mut to = [[0.0; LANES]; 2];
+        let of = |lists: &[[f32; LANES]; D], k: usize| lists.each_ref().map(|list| list[k]);
+        let mut to = [[0.0; LANES]; D];
         for k in 0..LANES {
-            let spacing = unit / share[k].sqrt_();
+            let spacing = spacing[k];
             let most = STEP * spacing;
-            let go = |push: i32| within(push as f32 * freedom[k], most);
-            let (mut x, mut y) = (go(push_x[k]), go(push_y[k]));
+            let mut go = [0.0; D];
+            for axis in 0..D {
+                go[axis] = within(push[axis][k] as f32 * freedom[k], most);
+            }
             // Two points that each go half of the way that is free stay clear of each other.
             let near = lesser(reach * spacing, nearest[k].sqrt_()) * SURELY;
             let free = above_zero((near - clear) * 0.5 - SPARE);
-            let length = (x * x + y * y).sqrt_();
+            let length = squares(go).sqrt_();
             let is_longer = (clear > 0.0) & (length > free);
             let part = free / length;
             let part = if is_longer { part } else { 1.0 };
-            (x, y) = (x * part, y * part);
             let whole = WHOLE * spacing;
-            let settle = |at: f32, go: f32, placed: f32| {
-                let offset = (at + whole_number(go)) - placed;
-                placed + whole_number(within(offset, whole))
-            };
-            to[0][k] = settle(group.x[k], x, placed[0][k]);
-            to[1][k] = settle(group.y[k], y, placed[1][k]);
+            for axis in 0..D {
+                let placed = placed[axis][k];
+                let offset = (group.at[axis][k] + whole_number(go[axis] * part)) - placed;
+                to[axis][k] = placed + whole_number(within(offset, whole));
+            }
         }
-        if !self.places.of_kin[0].is_empty() && clear > 0.0 {
+        if has_kin && clear > 0.0 {
             for k in 0..group.number {
-                let spacing = unit / share[k].sqrt_();
-                let go = |push: i32| within(push as f32 * freedom[k], STEP * spacing);
-                let wish = ([go(push_x[k]), go(push_y[k])], nearest[k]);
-                let at = [group.x[k], group.y[k]];
-                let placed = [placed[0][k], placed[1][k]];
-                if let Some(at) = self.cells.pass((at, placed), wish, WHOLE * spacing, clear) {
-                    [to[0][k], to[1][k]] = at;
+                let go = |push: i32| within(push as f32 * freedom[k], STEP * spacing[k]);
+                let wish = (push.each_ref().map(|list| go(list[k])), nearest[k]);
+                let places = (of(&group.at, k), of(&placed, k));
+                if let Some(at) = self.cells.pass(places, wish, WHOLE * spacing[k], clear) {
+                    for (to, at) in to.iter_mut().zip(at) {
+                        to[k] = at;
+                    }
                 }
             }
         }
-        let points = group.point[..group.number].iter();
-        for (&point, (&x, &y)) in points.zip(to[0].iter().zip(&to[1])) {
-            self.places.at[0][point as usize] = x;
-            self.places.at[1][point as usize] = y;
+        for (list, to) in self.places.at.iter_mut().zip(to) {
+            for (&point, to) in group.point[..group.number].iter().zip(to) {
+                list[point as usize] = to;
+            }
         }
     }
 }
 
-impl Group {
+impl<const D: usize> Group<D> {
     const EMPTY: Self = Self {
         number: 0,
         point: [0; LANES],
-        x: [0.0; LANES],
-        y: [0.0; LANES],
+        at: [[0.0; LANES]; D],
         weight: [0.0; LANES],
-        push_x: [0; LANES],
-        push_y: [0; LANES],
+        push: [[0; LANES]; D],
         nearest: [f32::INFINITY.to_bits() - 1; LANES],
         number_of_pushes: 0,
     };
 
     #[inline(always)]
-    fn add(&mut self, point: &Sorted) {
+    fn add(&mut self, point: &Sorted<D>) {
         let k = self.number;
         self.point[k] = point.point & !MOVES;
-        [self.x[k], self.y[k]] = point.at;
+        for (list, at) in self.at.iter_mut().zip(point.at) {
+            list[k] = at;
+        }
         self.weight[k] = point.weight;
         self.number += 1;
     }
@@ -390,16 +387,18 @@ impl Group {
         let last = self.number - 1;
         for k in self.number..LANES {
             self.point[k] = self.point[last];
-            (self.x[k], self.y[k]) = (self.x[last], self.y[last]);
+            for list in &mut self.at {
+                list[k] = list[last];
+            }
             self.weight[k] = self.weight[last];
         }
     }
 
     /// The sums of the pushes.
     #[inline(always)]
-    fn pushes(&self) -> [[i32; LANES]; 2] {
+    fn pushes(&self) -> [[i32; LANES]; D] {
         let rounders = (self.number_of_pushes as i32).wrapping_mul(ROUNDER.to_bits() as i32);
-        let mut pushes = [self.push_x, self.push_y];
+        let mut pushes = self.push;
         for sum in pushes.as_flattened_mut() {
             *sum = sum.wrapping_sub(rounders);
         }
@@ -408,7 +407,7 @@ impl Group {
 
     /// Writes the pushes on the points to some lists.
     #[inline(always)]
-    fn tell(&self, lists: &mut [Vec<i32>; 2]) {
+    fn tell(&self, lists: &mut [Vec<i32>; D]) {
         for (list, pushes) in lists.iter_mut().zip(self.pushes()) {
             for (&point, push) in self.point[..self.number].iter().zip(pushes) {
                 list[point as usize] = push;
@@ -418,28 +417,31 @@ impl Group {
 
     /// Adds the pushes of some points.
     #[inline(always)]
-    fn add_pushes(&mut self, kernel: &Prepared, points: &[Sorted]) {
-        let (x, y, weight) = (self.x, self.y, self.weight);
-        let (mut push_x, mut push_y) = (self.push_x, self.push_y);
+    fn add_pushes(&mut self, kernel: &Prepared, points: &[Sorted<D>]) {
+        let (at, weight) = (self.at, self.weight);
+        let mut push = self.push;
         let mut nearest = self.nearest;
         for other in points {
             for k in 0..LANES {
-                let dx = x[k] - other.at[0];
-                let dy = y[k] - other.at[1];
-                let squared = dx * dx + dy * dy;
+                let mut offset = [0.0; D];
+                for axis in 0..D {
+                    offset[axis] = at[axis][k] - other.at[axis];
+                }
+                let squared = squares(offset);
                 let scaled = squared * (weight[k] + other.weight);
                 let u = above_zero(kernel.push - scaled);
                 let v = above_zero(kernel.guard - scaled * kernel.ratio);
                 let u = u * u;
                 let force = u * u + v * v;
-                push_x[k] = push_x[k].wrapping_add(rounded(dx * force));
-                push_y[k] = push_y[k].wrapping_add(rounded(dy * force));
+                for axis in 0..D {
+                    push[axis][k] = push[axis][k].wrapping_add(rounded(offset[axis] * force));
+                }
                 // The point itself, at 0, becomes the greatest number.
                 let bits = squared.to_bits().wrapping_sub(1);
                 nearest[k] = if bits < nearest[k] { bits } else { nearest[k] };
             }
         }
-        (self.push_x, self.push_y, self.nearest) = (push_x, push_y, nearest);
+        (self.push, self.nearest) = (push, nearest);
         self.number_of_pushes += points.len();
     }
 }

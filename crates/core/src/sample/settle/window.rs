@@ -32,13 +32,13 @@
 //! ones for a piece of many rows.
 
 use alloc::vec::Vec;
-use core::ops::Range;
+use core::{array::from_fn, ops::Range};
 
 use super::{
-    LEAST_SHARE, MOST_MOVE,
-    boxes::{Box2, Placed, Settled, most_move, widened},
+    MOST_MOVE,
+    boxes::{Placed, Settled, most_move, widened},
     cells::{Cells, Places},
-    freedom::{Candidate, Freedoms, constant, local, root, slipped},
+    freedom::{Candidate, Freedoms, constant, local, root, slipped, weight},
     guess::guess,
     kernels,
     kin::Kin,
@@ -51,7 +51,7 @@ use crate::{
     sample::{
         bounds::world,
         kernel::Backend,
-        lattice::{Grade, PointId, Settle},
+        lattice::{Grade, Settle},
     },
     shape::Region,
     table::FRACTION_BITS,
@@ -69,45 +69,45 @@ const FARTHEST: i64 = 1 << 23;
 
 /// Settles points, with memory of its own.
 #[derive(Clone, Debug)]
-pub(crate) struct Settler<S = Lister> {
+pub(crate) struct Settler<S = Lister, const D: usize = 2> {
     set: S,
-    grade: Grade,
+    grade: Grade<D>,
     backend: Backend,
     kernels: &'static [Kernel],
     /// The points by kinds, if those of a kind push each other.
-    kin: Option<Kin>,
+    kin: Option<Kin<D>>,
     /// How far each step reaches.
     reaches: Vec<Reach>,
     scale: Scale,
     /// The limit of the step of sets with all points; `None` for other sets.
-    near: Option<Near>,
+    near: Option<Near<D>>,
     /// Windows count in units of this many fixed-point units, in bits.
     shift: u32,
     /// Fixed-point units of a mean spacing at full density.
     unit: f64,
-    listed: Vec<Listed>,
-    places: Places,
-    cells: Cells,
-    freedoms: Freedoms,
+    listed: Vec<Listed<D>>,
+    places: Places<D>,
+    cells: Cells<D>,
+    freedoms: Freedoms<D>,
     /// The points that may slip.
     slippery: Vec<u32>,
 }
 
 /// A point of a window.
 #[derive(Clone, Copy, Debug)]
-struct Listed {
-    id: PointId,
+struct Listed<const D: usize> {
+    address: [i64; D],
     share: f64,
     /// The bits of its place below the window's units.
-    below: [u16; 2],
+    below: [u16; D],
     is_wanted: bool,
     /// Whether it may have to go back.
     may_slip: bool,
 }
 
-impl<S: Settling> Settler<S> {
+impl<S: Settling<D>, const D: usize> Settler<S, D> {
     /// A settler of a set that a grade thins.
-    pub(crate) fn of(set: S, grade: Grade, settle: Settle) -> Self {
+    pub(crate) fn of(set: S, grade: Grade<D>, settle: Settle) -> Self {
         let side = set.side();
         // Up to some 350 spacings fit a window.
         let mut sparse = 0;
@@ -116,8 +116,10 @@ impl<S: Settling> Settler<S> {
         }
         let shift = UNIT_BITS + sparse;
         let unit = f64::from(1u32 << FRACTION_BITS) / side;
-        let kin = Kin::new(set.table(), settle);
-        let kernels = kin.as_ref().map_or(kernels(settle), |kin| kin.steps().all);
+        let kin = Kin::new(set.mix(), settle);
+        let kernels = kin
+            .as_ref()
+            .map_or(kernels::<D>(settle), |kin| kin.steps().all);
         let reach = |(t, kernel)| {
             let of_kin = kin.as_ref().map(|kin| (kin.kernel(t), kin.least_part()));
             let of_kin = of_kin.as_ref().map(|(kernel, part)| (kernel, *part));
@@ -158,9 +160,9 @@ impl<S: Settling> Settler<S> {
     }
 
     /// The greatest move of points that were placed in a box, in fixed-point units.
-    pub(crate) fn most_move(&self, within: &Box2) -> i64 {
+    pub(crate) fn most_move(&self, within: &[Range<i128>; D]) -> i64 {
         let low = self.grade.bounds(&self.region(within))[0];
-        most_move(self.unit * local(low), self.shift)
+        most_move(self.unit * local::<D>(low), self.shift)
     }
 
     /// About how many times as far as in sets without kinds points matter to others.
@@ -171,14 +173,14 @@ impl<S: Settling> Settler<S> {
     }
 
     /// The box around a box that holds the places of all points that may settle in it.
-    pub(crate) fn around(&self, within: &Box2) -> Box2 {
+    pub(crate) fn around(&self, within: &[Range<i128>; D]) -> [Range<i128>; D] {
         let most = (MOST_MOVE * 1.001 * self.unit) as i64 + (2 << self.shift);
         let most = self.most_move(&widened(within, most)).min(most);
         widened(within, most)
     }
 
     /// The greatest share in a box.
-    pub(crate) fn greatest_share(&self, within: &Box2) -> f64 {
+    pub(crate) fn greatest_share(&self, within: &[Range<i128>; D]) -> f64 {
         self.grade.bounds(&self.region(within))[1]
     }
 
@@ -190,9 +192,9 @@ impl<S: Settling> Settler<S> {
     /// Where a point settles that was placed somewhere, if it is wanted.
     pub(crate) fn settled(
         &mut self,
-        place: [i128; 2],
-        wants: impl FnMut(&Placed) -> bool,
-    ) -> Option<[i128; 2]> {
+        place: [i128; D],
+        wants: impl FnMut(&Placed<D>) -> bool,
+    ) -> Option<[i128; D]> {
         let mut found = None;
         let within = place.map(|k| k..k + 1);
         self.settle(&within, wants, |settled| found = Some(settled.place));
@@ -200,25 +202,25 @@ impl<S: Settling> Settler<S> {
     }
 
     /// The region of a box.
-    pub(crate) fn region(&self, within: &Box2) -> Region {
-        let [x, y] = within;
+    pub(crate) fn region(&self, within: &[Range<i128>; D]) -> Region<D> {
         let world = |k: i128| world(self.set.step(), k);
+        let ends = within.each_ref();
         Region::between(
-            [world(x.start), world(y.start)],
-            [world(x.end.max(x.start)), world(y.end.max(y.start))],
+            ends.map(|range| world(range.start)),
+            ends.map(|range| world(range.end.max(range.start))),
         )
     }
 
     /// Calls `visit` for every point that was placed in a box.
-    pub(crate) fn list(&mut self, within: &Box2, mut visit: impl FnMut(Placed)) {
+    pub(crate) fn list(&mut self, within: &[Range<i128>; D], mut visit: impl FnMut(Placed<D>)) {
         let (unit, shift) = (self.unit, self.shift);
         let corner = within.each_ref().map(|range| range.start);
         let by = (&self.grade, self.backend);
         self.set.list(within, corner, by, |some| {
             for (found, &share) in some.found.iter().zip(some.shares) {
-                let (id, offset) = (some.id(found), some.offset(found));
-                let place = [0, 1].map(|i| corner[i] + i128::from(offset[i]));
-                visit(Placed::new((id, place, share), (unit, shift)));
+                let (address, offset) = (some.address(found), some.offset(found));
+                let place = from_fn(|i| corner[i] + i128::from(offset[i]));
+                visit(Placed::new((address, place, share), (unit, shift)));
             }
         });
     }
@@ -227,20 +229,20 @@ impl<S: Settling> Settler<S> {
     /// order in which addresses are listed.
     pub(crate) fn settle(
         &mut self,
-        within: &Box2,
-        mut wants: impl FnMut(&Placed) -> bool,
-        mut found: impl FnMut(Settled),
+        within: &[Range<i128>; D],
+        mut wants: impl FnMut(&Placed<D>) -> bool,
+        mut found: impl FnMut(Settled<D>),
     ) {
         if within.iter().any(Range::is_empty) {
             return;
         }
-        let corner = [0, 1].map(|i| {
+        let corner = from_fn(|i| {
             let Range { start, end } = within[i];
             ((start + (end - start) / 2) >> CORNER_BITS) << CORNER_BITS
         });
         let own = Extent {
-            min: [0, 1].map(|i| self.offset(corner, i, within[i].start)),
-            max: [0, 1].map(|i| self.offset(corner, i, within[i].end - 1)),
+            min: from_fn(|i| self.offset(corner, i, within[i].start)),
+            max: from_fn(|i| self.offset(corner, i, within[i].end - 1)),
         };
         let mut window = guess(
             &self.grade,
@@ -261,7 +263,7 @@ impl<S: Settling> Settler<S> {
         for (i, listed) in self.listed.iter().enumerate() {
             if listed.is_wanted {
                 found(Settled {
-                    id: listed.id,
+                    address: listed.address,
                     place: self.place(corner, i, &self.places.at),
                     share: listed.share,
                 });
@@ -270,17 +272,16 @@ impl<S: Settling> Settler<S> {
     }
 
     /// The fixed-point place of point number `i` of the window, which keeps the bits below the window's unit.
-    fn place(&self, corner: [i128; 2], i: usize, at: &[Vec<f32>; 2]) -> [i128; 2] {
+    fn place(&self, corner: [i128; D], i: usize, at: &[Vec<f32>; D]) -> [i128; D] {
         let below = self.listed[i].below;
-        let place = |axis: usize| {
+        from_fn(|axis| {
             let whole = (at[axis][i] as i64) << self.shift;
             corner[axis] + i128::from(whole | i64::from(below[axis]))
-        };
-        [place(0), place(1)]
+        })
     }
 
     /// The world coordinates of the place at which point number `i` of the window was placed.
-    fn placed(&self, corner: [i128; 2], i: usize) -> [f64; 2] {
+    fn placed(&self, corner: [i128; D], i: usize) -> [f64; D] {
         self.set
             .looked_at(self.place(corner, i, &self.places.placed))
     }
@@ -288,12 +289,12 @@ impl<S: Settling> Settler<S> {
     /// Lists the points of a window.
     fn list_window(
         &mut self,
-        corner: [i128; 2],
-        window: Extent,
-        own: Extent,
-        wants: &mut impl FnMut(&Placed) -> bool,
+        corner: [i128; D],
+        window: Extent<D>,
+        own: Extent<D>,
+        wants: &mut impl FnMut(&Placed<D>) -> bool,
     ) {
-        let within = [0, 1].map(|i| {
+        let within = from_fn(|i| {
             let fixed = |v: i64| corner[i] + (i128::from(v) << self.shift);
             fixed(window.min[i])..fixed(window.max[i] + 1)
         });
@@ -311,17 +312,17 @@ impl<S: Settling> Settler<S> {
             }
             let shares = some.shares.iter();
             places
-                .share
-                .extend(shares.map(|share| share.max(LEAST_SHARE) as f32));
+                .weight
+                .extend(shares.map(|share| weight::<D>(*share) as f32));
             let points = some.found.iter().zip(some.shares);
             listed.extend(points.map(|(found, &share)| {
-                let (id, offset) = (some.id(found), some.offset(found));
+                let (address, offset) = (some.address(found), some.offset(found));
                 let is_wanted = own.holds(offset.map(|v| (v >> shift) as i32 as f32)) && {
-                    let place = [0, 1].map(|i| corner[i] + i128::from(offset[i]));
-                    wants(&Placed::new((id, place, share), (unit, shift)))
+                    let place = from_fn(|i| corner[i] + i128::from(offset[i]));
+                    wants(&Placed::new((address, place, share), (unit, shift)))
                 };
                 Listed {
-                    id,
+                    address,
                     share,
                     below: offset.map(|v| (v & below) as u16),
                     is_wanted,
@@ -337,7 +338,7 @@ impl<S: Settling> Settler<S> {
         if let Some(kin) = &mut self.kin {
             kin.clear();
             for (i, listed) in listed.iter().enumerate() {
-                kin.add(i, self.set.kind_of(listed.id), listed.share);
+                kin.add(i, self.set.kind_of(listed.address), listed.share);
             }
         }
         (self.listed, self.places) = (listed, places);
@@ -345,7 +346,7 @@ impl<S: Settling> Settler<S> {
 
     /// Finds out which points move in which steps. Returns the extent of the points that matter to them; if it goes
     /// beyond the window, only about.
-    fn prepare(&mut self, corner: [i128; 2], window: Extent) -> Extent {
+    fn prepare(&mut self, corner: [i128; D], window: Extent<D>) -> Extent<D> {
         let unit = f64::from(self.scale.unit);
         let steps = self.reaches.len();
         let mut all = Extent::NONE;
@@ -362,7 +363,7 @@ impl<S: Settling> Settler<S> {
             if !all.is_within(&window) {
                 // The steps before this one reach on.
                 let reach: f64 = self.reaches[..t].iter().map(Reach::widest).sum();
-                let room = (reach * 1.2 * unit * local(sparsest)) as i64;
+                let room = (reach * 1.2 * unit / root(sparsest)) as i64;
                 return all.widened(room);
             }
         }
@@ -370,28 +371,29 @@ impl<S: Settling> Settler<S> {
     }
 
     /// Does what [`prepare`](Self::prepare) does where all shares are alike, and with them all reaches.
-    fn prepare_alike(&mut self, share: f64) -> Extent {
+    fn prepare_alike(&mut self, share: f64) -> Extent<D> {
         let Places {
-            placed: [xs, ys],
+            placed,
             freedom,
             until,
             ..
         } = &mut self.places;
         freedom.fill(constant(share) as f32);
         let mut movers = Extent::NONE;
-        let points = xs.iter().zip(&*ys).zip(until.iter_mut());
-        for (((&x, &y), until), listed) in points.zip(&self.listed) {
+        let placed = placed.each_ref().map(|list| &list[..until.len()]);
+        for (i, (until, listed)) in until.iter_mut().zip(&self.listed).enumerate() {
             if listed.is_wanted {
-                movers.add([[x, y]; 2], 0);
+                movers.add([placed.map(|list| list[i]); 2], 0);
             }
             *until = if listed.is_wanted { u8::MAX } else { 0 };
         }
         for (t, reach) in self.reaches.iter().enumerate().rev() {
-            for ((until, &x), &y) in until.iter_mut().zip(&*xs).zip(&*ys) {
-                let is_new = (*until == 0) & movers.holds([x, y]);
+            for (i, until) in until.iter_mut().enumerate() {
+                let is_new = (*until == 0) & movers.holds(placed.map(|list| list[i]));
                 *until = if is_new { t as u8 + 1 } else { *until };
             }
-            let room = step_room(reach, t, [share; 2], f64::from(self.scale.unit));
+            let weights = [weight::<D>(share); 2];
+            let room = step_room(reach, t, weights, f64::from(self.scale.unit));
             movers = movers.widened(room);
         }
         movers
@@ -399,19 +401,15 @@ impl<S: Settling> Settler<S> {
 
     /// Finds the freedom of the points that move up to a step: of those in an extent, or without one, those that are
     /// wanted.
-    fn free(&mut self, corner: [i128; 2], step: u8, within: Option<Extent>) {
-        let Places {
-            placed: [xs, ys],
-            until,
-            ..
-        } = &mut self.places;
+    fn free(&mut self, corner: [i128; D], step: u8, within: Option<Extent<D>>) {
+        let Places { placed, until, .. } = &mut self.places;
         self.freedoms.clear();
-        let placed = xs.iter().zip(ys.iter());
-        let lists = self.listed.iter().zip(placed).zip(until);
-        for (i, ((listed, (&x, &y)), until)) in lists.enumerate() {
+        let placed = placed.each_ref().map(|list| &list[..until.len()]);
+        for (i, (listed, until)) in self.listed.iter().zip(until).enumerate() {
+            let at = placed.map(|list| list[i]);
             let is_new = match &within {
                 None => listed.is_wanted,
-                Some(within) => *until == 0 && within.holds([x, y]),
+                Some(within) => *until == 0 && within.holds(at),
             };
             if !is_new {
                 continue;
@@ -419,7 +417,7 @@ impl<S: Settling> Settler<S> {
             *until = step;
             self.freedoms.add(Candidate {
                 point: i as u32,
-                from_corner: [x as i32, y as i32],
+                from_corner: at.map(|v| v as i32),
                 share: listed.share,
             });
         }
@@ -462,7 +460,7 @@ impl<S: Settling> Settler<S> {
     }
 
     /// Puts points back that slipped over an edge.
-    fn go_back(&mut self, corner: [i128; 2]) {
+    fn go_back(&mut self, corner: [i128; D]) {
         if self.grade.known().is_some() {
             return;
         }
@@ -477,7 +475,7 @@ impl<S: Settling> Settler<S> {
                 let at = self.place(corner, i, &self.places.at);
                 let there = self.grade.share(self.set.looked_at(at));
                 if slipped(share, there) {
-                    for axis in 0..2 {
+                    for axis in 0..D {
                         self.places.at[axis][i] = self.places.placed[axis][i];
                     }
                 }
@@ -486,7 +484,7 @@ impl<S: Settling> Settler<S> {
     }
 
     /// A fixed-point coordinate from a window's corner, in its units.
-    fn offset(&self, corner: [i128; 2], axis: usize, k: i128) -> i64 {
+    fn offset(&self, corner: [i128; D], axis: usize, k: i128) -> i64 {
         let limit = i128::from(FARTHEST) << 4;
         ((k - corner[axis]) >> self.shift).clamp(-limit, limit) as i64
     }

@@ -158,9 +158,9 @@ impl Pieces {
         let by = (lattice, &self.settler);
         let inside = Inside::new((&self.bounds, &ends), area, &self.clear, by);
         let wants = |placed: &Placed| {
-            holds(piece, placed.id)
+            holds(piece, placed.address)
                 && (is_deep || placed.side(&self.bounds) != Some(false))
-                && lattice.shows(placed.id, placed.share)
+                && lattice.shows(placed.id(), placed.share)
         };
         self.settler.settle(&within, wants, |settled| {
             if is_inside || inside.holds(&settled) {
@@ -206,8 +206,9 @@ impl Pieces {
             (Some(true), Some(true)) if !is_guarded => Some(true),
             _ => None,
         };
-        let is_own =
-            |placed: &Placed| holds(piece, placed.id) && lattice.shows(placed.id, placed.share);
+        let is_own = |placed: &Placed| {
+            holds(piece, placed.address) && lattice.shows(placed.id(), placed.share)
+        };
         let mut number = 0;
         // By tile: the box of the points that have to settle.
         let mut unsure: Vec<Option<Box2>> = vec![None; states.len()];
@@ -270,8 +271,8 @@ impl Pieces {
 }
 
 /// Whether an address is in some columns and rows.
-fn holds([columns, rows]: &[Range<i64>; 2], id: PointId) -> bool {
-    columns.contains(&id.x) && rows.contains(&id.y)
+fn holds([columns, rows]: &[Range<i64>; 2], [x, y]: [i64; 2]) -> bool {
+    columns.contains(&x) && rows.contains(&y)
 }
 
 /// A walk over points that settle.
@@ -340,7 +341,10 @@ impl SettledWalk {
         let (found, origin) = (&mut self.found, self.origin);
         let from = self.from.take();
         self.pieces.settle(&[columns, rows], |settled| {
-            let is_before = from.is_some_and(|at| settled.id.y == at.y && settled.id.x < at.x);
+            let is_before = from.is_some_and(|at| {
+                let [x, y] = settled.address;
+                y == at.y && x < at.x
+            });
             if !is_before {
                 found.push(found_at(origin, &settled));
             }
@@ -385,7 +389,7 @@ impl SettledWalk {
 
 /// A settled point relative to an origin.
 fn found_at(origin: [i64; 2], settled: &Settled) -> Found {
-    let PointId { x, y } = settled.id;
+    let [x, y] = settled.address;
     let place = [0, 1].map(|i| (settled.place[i] - fixed(origin[i])) as i32);
     Found::new(place, [x - origin[0], y - origin[1]])
 }
@@ -464,12 +468,12 @@ pub(super) fn find_few_settled(pieces: &mut Pieces) -> Option<Few> {
     let mut settled = Vec::new();
     pieces.settle(&[columns, rows], |point| settled.push(point));
     settled.sort_unstable_by_key(|point: &Settled| {
-        let PointId { x, y } = point.id;
+        let [x, y] = point.address;
         (x.div_euclid(BAND_WIDTH), y, x)
     });
     let mut few = Few::default();
     for point in &settled {
-        let PointId { x, y } = point.id;
+        let [x, y] = point.address;
         let origin = [
             x.div_euclid(BAND_WIDTH) * BAND_WIDTH,
             y.div_euclid(PATCH_HEIGHT) * PATCH_HEIGHT,
