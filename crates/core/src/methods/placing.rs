@@ -120,6 +120,26 @@ macro_rules! placing {
                 Ok(self.replaced(|placement| placement.with_keep(keep)))
             }
 
+            /// Sets the number of steps by which points settle in a [field](Self::in_field) and where not all are
+            /// [kept](Self::keep), 0 to 4; see [`Settle`](crate::Settle). Sets with all points take at most one, a smaller
+            /// one; in space they stay.
+            ///
+            /// # Errors
+            /// [`ErrorKind::Settle`](crate::ErrorKind::Settle) above 4.
+            ///
+            /// ```
+            #[doc = concat!("let half = ", $make, ".seed(7).keep(0.5)?;")]
+            /// let still = half.clone().settle(0)?;
+            /// // The same points, some of them elsewhere.
+            #[doc = concat!("let settled = half.chunk(20.0, ", $origin, ")?.to_vec();")]
+            /// assert!(settled.iter().any(|point| still.point(point.id) != Some(*point)));
+            /// # Ok::<(), strew_core::Error>(())
+            /// ```
+            pub fn settle(self, steps: u32) -> Result<Self, Error> {
+                let settle = crate::Settle::new(steps)?;
+                Ok(self.replaced(|placement| placement.with_settle(settle)))
+            }
+
             /// Sets the level of detail: the part of the set's points that answers have, those of lowest rank at each
             /// place. The others still exist: the points of a level are where they are among all points, so levels
             /// nest, and other sets keep clear of all of them. By default answers have all points.

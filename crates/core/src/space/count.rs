@@ -14,8 +14,9 @@ use super::{
 };
 use crate::table::FRACTION_BITS;
 
-/// Boxes of the lattice up to this side are counted point by point.
+/// Boxes of the lattice up to this side are counted point by point: larger ones where points settle with those around.
 const LEAF: i64 = 64;
+const SETTLED: i64 = 128;
 
 /// The number of points of a scope at places of a box of the lattice. It is meaningless once the scope's flag is raised.
 pub(super) fn count(scope: &Arc<Scope>, ranges: &[Range<i64>; 3]) -> u128 {
@@ -52,16 +53,17 @@ fn divide(
     let longest = [1, 2]
         .into_iter()
         .fold(0, |a, b| if side(b) > side(a) { b } else { a });
-    if side(longest) <= LEAF {
+    let leaf = if scope.room > 0 { SETTLED } else { LEAF };
+    if side(longest) <= leaf {
         return walked(scope, clearance, &ranges);
     }
     // Parts that begin at multiples of the side of a leaf.
     let range = &ranges[longest];
-    let middle = (range.start + side(longest) / 2) & !(LEAF - 1);
+    let middle = (range.start + side(longest) / 2) & !(leaf - 1);
     let middle = if middle > range.start {
         middle
     } else {
-        range.start + LEAF / 2
+        range.start + leaf / 2
     };
     let mut halves = [ranges.clone(), ranges.clone()];
     halves[0][longest].end = middle;

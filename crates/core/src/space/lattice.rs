@@ -6,6 +6,7 @@ use super::{
     Batch,
     pattern::Pattern,
     point::{Point, PointId},
+    settled::settled,
     table::{Table, Turned},
     warp::Shears3,
 };
@@ -73,7 +74,7 @@ impl Lattice {
 
     /// This lattice at another placement.
     pub(super) fn replaced(&self, placement: Placement) -> Self {
-        let share = placement.shown();
+        let share = placement.graded();
         Self {
             grade: self.grade.as_ref().map(|grade| grade.times(share)),
             without: self.without.clone(),
@@ -182,6 +183,11 @@ impl Lattice {
 
     /// The fixed-point place of an address, or `None` if it has no point.
     pub(super) fn place(&self, id: PointId) -> Option<[i64; 3]> {
+        self.placed(id).map(|place| settled(self, id, place))
+    }
+
+    /// The place where the point of an address was put, before it settles, or `None` if it has no point.
+    pub(super) fn placed(&self, id: PointId) -> Option<[i64; 3]> {
         let number = self.number(self.block(id)?);
         let at = id.lattice();
         let is_kept = self.cut.is_none() || self.keeps(number, self.pattern.index(at)[0]);
@@ -193,9 +199,19 @@ impl Lattice {
                 None => displaced,
             }
         })?;
-        let has = |grade: &Grade<3>| self.rank(id) < grade.share(place.map(|k| self.world(k)));
+        let part = self.settling().map_or(1.0, |_| self.placement.lod.get());
+        let has = |grade: &Grade<3>| {
+            let share = grade.share(place.map(|k| self.world(k)));
+            self.rank(id) < part * share
+        };
         let is_there = self.grade.as_ref().is_none_or(has) && !self.lacks(id);
         is_there.then_some(place)
+    }
+
+    /// Whether a point that settles, of a share, is of the level of detail that is wanted, and not left out by its id.
+    pub(super) fn shows(&self, id: PointId, share: f64) -> bool {
+        let lod = self.placement.lod;
+        (lod == Keep::ALL || self.rank(id) < lod.get() * share) && !self.lacks(id)
     }
 
     /// Whether a point is left out by its id.
@@ -205,9 +221,9 @@ impl Lattice {
             .any(|ids| ids.binary_search(&id).is_ok())
     }
 
-    /// Whether points are looked at one by one: those of a field, or some by their ids.
+    /// Whether points are looked at one by one: those of a field, some by their ids, or those that settle.
     pub(super) fn is_sifted(&self) -> bool {
-        self.grade.is_some() || !self.without.is_empty()
+        self.grade.is_some() || !self.without.is_empty() || self.settling().is_some()
     }
 
     /// Leaves the points of a batch, which has ids, that a field leaves and no list of ids leaves out.

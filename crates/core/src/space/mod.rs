@@ -38,6 +38,7 @@ mod plan;
 mod point;
 mod scope;
 mod set;
+mod settled;
 #[cfg(feature = "tables")]
 mod shipped;
 mod sieve;

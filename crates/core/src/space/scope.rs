@@ -7,6 +7,8 @@ use super::{
     Region, Volume,
     lattice::{Lattice, fixed},
     mask::{ClearOf, Mask},
+    point::PointId,
+    settled::settled,
 };
 pub(super) use crate::sample::common;
 use crate::{
@@ -36,6 +38,8 @@ pub struct Scope {
     pub(super) clear: Arc<[ClearOf]>,
     /// The addresses of the points inside that are left out by their ids.
     pub(super) missing: Arc<[[i64; 3]]>,
+    /// How far points may settle from where they are put, in fixed-point units.
+    pub(super) room: i64,
     /// Ends counting early.
     pub(super) stop: Stop,
 }
@@ -70,7 +74,33 @@ impl Scope {
         // Within the limit they fit 64 bits.
         let bounds = bounds.map(|range| range.start as i64..range.end as i64);
         let volume = rest.filter(|rest| !matches!(rest, Volume::Region(_)));
-        let before = before(lattice, &bounds);
+        let mut scope = Self {
+            volume,
+            region,
+            corner,
+            clear: mask.clear.clone(),
+            stop,
+            ..Self::of_places(lattice, bounds)
+        };
+        scope.missing = scope.find_missing();
+        Ok(scope)
+    }
+
+    /// The points of a lattice at some places.
+    pub(super) fn of_places(lattice: &Lattice, bounds: [Range<i64>; 3]) -> Self {
+        let room = match lattice.settler() {
+            Some(settler) if bounds.iter().all(|range| !range.is_empty()) => {
+                let bounds = bounds
+                    .clone()
+                    .map(|range| range.start.into()..range.end.into());
+                settler.most_move(&settler.around(&bounds))
+            }
+            _ => 0,
+        };
+        let placed = bounds
+            .clone()
+            .map(|range| range.start - room..range.end + room);
+        let before = before(lattice, if room > 0 { &placed } else { &bounds });
         let all = [0, 1, 2].map(|axis| {
             let ([least, most], range) = (lattice.turned.reach[axis], &before[axis]);
             if range.is_empty() {
@@ -79,23 +109,35 @@ impl Scope {
             let start = -((i64::from(most) - range.start) >> FRACTION_BITS);
             start..((range.end - 1 - i64::from(least)) >> FRACTION_BITS) + 1
         });
-        let missing = missing(lattice, &all, |place: [i64; 3]| {
-            let is_in = |volume: &Volume| volume.contains(place.map(|v| lattice.world(v)));
-            (0..3).all(|axis| bounds[axis].contains(&place[axis]))
-                && volume.as_ref().is_none_or(is_in)
-        });
-        Ok(Self {
-            missing,
+        let ends = bounds.each_ref().map(|range| [range.start, range.end]);
+        let [min, max] = [0, 1].map(|end| ends.map(|ends| lattice.world(ends[end])));
+        let region = Region::between(min, max);
+        let first = bounds
+            .clone()
+            .map(|range| range.start.into()..range.end.into());
+        Self {
+            corner: Corner::new(lattice.step, &[], &region, &first),
             lattice: lattice.clone(),
             bounds,
             before,
             all,
-            volume,
+            volume: None,
             region,
-            corner,
-            clear: mask.clear.clone(),
-            stop,
-        })
+            clear: Arc::default(),
+            missing: Arc::default(),
+            room,
+            stop: Stop::default(),
+        }
+    }
+
+    /// Whether a place lies inside.
+    fn holds(&self, place: [i64; 3]) -> bool {
+        let at = || place.map(|v| self.lattice.world(v));
+        (0..3).all(|axis| self.bounds[axis].contains(&place[axis]))
+            && self
+                .volume
+                .as_ref()
+                .is_none_or(|volume| volume.contains(at()))
     }
 
     /// The states of the points of a box of the lattice, which is not empty, if their number is not known to be 0.
@@ -105,7 +147,7 @@ impl Scope {
         let bounds = grade.map(|grade| grade.bounds(&self.between(places)));
         let mut is_inside = match bounds {
             Some([_, high]) if high <= 0.0 => return State::Out,
-            Some([low, _]) => low >= self.lattice.placement.shown(),
+            Some([low, _]) => low >= self.lattice.placement.graded(),
             None => true,
         };
         for ([least, most], bounds) in places.iter().zip(&self.bounds) {
@@ -132,6 +174,12 @@ impl Scope {
 
     /// The ends of the fixed-point coordinates of the points of a box of the lattice.
     fn places(&self, ranges: &[Range<i64>; 3]) -> [[i64; 2]; 3] {
+        let room = self.room;
+        (self.placed(ranges)).map(|[least, most]| [least - room, most + room])
+    }
+
+    /// As [`places`](Self::places), before points settle.
+    pub(super) fn placed(&self, ranges: &[Range<i64>; 3]) -> [[i64; 2]; 3] {
         let lattice = &self.lattice;
         let displaced = [0, 1, 2].map(|axis| {
             let [least, most] = lattice.turned.reach[axis].map(i64::from);
@@ -154,6 +202,39 @@ impl Scope {
         near.iter().filter(is_there).count() as u128
     }
 
+    /// The addresses of the points that the lattice lacks by their ids and that lie inside.
+    fn find_missing(&self) -> Arc<[[i64; 3]]> {
+        let Self { lattice, all, .. } = self;
+        if lattice.without.is_empty() {
+            return Arc::default();
+        }
+        let whole = Lattice {
+            without: Vec::new(),
+            ..lattice.clone()
+        };
+        let near = self
+            .bounds
+            .clone()
+            .map(|range| range.start - self.room..range.end + self.room);
+        let is_inside = |id: PointId| {
+            let placed = whole.placed(id)?;
+            let is_near = (0..3).all(|axis| near[axis].contains(&placed[axis]));
+            (is_near && self.holds(settled(&whole, id, placed))).then(|| id.lattice())
+        };
+        let mut missing: Vec<[i64; 3]> = Vec::new();
+        for ids in &lattice.without {
+            let start = ids.partition_point(|id| id.x < all[0].start);
+            let end = ids.partition_point(|id| id.x < all[0].end);
+            let near = ids[start..end.max(start)].iter();
+            let near = near.filter(|id| all[1].contains(&id.y) && all[2].contains(&id.z));
+            missing.extend(near.filter_map(|id| is_inside(*id)));
+        }
+        // Several lists may have the same.
+        missing.sort_unstable();
+        missing.dedup();
+        missing.into()
+    }
+
     fn between(&self, places: [[i64; 2]; 3]) -> Region {
         let [min, max] = [0, 1].map(|end| places.map(|ends| self.lattice.world(ends[end])));
         Region::between(min, max)
@@ -165,9 +246,11 @@ impl Scope {
         self.is_box() && self.clear.is_empty()
     }
 
-    /// Whether all that is requested lies in a box without warp and in no field.
+    /// Whether all that is requested lies in a box without warp and in no field, and stays where it is put.
     pub(super) fn is_box(&self) -> bool {
-        self.volume.is_none() && self.lattice.shears.is_none() && self.lattice.grade.is_none()
+        let lattice = &self.lattice;
+        let is_plain = lattice.shears.is_none() && lattice.grade.is_none() && self.room == 0;
+        self.volume.is_none() && is_plain
     }
 
     /// Whether it has few points, near each other, which are walked once in place of being counted.
@@ -186,7 +269,8 @@ impl Scope {
         const SURFACE: f64 = 2e6;
         let least = if self.is_closed() { CLOSED } else { SURFACE };
         let most = least.max(CLOSED * numbers as f64);
-        !self.clear.is_empty() || self.lattice.grade.is_some() || self.candidates(ranges) <= most
+        let is_slow = self.lattice.grade.is_some() || self.room > 0;
+        !self.clear.is_empty() || is_slow || self.candidates(ranges) <= most
     }
 
     /// The box of the lattice that both have.
@@ -202,36 +286,6 @@ impl Scope {
             .map(|range| (range.end - range.start).max(0) as f64 * t);
         sides.product()
     }
-}
-
-/// The addresses of the points that a lattice lacks by their ids and that lie inside.
-fn missing(
-    lattice: &Lattice,
-    all: &[Range<i64>; 3],
-    is_inside: impl Fn([i64; 3]) -> bool,
-) -> Arc<[[i64; 3]]> {
-    if lattice.without.is_empty() {
-        return Arc::default();
-    }
-    let whole = Lattice {
-        without: Vec::new(),
-        ..lattice.clone()
-    };
-    let mut missing: Vec<[i64; 3]> = Vec::new();
-    for ids in &lattice.without {
-        let start = ids.partition_point(|id| id.x < all[0].start);
-        let end = ids.partition_point(|id| id.x < all[0].end);
-        for id in &ids[start..end.max(start)] {
-            let is_near = all[1].contains(&id.y) && all[2].contains(&id.z);
-            if is_near && whole.place(*id).is_some_and(&is_inside) {
-                missing.push(id.lattice());
-            }
-        }
-    }
-    // Several lists may have the same.
-    missing.sort_unstable();
-    missing.dedup();
-    missing.into()
 }
 
 /// The positions from which the warp takes points into bounds.

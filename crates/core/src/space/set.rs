@@ -137,7 +137,7 @@ impl SpaceSet {
     #[must_use]
     pub fn in_field(&self, field: impl Field<3> + 'static) -> Self {
         let mut set = self.clone();
-        let share = set.lattice.placement.shown();
+        let share = set.lattice.placement.graded();
         set.lattice.grade = Some(Grade::new(Arc::new(field), share));
         set
     }
@@ -222,9 +222,13 @@ impl SpaceSet {
         })
     }
 
-    /// The distance that no two points of the set are nearer than, in world units; with warp it is a bound.
+    /// The distance that no two points of the set are nearer than, in world units; with warp it is a bound. It is 0 in
+    /// fields, where points settle.
     #[must_use]
     pub fn least_distance(&self) -> f64 {
+        if self.lattice.grade.is_some() && self.lattice.settling().is_some() {
+            return 0.0;
+        }
         let Placement { spacing, warp, .. } = self.lattice.placement;
         self.table_distance().with_warp(warp) * spacing.get()
     }

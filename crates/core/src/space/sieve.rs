@@ -38,11 +38,11 @@ impl Sifted {
     }
 
     pub(super) fn backend(&self) -> Backend {
-        self.walk.backend
+        self.walk.backend()
     }
 
     pub(super) fn set_backend(&mut self, backend: Backend) {
-        self.walk.backend = backend;
+        self.walk.set_backend(backend);
     }
 
     /// Fills a batch with the next points, at least one. Returns false if there are none.

@@ -77,6 +77,15 @@ impl Placement {
         self.keep.get() * self.lod.get()
     }
 
+    /// The share that multiplies those of a field. Where points settle, the level of detail is a choice among settled ones.
+    pub(crate) const fn graded(&self) -> f64 {
+        if self.settle.is_off() {
+            self.shown()
+        } else {
+            self.keep.get()
+        }
+    }
+
     /// This placement with another warp.
     #[must_use]
     pub const fn with_warp(self, warp: Warp) -> Self {

@@ -173,14 +173,9 @@ impl Lattice {
 
     /// The lattice of a placement in a field.
     fn graded(&self, placement: Placement, grade: &Grade) -> Self {
-        let share = if placement.settle.is_off() {
-            placement.shown()
-        } else {
-            placement.keep.get()
-        };
         Self {
             placement,
-            grade: Some(grade.times(share)),
+            grade: Some(grade.times(placement.graded())),
             ..self.at(placement.with_keep(Keep::ALL).with_lod(Keep::ALL))
         }
     }

@@ -13,7 +13,7 @@ use crate::{
         field::Field,
         kernel::Backend,
         lattice::{BAND_WIDTH, Found, Grade, PATCH_HEIGHT, PointId, Settle},
-        settle::{Box2, Placed, Points, Settler, Settling},
+        settle::{Box2, List, Placed, Settler, Settling},
     },
     shape::Region,
     table::{FRACTION_BITS, Mix, fixed},
@@ -191,7 +191,7 @@ impl Settling<2> for Torus {
         within: &Box2,
         corner: [i128; 2],
         (grade, _): (&Grade, Backend),
-        mut visit: impl FnMut(Points<'_, Found, 2>),
+        mut visit: impl FnMut(List<'_, Found, 2>),
     ) {
         let reach = self.reach();
         let [columns, rows] = [0, 1].map(|i| {
@@ -224,7 +224,7 @@ impl Settling<2> for Torus {
                         }
                     }
                 }
-                visit(Points {
+                visit(List {
                     found: &found,
                     shares: &shares,
                     address,

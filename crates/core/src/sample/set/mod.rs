@@ -15,7 +15,7 @@ use alloc::sync::Arc;
 use super::{
     attribute::Kinds,
     field::Field,
-    lattice::{Keep, Lattice, Placement, Settle, Spacing},
+    lattice::{Keep, Lattice, Placement, Spacing},
     near::Mask,
     seed::Seed,
     warp::Warp,
@@ -85,28 +85,6 @@ impl PointSet {
     #[must_use]
     pub fn blue() -> Self {
         Self::new(crate::table::shipped::blue())
-    }
-
-    /// Sets the number of steps by which points settle in a [field](Self::in_field) and where not all are
-    /// [kept](Self::keep), 0 to 4; see [`Settle`](crate::Settle). Sets with all points take at most one, a smaller one.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Settle`](crate::ErrorKind::Settle) above 4.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let half = PointSet::new(table).seed(7).keep(0.5)?;
-    /// let still = half.clone().settle(0)?;
-    /// // The same points, some of them elsewhere.
-    /// let mut settled = half.chunk(20.0, [0, 0])?.into_iter();
-    /// assert!(settled.any(|point| still.point(point.id()) != Some(point)));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn settle(self, steps: u32) -> Result<Self, Error> {
-        let settle = Settle::new(steps)?;
-        Ok(self.replaced(|placement| placement.with_settle(settle)))
     }
 
     /// The set in a field: the share of its points varies from place to place. The field replaces an earlier one.

@@ -48,7 +48,7 @@ pub(crate) trait Settling<const D: usize>: Clone {
         within: &[Range<i128>; D],
         corner: [i128; D],
         by: (&Grade<D>, Backend),
-        visit: impl FnMut(Points<'_, Self::Found, D>),
+        visit: impl FnMut(List<'_, Self::Found, D>),
     );
 }
 
@@ -83,7 +83,7 @@ pub(crate) struct Lister {
 
 /// Some points and their shares.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Points<'a, F, const D: usize> {
+pub(crate) struct List<'a, F, const D: usize> {
     pub(crate) found: &'a [F],
     pub(crate) shares: &'a [f64],
     /// The address of the origin, and its place from the corner in fixed-point units.
@@ -91,7 +91,7 @@ pub(crate) struct Points<'a, F, const D: usize> {
     pub(crate) origin: [i64; D],
 }
 
-impl<F: Listed<D>, const D: usize> Points<'_, F, D> {
+impl<F: Listed<D>, const D: usize> List<'_, F, D> {
     #[inline(always)]
     pub(super) fn address(&self, found: &F) -> [i64; D] {
         let offset = found.address();
@@ -152,7 +152,7 @@ impl Settling<2> for Lister {
         within: &Box2,
         corner: [i128; 2],
         (grade, backend): (&Grade, Backend),
-        mut visit: impl FnMut(Points<'_, Found, 2>),
+        mut visit: impl FnMut(List<'_, Found, 2>),
     ) {
         let Self {
             lattice,
@@ -187,7 +187,7 @@ impl Settling<2> for Lister {
                     };
                     next = rows.list(source, next..end, TOGETHER, backend);
                     let (found, shares) = rows.with_shares();
-                    visit(Points {
+                    visit(List {
                         found,
                         shares,
                         address,

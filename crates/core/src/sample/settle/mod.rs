@@ -70,7 +70,7 @@ pub(crate) use boxes::{Box2, Placed, Settled, add_place, joined, widened};
 
 pub(crate) use super::bounds::common_box as common;
 pub(crate) use kin::weight;
-pub(crate) use lister::{Listed, Points, Settling};
+pub(crate) use lister::{List, Listed, Settling};
 use step::Kernel;
 pub(crate) use tiles::SettledTiles;
 pub(crate) use window::Settler;

@@ -24,11 +24,14 @@ const LONGEST: i64 = 256;
 /// Origins are multiples of the distance of the knots of the warp.
 const KNOT: i64 = 32;
 
-/// The points of a scope that is clear of nothing, with ids, unless it is too long.
+/// The points of a scope that is clear of nothing and stays, with ids, unless it is too long.
 pub(in crate::space) fn few(scope: &Scope) -> Option<Batch> {
     let ranges = &scope.all;
     let length = |range: &Range<i64>| range.end - range.start;
-    if !scope.clear.is_empty() || ranges.iter().any(|range| length(range) > LONGEST) {
+    if !scope.clear.is_empty()
+        || scope.room > 0
+        || ranges.iter().any(|range| length(range) > LONGEST)
+    {
         return None;
     }
     let mut batch = Batch::default();

@@ -1,0 +1,334 @@
+//! Points of space that settle: how they are listed, and the walk over them, piece by piece.
+//!
+//! A piece is a slab of a column of planes. The points around it are listed where the warp left them, all of them settle
+//! ([`crate::sample`] has the steps), and those of the piece that end inside are given in the order of their addresses.
+//! Pieces decide only the cost: a point goes to the same place in every piece.
+
+use alloc::{sync::Arc, vec::Vec};
+use core::ops::Range;
+
+use super::{
+    Batch,
+    columns::{COLUMN_BITS, columns, coordinates},
+    lattice::{Lattice, fixed},
+    point::PointId,
+    scope::{Scope, State, common},
+    walk::{Walk, few},
+};
+use crate::{
+    sample::{Backend, Grade, Keep, List, Listed, Placed, Placement, Settle, Settler, Settling},
+    table::{FRACTION_BITS, Mix},
+};
+
+/// The height of a piece, in lattice units: that of the points around it which matter, or more.
+const HEIGHT: i64 = 64;
+
+/// A settler of points in space.
+pub(super) type SpaceSettler = Settler<Lister, 3>;
+
+/// Lists points of space where they were placed.
+#[derive(Clone, Debug)]
+pub(super) struct Lister {
+    lattice: Lattice,
+    found: Vec<Found>,
+    shares: Vec<f64>,
+}
+
+/// A point relative to the origin of a batch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    place: [i32; 3],
+    address: [i32; 3],
+}
+
+impl Listed<3> for Found {
+    #[inline(always)]
+    fn address(&self) -> [i64; 3] {
+        self.address.map(i64::from)
+    }
+
+    #[inline(always)]
+    fn place(&self) -> [i32; 3] {
+        self.place
+    }
+}
+
+impl Lattice {
+    /// How points settle, and their shares before that; `None` if they stay. Full sets in space stay.
+    pub(super) fn settling(&self) -> Option<(Settle, Grade<3>)> {
+        let Placement { settle, keep, .. } = self.placement;
+        match &self.grade {
+            Some(grade) => (!settle.is_off()).then(|| (settle, grade.clone())),
+            None => {
+                let settle = settle
+                    .of_share(keep.get())
+                    .filter(|settle| !settle.is_near())?;
+                Some((settle, Grade::constant(keep.get())))
+            }
+        }
+    }
+
+    /// A settler of the points; `None` if they stay.
+    pub(super) fn settler(&self) -> Option<SpaceSettler> {
+        let (settle, grade) = self.settling()?;
+        Some(Settler::of(Lister::new(self), grade, settle))
+    }
+}
+
+impl Lister {
+    fn new(lattice: &Lattice) -> Self {
+        let placement = lattice
+            .placement
+            .with_settle(Settle::OFF)
+            .with_lod(Keep::ALL);
+        let placement = match lattice.grade {
+            Some(_) => placement.with_keep(Keep::ALL),
+            None => placement,
+        };
+        Self {
+            lattice: Lattice::new(lattice.table.clone(), placement),
+            found: Vec::new(),
+            shares: Vec::new(),
+        }
+    }
+}
+
+impl Settling<3> for Lister {
+    type Found = Found;
+
+    fn mix(&self) -> Option<&Mix> {
+        None
+    }
+
+    fn kind_of(&self, _: [i64; 3]) -> Option<u8> {
+        None
+    }
+
+    fn side(&self) -> f64 {
+        self.lattice.table.map().alpha().set_side_f64()
+    }
+
+    fn spacing(&self) -> f64 {
+        self.lattice.placement.spacing.get()
+    }
+
+    fn step(&self) -> f64 {
+        self.lattice.step
+    }
+
+    fn certified(&self) -> f64 {
+        let relative = self.lattice.table.least_distance();
+        let relative = relative.with_warp(self.lattice.placement.warp);
+        relative * f64::from(1u32 << FRACTION_BITS) / self.side()
+    }
+
+    fn looked_at(&self, place: [i128; 3]) -> [f64; 3] {
+        place.map(|k| self.lattice.world(k as i64))
+    }
+
+    fn list(
+        &mut self,
+        within: &[Range<i128>; 3],
+        corner: [i128; 3],
+        (grade, backend): (&Grade<3>, Backend),
+        mut visit: impl FnMut(List<'_, Found, 3>),
+    ) {
+        if within.iter().any(Range::is_empty) {
+            return;
+        }
+        let Self {
+            lattice,
+            found,
+            shares,
+        } = self;
+        let bounds = (within.each_ref()).map(|range| range.start as i64..range.end as i64);
+        let scope = Arc::new(Scope::of_places(lattice, bounds));
+        let mut give = |batch: &Batch| {
+            let origin = batch.origin;
+            let place = |i: usize| batch.places.each_ref().map(|list| list[i]);
+            let all = batch.ids.iter().enumerate();
+            found.clear();
+            found.extend(all.map(|(i, &address)| Found {
+                place: place(i),
+                address,
+            }));
+            shares.clear();
+            shares.resize(found.len(), grade.known().unwrap_or(1.0));
+            if grade.known().is_none() {
+                let world =
+                    |(axis, v): (usize, i32)| lattice.world(fixed(origin[axis]) + i64::from(v));
+                let at = |found: &Found| {
+                    let [x, y, z] = found.place;
+                    [(0, x), (1, y), (2, z)].map(world)
+                };
+                let places: Vec<[f64; 3]> = found.iter().map(at).collect();
+                grade.shares(&places, shares);
+                // Those of a share that their ranks are below.
+                let mut left = 0;
+                for i in 0..found.len() {
+                    let address = found[i].address();
+                    let id = PointId::of([0, 1, 2].map(|axis| origin[axis] + address[axis]));
+                    if shares[i] > 0.0 && lattice.rank(id) < shares[i] {
+                        (found[left], shares[left]) = (found[i], shares[i]);
+                        left += 1;
+                    }
+                }
+                found.truncate(left);
+                shares.truncate(left);
+            }
+            visit(List {
+                found,
+                shares,
+                address: origin,
+                origin: [0, 1, 2]
+                    .map(|axis| (i128::from(fixed(origin[axis])) - corner[axis]) as i64),
+            });
+        };
+        if scope.is_small()
+            && let Some(few) = few(&scope)
+        {
+            return give(&few);
+        }
+        let mut walk = Walk::new(scope.clone(), &scope.all, None, true);
+        walk.set_backend(backend);
+        let mut batch = Batch::default();
+        while walk.next(&mut batch) {
+            give(&batch);
+        }
+    }
+}
+
+/// A walk over the points of a scope that settle.
+#[derive(Clone, Debug)]
+pub(super) struct SettledWalk {
+    scope: Arc<Scope>,
+    settler: SpaceSettler,
+    /// The addresses that are walked, and the first one unless that is the first of all.
+    ranges: [Range<i64>; 3],
+    start: Option<[i64; 3]>,
+    /// The box in which points lie in the end, and the one in which these were placed.
+    bounds: [Range<i128>; 3],
+    around: [Range<i128>; 3],
+    /// The columns along x and y, and where the next piece begins.
+    columns: [Range<i64>; 2],
+    at: [i64; 3],
+}
+
+impl SettledWalk {
+    /// The walk over points at addresses of a box, from an address on; `None` if they stay.
+    pub(super) fn new(
+        scope: &Arc<Scope>,
+        ranges: &[Range<i64>; 3],
+        start: Option<[i64; 3]>,
+    ) -> Option<Self> {
+        let settler = scope.lattice.settler()?;
+        let ranges = scope.clip(ranges);
+        let columns = [0, 1].map(|axis| columns(&ranges[axis]));
+        let bounds = (scope.bounds.clone()).map(|range| range.start.into()..range.end.into());
+        let at = match start {
+            Some([x, y, z]) => [x >> COLUMN_BITS, y >> COLUMN_BITS, z],
+            None => [columns[0].start, columns[1].start, ranges[2].start],
+        };
+        Some(Self {
+            scope: scope.clone(),
+            around: settler.around(&bounds),
+            settler,
+            ranges,
+            start,
+            bounds,
+            columns,
+            at,
+        })
+    }
+
+    pub(super) const fn set_backend(&mut self, backend: Backend) {
+        self.settler.set_backend(backend);
+    }
+
+    /// Fills a batch with the points of the next piece that has some. Returns false if there are no more.
+    pub(super) fn next(&mut self, out: &mut Batch) -> bool {
+        while let Some(piece) = self.next_piece() {
+            self.settle(&piece, out);
+            if !out.is_empty() {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// The addresses of the next piece.
+    fn next_piece(&mut self) -> Option<[Range<i64>; 3]> {
+        let [xs, ys] = &self.columns;
+        let [x, y, z] = self.at;
+        if self.scope.stop.is_raised() || !xs.contains(&x) || !ys.contains(&y) {
+            return None;
+        }
+        let [along_x, along_y, along_z] = &self.ranges;
+        let planes = z..along_z.end.min((z & !(HEIGHT - 1)) + HEIGHT);
+        let piece = [
+            common(&coordinates(x), along_x),
+            common(&coordinates(y), along_y),
+            planes.clone(),
+        ];
+        self.at = match (planes.end < along_z.end, y + 1 < ys.end) {
+            (true, _) => [x, y, planes.end],
+            (false, true) => [x, y + 1, along_z.start],
+            (false, false) => [x + 1, ys.start, along_z.start],
+        };
+        Some(piece)
+    }
+
+    /// Fills a batch with the points of a piece that end inside.
+    fn settle(&mut self, piece: &[Range<i64>; 3], out: &mut Batch) {
+        let origin = piece.each_ref().map(|range| range.start);
+        out.restart(origin);
+        let scope = &self.scope;
+        let lattice = &scope.lattice;
+        if piece.iter().any(Range::is_empty) {
+            return;
+        }
+        let volume = match scope.state(piece, scope.volume.as_ref()) {
+            State::Out => return,
+            State::In => None,
+            State::Test(volume) => volume,
+        };
+        let places = scope.placed(piece);
+        let within = [0, 1, 2].map(|axis| {
+            let ([least, most], around) = (places[axis].map(i128::from), &self.around[axis]);
+            around.start.max(least)..around.end.min(most + 1)
+        });
+        let start = self.start.filter(|at| {
+            [at[0] >> COLUMN_BITS, at[1] >> COLUMN_BITS]
+                == [origin[0] >> COLUMN_BITS, origin[1] >> COLUMN_BITS]
+        });
+        let reversed = |[x, y, z]: [i64; 3]| [z, y, x];
+        let wants = |placed: &Placed<3>| {
+            (0..3).all(|axis| piece[axis].contains(&placed.address[axis]))
+                && start.is_none_or(|start| reversed(placed.address) >= reversed(start))
+                && placed.side(&self.bounds) != Some(false)
+                && lattice.shows(PointId::of(placed.address), placed.share)
+        };
+        self.settler.settle(&within, wants, |settled| {
+            let place = settled.place.map(|k| k as i64);
+            let is_inside = (0..3).all(|axis| scope.bounds[axis].contains(&place[axis]));
+            let holds = |volume: &super::Volume| volume.contains(place.map(|k| lattice.world(k)));
+            if is_inside && volume.as_ref().is_none_or(holds) {
+                for axis in 0..3 {
+                    out.places[axis].push((place[axis] - fixed(origin[axis])) as i32);
+                }
+                out.ids
+                    .push([0, 1, 2].map(|axis| (settled.address[axis] - origin[axis]) as i32));
+            }
+        });
+    }
+}
+
+/// The settled place of a point that was placed somewhere.
+pub(super) fn settled(lattice: &Lattice, id: PointId, place: [i64; 3]) -> [i64; 3] {
+    let Some(mut settler) = lattice.settler() else {
+        return place;
+    };
+    let is = |placed: &Placed<3>| placed.address == id.lattice();
+    let settled = settler.settled(place.map(i128::from), is);
+    settled.map_or(place, |place| place.map(|k| k as i64))
+}
