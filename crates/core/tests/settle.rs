@@ -6,7 +6,7 @@ mod subject;
 
 use std::collections::{BTreeMap, HashMap};
 
-use definition::{reference, reference_of};
+use definition::{By, reference_of};
 use proptest::prelude::*;
 use strew_core::{
     Circle, Field, Keep, PeriodicSet, Placement, Point, PointId, PointSet, Region, Seed, Settle,
@@ -55,6 +55,31 @@ fn noise() -> FieldSpec {
 
 fn region(min: [f64; 2], sides: [f64; 2]) -> Region {
     between(min, [min[0] + sides[0], min[1] + sides[1]])
+}
+
+/// Where the points of a box settle, by the definition alone.
+fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -> Vec<Point> {
+    let still = set.clone().settle(0).expect("0");
+    let points = still.within(region).expect("near").to_vec();
+    let kinds = points.iter().map(|point| set.kind_of(point.id)).collect();
+    let side = set.table().alpha().set_side_f64();
+    // In fields points settle as well, but no distance is promised.
+    let is_near = set.least_distance() > 0.0 && set.placement().keep.get() == 1.0;
+    let step = set.placement().spacing.get() * side / f64::from(1u32 << 20);
+    let table = set.table();
+    let by = By {
+        mix: table.mix(),
+        least: table.least_distance(),
+        placement: set.placement(),
+        is_near,
+        side,
+        step,
+        side_of_table: side,
+    };
+    let places = points.iter().map(Point::at).collect();
+    let settled = reference_of(by, (places, kinds), shares);
+    let at = |(point, [x, y]): (Point, [f64; 2])| Point { x, y, ..point };
+    points.into_iter().zip(settled).map(at).collect()
 }
 
 /// Compares the points of a box with the reference of a wider one.
@@ -187,19 +212,19 @@ fn settled(tile: &PeriodicSet, placement: Placement, share: &dyn Fn([f64; 2]) ->
     let period = twin.period() as i64;
     let unit = side / ((period << 20) as f64);
     let still = tile.clone().settle(0).expect("0");
-    let (mut points, mut kinds) = (Vec::new(), Vec::new());
+    let (mut points, mut kinds, mut ids) = (Vec::new(), Vec::new(), Vec::new());
     for point in still.iter() {
         let kind = tile.kind_of(point.id());
         let place = point.at().map(|v| (v / unit).round() as i64);
         for copy in (0..9).map(|i| [i % 3 - 1, i / 3 - 1]) {
-            let [x, y] = [0, 1].map(|i| (place[i] + copy[i] * (period << 20)) as f64 * unit);
-            if [x, y].iter().all(|v| (-room..side + room).contains(v)) {
+            let at = [0, 1].map(|i| (place[i] + copy[i] * (period << 20)) as f64 * unit);
+            if at.iter().all(|v| (-room..side + room).contains(v)) {
                 let [id_x, id_y] = [point.id().x, point.id().y];
-                let id = PointId {
+                ids.push(PointId {
                     x: id_x + copy[0] * period,
                     y: id_y + copy[1] * period,
-                };
-                points.push(Point { id, x, y });
+                });
+                points.push(at);
                 kinds.push(kind);
             }
         }
@@ -216,14 +241,22 @@ fn settled(tile: &PeriodicSet, placement: Placement, share: &dyn Fn([f64; 2]) ->
             .unwrap_or(0.0)
     };
     let is_near = placement.keep.get() == 1.0;
-    let by = (tile.table(), placement, is_near);
-    let grid = [twin.t() as f64 / period as f64, unit];
-    let expected = reference_of(by, (points, kinds), grid, &|at| share(at.map(wrap)));
-    let ids = 0..period;
-    let expected: BTreeMap<PointId, [f64; 2]> = expected
+    let by = By {
+        mix: tile.table().mix(),
+        least: tile.table().least_distance(),
+        placement,
+        is_near,
+        side: twin.t() as f64 / period as f64,
+        side_of_table: tile.table().alpha().set_side_f64(),
+        step: unit,
+    };
+    let expected = reference_of(by, (points, kinds), &|at| share(at.map(wrap)));
+    let own = 0..period;
+    let expected: BTreeMap<PointId, [f64; 2]> = ids
         .into_iter()
-        .filter(|p| ids.contains(&p.id.x) && ids.contains(&p.id.y))
-        .map(|p| (p.id, p.at().map(wrap)))
+        .zip(expected)
+        .filter(|(id, _)| own.contains(&id.x) && own.contains(&id.y))
+        .map(|(id, at)| (id, at.map(wrap)))
         .collect();
     let found: BTreeMap<PointId, [f64; 2]> = tile.iter().map(|p| (p.id(), p.at())).collect();
     assert!(found.len() > 20 && found.len() == still.iter().count());

@@ -47,8 +47,6 @@ pub enum Group {
     Profile,
     Table,
     Points,
-    /// How the points of a thinned set of the plane settle.
-    Thinned,
     Except,
     Attributes,
     /// The ranges of values and the names that they are chosen from.
@@ -85,51 +83,47 @@ pub mod groups {
 
     /// A set of points in a region: a layer.
     pub const SET: &[Group] = &[
-        Amount, Count, Profile, Table, Points, Thinned, Except, Attributes, Choices,
+        Amount, Count, Profile, Table, Points, Except, Attributes, Choices,
     ];
     /// A set without a region: single points.
-    pub const SINGLE: &[Group] = &[
-        Period, Amount, Profile, Table, Points, Thinned, Attributes, Choices,
-    ];
+    pub const SINGLE: &[Group] = &[Period, Amount, Profile, Table, Points, Attributes, Choices];
     /// `GET /v1/points`.
     pub const POINTS: &[Group] = &[
-        Region, Period, Amount, Count, World, WorldPin, Profile, Table, Points, Thinned, Except,
-        Attributes, Choices, Window, Output, Reference,
+        Region, Period, Amount, Count, World, WorldPin, Profile, Table, Points, Except, Attributes,
+        Choices, Window, Output, Reference,
     ];
     /// `GET /v1/chunks/…`, whose region is in the path.
     pub const CHUNK: &[Group] = &[
-        Amount, Count, World, WorldPin, Profile, Table, Points, Thinned, Except, Attributes,
-        Choices, Window, Output, Reference,
+        Amount, Count, World, WorldPin, Profile, Table, Points, Except, Attributes, Choices,
+        Window, Output, Reference,
     ];
     /// `GET /v1/worlds/…`, whose world and region are in the path.
     pub const WORLD_CHUNK: &[Group] = &[
-        Amount, Count, WorldPin, Profile, Table, Points, Thinned, Except, Attributes, Choices,
-        Window, Output, Reference,
+        Amount, Count, WorldPin, Profile, Table, Points, Except, Attributes, Choices, Window,
+        Output, Reference,
     ];
     pub const QUERY: &[Group] = &[
-        Period, Amount, Count, World, WorldPin, Profile, Table, Points, Thinned, Except,
-        Attributes, Choices, Window, Output, Reference,
+        Period, Amount, Count, World, WorldPin, Profile, Table, Points, Except, Attributes,
+        Choices, Window, Output, Reference,
     ];
     /// `GET /v1/count`.
     pub const COUNT: &[Group] = &[
-        Region, Period, Amount, Count, World, WorldPin, Profile, Table, Points, Thinned, Except,
-        Attributes, Choices,
+        Region, Period, Amount, Count, World, WorldPin, Profile, Table, Points, Except, Attributes,
+        Choices,
     ];
     /// `POST /v1/count`.
     pub const COUNTED: &[Group] = &[
-        Period, Amount, Count, World, WorldPin, Profile, Table, Points, Thinned, Except,
-        Attributes, Choices,
+        Period, Amount, Count, World, WorldPin, Profile, Table, Points, Except, Attributes, Choices,
     ];
     /// `GET /v1/periods`.
     pub const PERIODS: &[Group] = &[Period, Profile, Table, Listed];
     /// `strew measure`.
     pub const MEASURED: &[Group] = &[
-        Region, Amount, Count, World, WorldPin, Profile, Table, Points, Thinned, Attributes,
-        Choices,
+        Region, Amount, Count, World, WorldPin, Profile, Table, Points, Attributes, Choices,
     ];
     /// `GET /v1/nearest`.
     pub const NEAREST: &[Group] = &[
-        Nearest, Neighbors, Amount, Profile, Table, Points, Thinned, Attributes, Choices,
+        Nearest, Neighbors, Amount, Profile, Table, Points, Attributes, Choices,
     ];
     /// `POST /v1/points:split`, beside the body.
     pub const SPLIT: &[Group] = &[Split];

@@ -85,6 +85,7 @@ impl Set {
                 .warp(self.warp.strength())?
                 .keep(self.keep.get())?
                 .lod(self.lod.get())?
+                .settle(self.settle.steps())?
                 .spacing(spacing.get())
         };
         let set = placed().map_err(|_| Error::Internal("a checked set is out of range"))?;
@@ -100,18 +101,15 @@ impl Set {
         self.lod = Keep::new(product).unwrap_or(part);
     }
 
-    /// The number of steps by which points settle; `None` in sets whose points do not settle by default: those in space,
-    /// of all points, and of a tiny part of them.
+    /// The number of steps by which points settle; `None` in sets whose points do not settle by default: those of all
+    /// points, and of a tiny part of them.
     pub fn steps(&self) -> Option<u32> {
-        if self.space().is_some() {
-            return None;
-        }
         if self.field.is_some() {
             return Some(self.settle.steps());
         }
         let steps = self.settle.steps_at(self.keep);
         let is_thinned = (Settle::LEAST_SHARE..1.0).contains(&self.keep.get());
-        (is_thinned || steps > 0).then_some(steps)
+        (is_thinned || (steps > 0 && self.space().is_none())).then_some(steps)
     }
 
     /// Whether points move so that those of a kind, or in a field any, keep no distance of their own.

@@ -14,10 +14,6 @@ use super::{
 };
 use crate::table::FRACTION_BITS;
 
-/// Boxes of the lattice up to this side are counted point by point: larger ones where points settle with those around.
-const LEAF: i64 = 64;
-const SETTLED: i64 = 128;
-
 /// The number of points of a scope at places of a box of the lattice. It is meaningless once the scope's flag is raised.
 pub(super) fn count(scope: &Arc<Scope>, ranges: &[Range<i64>; 3]) -> u128 {
     let ranges = scope.clip(ranges);
@@ -53,7 +49,7 @@ fn divide(
     let longest = [1, 2]
         .into_iter()
         .fold(0, |a, b| if side(b) > side(a) { b } else { a });
-    let leaf = if scope.room > 0 { SETTLED } else { LEAF };
+    let leaf = scope.leaf;
     if side(longest) <= leaf {
         return walked(scope, clearance, &ranges);
     }

@@ -8,7 +8,7 @@ use super::{
     lattice::{Lattice, fixed},
     mask::{ClearOf, Mask},
     point::PointId,
-    settled::settled,
+    settled::{settled, sides},
 };
 pub(super) use crate::sample::common;
 use crate::{
@@ -17,6 +17,9 @@ use crate::{
     stop::Stop,
     table::FRACTION_BITS,
 };
+
+/// [`Scope::leaf`] where points stay.
+const LEAF: i64 = 64;
 
 /// The requested part of a lattice.
 #[derive(Clone, Debug)]
@@ -40,6 +43,9 @@ pub struct Scope {
     pub(super) missing: Arc<[[i64; 3]]>,
     /// How far points may settle from where they are put, in fixed-point units.
     pub(super) room: i64,
+    /// Boxes of the lattice up to this side are counted point by point: larger ones where points settle with those
+    /// around.
+    pub(super) leaf: i64,
     /// Ends counting early.
     pub(super) stop: Stop,
 }
@@ -88,15 +94,15 @@ impl Scope {
 
     /// The points of a lattice at some places.
     pub(super) fn of_places(lattice: &Lattice, bounds: [Range<i64>; 3]) -> Self {
-        let room = match lattice.settler() {
-            Some(settler) if bounds.iter().all(|range| !range.is_empty()) => {
-                let bounds = bounds
-                    .clone()
-                    .map(|range| range.start.into()..range.end.into());
-                settler.most_move(&settler.around(&bounds))
-            }
-            _ => 0,
-        };
+        let (mut room, mut leaf) = (0, LEAF);
+        if let Some(settler) = lattice.settler()
+            && bounds.iter().all(|range| !range.is_empty())
+        {
+            let bounds = (bounds.clone()).map(|range| range.start.into()..range.end.into());
+            let around = settler.around(&bounds);
+            room = settler.most_move(&around);
+            leaf = 2 * sides(&settler, &around)[0];
+        }
         let placed = bounds
             .clone()
             .map(|range| range.start - room..range.end + room);
@@ -126,6 +132,7 @@ impl Scope {
             clear: Arc::default(),
             missing: Arc::default(),
             room,
+            leaf,
             stop: Stop::default(),
         }
     }

@@ -222,6 +222,21 @@ impl SpaceSet {
         })
     }
 
+    /// The number of steps by which points settle.
+    ///
+    /// ```
+    /// use strew_core::space::{SpaceSet, Table};
+    ///
+    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
+    /// assert_eq!((set.steps(), set.keep(0.5)?.steps()), (0, 2));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn steps(&self) -> u32 {
+        let settling = self.lattice.settling();
+        settling.map_or(0, |(settle, _)| settle.steps())
+    }
+
     /// The distance that no two points of the set are nearer than, in world units; with warp it is a bound. It is 0 in
     /// fields, where points settle.
     #[must_use]

@@ -1,8 +1,8 @@
 //! Points of space that settle: how they are listed, and the walk over them, piece by piece.
 //!
-//! A piece is a slab of a column of planes. The points around it are listed where the warp left them, all of them settle
-//! ([`crate::sample`] has the steps), and those of the piece that end inside are given in the order of their addresses.
-//! Pieces decide only the cost: a point goes to the same place in every piece.
+//! A piece is a slab of a column of planes, cut into tiles. The points around a tile are listed where the warp left them,
+//! all of them settle (`sample/settle` has the steps), and those of the tile that end inside are given in the order of
+//! their addresses. Pieces and tiles decide only the cost: a point goes to the same place in each.
 
 use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
@@ -20,8 +20,10 @@ use crate::{
     table::{FRACTION_BITS, Mix},
 };
 
-/// The height of a piece, in lattice units: that of the points around it which matter, or more.
-const HEIGHT: i64 = 64;
+/// The height of a piece and the sides of its tiles, in lattice units at full density: points settle with those around,
+/// so larger ones cost less for each point and more memory.
+const HEIGHT: f64 = 64.0;
+const TILE: f64 = 256.0;
 
 /// A settler of points in space.
 pub(super) type SpaceSettler = Settler<Lister, 3>;
@@ -209,6 +211,8 @@ pub(super) struct SettledWalk {
     /// The box in which points lie in the end, and the one in which these were placed.
     bounds: [Range<i128>; 3],
     around: [Range<i128>; 3],
+    /// The height of pieces and the sides of tiles.
+    sides: [i64; 2],
     /// The columns along x and y, and where the next piece begins.
     columns: [Range<i64>; 2],
     at: [i64; 3],
@@ -229,9 +233,11 @@ impl SettledWalk {
             Some([x, y, z]) => [x >> COLUMN_BITS, y >> COLUMN_BITS, z],
             None => [columns[0].start, columns[1].start, ranges[2].start],
         };
+        let around = settler.around(&bounds);
         Some(Self {
+            sides: sides(&settler, &around),
             scope: scope.clone(),
-            around: settler.around(&bounds),
+            around,
             settler,
             ranges,
             start,
@@ -248,7 +254,23 @@ impl SettledWalk {
     /// Fills a batch with the points of the next piece that has some. Returns false if there are no more.
     pub(super) fn next(&mut self, out: &mut Batch) -> bool {
         while let Some(piece) = self.next_piece() {
-            self.settle(&piece, out);
+            out.restart(piece.each_ref().map(|range| range.start));
+            let [_, side] = self.sides;
+            let mut found = Vec::new();
+            for y in piece[1].clone().step_by(side as usize) {
+                for x in piece[0].clone().step_by(side as usize) {
+                    let ends = [&(x..x + side), &(y..y + side)];
+                    let [xs, ys] = [0, 1].map(|axis| common(ends[axis], &piece[axis]));
+                    self.settle(&[xs, ys, piece[2].clone()], out.origin, &mut found);
+                }
+            }
+            found.sort_unstable_by_key(|(_, [x, y, z])| [*z, *y, *x]);
+            for (place, address) in found {
+                for (list, place) in out.places.iter_mut().zip(place) {
+                    list.push(place);
+                }
+                out.ids.push(address);
+            }
             if !out.is_empty() {
                 return true;
             }
@@ -264,7 +286,8 @@ impl SettledWalk {
             return None;
         }
         let [along_x, along_y, along_z] = &self.ranges;
-        let planes = z..along_z.end.min((z & !(HEIGHT - 1)) + HEIGHT);
+        let [height, _] = self.sides;
+        let planes = z..along_z.end.min((z & !(height - 1)) + height);
         let piece = [
             common(&coordinates(x), along_x),
             common(&coordinates(y), along_y),
@@ -278,21 +301,24 @@ impl SettledWalk {
         Some(piece)
     }
 
-    /// Fills a batch with the points of a piece that end inside.
-    fn settle(&mut self, piece: &[Range<i64>; 3], out: &mut Batch) {
-        let origin = piece.each_ref().map(|range| range.start);
-        out.restart(origin);
+    /// Adds the points of a tile that end inside, relative to an origin.
+    fn settle(
+        &mut self,
+        tile: &[Range<i64>; 3],
+        origin: [i64; 3],
+        found: &mut Vec<([i32; 3], [i32; 3])>,
+    ) {
         let scope = &self.scope;
         let lattice = &scope.lattice;
-        if piece.iter().any(Range::is_empty) {
+        if tile.iter().any(Range::is_empty) || scope.stop.is_raised() {
             return;
         }
-        let volume = match scope.state(piece, scope.volume.as_ref()) {
+        let volume = match scope.state(tile, scope.volume.as_ref()) {
             State::Out => return,
             State::In => None,
             State::Test(volume) => volume,
         };
-        let places = scope.placed(piece);
+        let places = scope.placed(tile);
         let within = [0, 1, 2].map(|axis| {
             let ([least, most], around) = (places[axis].map(i128::from), &self.around[axis]);
             around.start.max(least)..around.end.min(most + 1)
@@ -303,7 +329,7 @@ impl SettledWalk {
         });
         let reversed = |[x, y, z]: [i64; 3]| [z, y, x];
         let wants = |placed: &Placed<3>| {
-            (0..3).all(|axis| piece[axis].contains(&placed.address[axis]))
+            (0..3).all(|axis| tile[axis].contains(&placed.address[axis]))
                 && start.is_none_or(|start| reversed(placed.address) >= reversed(start))
                 && placed.side(&self.bounds) != Some(false)
                 && lattice.shows(PointId::of(placed.address), placed.share)
@@ -313,14 +339,19 @@ impl SettledWalk {
             let is_inside = (0..3).all(|axis| scope.bounds[axis].contains(&place[axis]));
             let holds = |volume: &super::Volume| volume.contains(place.map(|k| lattice.world(k)));
             if is_inside && volume.as_ref().is_none_or(holds) {
-                for axis in 0..3 {
-                    out.places[axis].push((place[axis] - fixed(origin[axis])) as i32);
-                }
-                out.ids
-                    .push([0, 1, 2].map(|axis| (settled.address[axis] - origin[axis]) as i32));
+                found.push((
+                    [0, 1, 2].map(|axis| (place[axis] - fixed(origin[axis])) as i32),
+                    [0, 1, 2].map(|axis| (settled.address[axis] - origin[axis]) as i32),
+                ));
             }
         });
     }
+}
+
+/// The height of pieces and the sides of tiles: so large that they hold as many points at any share.
+pub(super) fn sides(settler: &SpaceSettler, within: &[Range<i128>; 3]) -> [i64; 2] {
+    let local = 1.0 / libm::cbrt(settler.greatest_share(within).max(Settle::LEAST_SHARE));
+    [HEIGHT, TILE].map(|side| ((side * local) as u64).next_power_of_two() as i64)
 }
 
 /// The settled place of a point that was placed somewhere.

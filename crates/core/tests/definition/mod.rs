@@ -1,6 +1,8 @@
 //! Where points settle, by docs/algorithm.md alone and slowly.
 
-use strew_core::{Placement, Point, PointId, PointSet, Region, Table};
+use std::array::from_fn;
+
+use strew_core::{LeastDistance, Placement, table::Mix};
 
 /// The steps of docs/algorithm.md: ρ, a, γ, b.
 fn kernels(steps: u32) -> Vec<[f32; 4]> {
@@ -17,6 +19,25 @@ fn kernels(steps: u32) -> Vec<[f32; 4]> {
             [1.832, 0.8284, 0.797, 0.8006],
             [2.544, 0.8413, 1.0, 0.0],
             [2.772, 0.7313, 0.836, 0.3755],
+        ],
+    }
+}
+
+/// The steps in space.
+fn kernels_in_space(steps: u32) -> Vec<[f32; 4]> {
+    match steps {
+        1 => vec![[2.338, 0.661, 0.942, 0.609]],
+        2 => vec![[2.064, 0.693, 1.127, 0.662], [2.361, 0.672, 0.906, 0.784]],
+        3 => vec![
+            [1.404, 0.973, 1.118, 0.223],
+            [2.181, 0.77, 0.764, 0.182],
+            [2.588, 0.62, 0.867, 0.688],
+        ],
+        _ => vec![
+            [1.727, 0.842, 1.046, 0.657],
+            [2.335, 0.748, 1.088, 0.614],
+            [2.586, 0.637, 0.911, 0.347],
+            [2.473, 0.514, 0.966, 0.428],
         ],
     }
 }
@@ -44,8 +65,8 @@ fn kernels_with_kinds(steps: u32) -> Vec<([f32; 4], [f32; 2])> {
 }
 
 /// The part of all points that a kind has, if its points push each other.
-fn part(table: &Table, kind: u8) -> Option<f64> {
-    let part = table.mix()?.shares().of(kind);
+fn part(mix: Option<&Mix>, kind: u8) -> Option<f64> {
+    let part = mix?.shares().of(kind);
     (0.125..=0.8).contains(&part).then_some(part)
 }
 
@@ -54,16 +75,16 @@ const NEAR: [f32; 4] = [0.8, 1.249, 0.8, 0.0];
 
 /// A move of the near step, from the offsets of all other points: no approach by more than half of what separates two
 /// points from the least distance `clear`.
-fn limited(go: [i64; 2], offsets: &[[i64; 2]], clear: f64, reach: f64) -> [i64; 2] {
+fn limited<const D: usize>(go: [i64; D], offsets: &[[i64; D]], clear: f64, reach: f64) -> [i64; D] {
     let surely = 1.0 - 1.0 / 262_144.0;
     let free = |far: f64| (far * surely - clear - 4.0).max(0.0) * 0.5;
     let go = go.map(|v| v as f64);
     let offsets = offsets.iter().map(|offset| offset.map(|v| v as f64));
-    let length = |[x, y]: [f64; 2]| (x * x + y * y).sqrt();
-    let near: Vec<[f64; 2]> = offsets
+    let along = |a: [f64; D], b: [f64; D]| (1..D).fold(a[0] * b[0], |sum, i| sum + a[i] * b[i]);
+    let length = |v: [f64; D]| along(v, v).sqrt();
+    let near: Vec<[f64; D]> = offsets
         .filter(|offset| length(*offset) > 0.0 && length(*offset) < reach)
         .collect();
-    let along = |go: [f64; 2], [x, y]: [f64; 2]| go[0] * x + go[1] * y;
     let part = near
         .iter()
         .map(|&offset| (along(go, offset) / length(offset), length(offset)))
@@ -77,38 +98,39 @@ fn limited(go: [i64; 2], offsets: &[[i64; 2]], clear: f64, reach: f64) -> [i64; 
     if is_clear {
         go.map(|v| v as i64)
     } else {
-        [0; 2]
+        [0; D]
     }
 }
 
 /// A point of the reference.
-struct Placed {
-    id: PointId,
+struct Placed<const D: usize> {
     /// In units of 128 fixed-point units, and the fixed-point units below these.
-    at: [i64; 2],
-    placed: [i64; 2],
-    below: [i64; 2],
-    world: [f64; 2],
+    at: [i64; D],
+    placed: [i64; D],
+    below: [i64; D],
+    world: [f64; D],
     share: f64,
+    /// The counted share; in space the square of its cubic root.
+    counted: f32,
     freedom: f32,
     kind: Option<u8>,
 }
 
 /// Where a point with a near neighbor goes in a set with kinds that push: past it. `None` if it would leave its box.
-fn past(
-    points: &[Placed],
-    own: &Placed,
-    wish: [f32; 2],
+fn past<const D: usize>(
+    points: &[Placed<D>],
+    own: &Placed<D>,
+    wish: [f32; D],
     (whole, half): (f32, &dyn Fn(f32) -> f32),
-) -> Option<[i64; 2]> {
-    let offset = [0, 1].map(|i| (own.at[i] - own.placed[i]) as f32);
-    let mut go = [0, 1].map(|i| (offset[i] + wish[i]).clamp(-whole, whole) - offset[i]);
-    let length = (go[0] * go[0] + go[1] * go[1]).sqrt();
-    let mut near: Vec<(f32, [f32; 2])> = points
+) -> Option<[i64; D]> {
+    let offset: [f32; D] = from_fn(|i| (own.at[i] - own.placed[i]) as f32);
+    let mut go: [f32; D] = from_fn(|i| (offset[i] + wish[i]).clamp(-whole, whole) - offset[i]);
+    let length = product(go, go).sqrt();
+    let mut near: Vec<(f32, [f32; D])> = points
         .iter()
         .map(|other| {
-            let d = [0, 1].map(|i| (own.at[i] - other.at[i]) as f32);
-            (d[0] * d[0] + d[1] * d[1], d)
+            let d = from_fn(|i| (own.at[i] - other.at[i]) as f32);
+            (product(d, d), d)
         })
         .filter(|(squared, _)| *squared > 0.0)
         .collect();
@@ -124,37 +146,50 @@ fn past(
         go = go.map(|v| v * (most / length));
     }
     let (distance, most) = (first.sqrt(), half(first.sqrt()));
-    let toward = -(go[0] * d[0] + go[1] * d[1]) / distance;
+    let toward = -product(go, d) / distance;
     if toward > most {
         let back = (toward - most) / distance;
-        go = [go[0] + back * d[0], go[1] + back * d[1]];
+        go = from_fn(|i| go[i] + back * d[i]);
     }
-    let is_inside = (0..2).all(|i| (offset[i] + go[i]).abs() <= whole);
-    is_inside.then(|| [0, 1].map(|i| own.at[i] + go[i].round_ties_even() as i64))
+    let is_inside = (0..D).all(|i| (offset[i] + go[i]).abs() <= whole);
+    is_inside.then(|| from_fn(|i| own.at[i] + go[i].round_ties_even() as i64))
 }
 
-/// Where the points of a box settle, by the definition alone: all points of the box step together, with all pairs.
-/// Points nearer to its rim than the reach of the steps are wrong.
-pub fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -> Vec<Point> {
-    let still = set.clone().settle(0).expect("0");
-    let points = still.within(region).expect("near").to_vec();
-    let kinds = points.iter().map(|point| set.kind_of(point.id)).collect();
-    let side = set.table().alpha().set_side_f64();
-    // In fields points settle as well, but no distance is promised.
-    let is_near = set.least_distance() > 0.0 && set.placement().keep.get() == 1.0;
-    let step = set.placement().spacing.get() * side / f64::from(1u32 << 20);
-    let by = (set.table(), set.placement(), is_near);
-    reference_of(by, (points, kinds), [side, step], shares)
+/// The scalar product.
+fn product<const D: usize>(a: [f32; D], b: [f32; D]) -> f32 {
+    (1..D).fold(a[0] * b[0], |sum, i| sum + a[i] * b[i])
 }
 
-/// Where points that are listed with their kinds settle, in a pattern with a mean spacing of 1/`side` grid units, in
-/// fixed-point units of `step`.
-pub fn reference_of(
-    (table, placement, is_near): (&Table, Placement, bool),
-    (still, kinds): (Vec<Point>, Vec<Option<u8>>),
-    [side, step]: [f64; 2],
-    shares: &dyn Fn([f64; 2]) -> f64,
-) -> Vec<Point> {
+/// What decides how points settle beside their places.
+pub struct By<'a> {
+    pub mix: Option<&'a Mix>,
+    pub least: LeastDistance,
+    pub placement: Placement,
+    /// Whether it is the step of sets with all points.
+    pub is_near: bool,
+    /// The inverse of the mean spacing in grid units, and that of sets of the table.
+    pub side: f64,
+    pub side_of_table: f64,
+    /// A fixed-point unit in world units.
+    pub step: f64,
+}
+
+/// Where points that are listed with their kinds settle, by the definition alone: all step together, with all pairs.
+/// Points that lack others within the reach of the steps are wrong.
+pub fn reference_of<const D: usize>(
+    by: By<'_>,
+    (still, kinds): (Vec<[f64; D]>, Vec<Option<u8>>),
+    shares: &dyn Fn([f64; D]) -> f64,
+) -> Vec<[f64; D]> {
+    let By {
+        mix,
+        least,
+        placement,
+        is_near,
+        side,
+        side_of_table,
+        step,
+    } = by;
     let Placement {
         spacing,
         keep,
@@ -162,8 +197,13 @@ pub fn reference_of(
         warp,
         ..
     } = placement;
+    let weight = |share: f64| {
+        let share = share.max(1.0 / 400.0);
+        let root = libm::cbrt(share);
+        if D == 2 { share } else { root * root }
+    };
     let unit = f64::from(1u32 << 20) / side;
-    let share = |at: [f64; 2]| {
+    let share = |at: [f64; D]| {
         let share = shares(at);
         if share > 0.0 {
             share.min(1.0) * keep.get()
@@ -171,18 +211,20 @@ pub fn reference_of(
             0.0
         }
     };
-    let mut points: Vec<Placed> = Vec::new();
-    for (point, kind) in still.into_iter().zip(kinds) {
-        let world = point.at();
+    let mut points: Vec<Placed<D>> = Vec::new();
+    for (world, kind) in still.into_iter().zip(kinds) {
         let at = world.map(|v| (v / step).round() as i64);
         assert_eq!(at.map(|v| v as f64 * step), world);
         let own = share(world);
         let around = |far: f64| {
-            let far = far * spacing.get() / own.max(1.0 / 400.0).sqrt();
-            let [x, y] = world;
-            [[x - far, y], [x + far, y], [x, y - far], [x, y + far]]
-                .iter()
-                .map(|at| (share(*at) - own).abs() / own)
+            let far = far * spacing.get() / weight(own).sqrt();
+            let along = (0..D).flat_map(|axis| [(axis, -far), (axis, far)]);
+            along
+                .map(|(axis, far)| {
+                    let mut at = world;
+                    at[axis] += far;
+                    (share(at) - own).abs() / own
+                })
                 .fold(0.0, f64::max)
         };
         let e = (around(1.0) / 0.4).max(around(1.8) / 0.7);
@@ -201,28 +243,30 @@ pub fn reference_of(
         };
         let inside = if is_near { 1.0 } else { inside };
         points.push(Placed {
-            id: point.id,
             at: at.map(|k| k >> 7),
             placed: at.map(|k| k >> 7),
             below: at.map(|k| k & 127),
             world,
             share: own,
+            counted: weight(own) as f32,
             freedom: (part * inside) as f32,
             kind,
         });
     }
-    let unit_of_table = f64::from(1u32 << 20) / table.alpha().set_side_f64();
-    let certified = table.least_distance().with_warp(warp) * unit_of_table / 128.0;
+    let unit_of_table = f64::from(1u32 << 20) / side_of_table;
+    let certified = least.with_warp(warp) * unit_of_table / 128.0;
     let clear = if is_near { 0.0 } else { certified as f32 };
     let reach_of_near = f64::from(NEAR[0]) * unit / 128.0;
     let unit = (unit / 128.0) as f32;
-    let kinds = table.mix().map_or(0, |mix| mix.shares().kinds() as u8);
-    let has_kin = !is_near && (0..kinds).any(|kind| self::part(table, kind).is_some());
+    let kinds = mix.map_or(0, |mix| mix.shares().kinds() as u8);
+    let has_kin = !is_near && (0..kinds).any(|kind| self::part(mix, kind).is_some());
     let steps = if has_kin {
         kernels_with_kinds(settle.steps())
     } else {
         let all = if is_near {
             vec![NEAR]
+        } else if D == 3 {
+            kernels_in_space(settle.steps())
         } else {
             kernels(settle.steps())
         };
@@ -232,18 +276,17 @@ pub fn reference_of(
         let [by_reach, by_near] = [reach, near].map(|r| 0.5 / (r * r * unit * unit));
         let weight = by_reach * push;
         let ratio = by_near * guard / weight;
-        let moved: Vec<[i64; 2]> = points
+        let moved: Vec<[i64; D]> = points
             .iter()
             .map(|own| {
-                let share = own.share.max(1.0 / 400.0) as f32;
-                let mut sum = [0i32; 2];
+                let mut sum = [0i32; D];
                 let mut nearest = f32::INFINITY;
-                let part = own.kind.and_then(|kind| self::part(table, kind));
-                let mut of_kin = [0i32; 2];
+                let part = own.kind.and_then(|kind| self::part(mix, kind));
+                let mut of_kin = [0i32; D];
                 for other in &points {
-                    let [dx, dy] = [0, 1].map(|i| (own.at[i] - other.at[i]) as f32);
-                    let squared = dx * dx + dy * dy;
-                    let weights = [share, other.share.max(1.0 / 400.0) as f32].map(|s| s * weight);
+                    let d: [f32; D] = from_fn(|i| (own.at[i] - other.at[i]) as f32);
+                    let squared = product(d, d);
+                    let weights = [own.counted, other.counted].map(|s| s * weight);
                     let scaled = squared * (weights[0] + weights[1]);
                     let u = (push - scaled).max(0.0);
                     let v = (guard - scaled * ratio).max(0.0);
@@ -253,11 +296,11 @@ pub fn reference_of(
                     let u = u * u;
                     let force = u * u + v * v;
                     let whole = |push: f32| push.round_ties_even() as i32;
-                    sum[0] = sum[0].wrapping_add(whole(dx * force));
-                    sum[1] = sum[1].wrapping_add(whole(dy * force));
+                    sum = from_fn(|i| sum[i].wrapping_add(whole(d[i] * force)));
                     if let Some(part) = part.filter(|_| has_kin && own.kind == other.kind) {
-                        let counted =
-                            |p: &Placed| (part * p.share.max(1.0 / 400.0)).max(1.0 / 800.0) as f32;
+                        let counted = |p: &Placed<D>| {
+                            (part * p.share.max(1.0 / 400.0)).max(1.0 / 800.0) as f32
+                        };
                         let by_reach = 0.5 / (kin_reach * kin_reach * unit * unit);
                         let strength =
                             1.0 / (part * part * part).sqrt().sqrt().sqrt().sqrt().sqrt();
@@ -266,14 +309,13 @@ pub fn reference_of(
                         let u = (push - squared * (weights[0] + weights[1])).max(0.0);
                         let u = u * u;
                         let force = u * u;
-                        of_kin[0] = of_kin[0].wrapping_add(whole(dx * force));
-                        of_kin[1] = of_kin[1].wrapping_add(whole(dy * force));
+                        of_kin = from_fn(|i| of_kin[i].wrapping_add(whole(d[i] * force)));
                     }
                 }
                 if own.freedom == 0.0 {
                     return own.at;
                 }
-                let spacing = unit / share.sqrt();
+                let spacing = unit / own.counted.sqrt();
                 let mut freedom = own.freedom;
                 if has_kin {
                     let most = (0.15 * spacing) as i32;
@@ -291,7 +333,7 @@ pub fn reference_of(
                     ((distance * (1.0 - 1.0 / 262_144.0) - clear) * 0.5 - 2.0).max(0.0)
                 };
                 let free = half(far);
-                let length = (go[0] * go[0] + go[1] * go[1]).sqrt();
+                let length = product(go, go).sqrt();
                 if clear > 0.0 && length > free {
                     go = go.map(|v| v * (free / length));
                 }
@@ -301,41 +343,39 @@ pub fn reference_of(
                         return at;
                     }
                 }
-                let to = [0, 1].map(|i| {
+                let to: [i64; D] = from_fn(|i| {
                     let whole = |v: f32| i64::from(v.round_ties_even() as i32);
                     let offset = own.at[i] + whole(go[i]) - own.placed[i];
                     let most = 0.4 * spacing;
                     own.placed[i] + whole((offset as f32).clamp(-most, most))
                 });
-                let go = [0, 1].map(|i| to[i] - own.at[i]);
-                if !is_near || go == [0; 2] {
+                let go = from_fn(|i| to[i] - own.at[i]);
+                if !is_near || go == [0; D] {
                     return to;
                 }
-                let offset = |other: &Placed| [0, 1].map(|i| other.at[i] - own.at[i]);
-                let offsets: Vec<[i64; 2]> = points.iter().map(offset).collect();
+                let offset = |other: &Placed<D>| from_fn(|i| other.at[i] - own.at[i]);
+                let offsets: Vec<[i64; D]> = points.iter().map(offset).collect();
                 let go = limited(go, &offsets, certified, reach_of_near);
-                [0, 1].map(|i| own.at[i] + go[i])
+                from_fn(|i| own.at[i] + go[i])
             })
             .collect();
         for (point, to) in points.iter_mut().zip(moved) {
             point.at = to;
         }
     }
-    let world = |point: &Placed| [0, 1].map(|i| (point.at[i] * 128 + point.below[i]) as f64 * step);
-    let back = |point: &Placed| {
+    let world = |point: &Placed<D>| from_fn(|i| (point.at[i] * 128 + point.below[i]) as f64 * step);
+    let back = |point: &Placed<D>| {
         let there = share(world(point));
         there < 0.5 * point.share || there > 2.0 * point.share
     };
     points
         .iter()
         .map(|point| {
-            let at = if point.freedom > 0.0 && back(point) {
+            if point.freedom > 0.0 && back(point) {
                 point.world
             } else {
                 world(point)
-            };
-            let [x, y] = at;
-            Point { id: point.id, x, y }
+            }
         })
         .collect()
 }

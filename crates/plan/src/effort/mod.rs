@@ -176,7 +176,7 @@ pub fn planning(query: &Query, tables: &[Ready], limit: u64, stop: &Stop) -> Res
 /// The rows that counting the points of a set in a volume takes, where testing one against others takes `test`
 /// nanoseconds.
 pub(super) fn rows_of_volume(points: &SpaceSet, volume: &Volume, test: f64) -> f64 {
-    volume::counting_set(points.placement(), volume, test) / ROW
+    volume::counting_set(points, volume, test) / ROW
 }
 
 /// The price of counting a period, in rows: 0 if it has all points.

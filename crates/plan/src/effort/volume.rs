@@ -218,9 +218,16 @@ pub(super) fn counting(query: &Query) -> f64 {
         if let (Some((points, counts)), true) = (&points, query.is_counted(i)) {
             let placement = points.placement();
             let test = test(&chains, set, points, (&volume, query.region.bounds));
-            let counted = counting_set(placement, &volume, test) * counts + lacking(set);
+            let counted = counting_set(points, &volume, test) * counts + lacking(set);
             let is_sought = window.offset > 0;
-            let sought = is_sought.then(|| seeking(placement, &volume, (counted, test > 0.0), 1.0));
+            let sought = is_sought.then(|| {
+                seeking(
+                    placement,
+                    &volume,
+                    (counted, test > 0.0 || set.moves()),
+                    1.0,
+                )
+            });
             all += counted + sought.unwrap_or(0.0);
         }
         let points = points.as_ref().map(|(points, _)| points);
@@ -281,7 +288,29 @@ pub fn candidates(points: &SpaceSet, volume: &Volume) -> u128 {
 }
 
 /// The nanoseconds that counting the points of a set in a volume takes, where testing one against others takes `test`.
-pub(super) fn counting_set(placement: Placement, volume: &Volume, test: f64) -> f64 {
+pub(super) fn counting_set(points: &SpaceSet, volume: &Volume, test: f64) -> f64 {
+    let placement = points.placement();
+    settled(points, volume) + placed_set(placement, volume, test)
+}
+
+/// The nanoseconds that settling the points near the surface of a volume takes, with those around.
+fn settled(points: &SpaceSet, volume: &Volume) -> f64 {
+    /// How far around points others matter, the depth of the parts that are settled, in local spacings, and the
+    /// nanoseconds for a step of a point.
+    const AROUND: f64 = 12.0;
+    const DEEP: f64 = 60.0;
+    const STEP: f64 = 250.0;
+    let placement = points.placement();
+    let local = placement.spacing.get() / placement.keep.get().cbrt();
+    let whole: f64 = sides(volume)
+        .iter()
+        .map(|side| side / local + AROUND)
+        .product();
+    let near = surface(volume) / (local * local) * DEEP;
+    whole.min(near.max(AROUND.powi(3))) * f64::from(points.steps()) * STEP
+}
+
+fn placed_set(placement: Placement, volume: &Volume, test: f64) -> f64 {
     let spacing = placement.spacing.get();
     let is_box = matches!(volume, Volume::Region(_));
     match (test > 0.0, placement.warp) {
@@ -341,9 +370,9 @@ pub(super) fn splitting(
     let placement = plan.space()?.placement();
     let own = set.region.as_ref().and_then(|own| own.volume.as_ref());
     let volume = query.region.volume.as_ref()?.and(own);
-    let is_tested = !set.clear_of.is_empty() || set.field.is_some();
+    let is_tested = !set.clear_of.is_empty() || set.field.is_some() || set.moves();
     let counted = match !is_tested {
-        true => counting_set(placement, &volume, 0.0),
+        true => placed_set(placement, &volume, 0.0),
         false => plan.total() as f64 * nanoseconds,
     };
     Some(seeking(placement, &volume, (counted, is_tested), parts))
@@ -362,7 +391,7 @@ mod tests {
             let first = if is_chain { i.saturating_sub(1) } else { 0 };
             let clear: Vec<_> = (first..i).map(|place| (place, distance)).collect();
             let test = chains.test(set, &clear, volume);
-            price = counting_set(set.placement(), volume, test);
+            price = counting_set(set, volume, test);
             chains.push(Some(set), &clear, None);
         }
         price

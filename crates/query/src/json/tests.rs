@@ -167,11 +167,10 @@ fn faults_name_the_member_by_its_path() {
 
 #[test]
 fn parameters_of_the_plane_are_known_in_space() {
-    let body = r#"{"settle": 2, "sed": 1, "layers": [{"name": "a", "settle": 2, "periodic": 9, "limit": 3}]}"#;
+    let body = r#"{"periodic": 2, "sed": 1, "layers": [{"name": "a", "periodic": 9, "limit": 3}]}"#;
     let expected = [
-        "settle: not for points in space",
+        "periodic: not for points in space",
         "sed: unknown member; did you mean `seed`?",
-        "layers[0].settle: not for points in space",
         "layers[0].periodic: not for points in space",
         "layers[0].limit: unknown member",
     ];

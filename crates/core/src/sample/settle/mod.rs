@@ -16,14 +16,15 @@
 //! [`LEAST_SHARE`]), and σ the spacing at full density,
 //!
 //! ```text
-//!     u = |d|² (s_i + s_j) / 2σ²                 d = p_i − p_j: squared distance in the pair's local spacings
+//!     u = |d|² (s_i + s_j) / 2σ²                 d = p_i − p_j: squared distance in the pair's local spacings,
+//!                                                in space with the squares of the shares' cubic roots
 //!     W(u) = (a · max(0, 1 − u/ρ²))⁴ + (b · max(0, 1 − u/γ²))²
 //!     p_i ← p_i + f_i Σ_j d · W(u)               cut to ±.3 local spacings a step and ±.4 in all
 //! ```
 //!
 //! The reach comes from the mean density of the pair, so the pushes of a pair are equal and opposite, and in two
 //! dimensions the pressure of such pushes does not depend on the density: no term for it is needed, and the field
-//! is not looked at again. The freedom f is 0 where a field is steep, so that edges stay sharp, and 0 at full density.
+//! is not looked at again. (In space it depends a little: on the cubic root of the share.) The freedom f is 0 where a field is steep, so that edges stay sharp, and 0 at full density.
 //! (Sets with all points make one step of their own instead, with f = 1 and a limit of its own.)
 //!
 //! The constants ρ, a, γ, b were learned by measuring power and distances (CMA-ES); docs/algorithm.md lists them.
@@ -86,7 +87,7 @@ pub(crate) const MOST_MOVE: f64 = 8.0;
 /// The pushes of each step.
 const fn kernels<const D: usize>(settle: Settle) -> &'static [Kernel] {
     match settle.steps() {
-        steps if D == 3 => SPACE.split_at(steps as usize).0,
+        steps if D == 3 => IN_SPACE[steps as usize],
         _ if settle.is_near() => &NEAR,
         0 => &[],
         1 => &ONE,
@@ -105,8 +106,26 @@ const fn kernel([reach, push, near, guard]: [f32; 4]) -> Kernel {
     }
 }
 
-/// The steps in space.
-const SPACE: [Kernel; 4] = [kernel([2.0, 0.69, 0.8, 0.0]); 4];
+/// The steps in space, by their number.
+const IN_SPACE: [&[Kernel]; 5] = [
+    &[],
+    &[kernel([2.338, 0.661, 0.942, 0.609])],
+    &[
+        kernel([2.064, 0.693, 1.127, 0.662]),
+        kernel([2.361, 0.672, 0.906, 0.784]),
+    ],
+    &[
+        kernel([1.404, 0.973, 1.118, 0.223]),
+        kernel([2.181, 0.77, 0.764, 0.182]),
+        kernel([2.588, 0.62, 0.867, 0.688]),
+    ],
+    &[
+        kernel([1.727, 0.842, 1.046, 0.657]),
+        kernel([2.335, 0.748, 1.088, 0.614]),
+        kernel([2.586, 0.637, 0.911, 0.347]),
+        kernel([2.473, 0.514, 0.966, 0.428]),
+    ],
+];
 /// The step of sets with all points.
 const NEAR: [Kernel; 1] = [kernel([0.8, 1.249, 0.8, 0.0])];
 const ONE: [Kernel; 1] = [kernel([2.395, 0.7388, 0.999, 0.605])];

@@ -310,10 +310,15 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
             for (axis, list) in places.placed.iter_mut().enumerate() {
                 list.extend(offsets().map(|offset| (offset[axis] >> shift) as i32 as f32));
             }
-            let shares = some.shares.iter();
-            places
-                .weight
-                .extend(shares.map(|share| weight::<D>(*share) as f32));
+            match self.grade.known() {
+                Some(share) => places
+                    .weight
+                    .resize(places.placed[0].len(), weight::<D>(share) as f32),
+                None => {
+                    let weights = some.shares.iter().map(|share| weight::<D>(*share) as f32);
+                    places.weight.extend(weights);
+                }
+            }
             let points = some.found.iter().zip(some.shares);
             listed.extend(points.map(|(found, &share)| {
                 let (address, offset) = (some.address(found), some.offset(found));
