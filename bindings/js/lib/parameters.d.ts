@@ -103,8 +103,8 @@ export interface Parameters {
     /**
      * The steps by which the points of a set that is thinned or in a field move apart, so that they are spread evenly:
      * 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its time. Sets with all points
-     * stay by default; for them 1 is one small step that moves the nearest points apart, and more count as 1. Allowed:
-     * an integer from 0 to 4. Default: 2; 0 for sets with all points.
+     * stay by default; for them 1 is one small step that moves the nearest points apart, and more count as 1. In space
+     * they stay. Allowed: an integer from 0 to 4. Default: 2; 0 for sets with all points.
      */
     settle?: number;
     /**
@@ -254,7 +254,8 @@ export interface VolumeParameters {
 export interface SpaceParameters extends Pick<
     Parameters,
     "density" | "spacing" | "min_distance" | "count" | "profile" | "alpha" | "map" | "table" | "seed" | "warp" | "keep"
-    | "lod" | "field" | "except" | "scale_range" | "scale_ranges" | "variants" | "offset" | "limit" | "cursor"
+    | "settle" | "lod" | "field" | "except" | "scale_range" | "scale_ranges" | "variants" | "offset" | "limit" |
+    "cursor"
 > {
     /**
      * Further values of each point, hashed from its id and the seed: rotation (a uniform unit quaternion, as qx, qy, qz

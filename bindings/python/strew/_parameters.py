@@ -52,6 +52,7 @@ class Common(TypedDict, total=False):
     seed: Integer | None
     warp: str | Number | None
     keep: Number | None
+    settle: Integer | None
     lod: Number | None
     field: str | Mapping[str, Any] | None
     except_: str | Sequence[str] | None
@@ -68,7 +69,6 @@ class Parameters(TypedDict, total=False):
 
     periodic: Integer | None
     world_digest: str | None
-    settle: Integer | None
     attributes: Attribute | Sequence[Attribute] | None
     spread: str | None
     variant_fields: Mapping[str, str | Mapping[str, Any]] | None
@@ -153,7 +153,8 @@ ABOUT = {
     "settle": "The steps by which the points of a set that is thinned or in a field move apart, so that they are "
               "spread evenly: 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its time. "
               "Sets with all points stay by default; for them 1 is one small step that moves the nearest points apart, "
-              "and more count as 1. Allowed: an integer from 0 to 4. Default: 2; 0 for sets with all points. ",
+              "and more count as 1. In space they stay. Allowed: an integer from 0 to 4. Default: 2; 0 for sets with "
+              "all points. ",
     "lod": "The level of detail: the part of the points that the answer has, at each place those of the lowest rank. "
            "None of them moves, so a level has a part of the points of a finer one, in fields, of kinds and of layers, "
            "too. Beside layers: of all of them; they keep clear of all points of each other. Allowed: a number from "
