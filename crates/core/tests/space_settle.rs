@@ -110,7 +110,7 @@ proptest! {
     ) {
         let set = set("sqrt(3)", seed, steps).keep(keep).expect("a share");
         let set = if in_field { set.in_field(cloud()) } else { set };
-        let whole = between([-3.0, 2.0, -9.0], [13.0, 18.0, 7.0]);
+        let whole = between([-3.0, 2.0, -9.0], [9.0, 14.0, 3.0]);
         let all = within(&set, whole);
         let ids: Vec<PointId> = all.iter().map(|point| point.id).filter(|id| (id.x ^ id.z) % (felled + 1) == 0).collect();
         let part = set.clone().without(ids.clone()).lod(lod).expect("a part");
@@ -118,7 +118,7 @@ proptest! {
         let shown = |point: &&Point| !ids.contains(&point.id) && part.point(point.id).is_some();
         let left: Vec<Point> = all.iter().filter(shown).copied().collect();
         prop_assert!(lod < 1.0 || left.len() + ids.len() == all.len());
-        let ball = Ball::new([5.0, 10.0, -1.0], 6.5).expect("a ball");
+        let ball = Ball::new([3.0, 8.0, -3.0], 5.0).expect("a ball");
         let in_ball = left.iter().filter(|point| ball.contains(point.at())).copied();
         match is_ball {
             true => agree(&part, ball, &in_ball.collect::<Vec<_>>(), parts),
@@ -128,8 +128,8 @@ proptest! {
             prop_assert_eq!(part.point(point.id), Some(*point));
         }
         let chunks = (0..8i64).flat_map(|i| {
-            let at = [-3 + i % 2 * 8, 2 + i / 2 % 2 * 8, -9 + i / 4 * 8].map(|v| v as f64);
-            within(&part, between(at, at.map(|v| v + 8.0)))
+            let at = [-3 + i % 2 * 6, 2 + i / 2 % 2 * 6, -9 + i / 4 * 6].map(|v| v as f64);
+            within(&part, between(at, at.map(|v| v + 6.0)))
         });
         let mut chunks: Vec<Point> = chunks.collect();
         chunks.sort_by_key(|point| order(point.id));

@@ -50,7 +50,8 @@ fn divide(
         .into_iter()
         .fold(0, |a, b| if side(b) > side(a) { b } else { a });
     let leaf = scope.leaf;
-    if side(longest) <= leaf {
+    // A little more than a leaf is not worth two.
+    if side(longest) <= leaf + leaf / 2 {
         return walked(scope, clearance, &ranges);
     }
     // Parts that begin at multiples of the side of a leaf.

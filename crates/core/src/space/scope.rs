@@ -8,7 +8,7 @@ use super::{
     lattice::{Lattice, fixed},
     mask::{ClearOf, Mask},
     point::PointId,
-    settled::{settled, sides},
+    settled::{settled, tile},
 };
 pub(super) use crate::sample::common;
 use crate::{
@@ -101,7 +101,7 @@ impl Scope {
             let bounds = (bounds.clone()).map(|range| range.start.into()..range.end.into());
             let around = settler.around(&bounds);
             room = settler.most_move(&around);
-            leaf = 2 * sides(&settler, &around)[0];
+            leaf = tile(&settler, &around);
         }
         let placed = bounds
             .clone()

@@ -16,14 +16,19 @@ use super::{
     walk::{Walk, few},
 };
 use crate::{
-    sample::{Backend, Grade, Keep, List, Listed, Placed, Placement, Settle, Settler, Settling},
+    sample::{
+        Backend, Grade, Keep, LEAST_IN_SPACE, List, Listed, Placed, Placement, Settle, Settler,
+        Settling,
+    },
     table::{FRACTION_BITS, Mix},
 };
 
-/// The height of a piece and the sides of its tiles, in lattice units at full density: points settle with those around,
-/// so larger ones cost less for each point and more memory.
-const HEIGHT: f64 = 64.0;
+/// The sides of the tiles of a piece and its least height, in lattice units at full density: points settle with those
+/// around, so larger ones cost less for each point and more memory.
 const TILE: f64 = 256.0;
+const LEAST_HEIGHT: f64 = 64.0;
+/// About the most points of a piece that is higher.
+const MOST: f64 = 400_000.0;
 
 /// A settler of points in space.
 pub(super) type SpaceSettler = Settler<Lister, 3>;
@@ -79,16 +84,13 @@ impl Lattice {
 
 impl Lister {
     fn new(lattice: &Lattice) -> Self {
-        let placement = lattice
-            .placement
-            .with_settle(Settle::OFF)
-            .with_lod(Keep::ALL);
-        let placement = match lattice.grade {
-            Some(_) => placement.with_keep(Keep::ALL),
-            None => placement,
+        let placement = lattice.placement.with_settle(Settle::OFF);
+        let still = Lattice {
+            without: Vec::new(),
+            ..lattice.replaced(placement.with_lod(Keep::ALL))
         };
         Self {
-            lattice: Lattice::new(lattice.table.clone(), placement),
+            lattice: still,
             found: Vec::new(),
             shares: Vec::new(),
         }
@@ -165,18 +167,6 @@ impl Settling<3> for Lister {
                 };
                 let places: Vec<[f64; 3]> = found.iter().map(at).collect();
                 grade.shares(&places, shares);
-                // Those of a share that their ranks are below.
-                let mut left = 0;
-                for i in 0..found.len() {
-                    let address = found[i].address();
-                    let id = PointId::of([0, 1, 2].map(|axis| origin[axis] + address[axis]));
-                    if shares[i] > 0.0 && lattice.rank(id) < shares[i] {
-                        (found[left], shares[left]) = (found[i], shares[i]);
-                        left += 1;
-                    }
-                }
-                found.truncate(left);
-                shares.truncate(left);
             }
             visit(List {
                 found,
@@ -234,8 +224,14 @@ impl SettledWalk {
             None => [columns[0].start, columns[1].start, ranges[2].start],
         };
         let around = settler.around(&bounds);
+        let along = [0, 1].map(|axis| ranges[axis].end - ranges[axis].start);
+        let density = scope.lattice.table.map().alpha().set_side_f64();
+        let density = density * density * density;
         Some(Self {
-            sides: sides(&settler, &around),
+            sides: [
+                height(&settler, &around, along, density),
+                tile(&settler, &around),
+            ],
             scope: scope.clone(),
             around,
             settler,
@@ -348,10 +344,25 @@ impl SettledWalk {
     }
 }
 
-/// The height of pieces and the sides of tiles: so large that they hold as many points at any share.
-pub(super) fn sides(settler: &SpaceSettler, within: &[Range<i128>; 3]) -> [i64; 2] {
-    let local = 1.0 / libm::cbrt(settler.greatest_share(within).max(Settle::LEAST_SHARE));
-    [HEIGHT, TILE].map(|side| ((side * local) as u64).next_power_of_two() as i64)
+/// The sides of tiles, which hold as many points at any share.
+pub(super) fn tile(settler: &SpaceSettler, within: &[Range<i128>; 3]) -> i64 {
+    power(TILE / libm::cbrt(settler.greatest_share(within).max(LEAST_IN_SPACE)))
+}
+
+/// The height of pieces of a width and depth.
+fn height(settler: &SpaceSettler, within: &[Range<i128>; 3], sides: [i64; 2], density: f64) -> i64 {
+    let share = settler.greatest_share(within).max(LEAST_IN_SPACE);
+    let area: f64 = sides
+        .iter()
+        .map(|side| (*side).clamp(1, 1 << COLUMN_BITS) as f64)
+        .product();
+    let local = 1.0 / libm::cbrt(share);
+    power((MOST / (area * density * share)).clamp(LEAST_HEIGHT * local, TILE * local))
+}
+
+/// The next power of two.
+fn power(side: f64) -> i64 {
+    (side as u64).next_power_of_two() as i64
 }
 
 /// The settled place of a point that was placed somewhere.

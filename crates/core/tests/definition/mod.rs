@@ -198,9 +198,12 @@ pub fn reference_of<const D: usize>(
         ..
     } = placement;
     let weight = |share: f64| {
-        let share = share.max(1.0 / 400.0);
-        let root = libm::cbrt(share);
-        if D == 2 { share } else { root * root }
+        let root = libm::cbrt(share.max(1.0 / 100.0));
+        if D == 2 {
+            share.max(1.0 / 400.0)
+        } else {
+            root * root
+        }
     };
     let unit = f64::from(1u32 << 20) / side;
     let share = |at: [f64; D]| {

@@ -284,7 +284,7 @@ fn single_points_in_space_and_faults() {
     let refused = library.plan_in_space(br#"{"region": {"bbox": [0, 0, 0, 1]}, "settle": 1}"#);
     let refused = refused.expect_err("faults");
     let fields: Vec<&str> = refused.faults().iter().map(|fault| &*fault.field).collect();
-    assert_eq!(fields, ["settle", "region.bbox", "spacing"]);
+    assert_eq!(fields, ["region.bbox", "spacing", "settle"]);
 }
 
 #[test]

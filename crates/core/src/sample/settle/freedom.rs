@@ -11,7 +11,7 @@
 use alloc::vec::Vec;
 use core::array::from_fn;
 
-use super::LEAST_SHARE;
+use super::{LEAST_IN_SPACE, LEAST_SHARE};
 use crate::{
     sample::lattice::{Grade, Settle},
     shape::Region,
@@ -52,11 +52,10 @@ pub(super) struct Freedoms<const D: usize> {
 
 /// The weight of a share: the inverse of the squared local spacing, that at full density being 1.
 pub(super) fn weight<const D: usize>(share: f64) -> f64 {
-    let share = share.max(LEAST_SHARE);
     if D == 2 {
-        return share;
+        return share.max(LEAST_SHARE);
     }
-    let side = libm::cbrt(share);
+    let side = libm::cbrt(share.max(LEAST_IN_SPACE));
     side * side
 }
 

@@ -81,6 +81,9 @@ use crate::sample::lattice::Settle;
 /// Shares below this count as this: 20 spacings between points. So a point's reach is bounded.
 pub(crate) const LEAST_SHARE: f64 = 1.0 / 400.0;
 
+/// The same in space: some 5 spacings. What matters to a point fills a ball there.
+pub(crate) const LEAST_IN_SPACE: f64 = 1.0 / 100.0;
+
 /// The greatest move along each axis, in spacings at full density.
 pub(crate) const MOST_MOVE: f64 = 8.0;
 
