@@ -3,7 +3,7 @@
 use strew_core::{Alpha, map::Size};
 use strew_error::Audience;
 use strew_forge::{
-    Job, MAX_RADIUS, Profile,
+    Job, MAX_RADIUS, Profile, Task as _,
     space::{SpaceJob, SpaceProfile},
 };
 
@@ -66,7 +66,7 @@ impl Offer {
                     radius,
                     ..usual
                 };
-                if job.check().is_err() {
+                if job.plan().is_err() {
                     return String::new();
                 }
                 radius

@@ -1,6 +1,6 @@
 //! A cell list, which finds the points near a place on a torus or in a box.
 
-use crate::measure::Sample;
+use crate::measure::{Sample, root, wrap};
 
 /// Points sorted into square cells, in space into cubes.
 pub(crate) struct CellList<const D: usize = 2> {
@@ -11,23 +11,16 @@ pub(crate) struct CellList<const D: usize = 2> {
     /// The start of the members of each cell, and the end of the last.
     starts: Vec<u32>,
     /// Index and position of each point, cell by cell; positions are within [0, side).
-    members: Vec<(u32, [f64; D])>,
-}
-
-impl CellList {
-    /// Sorts the points of a set into cells at least `cell` wide. Positions of a periodic set are taken modulo its side.
-    pub(crate) fn of(set: &Sample, cell: f64) -> Self {
-        let (points, side) = (set.points(), set.side());
-        // However small `cell` is, there are at most about twice as many cells as points.
-        let most = (2.0 * points.len() as f64).sqrt().ceil().max(1.0);
-        let per_axis = (side / cell).floor().clamp(1.0, most) as i64;
-        Self::new(points, side, set.is_periodic(), per_axis)
-    }
+    pub(crate) members: Vec<(u32, [f64; D])>,
 }
 
 impl<const D: usize> CellList<D> {
-    /// Sorts points into cells. Periodic positions are taken modulo the side.
-    pub(crate) fn new(points: &[[f64; D]], side: f64, periodic: bool, per_axis: i64) -> Self {
+    /// Sorts the points of a set into cells at least `width` wide. Positions of a periodic set are taken modulo its side.
+    pub(crate) fn of(set: &Sample<D>, width: f64) -> Self {
+        let (points, side, periodic) = (set.points(), set.side(), set.is_periodic());
+        // However small `width` is, there are at most about twice as many cells as points.
+        let most = root::<D>(2.0 * points.len() as f64).ceil().max(1.0);
+        let per_axis = (side / width).floor().clamp(1.0, most) as i64;
         let home = |p: &[f64; D]| match periodic {
             true => p.map(|v| wrap(v, side)),
             false => *p,
@@ -60,18 +53,6 @@ impl<const D: usize> CellList<D> {
     /// The width of a cell.
     pub(crate) fn width(&self) -> f64 {
         self.side / self.per_axis as f64
-    }
-
-    /// All points, cell by cell.
-    pub(crate) fn members(&self) -> &[(u32, [f64; D])] {
-        &self.members
-    }
-
-    /// Whether a place is in no cell at the side of the box.
-    pub(crate) fn is_within(&self, p: &[f64; D]) -> bool {
-        let inner = 1..self.per_axis - 1;
-        let cell = cell(p, self.side, self.per_axis);
-        cell.iter().all(|v| inner.contains(v))
     }
 
     /// Calls `visit` for each point in the square ring, or the shell of a cube, of cells at distance `ring` from the cell
@@ -122,14 +103,4 @@ fn cell<const D: usize>(p: &[f64; D], side: f64, per_axis: i64) -> [i64; D] {
 /// The number of a cell, of which the first axis runs fastest.
 fn place<const D: usize>(cell: [i64; D], per_axis: i64) -> usize {
     cell.iter().rev().fold(0, |at, v| at * per_axis + v) as usize
-}
-
-/// Returns `v` modulo `side`, in [0, side).
-pub(crate) fn wrap(v: f64, side: f64) -> f64 {
-    let wrapped = v - (v / side).floor() * side;
-    if wrapped < side {
-        wrapped.max(0.0)
-    } else {
-        0.0
-    }
 }

@@ -6,18 +6,17 @@
 //! and is refused by every other job.
 //!
 //! The file holds a magic number, counts, the job as lines of text, the state, and a digest of all of
-//! these. Numbers are little-endian. Tables of points in space have a magic number and a state of their own.
+//! these. A state is numbers and lists of numbers, which only the phase that made them can read: so jobs of the plane and of
+//! space have one format. Numbers are little-endian.
 
 use std::{fs, io::ErrorKind, path::Path};
 
 use strew_core::table::Digest;
 
-use crate::{ForgeError, file, optimize::DescentState, space::SpaceState};
+use crate::{ForgeError, file};
 
 /// The first bytes of a checkpoint file. A change of the layout raises the digit.
-const MAGIC: &[u8; 8] = b"strewck1";
-/// Those of a checkpoint of a table of points in space.
-const SPACE_MAGIC: &[u8; 8] = b"strewcs1";
+const MAGIC: &[u8; 8] = b"strewck2";
 /// The largest file that is read. A checkpoint has four vectors a block, at most 15 MB.
 const MAX_BYTES: u64 = 32 << 20;
 /// The length of the digest at the end of the file.
@@ -35,23 +34,25 @@ pub struct Checkpoint {
     /// Steps of all phases.
     pub(crate) of: u32,
     /// The state of the current phase.
-    pub(crate) state: State,
+    pub(crate) state: Kept,
 }
 
-/// The state of a phase.
+/// The state of a phase: the steps that it has done, numbers, and lists of the components of vectors.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum State {
-    Plane(DescentState),
-    Space(SpaceState),
+pub struct Kept {
+    pub(crate) steps: u32,
+    pub(crate) numbers: Vec<f64>,
+    pub(crate) lists: Vec<Vec<f64>>,
 }
 
-impl State {
-    /// The number of vectors.
-    fn blocks(&self) -> usize {
-        match self {
-            Self::Plane(state) => state.moves.len(),
-            Self::Space(state) => state.moves.len(),
-        }
+impl Kept {
+    /// The lists of vectors, or `None` if there is another number of them, or one is neither empty nor as long as the first.
+    pub(crate) fn lists<const D: usize, const N: usize>(self) -> Option<[Vec<[f64; D]>; N]> {
+        let lists = self.lists.iter().map(|list| list.as_chunks().0.to_vec());
+        let lists: [Vec<[f64; D]>; N] = lists.collect::<Vec<_>>().try_into().ok()?;
+        let blocks = lists[0].len();
+        let fits = |list: &Vec<_>| list.is_empty() || list.len() == blocks;
+        lists.iter().all(fits).then_some(lists)
     }
 }
 
@@ -69,13 +70,9 @@ impl Checkpoint {
     }
 
     /// Refuses a job whose lines differ from those of the checkpoint.
-    pub(crate) fn check(&self, job: &str, blocks: usize) -> Result<(), ForgeError> {
+    pub(crate) fn check(&self, job: &str) -> Result<(), ForgeError> {
         if self.job == job {
-            // The digest rules out damage; only a fault of the forge makes a state of another size.
-            return match self.state.blocks() {
-                found if found == blocks => Ok(()),
-                found => Err(wrong(format!("a state of {found} blocks"))),
-            };
+            return Ok(());
         }
         let differs = self.job.lines().zip(job.lines()).find(|(a, b)| a != b);
         let (theirs, ours) = differs.unwrap_or(("longer or shorter", "as described"));
@@ -89,44 +86,21 @@ impl Checkpoint {
     /// The content of a checkpoint file.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
-        let (magic, counts) = match &self.state {
-            State::Plane(state) => {
-                let (moves, prepared) = (state.moves.len(), state.prepared_for.len());
-                let counts = [
-                    state.steps,
-                    self.job.len() as u32,
-                    moves as u32,
-                    prepared as u32,
-                ];
-                (MAGIC, counts.to_vec())
-            }
-            State::Space(state) => (SPACE_MAGIC, vec![state.step, self.job.len() as u32]),
-        };
-        let mut bytes = magic.to_vec();
-        for value in [self.phase, self.steps, self.of].into_iter().chain(counts) {
-            bytes.extend(value.to_le_bytes());
-        }
+        let Kept {
+            steps,
+            numbers,
+            lists,
+        } = &self.state;
+        let mut bytes = MAGIC.to_vec();
+        let counts = [self.phase, self.steps, self.of, *steps];
+        let lengths = [self.job.len(), numbers.len(), lists.len()].map(|n| n as u32);
+        let lengths = lengths
+            .into_iter()
+            .chain(lists.iter().map(|list| list.len() as u32));
+        bytes.extend(counts.into_iter().chain(lengths).flat_map(u32::to_le_bytes));
         bytes.extend(self.job.as_bytes());
-        match &self.state {
-            State::Plane(state) => {
-                for value in [state.energy, state.last, state.age, state.slowing] {
-                    bytes.extend(value.to_le_bytes());
-                }
-                for list in [&state.moves, &state.at, &state.ahead, &state.prepared_for] {
-                    bytes.extend(list.iter().flatten().flat_map(|v| v.to_le_bytes()));
-                }
-            }
-            State::Space(state) => {
-                bytes.extend(state.least.to_le_bytes());
-                for list in [&state.moves, &state.momentum, &state.best] {
-                    bytes.extend((list.len() as u32).to_le_bytes());
-                    bytes.extend(list.iter().flatten().flat_map(|v| v.to_le_bytes()));
-                }
-                bytes.extend((state.listed.len() as u32).to_le_bytes());
-                let listed = state.listed.iter().flatten();
-                bytes.extend(listed.flat_map(|v| v.to_le_bytes()));
-            }
-        }
+        let all = numbers.iter().chain(lists.iter().flatten());
+        bytes.extend(all.flat_map(|v| v.to_le_bytes()));
         let digest = Digest::of(&bytes);
         bytes.extend(digest.as_bytes());
         bytes
@@ -137,83 +111,37 @@ impl Checkpoint {
     /// # Errors
     /// [`ForgeError::Field`] if it is not a checkpoint of this version, or damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ForgeError> {
-        let is_space = bytes.starts_with(SPACE_MAGIC);
-        if !is_space && !bytes.starts_with(MAGIC) {
-            return Err(wrong("of an unknown format".into()));
+        if !bytes.starts_with(MAGIC) {
+            return Err(wrong("of an unknown format"));
         }
-        let length = bytes.len().saturating_sub(DIGEST_BYTES);
-        let (content, digest) = bytes.split_at(length);
+        let (content, digest) = bytes.split_at(bytes.len().saturating_sub(DIGEST_BYTES));
         if content.len() < MAGIC.len() || Digest::of(content).as_bytes() != digest {
-            return Err(wrong("damaged".into()));
+            return Err(wrong("damaged"));
         }
         let mut rest = Reader(&content[MAGIC.len()..]);
-        let read = match is_space {
-            true => Self::read_space(&mut rest),
-            false => Self::read(&mut rest),
-        };
+        let read = Self::read(&mut rest);
         read.filter(|_| rest.0.is_empty())
-            .ok_or_else(|| wrong("damaged".into()))
+            .ok_or_else(|| wrong("damaged"))
     }
 
     /// Reads what is between the magic number and the digest.
     fn read(rest: &mut Reader<'_>) -> Option<Self> {
         let [phase, steps, of, own_steps] = [rest.u32()?, rest.u32()?, rest.u32()?, rest.u32()?];
-        let [job, moves, prepared] = [rest.u32()?, rest.u32()?, rest.u32()?].map(|n| n as usize);
+        let [job, numbers, lists] = [rest.u32()?, rest.u32()?, rest.u32()?].map(|n| n as usize);
+        let lengths: Option<Vec<u32>> = (0..lists).map(|_| rest.u32()).collect();
         let job = String::from_utf8(rest.take(job)?.to_vec()).ok()?;
-        let [energy, last, age, slowing] = [rest.f64()?, rest.f64()?, rest.f64()?, rest.f64()?];
-        let state = DescentState {
-            energy,
-            steps: own_steps,
-            last,
-            age,
-            slowing,
-            moves: rest.vectors(moves)?,
-            at: rest.vectors(moves)?,
-            ahead: rest.vectors(moves)?,
-            prepared_for: rest.vectors(prepared)?,
-        };
-        let read = Self {
+        let numbers = rest.numbers(numbers)?;
+        let lists = lengths?.into_iter().map(|n| rest.numbers(n as usize));
+        Some(Self {
             job,
             phase,
             steps,
             of,
-            state: State::Plane(state),
-        };
-        (prepared == 0 || prepared == moves).then_some(read)
-    }
-
-    /// Reads the same of a checkpoint of points in space.
-    fn read_space(rest: &mut Reader<'_>) -> Option<Self> {
-        let [phase, steps, of, step] = [rest.u32()?, rest.u32()?, rest.u32()?, rest.u32()?];
-        let job = rest.u32()? as usize;
-        let job = String::from_utf8(rest.take(job)?.to_vec()).ok()?;
-        let least = rest.f64()?;
-        let mut list = || {
-            let count = rest.u32()? as usize;
-            rest.vectors(count)
-        };
-        let [moves, momentum, best] = [list()?, list()?, list()?];
-        let count = rest.u32()? as usize;
-        let mut bytes = Reader(rest.take(count.checked_mul(12)?)?);
-        let listed = (0..count)
-            .map(|_| Some([bytes.f32()?, bytes.f32()?, bytes.f32()?]))
-            .collect::<Option<Vec<_>>>()?;
-        let fits = |length: usize| length == 0 || length == moves.len();
-        let sizes_agree = fits(momentum.len()) && fits(best.len()) && fits(listed.len());
-        let state = State::Space(SpaceState {
-            step,
-            moves,
-            momentum,
-            listed,
-            least,
-            best,
-        });
-        sizes_agree.then_some(Self {
-            job,
-            phase,
-            steps,
-            of,
-            state,
+            state: Kept {
+                steps: own_steps,
+                numbers,
+                lists: lists.collect::<Option<_>>()?,
+            },
         })
     }
 
@@ -248,12 +176,8 @@ impl Checkpoint {
     }
 }
 
-/// The refusal of a checkpoint whose job is the right one but whose state is of other points.
-pub(crate) fn other_kind(of: &str) -> ForgeError {
-    wrong(format!("one of {of}"))
-}
-
-fn wrong(value: String) -> ForgeError {
+/// The refusal of a checkpoint.
+pub(crate) fn wrong(value: impl ToString) -> ForgeError {
     ForgeError::field(
         "checkpoint",
         value,
@@ -275,24 +199,14 @@ impl<'a> Reader<'a> {
         Some(u32::from_le_bytes(self.take(4)?.try_into().ok()?))
     }
 
-    fn f64(&mut self) -> Option<f64> {
-        Some(f64::from_le_bytes(self.take(8)?.try_into().ok()?))
-    }
-
-    fn f32(&mut self) -> Option<f32> {
-        Some(f32::from_le_bytes(self.take(4)?.try_into().ok()?))
-    }
-
-    fn vectors<const N: usize>(&mut self, count: usize) -> Option<Vec<[f64; N]>> {
-        let mut bytes = Reader(self.take(count.checked_mul(8 * N)?)?);
-        let vector = |_| {
-            let mut vector = [0.0; N];
-            for v in &mut vector {
-                *v = bytes.f64()?;
-            }
-            Some(vector)
-        };
-        (0..count).map(vector).collect()
+    fn numbers(&mut self, count: usize) -> Option<Vec<f64>> {
+        let (bytes, _) = self.take(count.checked_mul(8)?)?.as_chunks();
+        Some(
+            bytes
+                .iter()
+                .map(|bytes| f64::from_le_bytes(*bytes))
+                .collect(),
+        )
     }
 }
 
@@ -301,30 +215,16 @@ mod tests {
     use super::*;
 
     fn checkpoint() -> Checkpoint {
-        let mut state = DescentState::start(vec![[0.25, -1e-300], [3.0, f64::MIN_POSITIVE]]);
-        state.prepared_for = vec![[1.0, 2.0], [3.0, 4.0]];
-        state.slowing = 0.5;
         Checkpoint {
             job: "profile = blue\nseed = 17\n".into(),
             phase: 1,
             steps: 30,
             of: 40,
-            state: State::Plane(state),
-        }
-    }
-
-    fn of_space() -> Checkpoint {
-        let moves = vec![[0.25, -1e-300, 2.0], [3.0, f64::MIN_POSITIVE, 0.5]];
-        Checkpoint {
-            state: State::Space(SpaceState {
-                step: 3,
-                momentum: moves.clone(),
-                listed: vec![[0.5, 1.0, -2.0]; 2],
-                least: 0.75,
-                moves,
-                best: Vec::new(),
-            }),
-            ..checkpoint()
+            state: Kept {
+                steps: 3,
+                numbers: vec![0.5, f64::INFINITY],
+                lists: vec![vec![0.25, -1e-300, f64::MIN_POSITIVE, 3.0], vec![]],
+            },
         }
     }
 
@@ -333,46 +233,40 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("x.checkpoint");
         assert_eq!(Checkpoint::read_file(&path).expect("none"), None);
-        for kept in [checkpoint(), of_space()] {
-            kept.write(&path).expect("written");
-            assert_eq!(Checkpoint::read_file(&path).expect("read"), Some(kept));
-        }
+        let kept = checkpoint();
+        kept.write(&path).expect("written");
+        assert_eq!(Checkpoint::read_file(&path).expect("read"), Some(kept));
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1);
     }
 
     #[test]
     fn damage_anywhere_is_found() {
-        for good in [of_space(), checkpoint()].map(|kept| kept.to_bytes()) {
-            for at in 0..good.len() {
-                let mut bad = good.clone();
-                bad[at] ^= 0x10;
-                assert!(Checkpoint::from_bytes(&bad).is_err(), "byte {at}");
-                assert!(Checkpoint::from_bytes(&good[..at]).is_err(), "cut at {at}");
-            }
-        }
         let good = checkpoint().to_bytes();
-        // A count beyond the end of the file, under a valid digest.
-        let mut bad = good[..good.len() - DIGEST_BYTES].to_vec();
-        bad[8 + 5 * 4..8 + 6 * 4].copy_from_slice(&u32::MAX.to_le_bytes());
-        let digest = Digest::of(&bad);
-        bad.extend(digest.as_bytes());
-        let error = Checkpoint::from_bytes(&bad).expect_err("refused");
-        assert!(error.to_string().contains("damaged"), "{error}");
+        for at in 0..good.len() {
+            let mut bad = good.clone();
+            bad[at] ^= 0x10;
+            assert!(Checkpoint::from_bytes(&bad).is_err(), "byte {at}");
+            assert!(Checkpoint::from_bytes(&good[..at]).is_err(), "cut at {at}");
+        }
+        // Counts beyond the end of the file, under a valid digest.
+        for count in 4..9 {
+            let mut bad = good[..good.len() - DIGEST_BYTES].to_vec();
+            bad[8 + count * 4..12 + count * 4].copy_from_slice(&u32::MAX.to_le_bytes());
+            let digest = Digest::of(&bad);
+            bad.extend(digest.as_bytes());
+            let error = Checkpoint::from_bytes(&bad).expect_err("refused");
+            assert!(error.to_string().contains("damaged"), "{error}");
+        }
     }
 
     #[test]
-    fn a_checkpoint_of_another_job_is_refused_with_the_difference() {
-        let kept = checkpoint();
-        kept.check("profile = blue\nseed = 17\n", 2)
-            .expect("its own");
-        let error = kept
-            .check("profile = blue\nseed = 18\n", 2)
-            .expect_err("refused");
-        let text = error.to_string();
-        assert!(
-            text.contains("seed = 17") && text.contains("seed = 18"),
-            "{text}"
-        );
-        assert!(kept.check(&kept.job, 3).is_err());
+    fn lists_are_of_all_blocks_or_empty() {
+        let mut kept = checkpoint().state;
+        assert!(kept.clone().lists::<2, 3>().is_none());
+        let [first, second] = kept.clone().lists::<2, 2>().expect("two");
+        assert!(first[1] == [f64::MIN_POSITIVE, 3.0] && second.is_empty());
+        kept.lists[1].push(1.0);
+        kept.lists[1].push(1.0);
+        assert!(kept.lists::<2, 2>().is_none());
     }
 }

@@ -2,7 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-use crate::{ForgeError, Job, curve::LeastCorrelation, plan::Plan};
+use crate::{
+    ForgeError,
+    curve::LeastCorrelation,
+    forge::{Task, Work as _},
+    phase::State as _,
+};
 
 /// The size and the run time of a job.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,71 +18,48 @@ pub struct Estimate {
     pub pairs: u64,
     /// Steps of the optimizer.
     pub steps: u32,
-    /// The total number of points that the table will be judged on.
+    /// About the total number of points that the table will be judged on.
     pub measured_points: u64,
     /// The least pair correlation of a set with the job's power curve, which shows whether any set
     /// can have the curve; `None` for jobs without one.
     pub correlation: Option<LeastCorrelation>,
-    /// The run time on this machine, extrapolated from a few evaluations.
+    /// The run time on this machine, extrapolated from two steps of each phase.
     pub time: Duration,
 }
 
-/// The number of times that a phase typically builds its neighbor lists.
-const LIST_BUILDS: u32 = 5;
-/// The time of measuring per point, up to ν = 4, on two cores.
-const MEASURING_A_POINT: Duration = Duration::from_nanos(5000);
+/// The number of times that a phase typically lists its pairs.
+const LISTS: u32 = 6;
 
-impl Job {
-    /// Estimates the cost of the job from a few evaluations, which take a few percent of its time.
-    ///
-    /// # Errors
-    /// [`ForgeError::Field`] or [`ForgeError::Table`] for a part of the job that is not allowed.
-    pub fn estimate(&self) -> Result<Estimate, ForgeError> {
-        let plan = Plan::new(self)?;
-        let moves = plan.start(self.seed);
-        let measured_points = plan.panel.points();
-        let mut estimate = Estimate {
-            blocks: moves.len() as u64,
-            pairs: 0,
-            steps: plan.steps,
-            measured_points,
-            correlation: plan.least_correlation(),
-            time: MEASURING_A_POINT * measured_points as u32,
-        };
-        for phase in plan.phases() {
-            let mut objective = phase.objective;
-            let mut gradient = vec![[0.0; 2]; moves.len()];
+/// Estimates the cost of a job from a few steps, which take a few percent of its time.
+///
+/// # Errors
+/// [`ForgeError::Field`] or [`ForgeError::Table`] for a part of the job that is not allowed.
+pub fn estimate(job: &impl Task) -> Result<Estimate, ForgeError> {
+    let plan = job.plan()?;
+    let phases = plan.phases();
+    let (_, measured_points, time) = plan.judging();
+    let mut estimate = Estimate {
+        blocks: 0,
+        pairs: 0,
+        steps: phases.iter().map(|phase| phase.steps()).sum(),
+        measured_points,
+        correlation: plan.least_correlation(),
+        time: time * measured_points as u32,
+    };
+    let mut state = plan.start();
+    for mut phase in phases {
+        phase.begin(&state);
+        let mut step = || {
             let began = Instant::now();
-            objective.evaluate(&moves, &mut gradient); // builds the neighbor lists
-            estimate.time += began.elapsed() * LIST_BUILDS;
-            let trials = 2;
-            let began = Instant::now();
-            for _ in 0..trials {
-                objective.evaluate(&moves, &mut gradient);
-            }
-            estimate.time += began.elapsed() * phase.descent.steps / trials;
-            estimate.pairs = estimate.pairs.max(objective.pairs() as u64);
-        }
-        Ok(estimate)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_estimate_states_the_steps_and_sizes_of_the_job() {
-        let job = Job {
-            radius: 15,
-            steps: Some(40),
-            ..Job::new("(5-sqrt(3))/2".parse().expect("valid"))
+            phase.step(&mut state);
+            began.elapsed()
         };
-        let estimate = job.estimate().expect("a good job");
-        assert_eq!(estimate.steps, 40);
-        assert_eq!(estimate.blocks, 21 * 21);
-        assert!(estimate.pairs > 60 * estimate.blocks && estimate.pairs < 300 * estimate.blocks);
-        assert!(estimate.measured_points > 3 * 50_000);
-        assert!(estimate.time > Duration::ZERO);
+        // The first one lists the pairs.
+        let [first, next] = [step(), step()];
+        estimate.time += first.saturating_sub(next) * LISTS + next * phase.steps();
+        estimate.pairs = estimate.pairs.max(phase.pairs() as u64);
+        state = phase.end(state)?;
     }
+    estimate.blocks = state.blocks() as u64;
+    Ok(estimate)
 }

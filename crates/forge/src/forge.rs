@@ -1,16 +1,73 @@
-//! Making a table from the start or a checkpoint: the phases of its optimization, then its judging.
+//! Making a table from the start or a checkpoint: the phases of its optimization, then its judging. One driver works off
+//! the jobs of the plane and of space.
 
-use strew_core::{Table, table::Provenance};
+use std::time::Duration;
+
+use strew_core::{Table, table::Figures};
 
 use crate::{
-    Checkpoint, ForgeError, Job,
-    checkpoint::{State, other_kind},
-    judge::{Complaint, Nearness, complaints},
-    optimize::DescentState,
-    plan::Plan,
-    thinned::with_ranks,
+    Checkpoint, ForgeError,
+    checkpoint::wrong,
+    curve::LeastCorrelation,
+    judge::{Complaint, Nearness},
+    phase::{Phase, State, work_off},
     watch::{Meter, Stage, Watch},
 };
+
+/// A table to make: of the plane, a [`Job`](crate::Job), or of points in space, a [`SpaceJob`](crate::space::SpaceJob).
+pub trait Task {
+    /// The job, checked.
+    type Plan: Work;
+
+    /// Checks every part of the job, which takes a few milliseconds for usual maps.
+    ///
+    /// # Errors
+    /// [`ForgeError::Field`] or [`ForgeError::Table`] for a part that is not allowed.
+    fn plan(&self) -> Result<Self::Plan, ForgeError>;
+}
+
+/// A checked job, as the driver works it off.
+pub trait Work {
+    type State: State;
+    type Table;
+
+    /// Everything that decides the result but the phases, as lines of `name = value`. Two jobs with equal lines take the
+    /// same steps.
+    fn identity(&self) -> String;
+
+    /// The random start.
+    fn start(&self) -> Self::State;
+
+    fn phases(&self) -> Vec<Box<dyn Phase<Self::State> + '_>>;
+
+    /// The table after some of all steps, without ranks.
+    fn table(
+        &self,
+        state: &Self::State,
+        steps: [u32; 2],
+        figures: Vec<Figures>,
+    ) -> Result<Self::Table, ForgeError>;
+
+    /// The number of point sets that the table is judged on, about that of their points, and the time that each takes.
+    fn judging(&self) -> (u32, u64, Duration);
+
+    /// The figures on these point sets, or `None` if the watch stops the work.
+    fn measure(&self, table: &Self::Table, meter: &mut Meter<'_>) -> Option<Vec<Figures>>;
+
+    /// The bounds that the figures miss.
+    fn complaints(&self, figures: &[Figures]) -> Vec<Complaint>;
+
+    /// The table with the order in which its points leave, if it has one.
+    fn ranked(&self, table: Self::Table) -> Result<Self::Table, ForgeError>;
+
+    /// The least pair correlation of a set with the job's power curve.
+    fn least_correlation(&self) -> Option<LeastCorrelation> {
+        None
+    }
+}
+
+/// The table of a job.
+pub type TableOf<J> = <<J as Task>::Plan as Work>::Table;
 
 /// The result of a job.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +76,7 @@ pub struct Outcome<T = Table> {
     pub table: T,
     /// Whether the table was judged on unseen point sets and met every bound of its profile.
     pub accepted: bool,
-    /// Whether the watch stopped the work. The table is then the best so far, in space without ranks, and was not judged.
+    /// Whether the watch stopped the work. The table is then the best so far, without ranks, and was not judged.
     pub interrupted: bool,
     /// The bounds that the table missed.
     pub complaints: Vec<Complaint>,
@@ -31,8 +88,19 @@ pub struct Outcome<T = Table> {
 ///
 /// # Errors
 /// [`ForgeError::Field`] or [`ForgeError::Table`] for a part of the job that is not allowed.
-pub fn forge(job: &Job, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
-    run(job, None, watch)
+///
+/// ```
+/// use strew_forge::{forge, space::{SpaceJob, SpaceProfile}};
+///
+/// let job = SpaceJob { radius: 3, steps: Some(6), ..SpaceJob::new(SpaceProfile::Blue) };
+/// let outcome = forge(&job, &())?;
+/// assert_eq!((outcome.table.profile(), outcome.table.map().intervals()), ("blue", 5));
+/// // So few steps and blocks do not make a good table.
+/// assert!(!outcome.accepted);
+/// # Ok::<(), strew_forge::ForgeError>(())
+/// ```
+pub fn forge<J: Task>(job: &J, watch: &dyn Watch) -> Result<Outcome<TableOf<J>>, ForgeError> {
+    run(&job.plan()?, None, watch)
 }
 
 /// Resumes a job from a checkpoint. The table is the same as without the interruption.
@@ -71,8 +139,12 @@ pub fn forge(job: &Job, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
 /// assert_eq!((steps, resumed), (5, forge(&job, &())?));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn resume(job: &Job, from: Checkpoint, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
-    run(job, Some(from), watch)
+pub fn resume<J: Task>(
+    job: &J,
+    from: Checkpoint,
+    watch: &dyn Watch,
+) -> Result<Outcome<TableOf<J>>, ForgeError> {
+    run(&job.plan()?, Some(from), watch)
 }
 
 impl Checkpoint {
@@ -81,108 +153,82 @@ impl Checkpoint {
     /// # Errors
     /// [`ForgeError::Field`] with the first difference if it does not, [`ForgeError::Field`] or
     /// [`ForgeError::Table`] for a part of the job that is not allowed.
-    pub fn is_of(&self, job: &Job) -> Result<(), ForgeError> {
-        let plan = Plan::new(job)?;
-        self.check(&plan.identity(job, &plan.phases()), plan.blocks())
+    pub fn is_of(&self, job: &impl Task) -> Result<(), ForgeError> {
+        let plan = job.plan()?;
+        self.check(&identity(&plan, &plan.phases()))
     }
 }
 
-fn run(job: &Job, from: Option<Checkpoint>, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
-    let plan = Plan::new(job)?;
-    let done = optimize(&plan, job, from, watch)?;
-    let provenance = plan.provenance(job, done.steps);
+/// Everything that decides the result of a job.
+fn identity<W: Work>(plan: &W, phases: &[Box<dyn Phase<W::State> + '_>]) -> String {
+    let phases = phases
+        .iter()
+        .map(|phase| format!("phase = {}\n", phase.describe()));
+    plan.identity() + &phases.collect::<String>()
+}
+
+fn run<W: Work>(
+    plan: &W,
+    from: Option<Checkpoint>,
+    watch: &dyn Watch,
+) -> Result<Outcome<W::Table>, ForgeError> {
+    let phases = plan.phases();
+    let job = identity(plan, &phases);
+    let (first, mut state) = match from {
+        None => (0, plan.start()),
+        Some(from) => {
+            from.check(&job)?;
+            let state = W::State::resume(from.state).ok_or_else(|| wrong("of another state"))?;
+            (from.phase as usize, state)
+        }
+    };
+    let steps = |phases: &[Box<dyn Phase<_> + '_>]| phases.iter().map(|phase| phase.steps()).sum();
+    let (count, of): (usize, u32) = (phases.len(), steps(&phases));
+    let mut done: u32 = steps(&phases[..first.min(count)]);
+    let checkpoint = |phase: usize, steps, state: &W::State| {
+        watch.checkpoint(&Checkpoint {
+            job: job.clone(),
+            phase: phase as u32,
+            steps,
+            of,
+            state: state.keep(),
+        });
+    };
+    let mut meter = Meter::from(watch, Stage::Optimizing, of, done + state.steps());
+    let mut is_done = true;
+    for (number, mut phase) in phases.into_iter().enumerate().skip(first) {
+        let mut keep = |state: &W::State| checkpoint(number, done + state.steps(), state);
+        is_done = work_off(&mut *phase, &mut state, &mut meter, &mut keep);
+        done += state.steps();
+        state = phase.end(state)?;
+        if !is_done {
+            break;
+        }
+    }
+    if is_done && count > 0 {
+        checkpoint(count, done, &state);
+    }
+    let table = |figures| plan.table(&state, [done, of], figures);
     let mut outcome = Outcome {
-        table: plan.table(&done.moves, provenance.clone())?,
+        table: table(Vec::new())?,
         accepted: false,
-        interrupted: done.interrupted,
+        interrupted: !is_done,
         complaints: Vec::new(),
         nearness: None,
     };
     if outcome.interrupted {
         return Ok(outcome);
     }
-    let mut meter = Meter::new(watch, Stage::Measuring, plan.panel.subjects());
-    let Some(figures) = plan.panel.measure(&outcome.table, &mut meter) else {
+    let mut meter = Meter::new(watch, Stage::Measuring, plan.judging().0);
+    let Some(figures) = plan.measure(&outcome.table, &mut meter) else {
         outcome.interrupted = true;
         return Ok(outcome);
     };
-    outcome.complaints = complaints(&plan.bounds, &figures);
+    outcome.complaints = plan.complaints(&figures);
     outcome.nearness = Nearness::of(&figures);
     outcome.accepted = outcome.complaints.is_empty();
-    let judged = Provenance {
-        figures,
-        ..provenance
-    };
-    outcome.table = plan.table(&done.moves, judged)?;
-    // Without a least distance a thinned set would have another profile.
-    if outcome.table.least_distance().is_useful() {
-        outcome.table = with_ranks(&outcome.table)?;
-    }
+    outcome.table = plan.ranked(table(figures)?)?;
     Ok(outcome)
-}
-
-/// The result of the optimizer.
-struct Optimized {
-    /// The vectors, in mean spacings.
-    moves: Vec<[f64; 2]>,
-    /// Steps done in all phases.
-    steps: u32,
-    interrupted: bool,
-}
-
-fn optimize(
-    plan: &Plan,
-    job: &Job,
-    from: Option<Checkpoint>,
-    watch: &dyn Watch,
-) -> Result<Optimized, ForgeError> {
-    let phases = plan.phases();
-    let count = phases.len();
-    let identity = plan.identity(job, &phases);
-    let (first, mut state) = match from {
-        None => (0, DescentState::start(plan.start(job.seed))),
-        Some(from) => {
-            from.check(&identity, plan.blocks())?;
-            let State::Plane(state) = from.state else {
-                return Err(other_kind("points in space"));
-            };
-            (from.phase as usize, state)
-        }
-    };
-    let checkpoint = |phase: usize, steps, state: &DescentState| Checkpoint {
-        job: identity.clone(),
-        phase: phase as u32,
-        steps,
-        of: plan.steps,
-        state: State::Plane(state.clone()),
-    };
-    let before = phases.iter().take(first).map(|phase| phase.descent.steps);
-    let mut steps: u32 = before.sum();
-    let mut meter = Meter::from(watch, Stage::Optimizing, plan.steps, steps + state.steps);
-    for (at, mut phase) in phases.into_iter().enumerate().skip(first) {
-        let mut keep =
-            |state: &DescentState| watch.checkpoint(&checkpoint(at, steps + state.steps, state));
-        state = phase
-            .descent
-            .run(&mut *phase.objective, state, &mut meter, &mut keep);
-        steps += state.steps;
-        if state.steps < phase.descent.steps {
-            return Ok(Optimized {
-                moves: state.moves,
-                steps,
-                interrupted: true,
-            });
-        }
-        state = DescentState::start(state.moves);
-    }
-    if count > 0 {
-        watch.checkpoint(&checkpoint(count, steps, &state));
-    }
-    Ok(Optimized {
-        moves: state.moves,
-        steps,
-        interrupted: false,
-    })
 }
 
 #[cfg(test)]
@@ -192,7 +238,7 @@ mod tests {
     use strew_core::Twin;
 
     use super::*;
-    use crate::Progress;
+    use crate::{Job, Progress};
 
     fn job(steps: u32) -> Job {
         Job {
@@ -204,17 +250,23 @@ mod tests {
 
     #[test]
     fn equal_jobs_make_equal_tables_with_any_number_of_threads() {
-        let with = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let outcome = pool.expect("threads").install(|| forge(&job(30), &()));
-            outcome.expect("a good job").table
+        let step = Job {
+            radius: 12,
+            profile: "step".into(),
+            ..job(6)
         };
-        let table = with(1);
-        assert_eq!(with(2), table);
-        assert_eq!(with(5), table);
         let other = Job { seed: 2, ..job(30) };
-        let other = forge(&other, &()).expect("a good job").table;
-        assert_ne!(other.displacements(), table.displacements());
+        let tables = [job(30), step, other].map(|job| {
+            let with = |threads: usize| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+                let outcome = pool.expect("threads").install(|| forge(&job, &()));
+                outcome.expect("a good job").table
+            };
+            let table = with(1);
+            assert_eq!(with(3), table);
+            table
+        });
+        assert_ne!(tables[0].displacements(), tables[2].displacements());
     }
 
     #[test]

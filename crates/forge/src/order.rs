@@ -1,5 +1,5 @@
 //! Void and cluster (Ulichney 1993) over blocks instead of points: again and again the block of the highest potential
-//! leaves.
+//! leaves. Blocks may be of several kinds, whose shares of what is left stay what they are.
 
 /// The potentials of blocks, and how they change as blocks leave.
 pub(crate) trait Surroundings {
@@ -7,44 +7,161 @@ pub(crate) trait Surroundings {
     fn share(&self, block: usize) -> f64;
 
     /// The potential of each block that is left. It serves until of the share `left` of all points only `target` is left.
-    fn potentials(&mut self, is_left: &[bool], left: f64, target: f64) -> Vec<f64>;
+    /// `None` ends the work.
+    fn potentials(&mut self, is_left: &[bool], left: f64, target: f64) -> Option<Vec<f64>>;
 
     /// Calls `lose` for the blocks whose potentials fall when a block leaves, with how far.
     fn leave(&self, block: usize, lose: impl FnMut(usize, f64));
 }
 
-/// The order in which a number of blocks leave, as the position of each: 0 for the one that leaves last. Potentials are
-/// computed anew each time the share that is left has fallen by the factor `kept`; the last `fewest` blocks follow by number.
+/// The tolerated fall of a kind's share among the points that are left: absolute, and relative to its share.
+const SLACK: [f64; 2] = [0.002, 0.03];
+
+/// The order in which blocks leave, as the position of each: 0 for the one that leaves last. `labels` has the kind of each
+/// block, `shares` the part of the points that each kind has. Potentials are computed anew each time the share that is left
+/// has fallen by the factor `kept`; the last `fewest` blocks follow by number.
 pub(crate) fn positions(
     around: &mut impl Surroundings,
-    blocks: usize,
+    labels: &[u8],
+    shares: &[f64],
     kept: f64,
     fewest: usize,
-) -> Vec<u32> {
-    let mut is_left = vec![true; blocks];
-    let mut positions = vec![0; blocks];
-    let (mut left, mut number) = (1.0, blocks);
+) -> Option<Vec<u32>> {
+    let kind_of = |block: usize| usize::from(labels[block]);
+    let blocks = 0..labels.len();
+    let mut is_left = vec![true; labels.len()];
+    let mut positions = vec![0; labels.len()];
+    let mut areas = vec![0.0; shares.len()];
+    for block in blocks.clone() {
+        areas[kind_of(block)] += around.share(block);
+    }
+    let (mut left, mut number) = (1.0, labels.len());
     while number > fewest {
         let target = left * kept;
-        let mut potential = around.potentials(&is_left, left, target);
-        loop {
-            let fullest = (0..blocks)
-                .filter(|&b| is_left[b])
-                .max_by(|&a, &b| potential[a].total_cmp(&potential[b]).then(b.cmp(&a)));
-            let Some(block) = fullest else { break };
+        let mut potential = around.potentials(&is_left, left, target)?;
+        let of_kind = |kind: usize| {
+            let is_own = |block: usize| is_left[block] && kind_of(block) == kind;
+            let own = |block| is_own(block).then_some(potential[block]);
+            Fullest::new(blocks.clone().map(|block| own(block).unwrap_or(NONE)))
+        };
+        let mut fullest: Vec<Fullest> = (0..shares.len()).map(of_kind).collect();
+        while let Some(block) = leaving(&fullest, shares, &areas, left) {
+            let (kind, share) = (kind_of(block), around.share(block));
             is_left[block] = false;
-            left -= around.share(block);
+            fullest[kind].set(block, NONE);
+            areas[kind] -= share;
+            left -= share;
             number -= 1;
             positions[block] = number as u32;
-            around.leave(block, |to, by| potential[to] -= by);
+            around.leave(block, |to, by| {
+                potential[to] -= by;
+                if is_left[to] {
+                    fullest[kind_of(to)].set(to, potential[to]);
+                }
+            });
             if left <= target || number <= fewest {
                 break;
             }
         }
     }
-    let rest = (0..blocks).rev().filter(|&b| is_left[b]);
+    let rest = blocks.rev().filter(|&block| is_left[block]);
     for (position, block) in (0..).zip(rest) {
         positions[block] = position;
     }
-    positions
+    Some(positions)
+}
+
+/// The block of the highest potential among the kinds that may lose one. A kind that has fallen behind its share of what is
+/// left waits.
+fn leaving(fullest: &[Fullest], shares: &[f64], areas: &[f64], left: f64) -> Option<usize> {
+    let kinds = fullest.iter().zip(shares).zip(areas);
+    let kinds = kinds.filter_map(|((fullest, share), area)| {
+        let excess = (area / left - share) / SLACK[0].min(SLACK[1] * share);
+        Some((excess, fullest.highest()?))
+    });
+    let most = kinds.clone().map(|kind| kind.0).fold(NONE, f64::max);
+    let may_lose = kinds.filter(|kind| kind.0 >= most.min(-1.0));
+    // The first of equal ones.
+    let highest = may_lose
+        .map(|kind| kind.1)
+        .reduce(|best, next| if next.0 > best.0 { next } else { best });
+    highest.map(|(_, block)| block)
+}
+
+/// The potential of a block that does not count.
+const NONE: f64 = f64::NEG_INFINITY;
+
+/// The highest of the potentials of blocks, kept up to date while they change, by a tree of pairs: a node has the block of
+/// the higher potential below it, of equal ones the first. So it finds what a look at all would, in the time of a few
+/// comparisons for each change.
+struct Fullest {
+    values: Vec<f64>,
+    /// Node 1 is the root; the children of node i are 2i and 2i + 1, the leaves the blocks.
+    nodes: Vec<u32>,
+}
+
+impl Fullest {
+    fn new(values: impl Iterator<Item = f64>) -> Self {
+        let mut values: Vec<f64> = values.collect();
+        values.resize(values.len().max(1).next_power_of_two(), NONE);
+        let leaves = values.len() as u32;
+        let mut all = Self {
+            nodes: (0..leaves).chain(0..leaves).collect(),
+            values,
+        };
+        (1..leaves as usize).rev().for_each(|node| all.renew(node));
+        all
+    }
+
+    fn renew(&mut self, node: usize) {
+        let [a, b] = [self.nodes[2 * node], self.nodes[2 * node + 1]];
+        let is_second = self.values[b as usize] > self.values[a as usize];
+        self.nodes[node] = if is_second { b } else { a };
+    }
+
+    fn set(&mut self, block: usize, value: f64) {
+        self.values[block] = value;
+        let mut node = (self.values.len() + block) / 2;
+        while node > 0 {
+            self.renew(node);
+            node /= 2;
+        }
+    }
+
+    /// The highest potential and its block.
+    fn highest(&self) -> Option<(f64, usize)> {
+        let block = self.nodes[1] as usize;
+        let value = self.values[block];
+        (value > NONE).then_some((value, block))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_finds_what_a_look_at_all_finds() {
+        for count in [1u32, 2, 50] {
+            // Many are equal.
+            let mut potential: Vec<f64> = (0..count).map(|i| f64::from(i * 7919 % 5)).collect();
+            let mut fullest = Fullest::new(potential.iter().copied());
+            for step in 0.. {
+                let all = potential
+                    .iter()
+                    .copied()
+                    .zip(0..)
+                    .filter(|(value, _)| *value > NONE);
+                let first = all.reduce(|best, next| if next.0 > best.0 { next } else { best });
+                assert_eq!(fullest.highest(), first);
+                let Some((_, taken)) = first else { break };
+                potential[taken] = NONE;
+                fullest.set(taken, NONE);
+                for block in (step % 3..potential.len()).step_by(3) {
+                    potential[block] -= (block % 2) as f64;
+                    fullest.set(block, potential[block]);
+                }
+            }
+        }
+    }
 }

@@ -1,17 +1,23 @@
 //! A checked job: its profile, the domain it is optimized on, and the panel it is judged on.
 
+use std::time::Duration;
+
 use strew_core::{
     ALGORITHM_VERSION, Map, Table,
-    table::{FORMAT_VERSION, Provenance, from_grid_units},
+    table::{FORMAT_VERSION, Figures, Provenance, from_grid_units},
 };
 
 use crate::{
     ForgeError, Job, MAX_RADIUS, MAX_STEPS,
     curve::{LeastCorrelation, Target, to_parameters},
-    judge::{Bound, Panel, bounds_of_curve},
-    optimize::{Descent, jitter},
-    profile::{Phase, Profile, Recipe},
+    forge::{Task, Work},
+    judge::{Bound, Complaint, Panel, bounds_of_curve, complaints},
+    optimize::{DescentState, jitter},
+    phase::Phase,
+    profile::{Profile, Recipe},
+    thinned::with_ranks,
     twins::Domain,
+    watch::Meter,
 };
 
 /// The least side t of the set region, that of α = 1.1. Below it a map of any half-width covers too
@@ -25,23 +31,23 @@ const MAX_RADIAL_RADIUS: u32 = 200;
 const ARITHMETIC: u32 = 2;
 
 /// A checked job.
-pub(crate) struct Plan {
-    pub(crate) profile: &'static Profile,
-    /// The name of the table's profile. For a custom curve it differs from that of `profile`.
-    name: String,
+pub struct Plan {
+    job: Job,
+    /// For a custom curve its name differs from that of the job's.
+    profile: &'static Profile,
     /// The radial power curve to follow, if any.
     target: Option<Target>,
     domain: Domain,
-    pub(crate) panel: Panel,
+    panel: Panel,
     /// The bounds that the figures of every unseen subject must satisfy.
-    pub(crate) bounds: Vec<Bound>,
+    bounds: Vec<Bound>,
     /// Steps of all phases.
-    pub(crate) steps: u32,
+    steps: u32,
 }
 
 impl Plan {
     /// Checks every part of a job.
-    pub(crate) fn new(job: &Job) -> Result<Self, ForgeError> {
+    fn new(job: &Job) -> Result<Self, ForgeError> {
         let (profile, target, bounds) = match &job.target {
             None => {
                 let profile = Profile::named(&job.profile)?;
@@ -83,64 +89,15 @@ impl Plan {
                 None => panel,
             },
             bounds,
-            name: job.profile.clone(),
+            job: job.clone(),
             target,
             domain,
             steps,
         })
     }
 
-    /// The random start for a seed.
-    pub(crate) fn start(&self, seed: u64) -> Vec<[f64; 2]> {
-        jitter(self.domain.blocks(), self.profile.jitter, seed)
-    }
-
-    /// The least pair correlation of a set with the curve, if there is a curve to follow.
-    pub(crate) fn least_correlation(&self) -> Option<LeastCorrelation> {
-        self.target.as_ref().map(LeastCorrelation::of)
-    }
-
-    /// The phases of the optimization.
-    pub(crate) fn phases(&self) -> Vec<Phase> {
-        self.profile
-            .recipe
-            .phases(&self.domain, self.target.as_ref(), self.steps)
-    }
-
-    /// The number of vectors.
-    pub(crate) fn blocks(&self) -> usize {
-        self.domain.blocks()
-    }
-
-    /// Everything that decides the result, as lines of `name = value`. Two jobs with equal lines
-    /// take the same steps.
-    pub(crate) fn identity(&self, job: &Job, phases: &[Phase]) -> String {
-        let provenance = self.provenance(job, self.steps);
-        let mut lines = vec![
-            ("forge".into(), env!("CARGO_PKG_VERSION").into()),
-            ("arithmetic".into(), ARITHMETIC.to_string()),
-            ("points".into(), ALGORITHM_VERSION.to_string()),
-            ("format".into(), FORMAT_VERSION.to_string()),
-            ("profile".into(), self.name.clone()),
-            ("alpha".into(), job.alpha.to_string()),
-            ("radius".into(), job.radius.to_string()),
-            ("seed".into(), job.seed.to_string()),
-            ("optimizer".into(), provenance.optimizer),
-        ];
-        lines.extend(provenance.parameters);
-        let twins = provenance.twins.iter();
-        lines.extend(twins.map(|twin| ("twin".into(), twin.to_string())));
-        let phases = phases.iter().map(|phase| {
-            let Descent { steps, rate } = phase.descent;
-            ("phase".into(), format!("{steps} steps at rate {rate}"))
-        });
-        lines.extend(phases);
-        let line = |(name, value): (String, String)| format!("{name} = {value}\n");
-        lines.into_iter().map(line).collect()
-    }
-
     /// The history of a table after `steps` steps, without figures.
-    pub(crate) fn provenance(&self, job: &Job, steps: u32) -> Provenance {
+    fn provenance(&self, steps: u32) -> Provenance {
         let (optimizer, mut parameters) = self.profile.recipe.describe();
         parameters.extend(self.target.iter().flat_map(to_parameters));
         if let Recipe::Radial { .. } = self.profile.recipe {
@@ -155,17 +112,60 @@ impl Plan {
         Provenance {
             optimizer: optimizer.into(),
             parameters,
-            seed: job.seed,
+            seed: self.job.seed,
             twins: self.domain.twins.clone(),
             figures: Vec::new(),
         }
     }
+}
 
-    /// The table with these vectors, which are in mean spacings.
-    pub(crate) fn table(
+impl Task for Job {
+    type Plan = Plan;
+
+    fn plan(&self) -> Result<Plan, ForgeError> {
+        Plan::new(self)
+    }
+}
+
+impl Work for Plan {
+    type State = DescentState;
+    type Table = Table;
+
+    fn identity(&self) -> String {
+        let provenance = self.provenance(self.steps);
+        let mut lines = vec![
+            ("forge".into(), env!("CARGO_PKG_VERSION").into()),
+            ("arithmetic".into(), ARITHMETIC.to_string()),
+            ("points".into(), ALGORITHM_VERSION.to_string()),
+            ("format".into(), FORMAT_VERSION.to_string()),
+            ("profile".into(), self.job.profile.clone()),
+            ("alpha".into(), self.job.alpha.to_string()),
+            ("radius".into(), self.job.radius.to_string()),
+            ("seed".into(), self.job.seed.to_string()),
+            ("optimizer".into(), provenance.optimizer),
+        ];
+        lines.extend(provenance.parameters);
+        let twins = provenance.twins.iter();
+        lines.extend(twins.map(|twin| ("twin".into(), twin.to_string())));
+        let line = |(name, value): (String, String)| format!("{name} = {value}\n");
+        lines.into_iter().map(line).collect()
+    }
+
+    fn start(&self) -> DescentState {
+        let (blocks, reach) = (self.domain.blocks(), self.profile.jitter);
+        DescentState::start(jitter(blocks, reach, self.job.seed))
+    }
+
+    fn phases(&self) -> Vec<Box<dyn Phase<DescentState> + '_>> {
+        let recipe = &self.profile.recipe;
+        recipe.phases(&self.domain, self.target.as_ref(), self.steps)
+    }
+
+    fn table(
         &self,
-        moves: &[[f64; 2]],
-        provenance: Provenance,
+        state: &DescentState,
+        [steps, _]: [u32; 2],
+        figures: Vec<Figures>,
     ) -> Result<Table, ForgeError> {
         let unit = 1.0 / self.domain.scale();
         let too_long = || {
@@ -175,13 +175,43 @@ impl Plan {
                 "vectors short enough for a table, as after fewer steps",
             )
         };
+        let moves = state.moves.iter();
         let vectors = moves
-            .iter()
             .map(|m| Some([from_grid_units(m[0] * unit)?, from_grid_units(m[1] * unit)?]))
             .collect::<Option<Vec<_>>>()
             .ok_or_else(too_long)?;
-        let table = Table::new(self.domain.map.clone(), &self.name, vectors, provenance)?;
-        Ok(table)
+        let history = Provenance {
+            figures,
+            ..self.provenance(steps)
+        };
+        let (map, name) = (self.domain.map.clone(), &self.job.profile);
+        Ok(Table::new(map, name, vectors, history)?)
+    }
+
+    fn judging(&self) -> (u32, u64, Duration) {
+        // Up to ν = 4, on two cores.
+        let time = Duration::from_nanos(5000);
+        (self.panel.subjects(), self.panel.points(), time)
+    }
+
+    fn measure(&self, table: &Table, meter: &mut Meter<'_>) -> Option<Vec<Figures>> {
+        self.panel.measure(table, meter)
+    }
+
+    fn complaints(&self, figures: &[Figures]) -> Vec<Complaint> {
+        complaints(&self.bounds, figures)
+    }
+
+    fn ranked(&self, table: Table) -> Result<Table, ForgeError> {
+        // Without a least distance a thinned set would have another profile.
+        match table.least_distance().is_useful() {
+            true => with_ranks(&table),
+            false => Ok(table),
+        }
+    }
+
+    fn least_correlation(&self) -> Option<LeastCorrelation> {
+        self.target.as_ref().map(LeastCorrelation::of)
     }
 }
 
@@ -190,7 +220,7 @@ mod tests {
     use strew_core::Alpha;
 
     use super::*;
-    use crate::forge;
+    use crate::{estimate, forge};
 
     fn of(alpha: &str) -> Alpha {
         alpha.parse().expect("valid")
@@ -223,11 +253,26 @@ mod tests {
             change(&mut job);
             let refused = [
                 forge(&job, &()).expect_err("refused"),
-                job.estimate().expect_err("refused"),
+                estimate(&job).expect_err("refused"),
             ];
             for error in refused.map(|e| e.to_string()) {
                 assert!(words.iter().all(|word| error.contains(word)), "{error}");
             }
         }
+    }
+
+    #[test]
+    fn an_estimate_states_the_steps_and_sizes_of_the_job() {
+        let job = Job {
+            radius: 15,
+            steps: Some(40),
+            ..Job::new(of("(5-sqrt(3))/2"))
+        };
+        let estimate = estimate(&job).expect("a good job");
+        assert_eq!(estimate.steps, 40);
+        assert_eq!(estimate.blocks, 21 * 21);
+        assert!(estimate.pairs > 60 * estimate.blocks && estimate.pairs < 300 * estimate.blocks);
+        assert!(estimate.measured_points > 3 * 50_000);
+        assert!(estimate.time > Duration::ZERO);
     }
 }

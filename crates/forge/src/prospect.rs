@@ -4,10 +4,7 @@ use std::fmt;
 
 use strew_core::{Map, Twin};
 
-use crate::{
-    ForgeError, Job,
-    plan::{MIN_SIDE, Plan},
-};
+use crate::{Job, plan::MIN_SIDE};
 
 /// A job whose map has fewer intervals per axis carries a warning: of the 11 α with fewer in the scan of
 /// `docs/alpha.md` no table is accepted, of the 23 others all but 3.
@@ -34,20 +31,14 @@ pub struct Prospect {
     pub intervals: usize,
     /// The period of the pattern along each axis in grid units, if α is a fraction.
     pub period: Option<u64>,
-    /// Whether α is too small, or a fraction on which thresholds of the map coincide.
-    reason: Option<Reason>,
+    /// Why no table can be good, if α is too small, or a fraction on which thresholds of the map coincide.
+    why: Option<&'static str>,
     displaces: bool,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Reason {
-    NearOne,
-    Ties,
-}
-
-/// The reason why no table can be good.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Hopeless<'a>(&'a Prospect);
+const NEAR_ONE: &str =
+    "alpha is below 1.1, where points are so far apart in the grid that a map sees few";
+const TIES: &str = "alpha is a fraction of small integers, so neighborhoods repeat and thresholds of the map coincide";
 
 impl Prospect {
     /// The number of vectors of the table.
@@ -58,11 +49,9 @@ impl Prospect {
 
     /// The reason why no such table can be good, if there is one. The forge then refuses the job.
     #[must_use]
-    pub const fn hopeless(&self) -> Option<Hopeless<'_>> {
-        match self.reason {
-            Some(_) if self.displaces => Some(Hopeless(self)),
-            _ => None,
-        }
+    pub fn hopeless(&self) -> Option<String> {
+        let why = self.why.filter(|_| self.displaces);
+        why.map(|why| format!("{why} ({self})"))
     }
 
     /// The reason why the judge will probably reject the table, if there is one: the map has too few blocks.
@@ -89,42 +78,20 @@ impl fmt::Display for Prospect {
     }
 }
 
-impl fmt::Display for Hopeless<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let why = match self.0.reason {
-            Some(Reason::NearOne) => {
-                "alpha is below 1.1, where points are so far apart in the grid that a map sees few"
-            }
-            _ => {
-                "alpha is a fraction of small integers, so neighborhoods repeat and thresholds of the map coincide"
-            }
-        };
-        write!(f, "{why} ({})", self.0)
-    }
-}
-
 impl Job {
-    /// Checks every part of the job, which takes a few milliseconds for usual maps.
-    ///
-    /// # Errors
-    /// [`ForgeError::Field`] or [`ForgeError::Table`] for a part that is not allowed.
-    pub fn check(&self) -> Result<(), ForgeError> {
-        Plan::new(self).map(drop)
-    }
-
     /// The facts about the table that are known before the work.
     #[must_use]
     pub fn prospect(&self) -> Prospect {
         let map = Map::new(self.alpha, self.radius).ok();
-        let reason = match &map {
-            _ if self.alpha.set_side_f64() < MIN_SIDE => Some(Reason::NearOne),
-            Some(map) if has_ties(map) && is_small(map) => Some(Reason::Ties),
+        let why = match &map {
+            _ if self.alpha.set_side_f64() < MIN_SIDE => Some(NEAR_ONE),
+            Some(map) if has_ties(map) && is_small(map) => Some(TIES),
             _ => None,
         };
         Prospect {
             intervals: map.map_or(0, |map| intervals(&map)),
             period: self.alpha.fraction().map(|(_, q)| q.saturating_mul(2)),
-            reason,
+            why,
             displaces: self.target.is_some() || self.profile != "pattern",
         }
     }

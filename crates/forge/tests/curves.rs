@@ -112,22 +112,6 @@ fn shipped_tables_follow_their_curves_on_far_twins_and_windows() {
 }
 
 #[test]
-fn curves_make_the_same_table_with_any_number_of_threads() {
-    let made = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let job = Job {
-            radius: 12,
-            profile: "step".into(),
-            steps: Some(6),
-            ..Job::new(alpha())
-        };
-        let outcome = pool.expect("threads").install(|| forge(&job, &()));
-        outcome.expect("a good job").table.to_bytes()
-    };
-    assert_eq!(made(1), made(2));
-}
-
-#[test]
 fn an_impossible_curve_is_refused_with_its_error() {
     // No power up to ν = 1.2: no set has so few close pairs.
     let target: Target = "0 0\n1.2 0\n1.2 1".parse().expect("valid");

@@ -1,11 +1,53 @@
-//! Work that was stopped is resumed from its checkpoint, and by no other job.
+//! Work that was stopped is resumed from its checkpoint, and by no other job, in the plane and in space.
 
-mod stopper;
+use std::{fmt::Debug, sync::Mutex};
 
-use std::sync::Mutex;
+use strew_forge::{
+    Checkpoint, Job, Progress, Stage, TableOf, Task, Watch, forge, resume,
+    space::{SpaceJob, SpaceProfile},
+};
 
-use stopper::Stopper;
-use strew_forge::{Checkpoint, Job, Progress, Stage, Watch, forge, resume};
+/// Keeps the first progress and the last checkpoint, and stops a stage after a number of steps.
+struct Stopper {
+    stage: Stage,
+    after: u32,
+    seen: Mutex<Vec<Progress>>,
+    kept: Mutex<Option<Checkpoint>>,
+}
+
+impl Stopper {
+    fn new(stage: Stage, after: u32) -> Self {
+        Self {
+            stage,
+            after,
+            seen: Mutex::default(),
+            kept: Mutex::default(),
+        }
+    }
+
+    fn kept(self) -> Checkpoint {
+        let kept = self.kept.into_inner();
+        kept.expect("no panic").expect("kept")
+    }
+}
+
+impl Watch for Stopper {
+    fn progress(&self, progress: &Progress) {
+        self.seen.lock().expect("no panic").push(*progress);
+    }
+
+    fn stop(&self) -> bool {
+        let seen = self.seen.lock().expect("no panic");
+        let last = seen.last();
+        last.is_some_and(|p| p.stage == self.stage && p.step >= self.after)
+    }
+
+    fn checkpoint(&self, checkpoint: &Checkpoint) {
+        // Through a file's bytes, as after a crash.
+        let back = Checkpoint::from_bytes(&checkpoint.to_bytes()).expect("valid");
+        *self.kept.lock().expect("no panic") = Some(back);
+    }
+}
 
 fn job(steps: u32) -> Job {
     Job {
@@ -15,14 +57,39 @@ fn job(steps: u32) -> Job {
     }
 }
 
-/// Records the first step that is reported, and never stops.
-#[derive(Default)]
-struct FirstStep(Mutex<Option<u32>>);
+fn in_space() -> SpaceJob {
+    SpaceJob {
+        radius: 4,
+        steps: Some(40),
+        ..SpaceJob::new(SpaceProfile::Spaced)
+    }
+}
 
-impl Watch for FirstStep {
-    fn progress(&self, progress: &Progress) {
-        let mut first = self.0.lock().expect("no panic");
-        first.get_or_insert(progress.step);
+/// Stops a job after some steps and compares what is made from there.
+fn check<J: Task>(job: &J, stops: &[u32])
+where
+    TableOf<J>: PartialEq + Debug,
+{
+    // The figures add nothing to the comparison, so measuring is stopped.
+    let optimized = |from: Option<Checkpoint>| {
+        let stopper = Stopper::new(Stage::Measuring, 0);
+        let outcome = match from {
+            None => forge(job, &stopper),
+            Some(from) => resume(job, from, &stopper),
+        };
+        let outcome = outcome.expect("a good job");
+        assert!(outcome.interrupted && !outcome.accepted);
+        (outcome.table, stopper.kept())
+    };
+    let whole = optimized(None);
+    assert!(whole.1.is_optimized());
+    for &after in stops {
+        let stopper = Stopper::new(Stage::Optimizing, after);
+        assert!(forge(job, &stopper).expect("a good job").interrupted);
+        let kept = stopper.kept();
+        assert_eq!((kept.steps(), kept.is_optimized()), (after, false));
+        kept.is_of(job).expect("its own");
+        assert_eq!(optimized(Some(kept)), whole, "{after}");
     }
 }
 
@@ -34,37 +101,12 @@ fn resumed_work_makes_the_same_table() {
         ..job(steps)
     };
     // One of each kind of recipe, stopped in each phase and between phases.
-    for (job, stops) in [
-        (of("blue", 15, 40), vec![1, 19, 20, 31]),
-        (of("spaced", 15, 30), vec![1, 2, 11, 16, 29]),
-        (of("lloyd", 12, 12), vec![5]),
-        (of("step", 12, 12), vec![3, 11]),
-        (of("single-peak", 12, 20), vec![4, 6, 17]),
-    ] {
-        // The figures add nothing to the comparison, so measuring is stopped.
-        let optimized = |from: Option<Checkpoint>| {
-            let stopper = Stopper::new(Stage::Measuring, 0);
-            let outcome = match from {
-                None => forge(&job, &stopper),
-                Some(from) => resume(&job, from, &stopper),
-            };
-            let outcome = outcome.expect("a good job");
-            (
-                outcome.table.digest(),
-                stopper.kept.into_inner().expect("no panic"),
-            )
-        };
-        let whole = optimized(None);
-        for after in stops {
-            let stopper = Stopper::new(Stage::Optimizing, after);
-            let stopped = forge(&job, &stopper).expect("a good job");
-            assert!(stopped.interrupted);
-            let kept = stopper.kept.into_inner().expect("no panic").expect("kept");
-            assert_eq!((kept.steps(), kept.is_optimized()), (after, false));
-            kept.is_of(&job).expect("its own");
-            assert_eq!(optimized(Some(kept)), whole, "{} {after}", job.profile);
-        }
-    }
+    check(&of("blue", 15, 40), &[1, 19, 20, 31]);
+    check(&of("spaced", 15, 30), &[1, 2, 11, 16, 29]);
+    check(&of("lloyd", 12, 12), &[5]);
+    check(&of("step", 12, 12), &[3, 11]);
+    check(&of("single-peak", 12, 20), &[4, 6, 17]);
+    check(&in_space(), &[0, 3, 7, 11, 25, 37]);
 }
 
 #[test]
@@ -72,18 +114,18 @@ fn resumed_measuring_does_not_optimize_again() {
     let whole = forge(&job(9), &()).expect("a good job");
     let stopper = Stopper::new(Stage::Measuring, 1);
     assert!(forge(&job(9), &stopper).expect("a good job").interrupted);
-    let kept = stopper.kept.into_inner().expect("no panic").expect("kept");
+    let kept = stopper.kept();
     assert!(kept.is_optimized());
-    let first = FirstStep::default();
-    assert_eq!(resume(&job(9), kept, &first).expect("its own"), whole);
-    assert_eq!(first.0.into_inner().expect("no panic"), Some(9));
+    let endless = Stopper::new(Stage::Optimizing, u32::MAX);
+    assert_eq!(resume(&job(9), kept, &endless).expect("its own"), whole);
+    assert_eq!(endless.seen.into_inner().expect("no panic")[0].step, 9);
 }
 
 #[test]
 fn a_checkpoint_of_a_different_job_is_refused_with_the_difference() {
     let stopper = Stopper::new(Stage::Optimizing, 2);
     let _ = forge(&job(9), &stopper).expect("a good job");
-    let kept = stopper.kept.into_inner().expect("no panic").expect("kept");
+    let kept = stopper.kept();
     let good = job(9);
     let others: [(fn(&mut Job), _); 6] = [
         (|job| job.steps = Some(10), "steps"),
@@ -110,4 +152,19 @@ fn a_checkpoint_of_a_different_job_is_refused_with_the_difference() {
         assert!(resume(&other, kept.clone(), &()).is_err());
     }
     kept.is_of(&good).expect("its own");
+    // Jobs in space, and of the plane.
+    let stopper = Stopper::new(Stage::Optimizing, 2);
+    let _ = forge(&in_space(), &stopper).expect("a good job");
+    let kept = stopper.kept();
+    let other = SpaceJob {
+        seed: 2,
+        ..in_space()
+    };
+    let refused = [kept.is_of(&other), kept.is_of(&good)].map(|r| r.expect_err("another"));
+    let [seed, plane] = refused.map(|error| error.to_string());
+    assert!(
+        seed.contains("seed = 1") && seed.contains("seed = 2"),
+        "{seed}"
+    );
+    assert!(plane.contains("points = in space"), "{plane}");
 }

@@ -1,15 +1,10 @@
-//! Tables of points in space: equal jobs make equal tables, stopped or not, and the shipped ones keep what their history
-//! says.
+//! Tables of points in space: equal jobs make equal tables, and the shipped ones keep what their history says.
 
-mod stopper;
-
-use stopper::Stopper;
 use strew_core::space::{SpaceSet, Table};
 use strew_forge::{
-    Job, Stage,
-    space::{
-        LocalPower, SpaceDistances, SpaceJob, SpacePoints, SpacePower, SpaceProfile, forge, resume,
-    },
+    forge,
+    measure::Distances,
+    space::{LocalPower, SpaceJob, SpacePower, SpaceProfile, window_set},
 };
 
 fn job(profile: SpaceProfile) -> SpaceJob {
@@ -51,45 +46,6 @@ fn equal_jobs_make_equal_tables_with_any_number_of_threads() {
 }
 
 #[test]
-fn resumed_work_makes_the_same_table() {
-    let job = job(SpaceProfile::Spaced);
-    let whole = forge(&job, &()).expect("allowed");
-    let steps = job.estimate().expect("allowed").steps;
-    // In each phase, at its first step and at the end.
-    for after in [0, 3, 7, 11, 25, 38, steps] {
-        let stopper = match after == steps {
-            true => Stopper::new(Stage::Measuring, 0),
-            false => Stopper::new(Stage::Optimizing, after),
-        };
-        let stopped = forge(&job, &stopper).expect("allowed");
-        assert!(stopped.interrupted && !stopped.accepted, "{after}");
-        assert_eq!(stopped.table.vectors().len(), whole.table.vectors().len());
-        let kept = stopper.kept.into_inner().expect("no panic").expect("kept");
-        assert_eq!((kept.steps(), kept.is_optimized()), (after, after == steps));
-        assert_eq!(
-            resume(&job, kept.clone(), &()).expect("its own"),
-            whole,
-            "{after}"
-        );
-        let mut other = job.clone();
-        other.seed = 2;
-        let error = resume(&other, kept.clone(), &())
-            .expect_err("refused")
-            .to_string();
-        assert!(
-            error.contains("seed = 1") && error.contains("seed = 2"),
-            "{error}"
-        );
-        let plane = Job {
-            radius: 4,
-            ..Job::new(job.alpha)
-        };
-        let error = kept.is_of(&plane).expect_err("refused").to_string();
-        assert!(error.contains("points = in space"), "{error}");
-    }
-}
-
-#[test]
 fn ranks_are_an_order_that_spreads_what_is_left() {
     let ranked = forge(&job(SpaceProfile::Blue), &()).expect("allowed").table;
     let (map, vectors) = (ranked.map().clone(), ranked.vectors().to_vec());
@@ -100,8 +56,8 @@ fn ranks_are_an_order_that_spreads_what_is_left() {
             .seed(1)
             .keep(0.5)
             .expect("in range");
-        let points = SpacePoints::of_window(&set, [0.0; 3], 24.0).expect("near");
-        SpacePower::of(&points).low
+        let points = window_set(&set, [0.0; 3], 24.0).expect("near");
+        SpacePower::of(&points).summary.low_power
     };
     // Without ranks a hashed order decides.
     let (even, hashed) = (low(&ranked), low(&without));
@@ -112,12 +68,15 @@ fn ranks_are_an_order_that_spreads_what_is_left() {
 fn the_shipped_table_has_the_figures_that_it_was_accepted_with() {
     for seed in [0, 5] {
         let set = SpaceSet::blue().seed(seed);
-        let points = SpacePoints::of_window(&set, [7.0; 3], 40.0).expect("near");
-        let power = SpacePower::of(&points);
-        assert!(power.low < 8e-5 && power.peak < 2.5, "{seed} {power:?}");
-        let distances = SpaceDistances::of(&points);
+        let points = window_set(&set, [7.0; 3], 40.0).expect("near");
+        let power = SpacePower::of(&points).summary;
         assert!(
-            distances.least > 0.57 && distances.mean > 0.82,
+            power.low_power < 8e-5 && power.peak_power < 2.5,
+            "{seed} {power:?}"
+        );
+        let distances = Distances::of(&points);
+        assert!(
+            distances.delta_min > 0.57 && distances.delta_avg > 0.82,
             "{seed} {distances:?}"
         );
         let local = LocalPower::of(&set, [0.0; 3], 20, 12).expect("near");

@@ -5,7 +5,7 @@ mod shipped;
 use strew_core::{PointSet, table::Figures};
 use strew_forge::{
     judge::{RING_WIDTH, figures},
-    measure::{Sample, Spectrum},
+    measure::{Sample, Shared, Spectrum},
 };
 
 const OFF: f64 = 0.0;
@@ -52,47 +52,13 @@ fn a_million_warped_points_are_isotropic() {
     assert!(value("delta_min") >= 0.60, "{figures:?}");
 }
 
-/// The correlation of two power spectra over 0.8 < ν < 2.5, with the power of each mode over the
-/// mean of its ring.
-fn correlation(a: &Sample, b: &Sample) -> f64 {
-    let spectra = [a, b].map(|set| Spectrum::of(set, 2.5));
-    let side = a.side();
-    let modes = (2.5 * side) as i64;
-    // The taper blurs neighboring modes; every fifth mode is an independent sample.
-    let samples = (0..=modes).step_by(5).flat_map(|kx| {
-        let spectra = &spectra;
-        (-modes..=modes).step_by(5).filter_map(move |ky| {
-            let nu = ((kx * kx + ky * ky) as f64).sqrt() / side;
-            let power = |i: usize| spectra[i].at(kx, ky);
-            (0.8..2.5)
-                .contains(&nu)
-                .then_some((nu, power(0)?, power(1)?))
-        })
-    });
-    let mut rings = vec![Vec::new(); 40];
-    for (nu, p, q) in samples {
-        rings[((nu - 0.8) / 0.05) as usize].push((p, q));
-    }
-    let (mut pq, mut pp, mut qq) = (0.0, 0.0, 0.0);
-    for ring in rings.iter().filter(|ring| ring.len() > 10) {
-        let mean =
-            |pick: fn(&(f64, f64)) -> f64| ring.iter().map(pick).sum::<f64>() / ring.len() as f64;
-        let (mean_p, mean_q) = (mean(|s| s.0), mean(|s| s.1));
-        for (p, q) in ring {
-            let (dp, dq) = (p / mean_p - 1.0, q / mean_q - 1.0);
-            (pq, pp, qq) = (pq + dp * dq, pp + dp * dp, qq + dq * dq);
-        }
-    }
-    pq / (pp * qq).sqrt()
-}
-
 #[test]
 fn seeds_are_unrelated_sets() {
     let set = |seed, warp| window(seed, warp, 362.0);
-    let warped = correlation(&set(1, ON), &set(2, ON));
-    // About 50,000 modes: independent sets stay within a few hundredths.
+    let shared = |warp| Shared::of(&set(1, warp), &set(2, warp), 2.5);
+    let warped = shared(ON).power_correlation;
     assert!(warped.abs() < 0.03, "{warped}");
-    let plain = correlation(&set(1, OFF), &set(2, OFF));
+    let plain = shared(OFF).power_correlation;
     assert!(
         plain > 0.3,
         "without the warp all sets have the same peaks: {plain}"

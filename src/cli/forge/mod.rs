@@ -13,9 +13,9 @@ use strew_catalog::{Catalog, Dimension, Key};
 use strew_config::bounded_file;
 use strew_core::{Alpha, Table, map::Size, table::Shares};
 use strew_forge::{
-    Checkpoint, DEFAULT_SEED, Estimate, Job, MixJob, Prospect, Target, file_name, forge, mix,
-    mix_file_name, read_table, resume,
-    space::{self, SpaceEstimate, SpaceJob, SpaceProfile, table_file_name},
+    DEFAULT_SEED, Estimate, Job, MixJob, Prospect, Target, estimate, file_name, mix, mix_file_name,
+    read_table,
+    space::{SpaceJob, SpaceProfile, table_file_name},
 };
 use strew_query::{DEFAULT_ALPHA, DEFAULT_PROFILE};
 
@@ -141,14 +141,9 @@ impl TableArgs {
 
 fn in_plane(job: &Job, work: &Work, checkpoints: &Checkpoints) -> Result<(), Failure> {
     let path = work.path(&file_name(&job.profile, job.alpha, job.radius))?;
-    let estimate = job.estimate().map_err(Failure::usage)?;
+    let estimate = estimate(job).map_err(Failure::usage)?;
     let announced = || announce(&path, &job.prospect(), &estimate);
-    let is_of = |found: &Checkpoint| found.is_of(job);
-    let make = |found, watcher: &Watcher| match found {
-        None => forge(job, watcher),
-        Some(found) => resume(job, found, watcher),
-    };
-    checkpoints.made(work, &path, is_of, (estimate.steps, announced), make)?;
+    checkpoints.made(work, &path, job, (estimate.steps, announced))?;
     Ok(())
 }
 
@@ -177,19 +172,14 @@ fn announce(path: &Path, prospect: &Prospect, estimate: &Estimate) {
 fn in_space(job: &SpaceJob, work: &Work, checkpoints: &Checkpoints) -> Result<(), Failure> {
     let usual = table_file_name(job.profile.name(), job.alpha, job.radius);
     let path = work.path(&usual)?;
-    let estimate = job.estimate().map_err(Failure::usage)?;
+    let estimate = estimate(job).map_err(Failure::usage)?;
     let announced = || announce_in_space(&path, &estimate, work.threads());
-    let is_of = |found: &Checkpoint| found.is_of_space(job);
-    let make = |found, watcher: &Watcher| match found {
-        None => space::forge(job, watcher),
-        Some(found) => space::resume(job, found, watcher),
-    };
-    let table = checkpoints.made(work, &path, is_of, (estimate.steps, announced), make)?;
+    let table = checkpoints.made(work, &path, job, (estimate.steps, announced))?;
     work.show(&table.provenance().figures);
     Ok(())
 }
 
-fn announce_in_space(path: &Path, estimate: &SpaceEstimate, threads: usize) {
+fn announce_in_space(path: &Path, estimate: &Estimate, threads: usize) {
     eprintln!(
         "forging {}: {} blocks, {} steps, judged on {} points; about {:.0} s on {threads} threads",
         path.display(),

@@ -18,7 +18,8 @@ use strew_core::{
     table::{Digest, Figures},
 };
 use strew_forge::{
-    Checkpoint, Complaint, ForgeError, Outcome, Stage, Watch, gravest, space, write_table,
+    Checkpoint, Complaint, ForgeError, Stage, TableOf, Task, Watch, forge, gravest, resume, space,
+    write_table,
 };
 
 use crate::cli::{Failure, config, output, progress::Progress, refuse, signals};
@@ -166,18 +167,20 @@ pub(super) struct Checkpoints {
 }
 
 impl Checkpoints {
-    /// Makes a table by `make`, anew or from the checkpoint of its job, and writes it. Before that, `announce` shows what
-    /// takes `steps`.
-    pub(super) fn made<T: Made>(
+    /// Makes the table of a job, anew or from its checkpoint, and writes it. Before that, `announce` shows what takes
+    /// `steps`.
+    pub(super) fn made<J: Task>(
         &self,
         work: &Work,
         path: &Path,
-        is_of: impl Fn(&Checkpoint) -> Result<(), ForgeError>,
+        job: &J,
         (steps, announce): (u32, impl FnOnce()),
-        make: impl FnOnce(Option<Checkpoint>, &Watcher) -> Result<Outcome<T>, ForgeError>,
-    ) -> Result<T, Failure> {
+    ) -> Result<TableOf<J>, Failure>
+    where
+        TableOf<J>: Made,
+    {
         let kept = Self::path(path);
-        let found = self.found(&kept, work.quiet, is_of)?;
+        let found = self.found(&kept, work.quiet, job)?;
         if !work.quiet {
             announce();
             if let Some(found) = &found {
@@ -187,7 +190,11 @@ impl Checkpoints {
         }
         let every = Duration::from_secs(self.checkpoint_every);
         let watcher = Watcher::new(&kept, every, work.quiet);
-        let outcome = make(found, &watcher).map_err(Failure::usage)?;
+        let outcome = match found {
+            None => forge(job, &watcher),
+            Some(found) => resume(job, found, &watcher),
+        };
+        let outcome = outcome.map_err(Failure::usage)?;
         watcher.finish();
         if outcome.interrupted {
             let text = work.interrupted(path, &outcome.table, &watcher)?;
@@ -214,12 +221,12 @@ impl Checkpoints {
         name.into()
     }
 
-    /// The checkpoint to resume from, if there is one of the job, which `is_of` decides.
+    /// The checkpoint to resume from, if there is one of the job.
     fn found(
         &self,
         path: &Path,
         quiet: bool,
-        is_of: impl Fn(&Checkpoint) -> Result<(), ForgeError>,
+        job: &impl Task,
     ) -> Result<Option<Checkpoint>, Failure> {
         if self.restart {
             return Ok(None);
@@ -230,7 +237,7 @@ impl Checkpoints {
         let Some(found) = found else {
             return Ok(None);
         };
-        match is_of(&found) {
+        match found.is_of(job) {
             Ok(()) => Ok(Some(found)),
             Err(error) if found.is_optimized() => {
                 // It is that of a rejected table, and spares only the steps of that job.

@@ -7,9 +7,9 @@ use strew_core::{
     Twin,
     space::{SpaceSet, Table},
 };
+use strew_forge::measure::{Sample, Shared};
 use strew_forge::space::{
-    PLACES, SIDE, SpacePoints, SpacePower, SpaceReport, SpaceShared, is_uniform_in_space,
-    unseen_twins,
+    PLACES, SIDE, SpacePower, SpaceReport, is_uniform_in_space, twin_set, unseen_twins, window_set,
 };
 
 use crate::cli::{Failure, refuse};
@@ -57,19 +57,19 @@ pub(super) fn document(args: &Subjects, table: &Table) -> Result<Value, Failure>
             let share = 1.0 / part;
             let kept = set(seed).keep(share).map_err(Failure::usage)?;
             let side = side.min(THINNED_SIDE) * part.cbrt();
-            let points = SpacePoints::of_window(&kept, at, side).map_err(Failure::usage)?;
-            let low = SpacePower::of(&points).low;
+            let points = window_set(&kept, at, side).map_err(Failure::usage)?;
+            let low = SpacePower::of(&points).summary.low_power;
             thinned.push(json!([seed, share, points.points().len(), low]));
         }
     }
-    let windows: Result<Vec<SpacePoints>, strew_core::Error> = { seeds.iter() }
-        .map(|&seed| SpacePoints::of_window(&set(seed), at, side.min(SHARED_SIDE)))
+    let windows: Result<Vec<Sample<3>>, strew_core::Error> = { seeds.iter() }
+        .map(|&seed| window_set(&set(seed), at, side.min(SHARED_SIDE)))
         .collect();
     let windows = windows.map_err(Failure::usage)?;
     let mut pairs = Vec::new();
     for (i, (a, first)) in seeds.iter().zip(&windows).enumerate() {
         for (b, second) in seeds.iter().zip(&windows).skip(i + 1) {
-            let shared = SpaceShared::of(first, second);
+            let shared = Shared::of(first, second, 1.6);
             let power = [shared.power_correlation, shared.power_by_chance];
             let phase = [shared.phase_peak, shared.phase_by_chance];
             pairs.push(json!([a, b, power[0], power[1], phase[0], phase[1]]));
@@ -90,8 +90,8 @@ pub(super) fn document(args: &Subjects, table: &Table) -> Result<Value, Failure>
     }))
 }
 
-fn twins(args: &Subjects, table: &Table) -> Result<Vec<(Twin, SpacePoints)>, Failure> {
-    let points = |twin: Twin| Some((twin, SpacePoints::of_twin(table, twin)?));
+fn twins(args: &Subjects, table: &Table) -> Result<Vec<(Twin, Sample<3>)>, Failure> {
+    let points = |twin: Twin| Some((twin, twin_set(table, twin)?));
     if args.twin.is_empty() {
         let (least, number) = TWINS;
         let all = unseen_twins(table.map(), least).take_while(|twin| twin.t().pow(3) <= POINTS[1]);
@@ -121,7 +121,7 @@ fn shown(report: &SpaceReport) -> Value {
         .map(|(name, value)| (name.clone(), json!(value)))
         .collect();
     let shells: Vec<Value> = { report.shells.iter() }
-        .map(|shell| json!([shell.frequency, shell.power, shell.anisotropy()]))
+        .map(|shell| json!([shell.nu, shell.power, shell.anisotropy_db]))
         .collect();
     json!({
         "subject": figures.subject,

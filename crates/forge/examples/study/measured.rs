@@ -31,8 +31,7 @@ pub fn comparison(_: Arguments) -> Outcome {
     let jittered = (0..cells * cells).map(|cell| [cell % cells, cell / cells]);
     let jittered = jittered.map(|cell| cell.map(|v| f64::from(v) + random.next_f64()));
     let jittered = jittered.collect();
-    let mut random = SplitMix::new(7);
-    let independent = (0..cells * cells).map(|_| [0, 1].map(|_| random.next_f64() * SIDE));
+    let independent = SplitMix::new(7).places((cells * cells) as usize, SIDE);
     // A radius of 0.84 makes about one point a unit of area.
     let disks = Poisson2D::new().with_dimensions([SIDE, SIDE], 0.84);
     let strew = square(&PointSet::blue().seed(7), [0.0; 2], SIDE)?;
@@ -42,7 +41,7 @@ pub fn comparison(_: Arguments) -> Outcome {
         ("fast_poisson", disks.with_seed(7).generate()),
         ("jittered grid", jittered),
         ("a repeated tile", tiled()?),
-        ("random", independent.collect()),
+        ("random", independent),
     ] {
         let density = points.len() as f64 / (SIDE * SIDE);
         let set = Sample::window(SIDE, density, points);

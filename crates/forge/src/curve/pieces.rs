@@ -254,94 +254,44 @@ mod tests {
 
     #[test]
     fn bad_pieces_are_refused_with_number_value_and_allowed_range() {
-        let first = piece("from = 0\nto = 0.5\npower = 0");
-        for (text, words) in [
-            (
-                first.clone() + &piece("from = 0.6\nto = 1\npower = 1"),
-                ["piece 2", "0.6, a gap", "from = 0.5"],
-            ),
-            (
-                first.clone() + &piece("from = 0.4\nto = 1\npower = 1"),
-                ["piece 2", "0.4, an overlap", "from = 0.5"],
-            ),
-            (
-                piece("from = 1\nto = 1\npower = 1"),
-                ["piece 1", "to = 1", "more than from = 1"],
-            ),
-            (
-                piece("from = 0\nto = 5\npower = 1"),
-                ["piece 1", "to = 5", "at most 4"],
-            ),
-            (
-                piece("from = -1\nto = 1\npower = 1"),
-                ["piece 1", "from = -1", "0 to"],
-            ),
-            (
-                piece("from = nan\nto = 1\npower = 1"),
-                ["piece 1", "from = NaN", "0 to"],
-            ),
-            (
-                piece("from = 0\nto = 1\npower = -1"),
-                ["piece 1", "power -1", "0 to 100"],
-            ),
-            (
-                piece("from = 0\nto = 1\npower = [0, 1000]"),
-                ["piece 1", "power 1000", "0 to 100"],
-            ),
-            (
-                piece("from = 0\nto = 1\npower = [0, 1, 2]"),
-                ["line 4", "two numbers", "[[piece]]"],
-            ),
-            (
-                piece("from = 0\nto = 1\npower = \"x\""),
-                ["line 4", "two numbers", "[[piece]]"],
-            ),
-            (
-                piece("from = 0\nto = 1"),
-                ["piece 1", "neither", "exponent"],
-            ),
-            (
-                piece("from = 0\nto = 1\npowr = 1"),
-                ["line 4", "powr", "[[piece]]"],
-            ),
-            (
-                piece("from = 0\npower = 1"),
-                ["missing", "`to`", "[[piece]]"],
-            ),
-            (
-                piece("from = 0\nto = 1\nlaw = { power = 1, at = 1 }"),
-                ["line 4", "exponent", "[[piece]]"],
-            ),
-            (
-                piece("from = 0\nto = 1\nlaw = { power = 1, at = 1, exponent = -1 }"),
-                ["piece 1", "exponent = -1", "0 or more"],
-            ),
-            (
-                piece("from = 0\nto = 1\nlaw = { power = 1, at = 1, exponent = 9 }"),
-                ["piece 1", "exponent = 9", "-8 to 8"],
-            ),
-            (
-                piece("from = 0\nto = 1\nlaw = { power = 1, at = 0, exponent = 1 }"),
-                ["piece 1", "at = 0", "more than 0"],
-            ),
-            (
-                piece("from = 0.001\nto = 1\nlaw = { power = 1, at = 1, exponent = -2 }"),
-                ["piece 1", "power 1000000", "0 to 100"],
-            ),
-            (
-                piece("from = 0\nto = 1\npower = 1\nlaw = { power = 1, at = 1, exponent = 0 }"),
-                ["piece 1", "both", "one of"],
-            ),
-            (
-                "[piece".into(),
-                ["line 1", "not a curve in pieces", "[[piece]]"],
-            ),
-            ("hue = 3".into(), ["line 1", "hue", "[[piece]]"]),
-            ("[curve]\n".into(), ["line 1", "curve", "[[piece]]"]),
-        ] {
+        // The lines of a piece, and words of the error.
+        let pieces = r#"
+            from = 1; to = 1; power = 1 => piece 1 | to = 1 | more than from = 1
+            from = 0; to = 5; power = 1 => piece 1 | to = 5 | at most 4
+            from = -1; to = 1; power = 1 => piece 1 | from = -1 | 0 to
+            from = nan; to = 1; power = 1 => piece 1 | from = NaN | 0 to
+            from = 0; to = 1; power = -1 => piece 1 | power -1 | 0 to 100
+            from = 0; to = 1; power = [0, 1000] => piece 1 | power 1000 | 0 to 100
+            from = 0; to = 1; power = [0, 1, 2] => line 4 | two numbers | [[piece]]
+            from = 0; to = 1; power = "x" => line 4 | two numbers | [[piece]]
+            from = 0; to = 1 => piece 1 | neither | exponent
+            from = 0; to = 1; powr = 1 => line 4 | powr | [[piece]]
+            from = 0; power = 1 => missing | `to` | [[piece]]
+            from = 0; to = 1; law = { power = 1, at = 1 } => line 4 | exponent | [[piece]]
+            from = 0; to = 1; law = { power = 1, at = 1, exponent = -1 } => exponent = -1 | 0 or more
+            from = 0; to = 1; law = { power = 1, at = 1, exponent = 9 } => exponent = 9 | -8 to 8
+            from = 0; to = 1; law = { power = 1, at = 0, exponent = 1 } => at = 0 | more than 0
+            from = 0.001; to = 1; law = { power = 1, at = 1, exponent = -2 } => power 1000000 | 0 to 100
+            from = 0; to = 1; power = 1; law = { power = 1, at = 1, exponent = 0 } => both | one of
+            from = 0; to = 0.5; power = 0; [[piece]]; from = 0.6; to = 1; power = 1 => piece 2 | 0.6, a gap | from = 0.5
+            from = 0; to = 0.5; power = 0; [[piece]]; from = 0.4; to = 1; power = 1 => piece 2 | 0.4, an overlap | from = 0.5"#;
+        let cases = pieces.trim().lines().map(|line| {
+            let (lines, words) = line.split_once(" => ").expect("a case");
+            (piece(&lines.trim().replace("; ", "\n")), words)
+        });
+        let others = [
+            ("[piece", "line 1 | not a curve in pieces | [[piece]]"),
+            ("hue = 3", "line 1 | hue | [[piece]]"),
+            ("[curve]\n", "line 1 | curve | [[piece]]"),
+        ];
+        let others = others.map(|(text, words)| (text.to_owned(), words));
+        for (text, words) in cases.chain(others) {
             let error = text.parse::<Target>().expect_err(&text).to_string();
-            let said = words.iter().all(|word| error.contains(word));
-            assert!(said && error.starts_with("target is "), "{text}: {error}");
+            let is_said = words.split(" | ").all(|word| error.contains(word));
+            assert!(
+                is_said && error.starts_with("target is "),
+                "{text}: {error}"
+            );
         }
     }
 

@@ -40,7 +40,7 @@ impl Lloyd {
     pub fn cells(set: &Sample) -> Vec<Cell> {
         let list = CellList::of(set, 1.0);
         let found: Vec<Vec<(u32, Cell)>> = list
-            .members()
+            .members
             .par_chunks(CHUNK)
             .map(|chunk| {
                 let mut cutter = Cutter::default();
@@ -155,9 +155,7 @@ mod tests {
     use crate::{measure::Voronoi, numeric::SplitMix};
 
     fn noise(count: usize) -> Sample {
-        let mut random = SplitMix::new(4);
-        let points = (0..count).map(|_| [random.next_f64(), random.next_f64()]);
-        Sample::torus(1.0, points.collect())
+        Sample::torus(1.0, SplitMix::new(4).places(count, 1.0))
     }
 
     #[test]

@@ -51,7 +51,7 @@ impl<E: PairEnergy> SetEnergy for Pairwise<E> {
         let cells = CellList::of(set, (cutoff / 4.0).max(0.5));
         let rings = (cutoff / cells.width()).ceil() as i64;
         let each: Vec<(u32, f64, [f64; 2])> = cells
-            .members()
+            .members
             .par_iter()
             .map(|&(index, p)| {
                 let (mut energy, mut slope) = (0.0, [0.0; 2]);

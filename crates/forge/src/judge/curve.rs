@@ -11,7 +11,7 @@ use strew_core::table::Figures;
 
 use super::{
     Bound, Figure,
-    figure::{NU_MAX, round},
+    figure::{NU_MAX, named},
 };
 use crate::{
     curve::Target,
@@ -67,10 +67,7 @@ pub fn curve_figures(spectrum: &Spectrum, target: &Target) -> Vec<(String, f64)>
     if let Some(power) = quiet_power(spectrum, target) {
         figures.push((Figure::QuietPower, power));
     }
-    figures
-        .into_iter()
-        .map(|(figure, value)| (figure.name().to_owned(), round(value)))
-        .collect()
+    named(figures)
 }
 
 /// The power of a ring beside that of the target.

@@ -54,6 +54,10 @@ pub enum Figure {
     Q6,
     /// The error of the share of a kind, up or down.
     ShareError,
+    /// In space: the frequency of the largest mean power of a shell.
+    PeakFrequency,
+    /// In space: the median anisotropy of shells beyond 0.8, in dB.
+    ShellAnisotropy,
     /// In space: the mean nearest-neighbor distance over that of the densest packing.
     MeanDistance,
     /// In space: the deviation of power over directions in small windows, divided by its mean.
@@ -86,6 +90,8 @@ impl Figure {
             Self::LargestHole => "largest_hole",
             Self::Q6 => "q6",
             Self::ShareError => "share_error",
+            Self::PeakFrequency => "peak_frequency",
+            Self::ShellAnisotropy => "anisotropy",
             Self::MeanDistance => "mean_distance",
             Self::LocalDeviation => "local_deviation",
             Self::LocalLargest => "local_largest",
@@ -94,8 +100,16 @@ impl Figure {
 }
 
 /// Rounds to four significant decimal digits.
-pub(crate) fn round(value: f64) -> f64 {
+pub(super) fn round(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(0.0)
+}
+
+/// Figures under their names, rounded.
+pub(crate) fn named(values: impl IntoIterator<Item = (Figure, f64)>) -> Vec<(String, f64)> {
+    let values = values.into_iter();
+    values
+        .map(|(figure, value)| (figure.name().to_owned(), round(value)))
+        .collect()
 }
 
 /// All figures of a set and its spectrum, radial ones over rings of width `ring_width`; `seen` says whether the table
@@ -133,9 +147,7 @@ pub fn figures(
         subject,
         seen,
         points: set.points().len() as u64,
-        values: { values.into_iter() }
-            .map(|(figure, value)| (figure.name().to_owned(), round(value)))
-            .collect(),
+        values: named(values),
     }
 }
 

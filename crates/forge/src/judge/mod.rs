@@ -16,6 +16,7 @@ mod panel;
 
 pub use bound::{Bound, Complaint, Side, complaints, gravest};
 pub use curve::{Nearness, TARGET_RING, bounds_of_curve, curve_figures};
-pub(crate) use figure::round;
+pub(crate) use figure::named;
 pub use figure::{Figure, RING_WIDTH, figures};
+pub(crate) use panel::measured;
 pub use panel::{JUDGED_POINTS, Panel};

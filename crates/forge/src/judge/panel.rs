@@ -104,28 +104,38 @@ impl Panel {
 
     /// Measures `table` on all point sets, or returns `None` if the watch stops it.
     pub fn measure(&self, table: &Table, meter: &mut Meter<'_>) -> Option<Vec<Figures>> {
-        let mut all = Vec::new();
         let twins = self.seen.iter().map(|twin| (twin, true));
-        for (twin, seen) in twins.chain(self.unseen.iter().map(|twin| (twin, false))) {
-            if meter.stop() {
-                return None;
-            }
-            if let Some(set) = twin_set(table, *twin) {
-                let nu_max = NU_MAX.min(MAX_MODES / set.side());
-                all.push(self.figures(format!("twin {twin}"), seen, &set, nu_max));
-            }
-            meter.advance(None);
-        }
-        for seed in WINDOW_SEEDS {
-            if meter.stop() {
-                return None;
-            }
+        let twins = twins.chain(self.unseen.iter().map(|twin| (twin, false)));
+        let twin = |(twin, seen): (&Twin, bool)| {
+            let set = twin_set(table, *twin)?;
+            let nu_max = NU_MAX.min(MAX_MODES / set.side());
+            Some(self.figures(format!("twin {twin}"), seen, &set, nu_max))
+        };
+        let window = |seed: u64| {
             let set = window_set(table, WINDOW_POINTS, seed);
-            all.push(self.figures(format!("window seed {seed}"), false, &set, NU_MAX));
-            meter.advance(None);
-        }
+            Some(self.figures(format!("window seed {seed}"), false, &set, NU_MAX))
+        };
+        let mut all = measured(twins, meter, twin)?;
+        all.extend(measured(WINDOW_SEEDS, meter, window)?);
         Some(all)
     }
+}
+
+/// Measures subjects one by one, a step of the meter each, or returns `None` if the watch stops it.
+pub(crate) fn measured<T>(
+    subjects: impl IntoIterator<Item = T>,
+    meter: &mut Meter<'_>,
+    mut measure: impl FnMut(T) -> Option<Figures>,
+) -> Option<Vec<Figures>> {
+    let mut all = Vec::new();
+    for subject in subjects {
+        if meter.stop() {
+            return None;
+        }
+        all.extend(measure(subject));
+        meter.advance(None);
+    }
+    Some(all)
 }
 
 #[cfg(test)]

@@ -82,6 +82,7 @@ mod tests {
                 nu,
                 power: power(nu),
                 anisotropy_db: 0.0,
+                tallest: 0.0,
             }
         };
         (0..512).map(ring).collect()

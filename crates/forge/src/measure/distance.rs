@@ -6,7 +6,8 @@ use super::Sample;
 use crate::cell_list::CellList;
 
 /// Nearest-neighbor distances in units of √(2/√3)·N^−½, the nearest-neighbor distance of the
-/// hexagonal lattice of the same density. The smallest distance is at most 1.
+/// hexagonal lattice of the same density; in space of (√2/N)^⅓, that of the densest packing. The smallest distance is at
+/// most 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distances {
     /// The smallest distance.
@@ -15,59 +16,56 @@ pub struct Distances {
     pub delta_avg: f64,
 }
 
-/// The margin of a window, in mean spacings. The nearest neighbor of a point in it may lie outside
-/// the window, so its distance is not counted.
-const MARGIN: f64 = 4.0;
+/// The margin of a window of the plane, and of one in space, in mean spacings. The nearest neighbor of a point in it may lie
+/// outside the window, so its distance is not counted.
+const MARGINS: [f64; 2] = [4.0, 1.4];
+/// The nearest-neighbor distance of the hexagonal lattice of unit density.
+pub(crate) const HEXAGONAL: f64 = 1.074_569_931_823_542;
+/// That of the densest packing in space: the sixth root of 2.
+const DENSEST: f64 = 1.122_462_048_309_373;
 /// Points per parallel task. It fixes the order of the sum.
 const CHUNK: usize = 4096;
 
 impl Distances {
-    /// Measures a set; of a window the distances from points at least 4 mean spacings from its edge to all points. A
-    /// single point of a periodic set has its own images as neighbors. Both figures are 0 if there are no points.
+    /// Measures a set; of a window the distances from points at least 4 mean spacings from its edge, in space 1.4, to all
+    /// points. A single point of a periodic set has its own images as neighbors. Both figures are 0 if there are no points.
     #[must_use]
-    pub fn of(set: &Sample) -> Self {
+    pub fn of<const D: usize>(set: &Sample<D>) -> Self {
+        let [margin, unit] = match D {
+            2 => [MARGINS[0], HEXAGONAL],
+            _ => [MARGINS[1], DENSEST],
+        };
         let cells = CellList::of(set, 1.0);
-        let [least, mean] = least_and_mean(&cells, |p| set.is_inner(MARGIN, p));
-        let unit = (2.0 / 3.0f64.sqrt()).sqrt();
+        let of_chunk = |chunk: &[(u32, [f64; D])]| {
+            let (mut least, mut sum, mut counted) = (f64::INFINITY, 0.0, 0);
+            for (index, p) in chunk.iter().filter(|(_, p)| set.is_inner(margin, p)) {
+                let distance = nearest(&cells, *index, *p);
+                least = least.min(distance);
+                sum += distance;
+                counted += 1;
+            }
+            (least, sum, counted)
+        };
+        let parts: Vec<(f64, f64, usize)> = cells.members.par_chunks(CHUNK).map(of_chunk).collect();
+        let least = parts.iter().map(|part| part.0);
+        let least = least.fold(f64::INFINITY, f64::min);
+        let sum: f64 = parts.iter().map(|part| part.1).sum();
+        let counted: usize = parts.iter().map(|part| part.2).sum();
+        let [delta_min, delta_avg] = match counted == 0 || !sum.is_finite() {
+            true => [0.0; 2],
+            false => [least, sum / counted as f64].map(|v| v / unit),
+        };
         Self {
-            delta_min: least / unit,
-            delta_avg: mean / unit,
+            delta_min,
+            delta_avg,
         }
-    }
-}
-
-/// The least and the mean distance from the points that count to their nearest neighbors; 0 if there are none.
-pub(crate) fn least_and_mean<const D: usize>(
-    cells: &CellList<D>,
-    counts: impl Fn(&[f64; D]) -> bool + Sync,
-) -> [f64; 2] {
-    let of_chunk = |chunk: &[(u32, [f64; D])]| {
-        let (mut least, mut sum, mut counted) = (f64::INFINITY, 0.0, 0);
-        for (index, p) in chunk.iter().filter(|(_, p)| counts(p)) {
-            let distance = nearest(cells, *index, *p);
-            least = least.min(distance);
-            sum += distance;
-            counted += 1;
-        }
-        (least, sum, counted)
-    };
-    let parts: Vec<(f64, f64, usize)> = cells.members().par_chunks(CHUNK).map(of_chunk).collect();
-    let least = parts
-        .iter()
-        .map(|part| part.0)
-        .fold(f64::INFINITY, f64::min);
-    let sum: f64 = parts.iter().map(|part| part.1).sum();
-    let counted: usize = parts.iter().map(|part| part.2).sum();
-    match counted == 0 || !sum.is_finite() {
-        true => [0.0; 2],
-        false => [least, sum / counted as f64],
     }
 }
 
 /// The distance from the point `p` to its nearest neighbor; infinite if it has none.
 fn nearest<const D: usize>(cells: &CellList<D>, index: u32, p: [f64; D]) -> f64 {
     let mut least = f64::INFINITY;
-    let rings = (cells.members().len() as f64).sqrt() as i64 * 2 + 2;
+    let rings = (cells.members.len() as f64).sqrt() as i64 * 2 + 2;
     for ring in 0..=rings {
         // Points in this ring are at least this far away.
         let far = (ring - 1).max(0) as f64 * cells.width();
@@ -112,26 +110,32 @@ mod tests {
         assert!(hexagonal.delta_avg <= 1.001);
     }
 
+    /// Compares with the search of all pairs.
+    fn check<const D: usize>(points: Vec<[f64; D]>, unit: f64) {
+        let set = Sample::torus(1.0, points);
+        let gap = |p: &[f64; D], q: &[f64; D]| {
+            let along = |axis: usize| (p[axis] - q[axis]).abs();
+            let squares = (0..D).map(|axis| along(axis).min(set.side() - along(axis)).powi(2));
+            squares.sum::<f64>().sqrt()
+        };
+        let all = || set.points().iter().enumerate();
+        let nearest = |(i, p)| {
+            let others = all().filter(|&(j, _)| i != j).map(|(_, q)| gap(p, q));
+            others.fold(f64::INFINITY, f64::min)
+        };
+        let each: Vec<f64> = all().map(nearest).collect();
+        let found = Distances::of(&set);
+        let least = each.iter().copied().fold(f64::INFINITY, f64::min) / unit;
+        let mean = each.iter().sum::<f64>() / each.len() as f64 / unit;
+        assert!((found.delta_min - least).abs() < 1e-12);
+        assert!((found.delta_avg - mean).abs() < 1e-12);
+    }
+
     proptest! {
         #[test]
-        fn agrees_with_the_search_of_all_pairs(points in proptest::collection::vec([0.0f64..1.0, 0.0f64..1.0], 2..120)) {
-            let set = Sample::torus(1.0, points);
-            let side = set.side();
-            let gap = |a: f64, b: f64| {
-                let d = (a - b).abs();
-                d.min(side - d)
-            };
-            let each: Vec<f64> = set.points().iter().enumerate().map(|(i, p)| {
-                set.points().iter().enumerate().filter(|&(j, _)| i != j)
-                    .map(|(_, q)| gap(p[0], q[0]).hypot(gap(p[1], q[1])))
-                    .fold(f64::INFINITY, f64::min)
-            }).collect();
-            let unit = (2.0 / 3.0f64.sqrt()).sqrt();
-            let found = Distances::of(&set);
-            let least = each.iter().copied().fold(f64::INFINITY, f64::min) / unit;
-            let mean = each.iter().sum::<f64>() / each.len() as f64 / unit;
-            prop_assert!((found.delta_min - least).abs() < 1e-12);
-            prop_assert!((found.delta_avg - mean).abs() < 1e-12);
+        fn agrees_with_the_search_of_all_pairs(points in proptest::collection::vec([0.0f64..1.0, 0.0f64..1.0, 0.0f64..1.0], 2..120)) {
+            check(points.iter().map(|p| [p[0], p[1]]).collect(), HEXAGONAL);
+            check(points, DENSEST);
         }
     }
 
@@ -145,7 +149,7 @@ mod tests {
             (found.delta_min - 0.930_604_859_102_1).abs() < 1e-9,
             "{found:?}"
         );
-        let empty = Distances::of(&Sample::window(1.0, 1.0, vec![]));
+        let empty = Distances::of(&<Sample>::window(1.0, 1.0, vec![]));
         assert_eq!(empty.delta_min, 0.0);
     }
 }

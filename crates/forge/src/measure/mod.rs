@@ -1,32 +1,37 @@
 //! Measuring point sets: spectrum, distances and Voronoi cells of whole periods and of windows.
 //!
-//! A set is a [`Sample`]: one period of a periodic set, or a window of an unbounded one;
-//! [`twin_set`] and [`window_set`] make them from a table. [`Spectrum`] is computed by `nufft`,
-//! windows with the weights of `taper`; its [`Ring`]s yield the [`Summary`] and the [`Crispness`].
+//! A set is a [`Sample`], of the plane or in space: one period of a periodic set, or a window of an unbounded one;
+//! [`twin_set`] and [`window_set`] make them from a table. [`Spectrum`] is computed by `nufft`, in space by `sums` with the
+//! transforms of `fourier`, windows with the weights of `taper`; its [`Ring`]s yield the [`Summary`] and the [`Crispness`].
 //! [`Distances`] and [`Rdf`] look up neighbors in a cell list, [`Voronoi`] in a triangulation. [`recurrence`] is how
 //! much of a set is found again elsewhere in it, [`Shared`] what two sets have in common.
 //!
 //! Everything is at unit density: lengths are in mean spacings, frequencies ν in cycles per mean
 //! spacing, and white noise has power 1. Of these results only figures rounded to four digits reach
-//! a table, so the platform's own math functions may be used.
+//! a table, so the platform's own math functions may be used; in space, where sums are of single precision, they are not.
 
 mod crispness;
 mod distance;
+mod fourier;
 mod nufft;
 mod pair;
 mod rdf;
 mod recurrence;
 mod set;
 mod spectrum;
+mod sums;
 mod taper;
 mod voronoi;
 
 pub use crispness::Crispness;
 pub use distance::Distances;
-pub(crate) use distance::least_and_mean;
+pub(crate) use distance::HEXAGONAL;
 pub use pair::Shared;
 pub use rdf::Rdf;
 pub use recurrence::recurrence;
 pub use set::{Sample, twin_set, window_set};
+pub(crate) use set::{root, wrap};
+pub(crate) use spectrum::rings_of;
 pub use spectrum::{BANDS, Ring, Spectrum, Summary};
+pub(crate) use sums::waves;
 pub use voronoi::Voronoi;

@@ -31,7 +31,10 @@ pub(super) fn transform<T: Send>(
 ) -> Vec<T> {
     let size = grid_size(modes);
     let fft = FftPlanner::new().plan_fft_forward(size);
-    let rows = RowIndex::new(points, size);
+    let mut by_row = vec![Vec::new(); size];
+    for (index, p) in (0..).zip(points) {
+        by_row[Spreading::first(p[1], size).rem_euclid(size as i64) as usize].push(index);
+    }
     let columns = modes + 1;
     // Indexed by band, then kx, then row of the band.
     let mut half_done = vec![Complex::default(); columns * size];
@@ -39,7 +42,7 @@ pub(super) fn transform<T: Send>(
         .par_chunks_mut(columns * BAND)
         .enumerate()
         .for_each(|(band, out)| {
-            let grid = rows.spread(points, weights, size, band * BAND);
+            let grid = spread(&by_row, points, weights, band * BAND);
             transform_rows(&grid, &*fft, columns, out);
         });
     finish_columns(&half_done, &fft, modes, &each)
@@ -60,65 +63,36 @@ fn grid_size(modes: usize) -> usize {
     (least..).find(|&m| smooth(m)).unwrap_or(least) * BAND
 }
 
-/// Points sorted by the first grid row under their kernel.
-struct RowIndex {
-    /// The start of the points of each row in `order`, and the end of the last.
-    starts: Vec<u32>,
-    /// Indices of points.
-    order: Vec<u32>,
-}
-
-impl RowIndex {
-    fn new(points: &[[f64; 2]], size: usize) -> Self {
-        let row = |p: &[f64; 2]| Spreading::first(p[1], size).rem_euclid(size as i64) as usize;
-        let mut starts = vec![0u32; size + 1];
-        for p in points {
-            starts[row(p) + 1] += 1;
-        }
-        for r in 1..starts.len() {
-            starts[r] += starts[r - 1];
-        }
-        let mut next = starts.clone();
-        let mut order = vec![0; points.len()];
-        for (index, p) in points.iter().enumerate() {
-            let slot = &mut next[row(p)];
-            order[*slot as usize] = index as u32;
-            *slot += 1;
-        }
-        Self { starts, order }
-    }
-
-    /// Spreads the points onto the band of grid rows from `first_row` on.
-    fn spread(
-        &self,
-        points: &[[f64; 2]],
-        weights: Option<&[f64]>,
-        size: usize,
-        first_row: usize,
-    ) -> Vec<f64> {
-        let mut grid = vec![0.0; BAND * size];
-        // Kernels that start up to WIDTH − 1 rows above reach into the band.
-        for offset in 1 - WIDTH as i64..BAND as i64 {
-            let row = (first_row as i64 + offset).rem_euclid(size as i64) as usize;
-            for &index in &self.order[self.starts[row] as usize..self.starts[row + 1] as usize] {
-                let [x, y] = points[index as usize];
-                let weight = weights.map_or(1.0, |w| w[index as usize]);
-                let [along_x, along_y] = [x, y].map(|v| Spreading::values(v, size));
-                let start = Spreading::first(x, size).rem_euclid(size as i64) as usize;
-                for (j, ky) in along_y.iter().enumerate() {
-                    let Ok(in_band) = usize::try_from(offset + j as i64) else {
-                        continue;
-                    };
-                    if in_band >= BAND {
-                        break;
-                    }
-                    let row = &mut grid[in_band * size..(in_band + 1) * size];
-                    add_wrapped(row, start, &along_x, weight * ky);
+/// Spreads the points onto the band of grid rows from `first_row` on, given those whose kernels begin in each row.
+fn spread(
+    by_row: &[Vec<u32>],
+    points: &[[f64; 2]],
+    weights: Option<&[f64]>,
+    first_row: usize,
+) -> Vec<f64> {
+    let size = by_row.len();
+    let mut grid = vec![0.0; BAND * size];
+    // Kernels that start up to WIDTH − 1 rows above reach into the band.
+    for offset in 1 - WIDTH as i64..BAND as i64 {
+        let row = (first_row as i64 + offset).rem_euclid(size as i64) as usize;
+        for &index in &by_row[row] {
+            let [x, y] = points[index as usize];
+            let weight = weights.map_or(1.0, |w| w[index as usize]);
+            let [along_x, along_y] = [x, y].map(|v| Spreading::values(v, size));
+            let start = Spreading::first(x, size).rem_euclid(size as i64) as usize;
+            for (j, ky) in along_y.iter().enumerate() {
+                let Ok(in_band) = usize::try_from(offset + j as i64) else {
+                    continue;
+                };
+                if in_band >= BAND {
+                    break;
                 }
+                let row = &mut grid[in_band * size..(in_band + 1) * size];
+                add_wrapped(row, start, &along_x, weight * ky);
             }
         }
-        grid
     }
+    grid
 }
 
 /// Adds the kernel times a factor to a cyclic row, from the cell `start` on.
@@ -199,9 +173,7 @@ mod tests {
     fn agrees_with_the_direct_sum() {
         let mut random = SplitMix::new(3);
         for (count, modes) in [(1, 5), (40, 0), (300, 17), (900, 60)] {
-            let mut points: Vec<[f64; 2]> = (0..count)
-                .map(|_| [random.next_f64(), random.next_f64()])
-                .collect();
+            let mut points = random.places(count, 1.0);
             points[0] = [0.0, 1.0 - f64::EPSILON]; // both ends of the range
             let weights: Vec<f64> = (0..count).map(|_| random.next_f64() - 0.3).collect();
             let size: f64 = weights.iter().map(|w| w * w).sum::<f64>().sqrt();

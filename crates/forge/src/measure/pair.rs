@@ -1,124 +1,124 @@
 //! Two sets compared: whether they share power or phases.
 //!
-//! Sets of two seeds should be as independent as two sets of white noise. Two figures show what they share,
-//! both 0 for independent sets but for chance: the correlation of their powers, mode by mode, and the highest
-//! peak of their phase correlation, which finds a part of one set in the other at any translation.
+//! Sets of two seeds should be as independent as two sets of white noise. Two figures show what they share: the correlation
+//! of their powers, mode by mode, and the highest peak of their phase correlation, which finds a part of one set in the other
+//! at any translation. With each comes what two independent sets have.
 
-use rustfft::{FftPlanner, num_complex::Complex};
+use super::{
+    Sample,
+    fourier::{Fourier, Plane},
+    sums::waves,
+};
 
-use super::{Sample, nufft::transform};
-
-/// The structure that two sets have in common.
+/// The structure that two windows have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shared {
     /// The correlation coefficient of the powers of equal modes, each relative to the mean of its ring.
     pub power_correlation: f64,
+    /// The deviation that it has by chance.
+    pub power_by_chance: f64,
     /// The highest value of the phase correlation, in standard deviations.
     pub phase_peak: f64,
+    /// The height that half of all peaks by chance stay below.
+    pub phase_by_chance: f64,
 }
 
-/// The frequencies compared: below, many sets have no power.
+/// The frequencies that are compared: below, many sets have no power.
 const LOW_END: f64 = 0.8;
+/// The width of a ring, in modes.
+const RING: f64 = 4.0;
+
+/// A mode, and the sums of both sets.
+type Mode<const D: usize> = ([i64; D], [[f64; 2]; 2]);
 
 impl Shared {
-    /// Compares two windows of equal side, on modes with 0.8 < ν < `nu_max`.
+    /// Compares two windows of equal side, of the plane or in space, on modes with 0.8 < ν < `nu_max`.
     ///
     /// # Panics
     /// If the sides differ by more than a millionth.
     #[must_use]
-    pub fn of(a: &Sample, b: &Sample, nu_max: f64) -> Self {
+    pub fn of<const D: usize>(a: &Sample<D>, b: &Sample<D>, nu_max: f64) -> Self {
         assert!((a.side() / b.side() - 1.0).abs() < 1e-6, "equal sides");
         let side = a.side();
         let modes = (nu_max * side) as usize;
-        let sums = [a, b].map(|set| sums(set, modes));
-        let nu = |kx: i64, ky: i64| ((kx * kx + ky * ky) as f64).sqrt() / side;
-        let height = 2 * modes + 1;
-        let wanted = |i: usize| {
-            let (kx, ky) = ((i / height) as i64, (i % height) as i64 - modes as i64);
-            let is_first = kx > 0 || ky > 0;
-            let nu = nu(kx, ky);
-            (is_first && nu > LOW_END && nu < nu_max).then_some((kx, ky, nu))
-        };
-        Self {
-            power_correlation: power_correlation(&sums, side, wanted),
-            phase_peak: phase_peak(&sums, modes, wanted),
+        // Without a taper, which would tie neighboring modes to each other.
+        let size = |k: [i64; D]| (k.iter().map(|k| k * k).sum::<i64>() as f64).sqrt();
+        let sizes = LOW_END * side..nu_max * side;
+        let [first, second] = [a, b].map(|set| {
+            waves(set, None, modes, |k, sum| {
+                sizes.contains(&size(k)).then_some((k, sum))
+            })
+        });
+        let both = first.into_iter().zip(second);
+        let all: Vec<Mode<D>> = both.map(|((k, a), (_, b))| (k, [a, b])).collect();
+        let ring = |k: [i64; D]| (size(k) / RING) as usize;
+        let mut means = vec![[0.0f64; 3]; ring([modes as i64 + 1; D]) + 1];
+        for (k, [a, b]) in &all {
+            let mean = &mut means[ring(*k)];
+            *mean = [mean[0] + squared(*a), mean[1] + squared(*b), mean[2] + 1.0];
         }
-    }
-}
-
-/// The sums of a window at integer frequencies, where its mean density adds nothing. Without a taper, which
-/// would tie neighboring modes to each other.
-fn sums(set: &Sample, modes: usize) -> Vec<Complex<f64>> {
-    let turns: Vec<[f64; 2]> = set
-        .points()
-        .iter()
-        .map(|p| p.map(|v| v / set.side()))
-        .collect();
-    transform(&turns, None, modes, |_, _, sum| sum)
-}
-
-type Mode = (i64, i64, f64);
-
-fn power_correlation(
-    sums: &[Vec<Complex<f64>>; 2],
-    side: f64,
-    wanted: impl Fn(usize) -> Option<Mode>,
-) -> f64 {
-    // Rings four modes wide.
-    let ring = |nu: f64| (nu * side / 4.0) as usize;
-    let mut means: Vec<[f64; 3]> = Vec::new();
-    for (i, (a, b)) in sums[0].iter().zip(&sums[1]).enumerate() {
-        if let Some((_, _, nu)) = wanted(i) {
-            if means.len() <= ring(nu) {
-                means.resize(ring(nu) + 1, [0.0; 3]);
-            }
-            let mean = &mut means[ring(nu)];
-            mean[0] += a.norm_sqr();
-            mean[1] += b.norm_sqr();
-            mean[2] += 1.0;
-        }
-    }
-    let (mut both, mut own) = (0.0, [0.0; 2]);
-    for (i, (a, b)) in sums[0].iter().zip(&sums[1]).enumerate() {
-        if let Some((_, _, nu)) = wanted(i) {
-            let mean = means[ring(nu)];
-            let a = a.norm_sqr() * mean[2] / mean[0] - 1.0;
-            let b = b.norm_sqr() * mean[2] / mean[1] - 1.0;
-            both += a * b;
+        let (mut shared, mut own) = (0.0, [0.0; 2]);
+        for (k, [a, b]) in &all {
+            let mean = means[ring(*k)];
+            let a = squared(*a) * mean[2] / mean[0] - 1.0;
+            let b = squared(*b) * mean[2] / mean[1] - 1.0;
+            shared += a * b;
             own = [own[0] + a * a, own[1] + b * b];
         }
+        let (phase_peak, places) = phase_peak(&all, modes);
+        Self {
+            power_correlation: shared / (own[0] * own[1]).sqrt().max(f64::MIN_POSITIVE),
+            power_by_chance: 1.0 / (all.len().max(1) as f64).sqrt(),
+            phase_peak,
+            // The median of the greatest of this number of normal variables, to leading order.
+            phase_by_chance: {
+                let spread = (2.0 * libm::log(places)).sqrt();
+                let lower = libm::log(libm::log(places)) + libm::log(4.0 * std::f64::consts::PI);
+                spread - (lower / 2.0 + libm::log(std::f64::consts::LN_2)) / spread
+            },
+        }
     }
-    both / (own[0] * own[1]).sqrt().max(f64::MIN_POSITIVE)
 }
 
-fn phase_peak(
-    sums: &[Vec<Complex<f64>>; 2],
-    modes: usize,
-    wanted: impl Fn(usize) -> Option<Mode>,
-) -> f64 {
-    let size = 2 * (modes + 1);
-    let mut grid = vec![Complex::default(); size * size];
-    for (i, (a, b)) in sums[0].iter().zip(&sums[1]).enumerate() {
-        if let Some((kx, ky, _)) = wanted(i) {
-            let cross = a * b.conj();
-            let phase = cross / cross.norm().max(f64::MIN_POSITIVE);
-            let place = |k: i64| k.rem_euclid(size as i64) as usize;
-            grid[place(kx) * size + place(ky)] = phase;
-            grid[place(-kx) * size + place(-ky)] = phase.conj();
+fn squared([re, im]: [f64; 2]) -> f64 {
+    re * re + im * im
+}
+
+/// The highest peak of the phase correlation, in deviations, and the number of translations.
+fn phase_peak<const D: usize>(all: &[Mode<D>], modes: usize) -> (f64, f64) {
+    let fourier = Fourier::new(Fourier::size_from(2 * (modes + 1)));
+    let (size, mut other) = (fourier.size, Plane::default());
+    let mut grid = Plane::new(size.pow(D as u32));
+    let place = |k: [i64; D]| {
+        let slots = k.iter().map(|k| k.rem_euclid(size as i64) as usize);
+        slots.rev().fold(0, |place, slot| place * size + slot)
+    };
+    for (k, [a, b]) in all {
+        let cross = [a[0] * b[0] + a[1] * b[1], a[1] * b[0] - a[0] * b[1]];
+        let length = squared(cross).sqrt().max(f64::MIN_POSITIVE);
+        let [re, im] = cross.map(|v| (v / length) as f32);
+        for (at, im) in [(place(*k), im), (place(k.map(|k| -k)), -im)] {
+            (grid.re[at], grid.im[at]) = (re, im);
         }
     }
-    let fft = FftPlanner::new().plan_fft_inverse(size);
-    for _ in 0..2 {
-        grid.chunks_exact_mut(size).for_each(|row| fft.process(row));
-        for i in 0..size {
-            for j in 0..i {
-                grid.swap(i * size + j, j * size + i);
+    // Along the slowest axis, then with the axes in turn, once for each.
+    for _ in 0..D {
+        fourier.columns(&mut grid, &mut other);
+        for (to, from) in [(&mut other.re, &grid.re), (&mut other.im, &grid.im)] {
+            to.resize(from.len(), 0.0);
+            for (z, plane) in from.chunks_exact(from.len() / size).enumerate() {
+                for (i, v) in plane.iter().enumerate() {
+                    to[i * size + z] = *v;
+                }
             }
         }
+        std::mem::swap(&mut grid, &mut other);
     }
-    let squares: f64 = grid.iter().map(|v| v.re * v.re).sum();
-    let highest = grid.iter().map(|v| v.re).fold(0.0, f64::max);
-    highest / (squares / grid.len() as f64).sqrt().max(f64::MIN_POSITIVE)
+    let values = || grid.re.iter().map(|v| f64::from(*v));
+    let highest = values().fold(0.0, f64::max);
+    let places = grid.re.len() as f64;
+    let deviation = (values().map(|v| v * v).sum::<f64>() / places).sqrt();
+    (highest / deviation.max(f64::MIN_POSITIVE), places)
 }
 
 #[cfg(test)]
@@ -126,26 +126,26 @@ mod tests {
     use super::*;
     use crate::numeric::SplitMix;
 
-    fn noise(seed: u64) -> Vec<[f64; 2]> {
-        let mut random = SplitMix::new(seed);
-        (0..10_000)
-            .map(|_| [0, 1].map(|_| random.next_f64() * 100.0))
-            .collect()
+    /// Independent sets share nothing, and shifted ones their phases.
+    fn check<const D: usize>(count: usize) {
+        let set = |points| Sample::window(1.0, count as f64, points);
+        let [a, b] = [1, 2].map(|seed| set(SplitMix::new(seed).places(count, 1.0)));
+        let shared = Shared::of(&a, &b, 1.6);
+        let correlation = shared.power_correlation.abs();
+        assert!(correlation < 4.0 * shared.power_by_chance, "{shared:?}");
+        let peak = shared.phase_peak / shared.phase_by_chance;
+        assert!((peak - 1.0).abs() < 0.3, "{shared:?}");
+        let mut moved: Vec<[f64; D]> = SplitMix::new(1).places(count, 1.0);
+        moved.iter_mut().for_each(|p| p[0] = (p[0] + 0.1) % 1.0);
+        let shared = Shared::of(&a, &set(moved), 1.6);
+        assert!(shared.power_correlation > 0.2, "{shared:?}");
+        let peak = shared.phase_peak / shared.phase_by_chance;
+        assert!(peak > 5.0, "{shared:?}");
     }
 
     #[test]
     fn independent_sets_share_nothing_and_shifted_ones_their_phases() {
-        let [a, b] = [1, 2].map(|seed| Sample::window(100.0, 1.0, noise(seed)));
-        let shared = Shared::of(&a, &b, 2.0);
-        assert!(shared.power_correlation.abs() < 0.03, "{shared:?}");
-        assert!((4.0..8.0).contains(&shared.phase_peak), "{shared:?}");
-        let moved = noise(1)
-            .iter()
-            .map(|p| [(p[0] + 7.0) % 100.0, p[1]])
-            .collect();
-        let moved = Sample::window(100.0, 1.0, moved);
-        let shared = Shared::of(&a, &moved, 2.0);
-        assert!(shared.power_correlation > 0.2, "{shared:?}");
-        assert!(shared.phase_peak > 50.0, "{shared:?}");
+        check::<2>(10_000);
+        check::<3>(8000);
     }
 }

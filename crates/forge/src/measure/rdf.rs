@@ -28,7 +28,7 @@ impl Rdf {
         let width = REACH / BINS as f64;
         let rings = (REACH / cells.width()).ceil() as i64;
         let (found, from) = cells
-            .members()
+            .members
             .par_chunks(CHUNK)
             .map(|chunk| {
                 let (mut found, mut from) = (vec![0u64; BINS], 0u64);
@@ -70,9 +70,7 @@ mod tests {
 
     #[test]
     fn a_random_set_has_one_everywhere_and_a_lattice_its_distances() {
-        let mut random = SplitMix::new(5);
-        let mut next = || (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64 * 200.0;
-        let points: Vec<[f64; 2]> = (0..40_000).map(|_| [next(), next()]).collect();
+        let points = SplitMix::new(5).places(40_000, 200.0);
         let torus = Rdf::of(&Sample::torus(200.0, points.clone()));
         let window = Rdf::of(&Sample::window(200.0, 1.0, points));
         for rdf in [torus, window] {

@@ -8,7 +8,7 @@
 use rayon::prelude::*;
 
 use super::Sample;
-use crate::numeric::SplitMix;
+use crate::{cell_list::CellList, numeric::SplitMix};
 
 /// The side of a patch, in mean spacings.
 pub const PATCH: f64 = 12.0;
@@ -54,11 +54,8 @@ pub fn recurrence(set: &Sample, other: Option<&Sample>, patches: usize, seed: u6
         return 0.0;
     }
     let field = Field::new(other.unwrap_or(set));
-    let mut random = SplitMix::new(seed);
-    let corners: Vec<[f64; 2]> = (0..patches)
-        .map(|_| [0, 1].map(|_| random.next_f64() * room))
-        .collect();
-    let shares = corners.into_par_iter().map(|corner| {
+    let corners = SplitMix::new(seed).places(patches, room);
+    let shares = corners.into_par_iter().map(|corner: [f64; 2]| {
         let inside = |p: &&[f64; 2]| (0..2).all(|i| (0.0..PATCH).contains(&(p[i] - corner[i])));
         let mut patch: Vec<[f64; 2]> = set.points().iter().filter(inside).copied().collect();
         let center = corner.map(|v| v + PATCH / 2.0);
@@ -79,22 +76,18 @@ struct Field<'a> {
     points: &'a [[f64; 2]],
     /// Whether a cell lies within [`LOOSE`] of a point, by rows.
     raster: Vec<bool>,
-    /// Cells along a side of the raster, and of the buckets.
+    /// Cells along a side of the raster.
     cells: usize,
-    columns: usize,
-    /// The points by unit squares.
-    buckets: Vec<Vec<[f64; 2]>>,
+    list: CellList,
 }
 
 impl<'a> Field<'a> {
     fn new(window: &'a Sample) -> Self {
         let side = window.side();
-        let (cells, columns) = ((side * FINE) as usize + 1, side as usize + 1);
+        let cells = (side * FINE) as usize + 1;
         let mut raster = vec![false; cells * cells];
-        let mut buckets = vec![Vec::new(); columns * columns];
         let radius = (LOOSE * FINE).ceil() as i64;
         for &p in window.points() {
-            buckets[p[1] as usize * columns + p[0] as usize].push(p);
             let [x, y] = p.map(|v| (v * FINE) as i64);
             for j in y - radius..=y + radius {
                 for i in x - radius..=x + radius {
@@ -111,8 +104,7 @@ impl<'a> Field<'a> {
             points: window.points(),
             raster,
             cells,
-            columns,
-            buckets,
+            list: CellList::of(window, 1.0),
         }
     }
 
@@ -206,21 +198,14 @@ impl<'a> Field<'a> {
 
     /// The nearest point within half a spacing.
     fn nearest(&self, at: [f64; 2]) -> Option<[f64; 2]> {
-        let around = |v: f64| {
-            let last = self.columns as i64 - 1;
-            let [low, high] = [v - 0.5, v + 0.5].map(|v| (v.floor() as i64).clamp(0, last));
-            low as usize..=high as usize
-        };
         let mut best = (0.25, None);
-        for j in around(at[1]) {
-            for i in around(at[0]) {
-                for &p in &self.buckets[j * self.columns + i] {
-                    let distance = squared(p, at);
-                    if distance < best.0 {
-                        best = (distance, Some(p));
-                    }
+        for ring in 0..=1 {
+            self.list.ring(at, ring, |_, by| {
+                let distance = squared(by, [0.0; 2]);
+                if distance < best.0 {
+                    best = (distance, Some([at[0] - by[0], at[1] - by[1]]));
                 }
-            }
+            });
         }
         best.1
     }
@@ -231,10 +216,7 @@ mod tests {
     use super::*;
 
     fn noise(side: f64, seed: u64) -> Vec<[f64; 2]> {
-        let mut random = SplitMix::new(seed);
-        (0..(side * side) as usize)
-            .map(|_| [0, 1].map(|_| random.next_f64() * side))
-            .collect()
+        SplitMix::new(seed).places((side * side) as usize, side)
     }
 
     #[test]

@@ -10,33 +10,41 @@ use strew_core::{
 
 use crate::numeric::SplitMix;
 
-/// The points of a square at unit density: one period of a set that repeats, or a window of an unbounded one.
+/// The points of a square, or of a cube, at unit density: one period of a set that repeats, or a window of an unbounded one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sample {
+pub struct Sample<const D: usize = 2> {
     side: f64,
-    points: Vec<[f64; 2]>,
+    points: Vec<[f64; D]>,
     is_periodic: bool,
 }
 
-impl Sample {
-    /// Rescales the points of one period, a torus of side `side`, to unit density: to a side of √N mean spacings.
-    /// Coordinates may lie outside [0, side); they are taken modulo the side.
+/// The side of a square, or of a cube, of some volume.
+pub(crate) fn root<const D: usize>(volume: f64) -> f64 {
+    match D {
+        2 => volume.sqrt(),
+        _ => libm::cbrt(volume),
+    }
+}
+
+impl<const D: usize> Sample<D> {
+    /// Rescales the points of one period, a torus of side `side`, to unit density: to a side of √N mean spacings, in space
+    /// of the cube root. Coordinates may lie outside [0, side); they are taken modulo the side.
     #[must_use]
-    pub fn torus(side: f64, points: Vec<[f64; 2]>) -> Self {
-        let unit_side = (points.len() as f64).sqrt();
+    pub fn torus(side: f64, points: Vec<[f64; D]>) -> Self {
+        let unit_side = root::<D>(points.len() as f64);
         Self::scaled(unit_side, unit_side / side, points, true)
     }
 
-    /// Rescales the points in the box [0, `side`)² of a set with `density` points per unit area to
-    /// unit density. Points outside the box are dropped; none inside may be missing.
+    /// Rescales the points in the box [0, `side`)² or [0, `side`)³ of a set with `density` points per unit area or volume
+    /// to unit density. Points outside the box are dropped; none inside may be missing.
     #[must_use]
-    pub fn window(side: f64, density: f64, mut points: Vec<[f64; 2]>) -> Self {
+    pub fn window(side: f64, density: f64, mut points: Vec<[f64; D]>) -> Self {
         points.retain(|p| p.iter().all(|v| (0.0..side).contains(v)));
-        let scale = density.sqrt();
+        let scale = root::<D>(density);
         Self::scaled(side * scale, scale, points, false)
     }
 
-    fn scaled(side: f64, scale: f64, mut points: Vec<[f64; 2]>, is_periodic: bool) -> Self {
+    fn scaled(side: f64, scale: f64, mut points: Vec<[f64; D]>, is_periodic: bool) -> Self {
         for p in &mut points {
             *p = p.map(|v| v * scale);
         }
@@ -47,33 +55,54 @@ impl Sample {
         }
     }
 
-    /// The side of the square, in mean spacings.
+    /// The side of the square or cube, in mean spacings.
     #[must_use]
     pub const fn side(&self) -> f64 {
         self.side
     }
 
-    /// Whether the set repeats outside the square.
+    /// Whether the set repeats outside.
     #[must_use]
     pub const fn is_periodic(&self) -> bool {
         self.is_periodic
     }
 
     /// Whether all is there within `margin` of a point: on a torus always, in a window away from its edge.
-    pub(super) fn is_inner(&self, margin: f64, p: &[f64; 2]) -> bool {
+    pub(super) fn is_inner(&self, margin: f64, p: &[f64; D]) -> bool {
         let inner = margin..self.side - margin;
         self.is_periodic || p.iter().all(|v| inner.contains(v))
     }
 
     /// The points, in mean spacings.
     #[must_use]
-    pub fn points(&self) -> &[[f64; 2]] {
+    pub fn points(&self) -> &[[f64; D]] {
         &self.points
     }
 
     /// The points for moving them, in mean spacings.
-    pub fn points_mut(&mut self) -> &mut [[f64; 2]] {
+    pub fn points_mut(&mut self) -> &mut [[f64; D]] {
         &mut self.points
+    }
+
+    /// The points in units of the side, within [0, 1).
+    pub(crate) fn turns(&self) -> Vec<[f64; D]> {
+        let turns = self.points.iter().map(|p| p.map(|v| v / self.side));
+        match self.is_periodic {
+            true => turns.map(|p| p.map(|v| wrap(v, 1.0))).collect(),
+            false => turns
+                .map(|p| p.map(|v| v.min(1.0 - f64::EPSILON)))
+                .collect(),
+        }
+    }
+}
+
+/// Returns `v` modulo `side`, in [0, side).
+pub(crate) fn wrap(v: f64, side: f64) -> f64 {
+    let wrapped = v - (v / side).floor() * side;
+    if wrapped < side {
+        wrapped.max(0.0)
+    } else {
+        0.0
     }
 }
 

@@ -3,7 +3,6 @@
 //! Frequencies ν are in units of √N: ν = 1 is one cycle per mean spacing. White noise has power 1.
 
 use super::{Sample, nufft::transform, taper};
-use crate::cell_list::wrap;
 
 /// The power P(k) = |Σ exp(−2πi k·x)|²/N at every integer k up to a largest frequency.
 #[derive(Clone, Debug)]
@@ -26,6 +25,8 @@ pub struct Ring {
     /// The anisotropy 10·log10(variance / mean²) of the power of the modes, in dB: 0 for a random
     /// isotropic set, at least −200.
     pub anisotropy_db: f64,
+    /// The largest power of a mode.
+    pub tallest: f64,
 }
 
 /// A spectrum in five figures.
@@ -68,14 +69,12 @@ impl Spectrum {
     pub fn of(set: &Sample, nu_max: f64) -> Self {
         let side = set.side();
         let modes = (nu_max * side).floor().max(0.0) as usize;
-        let turns = set.points().iter().map(|p| p.map(|v| v / side));
+        let turns = set.turns();
         if set.is_periodic() {
-            let turns: Vec<[f64; 2]> = turns.map(|p| p.map(|v| wrap(v, 1.0))).collect();
             let unit = 1.0 / set.points().len().max(1) as f64;
             let power = transform(&turns, None, modes, |_, _, sum| sum.norm_sqr() * unit);
             return Self { side, modes, power };
         }
-        let turns: Vec<[f64; 2]> = turns.collect();
         let weights: Vec<f64> = turns
             .iter()
             .map(|p| taper::value(p[0]) * taper::value(p[1]))
@@ -135,30 +134,11 @@ impl Spectrum {
     /// up to the last whole one. Rings without modes are left out.
     #[must_use]
     pub fn rings(&self, width: f64) -> Vec<Ring> {
-        let width = width.max(self.finest_ring());
-        let count = (self.nu_max() / width) as usize;
-        let mut sums = vec![[0.0f64; 4]; count];
-        for (nu, power) in self.half_plane() {
-            let Some(sum) = sums.get_mut((nu / width) as usize) else {
-                continue;
-            };
-            sum[0] += 1.0;
-            sum[1] += nu;
-            sum[2] += power;
-            sum[3] += power * power;
-        }
-        sums.into_iter()
-            .filter(|sum| sum[0] > 0.0)
-            .map(|[count, nu, power, square]| {
-                let mean = power / count;
-                let variance = square / count - mean * mean;
-                Ring {
-                    nu: nu / count,
-                    power: mean,
-                    anisotropy_db: 10.0 * (variance / (mean * mean)).max(1e-20).log10(),
-                }
-            })
-            .collect()
+        rings_of(
+            self.half_plane(),
+            width.max(self.finest_ring()),
+            self.nu_max(),
+        )
     }
 
     /// Returns the median anisotropy of the rings of each of the [`BANDS`], in dB, as far as they are
@@ -168,45 +148,73 @@ impl Spectrum {
         let rings = self.rings(width);
         let measured = BANDS.iter().filter(|band| band[1] <= self.nu_max());
         measured
-            .map(|band| {
-                let inside = rings
-                    .iter()
-                    .filter(|ring| (band[0]..band[1]).contains(&ring.nu));
-                let mut all: Vec<f64> = inside.map(|ring| ring.anisotropy_db).collect();
-                all.sort_by(f64::total_cmp);
-                all.get(all.len() / 2).copied().unwrap_or(0.0)
-            })
+            .map(|band| median_anisotropy(&rings, band[0]..band[1]))
             .collect()
     }
 
     /// Returns the summary, with rings of width `width` in ν.
     #[must_use]
     pub fn summary(&self, width: f64) -> Summary {
+        Summary::of(self.half_plane(), &self.rings(width))
+    }
+}
+
+/// The rings of modes (ν, power), each of a width, from ν = 0 to the last whole one before `end`; without empty ones.
+pub(crate) fn rings_of(modes: impl Iterator<Item = (f64, f64)>, width: f64, end: f64) -> Vec<Ring> {
+    let mut sums = vec![[0.0f64; 5]; (end / width) as usize];
+    for (nu, power) in modes {
+        if let Some(sum) = sums.get_mut((nu / width) as usize) {
+            let [count, nus, total, squares, tallest] = *sum;
+            let squares = squares + power * power;
+            *sum = [
+                count + 1.0,
+                nus + nu,
+                total + power,
+                squares,
+                tallest.max(power),
+            ];
+        }
+    }
+    let filled = sums.into_iter().filter(|sum| sum[0] > 0.0);
+    let ring = |[count, nus, total, squares, tallest]: [f64; 5]| {
+        let mean = total / count;
+        let variance = squares / count - mean * mean;
+        Ring {
+            nu: nus / count,
+            power: mean,
+            anisotropy_db: 10.0 * libm::log10((variance / (mean * mean)).max(1e-20)),
+            tallest,
+        }
+    };
+    filled.map(ring).collect()
+}
+
+/// The median anisotropy of the rings of a band; 0 if there are none.
+fn median_anisotropy(rings: &[Ring], band: std::ops::Range<f64>) -> f64 {
+    let inside = rings.iter().filter(|ring| band.contains(&ring.nu));
+    let mut all: Vec<f64> = inside.map(|ring| ring.anisotropy_db).collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(0.0)
+}
+
+impl Summary {
+    /// The summary of modes (ν, power) and their rings.
+    pub(crate) fn of(modes: impl Iterator<Item = (f64, f64)>, rings: &[Ring]) -> Self {
         let (mut low, mut low_count, mut tallest) = (0.0, 0u64, 0.0f64);
-        for (nu, power) in self.half_plane() {
+        for (nu, power) in modes {
             if nu < LOW_END {
                 low += power;
                 low_count += 1;
             }
             tallest = tallest.max(power);
         }
-        let rings = self.rings(width);
-        let peak = rings
-            .iter()
-            .copied()
-            .max_by(|a, b| a.power.total_cmp(&b.power));
-        let mut anisotropy: Vec<f64> = rings
-            .iter()
-            .filter(|ring| ANISOTROPY_RANGE.contains(&ring.nu))
-            .map(|ring| ring.anisotropy_db)
-            .collect();
-        anisotropy.sort_by(f64::total_cmp);
-        Summary {
+        let peak = rings.iter().max_by(|a, b| a.power.total_cmp(&b.power));
+        Self {
             low_power: low / low_count.max(1) as f64,
             peak_power: peak.map_or(0.0, |ring| ring.power),
             peak_nu: peak.map_or(0.0, |ring| ring.nu),
             tallest,
-            anisotropy_db: anisotropy.get(anisotropy.len() / 2).copied().unwrap_or(0.0),
+            anisotropy_db: median_anisotropy(rings, ANISOTROPY_RANGE),
         }
     }
 }
@@ -219,10 +227,7 @@ mod tests {
     use crate::numeric::SplitMix;
 
     fn noise(count: usize, seed: u64) -> Vec<[f64; 2]> {
-        let mut random = SplitMix::new(seed);
-        (0..count)
-            .map(|_| [random.next_f64(), random.next_f64()])
-            .collect()
+        SplitMix::new(seed).places(count, 1.0)
     }
 
     /// A random point in every cell of a square grid.

@@ -5,8 +5,7 @@
 
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
-use super::Sample;
-use crate::cell_list::wrap;
+use super::{Sample, distance::HEXAGONAL, set::wrap};
 
 /// The figures of a Voronoi diagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,8 +26,6 @@ pub struct Voronoi {
 /// The width, in mean spacings, of the border of a torus and of the margin of a window that does
 /// not count. Cells farther inside are whole unless there is a hole of half this radius.
 const BORDER: f64 = 6.0;
-/// The nearest-neighbor distance of the hexagonal lattice of unit density.
-const HEX: f64 = 1.074_569_931_823_542;
 
 impl Voronoi {
     /// Measures a set; of a window its points at least 6 mean spacings from the edge. All figures are 0 for a set too
@@ -111,7 +108,7 @@ impl Voronoi {
         Self {
             area_deviation: worst,
             area_spread: (spread / count).sqrt(),
-            largest_hole: hole.sqrt() / HEX,
+            largest_hole: hole.sqrt() / HEXAGONAL,
             q6: order / count,
         }
     }
@@ -160,9 +157,8 @@ mod tests {
 
     #[test]
     fn cells_of_a_random_set_vary_as_known() {
-        let mut random = SplitMix::new(3);
-        let points = (0..20_000).map(|_| [random.next_f64(), random.next_f64()]);
-        let found = Voronoi::of(&Sample::torus(1.0, points.collect()));
+        let points = SplitMix::new(3).places(20_000, 1.0);
+        let found = Voronoi::of(&Sample::torus(1.0, points));
         // Known for a Poisson set: the variance of the area is 0.2802 of its squared mean.
         assert!(
             (found.area_spread - 0.2802f64.sqrt()).abs() < 0.02,

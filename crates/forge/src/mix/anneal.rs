@@ -84,7 +84,7 @@ impl<'a> Annealer<'a> {
             }
             let fields = &mut fields[block * count..][..count];
             for (field, kind) in fields.iter_mut().zip(kinds) {
-                let own = i64::from(presses[kind.presses].own(block)) / 2;
+                let own = i64::from(presses[kind.presses].own[block]) / 2;
                 let even = 2.0 * kind.even * kind.share * shares[block] * UNIT;
                 *field = own - even.round() as i64;
             }
@@ -172,7 +172,7 @@ impl<'a> Annealer<'a> {
         if cost > limit {
             let [p, q] = [from, to].map(|kind| self.kinds[kind].presses);
             let list = &self.presses[q];
-            if press == 0 || cost - press - i64::from(list.most(a)) > limit {
+            if press == 0 || cost - press - i64::from(list.most[a]) > limit {
                 return;
             }
             let other = if p == q {
@@ -254,7 +254,7 @@ mod tests {
     use strew_core::{Map, Table, table::Mix};
 
     use super::*;
-    use crate::{mix::press::Kernel, thinned::Ground, watch::Stage};
+    use crate::{mix::press::Kernel, optimize::Ground, watch::Stage};
 
     #[test]
     fn fields_and_areas_stay_what_they_are_from_scratch() {
@@ -271,16 +271,15 @@ mod tests {
             presses,
             even: 100.0,
         });
-        let areas: Vec<f64> = (0..ground.blocks()).map(|b| ground.share(b)).collect();
         let start = Mix::scattered(table.map(), "1:1:2".parse().expect("valid")).expect("near");
-        let mut annealer = Annealer::new(&kinds, &presses, &areas, start.labels());
+        let mut annealer = Annealer::new(&kinds, &presses, &ground.shares, start.labels());
         let logs: Vec<i64> = (0..LOGS as i64).map(|i| i << 6).collect();
         let mut random = SplitMix::new(3);
         for _ in 0..20_000 {
             annealer.propose(3000, &logs, &mut random);
         }
         assert_ne!(annealer.labels, start.labels());
-        let fresh = Annealer::new(&kinds, &presses, &areas, &annealer.labels);
+        let fresh = Annealer::new(&kinds, &presses, &ground.shares, &annealer.labels);
         assert_eq!(annealer.fields, fresh.fields);
         assert_eq!(annealer.excess, fresh.excess);
         let sorted = |mut blocks: Vec<u32>| {

@@ -3,10 +3,11 @@
 
 use rayon::prelude::*;
 
-use crate::{optimize::longest, thinned::Ground};
+use crate::{
+    measure::HEXAGONAL,
+    optimize::{Ground, longest},
+};
 
-/// √(2/√3), the hexagonal distance in mean spacings.
-const HEXAGONAL: f64 = 1.074_569_931_823_542;
 /// Lists reach this much farther than the distance to keep.
 const SKIN: f64 = 1.25;
 
@@ -88,7 +89,7 @@ fn pairs(
         .map(|&share| of_kind(share))
         .fold(all, f64::max);
     let reach = widest * SKIN + 2.0 * longest(moves);
-    let scale = ground.scale();
+    let scale = ground.scale;
     let lists: Vec<Vec<Near>> = (0..moves.len())
         .into_par_iter()
         .map(|own| {
@@ -126,11 +127,7 @@ mod tests {
     };
 
     use super::*;
-    use crate::{
-        measure::Distances,
-        mix::joint::parts,
-        thinned::{ThinnedTwin, moves_of},
-    };
+    use crate::{measure::Distances, mix::joint::parts, optimize::moves_of, thinned::ThinnedTwin};
 
     #[test]
     fn cleared_pairs_are_clear_on_a_twin() {
@@ -145,7 +142,7 @@ mod tests {
         };
         let shares = [0.25, 0.75];
         assert_eq!(clear(&ground, &kinds, &shares, &mut moves, floor, 400), 0);
-        let grid = |v: f64| from_grid_units(v / ground.scale()).expect("short");
+        let grid = |v: f64| from_grid_units(v / ground.scale).expect("short");
         let vectors: Vec<_> = moves.iter().map(|m| m.map(grid)).collect();
         let ranks = Ranks::new((0..vectors.len() as u32).collect()).expect("each once");
         let table = Table::new(map, "cleared", vectors, Provenance::default()).expect("valid");

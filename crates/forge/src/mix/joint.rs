@@ -9,12 +9,11 @@ use strew_core::{
 use super::{
     clear::{Floor, clear},
     part::Part,
-    press::longest,
 };
 use crate::{
     energy::{Gaussian, Guard, PairEnergy},
-    optimize::{Descent, DescentState, Objective, Pairs},
-    thinned::{Ground, moves_of},
+    optimize::{Descent, DescentState, Ground, Objective, Pairs, longest, moves_of},
+    phase::work_off,
     watch::Meter,
 };
 
@@ -40,15 +39,14 @@ pub(super) fn moved(
         .map(|kind| mix.shares().of(kind))
         .collect();
     let kinds = parts(table, mix);
-    let mut energy = Together::new(table, &shares, &kinds);
-    let descent = Descent { steps, rate: RATE };
-    let start = DescentState::start(moves_of(table));
-    let done = descent.run(&mut energy, start, meter, &mut |_| {});
-    if done.steps < steps {
+    let energy = Together::new(table, &shares, &kinds);
+    let mut descent = Descent::new(energy, steps, RATE);
+    let mut state = DescentState::start(moves_of(table));
+    if !work_off(&mut descent, &mut state, meter, &mut |_| {}) {
         return None;
     }
-    let mut moves = done.moves;
-    clear(energy.ground(), &kinds, &shares, &mut moves, FLOOR, ROUNDS);
+    let (mut moves, ground) = (state.moves, &descent.objective.ground);
+    clear(ground, &kinds, &shares, &mut moves, FLOOR, ROUNDS);
     let unit = table.alpha().set_side_f64() / f64::from(1u32 << 20);
     let fixed = |move_: &[f64; 2]| move_.map(|v| (v / unit).round() as i32);
     Some(moves.iter().map(fixed).collect())
@@ -103,7 +101,7 @@ impl Together {
         let (all, kind) = (law(SIGMA, GUARD), law(SIGMA_OF_KIND, GUARD_OF_KIND));
         let map = table.map();
         let range = (kind.cutoff() + Part::<Law>::SKIN) / shares[0].sqrt();
-        let ground = Ground::new(map, range + 2.0 * (longest(table) + GROWTH));
+        let ground = Ground::new(map, range + 2.0 * (longest(&moves_of(table)) + GROWTH));
         let densest = shares[shares.len() - 1];
         let parts = shares.iter().zip(kinds).map(|(share, parts)| {
             let part = Part::new(kind, &ground, parts.clone());
@@ -114,11 +112,6 @@ impl Together {
             kinds: parts.collect(),
             ground,
         }
-    }
-
-    /// The blocks that meet, with frequencies.
-    pub(super) const fn ground(&self) -> &Ground {
-        &self.ground
     }
 }
 

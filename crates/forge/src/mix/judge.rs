@@ -4,7 +4,7 @@
 use strew_core::{PointSet, Region, Table, Twin, table::Figures};
 
 use crate::{
-    judge::{Bound, Complaint, Figure, round},
+    judge::{Bound, Complaint, Figure, named},
     measure::{Distances, Sample, Spectrum, Summary},
     thinned::ThinnedTwin,
     twins::nearest,
@@ -59,31 +59,27 @@ pub(super) fn judge(
     of: Option<&Table>,
     watch: &dyn Watch,
 ) -> Option<(Vec<Figures>, Vec<Complaint>)> {
-    let twins = LARGEST
-        .iter()
-        .filter_map(|&most| nearest(table.map(), most));
-    let mut twins: Vec<Twin> = twins.collect();
-    twins.dedup();
-    let places: Vec<Place> = twins
-        .into_iter()
-        .map(Place::Twin)
-        .chain(SEEDS.map(Place::Window))
-        .collect();
-    let shares = places.iter().map(|place| 1 + place.shares().len());
+    let all = places(table)?;
+    let before: Vec<Option<f64>> = match of {
+        Some(of) => {
+            let anisotropy = |place: Place| {
+                let set = (place.set)(1.0, None)?;
+                Some(summary(&set, NU).anisotropy_db)
+            };
+            places(of)?.into_iter().map(anisotropy).collect()
+        }
+        None => vec![None; all.len()],
+    };
+    let shares = all.iter().map(|place| 1 + place.shares.len());
     let mut meter = Meter::new(watch, Stage::Measuring, shares.sum::<usize>() as u32);
     let (mut figures, mut complaints) = (Vec::new(), Vec::new());
-    for place in places {
-        let sets = place.sets(table)?;
-        let before = match of {
-            Some(of) => Some(summary(&place.sets(of)?.all(1.0)?, NU).anisotropy_db),
-            None => None,
-        };
-        for &share in [1.0].iter().chain(place.shares()) {
+    for (place, before) in all.iter().zip(before) {
+        for &share in [1.0].iter().chain(place.shares) {
             if meter.stop() {
                 return None;
             }
-            for subject in subjects(table, &sets, share)? {
-                let measured = subject.measure(place, share);
+            for subject in subjects(table, place, share)? {
+                let measured = subject.measure(&place.name, share);
                 let bounds = subject.bounds(table, share, before);
                 complaints.extend(bounds.iter().filter_map(|bound| bound.check(&measured)));
                 figures.push(measured);
@@ -94,53 +90,49 @@ pub(super) fn judge(
     Some((figures, complaints))
 }
 
-/// The subjects on which a table is measured.
-#[derive(Clone, Copy)]
-enum Place {
-    Twin(Twin),
-    /// A window, by its seed.
-    Window(u64),
+/// A kind, and its part of all points.
+type Kind = (u8, f64);
+
+/// Where a table is measured.
+struct Place {
+    name: String,
+    /// The shares at which it is judged, besides 1.
+    shares: &'static [f64],
+    /// The points of a kind, or all, at a share.
+    set: Box<dyn Fn(f64, Option<Kind>) -> Option<Sample>>,
 }
 
-/// The sets of a table at a place.
-enum Sets {
-    Twin(ThinnedTwin),
-    Window(Box<PointSet>),
-}
-
-impl Place {
-    /// The shares at which the place is judged, besides 1.
-    const fn shares(&self) -> &'static [f64] {
-        match self {
-            Self::Twin(_) => &SHARES,
-            Self::Window(_) => &SHARES_OF_WINDOWS,
-        }
-    }
-
-    fn sets(self, table: &Table) -> Option<Sets> {
-        Some(match self {
-            Self::Twin(twin) => Sets::Twin(ThinnedTwin::new(table, twin)?),
-            Self::Window(seed) => Sets::Window(PointSet::new(table.clone()).seed(seed).into()),
+/// The twins and windows of a table.
+fn places(table: &Table) -> Option<Vec<Place>> {
+    let twins = LARGEST
+        .iter()
+        .filter_map(|&most| nearest(table.map(), most));
+    let mut twins: Vec<Twin> = twins.collect();
+    twins.dedup();
+    let twin = |twin: Twin| {
+        let points = ThinnedTwin::new(table, twin)?;
+        Some(Place {
+            name: format!("twin {twin}"),
+            shares: &SHARES,
+            set: Box::new(move |share, kind| match kind {
+                Some((kind, _)) => Some(points.of_kind(share, kind)),
+                None => Some(points.at(share)),
+            }),
         })
-    }
-}
-
-impl Sets {
-    /// All points at a share.
-    fn all(&self, share: f64) -> Option<Sample> {
-        match self {
-            Self::Twin(twin) => Some(twin.at(share)),
-            Self::Window(set) => window(set, share, 1.0),
-        }
-    }
-
-    /// The points of a kind at a share. The kind has a part of all points.
-    fn of_kind(&self, share: f64, kind: u8, part: f64) -> Option<Sample> {
-        match self {
-            Self::Twin(twin) => Some(twin.of_kind(share, kind)),
-            Self::Window(set) => window(&PointSet::clone(set).only(kind).ok()?, share, part),
-        }
-    }
+    };
+    let window = |seed: u64| {
+        let all = PointSet::new(table.clone()).seed(seed);
+        Some(Place {
+            name: format!("window seed {seed}"),
+            shares: &SHARES_OF_WINDOWS,
+            set: Box::new(move |share, kind| match kind {
+                Some((kind, part)) => window(&all.clone().only(kind).ok()?, share, part),
+                None => window(&all, share, 1.0),
+            }),
+        })
+    };
+    let twins = twins.into_iter().map(twin);
+    twins.chain(SEEDS.into_iter().map(window)).collect()
 }
 
 /// A window of a set of which a part of all points is at a share, away from the origin.
@@ -167,17 +159,16 @@ struct Subject {
 }
 
 /// The kinds at a share, and all points.
-fn subjects(table: &Table, sets: &Sets, share: f64) -> Option<Vec<Subject>> {
-    let all = sets.all(share)?;
-    let count = all.points().len() as f64;
+fn subjects(table: &Table, place: &Place, share: f64) -> Option<Vec<Subject>> {
+    let all = (place.set)(share, None)?;
     let mut subjects = Vec::new();
     if let Some(mix) = table.mix() {
         for kind in 0..mix.shares().kinds() as u8 {
             let wanted = mix.shares().of(kind);
-            let set = sets.of_kind(share, kind, wanted)?;
+            let set = (place.set)(share, Some((kind, wanted)))?;
             subjects.push(Subject {
                 kind: Some(kind),
-                found: set.points().len() as f64 / count,
+                found: set.points().len() as f64 / all.points().len() as f64,
                 wanted,
                 set,
             });
@@ -193,11 +184,7 @@ fn subjects(table: &Table, sets: &Sets, share: f64) -> Option<Vec<Subject>> {
 }
 
 impl Subject {
-    fn measure(&self, place: Place, share: f64) -> Figures {
-        let place = match place {
-            Place::Twin(twin) => format!("twin {twin}"),
-            Place::Window(seed) => format!("window seed {seed}"),
-        };
+    fn measure(&self, place: &str, share: f64) -> Figures {
         let what = match self.kind {
             Some(kind) => format!("kind {kind}"),
             None => "all points".into(),
@@ -220,12 +207,11 @@ impl Subject {
         if self.kind.is_some() {
             values.push((Figure::ShareError, (self.found - self.wanted).abs()));
         }
-        let values = values.into_iter();
         Figures {
             subject: format!("{place}, {what}{kept}"),
             seen: false,
             points: self.set.points().len() as u64,
-            values: values.map(|(f, v)| (f.name().into(), round(v))).collect(),
+            values: named(values),
         }
     }
 

@@ -13,9 +13,13 @@ use strew_core::{
 
 use super::{
     anneal::{Annealer, Kind, UNIT},
-    press::{Kernel, Presses, longest},
+    press::{Kernel, Presses},
 };
-use crate::{ForgeError, thinned::Ground, watch::Meter};
+use crate::{
+    ForgeError,
+    optimize::{Ground, longest, moves_of},
+    watch::Meter,
+};
 
 /// σ in a kind's own spacings. At 0.6 and above dense kinds have more power below ν = 0.5.
 const SIGMA: f64 = 0.55;
@@ -48,8 +52,8 @@ pub(super) fn annealed(
         })
         .collect();
     let range = CUTOFF * SIGMA / felt[0].sqrt();
-    let ground = Ground::new(table.map(), range + 2.0 * longest(table));
-    let blocks = ground.blocks();
+    let ground = Ground::new(table.map(), range + 2.0 * longest(&moves_of(table)));
+    let blocks = ground.shares.len();
     // The densest kind has weight 1 per point.
     let weight = 1.0 / of[of.len() - 1];
     let kernel = |share: f64| Kernel {
@@ -74,8 +78,7 @@ pub(super) fn annealed(
             }
         })
         .collect();
-    let areas: Vec<f64> = (0..blocks).map(|block| ground.share(block)).collect();
-    let annealer = Annealer::new(&kinds, &presses, &areas, start.labels());
+    let annealer = Annealer::new(&kinds, &presses, &ground.shares, start.labels());
     let Some(labels) = annealer.run(meter) else {
         return Ok(None);
     };

@@ -4,8 +4,7 @@ use rayon::prelude::*;
 
 use crate::{
     energy::PairEnergy,
-    optimize::{CHUNK, Pair, fill, longest, sum},
-    thinned::Ground,
+    optimize::{CHUNK, Ground, Pair, fill, longest, sum},
 };
 
 /// The points of one kind.
@@ -16,9 +15,8 @@ pub(super) struct Part<E> {
     blocks: Vec<(u32, f64)>,
     /// By block; 0 for those of other kinds.
     weights: Vec<f64>,
-    starts: Vec<usize>,
-    /// Their weights count points of the kind only.
-    pairs: Vec<Pair>,
+    /// The pairs of each of its blocks. Their weights count points of the kind only.
+    lists: Vec<Vec<Pair>>,
     built_for: Vec<[f64; 2]>,
 }
 
@@ -33,14 +31,13 @@ impl<E: PairEnergy> Part<E> {
             .zip(&weights)
             .filter_map(|(block, &weight)| (weight > 0.0).then_some((block, weight)))
             .collect();
-        let share = blocks.iter().map(|&(b, w)| w * ground.share(b as usize));
+        let share = blocks.iter().map(|&(b, w)| w * ground.shares[b as usize]);
         Self {
             energy,
             share: share.sum(),
             blocks,
             weights,
-            starts: Vec::new(),
-            pairs: Vec::new(),
+            lists: Vec::new(),
             built_for: Vec::new(),
         }
     }
@@ -65,7 +62,7 @@ impl<E: PairEnergy> Part<E> {
         let mut energy = 0.0;
         for (&(block, weight), (value, slope)) in self.blocks.iter().zip(&sums) {
             let block = block as usize;
-            energy += ground.share(block) * weight * value;
+            energy += ground.shares[block] * weight * value;
             // Slopes are by distances in the kind's own spacings squared.
             let by = factor * weight;
             for axis in 0..2 {
@@ -88,7 +85,7 @@ impl<E: PairEnergy> Part<E> {
     fn build(&mut self, ground: &Ground, moves: &[[f64; 2]]) {
         let range = (self.energy.cutoff() + Self::SKIN) / self.share.sqrt();
         let reach = range + 2.0 * longest(moves);
-        let scale = ground.scale();
+        let scale = ground.scale;
         let lists: Vec<Vec<Pair>> = self
             .blocks
             .par_iter()
@@ -109,20 +106,14 @@ impl<E: PairEnergy> Part<E> {
                 list
             })
             .collect();
-        self.starts = vec![0];
-        self.pairs.clear();
-        for list in lists {
-            self.pairs.extend(list);
-            self.starts.push(self.pairs.len());
-        }
+        self.lists = lists;
         self.built_for = moves.to_vec();
     }
 
     /// The energy of an instance of a block and its slopes.
     fn sum(&self, ground: &Ground, moves: &[[f64; 2]], at: usize) -> (f64, [f64; 2]) {
-        let list = &self.pairs[self.starts[at]..self.starts[at + 1]];
         let own = moves[self.blocks[at].0 as usize];
         let pair = |squared| self.energy.pair(squared * self.share);
-        sum(list, ground.scale(), moves, own, pair)
+        sum(&self.lists[at], ground.scale, moves, own, pair)
     }
 }

@@ -4,7 +4,10 @@
 use rayon::prelude::*;
 use strew_core::Table;
 
-use crate::{numeric::exp, thinned::Ground};
+use crate::{
+    numeric::exp,
+    optimize::{Ground, longest, moves_of},
+};
 
 /// A block that presses another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,12 +17,13 @@ pub(super) struct Press {
     pub(super) by: i32,
 }
 
-/// For each block the others that press it, ascending, and how much its points press each other.
+/// For each block the others that press it, ascending.
 pub(super) struct Presses {
-    starts: Vec<u32>,
-    all: Vec<Press>,
-    own: Vec<i32>,
-    most: Vec<i32>,
+    lists: Vec<Vec<Press>>,
+    /// The press of each block on itself, from both ends.
+    pub(super) own: Vec<i32>,
+    /// The greatest press on each block by another one.
+    pub(super) most: Vec<i32>,
 }
 
 /// A Gaussian of the distance, and where it ends. Lengths are in mean spacings of the full set.
@@ -33,15 +37,15 @@ impl Presses {
     /// Presses by a kernel, times the share of all points for which two blocks meet, times `unit`, rounded.
     pub(super) fn new(table: &Table, ground: &Ground, kernel: Kernel, unit: f64) -> Self {
         let vectors = table.displacements();
-        let longest = longest(table);
-        let scale = ground.scale();
+        let longest = longest(&moves_of(table));
+        let scale = ground.scale;
         // A grid unit has 2²⁰ fixed-point units, and differences of places are exact in them.
         let fixed = scale / 1_048_576.0;
         let unit = unit / (scale * scale);
         let limit = (kernel.range / fixed) * (kernel.range / fixed);
         let rate = -0.5 * (fixed / kernel.sigma) * (fixed / kernel.sigma);
         let reach = kernel.range + 2.0 * longest;
-        let each: Vec<(Vec<Press>, i32)> = (0..ground.blocks())
+        let each: Vec<(Vec<Press>, i32)> = (0..ground.shares.len())
             .into_par_iter()
             .map(|block| {
                 let (mut found, mut own) = (Vec::with_capacity(256), 0);
@@ -77,34 +81,19 @@ impl Presses {
                 (found, own)
             })
             .collect();
-        let mut presses = Self {
-            starts: vec![0],
-            all: Vec::with_capacity(each.iter().map(|(list, _)| list.len()).sum()),
-            own: each.iter().map(|&(_, own)| own).collect(),
-            most: each.iter().map(|(list, _)| most(list)).collect(),
-        };
-        for (list, _) in each {
-            presses.all.extend(list);
-            presses.starts.push(presses.all.len() as u32);
+        let (lists, own): (Vec<_>, Vec<_>) = each.into_iter().unzip();
+        let most = |list: &Vec<Press>| list.iter().map(|press| press.by).max().unwrap_or(0);
+        Self {
+            most: lists.iter().map(most).collect(),
+            lists,
+            own,
         }
-        presses
     }
 
     /// The blocks that press a block.
     #[inline]
     pub(super) fn of(&self, block: usize) -> &[Press] {
-        &self.all[self.starts[block] as usize..self.starts[block + 1] as usize]
-    }
-
-    /// The press of a block on itself, from both ends.
-    pub(super) fn own(&self, block: usize) -> i32 {
-        self.own[block]
-    }
-
-    /// The greatest press on a block by another one.
-    #[inline]
-    pub(super) fn most(&self, block: usize) -> i32 {
-        self.most[block]
+        &self.lists[block]
     }
 
     /// The press of two different blocks on each other.
@@ -116,24 +105,9 @@ impl Presses {
     }
 }
 
-fn most(list: &[Press]) -> i32 {
-    list.iter().map(|press| press.by).max().unwrap_or(0)
-}
-
-/// The length of a table's longest vector, in mean spacings.
-pub(super) fn longest(table: &Table) -> f64 {
-    let squares = table.displacements().iter();
-    let squares = squares
-        .map(|v| v.map(i64::from))
-        .map(|[x, y]| x * x + y * y);
-    (squares.max().unwrap_or(0) as f64).sqrt() / 1_048_576.0 * table.alpha().set_side_f64()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::thinned::moves_of;
-
     #[test]
     fn presses_are_symmetric_sums_over_all_places_where_blocks_meet() {
         let alpha = "(5-sqrt(3))/2".parse().expect("valid");
@@ -142,32 +116,33 @@ mod tests {
         let (sigma, range, unit) = (0.9, 2.5, 1e9);
         let presses = Presses::new(&table, &ground, Kernel { sigma, range }, unit);
         let moves = moves_of(&table);
-        for block in 0..ground.blocks() {
-            let mut expected = vec![0.0; ground.blocks()];
+        for block in 0..ground.shares.len() {
+            let mut expected = vec![0.0; ground.shares.len()];
             ground.neighbors(
                 block,
                 range,
                 |_| true,
                 |near| {
-                    let by = [near.i, near.j].map(|v| ground.scale() * f64::from(v));
+                    let by = [near.i, near.j].map(|v| ground.scale * f64::from(v));
                     let to = near.to as usize;
                     let [x, y] = [0, 1].map(|axis| by[axis] + moves[to][axis] - moves[block][axis]);
                     let squared = x * x + y * y;
                     if squared < range * range {
                         let value = (-squared / (2.0 * sigma * sigma)).exp();
-                        expected[to] += f64::from(near.weight) * ground.share(block) * value * unit;
+                        expected[to] +=
+                            f64::from(near.weight) * ground.shares[block] * value * unit;
                     }
                 },
             );
             for (to, expected) in expected.into_iter().enumerate() {
                 let found = match to == block {
-                    true => presses.own(block),
+                    true => presses.own[block],
                     false => presses.between(block, to),
                 };
                 assert!((f64::from(found) - expected).abs() < 1e-6 * expected + 4.0);
                 if to != block {
                     assert_eq!(found, presses.between(to, block));
-                    assert!(found <= presses.most(block));
+                    assert!(found <= presses.most[block]);
                 }
             }
         }

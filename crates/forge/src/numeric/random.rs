@@ -24,6 +24,12 @@ impl SplitMix {
     pub fn next_f64(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
     }
+
+    /// Returns independent places in a square, or cube, from 0 to `side`.
+    pub fn places<const D: usize>(&mut self, count: usize, side: f64) -> Vec<[f64; D]> {
+        let place = |_| std::array::from_fn(|_| self.next_f64() * side);
+        (0..count).map(place).collect()
+    }
 }
 
 #[cfg(test)]

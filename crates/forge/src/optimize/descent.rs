@@ -1,55 +1,74 @@
 //! Gradient descent with momentum.
 
 use super::{DescentState, Objective};
-use crate::watch::Meter;
+use crate::{
+    ForgeError,
+    phase::{Phase, State as _},
+};
 
-/// The parameters of a descent.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Descent {
+/// A phase that lowers an objective, from a start or from where a descent was stopped.
+///
+/// This is Nesterov's method with adaptive restart (O'Donoghue, Candès 2015): the momentum is
+/// dropped whenever it points uphill. It grows to what the flat directions of the energy need,
+/// so nothing has to be tuned to them.
+pub struct Descent<O> {
+    pub(crate) objective: O,
     /// The number of evaluations.
-    pub steps: u32,
+    steps: u32,
     /// Mean spacings moved per unit of gradient, at first. It is halved whenever a step without
     /// momentum raises the energy.
-    pub rate: f64,
+    rate: f64,
+    gradient: Vec<[f64; 2]>,
 }
 
-impl Descent {
-    /// Lowers the energy of `objective`, from a start or from where a descent was stopped.
-    ///
-    /// This is Nesterov's method with adaptive restart (O'Donoghue, Candès 2015): the momentum is
-    /// dropped whenever it points uphill. It grows to what the flat directions of the energy need,
-    /// so nothing has to be tuned to them.
-    ///
-    /// Calls `keep` with the state between two steps when the watch wants a checkpoint and when it
-    /// stops the descent, which then returns with fewer than `self.steps` steps done.
-    pub fn run(
-        &self,
-        objective: &mut (impl Objective + ?Sized),
-        start: DescentState,
-        meter: &mut Meter<'_>,
-        keep: &mut dyn FnMut(&DescentState),
-    ) -> DescentState {
-        let masses = objective.masses().to_vec();
-        let mut state = start;
+impl<O: Objective> Descent<O> {
+    /// A descent of some steps. `rate` is in mean spacings moved per unit of gradient, at first: it is halved whenever a step
+    /// without momentum raises the energy.
+    #[must_use]
+    pub const fn new(objective: O, steps: u32, rate: f64) -> Self {
+        Self {
+            objective,
+            steps,
+            rate,
+            gradient: Vec::new(),
+        }
+    }
+}
+
+impl<O: Objective> Phase<DescentState> for Descent<O> {
+    fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    fn describe(&self) -> String {
+        format!("{} steps at rate {}", self.steps, self.rate)
+    }
+
+    fn begin(&mut self, state: &DescentState) {
         if !state.prepared_for.is_empty() {
-            objective.prepare_for(&state.prepared_for);
+            self.objective.prepare_for(&state.prepared_for);
         }
-        let mut gradient = vec![[0.0; 2]; state.moves.len()];
-        while state.steps < self.steps {
-            let stop = meter.stop();
-            if stop || meter.wants_checkpoint() {
-                objective.prepared_for().clone_into(&mut state.prepared_for);
-                keep(&state);
-            }
-            if stop {
-                break;
-            }
-            let energy = objective.evaluate(&state.ahead, &mut gradient);
-            state.steps += 1;
-            meter.advance(Some(energy));
-            state.step(self.rate, energy, &gradient, &masses);
-        }
-        state
+        self.gradient = vec![[0.0; 2]; state.blocks()];
+    }
+
+    fn step(&mut self, state: &mut DescentState) -> f64 {
+        let energy = self.objective.evaluate(&state.ahead, &mut self.gradient);
+        state.step(self.rate, energy, &self.gradient, self.objective.masses());
+        energy
+    }
+
+    fn complete(&self, state: &mut DescentState) {
+        self.objective
+            .prepared_for()
+            .clone_into(&mut state.prepared_for);
+    }
+
+    fn end(&self, state: DescentState) -> Result<DescentState, ForgeError> {
+        Ok(DescentState::start(state.moves))
+    }
+
+    fn pairs(&self) -> usize {
+        self.objective.pairs()
     }
 }
 
@@ -58,7 +77,10 @@ mod tests {
     use std::sync::atomic::{AtomicU32, Ordering};
 
     use super::*;
-    use crate::watch::{Progress, Stage, Watch};
+    use crate::{
+        phase::work_off,
+        watch::{Meter, Progress, Stage, Watch},
+    };
 
     /// A narrow valley: curvatures 1 and 0.002 per mass.
     struct Valley([f64; 2]);
@@ -78,35 +100,21 @@ mod tests {
         }
     }
 
-    fn run(descent: &Descent, watch: &dyn Watch) -> DescentState {
-        let mut meter = Meter::new(watch, Stage::Optimizing, descent.steps);
-        let start = DescentState::start(vec![[5.0, 5.0]; 2]);
-        descent.run(&mut Valley([0.25, 0.75]), start, &mut meter, &mut |_| {})
+    fn run(steps: u32, rate: f64, watch: &dyn Watch) -> DescentState {
+        let mut meter = Meter::new(watch, Stage::Optimizing, steps);
+        let mut state = DescentState::start(vec![[5.0, 5.0]; 2]);
+        let mut descent = Descent::new(Valley([0.25, 0.75]), steps, rate);
+        work_off(&mut descent, &mut state, &mut meter, &mut |_| {});
+        state
     }
 
     #[test]
-    fn reaches_the_bottom_of_a_narrow_valley() {
-        let found = run(
-            &Descent {
-                steps: 600,
-                rate: 0.9,
-            },
-            &(),
-        );
-        assert!(found.energy < 1e-6, "{}", found.energy);
-        assert_eq!(found.steps, 600);
-    }
-
-    #[test]
-    fn a_rate_that_is_too_large_is_lowered() {
-        let found = run(
-            &Descent {
-                steps: 600,
-                rate: 50.0,
-            },
-            &(),
-        );
-        assert!(found.energy < 0.02, "{}", found.energy);
+    fn reaches_the_bottom_of_a_narrow_valley_also_with_a_rate_that_is_too_large() {
+        for (rate, most) in [(0.9, 1e-6), (50.0, 0.02)] {
+            let found = run(600, rate, &());
+            assert!(found.energy < most, "{rate}: {}", found.energy);
+            assert_eq!(found.steps, 600);
+        }
     }
 
     #[test]
@@ -122,19 +130,8 @@ mod tests {
                 self.0.load(Ordering::Relaxed) >= 7
             }
         }
-        let descent = Descent {
-            steps: 100,
-            rate: 0.9,
-        };
-        let found = run(&descent, &Impatient(AtomicU32::new(0)));
+        let found = run(100, 0.9, &Impatient(AtomicU32::new(0)));
         assert_eq!(found.steps, 7);
-        let same = run(
-            &Descent {
-                steps: 7,
-                ..descent
-            },
-            &(),
-        );
-        assert_eq!(found.moves, same.moves);
+        assert_eq!(found.moves, run(7, 0.9, &()).moves);
     }
 }

@@ -2,12 +2,13 @@
 //!
 //! An [`Objective`] is an energy as a function of the vectors, which are called *moves* here. Three
 //! objectives exist. [`Pairs`] (a pair energy) and [`Radial`] (the error of a radial power curve)
-//! are sums over pairs of blocks and need no points: `neighbors` lists the pairs with their exact
-//! frequencies, which `overlap` computes. [`Sets`] evaluates any other energy on twins. For
+//! are sums over pairs of blocks and need no points: `ground` knows which blocks meet and how often, by the `overlap` of
+//! intervals, and `neighbors` lists those that are near each other. [`Sets`] evaluates any other energy on twins. For
 //! [`Radial`], `rings` turns a histogram of distances into radial power. A [`Descent`] lowers an
 //! objective from the random start of [`jitter`]; its [`DescentState`] can be kept and resumed.
 
 mod descent;
+mod ground;
 mod neighbors;
 mod objective;
 mod overlap;
@@ -17,9 +18,10 @@ mod rings;
 mod sets;
 
 pub use descent::Descent;
-pub(crate) use neighbors::{CHUNK, Pair, fill, longest, sum};
+pub(crate) use ground::{Ground, Pair, moves_of};
+pub(crate) use neighbors::{CHUNK, fill, longest, sum};
 pub use objective::{DescentState, Objective, jitter};
-pub(crate) use overlap::Overlaps;
+pub(crate) use overlap::overlaps;
 pub use pairs::Pairs;
 pub use radial::Radial;
 pub use rings::RadialWeights;

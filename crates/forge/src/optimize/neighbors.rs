@@ -1,15 +1,12 @@
-//! Neighbor lists in table space: which blocks meet, at which offsets, and how often.
+//! Neighbor lists in table space: which blocks are near each other, at which offsets, and how often.
 //!
-//! The frequency with which block A meets block B across a lattice offset is the product of two
-//! interval overlaps (see [`overlap`](super::overlap)). So the lists need no point set. Built for a
-//! fraction, they hold the pairs of its periodic twin *of any size*, at a cost that depends on the
-//! table alone: about 150 pairs a block for a Gaussian of σ = 1. Lists for several twins at once
-//! are hardly longer, because twins share nearly all pairs of blocks.
+//! They cost what depends on the table alone: about 150 pairs a block for a Gaussian of σ = 1. Lists for several twins at
+//! once are hardly longer, because twins share nearly all pairs of blocks.
 
 use rayon::prelude::*;
 use strew_core::Map;
 
-use super::overlap::Overlaps;
+use super::ground::{Ground, Pair};
 
 /// Lists have whole groups of this many pairs, so that the compiler can vectorize sums over them.
 /// The number also fixes the order of summation, so tables depend on it.
@@ -21,16 +18,6 @@ pub(crate) const CHUNK: usize = 64;
 const SKIN: f64 = 0.7;
 /// Displacements up to half of this, in mean spacings, find all their neighbors.
 const MAX_APPROACH: f64 = 8.0;
-
-/// A neighbor of a block: an instance of block `to` at lattice offset (i, j).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Pair {
-    pub(crate) to: u32,
-    pub(crate) i: i16,
-    pub(crate) j: i16,
-    /// The mean number of such neighbors of an instance of the block.
-    pub(crate) weight: f32,
-}
 
 /// The length of the longest move.
 pub(crate) fn longest(moves: &[[f64; 2]]) -> f64 {
@@ -87,66 +74,38 @@ type Key = (i16, i16, u32);
 pub(super) struct Neighbors {
     /// In mean spacings.
     cutoff: f64,
-    /// Intervals of the map along an axis.
-    intervals: usize,
     /// One for each pattern.
-    patterns: Vec<Overlaps>,
+    patterns: Vec<Ground>,
     /// Mean spacings per grid unit.
-    scale: f64,
-    masses: Vec<f64>,
-    built_for: Vec<[f64; 2]>,
-    /// The start of the pairs of each block, and the end of the last.
-    starts: Vec<usize>,
-    pairs: Vec<Pair>,
+    pub(super) scale: f64,
+    /// The share of points that each block has.
+    pub(super) masses: Vec<f64>,
+    /// The moves that the lists were built for; empty before that.
+    pub(super) built_for: Vec<[f64; 2]>,
+    /// The pairs of each block, valid for the moves of the last [`refresh`](Self::refresh).
+    pub(super) lists: Vec<Vec<Pair>>,
 }
 
 impl Neighbors {
     /// Empty lists for the patterns of `maps`, which are one map for slightly different α. `scale`
     /// is the number of mean spacings per grid unit. Weights are means over the patterns.
     pub(super) fn new(cutoff: f64, maps: &[Map], scale: f64) -> Self {
-        let intervals = maps[0].intervals();
-        let reach = ((cutoff + SKIN + MAX_APPROACH) / scale).ceil() as i64;
-        let patterns: Vec<Overlaps> = maps.iter().map(|map| Overlaps::new(map, reach)).collect();
-        let mut masses: Vec<f64> = (0..intervals * intervals)
-            .map(|block| area(&patterns, block, intervals))
+        let reach = cutoff + SKIN + MAX_APPROACH;
+        let ground = |map: &Map| Ground::new(map, reach * map.alpha().set_side_f64() / scale);
+        let patterns: Vec<Ground> = maps.iter().map(ground).collect();
+        let mut masses: Vec<f64> = (0..patterns[0].shares.len())
+            .map(|block| area(&patterns, block))
             .collect();
         let total: f64 = masses.iter().sum();
         masses.iter_mut().for_each(|m| *m /= total);
         Self {
             cutoff,
-            intervals,
             patterns,
             scale,
             masses,
             built_for: Vec::new(),
-            starts: Vec::new(),
-            pairs: Vec::new(),
+            lists: Vec::new(),
         }
-    }
-
-    /// Mean spacings per grid unit.
-    pub(super) const fn scale(&self) -> f64 {
-        self.scale
-    }
-
-    /// The share of points that each block has.
-    pub(super) fn masses(&self) -> &[f64] {
-        &self.masses
-    }
-
-    /// The moves that the lists were built for; empty before that.
-    pub(super) fn built_for(&self) -> &[[f64; 2]] {
-        &self.built_for
-    }
-
-    /// The number of pairs in all lists.
-    pub(super) fn pairs(&self) -> usize {
-        self.pairs.len()
-    }
-
-    /// The pairs of a block, valid for the moves of the last [`refresh`](Self::refresh).
-    pub(super) fn of(&self, block: usize) -> &[Pair] {
-        &self.pairs[self.starts[block]..self.starts[block + 1]]
     }
 
     /// Builds the lists again if they are not valid for these moves.
@@ -169,56 +128,34 @@ impl Neighbors {
     pub(super) fn build(&mut self, moves: &[[f64; 2]]) {
         let longest = longest(moves);
         let range = self.cutoff + SKIN;
-        let of_block: Vec<Vec<Pair>> = (0..moves.len())
-            .into_par_iter()
-            .map(|block| self.pairs_of(block, moves, range, longest))
-            .collect();
+        let blocks = (0..moves.len()).into_par_iter();
+        let lists = blocks.map(|block| self.pairs_of(block, moves, range, longest));
+        self.lists = lists.collect();
         self.built_for = moves.to_vec();
-        self.starts = vec![0];
-        self.pairs = Vec::with_capacity(of_block.iter().map(Vec::len).sum());
-        for list in of_block {
-            self.pairs.extend(list);
-            self.starts.push(self.pairs.len());
-        }
     }
 
     /// The pairs of one block within `range`, merged over the patterns and sorted by key. `longest`
     /// is the length of the longest move.
     fn pairs_of(&self, block: usize, moves: &[[f64; 2]], range: f64, longest: f64) -> Vec<Pair> {
-        let (n, scale) = (self.intervals, self.scale);
-        let (bx, by) = (block % n, block / n);
-        let own = moves[block];
-        let lattice_range = (range + 2.0 * longest) / scale;
-        let reach = (lattice_range as i64).min(self.patterns[0].reach());
+        let (own, scale) = (moves[block], self.scale);
         let mut found: Vec<(Key, f64)> = Vec::new();
-        for overlaps in &self.patterns {
-            for j in -reach..=reach {
-                for i_parity in 0..2 {
-                    let rows = overlaps.of(j, i_parity, by);
-                    if rows.is_empty() {
-                        continue;
+        for ground in &self.patterns {
+            let reach = (range + 2.0 * longest) * ground.scale / scale;
+            ground.meets(
+                block,
+                reach,
+                |_| true,
+                |meet| {
+                    let to = moves[meet.to as usize];
+                    let dx = scale * f64::from(meet.i) + to[0] - own[0];
+                    let dy = scale * f64::from(meet.j) + to[1] - own[1];
+                    if dx * dx + dy * dy < range * range {
+                        found.push(((meet.j, meet.i, meet.to), meet.area));
                     }
-                    let first = -reach + ((reach + i_parity) & 1);
-                    for i in (first..=reach).step_by(2) {
-                        if (i, j) == (0, 0) {
-                            continue;
-                        }
-                        for column in overlaps.of(i, j, bx) {
-                            for row in rows {
-                                let to = row.to as usize * n + column.to as usize;
-                                let dx = scale * i as f64 + moves[to][0] - own[0];
-                                let dy = scale * j as f64 + moves[to][1] - own[1];
-                                if dx * dx + dy * dy < range * range {
-                                    let key = (j as i16, i as i16, to as u32);
-                                    found.push((key, column.length * row.length));
-                                }
-                            }
-                        }
-                    }
-                }
-            }
+                },
+            );
         }
-        merge(found, area(&self.patterns, block, n))
+        merge(found, area(&self.patterns, block))
     }
 }
 
@@ -241,7 +178,6 @@ fn merge(mut found: Vec<(Key, f64)>, area: f64) -> Vec<Pair> {
 }
 
 /// The area of a block in index space, summed over the patterns.
-fn area(patterns: &[Overlaps], block: usize, intervals: usize) -> f64 {
-    let (bx, by) = (block % intervals, block / intervals);
-    patterns.iter().map(|p| p.length(bx) * p.length(by)).sum()
+fn area(patterns: &[Ground], block: usize) -> f64 {
+    patterns.iter().map(|ground| ground.area(block)).sum()
 }

@@ -1,6 +1,6 @@
 //! What a descent lowers, its random start, and its state between two steps.
 
-use crate::numeric::SplitMix;
+use crate::{checkpoint::Kept, numeric::SplitMix, phase::State};
 
 /// The state of a descent between two steps. A descent resumed from it takes the same steps, bit
 /// for bit, as one that was not stopped.
@@ -13,18 +13,18 @@ pub struct DescentState {
     /// The number of evaluations done.
     pub steps: u32,
     /// The energy of the last evaluation; infinite before the first and after a restart.
-    pub(crate) last: f64,
+    last: f64,
     /// Steps since the momentum was last dropped.
-    pub(crate) age: f64,
+    age: f64,
     /// The current rate over the first one.
-    pub(crate) slowing: f64,
+    slowing: f64,
     /// The moves after the last step, without momentum.
-    pub(crate) at: Vec<[f64; 2]>,
+    at: Vec<[f64; 2]>,
     /// The moves after the last step, with momentum: where the next evaluation takes place.
-    pub(crate) ahead: Vec<[f64; 2]>,
+    pub(super) ahead: Vec<[f64; 2]>,
     /// The moves that the objective built its lists for; see
     /// [`Objective::prepared_for`].
-    pub(crate) prepared_for: Vec<[f64; 2]>,
+    pub(super) prepared_for: Vec<[f64; 2]>,
 }
 
 impl DescentState {
@@ -52,6 +52,7 @@ impl DescentState {
         gradient: &[[f64; 2]],
         masses: &[f64],
     ) {
+        self.steps += 1;
         if energy < self.energy {
             self.energy = energy;
             self.moves.clone_from(&self.ahead);
@@ -71,13 +72,8 @@ impl DescentState {
         let mut uphill = 0.0;
         self.age += 1.0;
         let momentum = self.age / (self.age + 3.0);
-        for (((at, ahead), slope), mass) in self
-            .at
-            .iter_mut()
-            .zip(&mut self.ahead)
-            .zip(gradient)
-            .zip(masses)
-        {
+        let places = self.at.iter_mut().zip(&mut self.ahead);
+        for (((at, ahead), slope), mass) in places.zip(gradient).zip(masses) {
             for axis in 0..2 {
                 let next = ahead[axis] - rate * slope[axis];
                 let by = next - at[axis];
@@ -90,6 +86,42 @@ impl DescentState {
             self.age = 0.0;
             self.ahead.clone_from(&self.at);
         }
+    }
+}
+
+impl State for DescentState {
+    fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    fn blocks(&self) -> usize {
+        self.moves.len()
+    }
+
+    fn keep(&self) -> Kept {
+        let lists = [&self.moves, &self.at, &self.ahead, &self.prepared_for];
+        Kept {
+            steps: self.steps,
+            numbers: vec![self.energy, self.last, self.age, self.slowing],
+            lists: lists.map(|list| list.as_flattened().to_vec()).into(),
+        }
+    }
+
+    fn resume(kept: Kept) -> Option<Self> {
+        let (steps, numbers) = (kept.steps, kept.numbers[..].try_into());
+        let [energy, last, age, slowing]: [f64; 4] = numbers.ok()?;
+        let [moves, at, ahead, prepared_for] = kept.lists()?;
+        Some(Self {
+            moves,
+            energy,
+            steps,
+            last,
+            age,
+            slowing,
+            at,
+            ahead,
+            prepared_for,
+        })
     }
 }
 

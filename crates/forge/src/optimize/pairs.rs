@@ -35,12 +35,12 @@ impl<E: PairEnergy> Pairs<E> {
 
 impl<E: PairEnergy> Objective for Pairs<E> {
     fn masses(&self) -> &[f64] {
-        self.neighbors.masses()
+        &self.neighbors.masses
     }
 
     fn evaluate(&mut self, moves: &[[f64; 2]], gradient: &mut [[f64; 2]]) -> f64 {
         self.neighbors.refresh(moves);
-        let masses = self.neighbors.masses();
+        let masses = &self.neighbors.masses;
         let partial: Vec<f64> = gradient
             .par_chunks_mut(CHUNK)
             .enumerate()
@@ -48,7 +48,7 @@ impl<E: PairEnergy> Objective for Pairs<E> {
                 let mut energy = 0.0;
                 for (at, out) in gradient.iter_mut().enumerate() {
                     let block = chunk * CHUNK + at;
-                    let (list, scale) = (self.neighbors.of(block), self.neighbors.scale());
+                    let (list, scale) = (&self.neighbors.lists[block], self.neighbors.scale);
                     let pair = |squared| self.energy.pair(squared);
                     let (value, slope) = sum(list, scale, moves, moves[block], pair);
                     *out = slope;
@@ -62,7 +62,7 @@ impl<E: PairEnergy> Objective for Pairs<E> {
     }
 
     fn prepared_for(&self) -> &[[f64; 2]] {
-        self.neighbors.built_for()
+        &self.neighbors.built_for
     }
 
     fn prepare_for(&mut self, moves: &[[f64; 2]]) {
@@ -70,7 +70,7 @@ impl<E: PairEnergy> Objective for Pairs<E> {
     }
 
     fn pairs(&self) -> usize {
-        self.neighbors.pairs()
+        self.neighbors.lists.iter().map(Vec::len).sum()
     }
 }
 

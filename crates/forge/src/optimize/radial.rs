@@ -15,7 +15,8 @@ use strew_core::Map;
 
 use super::{
     Objective,
-    neighbors::{CHUNK, LANES, Neighbors, Pair},
+    ground::Pair,
+    neighbors::{CHUNK, LANES, Neighbors},
     rings::{BINS_PER_SPACING, RINGS_PER_NU, RadialWeights, Rings},
 };
 use crate::curve::Target;
@@ -53,9 +54,9 @@ impl Radial {
             share: *share,
         };
         let patterns: Vec<WeightedPattern> = maps.iter().map(pattern).collect();
-        let mut masses = vec![0.0; patterns[0].neighbors.masses().len()];
+        let mut masses = vec![0.0; patterns[0].neighbors.masses.len()];
         for pattern in &patterns {
-            for (sum, mass) in masses.iter_mut().zip(pattern.neighbors.masses()) {
+            for (sum, mass) in masses.iter_mut().zip(&pattern.neighbors.masses) {
                 *sum += pattern.share * mass;
             }
         }
@@ -100,31 +101,25 @@ impl Radial {
 impl WeightedPattern {
     /// The mean number of neighbors of a point, by distance bin, in excess of a uniform density.
     fn histogram(&self, rings: &Rings, moves: &[[f64; 2]]) -> Vec<f64> {
-        let masses = self.neighbors.masses();
+        let masses = &self.neighbors.masses;
         let partial: Vec<Vec<f64>> = moves
             .par_chunks(CHUNK)
             .enumerate()
             .map(|(chunk, own)| {
-                let mut bins = vec![0.0; rings.bins() + 1];
+                let mut bins = vec![0.0; rings.bins + 1];
                 for (at, &own) in own.iter().enumerate() {
                     let block = chunk * CHUNK + at;
-                    let list = self.neighbors.of(block);
+                    let list = &self.neighbors.lists[block];
                     // A pair is in the lists of both its blocks, with opposite offsets: half of
                     // each list, counted twice, covers all pairs.
                     let half = list.partition_point(|pair| (pair.j, pair.i) < (0, 0));
                     let mass = 2.0 * masses[block];
-                    self.each_pair(
-                        &list[half..],
-                        own,
-                        moves,
-                        rings.bins(),
-                        |weight, at, _, _| {
-                            let (bin, share) = (at as usize, at - (at as usize) as f64);
-                            let weight = weight * mass;
-                            bins[bin] += weight * (1.0 - share);
-                            bins[bin + 1] += weight * share;
-                        },
-                    );
+                    self.each_pair(&list[half..], own, moves, rings.bins, |weight, at, _, _| {
+                        let (bin, share) = (at as usize, at - (at as usize) as f64);
+                        let weight = weight * mass;
+                        bins[bin] += weight * (1.0 - share);
+                        bins[bin + 1] += weight * share;
+                    });
                 }
                 bins
             })
@@ -139,14 +134,14 @@ impl WeightedPattern {
     /// Adds the slope of all blocks under a force to `to`. `force` is by distance bin, `mean` holds
     /// the masses of the blocks averaged over all patterns.
     fn add_slope(&self, force: &[f64], moves: &[[f64; 2]], mean: &[f64], to: &mut [[f64; 2]]) {
-        let masses = self.neighbors.masses();
+        let masses = &self.neighbors.masses;
         to.par_chunks_mut(CHUNK)
             .enumerate()
             .for_each(|(chunk, out)| {
                 for (at, out) in out.iter_mut().enumerate() {
                     let block = chunk * CHUNK + at;
                     let mut slope = [0.0; 2];
-                    let list = self.neighbors.of(block);
+                    let list = &self.neighbors.lists[block];
                     self.each_pair(
                         list,
                         moves[block],
@@ -179,7 +174,7 @@ impl WeightedPattern {
         bins: usize,
         mut visit: impl FnMut(f64, f64, f64, f64),
     ) {
-        let scale = self.neighbors.scale();
+        let scale = self.neighbors.scale;
         let (per_spacing, last) = (BINS_PER_SPACING * self.stretch, (bins - 1) as f64);
         let apart = |pair: &Pair| {
             let to = moves[pair.to as usize];
@@ -224,7 +219,7 @@ impl Objective for Radial {
 
     /// The lists of all patterns are built for the same moves.
     fn prepared_for(&self) -> &[[f64; 2]] {
-        self.patterns[0].neighbors.built_for()
+        &self.patterns[0].neighbors.built_for
     }
 
     fn prepare_for(&mut self, moves: &[[f64; 2]]) {
@@ -234,8 +229,11 @@ impl Objective for Radial {
     }
 
     fn pairs(&self) -> usize {
-        let all = self.patterns.iter();
-        all.map(|pattern| pattern.neighbors.pairs()).sum()
+        let lists = self
+            .patterns
+            .iter()
+            .flat_map(|pattern| &pattern.neighbors.lists);
+        lists.map(Vec::len).sum()
     }
 }
 

@@ -44,7 +44,8 @@ pub struct RadialWeights {
 
 /// Rings from ν = 0 on, each with its target and its weights.
 pub(super) struct Rings {
-    bins: usize,
+    /// The number of bins of a histogram.
+    pub(super) bins: usize,
     rings: Vec<Ring>,
     /// By ring, then bin: J₀ times the taper.
     waves: Vec<f64>,
@@ -103,11 +104,6 @@ impl Rings {
             waves,
             uniform,
         }
-    }
-
-    /// The number of bins of a histogram.
-    pub(super) const fn bins(&self) -> usize {
-        self.bins
     }
 
     /// The histogram of a point without neighbors, in excess of a uniform density: negative.

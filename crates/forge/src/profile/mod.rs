@@ -11,11 +11,8 @@
 mod aim;
 mod blue;
 mod curves;
-mod definition;
 mod known;
 mod recipe;
 
 pub use aim::Aim;
-pub use definition::Profile;
-pub(crate) use recipe::Phase;
-pub use recipe::{Push, Recipe};
+pub use recipe::{Profile, Push, Recipe};

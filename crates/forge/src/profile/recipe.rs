@@ -1,13 +1,43 @@
-//! The recipe of a profile: the parameters of an optimizer, and the phases in which it runs.
+//! A noise profile, and its recipe: the parameters of an optimizer, and the phases in which it runs.
 
 use std::slice;
 
 use crate::{
     curve::Target,
     energy::{Gaussian, Guard, Lloyd},
-    optimize::{Descent, Objective, Pairs, Radial, RadialWeights, Sets},
+    judge::Bound,
+    optimize::{Descent, DescentState, Objective, Pairs, Radial, RadialWeights, Sets},
+    phase::Phase,
     twins::Domain,
 };
+
+/// A noise profile: how its tables are optimized, and what they must satisfy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Profile {
+    /// The name, which table files record.
+    pub name: &'static str,
+    /// A description in one line.
+    pub summary: &'static str,
+    /// The way in which the tables are optimized.
+    pub recipe: Recipe,
+    /// The half-width, in mean spacings, of the square that the vectors of the random start fill.
+    pub jitter: f64,
+    /// The default number of optimizer steps.
+    pub steps: u32,
+    /// The bounds that the figures of every unseen point set must satisfy.
+    pub bounds: &'static [Bound],
+}
+
+impl Profile {
+    /// The radial power curve that the profile follows, if any.
+    #[must_use]
+    pub fn target(&self) -> Option<Target> {
+        match self.recipe {
+            Recipe::Radial { curve, .. } => Some(Target::fixed(curve)),
+            _ => None,
+        }
+    }
+}
 
 /// The way in which the tables of a profile are optimized. Lengths are in mean spacings, rates in mean spacings moved per
 /// unit of gradient.
@@ -78,10 +108,12 @@ pub struct Push {
     pub share: f64,
 }
 
-/// A descent with one objective.
-pub(crate) struct Phase {
-    pub(crate) objective: Box<dyn Objective>,
-    pub(crate) descent: Descent,
+/// A descent.
+type BoxedPhase = Box<dyn Phase<DescentState>>;
+
+/// The descent of an objective.
+fn phase(objective: impl Objective + 'static, steps: u32, rate: f64) -> BoxedPhase {
+    Box::new(Descent::new(objective, steps, rate))
 }
 
 /// The rate of the repulsion before a curve is followed.
@@ -159,16 +191,12 @@ impl Recipe {
         domain: &Domain,
         target: Option<&Target>,
         steps: u32,
-    ) -> Vec<Phase> {
+    ) -> Vec<BoxedPhase> {
         let share = |share: f64| (f64::from(steps) * share) as u32;
-        let phase = |objective: Box<dyn Objective>, steps, rate| Phase {
-            objective,
-            descent: Descent { steps, rate },
-        };
         let repelled = |sigma, reach, strength, steps, rate| {
             let energy = (Gaussian::new(sigma), Guard::new(reach, strength));
             let pairs = Pairs::new(energy, &domain.twin_maps(), domain.scale());
-            phase(Box::new(pairs), steps, rate)
+            phase(pairs, steps, rate)
         };
         match *self {
             Self::Gaussian {
@@ -201,7 +229,7 @@ impl Recipe {
             }
             Self::Lloyd { rate } => {
                 let sets = Sets::new(Lloyd, &domain.map, &domain.twins);
-                vec![phase(Box::new(sets), steps, rate)]
+                vec![phase(sets, steps, rate)]
             }
             // The repulsion uses the pattern of α alone. The error is averaged over several α of the same map, so that the
             // table follows its curve on every twin.
@@ -219,10 +247,10 @@ impl Recipe {
                 let repulsion = Pairs::new(Gaussian::new(1.0), map, domain.scale());
                 let error = Radial::new(&domain.spread(), target, &weights);
                 let phases = [
-                    phase(Box::new(repulsion), warm, WARM_RATE),
-                    phase(Box::new(error), steps - warm, rate),
+                    phase(repulsion, warm, WARM_RATE),
+                    phase(error, steps - warm, rate),
                 ];
-                let some = phases.into_iter().filter(|phase| phase.descent.steps > 0);
+                let some = phases.into_iter().filter(|phase| phase.steps() > 0);
                 some.collect()
             }
             Self::Undisplaced => Vec::new(),

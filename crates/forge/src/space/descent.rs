@@ -1,34 +1,83 @@
-//! The steps of a job: the state between them, descent with momentum over the vectors of a table, and pushes, in which
-//! points that are too near push each other apart until a target distance is kept everywhere.
+//! The phases of a job: the state between their steps, descent with momentum over the vectors of a table, and pushes, in
+//! which points that are too near push each other apart until a target distance is kept everywhere.
+
+use strew_core::Map;
 
 use super::{
     energy::Gaussian,
     pairs::{Blocks, Pairs},
 };
+use crate::{
+    ForgeError,
+    checkpoint::Kept,
+    phase::{Phase, State},
+};
 
 /// The vectors of a table in the making, and what the current phase has beside them: all that decides the next step.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct SpaceState {
+pub struct SpaceState {
     /// Steps of the current phase.
-    pub(crate) step: u32,
+    step: u32,
     /// The vectors, in mean spacings.
-    pub(crate) moves: Vec<[f64; 3]>,
+    pub(super) moves: Vec<[f64; 3]>,
     /// Of a descent; empty in pushes.
-    pub(crate) momentum: Vec<[f64; 3]>,
+    momentum: Vec<[f64; 3]>,
     /// The vectors that a descent's pairs were listed for, because the order of sums follows the lists; empty before the
     /// first step.
-    pub(crate) listed: Vec<[f32; 3]>,
+    listed: Vec<[f64; 3]>,
     /// Of pushes: the greatest least distance so far, and its vectors.
-    pub(crate) least: f64,
-    pub(crate) best: Vec<[f64; 3]>,
+    least: f64,
+    best: Vec<[f64; 3]>,
 }
 
-/// A descent of one energy.
+impl SpaceState {
+    pub(super) fn start(moves: Vec<[f64; 3]>) -> Self {
+        Self {
+            moves,
+            ..Self::default()
+        }
+    }
+}
+
+impl State for SpaceState {
+    fn steps(&self) -> u32 {
+        self.step
+    }
+
+    fn blocks(&self) -> usize {
+        self.moves.len()
+    }
+
+    fn keep(&self) -> Kept {
+        let lists = [&self.moves, &self.momentum, &self.listed, &self.best];
+        Kept {
+            steps: self.step,
+            numbers: vec![self.least],
+            lists: lists.map(|list| list.as_flattened().to_vec()).into(),
+        }
+    }
+
+    fn resume(kept: Kept) -> Option<Self> {
+        let (step, [least]) = (kept.steps, kept.numbers[..].try_into().ok()?);
+        let [moves, momentum, listed, best] = kept.lists()?;
+        Some(Self {
+            step,
+            moves,
+            momentum,
+            listed,
+            least,
+            best,
+        })
+    }
+}
+
+/// How the steps of a phase move blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Phase {
-    /// The σ of the energy, in mean spacings.
-    pub(super) sigma: f64,
-    pub(super) steps: u32,
+pub(super) enum Rule {
+    /// Down the energy of a Gaussian.
+    Descent(Gaussian),
+    /// Near points apart.
+    Pushes,
 }
 
 /// The part of the momentum that a step keeps.
@@ -38,65 +87,56 @@ const CLIP: f64 = 0.12;
 /// Pairs are listed up to so much beyond the reach of the energy, and again once they may have come nearer.
 const SKIN: f64 = 0.5;
 
-/// A descent under way.
-pub(super) struct Descent<'a> {
-    blocks: &'a Blocks,
-    phase: Phase,
+/// A phase of a job.
+pub(super) struct SpacePhase<'a> {
+    rule: Rule,
+    steps: u32,
+    blocks: Blocks,
+    /// The map of the phase and that of the next one, if that is finer.
+    finer: Option<&'a [Map; 2]>,
     pairs: Pairs,
     forces: Vec<[f64; 3]>,
 }
 
 /// The vectors as the energy takes them.
-pub(super) fn single(moves: &[[f64; 3]]) -> Vec<[f32; 3]> {
+fn single(moves: &[[f64; 3]]) -> Vec<[f32; 3]> {
     moves.iter().map(|v| v.map(|v| v as f32)).collect()
 }
 
-impl<'a> Descent<'a> {
-    pub(super) fn new(blocks: &'a Blocks, phase: Phase, state: &SpaceState) -> Self {
-        let mut descent = Self {
-            blocks,
-            phase,
-            pairs: Pairs::default(),
-            forces: vec![[0.0; 3]; state.moves.len()],
+impl<'a> SpacePhase<'a> {
+    pub(super) fn new(rule: Rule, steps: u32, map: &Map, finer: Option<&'a [Map; 2]>) -> Self {
+        // The distance within which the blocks must know each other, in mean spacings.
+        let reach = match rule {
+            Rule::Descent(_) => 5.6,
+            Rule::Pushes => 1.3,
         };
-        if !state.listed.is_empty() {
-            descent.pairs = blocks.pairs(&state.listed, descent.reach());
+        Self {
+            rule,
+            steps,
+            blocks: Blocks::new(map, reach),
+            finer,
+            pairs: Pairs::default(),
+            forces: Vec::new(),
         }
-        descent
     }
 
-    fn reach(&self) -> f64 {
-        Gaussian {
-            sigma: self.phase.sigma,
-        }
-        .reach()
-            + SKIN
-    }
-
-    /// Takes a step. Returns the energy before it, per point.
-    pub(super) fn step(&mut self, state: &mut SpaceState) -> f64 {
+    /// Takes a step down an energy. Returns the energy before it, per point.
+    fn descend(&mut self, gaussian: Gaussian, state: &mut SpaceState) -> f64 {
         let moves = single(&state.moves);
         let is_near = state.listed.len() == moves.len()
-            && moves.iter().zip(&state.listed).all(|(a, b)| {
+            && moves.iter().zip(single(&state.listed)).all(|(a, b)| {
                 let squared: f32 = (0..3).map(|i| (a[i] - b[i]) * (a[i] - b[i])).sum();
                 squared < (0.5 * SKIN * 0.5 * SKIN) as f32
             });
         if !is_near {
-            self.pairs = self.blocks.pairs(&moves, self.reach());
-            state.listed.clone_from(&moves);
+            self.pairs = self.blocks.pairs(&moves, gaussian.reach() + SKIN);
+            state.listed.clone_from(&state.moves);
         }
-        let gaussian = Gaussian {
-            sigma: self.phase.sigma,
-        };
-        let energy = gaussian.evaluate(self.blocks, &self.pairs, &moves, &mut self.forces);
-        let rate = self.rate(state.step);
+        let energy = gaussian.evaluate(&self.blocks, &self.pairs, &moves, &mut self.forces);
+        let rate = self.rate(gaussian, state.step);
         state.momentum.resize(moves.len(), [0.0; 3]);
-        for ((at, momentum), force) in state
-            .moves
-            .iter_mut()
-            .zip(&mut state.momentum)
-            .zip(&self.forces)
-        {
+        let all = state.moves.iter_mut().zip(&mut state.momentum);
+        for ((at, momentum), force) in all.zip(&self.forces) {
             for axis in 0..3 {
                 momentum[axis] = MOMENTUM * momentum[axis] + force[axis];
                 let by = (rate * momentum[axis]).clamp(-CLIP, CLIP);
@@ -106,25 +146,73 @@ impl<'a> Descent<'a> {
         }
         center(&self.blocks.shares, &mut state.moves);
         for v in &mut state.moves {
-            let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-            if length > self.blocks.longest {
-                *v = v.map(|v| v * (self.blocks.longest / length));
-            }
+            shorten(v, self.blocks.longest);
         }
-        state.step += 1;
         energy
     }
 
     /// Mean spacings per unit of momentum: it grows at first, and falls at the end.
-    fn rate(&self, step: u32) -> f64 {
-        let part = f64::from(step) / f64::from(self.phase.steps);
+    fn rate(&self, gaussian: Gaussian, step: u32) -> f64 {
+        let part = f64::from(step) / f64::from(self.steps);
         let end = if part < 0.8 {
             1.0
         } else {
             1.0 - (part - 0.8) / 0.2 * 0.95
         };
         let start = (f64::from(step + 5) / 30.0).min(1.0);
-        0.24 / self.phase.sigma.powi(3) * end * start
+        0.24 / gaussian.sigma.powi(3) * end * start
+    }
+}
+
+impl Phase<SpaceState> for SpacePhase<'_> {
+    fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    fn describe(&self) -> String {
+        match self.rule {
+            Rule::Descent(Gaussian { sigma }) => format!("{} steps at sigma {sigma}", self.steps),
+            Rule::Pushes => format!("{} pushes", self.steps),
+        }
+    }
+
+    fn begin(&mut self, state: &SpaceState) {
+        self.forces = vec![[0.0; 3]; state.blocks()];
+        if let (Rule::Descent(gaussian), false) = (self.rule, state.listed.is_empty()) {
+            let reach = gaussian.reach() + SKIN;
+            self.pairs = self.blocks.pairs(&single(&state.listed), reach);
+        }
+    }
+
+    fn step(&mut self, state: &mut SpaceState) -> f64 {
+        let value = match self.rule {
+            Rule::Descent(gaussian) => self.descend(gaussian, state),
+            Rule::Pushes => push(&self.blocks, state, self.steps),
+        };
+        state.step += 1;
+        value
+    }
+
+    fn end(&self, state: SpaceState) -> Result<SpaceState, ForgeError> {
+        let mut moves = match state.best.is_empty() {
+            true => state.moves,
+            false => state.best,
+        };
+        if let Some([coarse, fine]) = self.finer {
+            // The vectors of the coarse map for the blocks of the finer one.
+            let (fine, parents) = coarse.refine(fine.radius())?;
+            let (n, m) = (fine.intervals(), coarse.intervals());
+            let parent = |b: usize| {
+                let [i, j, k] = [b % n, b / n % n, b / (n * n)].map(|i| parents[i]);
+                moves[(k * m + j) * m + i]
+            };
+            moves = (0..n.pow(3)).map(parent).collect();
+        }
+        Ok(SpaceState::start(moves))
+    }
+
+    fn pairs(&self) -> usize {
+        self.pairs.blocks.len()
     }
 }
 
@@ -143,11 +231,19 @@ fn center(shares: &[f64], moves: &mut [[f64; 3]]) {
     }
 }
 
+/// Shortens a vector that is too long.
+fn shorten(v: &mut [f64; 3], longest: f64) {
+    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+    if length > longest {
+        *v = v.map(|v| v * (longest / length));
+    }
+}
+
 /// The target distances at the start and at the end, in mean spacings: 0.76 and 0.86 of the densest packing's.
 const TARGETS: [f64; 2] = [0.853, 0.965];
 
 /// Moves blocks apart, one step of `steps`. Returns the least distance before it, in mean spacings.
-pub(super) fn push(blocks: &Blocks, state: &mut SpaceState, steps: u32) -> f64 {
+fn push(blocks: &Blocks, state: &mut SpaceState, steps: u32) -> f64 {
     let part = f64::from(state.step) / f64::from(steps.max(2) - 1);
     let target = TARGETS[0] + (TARGETS[1] - TARGETS[0]) * part;
     let places = single(&state.moves);
@@ -179,12 +275,8 @@ pub(super) fn push(blocks: &Blocks, state: &mut SpaceState, steps: u32) -> f64 {
             for axis in 0..3 {
                 v[axis] += 0.55 * sum[axis] / weight;
             }
-            let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-            if length > blocks.longest {
-                *v = v.map(|v| v * (blocks.longest / length));
-            }
+            shorten(v, blocks.longest);
         }
     }
-    state.step += 1;
     least
 }

@@ -9,7 +9,7 @@ use crate::numeric::exp32;
 const LANES: usize = 16;
 
 /// Repulsion by exp(−d²/2σ²), cut off and shifted to 0.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gaussian {
     /// σ, in mean spacings.
     pub(super) sigma: f64,

@@ -3,7 +3,8 @@
 use strew_core::{Alpha, Map};
 
 use super::{
-    descent::Phase,
+    descent::Rule,
+    energy::Gaussian,
     pairs::{LONGEST, longest},
 };
 use crate::{ForgeError, MAX_STEPS};
@@ -69,14 +70,6 @@ impl SpaceJob {
         }
     }
 
-    /// Checks every part of the job.
-    ///
-    /// # Errors
-    /// [`ForgeError::Field`] or [`ForgeError::Table`] for a part that is not allowed.
-    pub fn check(&self) -> Result<(), ForgeError> {
-        self.maps().map(drop)
-    }
-
     /// The maps of the coarse phase and of all others. Fails for a part of the job that is not allowed.
     pub(super) fn maps(&self) -> Result<[Map; 2], ForgeError> {
         if longest(self.alpha) < LEAST_REACH {
@@ -97,71 +90,20 @@ impl SpaceJob {
         Ok([Map::new(self.alpha, coarse)?, map])
     }
 
-    /// All phases, in order. The first is on the coarse map.
-    pub(super) fn phases(&self) -> Vec<Work> {
-        let all = [(1.0, 150), (1.0, 120), (0.84, 300)];
-        let whole: u32 = all.iter().map(|(_, steps)| steps).sum();
-        let pushes = match self.profile {
-            SpaceProfile::Blue => 0,
-            SpaceProfile::Spaced => 400,
-        };
-        let part = |steps: u32| match self.steps {
-            Some(limit) => {
-                (u64::from(steps) * u64::from(limit) / u64::from(whole + pushes)).max(1) as u32
+    /// All phases, in order, with their steps. The first is on the coarse map.
+    pub(super) fn phases(&self) -> Vec<(Rule, u32)> {
+        let descent = |(sigma, steps)| (Rule::Descent(Gaussian { sigma }), steps);
+        let mut phases = [(1.0, 150), (1.0, 120), (0.84, 300)].map(descent).to_vec();
+        if self.profile == SpaceProfile::Spaced {
+            phases.push((Rule::Pushes, 400));
+        }
+        if let Some(limit) = self.steps {
+            let whole: u64 = phases.iter().map(|(_, steps)| u64::from(*steps)).sum();
+            for (_, steps) in &mut phases {
+                *steps = (u64::from(*steps) * u64::from(limit) / whole).max(1) as u32;
             }
-            None => steps,
-        };
-        let descent = |(sigma, steps): (f64, u32)| {
-            let steps = part(steps);
-            Work::Descent(Phase { sigma, steps })
-        };
-        let mut phases = all.map(descent).to_vec();
-        if pushes > 0 {
-            phases.push(Work::Pushes(part(pushes)));
         }
         phases
-    }
-
-    /// Everything that decides the table, as lines of `name = value`.
-    pub(super) fn identity(&self) -> String {
-        let (profile, alpha) = (self.profile.name(), self.alpha);
-        let mut text = format!("points = in space\nprofile = {profile}\nalpha = {alpha}\n");
-        text += &format!("R = {}\nseed = {}\n", self.radius, self.seed);
-        text += &format!("jitter = {JITTER}\nlongest = {}\n", longest(self.alpha));
-        for phase in self.phases() {
-            text += &match phase {
-                Work::Descent(Phase { sigma, steps }) => {
-                    format!("phase = {steps} steps at sigma {sigma}\n")
-                }
-                Work::Pushes(steps) => format!("phase = {steps} pushes\n"),
-            };
-        }
-        text
-    }
-}
-
-/// A phase of the making.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Work {
-    Descent(Phase),
-    /// A number of pushes.
-    Pushes(u32),
-}
-
-impl Work {
-    pub(super) const fn steps(self) -> u32 {
-        match self {
-            Self::Descent(phase) => phase.steps,
-            Self::Pushes(steps) => steps,
-        }
-    }
-
-    /// The distance within which the blocks of the phase must know each other, in mean spacings.
-    pub(super) const fn reach(self) -> f64 {
-        match self {
-            Self::Descent(_) => 5.6,
-            Self::Pushes(_) => 1.3,
-        }
     }
 }
 
@@ -171,8 +113,6 @@ pub const MAX_SPACE_RADIUS: u32 = 22;
 const MAX_INTERVALS: usize = 40;
 /// The least reach of vectors, in mean spacings.
 const LEAST_REACH: f64 = 0.8 * LONGEST;
-/// The reach of the random start along each axis, in mean spacings.
-pub(super) const JITTER: f64 = 0.2;
 
 #[cfg(test)]
 mod tests {

@@ -8,11 +8,13 @@ use strew_core::{
 
 use super::{
     job::SpaceProfile,
-    measure::{LocalPower, Shell, SpaceDistances, SpacePoints, SpacePower, is_uniform_in_space},
+    local::{LocalPower, SpacePower},
+    points::{is_uniform_in_space, twin_set, window_set},
 };
 use crate::{
     Figure, Meter,
-    judge::{Bound, Complaint, complaints as missed, round},
+    judge::{Bound, Complaint, complaints as missed, measured, named},
+    measure::{Distances, Ring, Sample},
     twins::{fraction, next_to_alpha},
 };
 
@@ -33,40 +35,37 @@ pub struct SpaceReport {
     /// The named figures, rounded to four significant digits.
     pub figures: Figures,
     /// The power over shells of frequencies.
-    pub shells: Vec<Shell>,
+    pub shells: Vec<Ring>,
 }
 
 impl SpaceReport {
     /// Measures points, and local power if there is any.
     #[must_use]
-    pub fn of(subject: String, points: &SpacePoints, local: Option<LocalPower>) -> Self {
-        let power = SpacePower::of(points);
-        let distances = SpaceDistances::of(points);
-        let mut values = vec![
-            (Figure::LowPower.name(), power.low),
-            (Figure::PeakPower.name(), power.peak),
-            ("peak_frequency", power.peak_at),
-            ("anisotropy", power.anisotropy),
-            (Figure::DeltaMin.name(), distances.least),
-            (Figure::MeanDistance.name(), distances.mean),
+    pub fn of(subject: String, points: &Sample<3>, local: Option<LocalPower>) -> Self {
+        let SpacePower { summary, rings } = SpacePower::of(points);
+        let distances = Distances::of(points);
+        let local = local.map(|local| {
+            [
+                (Figure::LocalDeviation, local.deviation),
+                (Figure::LocalLargest, local.largest),
+            ]
+        });
+        let values = [
+            (Figure::LowPower, summary.low_power),
+            (Figure::PeakPower, summary.peak_power),
+            (Figure::PeakFrequency, summary.peak_nu),
+            (Figure::ShellAnisotropy, summary.anisotropy_db),
+            (Figure::DeltaMin, distances.delta_min),
+            (Figure::MeanDistance, distances.delta_avg),
         ];
-        if let Some(local) = local {
-            values.extend([
-                (Figure::LocalDeviation.name(), local.deviation),
-                (Figure::LocalLargest.name(), local.largest),
-            ]);
-        }
-        let values = values.into_iter();
         Self {
             figures: Figures {
                 subject,
                 seen: false,
                 points: points.points().len() as u64,
-                values: values
-                    .map(|(name, value)| (name.into(), round(value)))
-                    .collect(),
+                values: named(values.into_iter().chain(local.into_iter().flatten())),
             },
-            shells: power.shells,
+            shells: rings,
         }
     }
 
@@ -81,7 +80,7 @@ impl SpaceReport {
         places: u32,
         places_seed: u64,
     ) -> Result<Self, Error> {
-        let points = SpacePoints::of_window(set, at, side)?;
+        let points = window_set(set, at, side)?;
         let local = LocalPower::of(set, at, places, places_seed)?;
         let subject = format!("window seed {}", set.placement().seed.0);
         Ok(Self::of(subject, &points, Some(local)))
@@ -106,25 +105,19 @@ fn side(map: &Map) -> f64 {
     (map.intervals() as f64 * (SIDE / 21.0)).min(SIDE)
 }
 
-/// The number of points that tables of a map are judged on, about.
-pub(super) fn planned_points(map: &Map) -> u64 {
-    let side = side(map);
-    ((side * side * side) * (SEEDS.len() as f64 + 1.0)) as u64
-}
-
 impl Judge {
-    pub(super) fn of(table: &Table) -> Self {
-        let side = side(table.map());
+    pub(super) fn of(map: &Map) -> Self {
+        let side = side(map);
         let volume = side * side * side;
         let [least, most] = [0.25, 1.2].map(|part| (part * volume) as u64);
-        let alpha = table.map().alpha().to_f64();
+        let alpha = map.alpha().to_f64();
         let far = |twin: &Twin| (fraction(twin) - alpha).abs();
-        let all = unseen_twins(table.map(), least).take_while(|twin| twin.t().pow(3) <= most);
+        let all = unseen_twins(map, least).take_while(|twin| twin.t().pow(3) <= most);
         Self {
             // The pattern of a twin differs from that of α the more, the farther they are apart.
             twin: all.min_by(|a, b| far(a).total_cmp(&far(b))),
             side,
-            places: (table.map().intervals() as u32 * 3).min(PLACES),
+            places: (map.intervals() as u32 * 3).min(PLACES),
         }
     }
 
@@ -133,32 +126,26 @@ impl Judge {
         SEEDS.len() as u32 + u32::from(self.twin.is_some())
     }
 
+    /// About the number of their points.
+    pub(super) fn points(&self) -> u64 {
+        (self.side.powi(3) * (SEEDS.len() as f64 + 1.0)) as u64
+    }
+
     /// The figures of all point sets, or `None` if the watch stops the work.
-    pub(super) fn figures(
-        &self,
-        table: &Table,
-        meter: &mut Meter<'_>,
-    ) -> Result<Option<Vec<Figures>>, Error> {
-        let mut all = Vec::new();
-        if let Some(twin) = self.twin {
-            if meter.stop() {
-                return Ok(None);
-            }
-            if let Some(points) = SpacePoints::of_twin(table, twin) {
-                all.push(SpaceReport::of(format!("twin {twin}"), &points, None).figures);
-            }
-            meter.advance(None);
-        }
-        for seed in SEEDS {
-            if meter.stop() {
-                return Ok(None);
-            }
+    pub(super) fn figures(&self, table: &Table, meter: &mut Meter<'_>) -> Option<Vec<Figures>> {
+        let twin = |twin| {
+            let points = twin_set(table, twin)?;
+            Some(SpaceReport::of(format!("twin {twin}"), &points, None).figures)
+        };
+        let window = |seed| {
             let set = SpaceSet::new(table.clone()).seed(seed);
-            let window = SpaceReport::of_window(&set, AT, self.side, self.places, PLACES_SEED)?;
-            all.push(window.figures);
-            meter.advance(None);
-        }
-        Ok(Some(all))
+            let report = SpaceReport::of_window(&set, AT, self.side, self.places, PLACES_SEED);
+            // Windows of this size are within range; one that were not would miss all bounds.
+            Some(report.map(|report| report.figures).unwrap_or_default())
+        };
+        let mut all = measured(self.twin, meter, twin)?;
+        all.extend(measured(SEEDS, meter, window)?);
+        Some(all)
     }
 }
 

@@ -34,8 +34,8 @@ pub fn with_ranks(table: &Table) -> Result<Table, Error> {
         moves: &moves,
         scale: 0.0,
     };
-    let positions = positions(&mut left, moves.len(), KEPT, 0);
-    table.with_ranks(Ranks::new(positions)?)
+    let found = positions(&mut left, &vec![0; moves.len()], &[1.0], KEPT, 0);
+    table.with_ranks(Ranks::new(found.unwrap_or_default())?)
 }
 
 /// Pairs are listed up to this distance, in spacings of the whole set.
@@ -82,7 +82,7 @@ impl Surroundings for Left<'_> {
         self.blocks.shares[block]
     }
 
-    fn potentials(&mut self, is_left: &[bool], left: f64, _: f64) -> Vec<f64> {
+    fn potentials(&mut self, is_left: &[bool], left: f64, _: f64) -> Option<Vec<f64>> {
         let sigma = SCALE * libm::cbrt(left.max(FEW)).recip();
         self.scale = -0.5 / (sigma * sigma);
         let mut density = vec![0.0f64; is_left.len()];
@@ -93,7 +93,7 @@ impl Surroundings for Left<'_> {
                 }
             }
         }
-        density
+        Some(density)
     }
 
     fn leave(&self, block: usize, mut lose: impl FnMut(usize, f64)) {

@@ -1,9 +1,9 @@
 //! The pairs of blocks whose points are near each other, with their exact frequencies in the unbounded set: products of
-//! [overlaps](Overlaps) along three axes, since the index of a point is uniform over the set region.
+//! [overlaps] along three axes, since the index of a point is uniform over the set region.
 
 use strew_core::{Alpha, Map};
 
-use crate::optimize::Overlaps;
+use crate::optimize::overlaps;
 
 /// Pairs within a distance, by the block of their first point.
 #[derive(Clone, Debug, Default)]
@@ -26,7 +26,11 @@ pub(super) struct Blocks {
     pub(super) intervals: usize,
     /// The share of points of each block.
     pub(super) shares: Vec<f64>,
-    overlaps: Overlaps,
+    /// The intervals that meet across each offset along an axis from −`far` on, of each parity of those along the others: from,
+    /// to, and the part of the set region from which they meet.
+    meetings: Vec<Vec<(usize, usize, f32)>>,
+    /// The largest offset.
+    far: i64,
     /// Mean spacings per grid unit.
     pub(super) step: f64,
     /// The greatest displacement, in mean spacings.
@@ -52,23 +56,26 @@ impl Blocks {
         let step = map.alpha().set_side_f64();
         let longest = longest(map.alpha());
         let far = ((reach + 2.0 * longest) / step) as i64 + 1;
+        let meetings = |own, others| {
+            let all = overlaps(map, own, others);
+            let part = |length: f64| (length / step) as f32;
+            all.iter().map(|o| (o.from, o.to, part(o.length))).collect()
+        };
         Self {
             intervals: n,
             shares: (0..n.pow(3)).map(share).collect(),
-            overlaps: Overlaps::new(map, far),
+            meetings: (-far..=far)
+                .flat_map(|own| [meetings(own, 0), meetings(own, 1)])
+                .collect(),
+            far,
             step,
             longest,
         }
     }
 
-    /// The intervals that meet across an offset along an axis, given the sum of those along the others: from, to, and the
-    /// part of the set region from which they meet.
-    fn meetings(&self, own: i64, others: i64) -> Vec<(usize, usize, f32)> {
-        let of = |from: usize| {
-            let all = self.overlaps.of(own, others, from).iter();
-            all.map(move |o| (from, o.to as usize, (o.length / self.step) as f32))
-        };
-        (0..self.intervals).flat_map(of).collect()
+    /// The intervals that meet across an offset along an axis, given the sum of those along the others.
+    fn meetings(&self, own: i64, others: i64) -> &[(usize, usize, f32)] {
+        &self.meetings[((own + self.far) * 2 + (others & 1)) as usize]
     }
 
     /// Calls `each` for the pairs of blocks that can meet within `reach` mean spacings: with the block numbers, the
@@ -79,7 +86,7 @@ impl Blocks {
         reach: f64,
         mut each: impl FnMut(usize, usize, [i8; 3], f32),
     ) {
-        let (n, far) = (self.intervals, self.overlaps.reach());
+        let (n, far) = (self.intervals, self.far);
         let longest = moves
             .iter()
             .map(|v| v.iter().map(|v| f64::from(*v).powi(2)).sum::<f64>())
@@ -97,12 +104,12 @@ impl Blocks {
                     let [along_x, along_y, along_z] = [(x, y + z), (y, x + z), (z, x + y)]
                         .map(|(own, others)| self.meetings(own, others));
                     let offset = [x, y, z].map(|v| v as f32 * step);
-                    for &(from_z, to_z, share_z) in &along_z {
-                        for &(from_y, to_y, share_y) in &along_y {
+                    for &(from_z, to_z, share_z) in along_z {
+                        for &(from_y, to_y, share_y) in along_y {
                             let share = share_z * share_y;
                             let (from, to) = ((from_z * n + from_y) * n, (to_z * n + to_y) * n);
                             let (from_row, to_row) = (&moves[from..from + n], &moves[to..to + n]);
-                            for &(from_x, to_x, share_x) in &along_x {
+                            for &(from_x, to_x, share_x) in along_x {
                                 let (a, b) = (&from_row[from_x], &to_row[to_x]);
                                 let d = [0, 1, 2].map(|axis| offset[axis] + b[axis] - a[axis]);
                                 if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < limit {

@@ -4,11 +4,10 @@
 use rayon::prelude::*;
 use strew_core::{Table, table::Ranks};
 
-use super::ground::{Ground, moves_of};
 use crate::{
     ForgeError,
     numeric::exp,
-    optimize::{Pair, longest},
+    optimize::{Ground, Pair, longest, moves_of},
     order::{Surroundings, positions},
 };
 
@@ -57,8 +56,9 @@ pub fn with_ranks(table: &Table) -> Result<Table, ForgeError> {
         longest,
         lists: Vec::new(),
     };
-    let positions = positions(&mut left, ground.blocks(), 1.0 - BATCH, FEWEST);
-    Ok(table.with_ranks(Ranks::new(positions)?)?)
+    let labels = vec![0; ground.shares.len()];
+    let found = positions(&mut left, &labels, &[1.0], 1.0 - BATCH, FEWEST);
+    Ok(table.with_ranks(Ranks::new(found.unwrap_or_default())?)?)
 }
 
 /// The blocks of a table that are left, and which of them influence each other.
@@ -72,10 +72,10 @@ struct Left<'a> {
 
 impl Surroundings for Left<'_> {
     fn share(&self, block: usize) -> f64 {
-        self.ground.share(block)
+        self.ground.shares[block]
     }
 
-    fn potentials(&mut self, is_left: &[bool], _: f64, target: f64) -> Vec<f64> {
+    fn potentials(&mut self, is_left: &[bool], _: f64, target: f64) -> Option<Vec<f64>> {
         let spacing = 1.0 / target.max(LEAST).sqrt();
         let rate = -0.5 / (SIGMA * spacing * SIGMA * spacing);
         let range = CUTOFF * SIGMA * spacing;
@@ -92,10 +92,8 @@ impl Surroundings for Left<'_> {
         };
         let blocks = 0..is_left.len();
         self.lists = blocks.into_par_iter().map(list).collect();
-        let lists = self.lists.iter();
-        lists
-            .map(|list| list.iter().map(|felt| felt.value + felt.press).sum())
-            .collect()
+        let sum = |list: &Vec<Felt>| list.iter().map(|felt| felt.value + felt.press).sum();
+        Some(self.lists.iter().map(sum).collect())
     }
 
     fn leave(&self, block: usize, mut lose: impl FnMut(usize, f64)) {
@@ -121,7 +119,7 @@ impl Left<'_> {
     /// The force on an instance of a block from a neighbor, or `None` beyond the range.
     fn felt(&self, block: usize, neighbor: &Pair, range: f64, rate: f64) -> Option<Felt> {
         let (own, other) = (self.moves[block], self.moves[neighbor.to as usize]);
-        let scale = self.ground.scale();
+        let scale = self.ground.scale;
         let dx = scale * f64::from(neighbor.i) + other[0] - own[0];
         let dy = scale * f64::from(neighbor.j) + other[1] - own[1];
         let squared = dx * dx + dy * dy;

@@ -24,7 +24,7 @@ impl Plane {
 /// The transforms of one size.
 #[derive(Clone, Debug)]
 pub(super) struct Fourier {
-    size: usize,
+    pub(super) size: usize,
     factors: Vec<usize>,
     /// exp(−2πi k/size) for all k below the size.
     turns: Vec<[f32; 2]>,
@@ -48,10 +48,6 @@ impl Fourier {
             factors: factors(size),
             turns: (0..size).map(turn).collect(),
         }
-    }
-
-    pub(super) const fn size(&self) -> usize {
-        self.size
     }
 
     /// Transforms each column of a plane of `size` rows, forward. `other` is room of any length.

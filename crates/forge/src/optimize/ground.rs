@@ -1,24 +1,36 @@
-//! The ground of a thinned table: which blocks meet across which lattice offsets, and how often.
+//! The ground of a table: which blocks meet across which lattice offsets, and how often.
 //!
-//! As in [`optimize`](crate::optimize), a pair of blocks has an exact frequency, the product of two
-//! interval overlaps. Unlike there, a set may be thinned to 1/64 and less, so neighbors lie many
-//! full spacings apart, and only a few of the blocks on the way are left.
+//! The frequency with which block A meets block B across a lattice offset is the product of two
+//! interval overlaps (see [`overlap`](super::overlap)). So no point set is needed. Of a fraction, the ground has the
+//! pairs of its periodic twin *of any size*.
 
 use strew_core::{Map, Table, table::to_grid_units};
 
-use crate::optimize::{Overlaps, Pair};
+use super::overlap::{length, overlaps};
+
+/// A neighbor of a block: an instance of block `to` at lattice offset (i, j).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pair {
+    pub(crate) to: u32,
+    pub(crate) i: i16,
+    pub(crate) j: i16,
+    /// The mean number of such neighbors of an instance of the block.
+    pub(crate) weight: f32,
+}
 
 /// The exact pair frequencies of a map. Lengths are in mean spacings of the full set.
 pub(crate) struct Ground {
     /// Intervals along an axis.
     n: usize,
     /// Mean spacings per grid unit.
-    scale: f64,
+    pub(crate) scale: f64,
     /// For each parity of the other offset, parity of the own offset and interval: the intervals met,
     /// by own offset.
     meetings: Vec<Vec<Meeting>>,
+    /// The length of each interval, as a fraction of the torus.
+    lengths: Vec<f64>,
     /// The share of all points that each block has.
-    shares: Vec<f64>,
+    pub(crate) shares: Vec<f64>,
 }
 
 /// An interval met along one axis.
@@ -46,45 +58,32 @@ impl Ground {
         let n = map.intervals();
         let scale = map.alpha().set_side_f64();
         let reach = (reach / scale) as i64 + 1;
-        let overlaps = Overlaps::new(map, reach);
         let mut meetings = vec![Vec::new(); 4 * n];
         for own in -reach..=reach {
             for other in 0..2 {
-                for from in 0..n {
-                    let list = &mut meetings[slot(other, own) * n + from];
-                    list.extend(overlaps.of(own, other, from).iter().map(|o| Meeting {
+                for overlap in overlaps(map, own, other) {
+                    meetings[slot(other, own) * n + overlap.from].push(Meeting {
                         offset: own as i16,
-                        to: o.to as u16,
-                        length: o.length,
-                    }));
+                        to: overlap.to as u16,
+                        length: overlap.length,
+                    });
                 }
             }
         }
-        let lengths: Vec<f64> = (0..n).map(|i| overlaps.length(i) / scale).collect();
-        let shares = (0..n * n)
-            .map(|b| lengths[b % n] * lengths[b / n])
-            .collect();
+        let lengths: Vec<f64> = (0..n).map(|i| length(map, i)).collect();
+        let share = |b: usize| lengths[b % n] / scale * (lengths[b / n] / scale);
         Self {
             n,
             scale,
             meetings,
-            shares,
+            shares: (0..n * n).map(share).collect(),
+            lengths,
         }
     }
 
-    /// The number of blocks.
-    pub(crate) fn blocks(&self) -> usize {
-        self.shares.len()
-    }
-
-    /// Mean spacings per grid unit.
-    pub(crate) const fn scale(&self) -> f64 {
-        self.scale
-    }
-
-    /// The share of all points that a block has.
-    pub(crate) fn share(&self, block: usize) -> f64 {
-        self.shares[block]
+    /// The area of a block in index space, as a part of the torus.
+    pub(super) fn area(&self, block: usize) -> f64 {
+        self.lengths[block % self.n] * self.lengths[block / self.n]
     }
 
     /// Calls `visit` with every neighbor of a block within `reach` mean spacings along each axis of the
