@@ -1,6 +1,6 @@
 //! Disks and searches against brute force over boxes.
 
-mod subject;
+use crate::subject;
 
 use proptest::prelude::*;
 use strew_core::{Circle, ErrorKind, Keep, Neighbor, Placement, Point, Seed, Spacing};
