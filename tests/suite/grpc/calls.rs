@@ -18,7 +18,7 @@ async fn a_stream_stops_at_its_deadline() {
     let daemon = Daemon::start(&[]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     let mut request = Request::new(square(LONG));
-    let timeout = "500m".parse().expect("text");
+    let timeout = "2S".parse().expect("text");
     request.metadata_mut().insert("grpc-timeout", timeout);
     let start = Instant::now();
     let mut stream = client
@@ -37,7 +37,7 @@ async fn a_stream_stops_at_its_deadline() {
     assert!(status.message().contains("not complete"), "{status:?}");
     let info = status.get_details_error_info().expect("details");
     assert_eq!(info.reason, "DEADLINE_EXCEEDED");
-    assert!(start.elapsed() >= Duration::from_millis(500));
+    assert!(start.elapsed() >= Duration::from_secs(2));
     tokio::task::spawn_blocking(move || daemon.until_no_streams())
         .await
         .expect("no panic");

@@ -245,14 +245,20 @@ impl Browser {
         )
     }
 
-    /// Clicks an element with the mouse.
+    /// Clicks an element with the mouse; again if the page has replaced it meanwhile.
     pub fn click(&self, selector: &str) {
-        // Drivers scroll only to what cannot be seen at all.
-        self.middle(selector);
-        let element = self.element(selector);
-        let id = element.as_object().expect("an element").values().next();
-        let id = id.and_then(Value::as_str).expect("an element");
-        self.call(&format!("element/{id}/click"), &json!({}));
+        until(&format!("{selector} is clicked"), || {
+            // Drivers scroll only to what cannot be seen at all.
+            self.middle(selector);
+            let element = self.element(selector);
+            let id = element.as_object().expect("an element").values().next();
+            let id = id.and_then(Value::as_str).expect("an element");
+            let path = format!("/session/{}/element/{id}/click", self.session().id);
+            match self.session().ask("POST", &path, &json!({})) {
+                Err(error) if error["error"] == "stale element reference" => None,
+                clicked => Some(clicked.expect("clicked")),
+            }
+        });
     }
 
     /// Sets the value of a field or a list and fires the events of a change.
