@@ -439,8 +439,11 @@ fn commands_and_the_library_have_the_bytes_of_rest() {
                 case.body
             );
         }
-        // This library has the tables of a daemon, not the mixes that it makes.
-        if !case.is_space && case.body["spread"].is_null() {
+        // This library has the tables of a daemon, neither fields nor the mixes that it makes.
+        let has_more = ["spread", "field", "terrain"]
+            .iter()
+            .any(|name| case.body[name].is_string());
+        if !case.is_space && !has_more {
             let planned = library().planned(&case.body).expect("valid");
             let output = Output {
                 relative_to: planned.query.region.corner,
