@@ -116,8 +116,8 @@ impl Messages {
             Blocks::F64(blocks) => (of_data(blocks.block()?), 0, blocks.cursor().map(Mark::from)),
             Blocks::Rows(table) => {
                 let block = table.next()?;
-                let (set, mark) = table.rows.mark().unzip();
-                (block, set.unwrap_or_default(), mark)
+                let (set, mark) = table.rows.mark().unwrap_or_default();
+                (block, set, mark)
             }
         };
         if let Some(record) = &self.record {

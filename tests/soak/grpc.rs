@@ -4,9 +4,8 @@ use std::{net::SocketAddr, time::Duration};
 
 use serde_json::Value;
 use strew::grpc::proto::{
-    BoundingBox, Chunk, Circle, Combined, Encoding, Layer, PointSet, Polygon, Polygons, Position,
-    Region, Ring, StreamPointsRequest, point_service_client::PointServiceClient, point_set::Amount,
-    region::Shape, stream_points_response::Message,
+    Encoding, StreamPointsRequest, point_service_client::PointServiceClient,
+    stream_points_response::Message,
 };
 use strew_testkit::random::SplitMix;
 use tonic::{Code, Status, transport::Endpoint};
@@ -14,126 +13,13 @@ use tonic::{Code, Status, transport::Endpoint};
 use crate::{
     checks,
     library::Library,
+    messages::query,
     tally::{Done, Trouble},
 };
 
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_default()
-}
-
-fn items(value: &Value) -> impl Iterator<Item = &Value> {
-    value.as_array().into_iter().flatten()
-}
-
-fn position(value: &Value) -> Position {
-    Position {
-        x: number(&value[0]),
-        y: number(&value[1]),
-        z: None,
-    }
-}
-
-fn polygon(rings: &Value) -> Polygon {
-    let ring = |ring: &Value| Ring {
-        positions: items(ring).map(position).collect(),
-    };
-    Polygon {
-        rings: items(rings).map(ring).collect(),
-    }
-}
-
-fn region(value: &Value) -> Region {
-    let shape = if let Some(b) = value.get("bbox") {
-        Shape::Bbox(BoundingBox {
-            min_x: number(&b[0]),
-            min_y: number(&b[1]),
-            max_x: number(&b[2]),
-            max_y: number(&b[3]),
-        })
-    } else if let Some(circle) = value.get("circle") {
-        Shape::Circle(Circle {
-            center: Some(position(&circle["center"])),
-            radius: number(&circle["radius"]),
-        })
-    } else if let Some(geometry) = value.get("polygon") {
-        let coordinates = &geometry["coordinates"];
-        let polygons = match geometry["type"].as_str() {
-            Some("Polygon") => vec![polygon(coordinates)],
-            _ => items(coordinates).map(polygon).collect(),
-        };
-        Shape::Polygons(Polygons { polygons })
-    } else if let Some(chunk) = value.get("chunk") {
-        Shape::Chunk(Chunk {
-            size: number(&chunk["size"]),
-            x: chunk["x"].as_i64().unwrap_or_default(),
-            y: chunk["y"].as_i64().unwrap_or_default(),
-        })
-    } else {
-        Shape::Combined(Combined {
-            include: items(&value["include"]).map(region).collect(),
-            exclude: items(&value["exclude"]).map(region).collect(),
-        })
-    };
-    Region { shape: Some(shape) }
-}
-
-fn text(value: &Value) -> Option<String> {
-    value.as_str().map(Into::into)
-}
-
-fn warp(value: &Value) -> Option<f64> {
-    match value.as_str() {
-        Some("off") => Some(0.0),
-        Some("on") => Some(1.0),
-        _ => value.as_f64(),
-    }
-}
-
-fn names(value: &Value) -> Vec<String> {
-    items(value).filter_map(text).collect()
-}
-
-/// The set of a JSON body, or of one of its layers.
-fn set(body: &Value) -> PointSet {
-    let of = |name| body.get(name).and_then(Value::as_f64);
-    let count = body.get("count").and_then(Value::as_u64);
-    let amount = of("density")
-        .map(Amount::Density)
-        .or_else(|| of("spacing").map(Amount::Spacing))
-        .or_else(|| of("min_distance").map(Amount::MinDistance))
-        .or_else(|| count.map(Amount::Count));
-    PointSet {
-        amount,
-        profile: text(&body["profile"]),
-        alpha: text(&body["alpha"]),
-        map: text(&body["map"]),
-        seed: body["seed"].as_u64(),
-        warp: warp(&body["warp"]),
-        keep: body["keep"].as_f64(),
-        attributes: names(&body["attributes"]),
-        ..PointSet::default()
-    }
-}
-
 /// A JSON body as a message.
 fn message(body: &Value) -> StreamPointsRequest {
-    let layer = |body: &Value| {
-        let clear_of = body["clear_of"].as_object().into_iter().flatten();
-        let clear_of = clear_of.map(|(name, distance)| (name.clone(), number(distance)));
-        Layer {
-            name: text(&body["name"]).unwrap_or_default(),
-            region: body.get("region").map(region),
-            clear_of: clear_of.collect(),
-            set: Some(set(body)),
-        }
-    };
-    StreamPointsRequest {
-        region: Some(region(&body["region"])),
-        set: Some(set(body)),
-        layers: items(&body["layers"]).map(layer).collect(),
-        encoding: Encoding::Points.into(),
-        ..StreamPointsRequest::default()
-    }
+    query(body, Encoding::Points.into())
 }
 
 async fn client(at: SocketAddr) -> Result<PointServiceClient<tonic::transport::Channel>, Trouble> {

@@ -23,6 +23,8 @@ mod grpc;
 mod hostile;
 #[path = "../queries/library.rs"]
 mod library;
+#[path = "../suite/support/messages.rs"]
+mod messages;
 mod prices;
 mod replica;
 mod tally;

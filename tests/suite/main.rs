@@ -4,6 +4,7 @@
 //! contains `NAME`, such as `rest::paging` or `keys`. Clients that are not installed are skipped
 //! with a message.
 
+mod agree;
 mod cli;
 mod containers;
 mod docs;

@@ -3,9 +3,5 @@
 
 #![allow(clippy::duplicate_mod, reason = "both dimensions have the same laws")]
 
-mod subject;
-
-#[path = "dimensions/plane.rs"]
 mod plane;
-#[path = "dimensions/space.rs"]
 mod space;

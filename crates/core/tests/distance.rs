@@ -1,6 +1,6 @@
 //! The guaranteed least distance: never undercut, and attained without warp.
 
-mod subject;
+use crate::subject;
 
 use std::collections::HashMap;
 

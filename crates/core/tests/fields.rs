@@ -1,6 +1,6 @@
 //! Sets in fields, and thinned sets, against their definition point by point.
 
-mod subject;
+use crate::subject;
 
 use proptest::prelude::*;
 use strew_core::{

@@ -1,6 +1,6 @@
 //! Sets of one kind: every way to their points agrees with the definition, point by point and bit for bit.
 
-mod subject;
+use crate::subject;
 
 use proptest::prelude::*;
 use strew_core::{

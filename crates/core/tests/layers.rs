@@ -1,6 +1,6 @@
 //! Sets that keep clear of others: bulk tests of many places agree with single searches and with all pairs.
 
-mod subject;
+use crate::subject;
 
 use proptest::prelude::*;
 use strew_core::{

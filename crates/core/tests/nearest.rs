@@ -1,10 +1,8 @@
 //! Disks and searches against brute force over boxes.
 
-mod subject;
-
+use crate::subject::{any_place, plane::in_box, set, tables_of_searches};
 use proptest::prelude::*;
 use strew_core::{Circle, ErrorKind, Keep, Neighbor, Placement, Point, Seed, Spacing};
-use subject::{any_place, plane::in_box, set, tables_of_searches};
 
 /// Points with distances.
 fn pairs(all: &[(f64, Point)]) -> Vec<(Point, f64)> {

@@ -1,7 +1,7 @@
 //! Periodic sets, parts of them (shares, kinds, fields) and their windows, against brute force: over the seam, and
 //! against the plane.
 
-mod subject;
+use crate::subject;
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,7 +1,7 @@
 //! A slow program written from the section "Points in space" of docs/algorithm.md alone, with the shears of the plane's
 //! program, compared with the library.
 
-mod subject;
+use crate::subject;
 
 use proptest::prelude::*;
 use strew_core::{

@@ -1,6 +1,6 @@
 //! Sets in space that keep clear of others: every path leaves out the same points, those that brute force does.
 
-mod subject;
+use crate::subject;
 
 use proptest::prelude::*;
 use strew_core::space::{Ball, Point, Region, SpaceSet};

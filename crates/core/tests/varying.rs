@@ -1,6 +1,6 @@
 //! Kinds whose shares vary: every way to their points agrees with the definition, point by point and bit for bit.
 
-mod subject;
+use crate::subject;
 
 use std::sync::Arc;
 

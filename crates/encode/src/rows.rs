@@ -177,10 +177,10 @@ impl Rows {
         (as_made && self.schema.columns().len() == 1).then_some(plan)
     }
 
-    /// The place after the rows so far: the number of the part, and the place in it.
-    pub fn mark(&self) -> Option<(usize, Mark)> {
+    /// The number of the part of the last rows, and the place after them in it, if it goes on.
+    pub fn mark(&self) -> Option<(usize, Option<Mark>)> {
         let current = self.current.as_ref()?;
-        Some((current.number, current.blocks.mark()?))
+        Some((current.number, current.blocks.mark()))
     }
 
     /// The next rows, at most `most` (and at least one); `None` after the last. All rows of a batch are of one part.

@@ -1,75 +1,32 @@
 //! Fields and pictures on the command line.
 
-use std::{fs, path::Path};
+use std::fs;
 
-use super::{printed, refused};
 use crate::support::{
-    command::{errors, run},
+    command::{Shell, errors, run},
     daemon::Daemon,
     fields::{folder, left_half, png},
 };
 
-fn text(path: &Path) -> &str {
-    path.to_str().expect("Unicode")
-}
-
-const SAMPLE: [&str; 9] = [
-    "sample",
-    "-q",
-    "--bbox",
-    "0,0,40,40",
-    "--spacing",
-    "1",
-    "--seed",
-    "7",
-    "--format",
-];
-
-fn sample(more: &[&str]) -> String {
-    printed(&[&SAMPLE, &["csv"][..], more].concat())
-}
+const SAMPLE: &str = "sample -q --bbox 0,0,40,40 --spacing 1 --seed 7 --format csv";
 
 #[test]
 fn names_documents_and_rasters_are_the_same_field() {
-    let folder = folder();
-    let setting = format!("fields.folder={}", folder.path().display());
-    let named = sample(&["--set", &setting, "--field", "left"]);
+    let shell = Shell::of(folder());
+    let sample = |flags: &str| shell.printed(&format!("{SAMPLE} {flags}"));
+    let named = sample("--set fields.folder=. --field left");
     assert!(named.lines().count() > 700);
-    let document = folder.path().join("left.toml");
-    assert_eq!(sample(&["--field", text(&document)]), named);
-    let mask = folder.path().join("left.png");
-    let by_raster = sample(&["--raster", text(&mask), "--raster-bbox", "0,0,40,40"]);
+    assert_eq!(sample("--field left.toml"), named);
+    let by_raster = sample("--raster left.png --raster-bbox 0,0,40,40");
     // It is linear between pixels.
     let lines = |text: &str| text.lines().count();
     assert!(lines(&by_raster).abs_diff(lines(&named)) < 100);
-    let counted = printed(&[
-        "count",
-        "--bbox",
-        "0,0,40,40",
-        "--spacing",
-        "1",
-        "--seed",
-        "7",
-        "--field",
-        text(&document),
-    ]);
+    let set = "--spacing 1 --seed 7 --field left.toml";
+    let counted = shell.printed(&format!("count --bbox 0,0,40,40 {set}"));
     assert_eq!(counted.trim(), (lines(&named) - 1).to_string());
-    let id = named
-        .lines()
-        .nth(50)
-        .and_then(|line| line.split(',').next())
-        .expect("a row");
-    let point = [
-        "point",
-        id,
-        "--spacing",
-        "1",
-        "--seed",
-        "7",
-        "--field",
-        text(&document),
-    ];
-    assert!(printed(&point).contains(id));
+    let row = named.lines().nth(50).expect("a row");
+    let id = row.split(',').next().expect("an id");
+    assert!(shell.printed(&format!("point {id} {set}")).contains(id));
 }
 
 #[test]
@@ -91,57 +48,40 @@ fn what_a_query_describes_is_no_file_whatever_its_text_has() {
 
 #[test]
 fn bad_fields_name_the_file_and_what_is_allowed() {
-    let folder = folder();
-    let bad = folder.path().join("bad.json");
-    fs::write(&bad, r#"{"noise": {"wavelength": 9, "octaves": 20}}"#).expect("writable");
-    let query = |more: &[&str]| refused(&[&SAMPLE, &["csv"][..], more].concat(), 2);
-    let error = query(&["--field", text(&bad)]);
-    assert!(
-        error.contains("bad.json") && error.contains("field.noise.octaves"),
-        "{error}"
-    );
-    let error = query(&["--field", "nowhere.png"]);
-    assert!(error.contains("nowhere.png"), "{error}");
-    let error = query(&["--field", "nothing"]);
-    assert!(
-        error.contains("--field nothing: no such field is loaded; allowed: forest"),
-        "{error}"
-    );
-    let mask = folder.path().join("left.png");
-    let error = query(&["--raster", text(&mask), "--raster-bbox", "0,0,1"]);
-    assert!(
-        error.contains("--raster-bbox 0,0,1: expected 4 numbers"),
-        "{error}"
-    );
-    let error = query(&["--raster-bbox", "0,0,1,1"]);
-    assert!(error.contains("--raster"), "{error}");
-    fs::write(&mask, &left_half()[..45]).expect("writable");
-    let error = query(&["--raster", text(&mask)]);
-    assert!(
-        error.contains("left.png") && error.contains("damaged or truncated"),
-        "{error}"
-    );
+    let shell = Shell::of(folder());
+    shell.write("bad.json", r#"{"noise": {"wavelength": 9, "octaves": 20}}"#);
+    shell.write("half.png", &left_half()[..45]);
+    for (flags, words) in [
+        ("--field bad.json", &["bad.json", "field.noise.octaves"][..]),
+        ("--field nowhere.png", &["nowhere.png"]),
+        (
+            "--field nothing",
+            &["--field nothing: no such field is loaded; allowed: forest"],
+        ),
+        (
+            "--raster left.png --raster-bbox 0,0,1",
+            &["--raster-bbox 0,0,1: expected 4 numbers"],
+        ),
+        ("--raster-bbox 0,0,1,1", &["--raster"]),
+        ("--raster half.png", &["half.png", "damaged or truncated"]),
+    ] {
+        shell.assert_refused(&format!("{SAMPLE} {flags}"), words);
+    }
 }
 
-/// A picture that is black on the left, white on the right, in shades between.
-fn shades(folder: &Path) -> std::path::PathBuf {
-    let path = folder.join("shades.png");
-    fs::write(&path, png([64, 32], |x, _| (x * 4) as u8)).expect("writable");
-    path
+/// A folder with a picture that is black on the left, white on the right, in shades between.
+fn shades() -> Shell {
+    let shell = Shell::new();
+    shell.write("shades.png", png([64, 32], |x, _| (x * 4) as u8));
+    shell
 }
 
 #[test]
 fn dots_are_as_many_as_requested_and_as_dense_as_the_picture_is_dark() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let picture = shades(folder.path());
-    let stipple = |more: &[&str]| {
-        printed(
-            &[
-                &["stipple", text(&picture), "-q", "--points", "2000"][..],
-                more,
-            ]
-            .concat(),
-        )
+    let shell = shades();
+    let stipple = |flags: &str| {
+        let line = format!("stipple shades.png -q --points 2000 --format csv {flags}");
+        shell.printed(&line)
     };
     let x = |csv: &str| {
         let values = csv
@@ -152,7 +92,7 @@ fn dots_are_as_many_as_requested_and_as_dense_as_the_picture_is_dark() {
             .map(|x| x.parse::<f64>().expect("a number"))
             .collect::<Vec<_>>()
     };
-    let dark = x(&stipple(&["--format", "csv"]));
+    let dark = x(&stipple(""));
     assert_eq!(dark.len(), 2000);
     // Linear light: a gray of 128 has 22 % of the light of white.
     let expected = |from: u32, to: u32, is_light: bool| {
@@ -174,12 +114,12 @@ fn dots_are_as_many_as_requested_and_as_dense_as_the_picture_is_dark() {
             .filter(|x| (f64::from(from)..f64::from(to)).contains(*x));
         inside.count() as f64 / values.len() as f64
     };
-    let light = x(&stipple(&["--format", "csv", "--invert"]));
+    let light = x(&stipple("--invert"));
     for (from, to) in [(0, 16), (16, 32), (32, 48), (48, 64)] {
         assert!((part(&dark, from, to) - expected(from, to, false)).abs() < 0.02);
         assert!((part(&light, from, to) - expected(from, to, true)).abs() < 0.02);
     }
-    let hard = x(&stipple(&["--format", "csv", "--gamma", "4"]));
+    let hard = x(&stipple("--gamma 4"));
     assert!(part(&hard, 0, 16) > part(&dark, 0, 16) + 0.03);
 }
 
@@ -205,19 +145,10 @@ fn unevenness(dots: &[[f64; 2]]) -> f64 {
 
 #[test]
 fn dots_settle_unless_they_shall_stay() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let picture = shades(folder.path());
-    let stipple = |more: &[&str]| {
-        let command = [
-            "stipple",
-            text(&picture),
-            "-q",
-            "-n",
-            "2000",
-            "--format",
-            "csv",
-        ];
-        printed(&[&command[..], more].concat())
+    let shell = shades();
+    let stipple = |flags: &str| {
+        let line = format!("stipple shades.png -q -n 2000 --format csv {flags}");
+        shell.printed(&line)
     };
     let dots = |csv: &str| {
         let places = csv.lines().skip(1).map(|line| {
@@ -229,9 +160,9 @@ fn dots_settle_unless_they_shall_stay() {
         });
         places.collect::<Vec<_>>()
     };
-    let settled = stipple(&["--settle", "3"]);
-    assert_eq!(settled, stipple(&[]));
-    let [placed, settled] = [stipple(&["--settle", "0"]), settled].map(|csv| dots(&csv));
+    let settled = stipple("--settle 3");
+    assert_eq!(settled, stipple(""));
+    let [placed, settled] = [stipple("--settle 0"), settled].map(|csv| dots(&csv));
     assert_eq!([placed.len(), settled.len()], [2000; 2]);
     assert!(placed != settled);
     for end in [16.0, 32.0, 48.0] {
@@ -247,131 +178,65 @@ fn dots_settle_unless_they_shall_stay() {
 
 #[test]
 fn dots_are_written_as_pictures() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let picture = shades(folder.path());
-    let file = |name: &str| folder.path().join(name);
+    let shell = shades();
     for name in ["out.svg", "out.png"] {
-        let output = file(name);
-        let said = run(
-            &[
-                "stipple",
-                text(&picture),
-                "--points",
-                "500",
-                "-o",
-                text(&output),
-            ],
-            "",
-        );
-        assert!(said.status.success(), "{}", errors(&said));
-        assert!(errors(&said).contains("500 points"), "{}", errors(&said));
+        let line = format!("stipple shades.png --points 500 -o {name}");
+        let said = errors(&shell.run(&line, ""));
+        assert!(said.contains("500 points"), "{said}");
     }
-    let svg = fs::read_to_string(file("out.svg")).expect("written");
+    let read = |name: &str| String::from_utf8(shell.read(name)).expect("UTF-8");
+    let svg = read("out.svg");
     assert_eq!(svg.matches("<circle").count(), 500);
-    assert!(
-        svg.contains("width=\"512\" height=\"256\""),
-        "{}",
-        &svg[..200]
-    );
-    let radius = |svg: &str| {
+    assert!(svg.contains("width=\"512\" height=\"256\""), "{svg:.200}");
+    let radius = |svg: &str| -> f64 {
         let after = svg.split_once(" r=\"").expect("a circle").1;
-        after
-            .split_once('"')
-            .expect("quoted")
-            .0
-            .parse::<f64>()
-            .expect("a number")
+        let number = after.split_once('"').expect("quoted").0;
+        number.parse().expect("a number")
     };
-    let output = file("small.svg");
-    let arguments = [
-        "stipple",
-        text(&picture),
-        "-q",
-        "-n",
-        "500",
-        "--dot",
-        "0.5",
-        "-o",
-        text(&output),
-    ];
-    printed(&arguments);
-    let small = fs::read_to_string(output).expect("written");
-    assert!((radius(&svg) / radius(&small) - 2.0).abs() < 0.05);
+    shell.printed("stipple shades.png -q -n 500 --dot 0.5 -o small.svg");
+    assert!((radius(&svg) / radius(&read("small.svg")) - 2.0).abs() < 0.05);
     // A repeated command writes the same bytes.
-    let again = file("again.svg");
-    printed(&[
-        "stipple",
-        text(&picture),
-        "-q",
-        "-n",
-        "500",
-        "-o",
-        text(&again),
-    ]);
-    assert_eq!(fs::read_to_string(again).expect("written"), svg);
+    shell.printed("stipple shades.png -q -n 500 -o again.svg");
+    assert_eq!(read("again.svg"), svg);
 }
 
 #[test]
 fn what_cannot_be_done_is_told_before_the_work() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let picture = shades(folder.path());
-    let inside = folder.path().join("d.svg");
-    fs::create_dir(&inside).expect("a folder");
-    let output = run(
-        &["stipple", text(&picture), "-n", "9", "-o", text(&inside)],
-        "",
-    );
+    let shell = shades();
+    fs::create_dir(shell.path("d.svg")).expect("a folder");
+    let output = shell.run("stipple shades.png -n 9 -o d.svg", "");
     assert_eq!(output.status.code(), Some(1));
     assert!(
         errors(&output).contains("it is a folder"),
         "{}",
         errors(&output)
     );
-    let white = folder.path().join("white.png");
-    fs::write(&white, png([4, 4], |_, _| 255)).expect("writable");
-    let other = folder.path().join("other.gif");
-    fs::write(&other, "GIF89a").expect("writable");
-    for (picture, more, expected) in [
-        (&white, &["-n", "9"][..], "is all white"),
+    shell.write("white.png", png([4, 4], |_, _| 255));
+    shell.write("other.gif", "GIF89a");
+    for (flags, words) in [
+        ("white.png -n 9", "is all white"),
         (
-            &other,
-            &["-n", "9"],
+            "other.gif -n 9",
             "no known format; allowed: a PNG, JPEG, WebP",
         ),
+        ("nothing.png -n 9", "cannot read the picture"),
         (
-            &folder.path().join("nothing.png"),
-            &["-n", "9"],
-            "cannot read the picture",
-        ),
-        (
-            &picture,
-            &["-n", "0"],
+            "shades.png -n 0",
             "--points 0: out of range; allowed: an integer from 1",
         ),
         (
-            &picture,
-            &["-n", "9", "--gamma", "0"],
+            "shades.png -n 9 --gamma 0",
             "--gamma 0: out of range; allowed: a number from 0.01",
         ),
+        ("shades.png -n 9 --dot 99", "--dot 99: out of range"),
         (
-            &picture,
-            &["-n", "9", "--dot", "99"],
-            "--dot 99: out of range",
-        ),
-        (
-            &picture,
-            &["-n", "9", "--settle", "5"],
+            "shades.png -n 9 --settle 5",
             "--settle 5: out of range; allowed: an integer from 0 to 4",
         ),
-        (&picture, &["-n", "9", "--settle", "-1"], "--settle -1"),
-        (
-            &picture,
-            &["-n", "9", "--profile", "red"],
-            "no such profile is loaded",
-        ),
-        (&picture, &["-n", "9", "-o", "x.gif"], "ends with .gif"),
+        ("shades.png -n 9 --settle -1", "--settle -1"),
+        ("shades.png -n 9 --profile red", "no such profile is loaded"),
+        ("shades.png -n 9 -o x.gif", "ends with .gif"),
     ] {
-        let error = refused(&[&["stipple", text(picture)], more].concat(), 2);
-        assert!(error.contains(expected), "{more:?}: {error}");
+        shell.assert_refused(&format!("stipple {flags}"), &[words]);
     }
 }

@@ -5,8 +5,10 @@ use std::{fs, path::Path};
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use serde_json::{Value, json};
 
-use super::{output, refused};
-use crate::support::{clients, command::errors};
+use crate::support::{
+    clients,
+    command::{Shell, errors},
+};
 
 /// Two municipalities, one of two parts, and one without a place.
 pub(super) fn municipalities(crs: Option<&str>) -> Value {
@@ -112,260 +114,123 @@ pub(super) fn geo(file: &Path) -> Value {
     serde_json::from_str(&geo.expect("geo")).expect("JSON")
 }
 
+/// The code of the reference system of a GeoParquet file.
+fn code(shell: &Shell, name: &str) -> Value {
+    geo(&shell.path(name))["columns"]["geometry"]["crs"]["id"]["code"].clone()
+}
+
 #[test]
 fn the_plane_of_a_region_is_that_of_the_points() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = |name: &str| folder.path().join(name).display().to_string();
-    let plain = municipalities(None).to_string();
-    let map = municipalities(Some("urn:ogc:def:crs:EPSG::25832")).to_string();
-    let sample = |name: &str, region: &str, more: &[&str]| {
-        let file = path(name);
-        output(
-            &[
-                &["sample", "-q", "--region=-", "--spacing=40", "-o", &file],
-                more,
-            ]
-            .concat(),
-            region,
-        );
-        folder.path().join(name)
-    };
-    let of = |file: &Path| geo(file)["columns"]["geometry"]["crs"]["id"]["code"].clone();
-    assert_eq!(of(&sample("none.parquet", &plain, &[])), Value::Null);
-    assert_eq!(of(&sample("map.parquet", &map, &[])), 25832);
-    assert_eq!(
-        of(&sample("named.parquet", &plain, &["--crs=EPSG:3035"])),
-        3035
-    );
-    assert_eq!(
-        of(&sample("same.parquet", &map, &["--crs=epsg:25832"])),
-        25832
-    );
-    let text = fs::read(sample("map.geojson", &map, &[])).expect("written");
-    let text: Value = serde_json::from_slice(&text).expect("JSON");
+    let shell = Shell::new();
+    shell.write("plain.json", municipalities(None).to_string());
+    let map = municipalities(Some("urn:ogc:def:crs:EPSG::25832"));
+    shell.write("map.json", map.to_string());
+    for (region, flags, expected) in [
+        ("plain.json", "", Value::Null),
+        ("map.json", "", json!(25832)),
+        ("plain.json", "--crs=EPSG:3035", json!(3035)),
+        ("map.json", "--crs=epsg:25832", json!(25832)),
+    ] {
+        let line = format!("sample -q --region {region} --spacing=40 -o x.parquet {flags}");
+        shell.output(&line, "");
+        assert_eq!(code(&shell, "x.parquet"), expected, "{line}");
+    }
+    shell.output("sample -q --region map.json --spacing=40 -o x.geojson", "");
+    let text: Value = serde_json::from_slice(&shell.read("x.geojson")).expect("JSON");
     assert_eq!(
         text["crs"]["properties"]["name"],
         "urn:ogc:def:crs:EPSG::25832"
     );
     // Formats without a place for it do not mind.
-    sample("map.csv", &map, &[]);
-
-    fs::write(path("map.json"), &map).expect("writable");
-    let message = refused(
-        &[
-            "sample",
-            "--region",
-            &path("map.json"),
-            "--spacing=40",
-            "--crs=EPSG:4326",
-        ],
-        2,
-    );
+    shell.output("sample -q --region map.json --spacing=40 -o x.csv", "");
+    let of_map = "sample --region map.json --spacing=40";
     let words = [
         "--crs EPSG:4326: ",
         "coordinates are not converted",
         "allowed: EPSG:25832",
     ];
-    assert!(words.iter().all(|word| message.contains(word)), "{message}");
-    let message = refused(
-        &[
-            "sample",
-            "--region",
-            &path("map.json"),
-            "--spacing=40",
-            "--crs=EPSG:1",
-            "-o",
-            &path("x.parquet"),
-        ],
-        2,
+    shell.assert_refused(&format!("{of_map} --crs=EPSG:4326"), &words);
+    shell.assert_refused(
+        &format!("{of_map} --crs=EPSG:1 -o x.parquet"),
+        &["EPSG:25832"],
     );
-    assert!(message.contains("EPSG:25832"), "{message}");
-    let message = refused(
-        &[
-            "sample",
-            "--bbox=0,0,9,9",
-            "--spacing=1",
-            "--crs=EPSG:1",
-            "-o",
-            &path("x.parquet"),
-        ],
-        2,
-    );
-    assert!(
-        message.contains("its definition is not known here"),
-        "{message}"
-    );
-    let message = refused(
-        &[
-            "sample",
-            "--bbox=0,0,9,9",
-            "--spacing=1",
-            "--crs=EPSG:3857",
-            "-o",
-            &path("x.csv"),
-        ],
-        2,
-    );
-    assert!(
-        message.contains("allowed: the formats geojson, parquet"),
-        "{message}"
-    );
+    let plain = "sample --bbox=0,0,9,9 --spacing=1";
+    let words = ["its definition is not known here"];
+    shell.assert_refused(&format!("{plain} --crs=EPSG:1 -o x.parquet"), &words);
+    let words = ["allowed: the formats geojson, parquet"];
+    shell.assert_refused(&format!("{plain} --crs=EPSG:3857 -o x.csv"), &words);
 }
 
 #[test]
 fn systems_without_a_code_come_from_a_file() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = |name: &str| folder.path().join(name).display().to_string();
+    let shell = Shell::new();
     let own = json!({ "type": "ProjectedCRS", "name": "Our site", "coordinate_system": { "axis": [] },
                       "id": { "authority": "SITE", "code": 1 } });
-    fs::write(path("site.projjson"), own.to_string()).expect("writable");
-    let sample = [
-        "sample",
-        "-q",
-        "--bbox=0,0,9,9",
-        "--spacing=1",
-        "--crs",
-        &path("site.projjson"),
-        "-o",
-    ];
-    output(&[&sample[..], &[&path("x.parquet")]].concat(), "");
+    shell.write("site.projjson", own.to_string());
+    let sample = "sample -q --bbox=0,0,9,9 --spacing=1 --crs site.projjson -o";
+    shell.output(&format!("{sample} x.parquet"), "");
     assert_eq!(
-        geo(&folder.path().join("x.parquet"))["columns"]["geometry"]["crs"],
+        geo(&shell.path("x.parquet"))["columns"]["geometry"]["crs"],
         own
     );
-    output(&[&sample[..], &[&path("x.geojson")]].concat(), "");
-    let text: Value =
-        serde_json::from_slice(&fs::read(path("x.geojson")).expect("written")).expect("JSON");
+    shell.output(&format!("{sample} x.geojson"), "");
+    let text: Value = serde_json::from_slice(&shell.read("x.geojson")).expect("JSON");
     assert_eq!(text["crs"]["properties"]["name"], "urn:ogc:def:crs:SITE::1");
-    fs::write(
-        path("bad.json"),
-        r#"{"type": "ProjectedCRS", "name": "x", "coordinate_system": {}}"#,
-    )
-    .expect("writable");
-    let message = refused(
-        &[
-            "sample",
-            "--bbox=0,0,9,9",
-            "--spacing=1",
-            "--crs",
-            &path("bad.json"),
-        ],
-        2,
-    );
-    assert!(
-        message.contains("has no `id`") && message.contains("projinfo"),
-        "{message}"
-    );
+    let bad = r#"{"type": "ProjectedCRS", "name": "x", "coordinate_system": {}}"#;
+    shell.write("bad.json", bad);
+    let line = "sample --bbox=0,0,9,9 --spacing=1 --crs bad.json";
+    shell.assert_refused(line, &["has no `id`", "projinfo"]);
 }
 
 #[test]
 fn rasters_in_another_plane_than_the_region_are_refused() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = |name: &str| folder.path().join(name).display().to_string();
+    let shell = Shell::new();
+    let corner = [5e5, 5_301_000.0];
     geotiff(
-        &folder.path().join("utm33.tif"),
+        &shell.path("utm33.tif"),
         [100, 100],
         32633,
-        [5e5, 5_301_000.0],
+        corner,
         |_, _| 255,
     );
-    fs::write(
-        path("map.json"),
-        municipalities(Some("EPSG:25832")).to_string(),
-    )
-    .expect("writable");
-    let (raster, region) = (path("utm33.tif"), path("map.json"));
+    shell.write("map.json", municipalities(Some("EPSG:25832")).to_string());
+    let count = "count --region map.json --spacing=40";
     for flag in ["--raster", "--field", "--terrain"] {
-        let message = refused(
-            &["count", "--region", &region, "--spacing=40", flag, &raster],
-            2,
-        );
-        assert!(
-            message.contains("EPSG:32633: another plane than that of region"),
-            "{message}"
-        );
+        let words = ["EPSG:32633: another plane than that of region"];
+        shell.assert_refused(&format!("{count} {flag} utm33.tif"), &words);
     }
-    let own = [
-        "--raster",
-        &raster,
-        "--raster-bbox=500000,5300000,501000,5301000",
-    ];
-    output(
-        &[&["count", "--region", &region, "--spacing=40"], &own[..]].concat(),
+    let bbox = "500000,5300000,501000,5301000";
+    shell.output(
+        &format!("{count} --raster utm33.tif --raster-bbox={bbox}"),
         "",
     );
-    let file = path("x.parquet");
-    output(
-        &[
-            "sample",
-            "-q",
-            "--bbox=500000,5300000,501000,5301000",
-            "--spacing=40",
-            "--raster",
-            &raster,
-            "-o",
-            &file,
-        ],
-        "",
-    );
-    assert_eq!(
-        geo(Path::new(&file))["columns"]["geometry"]["crs"]["id"]["code"],
-        32633
-    );
-    let far = [
-        "sample",
-        "--bbox=0,0,1,1",
-        "--spacing=1e-1",
-        "--raster",
-        &raster,
-        "--format=geojson",
-    ];
-    let far = crate::support::command::run(&far, "");
-    assert!(
-        errors(&far).contains("is the region in EPSG:32633"),
-        "{}",
-        errors(&far)
-    );
+    let line = format!("sample -q --bbox={bbox} --spacing=40 --raster utm33.tif -o x.parquet");
+    shell.output(&line, "");
+    assert_eq!(code(&shell, "x.parquet"), 32633);
+    let far = "sample --bbox=0,0,1,1 --spacing=1e-1 --raster utm33.tif --format=geojson";
+    let far = errors(&shell.run(far, ""));
+    assert!(far.contains("is the region in EPSG:32633"), "{far}");
 }
 
 #[test]
 fn parquet_is_compressed_inside_only() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = |name: &str| folder.path().join(name).display().to_string();
-    let length = |level: &[&str]| {
-        let file = path("x.parquet");
-        output(
-            &[
-                &[
-                    "sample",
-                    "-q",
-                    "--bbox=0,0,300,300",
-                    "--spacing=1",
-                    "-o",
-                    &file,
-                ],
-                level,
-            ]
-            .concat(),
-            "",
-        );
-        fs::metadata(&file).expect("written").len()
+    let shell = Shell::new();
+    let length = |level: &str| {
+        let line = format!("sample -q --bbox=0,0,300,300 --spacing=1 -o x.parquet {level}");
+        shell.output(&line, "");
+        shell.read("x.parquet").len()
     };
-    let (plain, packed) = (length(&["--zstd=0"]), length(&[]));
+    let (plain, packed) = (length("--zstd=0"), length(""));
     assert!(packed * 2 < plain, "{packed} of {plain}");
-    let sample = ["sample", "--bbox=0,0,9,9", "--spacing=1", "-o"];
+    let sample = "sample --bbox=0,0,9,9 --spacing=1 -o";
     for ending in ["zst", "gz"] {
-        let message = refused(
-            &[&sample[..], &[&path(&format!("x.parquet.{ending}"))]].concat(),
-            2,
+        shell.assert_refused(
+            &format!("{sample} x.parquet.{ending}"),
+            &["compressed inside"],
         );
-        assert!(message.contains("compressed inside"), "{message}");
     }
-    let message = refused(&[&sample[..], &[&path("x.csv"), "--zstd=3"]].concat(), 2);
-    assert!(
-        message.contains("--zstd 3: has no effect in the format csv"),
-        "{message}"
-    );
+    let words = ["--zstd 3: has no effect in the format csv"];
+    shell.assert_refused(&format!("{sample} x.csv --zstd=3"), &words);
 }
 
 /// Other readers know the plane, and pass over row groups that are elsewhere.
@@ -374,22 +239,15 @@ fn readers_of_geoparquet_know_the_plane_and_skip_row_groups() {
     let Some(mut python) = clients::python("readers of GeoParquet") else {
         return;
     };
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("x.parquet");
-    let sample = [
-        "sample",
-        "-q",
-        "--bbox=0,0,600,600",
-        "--spacing=1",
-        "--crs=EPSG:25832",
-        "-o",
-    ];
-    output(&[&sample[..], &[&file.display().to_string()]].concat(), "");
+    let shell = Shell::new();
+    let line = "sample -q --bbox=0,0,600,600 --spacing=1 --crs=EPSG:25832 -o x.parquet";
+    shell.output(line, "");
     let script = concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/tests/suite/cli/geo_readers.py"
     );
-    let read = python.arg(script).arg(&file).output().expect("Python runs");
+    let read = python.arg(script).arg(shell.path("x.parquet")).output();
+    let read = read.expect("Python runs");
     println!("{}", String::from_utf8_lossy(&read.stdout));
     assert!(read.status.success(), "{}", errors(&read));
 }

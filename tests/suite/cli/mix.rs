@@ -75,27 +75,6 @@ fn joint_tables_move_points() {
     );
 }
 
-#[test]
-fn what_is_wrong_is_named() {
-    let (folder, _) = folder();
-    for (flags, says) in [
-        (&["--shares", "1:0"][..], "greater than 0"),
-        (&["--shares", "1:1000000"], "1000000"),
-        (&["--shares", "1:3", "--table", "blau"], "no built-in table"),
-        (&["--shares", "1:3", "--table", "no.strew"], "no.strew"),
-        (
-            &["--shares", "1:3", "--joint", "--steps", "0"],
-            "steps is 0",
-        ),
-        (&["--shares", "1:3", "--radius", "20"], "--radius"),
-        (&[], "--shares"),
-    ] {
-        let refused = run(folder.path(), flags);
-        assert_eq!(refused.status.code(), Some(2), "{flags:?}");
-        assert!(errors(&refused).contains(says), "{}", errors(&refused));
-    }
-}
-
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interrupt_leaves_nothing() {

@@ -11,7 +11,7 @@ use strew_testkit::{process::Running, wait};
 
 use crate::support::{
     clients,
-    command::{errors, run},
+    command::{Shell, errors, run},
     daemon::{PROGRAM, strew},
 };
 
@@ -28,13 +28,7 @@ fn signals_leave_no_file() {
     for (signal, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
         let folder = tempfile::tempdir().expect("a folder");
         let mut command = strew();
-        command.args([
-            "sample",
-            "-q",
-            "--bbox=0,0,4e4,4e4",
-            "--spacing=1",
-            "-o=x.csv",
-        ]);
+        command.args("sample -q --bbox=0,0,4e4,4e4 --spacing=1 -o=x.csv".split(' '));
         let child = Running::start(command.current_dir(folder.path()));
         wait::until("a file is begun", || {
             (names(folder.path()) == ["x.csv.partial"]).then_some(())
@@ -47,40 +41,13 @@ fn signals_leave_no_file() {
 
 #[test]
 fn a_reader_that_leaves_ends_a_command_quietly() {
-    let commands = [
-        vec![
-            "sample",
-            "--bbox",
-            "0,0,3000,3000",
-            "--spacing",
-            "1",
-            "--format",
-            "csv",
-            "-q",
-        ],
-        vec![
-            "sample",
-            "--bbox",
-            "0,0,3000,3000",
-            "--spacing",
-            "1",
-            "--format",
-            "f32",
-            "-q",
-        ],
-        vec![
-            "table",
-            "export",
-            "--text",
-            "--profile",
-            "spaced",
-            "--map",
-            "l",
-        ],
-    ];
-    for arguments in commands {
+    for line in [
+        "sample --bbox 0,0,3000,3000 --spacing 1 --format csv -q",
+        "sample --bbox 0,0,3000,3000 --spacing 1 --format f32 -q",
+        "table export --text --profile spaced --map l",
+    ] {
         let mut child = strew()
-            .args(&arguments)
+            .args(line.split(' '))
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
@@ -92,63 +59,24 @@ fn a_reader_that_leaves_ends_a_command_quietly() {
         assert_eq!(
             (output.status.code(), &*errors(&output)),
             (Some(0), ""),
-            "{arguments:?}"
+            "{line}"
         );
     }
 }
 
 #[test]
 fn places_that_cannot_be_written_are_refused_before_the_work() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let (inside, missing) = (folder.path().join("d"), folder.path().join("f/x.csv"));
-    fs::write(folder.path().join("f"), "a file").expect("writable");
-    fs::create_dir(&inside).expect("a folder");
-    // This number of points would keep the program at work without end.
-    let long = [
-        "--bbox",
-        "0,0,1e7,1e7",
-        "--spacing",
-        "1",
-        "--set",
-        "limits.max_points=1000000000000000",
-    ];
-    let sample = |path: &str| {
-        run(
-            &[&["sample", "--format", "csv", "-o", path], &long[..]].concat(),
-            "",
-        )
-    };
-    let measure = |path: &str| {
-        let measured = [
-            "measure",
-            "--bbox",
-            "0,0,1000,1000",
-            "--spacing",
-            "1",
-            "--picture",
-            path,
-        ];
-        run(&measured, "")
-    };
-    for (path, problem) in [(&inside, "it is a folder"), (&missing, "Not a directory")] {
-        let path = path.to_string_lossy();
-        for output in [
-            sample(&path),
-            measure(&path),
-            run(
-                &[
-                    "table",
-                    "export",
-                    "--profile",
-                    "spaced",
-                    "--map",
-                    "l",
-                    "-o",
-                    &path,
-                ],
-                "",
-            ),
+    let shell = Shell::new();
+    shell.write("f", "a file");
+    fs::create_dir(shell.path("d")).expect("a folder");
+    for (path, problem) in [("d", "it is a folder"), ("f/x.csv", "Not a directory")] {
+        for command in [
+            // This number of points would keep the program at work without end.
+            "sample --format csv --bbox 0,0,1e7,1e7 --spacing 1 --set limits.max_points=1000000000000000 -o",
+            "measure --bbox 0,0,1000,1000 --spacing 1 --picture",
+            "table export --profile spaced --map l -o",
         ] {
+            let output = shell.run(&format!("{command} {path}"), "");
             let text = errors(&output);
             assert!(!output.status.success());
             assert!(
@@ -184,31 +112,16 @@ fn commands_that_do_not_serve_take_no_address() {
 
 #[test]
 fn files_of_columns_are_read_by_their_readers() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let looks = [
-        "--bbox",
-        "0,0,30,30",
-        "--spacing",
-        "1",
-        "--attributes",
-        "variant,angle",
-        "--variants",
-        "oak:3,birch:1",
-    ];
+    let shell = Shell::new();
+    let looks = "--bbox 0,0,30,30 --spacing 1 --attributes variant,angle --variants oak:3,birch:1";
     for name in ["t.arrow", "t.feather", "t.arrows", "t.parquet", "t.csv"] {
-        let path = folder.path().join(name);
-        let output = run(
-            &[&["sample", "-q", "-o", &path.to_string_lossy()], &looks[..]].concat(),
-            "",
-        );
-        assert!(output.status.success(), "{}", errors(&output));
+        shell.output(&format!("sample -q -o {name} {looks}"), "");
     }
-    let starts = |name: &str| fs::read(folder.path().join(name)).expect("written")[..6].to_vec();
+    let starts = |name: &str| shell.read(name).starts_with(b"ARROW1");
     assert_eq!(
-        (starts("t.arrow"), starts("t.feather")),
-        (b"ARROW1".to_vec(), b"ARROW1".to_vec())
+        ["t.arrow", "t.feather", "t.arrows"].map(starts),
+        [true, true, false]
     );
-    assert_ne!(starts("t.arrows"), b"ARROW1");
     let Some(mut python) = clients::python("readers of Arrow and Parquet") else {
         return;
     };
@@ -218,7 +131,7 @@ fn files_of_columns_are_read_by_their_readers() {
     );
     let output = python
         .arg(script)
-        .arg(folder.path())
+        .arg(shell.path(""))
         .output()
         .expect("Python runs");
     println!("{}", String::from_utf8_lossy(&output.stdout));
@@ -227,20 +140,8 @@ fn files_of_columns_are_read_by_their_readers() {
 
 #[test]
 fn records_say_what_their_columns_are() {
-    let arguments = [
-        "sample",
-        "--bbox",
-        "0,0,3,2",
-        "--spacing",
-        "1",
-        "--format",
-        "f32",
-        "--attributes",
-        "variant",
-        "--variants",
-        "oak:3,birch:1",
-    ];
-    let text = errors(&run(&arguments, ""));
+    let line = "sample --bbox 0,0,3,2 --spacing 1 --format f32 --attributes variant --variants oak:3,birch:1";
+    let text = errors(&Shell::new().run(line, ""));
     assert!(
         text.contains(r#"{"name":"variant","type":"f32","names":["birch","oak"]}"#),
         "{text}"
@@ -250,26 +151,12 @@ fn records_say_what_their_columns_are() {
 #[test]
 fn names_that_end_with_gz_and_zst_are_compressed() {
     use std::io::Read as _;
-    let folder = tempfile::tempdir().expect("a folder");
-    let query = [
-        "sample",
-        "-q",
-        "--bbox",
-        "0,0,40,40",
-        "--spacing",
-        "1",
-        "--seed",
-        "7",
-    ];
-    let plain = run(&[&query[..], &["--format", "csv"]].concat(), "");
+    let shell = Shell::new();
+    let query = "sample -q --bbox 0,0,40,40 --spacing 1 --seed 7";
+    let plain = shell.output(&format!("{query} --format csv"), "");
     let written = |name: &str| {
-        let path = folder.path().join(name);
-        let output = run(
-            &[&query[..], &["-o", path.to_str().expect("text")]].concat(),
-            "",
-        );
-        assert!(output.status.success(), "{}", errors(&output));
-        fs::read(path).expect("a file")
+        shell.output(&format!("{query} -o {name}"), "");
+        shell.read(name)
     };
     let (gzip, zstd) = (written("points.csv.gz"), written("points.csv.zst"));
     let mut unpacked = vec![];
@@ -277,20 +164,12 @@ fn names_that_end_with_gz_and_zst_are_compressed() {
     decoder
         .read_to_end(&mut unpacked)
         .expect("a whole gzip file");
-    assert_eq!(unpacked, plain.stdout);
+    assert_eq!(unpacked, plain);
     let unpacked = zstd::stream::decode_all(&zstd[..]).expect("a whole zstd file");
-    assert_eq!(unpacked, plain.stdout);
-    let unknown = run(&[&query[..], &["-o", "points.foo.gz"]].concat(), "");
-    assert_eq!(unknown.status.code(), Some(2));
-    assert!(
-        errors(&unknown).contains("--output ends with .foo"),
-        "{}",
-        errors(&unknown)
-    );
-    let short = run(
-        &[&query[..], &["-o", "/dev/full", "--format", "csv"]].concat(),
-        "",
-    );
+    assert_eq!(unpacked, plain);
+    let words = ["--output ends with .foo"];
+    shell.assert_refused(&format!("{query} -o points.foo.gz"), &words);
+    let short = shell.run(&format!("{query} -o /dev/full --format csv"), "");
     assert_eq!(short.status.code(), Some(1), "{}", errors(&short));
 }
 
@@ -348,45 +227,26 @@ fn profiles_are_listed() {
 
 #[test]
 fn folders_of_outputs_are_made() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = |name: &str| folder.path().join(name).display().to_string();
-    let sample = ["sample", "-q", "--bbox", "0,0,2,2", "--spacing", "1"];
-    let file = path("new/deep/points.csv");
-    for arguments in [
-        [&sample[..], &["-o", &file]].concat(),
-        vec!["man", "--out-dir", &path("pages")],
-        vec!["mask", "--size", "16", "-o", &path("masks/m.PNG")],
+    let shell = Shell::new();
+    for (line, made) in [
+        (
+            "sample -q --bbox 0,0,2,2 --spacing 1 -o new/deep/points.csv",
+            "new/deep/points.csv",
+        ),
+        ("man --out-dir pages", "pages/strew.1"),
+        ("mask --size 16 -o masks/m.PNG", "masks/m.PNG"),
     ] {
-        let output = run(&arguments, "");
-        assert!(
-            output.status.success(),
-            "{arguments:?}: {}",
-            errors(&output)
-        );
+        shell.output(line, "");
+        assert!(!shell.read(made).is_empty(), "{made}");
     }
-    for made in [&file, &path("pages/strew.1"), &path("masks/m.PNG")] {
-        assert!(
-            fs::metadata(made).is_ok_and(|made| made.len() > 0),
-            "{made}"
-        );
-    }
-    let made = run(
-        &["mask", "--size=16", "--bits=16", "-o", &path("m.npy")],
-        "",
-    );
-    assert!(made.status.success(), "{}", errors(&made));
-    let array = fs::read(path("m.npy")).expect("written");
+    shell.output("mask --size=16 --bits=16 -o m.npy", "");
+    let array = shell.read("m.npy");
     assert_eq!(array.len(), 128 + 2 * 256);
     assert!(array.starts_with(b"\x93NUMPY\x01\x00") && array[..128].ends_with(b"\n"));
     for name in ["m.tif", "m.bmp", "m.npz"] {
-        let output = run(&["mask", "--size", "16", "-o", &path(name)], "");
-        assert_eq!(output.status.code(), Some(2), "{name}");
-        assert!(
-            errors(&output)
-                .contains("no format of masks; allowed: a file whose name ends in .png or .npy"),
-            "{name}"
-        );
-        assert!(!folder.path().join(name).exists());
+        let words = ["no format of masks; allowed: a file whose name ends in .png or .npy"];
+        shell.assert_refused(&format!("mask --size 16 -o {name}"), &words);
+        assert!(!shell.path(name).exists());
     }
 }
 

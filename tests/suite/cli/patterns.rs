@@ -154,37 +154,3 @@ fn lists_are_those_of_the_daemon_byte_for_byte() {
         }
     }
 }
-
-#[test]
-fn wrong_settings_are_refused_by_name() {
-    for (args, expected) in [
-        (&["figure", "index", "--alpha", "1"][..], "between 1 and 2"),
-        (&["figure", "index", "--alpha", "2"], "between 1 and 2"),
-        (&["figure", "index", "--window", "5000"], "--window 5000"),
-        (
-            &["figure", "map", "--radius", "1000000"],
-            "--radius 1000000",
-        ),
-        (
-            &["figure", "map", "--block", "27,0"],
-            "two integers from 0 to 26",
-        ),
-        (&["figure", "clusters", "--distance", "99"], "--distance 99"),
-        (&["figure", "index", "-o", "x.gif"], ".svg or .png"),
-        (
-            &["figure", "index", "-o", "x.png", "--size", "20"],
-            "--size 20",
-        ),
-        (&["arrangement", "2"], "two integers joined by a comma"),
-        (&["arrangement", "2,9007199254740994"], "out of range"),
-        (&["arrangement", "2,1", "--grid", "5,0,4,9"], "--grid"),
-        (&["arrangement", "2,1", "--list"], "beside grid"),
-        (&["arrangement", ""], "has no offsets"),
-        (&["arrangement", "2,1.5"], "1.5 must be an integer"),
-        (&["arrangement", "2,1", "--alpha", "2"], "--alpha"),
-        (&["arrangement", "2,1", "--warp", "on"], "beside density"),
-    ] {
-        let text = refused(args, 2);
-        assert!(text.contains(expected), "{args:?}: {text}");
-    }
-}

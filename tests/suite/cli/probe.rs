@@ -83,32 +83,6 @@ fn an_address_without_a_daemon_is_reported_in_time() {
 }
 
 #[test]
-fn wrong_flags_are_reported() {
-    for (arguments, part) in [
-        (&["--url", "https:/x"][..], "allowed: http://host:port"),
-        (&["--timeout", "0"], "allowed: a number from 0.001 to 3600"),
-        (
-            &["--timeout", "NaN"],
-            "allowed: a number from 0.001 to 3600",
-        ),
-        (&["--listen", "127.0.0.1:0"], "name it with --url"),
-        (&["--live", "--ready"], "cannot be used with"),
-        (&["--insecure"], "--insecure: the URL is http"),
-        (&["--url", "http://x", "--ca", "y"], "--ca: the URL is http"),
-        (&["--ca", "x", "--insecure"], "cannot be used with"),
-        (&["--certificate", "x"], "--key <FILE>"),
-        (
-            &["--url", "https://x", "--ca", "/nowhere"],
-            "--ca /nowhere: it cannot be read",
-        ),
-    ] {
-        let (code, message) = probe(arguments);
-        assert_eq!(code, Some(2), "{arguments:?}");
-        assert!(message.contains(part), "{message}");
-    }
-}
-
-#[test]
 fn the_probe_speaks_tls() {
     let folder = tempfile::tempdir().expect("a folder");
     let authority = Authority::new();

@@ -24,7 +24,6 @@ fn dragging_zooming_and_keys_move_the_view_and_its_url() {
         return;
     };
     browser.look(&daemon, "#at=10,20&span=40");
-    let unit = 40.0 / 800.0;
     browser.drag([900, 400], [-200, 100]);
     browser.until("location.hash.includes('at=20,25')");
     browser.ready();
@@ -41,7 +40,6 @@ fn dragging_zooming_and_keys_move_the_view_and_its_url() {
     let count = browser.ready();
     let shown = browser.in_view().len() as u64;
     assert!(count.abs_diff(shown) <= 1, "{count} {shown}");
-    assert!(unit > 0.0);
 }
 
 #[test]
@@ -52,15 +50,8 @@ fn a_jump_to_1e12_is_as_sharp_as_the_origin_and_back_returns() {
     for renderer in ["&renderer=webgl2", "&renderer=2d"] {
         browser.look(&daemon, &format!("#at=0,0&span=8{renderer}"));
         browser.click("#jump-at");
-        browser.keys(
-            &"1e12, -1e12"
-                .chars()
-                .map(String::from)
-                .collect::<Vec<_>>()
-                .iter()
-                .map(String::as_str)
-                .collect::<Vec<_>>(),
-        );
+        let keys: Vec<String> = "1e12, -1e12".chars().map(String::from).collect();
+        browser.keys(&keys.iter().map(String::as_str).collect::<Vec<_>>());
         browser.click("#jump button");
         browser.until("strew.plane.view.x.i === 1e12");
         let count = browser.ready();

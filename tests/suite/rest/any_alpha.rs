@@ -3,13 +3,9 @@
 use std::collections::BTreeSet;
 
 use serde_json::json;
-use strew::grpc::proto::{
-    CountPointsRequest, PointSet, StreamPointsRequest, point_service_client::PointServiceClient,
-    point_set::Amount,
-};
 use strew_core::{Alpha, Pattern};
 
-use crate::support::{csv::Csv, daemon::Daemon, grpc::boxed, problem::assert_fault};
+use crate::support::{csv::Csv, daemon::Daemon};
 
 /// Rational and not, with few blocks and many.
 const ALPHAS: [&str; 9] = [
@@ -124,57 +120,4 @@ fn every_map_of_a_pattern_has_the_same_points() {
         daemon.get(&format!("{path}&map=m&table={digest}")).status,
         409
     );
-}
-
-#[test]
-fn wrong_alphas_and_maps_of_patterns_are_named() {
-    let daemon = Daemon::built_in();
-    for (rest, field, texts) in [
-        ("alpha=1", "alpha", ["out of range", "between 1 and 2"]),
-        ("alpha=2", "alpha", ["out of range", "between 1 and 2"]),
-        ("alpha=0.5", "alpha", ["0.5", "between 1 and 2"]),
-        ("alpha=sqrt(5)", "alpha", ["sqrt(5)", "between 1 and 2"]),
-        ("alpha=half", "alpha", ["half", "between 1 and 2"]),
-        ("alpha=3/2&map=r257", "map", ["r257", "0 to 256"]),
-        ("alpha=3/2&map=huge", "map", ["huge", "0 to 256"]),
-    ] {
-        let query = format!("/v1/count?bbox=0,0,9,9&spacing=1&profile=pattern&{rest}");
-        assert_fault(&daemon.get(&query), &query, field, &texts);
-    }
-    // For other profiles the answer states the remedy, or that there is none.
-    for (rest, texts) in [
-        (
-            "profile=blue&alpha=1.7123",
-            ["not loaded for this alpha", "strew forge --profile blue"],
-        ),
-        (
-            "profile=blue&alpha=3/2",
-            ["no table of it can be good", "repeats every 4"],
-        ),
-    ] {
-        let query = format!("/v1/count?bbox=0,0,9,9&spacing=1&{rest}");
-        assert_fault(&daemon.get(&query), &query, "alpha", &texts);
-    }
-}
-
-#[tokio::test]
-async fn grpc_counts_the_same() {
-    let daemon = Daemon::built_in();
-    let mut client = PointServiceClient::new(daemon.channel().await);
-    for alpha in ALPHAS {
-        let query = StreamPointsRequest {
-            region: boxed([0.0, 0.0, 9.0, 7.0]),
-            set: Some(PointSet {
-                amount: Some(Amount::Spacing(1.0)),
-                profile: Some("pattern".into()),
-                alpha: Some(alpha.into()),
-                ..PointSet::default()
-            }),
-            ..StreamPointsRequest::default()
-        };
-        let request = CountPointsRequest { query: Some(query) };
-        let counted = client.count_points(request).await.expect("counted");
-        let expected = brute(alpha, [0.0, 0.0, 9.0, 7.0]).len();
-        assert_eq!(counted.into_inner().count, expected as u64, "{alpha}");
-    }
 }

@@ -212,62 +212,6 @@ fn bodies_describe_fields_each_layer_its_own() {
 }
 
 #[test]
-fn faults_of_fields_name_their_paths() {
-    let folder = folder();
-    let daemon = daemon(&folder);
-    let path = "/v1/points?bbox=0,0,9,9&spacing=1&field=right";
-    assert_fault(
-        &daemon.get(path),
-        path,
-        "field",
-        &["no such field", "forest, left, portrait, ramp"],
-    );
-    let wide = base64(&png([1500, 1500], |_, _| 0));
-    for (field, at, texts) in [
-        (
-            json!({ "noise": { "wavelength": 9, "octaves": 99 } }),
-            "field.noise.octaves",
-            &["1 to 8"][..],
-        ),
-        (
-            json!({ "multiply": [{ "name": "ramp" }, { "ring": 1 }] }),
-            "field.multiply[1]",
-            &["ring"],
-        ),
-        (
-            json!({ "raster": { "file": "left.png" } }),
-            "field.raster.file",
-            &["name no files"],
-        ),
-        (
-            json!({ "raster": { "png": wide } }),
-            "field.raster.png",
-            &["1500 × 1500", "1048576"],
-        ),
-        (json!(7), "field", &["must be a name or an object"]),
-        (Value::Null, "field", &["must be a name or an object"]),
-    ] {
-        let set = json!({ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1, "field": field });
-        assert_fault(
-            &daemon.post("/v1/points:query", &set),
-            &field.to_string(),
-            at,
-            texts,
-        );
-        let layers = json!({ "region": { "bbox": [0, 0, 9, 9] }, "layers": [
-            { "name": "a", "spacing": 1 }, { "name": "b", "spacing": 1, "field": field },
-        ] });
-        let at = format!("layers[1].{at}");
-        assert_fault(
-            &daemon.post("/v1/count", &layers),
-            &field.to_string(),
-            &at,
-            texts,
-        );
-    }
-}
-
-#[test]
 fn what_a_field_leaves_out_is_charged_and_limited() {
     let folder = folder();
     let setting = format!("fields.folder={}", folder.path().display());

@@ -1,256 +1,204 @@
-//! Invalid query bodies: the problem names the member at fault, its value, and what is allowed.
+//! What bodies are refused for: the problem names the member at fault, its value, and what is allowed.
 
 use serde_json::{Value, json};
 use strew_testkit::http1;
+use tempfile::TempDir;
 
-use crate::support::{daemon::Daemon, problem::assert_fault};
+use crate::support::{
+    daemon::Daemon,
+    fields::{base64, folder, png},
+    problem::assert_faults,
+    table::rows,
+};
 
-/// (members that replace those of a valid query, the field at fault, texts in its fault).
-fn members() -> Vec<(Value, &'static str, Vec<&'static str>)> {
-    let region = |shape: Value| json!({ "region": shape });
-    let layers = |layers: Value| json!({ "layers": layers, "spacing": null });
-    let polygon = |rings: Value| json!({ "region": { "polygon": { "type": "Polygon", "coordinates": rings } } });
+/// A daemon with fields and lists of points taken away.
+pub(super) fn daemon() -> (TempDir, Daemon) {
+    let fields = folder();
+    let config = format!(
+        "fields.folder = '{}'\n[except.felled]\nids = ['oak/1:2']\n[except.dug]\nids = ['3:4']\n",
+        fields.path().display()
+    );
+    (fields, Daemon::with_config(&config))
+}
+
+/// Bodies, the field at fault, and words of its problem. Members replace those of a query that lacks nothing; `null`
+/// and layers, which have amounts of their own, take one away.
+const BODIES: &str = r#"
+# Features
+{"region": null, "features": []} | features | an object
+{"region": null, "features": {}} | features.of | missing | FeatureCollection
+{"region": null, "features": {"of": {"type": "FeatureCollection", "features": []}}} | features.of | no feature
+{"region": null, "features": {"of": {"type": "FeatureCollection", "features": []}, "per": 1}} | features.per | unknown member
+# Regions
+{"region": null} | region | missing
+{"regoin": {}} | regoin | unknown member | did you mean `region`?
+{"region": [0, 0, 1, 1]} | region | [0,0,1,1]
+{"region": {}} | region | {}
+{"region": {"bbox": [0, 0, 1]}} | region.bbox | [0,0,1]
+{"region": {"bbox": [0, 0, 1, "1"]}} | region.bbox
+{"region": {"bbox": [0, 0, 0, 1]}} | region.bbox | empty
+{"region": {"bbox": [0, 0, 1e300, 1]}} | region.bbox | far
+{"region": {"circle": {"center": [0, 0]}}} | region.circle | radius
+{"region": {"circle": {"center": [0, 0], "radius": 0}}} | region.circle | 0
+{"region": {"chunk": {"size": 0, "x": 1, "y": 1}}} | region.chunk | above 0
+{"region": {"chunk": {"size": 1, "x": 0.5, "y": 1}}} | region.chunk | 0.5
+{"region": {"polygon": {"type": "Point", "coordinates": [1, 1]}}} | region.polygon | Point
+{"region": {"polygon": {"type": "Polygon", "coordinates": []}}} | region.polygon
+{"region": {"polygon": {"type": "Polygon", "coordinates": [[[0, 0], [1, 1]]]}}} | region.polygon | coordinates[0] has 2 positions | 3 or more
+{"region": {"polygon": {"type": "Polygon", "coordinates": [[[0, 0], [1, 1], [2, null]]]}}} | region.polygon
+{"region": {"include": []}} | region.include | missing
+{"region": {"include": [{"bbox": [0, 0, 1, 1]}, 7]}} | region.include[1] | 7
+{"region": {"include": [{"bbox": [0, 0, 1, 1]}], "exclude": [{"bbox": [1, 1, 0, 0]}]}} | region.exclude[0].bbox | reversed
+{"region": {"ball": {"center": [0, 0, 0], "radius": 1}}} | region.ball | a shape of space
+# Sets
+{"spacing": "wide"} | spacing | wide
+{"spacing": null} | spacing | missing
+{"count": 5} | count | spacing is given
+{"spacing": null, "count": 5.5} | count | 5.5
+{"seed": -1} | seed | -1
+{"warp": "much"} | warp | much
+{"warp": 2.5} | warp | 2.5
+{"keep": 2} | keep | 2
+{"attributes": [1]} | attributes, variants | [1]
+{"attributes": ["variant"]} | variants | missing
+{"attributes": ["variant"], "variants": {"a": "x"}} | variants | x
+{"attributes": ["scale"], "scale_range": [1]} | scale_range | [1]
+{"offset": -1} | offset | -1
+{"limit": 0} | limit | 0
+{"cursor": 5} | cursor | 5
+{"format": "xml"} | format | xml | ndjson
+{"decimals": 18} | decimals | 18
+{"size": 5, "format": "png"} | size | 5 | 4096
+{"table": "abc"} | table | abc
+{"map": 3} | map | 3
+{"variants": {"a": 1, "b": 1}, "spread": "even", "variant_fields": {"a": {"noise": {"period": -1}}}} | variant_fields.a.noise.period
+# Layers
+{"layers": []} | layers | empty | 1 to 16
+{"layers": {}} | layers | {}
+{"layers": [5]} | layers[0] | 5
+{"layers": [{"name": "a", "spacing": 1}], "spacing": 1} | spacing | layer
+{"layers": [{"spacing": 1}]} | layers[0].name
+{"layers": [{"name": "a\u0007b", "spacing": 1}]} | layers[0].name | 1 to 64 characters
+{"layers": [{"name": "a", "spacing": 1}, {"name": "a", "spacing": 1}]} | layers[1].name | a
+{"layers": [{"name": "a"}]} | layers[0].spacing | missing
+{"layers": [{"name": "a", "spacing": 1, "wide": 1}]} | layers[0].wide | unknown member
+{"layers": [{"name": "a", "spacing": 1, "region": {"bbox": [1, 1, 0, 0]}}]} | layers[0].region.bbox | reversed
+{"layers": [{"name": "a", "spacing": 1, "clear_of": {"b": 1}}, {"name": "b", "spacing": 1}]} | layers[0].clear_of | b: 1.0
+{"layers": [{"name": "a", "spacing": 1}, {"name": "b", "spacing": 1, "clear_of": {"a": 0}}]} | layers[1].clear_of | a: 0.0
+{"layers": [{"name": "a", "spacing": 1}, {"name": "b", "spacing": 1, "clear_of": {"a": 17}}]} | layers[1].clear_of | 17 | at most 16
+{"layers": [{"name": "a", "spacing": 1}, {"name": "b", "count": 5, "clear_of": {"a": 1}}]} | layers[1].count | not with clear_of
+{"layers": [{"name": "a", "min_distance": 1, "profile": "pink"}]} | layers[0].min_distance | pink
+{"layers": [{"name": "a", "spacing": 2, "periodic": 5000}]} | layers[0].periodic
+# Fields and terrains
+{"field": {"noise": {"wavelength": 9, "octaves": 99}}} | field.noise.octaves | 1 to 8
+{"field": {"multiply": [{"name": "ramp"}, {"ring": 1}]}} | field.multiply[1] | ring
+{"field": {"raster": {"file": "left.png"}}} | field.raster.file | name no files
+{"field": 7} | field | must be a name or an object
+{"layers": [{"name": "a", "spacing": 1}, {"name": "b", "spacing": 1, "field": 7}]} | layers[1].field | must be a name
+{"layers": [{"name": "a", "spacing": 1, "field": {"noise": {"octaves": 0}}}]} | layers[0].field.noise
+{"layers": [{"name": "b", "spacing": 1, "terrain": {"noise": {"wavelength": -1}}}]} | layers[0].terrain.noise.wavelength | -1
+# Points taken away
+{"layers": [{"name": "oak", "spacing": 1}], "except": ["1:2"]} | except[0] | beside layers an id needs
+{"layers": [{"name": "oak", "spacing": 1}], "except": ["felled", "ash/1:2"]} | except[1] | unknown layer
+{"layers": [{"name": "oak", "spacing": 1}], "except": ["dug"]} | except[0] | the list has ids without a layer
+{"layers": [{"name": "elm", "spacing": 2}], "except": ["elm/1:0"]} | except[0] | the layer elm has no such point
+"#;
+
+/// The same for volumes.
+const VOLUMES: &str = r#"
+{"region": {"circle": {"center": [0, 0], "radius": 1}}} | region.circle | a shape of the plane
+{"region": {"bbox": [0, 0, 1, 1]}} | region.bbox | max_z
+{"region": {"ball": {"center": [0, 0], "radius": 1}}} | region.ball | center
+{"region": {"prism": {"polygon": {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [0, 1]]]}, "bottom": 0}}} | region.prism.top | missing
+{"region": {"prism": {"polygon": {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [0, 1]]]}, "bottom": 1, "top": 1}}} | region.prism | empty
+{"region": {"prism": {"polygon": {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [0, 1]]]}, "bottom": 2, "top": 1}}} | region.prism | top
+{"region": {"include": [{"ball": {"center": [0, 0, 0], "radius": 1}}, {"circle": {"center": [0, 0], "radius": 1}}]}} | region.include[1].circle | a shape of the plane
+{"region": {"include": []}} | region.include | missing
+"#;
+
+/// A body with members of a case.
+fn body(region: &Value, members: &Value) -> Value {
+    let mut body = json!({ "region": region, "spacing": 1 });
+    if members.get("layers").is_some() {
+        body["spacing"].take();
+    }
+    for (name, value) in members.as_object().expect("an object") {
+        body[name] = value.clone();
+    }
+    body.as_object_mut()
+        .expect("an object")
+        .retain(|_, value| !value.is_null());
+    body
+}
+
+/// Cases that are too large to be written down.
+fn large() -> Vec<(Value, String, Vec<&'static str>)> {
     let mut nested = json!({ "bbox": [0, 0, 1, 1] });
     for _ in 0..9 {
         nested = json!({ "include": [nested] });
     }
-    let path = "region.include[0].include[0].include[0].include[0].include[0].include[0].\
-                include[0].include[0].include";
-    let many: Vec<Value> = (0..17)
-        .map(|i| json!({ "name": format!("l{i}"), "spacing": 1, "keep": 1.0 / f64::from(i + 1) }))
-        .collect();
-    let features = |features: Value| json!({ "region": null, "spacing": 1, "features": features });
-    let empty = json!({ "type": "FeatureCollection", "features": [] });
+    let deep = format!("region{}.include", ".include[0]".repeat(8));
+    let layer =
+        |i: u32| json!({ "name": format!("l{i}"), "spacing": 1, "keep": 1.0 / f64::from(i + 1) });
+    let layers: Vec<Value> = (0..17).map(layer).collect();
+    let kinds: Vec<String> = (0..50).map(|i| format!("v{i}:1")).collect();
+    let ids: Vec<String> = (0..10_001).map(|i| format!("{i}:0")).collect();
+    let wide = base64(&png([1500, 1500], |_, _| 0));
     vec![
-        (features(json!([])), "features", vec!["an object"]),
+        (json!({ "region": nested }), deep, vec!["nested", "8"]),
         (
-            features(json!({})),
-            "features.of",
-            vec!["missing", "FeatureCollection"],
+            json!({ "layers": layers }),
+            "layers".into(),
+            vec!["17", "16"],
         ),
         (
-            features(json!({ "of": empty })),
-            "features.of",
-            vec!["no feature"],
+            json!({ "variants": kinds.join(","), "spread": "even" }),
+            "variants".into(),
+            vec!["2 to 32"],
         ),
         (
-            features(json!({ "of": empty, "per": 1 })),
-            "features.per",
-            vec!["unknown member"],
-        ),
-        (json!({ "region": null }), "region", vec!["missing"]),
-        (
-            json!({ "regoin": {} }),
-            "regoin",
-            vec!["unknown member", "did you mean `region`?"],
-        ),
-        (region(json!([0, 0, 1, 1])), "region", vec!["[0,0,1,1]"]),
-        (region(json!({})), "region", vec!["{}"]),
-        (
-            region(json!({ "bbox": [0, 0, 1] })),
-            "region.bbox",
-            vec!["[0,0,1]"],
+            json!({ "except": ids }),
+            "except".into(),
+            vec!["10001 names, more than 10000"],
         ),
         (
-            region(json!({ "bbox": [0, 0, 1, "1"] })),
-            "region.bbox",
-            vec![],
-        ),
-        (
-            region(json!({ "bbox": [0, 0, 0, 1] })),
-            "region.bbox",
-            vec!["empty"],
-        ),
-        (
-            region(json!({ "bbox": [0, 0, 1e300, 1] })),
-            "region.bbox",
-            vec!["far"],
-        ),
-        (
-            region(json!({ "circle": { "center": [0, 0] } })),
-            "region.circle",
-            vec!["radius"],
-        ),
-        (
-            region(json!({ "circle": { "center": [0, 0], "radius": 0 } })),
-            "region.circle",
-            vec!["0"],
-        ),
-        (
-            region(json!({ "chunk": { "size": 0, "x": 1, "y": 1 } })),
-            "region.chunk",
-            vec!["above 0"],
-        ),
-        (
-            region(json!({ "chunk": { "size": 1, "x": 0.5, "y": 1 } })),
-            "region.chunk",
-            vec!["0.5"],
-        ),
-        (
-            region(json!({ "polygon": { "type": "Point", "coordinates": [1, 1] } })),
-            "region.polygon",
-            vec!["Point"],
-        ),
-        (polygon(json!([])), "region.polygon", vec![]),
-        (
-            polygon(json!([[[0, 0], [1, 1]]])),
-            "region.polygon",
-            vec!["coordinates[0] has 2 positions", "3 or more"],
-        ),
-        (
-            polygon(json!([[[0, 0], [1, 1], [2, null]]])),
-            "region.polygon",
-            vec![],
-        ),
-        (
-            region(json!({ "include": [] })),
-            "region.include",
-            vec!["missing"],
-        ),
-        (
-            region(json!({ "include": [{ "bbox": [0, 0, 1, 1] }, 7] })),
-            "region.include[1]",
-            vec!["7"],
-        ),
-        (
-            region(
-                json!({ "include": [{ "bbox": [0, 0, 1, 1] }], "exclude": [{ "bbox": [1, 1, 0, 0] }] }),
-            ),
-            "region.exclude[0].bbox",
-            vec!["reversed"],
-        ),
-        (region(nested), path, vec!["nested", "8"]),
-        (json!({ "spacing": "wide" }), "spacing", vec!["wide"]),
-        (json!({ "spacing": null }), "spacing", vec!["missing"]),
-        (json!({ "count": 5 }), "count", vec!["spacing is given"]),
-        (
-            json!({ "spacing": null, "count": 5.5 }),
-            "count",
-            vec!["5.5"],
-        ),
-        (json!({ "seed": -1 }), "seed", vec!["-1"]),
-        (json!({ "warp": "much" }), "warp", vec!["much"]),
-        (json!({ "warp": 2.5 }), "warp", vec!["2.5"]),
-        (json!({ "keep": 2 }), "keep", vec!["2"]),
-        (json!({ "attributes": [1] }), "attributes", vec!["[1]"]),
-        (
-            json!({ "attributes": ["variant"] }),
-            "variants",
-            vec!["missing"],
-        ),
-        (
-            json!({ "attributes": ["variant"], "variants": { "a": "x" } }),
-            "variants",
-            vec!["x"],
-        ),
-        (
-            json!({ "attributes": ["scale"], "scale_range": [1] }),
-            "scale_range",
-            vec!["[1]"],
-        ),
-        (json!({ "offset": -1 }), "offset", vec!["-1"]),
-        (json!({ "limit": 0 }), "limit", vec!["0"]),
-        (json!({ "cursor": 5 }), "cursor", vec!["5"]),
-        (json!({ "format": "xml" }), "format", vec!["xml", "ndjson"]),
-        (json!({ "decimals": 18 }), "decimals", vec!["18"]),
-        (
-            json!({ "size": 5, "format": "png" }),
-            "size",
-            vec!["5", "4096"],
-        ),
-        (json!({ "table": "abc" }), "table", vec!["abc"]),
-        (json!({ "map": 3 }), "map", vec!["3"]),
-        (layers(json!([])), "layers", vec!["empty", "1 to 16"]),
-        (layers(json!({})), "layers", vec!["{}"]),
-        (layers(json!([5])), "layers[0]", vec!["5"]),
-        (layers(json!(many)), "layers", vec!["17", "16"]),
-        (
-            json!({ "layers": [{ "name": "a", "spacing": 1 }] }),
-            "spacing",
-            vec!["layer"],
-        ),
-        (layers(json!([{ "spacing": 1 }])), "layers[0].name", vec![]),
-        (
-            layers(json!([{ "name": "a\u{7}b", "spacing": 1 }])),
-            "layers[0].name",
-            vec!["1 to 64 characters"],
-        ),
-        (
-            layers(json!([{ "name": "a", "spacing": 1 }, { "name": "a", "spacing": 1 }])),
-            "layers[1].name",
-            vec!["a"],
-        ),
-        (
-            layers(json!([{ "name": "a" }])),
-            "layers[0].spacing",
-            vec!["missing"],
-        ),
-        (
-            layers(json!([{ "name": "a", "spacing": 1, "wide": 1 }])),
-            "layers[0].wide",
-            vec!["unknown member"],
-        ),
-        (
-            layers(json!([{ "name": "a", "spacing": 1, "region": { "bbox": [1, 1, 0, 0] } }])),
-            "layers[0].region.bbox",
-            vec!["reversed"],
-        ),
-        (
-            layers(
-                json!([{ "name": "a", "spacing": 1, "clear_of": { "b": 1 } },
-                       { "name": "b", "spacing": 1 }]),
-            ),
-            "layers[0].clear_of",
-            vec!["b: 1.0"],
-        ),
-        (
-            layers(json!([{ "name": "a", "spacing": 1 },
-                       { "name": "b", "spacing": 1, "clear_of": { "a": 0 } }])),
-            "layers[1].clear_of",
-            vec!["a: 0.0"],
-        ),
-        (
-            layers(json!([{ "name": "a", "spacing": 1 },
-                       { "name": "b", "spacing": 1, "clear_of": { "a": 17 } }])),
-            "layers[1].clear_of",
-            vec!["17", "at most 16"],
-        ),
-        (
-            layers(json!([{ "name": "a", "spacing": 1 },
-                       { "name": "b", "count": 5, "clear_of": { "a": 1 } }])),
-            "layers[1].count",
-            vec!["not with clear_of"],
-        ),
-        (
-            layers(json!([{ "name": "a", "min_distance": 1, "profile": "pink" }])),
-            "layers[0].min_distance",
-            vec!["pink"],
+            json!({ "field": { "raster": { "png": wide } } }),
+            "field.raster.png".into(),
+            vec!["1500 × 1500", "1048576"],
         ),
     ]
 }
 
 #[test]
-fn faults_name_the_wrong_member() {
-    let daemon = Daemon::start(&[]);
-    for (members, field, texts) in members() {
-        let mut body = json!({ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1 });
-        for (name, value) in members.as_object().expect("an object") {
-            match value {
-                // Stands for a member that is not there.
-                Value::Null => drop(body.as_object_mut().expect("an object").remove(name)),
-                value => body[name] = value.clone(),
-            }
-        }
+fn problems_of_bodies_name_the_member() {
+    let (_fields, daemon) = daemon();
+    let read = |row: Vec<&'static str>| {
+        let members = serde_json::from_str(row[0]).expect("JSON");
+        (members, row[1].to_owned(), row[2..].to_vec())
+    };
+    let square = json!({ "bbox": [0, 0, 9, 9] });
+    for (members, field, texts) in rows(BODIES).map(read).chain(large()) {
+        let body = body(&square, &members);
         // Every path reads a query alike; counts have no window and no output.
-        let paths = ["points:query", "points:split?parts=2", "count"];
-        let is_of_points =
-            ["offset", "limit", "cursor", "format", "decimals", "size"].contains(&field);
-        for path in &paths[..if is_of_points { 2 } else { 3 }] {
+        let of_points = ["offset", "limit", "cursor", "format", "decimals", "size"];
+        let count = (!of_points.contains(&&*field)).then_some("count");
+        for path in ["points:query", "points:split?parts=2"]
+            .into_iter()
+            .chain(count)
+        {
             let answer = daemon.post(&format!("/v1/{path}"), &body);
-            assert_fault(&answer, &format!("{path} {body}"), field, &texts);
+            let asked = format!("{path} {members:.300}");
+            assert_faults(&answer, &asked, &field, &texts);
         }
     }
-    let body = json!({ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1 });
+    for (members, field, texts) in rows(VOLUMES).map(read) {
+        let body = body(&Value::Null, &members);
+        for path in ["points", "count", "points:split?parts=2"] {
+            let answer = daemon.post(&format!("/v1/space/{path}"), &body);
+            assert_faults(&answer, &format!("{path} {members}"), &field, &texts);
+        }
+    }
+    let body = body(&square, &json!({}));
     for (path, field) in [
         ("points:split", "parts"),
         ("points:split?parts=0", "parts"),
@@ -259,12 +207,8 @@ fn faults_name_the_wrong_member() {
         ("points:query?seed=3", "query"),
         ("count?seed=3", "query"),
     ] {
-        assert_fault(
-            &daemon.post(&format!("/v1/{path}"), &body),
-            path,
-            field,
-            &[],
-        );
+        let answer = daemon.post(&format!("/v1/{path}"), &body);
+        assert_faults(&answer, path, field, &[]);
     }
 }
 
@@ -283,12 +227,8 @@ fn a_body_that_is_not_a_json_object_is_a_fault_of_the_body() {
     for path in ["points:query", "count", "points:split?parts=2"] {
         for body in bodies {
             let answer = http1::post(daemon.address(), &format!("/v1/{path}"), &[], body);
-            assert_fault(
-                &answer,
-                &format!("{path} {body:?}"),
-                "body",
-                &["a JSON object"],
-            );
+            let asked = format!("{path} {body:?}");
+            assert_faults(&answer, &asked, "body", &["a JSON object"]);
         }
     }
 }

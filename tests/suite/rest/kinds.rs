@@ -3,18 +3,12 @@
 use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
-use strew::grpc::proto::{
-    CountPointsRequest, Field, ResolvedSet, StreamPointsRequest,
-    point_service_client::PointServiceClient, point_set::Amount,
-};
 use strew_core::{Point, Table};
 use strew_testkit::wait::until;
 
 use crate::support::{
-    command,
     csv::Csv,
     daemon::{Daemon, no_tables},
-    grpc,
 };
 
 /// A seeded set on the smallest map, whose mixes are made soonest.
@@ -222,86 +216,6 @@ fn joint_kinds_have_points_of_their_own() {
     assert_eq!(of("s")["joint_kinds"], json!([]));
 }
 
-/// Counts oaks and birches by a call, and returns the set as the server echoes it.
-pub(super) async fn counted<const N: usize>(
-    daemon: &Daemon,
-    oaks: f64,
-    fields: [(String, Field); N],
-) -> ResolvedSet {
-    let mut set = grpc::set(Amount::Spacing(1.0)).expect("a set");
-    set.profile = None;
-    set.alpha = None;
-    set.map = Some("s".into());
-    set.seed = Some(9);
-    set.variants = [("oak".into(), oaks), ("birch".into(), 1.0)].into();
-    set.spread = Some("even".into());
-    set.variant_fields = fields.into();
-    let query = StreamPointsRequest {
-        region: grpc::boxed([0.0, 0.0, 50.0, 40.0]),
-        set: Some(set),
-        ..StreamPointsRequest::default()
-    };
-    let mut client = PointServiceClient::new(daemon.channel().await);
-    let counted = client.count_points(CountPointsRequest { query: Some(query) });
-    let counted = counted.await.expect("counted").into_inner();
-    counted.query.expect("an echo").sets.swap_remove(0)
-}
-
-#[tokio::test(flavor = "multi_thread")]
-async fn calls_and_commands_agree() {
-    let daemon = Daemon::built_in();
-    let csv = Csv::get(&daemon, &format!("bbox=0,0,50,40&{SET}&spread=even"));
-    let set = counted(&daemon, 3.0, []).await;
-    assert_eq!(counts(&csv), json!(set.kinds));
-    let arguments = "sample --bbox 0,0,50,40 --map s --spacing 1 --seed 9 --attributes variant \
-                     --variants oak:3,birch:1 --spread even --format csv -o -";
-    let output = command::run(&arguments.split_whitespace().collect::<Vec<_>>(), "");
-    assert!(output.status.success(), "{}", command::errors(&output));
-    assert_eq!(String::from_utf8_lossy(&output.stdout), csv.answer.text());
-}
-
-#[test]
-fn single_points_have_their_kinds_on_the_command_line_too() {
-    let daemon = Daemon::built_in();
-    let query = format!("{SET}&spread=even&only=birch");
-    let near = daemon.get(&format!("/v1/nearest?at=20,15&k=40&{query}"));
-    let neighbors = near.json()["neighbors"].clone();
-    let neighbors = neighbors.as_array().expect("a list");
-    assert_eq!(neighbors.len(), 40);
-    assert!(neighbors.iter().all(|point| point["variant"] == "birch"));
-    let flags = "--map s --spacing 1 --seed 9 --attributes variant --variants oak:3,birch:1 \
-                 --spread even --only birch --json";
-    let printed = |command: &[&str]| {
-        let arguments: Vec<&str> = command
-            .iter()
-            .copied()
-            .chain(flags.split_whitespace())
-            .collect();
-        command::run(&arguments, "")
-    };
-    let output = printed(&["nearest", "--at", "20,15", "--k", "40"]);
-    assert!(output.status.success(), "{}", command::errors(&output));
-    let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    assert_eq!(json, near.json());
-    // A point of the other kind is none of the set.
-    let all = daemon.get(&format!("/v1/nearest?at=20,15&k=40&{SET}&spread=even"));
-    for point in all.json()["neighbors"].as_array().expect("a list") {
-        let id = point["id"].as_str().expect("text");
-        let answer = daemon.get(&format!("/v1/points/{id}?{query}"));
-        let output = printed(&["point", id]);
-        let is_birch = point["variant"] == "birch";
-        assert_eq!(
-            (answer.status == 200, output.status.success()),
-            (is_birch, is_birch),
-            "{id}"
-        );
-        if is_birch {
-            let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-            assert_eq!(json, answer.json());
-        }
-    }
-}
-
 #[test]
 fn an_answer_that_waits_for_labels_says_so_and_when_to_come_back() {
     let daemon = Daemon::with_tables(no_tables(), &["server.first_byte_seconds=0.1"]);
@@ -359,65 +273,4 @@ fn a_restart_finds_what_was_made() {
     let again = Daemon::with_tables(damaged, &[]);
     assert_eq!(again.get(&address).text(), answer);
     assert_eq!(std::fs::read(&path).expect("readable"), bytes);
-}
-
-#[test]
-fn wrong_kinds_are_refused_with_what_is_allowed() {
-    let daemon = Daemon::built_in();
-    let fifty: Vec<String> = (0..50).map(|i| format!("v{i}:1")).collect();
-    for (more, field, part) in [
-        (
-            "variants=oak:0,birch:1&spread=even".to_owned(),
-            "variants",
-            "1e-9",
-        ),
-        (
-            "variants=oak:-1,birch:1&spread=even".into(),
-            "variants",
-            "1e-9",
-        ),
-        (
-            "variants=oak:1,birch:1000000&spread=even".into(),
-            "variants",
-            "1/1024",
-        ),
-        (
-            format!("variants={}&spread=even", fifty.join(",")),
-            "variants",
-            "2 to 32",
-        ),
-        ("variants=oak:1&spread=even".into(), "variants", "2 to 32"),
-        (
-            "variants=oak:1,oak:2&spread=even".into(),
-            "variants",
-            "listed",
-        ),
-        (
-            "variants=oak:1,birch:2&spread=smooth".into(),
-            "spread",
-            "chance, even, joint",
-        ),
-        (
-            "variants=oak:1,birch:2&spread=even&only=elm".into(),
-            "only",
-            "birch, oak",
-        ),
-        (
-            "variants=oak:1,birch:2&attributes=variant&only=oak".into(),
-            "only",
-            "even or joint",
-        ),
-        (
-            "variants=oak:7,birch:9&spread=joint".into(),
-            "spread",
-            "spread even",
-        ),
-        ("spread=even".into(), "variants", "name:weight"),
-    ] {
-        let answer = daemon.get(&format!("/v1/points?bbox=0,0,9,9&map=s&spacing=1&{more}"));
-        assert_eq!(answer.status, 400, "{more}: {}", answer.text());
-        let fault = &answer.json()["errors"][0];
-        assert_eq!(fault["field"], field, "{more}: {fault}");
-        assert!(fault.to_string().contains(part), "{more}: {fault}");
-    }
 }

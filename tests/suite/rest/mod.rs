@@ -1,7 +1,7 @@
 //! The REST API, a file for each subject: which points a query returns (amounts, regions, layers, single points,
 //! paging), what is known of patterns without a table (patterns), how they are written (formats, and the same files
 //! read by other software and by engines), what HTTP adds (caching, compression, methods, headers for browsers), and
-//! which problem documents invalid queries, parameters and bodies get.
+//! which problem documents invalid addresses and bodies get.
 
 mod amounts;
 mod any_alpha;
@@ -15,9 +15,8 @@ mod fields;
 mod format_readers;
 mod formats;
 mod http;
+mod invalid_addresses;
 mod invalid_bodies;
-mod invalid_parameters;
-mod invalid_queries;
 mod kinds;
 mod layers;
 mod paging;

@@ -8,7 +8,6 @@ use crate::support::{
     csv::Csv,
     daemon::{Daemon, no_tables},
     fields::folder,
-    problem::assert_fault,
 };
 
 /// `ramp` rises from 0 to 1 between x = 0 and x = 40.
@@ -188,41 +187,4 @@ fn every_format_carries_the_height() {
         .and_then(|line| line.split(')').next())
         .and_then(|text| text.rsplit(", ").next());
     assert_eq!(first.and_then(|text| text.parse().ok()), Some(rounded[0]));
-}
-
-#[test]
-fn a_wrong_terrain_is_refused_by_its_fields() {
-    let folder = folder();
-    let daemon = daemon(&folder);
-    let path = "/v1/points?bbox=0,0,9,9&spacing=1";
-    for (query, field, value) in [
-        ("heights=0,5", "heights", "0,5"),
-        ("normals=on", "normals", "on"),
-        ("align=0.5", "align", "0.5"),
-        ("terrain=alps", "terrain", "alps"),
-        ("terrain=ramp&heights=5,5", "heights", "out of order"),
-        ("terrain=ramp&heights=0,1e10", "heights", "low < high"),
-        ("terrain=ramp&heights=7", "heights", "7"),
-        ("terrain=ramp&align=1.5", "align", "1.5"),
-        ("terrain=ramp&normals=maybe", "normals", "maybe"),
-    ] {
-        let answer = daemon.get(&format!("{path}&{query}"));
-        assert_fault(&answer, query, field, &[value]);
-    }
-    let body = json!({
-        "region": { "bbox": [0, 0, 9, 9] },
-        "layers": [
-            { "name": "a", "spacing": 1, "terrain": "ramp" },
-            { "name": "b", "spacing": 1, "terrain": { "noise": { "wavelength": -1 } } },
-        ],
-    });
-    let answer = daemon.post("/v1/points:query", &body);
-    assert_fault(
-        &answer,
-        "layers",
-        "layers[1].terrain.noise.wavelength",
-        &["-1"],
-    );
-    let aligned = daemon.get(&format!("{path}&terrain=ramp&align=1&format=instances"));
-    assert_fault(&aligned, "aligned", "format", &["whole rotation"]);
 }

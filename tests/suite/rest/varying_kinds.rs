@@ -1,16 +1,13 @@
 //! Kinds whose shares vary from place to place.
 
 use serde_json::{Value, json};
-use strew::grpc::proto::{Field, field::Shape};
 use strew_core::Point;
 use strew_testkit::{
     http1::{self, Answer},
     wait::until,
 };
 
-use super::kinds::counted;
 use crate::support::{
-    command,
     csv::Csv,
     daemon::{Daemon, no_tables},
     fields::{folder, write},
@@ -201,72 +198,10 @@ fn tags_of_single_points_change_with_all_that_is_loaded() {
 }
 
 #[test]
-fn wrong_fields_are_refused_by_name() {
+fn queries_that_would_take_too_long_are_refused_before_they_begin() {
     let folder = folder();
     let daemon = daemon(&folder);
-    for (more, field, part) in [
-        (
-            "variant_fields=elm:ramp",
-            "variant_fields.elm",
-            "birch, oak",
-        ),
-        ("variant_fields=birch:rump", "variant_fields.birch", "rump"),
-        ("variant_fields=birch", "variant_fields", "name:field"),
-        (
-            "variant_fields=birch:ramp,birch:left",
-            "variant_fields",
-            "given twice",
-        ),
-        (
-            "variant_fields=birch:ramp,oak:left,birch:left",
-            "variant_fields",
-            "given twice",
-        ),
-    ] {
-        let answer = daemon.get(&format!("/v1/count?bbox=0,0,9,9&{SET}&{more}"));
-        assert_fault(&answer, more, field, &[part]);
-    }
-    let chance = SET.replace("&spread=even", "");
-    let answer = daemon.get(&format!("/v1/count?bbox=0,0,9,9&{chance}&{VARIED}"));
-    assert_fault(&answer, "chance", "variant_fields", &["needs spread even"]);
-    let answer = daemon.get(&format!("/v1/count?periodic=5000&{SET}&{VARIED}"));
-    assert_fault(
-        &answer,
-        "periodic",
-        "variant_fields",
-        &["not with periodic"],
-    );
-    let body = json!({
-        "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1, "variants": { "a": 1, "b": 1 }, "spread": "even",
-        "variant_fields": { "a": { "noise": { "period": -1 } } },
-    });
-    let answer = daemon.post("/v1/count", &body);
-    assert_fault(&answer, "noise", "variant_fields.a.noise.period", &[]);
-    // Queries that would take too long are refused before they begin.
     let answer = daemon.get(&format!("/v1/count?bbox=0,0,1e6,1e6&{SET}&{VARIED}"));
     assert_eq!(answer.status, 413, "{}", answer.text());
     assert!(answer.text().contains("too-many-rows"), "{}", answer.text());
-}
-
-#[tokio::test]
-async fn calls_and_commands_agree() {
-    let folder = folder();
-    let daemon = daemon(&folder);
-    let csv = Csv::get(&daemon, &format!("bbox=0,0,50,40&{SET}&{VARIED}"));
-    let named = Field {
-        shape: Some(Shape::Name("ramp".into())),
-    };
-    let set = counted(&daemon, 1.0, [("birch".into(), named)]).await;
-    assert_eq!(counts(&csv.answer), json!(set.kinds));
-    let digest = daemon.get("/v1/fields/ramp").json()["digest"].clone();
-    assert_eq!(json!(set.variant_field_digests), json!({ "birch": digest }));
-    let echoed = set.set.as_ref().expect("a set");
-    assert!(echoed.variant_fields.contains_key("birch"));
-    let arguments = "sample --bbox 0,0,50,40 --map s --spacing 1 --seed 9 --attributes variant \
-                     --variants oak:1,birch:1 --spread even --variant-fields birch:ramp --format csv -o -";
-    let setting = format!("fields.folder={}", folder.path().display());
-    let arguments = arguments.split_whitespace().chain(["--set", &setting]);
-    let output = command::run(&arguments.collect::<Vec<_>>(), "");
-    assert!(output.status.success(), "{}", command::errors(&output));
-    assert_eq!(String::from_utf8_lossy(&output.stdout), csv.answer.text());
 }

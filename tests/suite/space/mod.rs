@@ -1,11 +1,9 @@
-//! Points in space: REST, gRPC and the command line have the library's points, in every format.
+//! Points in space: REST and the command line have the library's points, in every format. `agree` asks gRPC, too.
 
-mod calls;
 mod command;
 mod engines;
 mod formats;
 mod paths;
-mod refusals;
 mod tables;
 mod varied;
 

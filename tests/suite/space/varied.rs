@@ -1,11 +1,6 @@
 //! Density that varies, levels of detail, exact numbers and points that were taken away: those of the library.
 
 use serde_json::{Value, json};
-use strew::grpc::proto::{
-    Ball, Field, FieldNoise, FieldPair, FieldParts, FieldPlace, FieldRadial, PointSet, Position,
-    StreamPointsRequest, field, point_service_client::PointServiceClient, point_set::Amount,
-    region::Shape,
-};
 use strew_core::{
     field::{FieldSpec, Noise},
     server::Stop,
@@ -14,10 +9,7 @@ use strew_core::{
 use strew_testkit::http1;
 
 use super::{lines, set, told, within};
-use crate::support::{
-    daemon::Daemon,
-    grpc::{collect, shaped},
-};
+use crate::support::daemon::Daemon;
 
 fn patches() -> FieldSpec {
     let noise = Noise {
@@ -174,65 +166,4 @@ fn points_that_were_taken_away_are_left_out() {
     let dust = set(0.8, 6).clear_of(&own, 0.7).expect("in range");
     let left = within(&own.without(ids), ball()).count() + within(&dust, ball()).count();
     assert_eq!(counted(&daemon, layers), left as u64);
-}
-
-#[tokio::test]
-async fn messages_have_them_too() {
-    let daemon = Daemon::built_in();
-    let mut client = PointServiceClient::new(daemon.channel().await);
-    let place = |z| FieldPlace { x: 2.0, y: 3.0, z };
-    let radial = |z| Field {
-        shape: Some(field::Shape::Radial(FieldRadial {
-            center: Some(place(z)),
-            radii: Some(FieldPair {
-                first: 3.0,
-                second: 12.0,
-            }),
-            shares: None,
-        })),
-    };
-    let noise = Field {
-        shape: Some(field::Shape::Noise(FieldNoise {
-            seed: 1,
-            wavelength: 9.0,
-            octaves: Some(2),
-            range: None,
-        })),
-    };
-    let fields = vec![radial(Some(-4.0)), noise];
-    let own = set(0.9, 6).in_field(patches()).lod(0.5).expect("a part");
-    let first = within(&own, ball()).to_vec()[0].id;
-    let request = StreamPointsRequest {
-        region: shaped(Shape::Ball(Ball {
-            center: Some(Position {
-                x: 2.0,
-                y: 3.0,
-                z: Some(-4.0),
-            }),
-            radius: 11.0,
-        })),
-        set: Some(PointSet {
-            amount: Some(Amount::Spacing(0.9)),
-            seed: Some(6),
-            lod: Some(0.5),
-            field: Some(Field {
-                shape: Some(field::Shape::Multiply(FieldParts { fields })),
-            }),
-            except: vec![first.to_string()],
-            ..PointSet::default()
-        }),
-        ..StreamPointsRequest::default()
-    };
-    let answer = collect(&mut client, request).await;
-    let ids: Vec<String> = answer
-        .blocks
-        .iter()
-        .flat_map(|block| block.id.clone())
-        .collect();
-    let expected = expected(&own.without([first]));
-    assert!(ids.len() > 100);
-    assert_eq!(
-        ids,
-        expected.into_iter().map(|(id, _)| id).collect::<Vec<_>>()
-    );
 }

@@ -2,22 +2,24 @@
 //! JSON over HTTP.
 
 use std::{
-    net::SocketAddr,
-    path::{Path, PathBuf},
-    process::{Child, Command},
-    sync::{Mutex, MutexGuard, PoisonError},
+    path::PathBuf,
+    sync::{
+        Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
 };
 
 use serde_json::{Value, json};
-use strew_testkit::{http1, wait::until};
+use strew_testkit::wait::until;
 
 use super::{
     daemon::Daemon,
     engine::{Engine, logged_errors},
+    session::Session,
 };
 
-/// Held while a browser runs: one at a time, because nothing else that tests start is as heavy.
-static ALONE: Mutex<()> = Mutex::new(());
+/// Browsers that run, or ran for a test before: two at most, because nothing else that tests start is as heavy.
+static PLACES: [Mutex<Option<Session>>; 2] = [Mutex::new(None), Mutex::new(None)];
 
 /// Keys by their names.
 pub mod key {
@@ -30,17 +32,8 @@ pub mod key {
     pub const RIGHT: &str = "\u{E014}";
 }
 
-/// A browser with one window; closed when dropped.
-pub struct Browser {
-    engine: Engine,
-    driver: Child,
-    address: SocketAddr,
-    session: String,
-    /// The process of the browser, which does not end with its driver.
-    process: Option<u64>,
-    folder: tempfile::TempDir,
-    _alone: MutexGuard<'static, ()>,
-}
+/// A browser with one window, which nothing was done in. The next test has the same browser, with another window.
+pub struct Browser(MutexGuard<'static, Option<Session>>);
 
 /// A daemon with the built-in tables, and a browser. `None`, with a message, where no browser is
 /// installed.
@@ -53,59 +46,53 @@ impl Browser {
     fn start(width: u32, height: u32) -> Option<Self> {
         let engine = Engine::chosen();
         let (driver, program) = engine.programs()?;
-        let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        std::fs::create_dir_all(folder.path().join("downloads")).expect("a folder");
-        let (driver, port) = engine.driver(&driver, &folder.path().join("log"));
-        let mut browser = Self {
-            engine,
-            driver,
-            address: ([127, 0, 0, 1], port).into(),
-            session: String::new(),
-            process: None,
-            folder,
-            _alone: alone,
-        };
-        browser.open(&program, width, height);
+        let place = PLACES.iter().find_map(|place| place.try_lock().ok());
+        let mut place = place.unwrap_or_else(|| {
+            static NEXT: AtomicUsize = AtomicUsize::new(0);
+            let next = NEXT.fetch_add(1, Ordering::Relaxed) % PLACES.len();
+            PLACES[next].lock().unwrap_or_else(PoisonError::into_inner)
+        });
+        let is_new = place.is_none();
+        place.get_or_insert_with(|| Session::start(engine, &driver, &program));
+        let browser = Self(place);
+        if !is_new {
+            browser.renew();
+        }
+        if engine == Engine::Chromium {
+            let folder = json!({ "behavior": "allow", "downloadPath": browser.downloads() });
+            browser.cdp("Browser.setDownloadBehavior", &folder);
+        }
+        browser.resize(width, height);
         Some(browser)
     }
 
-    fn open(&mut self, program: &Path, width: u32, height: u32) {
-        let capabilities = self.engine.capabilities(program, self.folder.path());
-        let wanted = json!({ "capabilities": { "alwaysMatch": capabilities } });
-        let answer = self.send("POST", "/session", &wanted);
-        self.session = answer["sessionId"].as_str().expect("a session").into();
-        let process = |name: &str| answer["capabilities"][name].as_u64();
-        self.process = process("moz:processID").or_else(|| process("goog:processID"));
-        self.resize(width, height);
-        if self.engine == Engine::Chromium {
-            self.cdp(
-                "Browser.setDownloadBehavior",
-                &json!({ "behavior": "allow", "downloadPath": self.downloads() }),
-            );
-        }
+    fn session(&self) -> &Session {
+        self.0.as_ref().expect("it runs")
+    }
+
+    /// A new window, with a history of its own, in a browser that has forgotten everything.
+    fn renew(&self) {
+        let opened = self.call("window/new", &json!({ "type": "tab" }));
+        let path = format!("/session/{}/window", self.session().id);
+        self.session().send("DELETE", &path, &json!({}));
+        self.call("window", &json!({ "handle": opened["handle"] }));
+        let everywhere = json!({ "origin": "*", "storageTypes": "all" });
+        self.cdp("Storage.clearDataForOrigin", &everywhere);
+        self.cdp("Network.clearBrowserCache", &json!({}));
+        self.cdp("Browser.resetPermissions", &json!({}));
+        self.errors();
+        std::fs::remove_dir_all(self.downloads()).expect("a folder");
+        std::fs::create_dir_all(self.downloads()).expect("a folder");
     }
 
     /// The folder of downloads.
     pub fn downloads(&self) -> PathBuf {
-        self.folder.path().join("downloads")
-    }
-
-    fn send(&self, method: &str, path: &str, body: &Value) -> Value {
-        let response = match method {
-            "POST" => http1::open_post(self.address, path, &[], body.to_string().as_bytes()),
-            _ => http1::open(self.address, method, path, &[]),
-        };
-        let status = response.status;
-        let bytes = response.body().expect("a whole answer");
-        let mut answer: Value = serde_json::from_slice(&bytes).expect("JSON");
-        let value = answer["value"].take();
-        assert_eq!(status, 200, "{method} {path} {body}: {value}");
-        value
+        self.session().folder.path().join("downloads")
     }
 
     fn call(&self, path: &str, body: &Value) -> Value {
-        self.send("POST", &format!("/session/{}/{path}", self.session), body)
+        let session = self.session();
+        session.send("POST", &format!("/session/{}/{path}", session.id), body)
     }
 
     /// Sends a command of the Chrome DevTools Protocol.
@@ -126,7 +113,7 @@ impl Browser {
 
     /// Sets the inner size of the window, in CSS pixels.
     pub fn resize(&self, width: u32, height: u32) {
-        if self.engine == Engine::Chromium {
+        if self.session().engine == Engine::Chromium {
             let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
             self.cdp("Emulation.setDeviceMetricsOverride", &size);
             return;
@@ -145,7 +132,7 @@ impl Browser {
 
     /// Says that the visitor wants less motion.
     pub fn reduce_motion(&self) {
-        match self.engine {
+        match self.session().engine {
             Engine::Chromium => {
                 let feature = json!({ "name": "prefers-reduced-motion", "value": "reduce" });
                 self.cdp(
@@ -160,7 +147,7 @@ impl Browser {
 
     /// Says that the visitor uses fingers.
     pub fn use_touch(&self) {
-        match self.engine {
+        match self.session().engine {
             Engine::Chromium => {
                 self.cdp(
                     "Emulation.setTouchEmulationEnabled",
@@ -175,7 +162,7 @@ impl Browser {
     /// test is skipped.
     pub fn lacks_webgl2(&self) -> bool {
         let draws = "document.createElement('canvas').getContext('webgl2') !== null";
-        let lacks = self.engine == Engine::Firefox && self.value(draws) == false;
+        let lacks = self.session().engine == Engine::Firefox && self.value(draws) == false;
         if lacks {
             eprintln!("skipped: this Firefox has no WebGL2");
         }
@@ -184,7 +171,7 @@ impl Browser {
 
     /// Lets pages read the clipboard.
     pub fn allow_clipboard(&self) {
-        if self.engine == Engine::Chromium {
+        if self.session().engine == Engine::Chromium {
             let names = json!({ "permissions": ["clipboardReadWrite", "clipboardSanitizedWrite"] });
             self.cdp("Browser.grantPermissions", &names);
         }
@@ -258,14 +245,20 @@ impl Browser {
         )
     }
 
-    /// Clicks an element with the mouse.
+    /// Clicks an element with the mouse; again if the page has replaced it meanwhile.
     pub fn click(&self, selector: &str) {
-        // Drivers scroll only to what cannot be seen at all.
-        self.middle(selector);
-        let element = self.element(selector);
-        let id = element.as_object().expect("an element").values().next();
-        let id = id.and_then(Value::as_str).expect("an element");
-        self.call(&format!("element/{id}/click"), &json!({}));
+        until(&format!("{selector} is clicked"), || {
+            // Drivers scroll only to what cannot be seen at all.
+            self.middle(selector);
+            let element = self.element(selector);
+            let id = element.as_object().expect("an element").values().next();
+            let id = id.and_then(Value::as_str).expect("an element");
+            let path = format!("/session/{}/element/{id}/click", self.session().id);
+            match self.session().ask("POST", &path, &json!({})) {
+                Err(error) if error["error"] == "stale element reference" => None,
+                clicked => Some(clicked.expect("clicked")),
+            }
+        });
     }
 
     /// Sets the value of a field or a list and fires the events of a change.
@@ -353,8 +346,8 @@ impl Browser {
 
     /// Lifts all that is pressed.
     pub fn release(&self) {
-        let path = format!("/session/{}/actions", self.session);
-        self.send("DELETE", &path, &json!({}));
+        let path = format!("/session/{}/actions", self.session().id);
+        self.session().send("DELETE", &path, &json!({}));
     }
 
     /// Drags with the mouse, in steps.
@@ -409,8 +402,8 @@ impl Browser {
 
     /// The errors in the page's console; of Firefox, those of scripts.
     pub fn errors(&self) -> Vec<String> {
-        if self.engine == Engine::Firefox {
-            return logged_errors(&self.folder.path().join("log"));
+        if self.session().engine == Engine::Firefox {
+            return logged_errors(&self.session().folder.path().join("log"));
         }
         let log = self.call("se/log", &json!({ "type": "browser" }));
         let entries = log.as_array().expect("a list").iter();
@@ -423,12 +416,9 @@ impl Browser {
 
 impl Drop for Browser {
     fn drop(&mut self) {
-        if !self.session.is_empty() && !std::thread::panicking() {
-            self.send("DELETE", &format!("/session/{}", self.session), &json!({}));
-        } else if let Some(process) = self.process {
-            let _ = Command::new("kill").arg(process.to_string()).status();
+        // What a test left in the middle is of no use to others; of Firefox, one at a time knows its log.
+        if std::thread::panicking() || self.session().engine == Engine::Firefox {
+            *self.0 = None;
         }
-        let _ = self.driver.kill();
-        let _ = self.driver.wait();
     }
 }

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 use strew::grpc::proto::{
-    BoundingBox, ColumnHead, PointBlock, PointSet, Position, Region, Ring, StreamHeader,
-    StreamPointsRequest, StreamSummary, point_service_client::PointServiceClient,
-    point_set::Amount, region::Shape, stream_points_response::Message,
+    BoundingBox, ColumnHead, PointBlock, PointSet, Region, StreamHeader, StreamPointsRequest,
+    StreamSummary, point_service_client::PointServiceClient, point_set::Amount, region::Shape,
+    stream_points_response::Message,
 };
 use tonic::{Code, Status, transport::Channel};
 use tonic_types::StatusExt as _;
@@ -46,14 +46,6 @@ pub fn square(side: f64) -> StreamPointsRequest {
         region: boxed([0.0, 0.0, side, side]),
         set: set(Amount::Density(1.0)),
         ..StreamPointsRequest::default()
-    }
-}
-
-/// A ring of vertices.
-pub fn ring(vertices: &[[f64; 2]]) -> Ring {
-    let positions = vertices.iter().map(|&[x, y]| Position { x, y, z: None });
-    Ring {
-        positions: positions.collect(),
     }
 }
 
@@ -104,6 +96,9 @@ impl Whole {
             let columns = self.columns(block);
             for (i, id) in block.id.iter().enumerate() {
                 let mut point = json!({ "id": id, "x": block.x[i], "y": block.y[i] });
+                if let Some(z) = block.z.get(i) {
+                    point["z"] = json!(z);
+                }
                 if !layer.is_empty() {
                     point["layer"] = layer.clone().into();
                 }

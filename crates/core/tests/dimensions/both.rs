@@ -46,7 +46,7 @@ proptest! {
 
     #[test]
     fn a_box_holds_what_brute_force_finds((set, region) in any_box(), parts in any_parts()) {
-        let expected = brute_force(&set, &region.into(), REACH, definition(&set));
+        let expected = brute_force(&set, &region.into(), reach(&set), definition(&set));
         agree(&set, region, &expected, parts);
     }
 

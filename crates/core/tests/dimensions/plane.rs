@@ -15,7 +15,9 @@ use crate::subject::{self, any_place, any_seed, any_table, set, tables, unit};
 mod both;
 
 /// Vectors reach 13 units, a warp of strength 2 with long waves at most 111; f64 errs by a few far out.
-const REACH: i64 = 13 + 8 + 111;
+fn reach(set: &Set) -> i64 {
+    13 + 8 + (set.placement().warp.strength() * 55.5).ceil() as i64
+}
 
 fn cases(number: u32) -> u32 {
     number

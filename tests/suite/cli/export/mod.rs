@@ -14,7 +14,7 @@ use std::{
 
 use strew_testkit::{process::Running, wait::until};
 
-use super::{printed, settings};
+use super::{printed, refused, settings};
 use crate::support::{
     clients,
     command::{errors, run},
@@ -244,61 +244,20 @@ fn an_interrupt_ends_it_in_good_order() {
 }
 
 #[test]
-fn wrong_flags_are_refused() {
+fn a_folder_with_files_of_others_is_refused() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     fs::write(folder.path().join("mine.txt"), "x").expect("writable");
     let full = folder.path().display().to_string();
-    let set = ["--spacing=1", "--bbox=0,0,64,64"];
-    for (flags, said) in [
-        (&["-o", "w"][..], "use --chunk"),
-        (&["--chunk=0", "-o", "w"], "--chunk 0: out of range"),
-        (&["--chunk=16"], "use --output DIR, or --dry-run"),
-        (&["--chunk=16", "-o", &full], "the folder is not empty"),
-        (
-            &["--chunk=16", "--format=parquet", "-o", "w"],
-            "--format parquet",
-        ),
-        (
-            &["--chunk=16", "--compress=none,gz", "-o", "w"],
-            "--compress none stands alone",
-        ),
-        (
-            &["--chunk=16", "-o", "w/W.ZIP"],
-            "an export is a folder, not a zip file; allowed: --output w/W, and after it `zip -r w/W.ZIP w/W`",
-        ),
-        (&["--chunk=1e-9", "-o", "w"], "chunks; allowed"),
-        (
-            &["--chunk=0.01", "-o", "w"],
-            "chunks; allowed: at most 10000000",
-        ),
-        (&["--chunk=16", "--levels=11", "-o", "w"], "--levels"),
-        (
-            &["--chunk=16", "--levels=9", "--lod=0.01", "-o", "w"],
-            "--levels 9: level 7",
-        ),
-    ] {
-        let output = export(&[&set[..], flags].concat());
-        assert_eq!(
-            output.status.code(),
-            Some(2),
-            "{flags:?}: {}",
-            errors(&output)
-        );
-        assert!(
-            errors(&output).contains(said),
-            "{flags:?}: {}",
-            errors(&output)
-        );
-    }
-    assert!(!Path::new("w").exists());
-    // A device has zeros without end.
-    let output = export(&["--check", "/dev/full"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(
-        errors(&output).contains("not a folder"),
-        "{}",
-        errors(&output)
-    );
+    let set = [
+        "export",
+        "--spacing=1",
+        "--bbox=0,0,64,64",
+        "--chunk=16",
+        "-o",
+        &full,
+    ];
+    let message = refused(&set, 2);
+    assert!(message.contains("the folder is not empty"), "{message}");
 }
 
 /// Whether an error names the cause, how far it came, and what to do.
