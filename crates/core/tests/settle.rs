@@ -2,6 +2,8 @@
 //! cursor, tile, backend, id and place.
 
 mod definition;
+#[path = "space_settle.rs"]
+mod space;
 mod subject;
 
 use std::collections::{BTreeMap, HashMap};

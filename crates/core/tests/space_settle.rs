@@ -1,18 +1,17 @@
 //! Points of space that settle, against the slow reference of docs/algorithm.md, and by all ways of asking.
 
-mod definition;
-mod subject;
-
 use std::collections::HashMap;
 
-use definition::{By, reference_of};
+use crate::{
+    definition::{By, reference_of},
+    subject::space::{agree, any_parts, around, between, order, within},
+};
 use proptest::prelude::*;
 use strew_core::{
     Field,
     field::{FieldSpec, Noise},
     space::{Ball, Point, PointId, Region, SpaceSet, Table},
 };
-use subject::space::{agree, any_parts, around, between, order, within};
 
 fn set(table: &str, seed: u64, steps: u32) -> SpaceSet {
     let set = match table {
