@@ -56,6 +56,15 @@ impl Library {
         Ok(query)
     }
 
+    /// Whether a query can be planned with the tables, without fields, and without kinds that a daemon makes.
+    pub fn has(&self, body: &Value) -> bool {
+        let known = |set: &strew_query::Set| {
+            set.kinds.is_none() && self.ready.contains_key(&set.entry.key.to_string())
+        };
+        self.query(body)
+            .is_ok_and(|query| query.sets.iter().all(known))
+    }
+
     /// Checks and plans a query, as JSON.
     pub fn planned(&self, body: &Value) -> Result<Planned, Error> {
         let query = self.query(body)?;

@@ -104,7 +104,7 @@ export interface Parameters {
      * The steps by which the points of a set that is thinned or in a field move apart, so that they are spread evenly:
      * 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its time. Sets with all points
      * stay by default; for them 1 is one small step that moves the nearest points apart, and more count as 1. In space
-     * they stay. Allowed: an integer from 0 to 4. Default: 2; 0 for sets with all points.
+     * they stay: it counts as 0. Allowed: an integer from 0 to 4. Default: 2; 0 for sets with all points.
      */
     settle?: number;
     /**

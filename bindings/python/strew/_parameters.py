@@ -153,8 +153,8 @@ ABOUT = {
     "settle": "The steps by which the points of a set that is thinned or in a field move apart, so that they are "
               "spread evenly: 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its time. "
               "Sets with all points stay by default; for them 1 is one small step that moves the nearest points apart, "
-              "and more count as 1. In space they stay. Allowed: an integer from 0 to 4. Default: 2; 0 for sets with "
-              "all points. ",
+              "and more count as 1. In space they stay: it counts as 0. Allowed: an integer from 0 to 4. Default: 2; 0 "
+              "for sets with all points. ",
     "lod": "The level of detail: the part of the points that the answer has, at each place those of the lowest rank. "
            "None of them moves, so a level has a part of the points of a finer one, in fields, of kinds and of layers, "
            "too. Beside layers: of all of them; they keep clear of all points of each other. Allowed: a number from "

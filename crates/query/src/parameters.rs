@@ -174,7 +174,7 @@ parameters! {
         about: "The steps by which the points of a set that is thinned or in a field move apart, so that they are \
                 spread evenly: 0 leaves them where their ranks have them, 4 is the smoothest. Each step takes its \
                 time. Sets with all points stay by default; for them 1 is one small step that moves the nearest \
-                points apart, and more count as 1. In space they stay.",
+                points apart, and more count as 1. In space they stay: it counts as 0.",
         shape: Shape::Integer {
             min: 0,
             max: Settle::MAX_STEPS as u64,

@@ -102,14 +102,15 @@ impl Set {
     }
 
     /// The number of steps by which points settle; `None` in sets whose points do not settle by default: those of all
-    /// points, and of a tiny part of them.
+    /// points, and of a tiny part of them. In space these stay.
     pub fn steps(&self) -> Option<u32> {
         if self.field.is_some() {
             return Some(self.settle.steps());
         }
         let steps = self.settle.steps_at(self.keep);
         let is_thinned = (Settle::LEAST_SHARE..1.0).contains(&self.keep.get());
-        (is_thinned || (steps > 0 && self.space().is_none())).then_some(steps)
+        let stays = !is_thinned && self.space().is_some();
+        (is_thinned || steps > 0).then_some(if stays { 0 } else { steps })
     }
 
     /// Whether points move so that those of a kind, or in a field any, keep no distance of their own.

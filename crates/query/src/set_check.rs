@@ -1,6 +1,6 @@
 //! Checking a set: from values to a table laid into the world.
 
-use strew_catalog::{Catalog, Dimension, field::Allowance};
+use strew_catalog::{Catalog, field::Allowance};
 use strew_core::{Attribute, Keep, Placement, Seed, Settle, Warp};
 use strew_error::{Checked, Error, Together as _};
 
@@ -10,8 +10,8 @@ use crate::{
     field::Loaded,
     kinds::Kinds,
     parameters::{
-        ALPHA, ATTRIBUTES, EXCEPT, FIELD, HEIGHTS, KEEP, LOD, MAP, NORMALS, PROFILE, SCALE_RANGE,
-        SEED, SETTLE, SPREAD, WARP,
+        ALPHA, ATTRIBUTES, EXCEPT, HEIGHTS, KEEP, LOD, MAP, NORMALS, PROFILE, SCALE_RANGE, SEED,
+        SETTLE, SPREAD, WARP,
     },
     period::Period,
     set::{Resolved, Set, replace_in, resolved_of},
@@ -168,13 +168,6 @@ fn warp(values: &Values) -> Checked<Option<Warp>> {
 
 fn settle(values: &Values) -> Checked<Option<Settle>> {
     let steps = values.get::<u64>(&SETTLE)?;
-    let is_full =
-        || !values.has(&FIELD) && keep(values).ok().flatten().unwrap_or(Keep::ALL) == Keep::ALL;
-    if values.dimension() == Dimension::Space && steps.is_some_and(|steps| steps > 0) && is_full() {
-        let detail =
-            "in space the points of a set with all of them stay; with keep or field they settle";
-        return Err(values.fault(&SETTLE, detail).into());
-    }
     let settle = steps.map(|steps| Settle::new(u32::try_from(steps).unwrap_or(u32::MAX)));
     settle
         .transpose()

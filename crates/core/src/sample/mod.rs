@@ -41,7 +41,7 @@ pub(crate) use kernel::Exactly;
 pub(crate) use lattice::{Grade, Multiple, lattice_of};
 pub(crate) use near::limits;
 pub(crate) use seed::split_mix;
-pub(crate) use settle::{LEAST_IN_SPACE, List, Listed, Placed, Settler, Settling};
+pub(crate) use settle::{LEAST_IN_SPACE, List, Listed, Moves, Placed, Settler, Settling};
 pub(crate) use warp::Waves;
 
 /// The parts of the plane that points in space share.

@@ -60,7 +60,7 @@ fn spans(lattice: &Lattice, bounds: Bounds<2>) -> [Span; 2] {
     if bounds.iter().any(Range::is_empty) {
         return Span::of_box(lattice, bounds);
     }
-    let [x, y] = Span::of_box(lattice, settler.around(&bounds));
+    let [x, y] = Span::of_box(lattice, settler.moves.around(&bounds));
     let [in_x, in_y] = bounds;
     [Span { bounds: in_x, ..x }, Span { bounds: in_y, ..y }]
 }

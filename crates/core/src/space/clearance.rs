@@ -14,7 +14,8 @@ use super::{
     lattice::{Lattice, fixed},
     mask::{ClearOf, Mask},
     scope::Scope,
-    walk::{Walk, few},
+    settled::AnyWalk,
+    walk::few,
 };
 use crate::stop::Stop;
 
@@ -248,7 +249,7 @@ impl Other {
             all(&few);
             return;
         }
-        let mut walk = Walk::new(scope.clone(), &scope.all, None, false);
+        let mut walk = AnyWalk::new(scope.clone(), &scope.all, None, false);
         let mut batch = Batch::default();
         while walk.next(&mut batch) && all(&batch) {}
     }

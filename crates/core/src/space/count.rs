@@ -9,8 +9,9 @@ use super::{
     closed,
     columns::{COLUMN_BITS, columns},
     scope::{Scope, State},
+    settled::AnyWalk,
     sieve::Sifted,
-    walk::{Walk, few},
+    walk::few,
 };
 use crate::table::FRACTION_BITS;
 
@@ -73,7 +74,7 @@ fn divide(
 
 /// Counts point by point.
 fn walked(scope: &Arc<Scope>, clearance: &mut Clearance, ranges: &[Range<i64>; 3]) -> u128 {
-    let mut walk = Walk::new(scope.clone(), ranges, None, false);
+    let mut walk = AnyWalk::new(scope.clone(), ranges, None, false);
     let (mut batch, mut count) = (Batch::default(), 0);
     while walk.next(&mut batch) {
         clearance.sift(scope, &mut batch);

@@ -6,12 +6,11 @@ use super::{
     Batch,
     pattern::Pattern,
     point::{Point, PointId},
-    settled::settled,
     table::{Table, Turned},
     warp::Shears3,
 };
 use crate::{
-    sample::{Grade, Keep, Placement, space::PICKS},
+    sample::{Grade, Keep, Placement, Settle, space::PICKS},
     table::{Cut, FRACTION_BITS},
 };
 
@@ -175,19 +174,8 @@ impl Lattice {
         )
     }
 
-    /// The point of an address, or `None` if there is none.
-    pub(super) fn point(&self, id: PointId) -> Option<Point> {
-        let place = self.place(id)?;
-        Some(self.point_at(id, place))
-    }
-
-    /// The fixed-point place of an address, or `None` if it has no point.
+    /// The fixed-point place of an address before its point settles, or `None` if it has no point.
     pub(super) fn place(&self, id: PointId) -> Option<[i64; 3]> {
-        self.placed(id).map(|place| settled(self, id, place))
-    }
-
-    /// The place where the point of an address was put, before it settles, or `None` if it has no point.
-    pub(super) fn placed(&self, id: PointId) -> Option<[i64; 3]> {
         let number = self.number(self.block(id)?);
         let at = id.lattice();
         let is_kept = self.cut.is_none() || self.keeps(number, self.pattern.index(at)[0]);
@@ -212,6 +200,20 @@ impl Lattice {
     pub(super) fn shows(&self, id: PointId, share: f64) -> bool {
         let lod = self.placement.lod;
         (lod == Keep::ALL || self.rank(id) < lod.get() * share) && !self.lacks(id)
+    }
+
+    /// How points settle, and their shares before that; `None` if they stay. Full sets in space stay.
+    pub(super) fn settling(&self) -> Option<(Settle, Grade<3>)> {
+        let Placement { settle, keep, .. } = self.placement;
+        match &self.grade {
+            Some(grade) => (!settle.is_off()).then(|| (settle, grade.clone())),
+            None => {
+                let settle = settle
+                    .of_share(keep.get())
+                    .filter(|settle| !settle.is_near())?;
+                Some((settle, Grade::constant(keep.get())))
+            }
+        }
     }
 
     /// Whether a point is left out by its id.

@@ -8,15 +8,18 @@ use super::{
     lattice::{Lattice, fixed},
     mask::{ClearOf, Mask},
     point::PointId,
-    settled::{settled, tile},
 };
 pub(super) use crate::sample::common;
 use crate::{
     error::{Error, ErrorKind},
-    sample::{Corner, bounds, check_limit, common_box},
+    sample::{Corner, LEAST_IN_SPACE, Moves, bounds, check_limit, common_box},
     stop::Stop,
     table::FRACTION_BITS,
 };
+
+/// The sides of parts that settle at once, in lattice units at full density: points settle with those around, so larger
+/// ones cost less for each point and more memory.
+pub(super) const TILE: f64 = 256.0;
 
 /// [`Scope::leaf`] where points stay.
 const LEAF: i64 = 64;
@@ -95,13 +98,15 @@ impl Scope {
     /// The points of a lattice at some places.
     pub(super) fn of_places(lattice: &Lattice, bounds: [Range<i64>; 3]) -> Self {
         let (mut room, mut leaf) = (0, LEAF);
-        if let Some(settler) = lattice.settler()
+        if let Some((_, grade)) = lattice.settling()
             && bounds.iter().all(|range| !range.is_empty())
         {
+            let side = lattice.table.map().alpha().set_side_f64();
+            let moves = Moves::new(grade, side, lattice.step);
             let bounds = (bounds.clone()).map(|range| range.start.into()..range.end.into());
-            let around = settler.around(&bounds);
-            room = settler.most_move(&around);
-            leaf = tile(&settler, &around);
+            let around = moves.around(&bounds);
+            room = moves.most(&around);
+            leaf = tile(&moves, &around);
         }
         let placed = bounds
             .clone()
@@ -219,14 +224,10 @@ impl Scope {
             without: Vec::new(),
             ..lattice.clone()
         };
-        let near = self
-            .bounds
-            .clone()
-            .map(|range| range.start - self.room..range.end + self.room);
+        // Where points settle, parts are counted by their addresses where all of them lie inside.
         let is_inside = |id: PointId| {
-            let placed = whole.placed(id)?;
-            let is_near = (0..3).all(|axis| near[axis].contains(&placed[axis]));
-            (is_near && self.holds(settled(&whole, id, placed))).then(|| id.lattice())
+            let place = whole.place(id)?;
+            (self.room > 0 || self.holds(place)).then(|| id.lattice())
         };
         let mut missing: Vec<[i64; 3]> = Vec::new();
         for ids in &lattice.without {
@@ -304,4 +305,14 @@ fn before(lattice: &Lattice, bounds: &[Range<i64>; 3]) -> [Range<i64>; 3] {
         }
         _ => bounds.clone(),
     }
+}
+
+/// The sides of parts that settle at once, which hold as many points at any share.
+pub(super) fn tile(moves: &Moves<3>, within: &[Range<i128>; 3]) -> i64 {
+    power(TILE / libm::cbrt(moves.greatest_share(within).max(LEAST_IN_SPACE)))
+}
+
+/// The next power of two.
+pub(super) fn power(side: f64) -> i64 {
+    (side as u64).next_power_of_two() as i64
 }

@@ -4,28 +4,26 @@
 //! all of them settle (`sample/settle` has the steps), and those of the tile that end inside are given in the order of
 //! their addresses. Pieces and tiles decide only the cost: a point goes to the same place in each.
 
-use alloc::{sync::Arc, vec::Vec};
+use alloc::{boxed::Box, sync::Arc, vec::Vec};
 use core::ops::Range;
 
 use super::{
     Batch,
     columns::{COLUMN_BITS, columns, coordinates},
     lattice::{Lattice, fixed},
-    point::PointId,
-    scope::{Scope, State, common},
+    point::{Point, PointId},
+    scope::{Scope, State, TILE, common, power, tile},
     walk::{Walk, few},
 };
 use crate::{
     sample::{
-        Backend, Grade, Keep, LEAST_IN_SPACE, List, Listed, Placed, Placement, Settle, Settler,
+        Backend, Grade, Keep, LEAST_IN_SPACE, List, Listed, Moves, Placed, Settle, Settler,
         Settling,
     },
     table::{FRACTION_BITS, Mix},
 };
 
-/// The sides of the tiles of a piece and its least height, in lattice units at full density: points settle with those
-/// around, so larger ones cost less for each point and more memory.
-const TILE: f64 = 256.0;
+/// The least height of a piece, in lattice units at full density.
 const LEAST_HEIGHT: f64 = 64.0;
 /// About the most points of a piece that is higher.
 const MOST: f64 = 400_000.0;
@@ -60,26 +58,10 @@ impl Listed<3> for Found {
     }
 }
 
-impl Lattice {
-    /// How points settle, and their shares before that; `None` if they stay. Full sets in space stay.
-    pub(super) fn settling(&self) -> Option<(Settle, Grade<3>)> {
-        let Placement { settle, keep, .. } = self.placement;
-        match &self.grade {
-            Some(grade) => (!settle.is_off()).then(|| (settle, grade.clone())),
-            None => {
-                let settle = settle
-                    .of_share(keep.get())
-                    .filter(|settle| !settle.is_near())?;
-                Some((settle, Grade::constant(keep.get())))
-            }
-        }
-    }
-
-    /// A settler of the points; `None` if they stay.
-    pub(super) fn settler(&self) -> Option<SpaceSettler> {
-        let (settle, grade) = self.settling()?;
-        Some(Settler::of(Lister::new(self), grade, settle))
-    }
+/// A settler of the points of a lattice; `None` if they stay.
+fn settler(lattice: &Lattice) -> Option<SpaceSettler> {
+    let (settle, grade) = lattice.settling()?;
+    Some(Settler::of(Lister::new(lattice), grade, settle))
 }
 
 impl Lister {
@@ -182,7 +164,7 @@ impl Settling<3> for Lister {
             return give(&few);
         }
         let mut walk = Walk::new(scope.clone(), &scope.all, None, true);
-        walk.set_backend(backend);
+        walk.backend = backend;
         let mut batch = Batch::default();
         while walk.next(&mut batch) {
             give(&batch);
@@ -215,7 +197,7 @@ impl SettledWalk {
         ranges: &[Range<i64>; 3],
         start: Option<[i64; 3]>,
     ) -> Option<Self> {
-        let settler = scope.lattice.settler()?;
+        let settler = settler(&scope.lattice)?;
         let ranges = scope.clip(ranges);
         let columns = [0, 1].map(|axis| columns(&ranges[axis]));
         let bounds = (scope.bounds.clone()).map(|range| range.start.into()..range.end.into());
@@ -223,14 +205,14 @@ impl SettledWalk {
             Some([x, y, z]) => [x >> COLUMN_BITS, y >> COLUMN_BITS, z],
             None => [columns[0].start, columns[1].start, ranges[2].start],
         };
-        let around = settler.around(&bounds);
+        let around = settler.moves.around(&bounds);
         let along = [0, 1].map(|axis| ranges[axis].end - ranges[axis].start);
         let density = scope.lattice.table.map().alpha().set_side_f64();
         let density = density * density * density;
         Some(Self {
             sides: [
-                height(&settler, &around, along, density),
-                tile(&settler, &around),
+                height(&settler.moves, &around, along, density),
+                tile(&settler.moves, &around),
             ],
             scope: scope.clone(),
             around,
@@ -241,10 +223,6 @@ impl SettledWalk {
             columns,
             at,
         })
-    }
-
-    pub(super) const fn set_backend(&mut self, backend: Backend) {
-        self.settler.set_backend(backend);
     }
 
     /// Fills a batch with the points of the next piece that has some. Returns false if there are no more.
@@ -344,14 +322,9 @@ impl SettledWalk {
     }
 }
 
-/// The sides of tiles, which hold as many points at any share.
-pub(super) fn tile(settler: &SpaceSettler, within: &[Range<i128>; 3]) -> i64 {
-    power(TILE / libm::cbrt(settler.greatest_share(within).max(LEAST_IN_SPACE)))
-}
-
 /// The height of pieces of a width and depth.
-fn height(settler: &SpaceSettler, within: &[Range<i128>; 3], sides: [i64; 2], density: f64) -> i64 {
-    let share = settler.greatest_share(within).max(LEAST_IN_SPACE);
+fn height(moves: &Moves<3>, within: &[Range<i128>; 3], sides: [i64; 2], density: f64) -> i64 {
+    let share = moves.greatest_share(within).max(LEAST_IN_SPACE);
     let area: f64 = sides
         .iter()
         .map(|side| (*side).clamp(1, 1 << COLUMN_BITS) as f64)
@@ -360,17 +333,50 @@ fn height(settler: &SpaceSettler, within: &[Range<i128>; 3], sides: [i64; 2], de
     power((MOST / (area * density * share)).clamp(LEAST_HEIGHT * local, TILE * local))
 }
 
-/// The next power of two.
-fn power(side: f64) -> i64 {
-    (side as u64).next_power_of_two() as i64
+/// The point of an address, or `None` if there is none.
+pub(super) fn point(lattice: &Lattice, id: PointId) -> Option<Point> {
+    let placed = lattice.place(id)?;
+    let is = |placed: &Placed<3>| placed.address == id.lattice();
+    let mut settler = settler(lattice);
+    let settled =
+        (settler.as_mut()).and_then(|settler| settler.settled(placed.map(i128::from), is));
+    let place = settled.map_or(placed, |place| place.map(|k| k as i64));
+    Some(lattice.point_at(id, place))
 }
 
-/// The settled place of a point that was placed somewhere.
-pub(super) fn settled(lattice: &Lattice, id: PointId, place: [i64; 3]) -> [i64; 3] {
-    let Some(mut settler) = lattice.settler() else {
-        return place;
-    };
-    let is = |placed: &Placed<3>| placed.address == id.lattice();
-    let settled = settler.settled(place.map(i128::from), is);
-    settled.map_or(place, |place| place.map(|k| k as i64))
+/// A walk over the points of a scope, whether they settle or stay.
+#[derive(Clone, Debug)]
+pub(super) enum AnyWalk {
+    Still(Box<Walk>),
+    Settled(Box<SettledWalk>),
+}
+
+impl AnyWalk {
+    /// As [`Walk::new`].
+    pub(super) fn new(
+        scope: Arc<Scope>,
+        ranges: &[Range<i64>; 3],
+        start: Option<[i64; 3]>,
+        wants_ids: bool,
+    ) -> Self {
+        match SettledWalk::new(&scope, ranges, start) {
+            Some(walk) => Self::Settled(Box::new(walk)),
+            None => Self::Still(Box::new(Walk::new(scope, ranges, start, wants_ids))),
+        }
+    }
+
+    pub(super) fn set_backend(&mut self, backend: Backend) {
+        match self {
+            Self::Still(walk) => walk.backend = backend,
+            Self::Settled(walk) => walk.settler.set_backend(backend),
+        }
+    }
+
+    /// Fills a batch with the next points, at least one. Returns false if there are none.
+    pub(super) fn next(&mut self, out: &mut Batch) -> bool {
+        match self {
+            Self::Still(walk) => walk.next(out),
+            Self::Settled(walk) => walk.next(out),
+        }
+    }
 }

@@ -10,20 +10,21 @@ use super::{
     mask::Mask,
     point::{Point, PointId},
     scope::Scope,
-    walk::Walk,
+    settled::{self, AnyWalk},
 };
 use crate::{sample::Backend, stop::Stop};
 
 /// A walk over the points of a scope that its mask leaves.
 #[derive(Clone, Debug)]
 pub(super) struct Sifted {
-    walk: Walk,
+    walk: AnyWalk,
+    backend: Backend,
     scope: Arc<Scope>,
     clearance: Clearance,
 }
 
 impl Sifted {
-    /// As [`Walk::new`].
+    /// As [`AnyWalk::new`].
     pub(super) fn new(
         scope: Arc<Scope>,
         ranges: &[Range<i64>; 3],
@@ -31,17 +32,19 @@ impl Sifted {
         wants_ids: bool,
     ) -> Self {
         Self {
-            walk: Walk::new(scope.clone(), ranges, start, wants_ids),
+            walk: AnyWalk::new(scope.clone(), ranges, start, wants_ids),
             clearance: Clearance::new(&scope),
             scope,
+            backend: Backend::best(),
         }
     }
 
     pub(super) fn backend(&self) -> Backend {
-        self.walk.backend()
+        self.backend
     }
 
     pub(super) fn set_backend(&mut self, backend: Backend) {
+        self.backend = backend;
         self.walk.set_backend(backend);
     }
 
@@ -59,7 +62,7 @@ impl Sifted {
 
 /// The point of an address that a mask leaves.
 pub(super) fn point(lattice: &Lattice, mask: &Mask, id: PointId) -> Option<Point> {
-    let point = lattice.point(id)?;
+    let point = settled::point(lattice, id)?;
     if mask.is_none() {
         return Some(point);
     }

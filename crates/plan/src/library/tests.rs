@@ -281,10 +281,10 @@ fn single_points_in_space_and_faults() {
     assert_eq!(flat.expect_err("no z").faults()[0].field, "at");
     let flat = library.point_in_space("1:2", "spacing=1");
     assert_eq!(flat.expect_err("no z").faults()[0].field, "id");
-    let refused = library.plan_in_space(br#"{"region": {"bbox": [0, 0, 0, 1]}, "settle": 1}"#);
+    let refused = library.plan_in_space(br#"{"region": {"bbox": [0, 0, 0, 1]}, "periodic": 1}"#);
     let refused = refused.expect_err("faults");
     let fields: Vec<&str> = refused.faults().iter().map(|fault| &*fault.field).collect();
-    assert_eq!(fields, ["region.bbox", "spacing", "settle"]);
+    assert_eq!(fields, ["periodic", "region.bbox", "spacing"]);
 }
 
 #[test]

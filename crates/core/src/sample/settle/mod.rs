@@ -31,7 +31,7 @@
 //!
 //! # The files
 //!
-//! `window` finds the points that matter to some others and settles these; `reach` says how far they lie, `guess` how
+//! `window` finds the points that matter to some others and settles these; `moves` says how far they may go, `reach` how far others lie, `guess` how
 //! large a window is likely to be, `lister` lists its points, of the plane (`plane`) or of a set that is given. `step`
 //! is one step, over points that `cells` has sorted. `freedom` has f. `near` limits the step of sets with all points.
 //! `kin` adds the pushes of points of a kind, and `past` lets these go past near neighbors. `boxes` has points before
@@ -58,6 +58,7 @@ mod guess;
 mod instruction;
 mod kin;
 mod lister;
+mod moves;
 mod near;
 mod past;
 mod plain;
@@ -72,6 +73,7 @@ pub(crate) use boxes::{Box2, Placed, Settled, add_place, joined, widened};
 pub(crate) use super::bounds::common_box as common;
 pub(crate) use kin::weight;
 pub(crate) use lister::{List, Listed, Settling};
+pub(crate) use moves::Moves;
 use step::Kernel;
 pub(crate) use tiles::SettledTiles;
 pub(crate) use window::Settler;

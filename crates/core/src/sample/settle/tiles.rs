@@ -46,7 +46,7 @@ impl SettledTiles {
         mut made: impl FnMut(usize) -> ControlFlow<()>,
         mut visit: impl FnMut(&Settled) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let placed = self.settler.around(within);
+        let placed = self.settler.moves.around(within);
         let widest = placed.iter().map(|range| range.end - range.start);
         let widest = widest.fold(0, i128::max);
         let mut bits = LEAST_BITS;

@@ -35,33 +35,25 @@ use alloc::vec::Vec;
 use core::{array::from_fn, ops::Range};
 
 use super::{
-    MOST_MOVE,
-    boxes::{Placed, Settled, most_move, widened},
+    boxes::{Placed, Settled},
     cells::{Cells, Places},
-    freedom::{Candidate, Freedoms, constant, local, root, slipped, weight},
+    freedom::{Candidate, Freedoms, constant, root, slipped, weight},
     guess::guess,
     kernels,
     kin::Kin,
     lister::{Lister, Settling},
+    moves::Moves,
     near::Near,
     reach::{Extent, Reach, reached, step_room},
     step::{Kernel, Scale},
 };
-use crate::{
-    sample::{
-        bounds::world,
-        kernel::Backend,
-        lattice::{Grade, Settle},
-    },
-    shape::Region,
-    table::FRACTION_BITS,
+use crate::sample::{
+    kernel::Backend,
+    lattice::{Grade, Settle},
 };
 
 /// Corners of windows are multiples of this many fixed-point units, in bits.
 const CORNER_BITS: u32 = 26;
-
-/// The unit of a window in fixed-point units, in bits, where the pattern is not very sparse: some 10⁻⁵ spacings.
-const UNIT_BITS: u32 = 7;
 
 /// The largest distance from a window's corner, in the units of a window: single precision has all integers up to it,
 /// and their differences.
@@ -71,7 +63,7 @@ const FARTHEST: i64 = 1 << 23;
 #[derive(Clone, Debug)]
 pub(crate) struct Settler<S = Lister, const D: usize = 2> {
     set: S,
-    grade: Grade<D>,
+    pub(crate) moves: Moves<D>,
     backend: Backend,
     kernels: &'static [Kernel],
     /// The points by kinds, if those of a kind push each other.
@@ -81,10 +73,6 @@ pub(crate) struct Settler<S = Lister, const D: usize = 2> {
     scale: Scale,
     /// The limit of the step of sets with all points; `None` for other sets.
     near: Option<Near<D>>,
-    /// Windows count in units of this many fixed-point units, in bits.
-    shift: u32,
-    /// Fixed-point units of a mean spacing at full density.
-    unit: f64,
     listed: Vec<Listed<D>>,
     places: Places<D>,
     cells: Cells<D>,
@@ -108,14 +96,8 @@ struct Listed<const D: usize> {
 impl<S: Settling<D>, const D: usize> Settler<S, D> {
     /// A settler of a set that a grade thins.
     pub(crate) fn of(set: S, grade: Grade<D>, settle: Settle) -> Self {
-        let side = set.side();
-        // Up to some 350 spacings fit a window.
-        let mut sparse = 0;
-        while 400.0 / side > f64::from(1u32 << sparse) * 1500.0 {
-            sparse += 1;
-        }
-        let shift = UNIT_BITS + sparse;
-        let unit = f64::from(1u32 << FRACTION_BITS) / side;
+        let moves = Moves::new(grade, set.side(), set.step());
+        let Moves { unit, shift, .. } = moves;
         let kin = Kin::new(set.mix(), settle);
         let kernels = kin
             .as_ref()
@@ -135,7 +117,7 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
         Self {
             reaches,
             set,
-            grade,
+            moves,
             backend: Backend::best(),
             kernels,
             kin,
@@ -144,8 +126,6 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
                 clear: near.as_ref().map_or(clear as f32, |_| 0.0),
             },
             near,
-            shift,
-            unit,
             listed: Vec::new(),
             places: Places::default(),
             cells: Cells::default(),
@@ -159,29 +139,11 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
         self.backend = backend;
     }
 
-    /// The greatest move of points that were placed in a box, in fixed-point units.
-    pub(crate) fn most_move(&self, within: &[Range<i128>; D]) -> i64 {
-        let low = self.grade.bounds(&self.region(within))[0];
-        most_move(self.unit * local::<D>(low), self.shift)
-    }
-
     /// About how many times as far as in sets without kinds points matter to others.
     pub(crate) fn width(&self) -> f64 {
         self.kin
             .as_ref()
             .map_or(1.0, |kin| 1.0 / root(kin.least_part()))
-    }
-
-    /// The box around a box that holds the places of all points that may settle in it.
-    pub(crate) fn around(&self, within: &[Range<i128>; D]) -> [Range<i128>; D] {
-        let most = (MOST_MOVE * 1.001 * self.unit) as i64 + (2 << self.shift);
-        let most = self.most_move(&widened(within, most)).min(most);
-        widened(within, most)
-    }
-
-    /// The greatest share in a box.
-    pub(crate) fn greatest_share(&self, within: &[Range<i128>; D]) -> f64 {
-        self.grade.bounds(&self.region(within))[1]
     }
 
     /// The number of points of the last window.
@@ -201,21 +163,11 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
         found
     }
 
-    /// The region of a box.
-    pub(crate) fn region(&self, within: &[Range<i128>; D]) -> Region<D> {
-        let world = |k: i128| world(self.set.step(), k);
-        let ends = within.each_ref();
-        Region::between(
-            ends.map(|range| world(range.start)),
-            ends.map(|range| world(range.end.max(range.start))),
-        )
-    }
-
     /// Calls `visit` for every point that was placed in a box.
     pub(crate) fn list(&mut self, within: &[Range<i128>; D], mut visit: impl FnMut(Placed<D>)) {
-        let (unit, shift) = (self.unit, self.shift);
+        let (unit, shift) = (self.moves.unit, self.moves.shift);
         let corner = within.each_ref().map(|range| range.start);
-        let by = (&self.grade, self.backend);
+        let by = (&self.moves.grade, self.backend);
         self.set.list(within, corner, by, |some| {
             for (found, &share) in some.found.iter().zip(some.shares) {
                 let (address, offset) = (some.address(found), some.offset(found));
@@ -245,8 +197,8 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
             max: from_fn(|i| self.offset(corner, i, within[i].end - 1)),
         };
         let mut window = guess(
-            &self.grade,
-            (self.region(within), own),
+            &self.moves.grade,
+            (self.moves.region(within), own),
             &self.reaches,
             f64::from(self.scale.unit),
         );
@@ -275,7 +227,7 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
     fn place(&self, corner: [i128; D], i: usize, at: &[Vec<f32>; D]) -> [i128; D] {
         let below = self.listed[i].below;
         from_fn(|axis| {
-            let whole = (at[axis][i] as i64) << self.shift;
+            let whole = (at[axis][i] as i64) << self.moves.shift;
             corner[axis] + i128::from(whole | i64::from(below[axis]))
         })
     }
@@ -295,22 +247,22 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
         wants: &mut impl FnMut(&Placed<D>) -> bool,
     ) {
         let within = from_fn(|i| {
-            let fixed = |v: i64| corner[i] + (i128::from(v) << self.shift);
+            let fixed = |v: i64| corner[i] + (i128::from(v) << self.moves.shift);
             fixed(window.min[i])..fixed(window.max[i] + 1)
         });
         let mut listed = core::mem::take(&mut self.listed);
         let mut places = core::mem::take(&mut self.places);
         listed.clear();
         places.clear();
-        let (shift, unit) = (self.shift, self.unit);
+        let (shift, unit) = (self.moves.shift, self.moves.unit);
         let below = (1 << shift) - 1;
-        let by = (&self.grade, self.backend);
+        let by = (&self.moves.grade, self.backend);
         self.set.list(&within, corner, by, |some| {
             let offsets = || some.found.iter().map(|found| some.offset(found));
             for (axis, list) in places.placed.iter_mut().enumerate() {
                 list.extend(offsets().map(|offset| (offset[axis] >> shift) as i32 as f32));
             }
-            match self.grade.known() {
+            match self.moves.grade.known() {
                 Some(share) => places
                     .weight
                     .resize(places.placed[0].len(), weight::<D>(share) as f32),
@@ -356,7 +308,7 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
         let steps = self.reaches.len();
         let mut all = Extent::NONE;
         let mut from = Extent::NONE;
-        if let Some(share) = self.grade.known() {
+        if let Some(share) = self.moves.grade.known() {
             return self.prepare_alike(share);
         }
         for t in (0..steps).rev() {
@@ -428,13 +380,13 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
         }
         let (spacing, per_unit) = (
             self.set.spacing(),
-            self.set.step() * f64::from(1u32 << self.shift),
+            self.set.step() * f64::from(1u32 << self.moves.shift),
         );
         let mut freedoms = core::mem::take(&mut self.freedoms);
         let mut freedom = core::mem::take(&mut self.places.freedom);
         let mut slippery = core::mem::take(&mut self.slippery);
         freedoms.find(
-            &self.grade,
+            &self.moves.grade,
             (spacing, per_unit),
             |i| self.placed(corner, i as usize),
             |i, free, is_gentle| {
@@ -466,7 +418,7 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
 
     /// Puts points back that slipped over an edge.
     fn go_back(&mut self, corner: [i128; D]) {
-        if self.grade.known().is_some() {
+        if self.moves.grade.known().is_some() {
             return;
         }
         for i in 0..self.listed.len() {
@@ -478,7 +430,7 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
             } = self.listed[i];
             if is_wanted && may_slip && self.places.freedom[i] > 0.0 {
                 let at = self.place(corner, i, &self.places.at);
-                let there = self.grade.share(self.set.looked_at(at));
+                let there = self.moves.grade.share(self.set.looked_at(at));
                 if slipped(share, there) {
                     for axis in 0..D {
                         self.places.at[axis][i] = self.places.placed[axis][i];
@@ -491,6 +443,6 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
     /// A fixed-point coordinate from a window's corner, in its units.
     fn offset(&self, corner: [i128; D], axis: usize, k: i128) -> i64 {
         let limit = i128::from(FARTHEST) << 4;
-        ((k - corner[axis]) >> self.shift).clamp(-limit, limit) as i64
+        ((k - corner[axis]) >> self.moves.shift).clamp(-limit, limit) as i64
     }
 }

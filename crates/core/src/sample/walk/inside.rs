@@ -84,7 +84,9 @@ impl<'a> Inside<'a> {
         let many = area.as_ref().filter(|area| area.parts() > MANY);
         let tiles = many.map(|area| {
             let tiles = Tiles::new(ends);
-            let reduced = tiles.boxes().map(|tile| area.focus(&settler.region(&tile)));
+            let reduced = tiles
+                .boxes()
+                .map(|tile| area.focus(&settler.moves.region(&tile)));
             let reduced = reduced.collect();
             (tiles, reduced)
         });

@@ -89,7 +89,7 @@ impl Pieces {
         let bounds = [scope.x.bounds.clone(), scope.y.bounds.clone()];
         let sieve = scope.sieve.as_ref();
         Some(Self {
-            around: settler.around(&bounds),
+            around: settler.moves.around(&bounds),
             bounds,
             clear: sieve.map_or_else(Vec::new, |sieve| sieve.mask().clear_guards()),
             settler,
@@ -110,8 +110,8 @@ impl Pieces {
             let x = &self.scope.x.all;
             let columns = x.start.max(bands.start * BAND_WIDTH)..x.end.min(bands.end * BAND_WIDTH);
             let within = self.places(&[columns, rows.all.clone()]);
-            let ends = widened(&within, self.settler.most_move(&within));
-            area.focus(&self.settler.region(&ends))
+            let ends = widened(&within, self.settler.moves.most(&within));
+            area.focus(&self.settler.moves.region(&ends))
         });
         self.near = near.cloned();
         self.halves = halves;
@@ -130,12 +130,12 @@ impl Pieces {
     fn area(&self, within: &Box2) -> Option<Area> {
         let whole = self.scope.sieve.as_ref().and_then(Sieve::area);
         let area = self.near.as_ref().or(whole)?;
-        Some(area.focus(&self.settler.region(within)))
+        Some(area.focus(&self.settler.moves.region(within)))
     }
 
     /// Turns the tests of other sets to points that end in a box.
     fn aim(&self, ends: &Box2) {
-        let within = self.settler.region(&common(ends, &self.bounds));
+        let within = self.settler.moves.region(&common(ends, &self.bounds));
         self.clear.iter().for_each(|guard| guard.aim(within));
     }
 
@@ -145,7 +145,7 @@ impl Pieces {
         if within.iter().any(Range::is_empty) {
             return;
         }
-        let ends = widened(&within, self.settler.most_move(&within));
+        let ends = widened(&within, self.settler.moves.most(&within));
         self.aim(&ends);
         let area = self.area(&ends);
         let state = area.as_ref().map_or(Some(true), Area::is_all_or_nothing);
@@ -178,7 +178,7 @@ impl Pieces {
         }
         let lattice = &self.scope.lattice;
         let is_guarded = !self.clear.is_empty();
-        let ends = widened(&within, self.settler.most_move(&within));
+        let ends = widened(&within, self.settler.moves.most(&within));
         let area = self.area(&ends);
         let state = area.as_ref().map_or(Some(true), Area::is_all_or_nothing);
         let [columns, rows] = piece;
@@ -192,9 +192,10 @@ impl Pieces {
         let tiles = Tiles::new(&within);
         // By tile: whether the area has all or nothing of it and around.
         let state = |tile: Box2| {
-            let ends = common(&ends, &widened(&tile, self.settler.most_move(&tile)));
+            let ends = common(&ends, &widened(&tile, self.settler.moves.most(&tile)));
             let area = area.as_ref()?;
-            area.focus(&self.settler.region(&ends)).is_all_or_nothing()
+            area.focus(&self.settler.moves.region(&ends))
+                .is_all_or_nothing()
         };
         let states: Vec<Option<bool>> = match area {
             Some(_) => tiles.boxes().map(state).collect(),
@@ -220,17 +221,17 @@ impl Pieces {
                 }
             }
         });
-        let margin = MARGIN * i128::from(self.settler.most_move(&within));
+        let margin = MARGIN * i128::from(self.settler.moves.most(&within));
         let margin = (margin as f64 * self.settler.width()) as i128;
         for some in joined(unsure.into_iter().flatten(), margin) {
             if self.scope.stop.is_raised() {
                 break;
             }
-            let ends = common(&ends, &widened(&some, self.settler.most_move(&some)));
+            let ends = common(&ends, &widened(&some, self.settler.moves.most(&some)));
             self.aim(&ends);
             let near = area
                 .as_ref()
-                .map(|area| area.focus(&self.settler.region(&ends)));
+                .map(|area| area.focus(&self.settler.moves.region(&ends)));
             let by = (lattice, &self.settler);
             let inside = Inside::new((bounds, &ends), near, &self.clear, by);
             let wants = |placed: &Placed| is_own(placed) && decide(placed).is_none();
@@ -250,7 +251,7 @@ impl Pieces {
         if sieve.is_some() || lattice.constant_share().is_none() || columns.is_empty() {
             return none;
         }
-        let most = i128::from(self.settler.most_move(&self.bounds));
+        let most = i128::from(self.settler.moves.most(&self.bounds));
         let [x_ends, y_ends] = places_of(lattice, &[columns.clone(), y.all.clone()]);
         let is_inside =
             self.bounds[0].start <= x_ends.start - most && x_ends.end + most <= self.bounds[0].end;
@@ -462,7 +463,7 @@ pub(super) fn find_few_settled(pieces: &mut Pieces) -> Option<Few> {
     }
     let side = scope.lattice.table.alpha().set_side_f64();
     let area = lengths[0] as f64 * lengths[1] as f64;
-    if area * side * side * pieces.settler.greatest_share(&pieces.around) > FEW {
+    if area * side * side * pieces.settler.moves.greatest_share(&pieces.around) > FEW {
         return None;
     }
     let mut settled = Vec::new();

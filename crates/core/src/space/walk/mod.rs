@@ -10,7 +10,7 @@ mod few;
 mod finish;
 mod rows;
 
-use alloc::{boxed::Box, sync::Arc, vec::Vec};
+use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
 use self::{
@@ -24,7 +24,6 @@ use super::{
     columns::Row,
     lattice::fixed,
     scope::Scope,
-    settled::SettledWalk,
     template::{Plane, Templates},
 };
 use crate::{
@@ -42,10 +41,8 @@ const LONG: usize = 512;
 #[derive(Clone, Debug)]
 pub(super) struct Walk {
     course: Course,
-    /// The walk in place of this one where points settle.
-    settled: Option<Box<SettledWalk>>,
     wants_ids: bool,
-    backend: Backend,
+    pub(super) backend: Backend,
     templates: Templates<i32>,
     /// The points of the rows so far, before the warp if there is one.
     pending: Batch,
@@ -79,7 +76,6 @@ impl Walk {
     ) -> Self {
         Self {
             course: Course::new(scope.clone(), ranges, start),
-            settled: SettledWalk::new(&scope, ranges, start).map(Box::new),
             wants_ids: wants_ids || scope.lattice.is_sifted(),
             backend: Backend::best(),
             templates: Templates::default(),
@@ -92,22 +88,8 @@ impl Walk {
         }
     }
 
-    pub(super) const fn backend(&self) -> Backend {
-        self.backend
-    }
-
-    pub(super) fn set_backend(&mut self, backend: Backend) {
-        self.backend = backend;
-        if let Some(settled) = &mut self.settled {
-            settled.set_backend(backend);
-        }
-    }
-
     /// Fills a batch with the next points, at least one. Returns false if there are none.
     pub(super) fn next(&mut self, out: &mut Batch) -> bool {
-        if let Some(settled) = &mut self.settled {
-            return settled.next(out);
-        }
         loop {
             let is_complete = match self.course.plane {
                 Some(plane) => self.fill(plane),
