@@ -12,7 +12,7 @@ use strew_query::{Query, groups, read_body};
 /// The built-in tables, and what a daemon with default settings makes of a query.
 pub struct Library {
     pub catalog: Catalog,
-    ready: BTreeMap<String, Ready>,
+    pub ready: BTreeMap<String, Ready>,
     pub limits: Limits,
 }
 
@@ -54,15 +54,6 @@ impl Library {
         let draft = read_body(body.to_string().as_bytes(), groups::QUERY)?;
         let (query, _) = draft.check(&self.catalog.clone().into(), 10_000)?;
         Ok(query)
-    }
-
-    /// Whether a query can be planned with the tables, without fields, and without kinds that a daemon makes.
-    pub fn has(&self, body: &Value) -> bool {
-        let known = |set: &strew_query::Set| {
-            set.kinds.is_none() && self.ready.contains_key(&set.entry.key.to_string())
-        };
-        self.query(body)
-            .is_ok_and(|query| query.sets.iter().all(known))
     }
 
     /// Checks and plans a query, as JSON.
