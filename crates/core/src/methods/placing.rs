@@ -132,7 +132,7 @@ macro_rules! placing {
             /// let still = half.clone().settle(0)?;
             /// // The same points, some of them elsewhere.
             #[doc = concat!("let settled = half.chunk(20.0, ", $origin, ")?.to_vec();")]
-            /// assert!(settled.iter().any(|point| still.point(point.id) != Some(*point)));
+            /// assert!(settled.iter().any(|point| still.point(point.id).map(|same| same.at()) != Some(point.at())));
             /// # Ok::<(), strew_core::Error>(())
             /// ```
             pub fn settle(self, steps: u32) -> Result<Self, Error> {
