@@ -3,6 +3,8 @@
 use alloc::vec::Vec;
 use core::{array::from_fn, ops::Range};
 
+use crate::table::FRACTION_BITS;
+
 /// An address relative to an origin.
 pub(crate) trait Offset<const D: usize>: Copy {
     /// The distance from the origin, in lattice units.
@@ -68,6 +70,12 @@ impl<const D: usize, Id: Offset<D>> Batch<D, Id> {
     pub(crate) fn address(&self, point: usize) -> Option<[i64; D]> {
         let id = self.ids.get(point)?.offset();
         Some(from_fn(|axis| self.origin[axis] + id[axis]))
+    }
+
+    /// The fixed-point place of the point at a position.
+    #[inline(always)]
+    pub(crate) fn place(&self, point: usize) -> [i64; D] {
+        from_fn(|axis| (self.origin[axis] << FRACTION_BITS) + i64::from(self.places[axis][point]))
     }
 
     /// Moves all points of another batch after those of this one, whatever its origin.

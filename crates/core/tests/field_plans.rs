@@ -263,8 +263,8 @@ fn a_stopped_count_is_an_error() {
 #[test]
 fn where_a_field_is_constant_its_bounds_change_nothing() {
     let spec = || -> Result<FieldSpec, strew_core::Error> {
-        let low = FieldSpec::ramp([280.0, 0.0], [304.0, 0.0], [0.4, 0.0])?;
-        let island = FieldSpec::radial([100.0, 360.0], [72.0, 76.0], [1.0, 0.0])?;
+        let low = FieldSpec::ramp([700.0, 0.0], [760.0, 0.0], [0.4, 0.0])?;
+        let island = FieldSpec::radial([250.0, 900.0], [180.0, 190.0], [1.0, 0.0])?;
         FieldSpec::max(vec![low, island])
     };
     let field = spec().expect("valid");
@@ -276,14 +276,14 @@ fn where_a_field_is_constant_its_bounds_change_nothing() {
         let shares = field.clone();
         let looked_up = set.in_field(move |at: [f64; 2]| shares.share(at));
         let set = set.in_field(field.clone());
-        let region = Region::new([-12.0, 4.0], [360.0, 600.0]).expect("ordered");
-        let circle = Circle::new([120.0, 280.0], 168.0).expect("round");
+        let region = Region::new([-30.0, 10.0], [900.0, 1500.0]).expect("ordered");
+        let circle = Circle::new([300.0, 700.0], 420.0).expect("round");
         for area in [Area::from(region), circle.into()] {
             let expected = within(&looked_up, area.clone());
             for offset in [0.0, 0.01, 0.3, 0.31, 0.9] {
                 let parts = Parts {
                     block: 1234,
-                    tile: 6400,
+                    tile: 40_000,
                     offset,
                     limit: 5000,
                     number: 2,

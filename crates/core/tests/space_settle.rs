@@ -136,6 +136,22 @@ proptest! {
     }
 }
 
+/// Pieces of a thin tower are as high as they get.
+#[test]
+fn towers_agree_with_their_floors() {
+    let set = set("blue", 7, 1).keep(0.01).expect("a share");
+    let tower = between([900.0, -40.0, -300.0], [960.0, 20.0, 900.0]);
+    let points = within(&set, tower);
+    let floors = (0..12).flat_map(|i| {
+        let z = 100.0 * f64::from(i) - 300.0;
+        within(&set, between([900.0, -40.0, z], [960.0, 20.0, z + 100.0]))
+    });
+    let mut floors: Vec<Point> = floors.collect();
+    floors.sort_by_key(|point| order(point.id));
+    assert!(points.len() > 40_000);
+    assert_eq!(points, floors);
+}
+
 #[test]
 fn thinned_sets_keep_their_distances() {
     for (seed, keep) in [(7, 0.9), (8, 0.4), (0, 0.05)] {

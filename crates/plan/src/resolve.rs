@@ -22,6 +22,14 @@ fn resolved(
     for_distance: impl Fn(f64) -> Result<Spacing, strew_core::Error>,
     density: impl Fn(Spacing) -> f64,
 ) -> Result<Resolved, Error> {
+    if let Amount::MinDistance(distance) = set.amount
+        && set.moves()
+        && set.field.is_some()
+    {
+        let detail = "not with a field: points settle";
+        let allowed = "density, spacing or count; or settle=0";
+        return Err(set.fault(parameters::MIN_DISTANCE.name, distance, detail, allowed));
+    }
     let (parameter, value, spacing) = match set.amount {
         Amount::Density(value) => (&parameters::DENSITY, value, of_density(value)),
         Amount::Spacing(value) => (&parameters::SPACING, value, Spacing::new(value)),
@@ -45,14 +53,6 @@ fn resolved(
 }
 
 pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Resolved, Error> {
-    if let Amount::MinDistance(distance) = set.amount
-        && set.moves()
-        && set.field.is_some()
-    {
-        let detail = "not with a field: points settle";
-        let allowed = "density, spacing or count; or settle=0";
-        return Err(set.fault(parameters::MIN_DISTANCE.name, distance, detail, allowed));
-    }
     let for_distance = |distance| ready.table.least_distance().spacing_for(distance, set.warp);
     resolved(set, Spacing::from_density, for_distance, |spacing| {
         spacing.density()

@@ -126,7 +126,7 @@ fn keyword(parameter: &Parameter) -> String {
     format!("{name}{mark}")
 }
 
-/// What sets have in Python in place of the headers of answers.
+/// What sets in Python offer where answers have headers.
 const ATTRIBUTES_FOR_HEADERS: [(&str, &str); 3] = [
     ("The header strew-next is", "`points.next` is"),
     ("the value of its header strew-next", "its `points.next`"),

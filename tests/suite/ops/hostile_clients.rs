@@ -20,12 +20,12 @@ use crate::support::{
 
 const SMALL: &str = "/v1/points?bbox=0,0,9,9&density=1&profile=test";
 
-/// The number of connections that this process may open, up to two thousand: each takes as much as each of more.
+/// The number of connections that this process may open, up to ten thousand.
 fn most_connections() -> usize {
     /// Open files left to other tests.
     const OTHERS: u64 = 1500;
     let Rlimit { current, maximum } = getrlimit(Resource::Nofile);
-    let wanted = 2_000 + OTHERS;
+    let wanted = 10_000 + OTHERS;
     let possible = maximum.map_or(wanted, |most| most.min(wanted));
     if current.is_some_and(|now| now < possible) {
         let raised = Rlimit {
@@ -37,14 +37,14 @@ fn most_connections() -> usize {
     let most = current.map_or(wanted, |now| now.max(possible));
     usize::try_from(most.saturating_sub(OTHERS))
         .expect("small")
-        .min(2_000)
+        .min(10_000)
 }
 
 #[test]
-fn thousands_of_idle_connections_take_little_memory_and_others_are_served() {
+fn ten_thousand_idle_connections_take_little_memory_and_others_are_served() {
     let count = most_connections();
     assert!(count >= 100, "this machine allows {count} connections");
-    if count < 2_000 {
+    if count < 10_000 {
         println!("scaled to {count} connections by the limit on open files");
     }
     let limit = format!("server.max_connections={}", count + 10);

@@ -68,25 +68,24 @@ fn swollen() -> [(&'static str, Vec<u8>, &'static str); 5] {
 #[tokio::test]
 async fn messages_of_nothing_are_refused_before_they_are_decoded() {
     let (daemon, before) = warm();
-    for (i, (name, message, expected)) in swollen().into_iter().enumerate() {
+    for (name, message, expected) in swollen() {
         let expected = expected.replace(' ', "%20");
-        let mut packed = vec![("identity", frame(0, &message))];
-        // What is unpacked is read as what came so: one message shows it.
-        if i == 0 {
-            let zstd = zstd::encode_all(&message[..], 3).expect("memory takes it");
-            packed.extend([
-                ("gzip", frame(1, &gzip(&message))),
-                ("zstd", frame(1, &zstd)),
-            ]);
-        }
+        let packed = [
+            ("identity", frame(0, &message)),
+            ("gzip", frame(1, &gzip(&message))),
+            (
+                "zstd",
+                frame(
+                    1,
+                    &zstd::encode_all(&message[..], 3).expect("memory takes it"),
+                ),
+            ),
+        ];
         for (coding, body) in packed {
             let (status, text) = call(&daemon, STREAM, body, coding).await;
             assert_eq!(status, "3", "{name}, {coding}: {text}");
             assert!(text.contains(&expected), "{name}, {coding}: {text}");
             stays_small(&daemon, before, &format!("{name}, {coding}"));
-        }
-        if i > 0 {
-            continue;
         }
         let binary = frame(0, &message);
         let text = BASE64_STANDARD.encode(&binary).into_bytes();
@@ -197,9 +196,6 @@ fn lists_in_bodies_are_counted_while_they_are_read() {
         let answer = http1::post(daemon.address(), QUERY, &[], body.as_bytes());
         assert_fault(&answer, name, at, &texts);
         stays_small(&daemon, before, name);
-        if name != "include" {
-            continue;
-        }
         let packed = gzip(body.as_bytes());
         let coded = [("content-encoding", "gzip")];
         let answer = http1::post(daemon.address(), QUERY, &coded, &packed);

@@ -41,7 +41,7 @@ fn readiness_ends_first_and_requests_are_still_answered() {
 #[test]
 fn a_stream_that_ends_in_time_is_complete() {
     let mut daemon = Daemon::start(&["shutdown.drain_seconds=300"]);
-    let path = "/v1/points?bbox=0,0,600,600&density=1&profile=test&format=ndjson";
+    let path = "/v1/points?bbox=0,0,1500,1500&density=1&profile=test&format=ndjson";
     let mut reader = http1::open(daemon.address(), "GET", path, &[]);
     assert!(reader.skip(1).expect("a byte") > 0);
     daemon.terminate();

@@ -117,7 +117,7 @@ async fn grpc_streams_end_with_their_readers_too() {
 #[test]
 fn a_fast_reader_gets_everything() {
     let daemon = Daemon::start(&[]);
-    let path = "/v1/points?bbox=-300,-300,300,300&density=1&profile=test&format=";
+    let path = "/v1/points?bbox=-600,-600,600,600&density=1&profile=test&format=";
     let packed = daemon.get(&format!("{path}f32"));
     let count: usize = packed.header("strew-count").parse().expect("a number");
     assert_eq!(packed.body.len(), 8 * count);

@@ -90,6 +90,7 @@ const BODIES: &str = r#"
 {"layers": [{"name": "a", "min_distance": 1, "profile": "pink"}]} | layers[0].min_distance | pink
 {"layers": [{"name": "a", "spacing": 2, "periodic": 5000}]} | layers[0].periodic
 # Fields and terrains
+{"spacing": null, "min_distance": 1, "field": {"ramp": {"from": [0, 0], "to": [9, 0], "shares": [1, 0]}}} | min_distance | points settle | settle=0
 {"field": {"noise": {"wavelength": 9, "octaves": 99}}} | field.noise.octaves | 1 to 8
 {"field": {"multiply": [{"name": "ramp"}, {"ring": 1}]}} | field.multiply[1] | ring
 {"field": {"raster": {"file": "left.png"}}} | field.raster.file | name no files
@@ -114,6 +115,7 @@ const VOLUMES: &str = r#"
 {"region": {"prism": {"polygon": {"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [0, 1]]]}, "bottom": 2, "top": 1}}} | region.prism | top
 {"region": {"include": [{"ball": {"center": [0, 0, 0], "radius": 1}}, {"circle": {"center": [0, 0], "radius": 1}}]}} | region.include[1].circle | a shape of the plane
 {"region": {"include": []}} | region.include | missing
+{"region": {"bbox": [0, 0, 0, 9, 9, 9]}, "spacing": null, "min_distance": 1, "field": {"ramp": {"from": [0, 0], "to": [9, 0], "shares": [1, 0]}}} | min_distance | points settle | settle=0
 "#;
 
 /// A body with members of a case.

@@ -3,10 +3,7 @@
 
 use std::{
     path::PathBuf,
-    sync::{
-        Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicUsize, Ordering},
-    },
+    sync::{Mutex, MutexGuard, PoisonError},
 };
 
 use serde_json::{Value, json};
@@ -18,8 +15,8 @@ use super::{
     session::Session,
 };
 
-/// Browsers that run, or ran for a test before: two at most, because nothing else that tests start is as heavy.
-static PLACES: [Mutex<Option<Session>>; 2] = [Mutex::new(None), Mutex::new(None)];
+/// The browser that runs, or ran for a test before: one, because nothing else that tests start is as heavy.
+static PLACE: Mutex<Option<Session>> = Mutex::new(None);
 
 /// Keys by their names.
 pub mod key {
@@ -46,12 +43,7 @@ impl Browser {
     fn start(width: u32, height: u32) -> Option<Self> {
         let engine = Engine::chosen();
         let (driver, program) = engine.programs()?;
-        let place = PLACES.iter().find_map(|place| place.try_lock().ok());
-        let mut place = place.unwrap_or_else(|| {
-            static NEXT: AtomicUsize = AtomicUsize::new(0);
-            let next = NEXT.fetch_add(1, Ordering::Relaxed) % PLACES.len();
-            PLACES[next].lock().unwrap_or_else(PoisonError::into_inner)
-        });
+        let mut place = PLACE.lock().unwrap_or_else(PoisonError::into_inner);
         let is_new = place.is_none();
         place.get_or_insert_with(|| Session::start(engine, &driver, &program));
         let browser = Self(place);

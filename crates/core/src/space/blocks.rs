@@ -63,7 +63,7 @@ impl<F: Format> Blocks<F> {
     /// The next `left` points of a scope from a place on.
     pub(super) fn walk(scope: Arc<Scope>, start: Option<[i64; 3]>, left: u128) -> Self {
         let lattice = &scope.lattice;
-        let is_plain = lattice.shears.is_none() && !lattice.is_sifted();
+        let is_plain = lattice.shears.is_none() && !lattice.is_sifted() && scope.room == 0;
         let source = if is_plain && scope.clear.is_empty() {
             Source::Rows(Box::new(Rows::new(scope.clone(), start)))
         } else {

@@ -98,8 +98,8 @@ impl Clearance {
         let origin = batch.origin;
         for edge in &self.own {
             batch.retain(|place| {
-                let place = [0, 1, 2].map(|axis| fixed(origin[axis]) + i64::from(place[axis]));
-                let at = place.map(|place| scope.lattice.world(place));
+                let place = |axis| fixed(origin[axis]) + i64::from(place[axis]);
+                let at = scope.lattice.at([0, 1, 2].map(place));
                 !edge.is_near(&mut self.others, at, &scope.stop)
             });
         }
@@ -236,14 +236,8 @@ impl Other {
             return;
         };
         let scope = Arc::new(scope);
-        let mut all = |batch: &Batch| {
-            (0..batch.len()).all(|i| {
-                each([0, 1, 2].map(|axis| {
-                    let place = fixed(batch.origin[axis]) + i64::from(batch.places[axis][i]);
-                    self.lattice.world(place)
-                }))
-            })
-        };
+        let mut all =
+            |batch: &Batch| (0..batch.len()).all(|i| each(self.lattice.at(batch.place(i))));
         let few = if scope.is_small() { few(&scope) } else { None };
         if let Some(few) = few {
             all(&few);

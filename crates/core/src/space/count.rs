@@ -206,3 +206,32 @@ pub(super) fn keep(scope: &Arc<Scope>) -> Batch {
     }
     kept
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        space::{PointId, Region, SpaceSet, Table, mask::Mask},
+        stop::Stop,
+    };
+
+    /// Parts of a set that settles, all of which lies inside, are counted by their addresses.
+    #[test]
+    fn parts_inside_have_the_points_of_their_walk() {
+        let alpha = "sqrt(3)".parse().expect("valid");
+        let table = Table::undisplaced(alpha, 5, "pattern").expect("small");
+        let set = SpaceSet::new(table).seed(7).keep(0.3).expect("a share");
+        let region = Region::new([-20.0; 3], [20.0; 3]).expect("a box");
+        let all = set.within(region).expect("near").to_vec();
+        let felled: Vec<PointId> = all.iter().map(|point| point.id).step_by(5).collect();
+        let set = set.lod(0.8).expect("a part").without(felled);
+        let volume = Volume::Region(region);
+        let scope = Scope::new(&set.lattice, &Mask::default(), &volume, Stop::default());
+        let scope = Arc::new(scope.expect("near"));
+        let inner = [-20..21, -9..30, -25..7];
+        assert!(matches!(scope.state(&inner, None), State::In));
+        let walked = walked(&scope, &mut Clearance::new(&scope), &inner);
+        assert!(walked > 100);
+        assert_eq!(count(&scope, &inner), walked);
+    }
+}

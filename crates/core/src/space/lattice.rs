@@ -189,7 +189,7 @@ impl Lattice {
         })?;
         let part = self.settling().map_or(1.0, |_| self.placement.lod.get());
         let has = |grade: &Grade<3>| {
-            let share = grade.share(place.map(|k| self.world(k)));
+            let share = grade.share(self.at(place));
             self.rank(id) < part * share
         };
         let is_there = self.grade.as_ref().is_none_or(has) && !self.lacks(id);
@@ -223,9 +223,9 @@ impl Lattice {
             .any(|ids| ids.binary_search(&id).is_ok())
     }
 
-    /// Whether points are looked at one by one: those of a field, some by their ids, or those that settle.
+    /// Whether points are looked at one by one: those of a field, or some by their ids.
     pub(super) fn is_sifted(&self) -> bool {
-        self.grade.is_some() || !self.without.is_empty() || self.settling().is_some()
+        self.grade.is_some() || !self.without.is_empty()
     }
 
     /// Leaves the points of a batch, which has ids, that a field leaves and no list of ids leaves out.
@@ -234,11 +234,9 @@ impl Lattice {
             return;
         }
         let origin = batch.origin;
-        let world = |axis: usize, place: i32| self.world(fixed(origin[axis]) + i64::from(place));
-        let at = |i: usize| [0, 1, 2].map(|axis| world(axis, batch.places[axis][i]));
         let mut shares = vec![1.0; batch.len()];
         if let Some(grade) = &self.grade {
-            let places: Vec<[f64; 3]> = (0..batch.len()).map(at).collect();
+            let places: Vec<[f64; 3]> = self.all_at(batch);
             grade.shares(&places, &mut shares);
         }
         let stays = |(id, &share): (&[i32; 3], &f64)| {
@@ -251,9 +249,20 @@ impl Lattice {
         batch.retain(|_| stays.next() == Some(true));
     }
 
+    /// The world coordinates of all points of a batch.
+    pub(super) fn all_at(&self, batch: &Batch) -> Vec<[f64; 3]> {
+        (0..batch.len()).map(|i| self.at(batch.place(i))).collect()
+    }
+
+    /// The world coordinates of a fixed-point place.
+    #[inline(always)]
+    pub(super) fn at(&self, place: [i64; 3]) -> [f64; 3] {
+        place.map(|k| self.world(k))
+    }
+
     /// The point at a fixed-point place.
     pub(super) fn point_at(&self, id: PointId, place: [i64; 3]) -> Point {
-        let [x, y, z] = place.map(|k| self.world(k));
+        let [x, y, z] = self.at(place);
         Point { id, x, y, z }
     }
 

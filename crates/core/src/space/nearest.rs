@@ -118,8 +118,7 @@ fn around(
         }
         for (i, id) in batch.ids.iter().enumerate() {
             let origin = batch.origin;
-            let place =
-                [0, 1, 2].map(|axis| fixed(origin[axis]) + i64::from(batch.places[axis][i]));
+            let place = batch.place(i);
             let [dx, dy, dz] = [0, 1, 2].map(|axis| lattice.world(place[axis]) - at[axis]);
             let squared = dx * dx + dy * dy + dz * dz;
             if squared <= farthest {

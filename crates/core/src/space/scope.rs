@@ -42,7 +42,7 @@ pub struct Scope {
     pub(super) corner: Corner<3>,
     /// The sets that points keep clear of.
     pub(super) clear: Arc<[ClearOf]>,
-    /// The addresses of the points inside that are left out by their ids.
+    /// The addresses of the points inside that are left out by their ids; where points settle, of some outside, too.
     pub(super) missing: Arc<[[i64; 3]]>,
     /// How far points may settle from where they are put, in fixed-point units.
     pub(super) room: i64,
@@ -85,11 +85,9 @@ impl Scope {
         let volume = rest.filter(|rest| !matches!(rest, Volume::Region(_)));
         let mut scope = Self {
             volume,
-            region,
-            corner,
             clear: mask.clear.clone(),
             stop,
-            ..Self::of_places(lattice, bounds)
+            ..Self::between_places(lattice, bounds, (region, corner))
         };
         scope.missing = scope.find_missing();
         Ok(scope)
@@ -97,6 +95,20 @@ impl Scope {
 
     /// The points of a lattice at some places.
     pub(super) fn of_places(lattice: &Lattice, bounds: [Range<i64>; 3]) -> Self {
+        let ends = bounds.each_ref().map(|range| [range.start, range.end]);
+        let [min, max] = [0, 1].map(|end| ends.map(|ends| lattice.world(ends[end])));
+        let region = Region::between(min, max);
+        let first = (bounds.clone()).map(|range| range.start.into()..range.end.into());
+        let corner = Corner::new(lattice.step, &[], &region, &first);
+        Self::between_places(lattice, bounds, (region, corner))
+    }
+
+    /// All of a lattice between bounds, with offsets from a corner of the box around.
+    fn between_places(
+        lattice: &Lattice,
+        bounds: [Range<i64>; 3],
+        (region, corner): (Region, Corner<3>),
+    ) -> Self {
         let (mut room, mut leaf) = (0, LEAF);
         if let Some((_, grade)) = lattice.settling()
             && bounds.iter().all(|range| !range.is_empty())
@@ -111,7 +123,7 @@ impl Scope {
         let placed = bounds
             .clone()
             .map(|range| range.start - room..range.end + room);
-        let before = before(lattice, if room > 0 { &placed } else { &bounds });
+        let before = before(lattice, &placed);
         let all = [0, 1, 2].map(|axis| {
             let ([least, most], range) = (lattice.turned.reach[axis], &before[axis]);
             if range.is_empty() {
@@ -120,14 +132,8 @@ impl Scope {
             let start = -((i64::from(most) - range.start) >> FRACTION_BITS);
             start..((range.end - 1 - i64::from(least)) >> FRACTION_BITS) + 1
         });
-        let ends = bounds.each_ref().map(|range| [range.start, range.end]);
-        let [min, max] = [0, 1].map(|end| ends.map(|ends| lattice.world(ends[end])));
-        let region = Region::between(min, max);
-        let first = bounds
-            .clone()
-            .map(|range| range.start.into()..range.end.into());
         Self {
-            corner: Corner::new(lattice.step, &[], &region, &first),
+            corner,
             lattice: lattice.clone(),
             bounds,
             before,
@@ -140,16 +146,6 @@ impl Scope {
             leaf,
             stop: Stop::default(),
         }
-    }
-
-    /// Whether a place lies inside.
-    fn holds(&self, place: [i64; 3]) -> bool {
-        let at = || place.map(|v| self.lattice.world(v));
-        (0..3).all(|axis| self.bounds[axis].contains(&place[axis]))
-            && self
-                .volume
-                .as_ref()
-                .is_none_or(|volume| volume.contains(at()))
     }
 
     /// The states of the points of a box of the lattice, which is not empty, if their number is not known to be 0.
@@ -224,10 +220,15 @@ impl Scope {
             without: Vec::new(),
             ..lattice.clone()
         };
-        // Where points settle, parts are counted by their addresses where all of them lie inside.
+        let holds = |place: [i64; 3]| {
+            let is_in = |volume: &Volume| volume.contains(lattice.at(place));
+            (0..3).all(|axis| self.bounds[axis].contains(&place[axis]))
+                && self.volume.as_ref().is_none_or(is_in)
+        };
+        // Where points settle, those are needed only that lie in parts all of which is inside.
         let is_inside = |id: PointId| {
             let place = whole.place(id)?;
-            (self.room > 0 || self.holds(place)).then(|| id.lattice())
+            (self.room > 0 || holds(place)).then(|| id.lattice())
         };
         let mut missing: Vec<[i64; 3]> = Vec::new();
         for ids in &lattice.without {

@@ -4,7 +4,7 @@
 //! all of them settle (`sample/settle` has the steps), and those of the tile that end inside are given in the order of
 //! their addresses. Pieces and tiles decide only the cost: a point goes to the same place in each.
 
-use alloc::{boxed::Box, sync::Arc, vec::Vec};
+use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
 use super::{
@@ -28,55 +28,34 @@ const LEAST_HEIGHT: f64 = 64.0;
 /// About the most points of a piece that is higher.
 const MOST: f64 = 400_000.0;
 
-/// A settler of points in space.
-pub(super) type SpaceSettler = Settler<Lister, 3>;
-
 /// Lists points of space where they were placed.
 #[derive(Clone, Debug)]
-pub(super) struct Lister {
-    lattice: Lattice,
-    found: Vec<Found>,
-    shares: Vec<f64>,
-}
+pub(super) struct Lister(Lattice);
 
-/// A point relative to the origin of a batch.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
-    place: [i32; 3],
-    address: [i32; 3],
-}
+/// The place and the address of a point relative to the origin of a batch.
+type Found = ([i32; 3], [i32; 3]);
 
 impl Listed<3> for Found {
     #[inline(always)]
     fn address(&self) -> [i64; 3] {
-        self.address.map(i64::from)
+        self.1.map(i64::from)
     }
 
     #[inline(always)]
     fn place(&self) -> [i32; 3] {
-        self.place
+        self.0
     }
 }
 
 /// A settler of the points of a lattice; `None` if they stay.
-fn settler(lattice: &Lattice) -> Option<SpaceSettler> {
+fn settler(lattice: &Lattice) -> Option<Settler<Lister, 3>> {
     let (settle, grade) = lattice.settling()?;
-    Some(Settler::of(Lister::new(lattice), grade, settle))
-}
-
-impl Lister {
-    fn new(lattice: &Lattice) -> Self {
-        let placement = lattice.placement.with_settle(Settle::OFF);
-        let still = Lattice {
-            without: Vec::new(),
-            ..lattice.replaced(placement.with_lod(Keep::ALL))
-        };
-        Self {
-            lattice: still,
-            found: Vec::new(),
-            shares: Vec::new(),
-        }
-    }
+    let placement = lattice.placement.with_settle(Settle::OFF);
+    let still = Lattice {
+        without: Vec::new(),
+        ..lattice.replaced(placement.with_lod(Keep::ALL))
+    };
+    Some(Settler::of(Lister(still), grade, settle))
 }
 
 impl Settling<3> for Lister {
@@ -91,25 +70,25 @@ impl Settling<3> for Lister {
     }
 
     fn side(&self) -> f64 {
-        self.lattice.table.map().alpha().set_side_f64()
+        self.0.table.map().alpha().set_side_f64()
     }
 
     fn spacing(&self) -> f64 {
-        self.lattice.placement.spacing.get()
+        self.0.placement.spacing.get()
     }
 
     fn step(&self) -> f64 {
-        self.lattice.step
+        self.0.step
     }
 
     fn certified(&self) -> f64 {
-        let relative = self.lattice.table.least_distance();
-        let relative = relative.with_warp(self.lattice.placement.warp);
+        let relative = self.0.table.least_distance();
+        let relative = relative.with_warp(self.0.placement.warp);
         relative * f64::from(1u32 << FRACTION_BITS) / self.side()
     }
 
     fn looked_at(&self, place: [i128; 3]) -> [f64; 3] {
-        place.map(|k| self.lattice.world(k as i64))
+        self.0.at(place.map(|k| k as i64))
     }
 
     fn list(
@@ -122,37 +101,18 @@ impl Settling<3> for Lister {
         if within.iter().any(Range::is_empty) {
             return;
         }
-        let Self {
-            lattice,
-            found,
-            shares,
-        } = self;
+        let lattice = &self.0;
         let bounds = (within.each_ref()).map(|range| range.start as i64..range.end as i64);
         let scope = Arc::new(Scope::of_places(lattice, bounds));
         let mut give = |batch: &Batch| {
             let origin = batch.origin;
             let place = |i: usize| batch.places.each_ref().map(|list| list[i]);
-            let all = batch.ids.iter().enumerate();
-            found.clear();
-            found.extend(all.map(|(i, &address)| Found {
-                place: place(i),
-                address,
-            }));
-            shares.clear();
-            shares.resize(found.len(), grade.known().unwrap_or(1.0));
-            if grade.known().is_none() {
-                let world =
-                    |(axis, v): (usize, i32)| lattice.world(fixed(origin[axis]) + i64::from(v));
-                let at = |found: &Found| {
-                    let [x, y, z] = found.place;
-                    [(0, x), (1, y), (2, z)].map(world)
-                };
-                let places: Vec<[f64; 3]> = found.iter().map(at).collect();
-                grade.shares(&places, shares);
-            }
+            let found = (0..batch.len()).map(|i| (place(i), batch.ids[i]));
+            let mut shares = vec![0.0; batch.len()];
+            grade.shares(&lattice.all_at(batch), &mut shares);
             visit(List {
-                found,
-                shares,
+                found: &found.collect::<Vec<Found>>(),
+                shares: &shares,
                 address: origin,
                 origin: [0, 1, 2]
                     .map(|axis| (i128::from(fixed(origin[axis])) - corner[axis]) as i64),
@@ -176,7 +136,7 @@ impl Settling<3> for Lister {
 #[derive(Clone, Debug)]
 pub(super) struct SettledWalk {
     scope: Arc<Scope>,
-    settler: SpaceSettler,
+    settler: Settler<Lister, 3>,
     /// The addresses that are walked, and the first one unless that is the first of all.
     ranges: [Range<i64>; 3],
     start: Option<[i64; 3]>,
@@ -276,12 +236,7 @@ impl SettledWalk {
     }
 
     /// Adds the points of a tile that end inside, relative to an origin.
-    fn settle(
-        &mut self,
-        tile: &[Range<i64>; 3],
-        origin: [i64; 3],
-        found: &mut Vec<([i32; 3], [i32; 3])>,
-    ) {
+    fn settle(&mut self, tile: &[Range<i64>; 3], origin: [i64; 3], found: &mut Vec<Found>) {
         let scope = &self.scope;
         let lattice = &scope.lattice;
         if tile.iter().any(Range::is_empty) || scope.stop.is_raised() {
@@ -297,10 +252,8 @@ impl SettledWalk {
             let ([least, most], around) = (places[axis].map(i128::from), &self.around[axis]);
             around.start.max(least)..around.end.min(most + 1)
         });
-        let start = self.start.filter(|at| {
-            [at[0] >> COLUMN_BITS, at[1] >> COLUMN_BITS]
-                == [origin[0] >> COLUMN_BITS, origin[1] >> COLUMN_BITS]
-        });
+        let column = |[x, y, _]: [i64; 3]| [x >> COLUMN_BITS, y >> COLUMN_BITS];
+        let start = self.start.filter(|at| column(*at) == column(origin));
         let reversed = |[x, y, z]: [i64; 3]| [z, y, x];
         let wants = |placed: &Placed<3>| {
             (0..3).all(|axis| tile[axis].contains(&placed.address[axis]))
@@ -311,7 +264,7 @@ impl SettledWalk {
         self.settler.settle(&within, wants, |settled| {
             let place = settled.place.map(|k| k as i64);
             let is_inside = (0..3).all(|axis| scope.bounds[axis].contains(&place[axis]));
-            let holds = |volume: &super::Volume| volume.contains(place.map(|k| lattice.world(k)));
+            let holds = |volume: &super::Volume| volume.contains(lattice.at(place));
             if is_inside && volume.as_ref().is_none_or(holds) {
                 found.push((
                     [0, 1, 2].map(|axis| (place[axis] - fixed(origin[axis])) as i32),
@@ -325,21 +278,21 @@ impl SettledWalk {
 /// The height of pieces of a width and depth.
 fn height(moves: &Moves<3>, within: &[Range<i128>; 3], sides: [i64; 2], density: f64) -> i64 {
     let share = moves.greatest_share(within).max(LEAST_IN_SPACE);
-    let area: f64 = sides
-        .iter()
+    let area: f64 = (sides.iter())
         .map(|side| (*side).clamp(1, 1 << COLUMN_BITS) as f64)
         .product();
     let local = 1.0 / libm::cbrt(share);
-    power((MOST / (area * density * share)).clamp(LEAST_HEIGHT * local, TILE * local))
+    let height = (MOST / (area * density * share)).clamp(LEAST_HEIGHT * local, TILE * local);
+    // Places are 32-bit offsets from the origin of a piece.
+    power(height).min(1 << COLUMN_BITS)
 }
 
 /// The point of an address, or `None` if there is none.
 pub(super) fn point(lattice: &Lattice, id: PointId) -> Option<Point> {
     let placed = lattice.place(id)?;
     let is = |placed: &Placed<3>| placed.address == id.lattice();
-    let mut settler = settler(lattice);
-    let settled =
-        (settler.as_mut()).and_then(|settler| settler.settled(placed.map(i128::from), is));
+    let settled = settler(lattice);
+    let settled = settled.and_then(|mut settler| settler.settled(placed.map(i128::from), is));
     let place = settled.map_or(placed, |place| place.map(|k| k as i64));
     Some(lattice.point_at(id, place))
 }

@@ -160,7 +160,7 @@ fn product<const D: usize>(a: [f32; D], b: [f32; D]) -> f32 {
     (1..D).fold(a[0] * b[0], |sum, i| sum + a[i] * b[i])
 }
 
-/// What decides how points settle beside their places.
+/// What decides, together with their places, how points settle.
 pub struct By<'a> {
     pub mix: Option<&'a Mix>,
     pub least: LeastDistance,

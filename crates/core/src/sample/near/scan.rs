@@ -133,13 +133,13 @@ fn scan_settled(
     });
     let made = |number| visits.map_or(ControlFlow::Continue(()), |visits| visits.row(number));
     tiles.visit(&within, made, |settled| {
-        if !lattice.shows(settled.id(), settled.share) {
+        if !lattice.shows(PointId::of(settled.address), settled.share) {
             return ControlFlow::Continue(());
         }
         let [x, y] = settled.place.map(|k| lattice.world(k));
         let (dx, dy) = (x - at[0], y - at[1]);
         let point = Point {
-            id: settled.id(),
+            id: PointId::of(settled.address),
             x,
             y,
         };

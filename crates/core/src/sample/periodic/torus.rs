@@ -63,7 +63,7 @@ impl Strip {
 
     /// Where the point of an address has settled that was placed somewhere, without its row.
     pub(super) fn one(&mut self, set: &PeriodicSet, id: PointId, place: [i64; 2]) -> [f64; 2] {
-        let wants = |placed: &Placed| placed.id() == id;
+        let wants = |placed: &Placed| PointId::of(placed.address) == id;
         let settled = self.settler.settled(place.map(i128::from), wants);
         set.wrapped(settled.map_or(place, |settled| settled.map(|k| k as i64)))
     }

@@ -1,6 +1,6 @@
 //! The settler of a lattice of the plane.
 
-use super::{Placed, Settled, lister::Lister, window::Settler};
+use super::{lister::Lister, window::Settler};
 use crate::sample::lattice::{Lattice, PointId};
 
 impl Settler {
@@ -14,21 +14,14 @@ impl Settler {
     pub(crate) fn point(&mut self, lattice: &Lattice, id: PointId) -> Option<[i128; 2]> {
         let place = lattice.place(id)?;
         self.settled(place, |placed| {
-            placed.id() == id && lattice.shows(id, placed.share)
+            PointId::of(placed.address) == id && lattice.shows(id, placed.share)
         })
     }
 }
 
-impl Placed {
-    pub(crate) const fn id(&self) -> PointId {
-        let [x, y] = self.address;
-        PointId { x, y }
-    }
-}
-
-impl Settled {
-    pub(crate) const fn id(&self) -> PointId {
-        let [x, y] = self.address;
-        PointId { x, y }
+impl PointId {
+    /// The id of an address.
+    pub(crate) const fn of([x, y]: [i64; 2]) -> Self {
+        Self { x, y }
     }
 }

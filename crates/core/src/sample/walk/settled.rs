@@ -160,7 +160,7 @@ impl Pieces {
         let wants = |placed: &Placed| {
             holds(piece, placed.address)
                 && (is_deep || placed.side(&self.bounds) != Some(false))
-                && lattice.shows(placed.id(), placed.share)
+                && lattice.shows(PointId::of(placed.address), placed.share)
         };
         self.settler.settle(&within, wants, |settled| {
             if is_inside || inside.holds(&settled) {
@@ -208,7 +208,7 @@ impl Pieces {
             _ => None,
         };
         let is_own = |placed: &Placed| {
-            holds(piece, placed.address) && lattice.shows(placed.id(), placed.share)
+            holds(piece, placed.address) && lattice.shows(PointId::of(placed.address), placed.share)
         };
         let mut number = 0;
         // By tile: the box of the points that have to settle.

@@ -242,9 +242,6 @@ fn relative(bounds: &[Range<i64>; 3], origin: [i64; 3]) -> [Range<i32>; 3] {
 
 /// The world coordinates of an offset from an origin.
 fn world(scope: &Scope, origin: [i64; 3], place: [i32; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|axis| {
-        scope
-            .lattice
-            .world(fixed(origin[axis]) + i64::from(place[axis]))
-    })
+    let place = |axis| fixed(origin[axis]) + i64::from(place[axis]);
+    scope.lattice.at([0, 1, 2].map(place))
 }
