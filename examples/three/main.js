@@ -10,11 +10,12 @@ const SIDE = 32; // meters, along each side of a chunk
 
 const parameters = new URLSearchParams(location.search);
 const speed = Number(parameters.get("speed") ?? 8); // meters a second
+const far = Number(parameters.get("far") ?? 256); // meters; less where no GPU draws
 const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 const scene = new THREE.Scene();
 scene.background = new THREE.Color(0xb9cbd9);
-scene.fog = new THREE.Fog(scene.background, 120, 280);
+scene.fog = new THREE.Fog(scene.background, 0.47 * far, 1.1 * far);
 scene.add(new THREE.HemisphereLight(0xdde8ff, 0x4a4a2a, 1.6));
 const sun = new THREE.DirectionalLight(0xfff1d0, 2);
 sun.position.set(-3, 4, -2);
@@ -50,7 +51,7 @@ const points = connect(url).points({
     spacing: 2.2, seed: 7, attributes: "angle, scale, variant, rank", scale_range: [0.7, 1.3],
     variants: { oak: 4, pine: 2, rock: 1 }, spread: "even",
 });
-const chunks = new Chunks(points, kinds, { side: SIDE, near: 96, far: 256 });
+const chunks = new Chunks(points, kinds, { side: SIDE, near: 0.375 * far, far });
 scene.add(chunks.group);
 const said = document.querySelector("#said");
 const at = { x: Number(parameters.get("x") ?? 0), y: Number(parameters.get("y") ?? 0) };
