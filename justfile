@@ -43,7 +43,7 @@ instructions *args:
 # under valgrind, which supports AVX2. (Miri needs a nightly toolchain and lacks most vector instructions.)
 sanitize:
     RUSTC_BOOTSTRAP=1 RUSTFLAGS=-Zsanitizer=address CARGO_TARGET_DIR=target/sanitize \
-        cargo test -p strew-core --lib --target x86_64-unknown-linux-gnu sample::
+        cargo test -p strew-core --lib --target x86_64-unknown-linux-gnu
     CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER="valgrind -q --error-exitcode=9" \
         cargo test -p strew-core --lib kernel::
 

@@ -219,7 +219,7 @@ fn unsafe_code_stands_only_where_it_is_explained() {
         let is_foreign = name == "bindings/python/src/arrow.rs"
             || name.starts_with("bindings/c/src/")
             || name == "src/ops/trim.rs";
-        if is_foreign || name.starts_with("crates/core/src/sample/kernel/") {
+        if is_foreign || name.starts_with("crates/core/src/kernel/") {
             continue;
         }
         // The names of exported functions are no memory.

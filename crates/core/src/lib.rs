@@ -54,7 +54,9 @@
     )),
     allow(
         dead_code,
+        unreachable_code,
         unused_imports,
+        unused_mut,
         unused_variables,
         reason = "of the parts that are left out"
     )
@@ -64,39 +66,59 @@ extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
 
+mod attribute;
 mod batch;
 pub mod comparison;
 pub mod cookbook;
 mod distance;
 mod error;
 pub mod field;
+mod kernel;
+mod lattice;
 pub mod map;
 mod methods;
+mod near;
 mod once;
 mod parts;
 pub mod pattern;
-mod sample;
+mod periodic;
+mod plan;
 pub mod server;
+mod set;
+mod settle;
 mod shape;
 mod sort;
 pub mod space;
 mod stop;
 pub mod table;
+mod walk;
+mod warp;
 mod window;
 
+pub use attribute::{
+    Attribute, Attributes, BoundAttributes, Column, Kinds, ScaleRange, UniformNumber,
+    VariantScales, Variants,
+};
 pub use distance::LeastDistance;
 pub use error::{Error, ErrorKind};
-pub use map::{Map, Twin};
-pub use pattern::{Alpha, Pattern};
-pub use sample::{
-    Attribute, Attributes, Backend, Blocks, BoundAttributes, Clearance, Column, Exact, F32, F64,
-    Field, Format, Keep, Kind, Kinds, LATTICE_LIMIT, Member, Members, Neighbor, Offsets, Place,
-    Placement, Plan, Point, PointId, PointSet, Points, Raster, ScaleRange, Seed, Settle, Spacing,
-    Tile, UniformNumber, VariantScales, Variants, VaryingKinds, Warp,
+pub use field::{Field, Raster};
+pub use kernel::{Backend, Exact, F32, F64, Format, Offsets, Place, Points};
+pub use lattice::{
+    Keep, LATTICE_LIMIT, Placement, Point, PointId, Settle, Spacing, VaryingKinds, seed::Seed,
 };
-pub use sample::{PeriodicBlocks, PeriodicPlan, PeriodicSet};
+pub use map::{Map, Twin};
+pub use near::Clearance;
+pub use pattern::{Alpha, Pattern};
+pub use periodic::{PeriodicBlocks, PeriodicPlan, PeriodicSet};
+pub use plan::{
+    Plan,
+    member::{Member, Members},
+};
+pub use set::{Kind, Neighbor, PointSet};
 pub use shape::{Area, Circle, Polygon, Region, Shape};
 pub use table::Table;
+pub use walk::{Blocks, Tile};
+pub use warp::Warp;
 pub use window::Cursor;
 
 /// The version of the algorithm that turns a table, a density, a seed and a lattice address into a point,

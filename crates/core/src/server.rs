@@ -22,14 +22,17 @@ use crate::{
     Raster,
     error::Error,
     field::{FieldSpec, Terrain},
+    lattice::Spacing,
     map::Clusters,
     pattern::Alpha,
-    sample::{Neighbor, PeriodicPlan, PeriodicSet, Plan, PointSet, Spacing},
+    periodic::{PeriodicPlan, PeriodicSet},
+    plan::Plan,
+    set::{Neighbor, PointSet},
     shape::{Area, Region},
     window::Windowed as _,
 };
 
-pub use crate::sample::{Stop, Visits};
+pub use crate::{near::Visits, stop::Stop};
 
 /// Runs [`Clusters::new`], which stops once the flag is raised. The search looks at the flag for each block.
 ///

@@ -3,7 +3,7 @@
 
 use alloc::vec::Vec;
 
-use crate::sample::PointId;
+use crate::lattice::PointId;
 
 /// A place in the order of a request's points. [`PointSet::resume`](crate::PointSet::resume) finds the
 /// points from there on without counting.

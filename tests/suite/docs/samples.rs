@@ -109,9 +109,8 @@ fn a_forest_of_three_js_grows_around_the_camera() {
         return;
     };
     // Far away, where f32 alone would not know one tree from the next; and not far to see, because no GPU draws.
-    let address =
-        |url: &str| format!("{}/index.html?x=3e8&y=-7e8&speed=0&far=96&url={url}", files.url);
-    browser.go(&address(&daemon.url("")));
+    let page = format!("{}/index.html?x=3e8&y=-7e8&speed=0&far=96", files.url);
+    browser.go(&format!("{page}&url={}", daemon.url("")));
     let said = "document.querySelector('#said').textContent";
     let whole = "document.querySelector('#said').dataset.missing === '0'";
     let text = browser.until(&format!("{whole} && / in [1-9]/.test({said}) && {said}"));
@@ -128,7 +127,7 @@ fn a_forest_of_three_js_grows_around_the_camera() {
         "{errors:?}"
     );
     drop(daemon);
-    browser.go(&address("http://127.0.0.1:1"));
+    browser.go(&format!("{page}&url=http://127.0.0.1:1"));
     browser.until(&format!("{said}.includes('does not answer')"));
 }
 

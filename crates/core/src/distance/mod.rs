@@ -25,13 +25,11 @@ use pairs::{densest, least_of_kinds, least_squared};
 
 use crate::{
     error::{Error, ErrorKind, number, rounded},
+    lattice::{Spacing, seed::Seed},
     pattern::Alpha,
-    sample::{
-        Seed, Spacing, Warp, Waves,
-        space::{Shears, Stretch},
-    },
     space,
     table::{FRACTION_BITS, Table},
+    warp::{Shears, Stretch, Warp, Waves},
 };
 
 /// The least distance between any two points of a table's unbounded point sets, or between any two of some

@@ -27,7 +27,6 @@
 mod cell;
 mod clusters;
 mod neighborhood;
-mod numbers;
 mod shape;
 mod site;
 mod size;
@@ -36,7 +35,7 @@ mod twin;
 
 pub use clusters::Clusters;
 pub use neighborhood::Map;
-pub(crate) use numbers::Numbers;
+pub(crate) use neighborhood::Numbers;
 pub use shape::Shape;
 pub use site::Site;
 pub use size::{MAX_RADIUS, Size};

@@ -6,7 +6,10 @@
 
 use core::ops::Range;
 
-use super::{Alpha, first_hit::first_hit, floor_sum::count_hits};
+use super::{
+    Alpha,
+    rotation::{count_hits, first_hit},
+};
 
 /// A lattice axis.
 ///

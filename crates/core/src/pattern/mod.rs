@@ -16,24 +16,20 @@
 //! ```
 //!
 //! `alpha` is the number α (`quadratic` reads it exactly), `index` membership, `axis` the sets of
-//! columns and rows whose products make up the pattern. `floor_sum` and `first_hit` count and find
-//! members of such a set in O(log); `turns` counts for all intervals of a map at once. `arrangement` (with
-//! `occurrences`, its places in order) and `forward` hold two other results of the paper.
+//! columns and rows whose products make up the pattern. `rotation` counts and finds members of
+//! such a set in O(log), and counts for all intervals of a map at once. `arrangement` (with `occurrences`, its places in
+//! order) is another result of the paper.
 
 mod alpha;
 mod arrangement;
 mod axis;
-mod first_hit;
-mod floor_sum;
-mod forward;
 mod index;
 mod occurrences;
 mod quadratic;
-mod turns;
+mod rotation;
 
 pub use alpha::Alpha;
 pub use arrangement::Arrangement;
 pub use axis::{Axis, AxisSet, Class};
-pub use forward::{forward_map, is_vacant};
-pub use index::{IndexOrigin, Pattern};
-pub(crate) use turns::Turns;
+pub use index::{IndexOrigin, Pattern, forward_map, is_vacant};
+pub(crate) use rotation::Turns;

@@ -92,7 +92,8 @@ mod tests {
 
     use proptest::prelude::*;
 
-    use super::{super::Area, *};
+    use super::*;
+    use crate::shape::Area;
 
     fn ring() -> impl Strategy<Value = Vec<[f64; 2]>> {
         let corner = (-6i32..=6, -6i32..=6).prop_map(|(x, y)| [f64::from(x), f64::from(y)]);

@@ -2,7 +2,7 @@
 //!
 //! A shape is a [`Region`], a [`Ball`] (in the plane a [`Circle`]), a [`Polygon`] or in space a [`Prism`] over one, or a
 //! combination of them: [`Area`] and [`Volume`], in `shape`. Membership is decided on the reported `f64` coordinates by
-//! exact predicates (`edge` has the one of polygons), and half-open wherever two shapes can meet: boxes and polygons that
+//! exact predicates, and half-open wherever two shapes can meet: boxes and polygons that
 //! share an edge share no point and lose none.
 //!
 //! For speed an area also answers for whole strips of the plane at once: between which x all points are
@@ -10,7 +10,6 @@
 //! are those of polygons from files.
 
 mod ball;
-mod edge;
 mod holes;
 mod outline;
 mod polygon;

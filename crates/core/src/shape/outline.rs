@@ -120,10 +120,8 @@ fn clipped([a, b]: [[f64; 2]; 2], within: &Region) -> Option<[[f64; 2]; 2]> {
 
 #[cfg(test)]
 mod tests {
-    use super::{
-        super::{Circle, Polygon},
-        *,
-    };
+    use super::*;
+    use crate::shape::{Circle, Polygon};
 
     #[test]
     fn outlines_add_up_and_are_clipped() {

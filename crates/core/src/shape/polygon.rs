@@ -4,8 +4,7 @@ use alloc::{sync::Arc, vec::Vec};
 
 use super::{
     Region,
-    edge::{Edge, is_odd},
-    steps::{Reach, State, Stepper},
+    steps::{Edge, Reach, State, Stepper, is_odd},
 };
 use crate::{
     error::{Error, ErrorKind, number},

@@ -14,8 +14,9 @@ use super::{
 };
 use crate::{
     Attribute, Attributes, Column, ScaleRange, VariantScales,
+    attribute::hash,
     error::{Error, ErrorKind},
-    sample::{hash, split_mix},
+    lattice::seed::split_mix,
 };
 
 /// The attributes of the points of one set in space. Cheap to clone.

@@ -1,4 +1,4 @@
-//! Tests whether places are clear of other sets, which keep clear of further sets themselves.
+//! The points that keep clear of other sets, which keep clear of further sets themselves.
 //!
 //! A [`Clearance`] lists each of these sets once, however many others keep clear of it, and remembers what it made. Space
 //! is cut into tiles for each set. The points of a set in a tile are made when a place in or beside it is first tested, and
@@ -8,16 +8,18 @@
 //! Where few places are tested, each looks at the points around itself instead. All ways compare the same coordinates.
 
 use alloc::{collections::BTreeMap, sync::Arc, vec, vec::Vec};
+use core::ops::Range;
 
 use super::{
     Batch, Region, Volume,
     lattice::{Lattice, fixed},
     mask::{ClearOf, Mask},
+    point::{Point, PointId},
     scope::Scope,
-    settled::AnyWalk,
+    settled::{self, AnyWalk},
     walk::few,
 };
-use crate::stop::Stop;
+use crate::{kernel::Backend, stop::Stop};
 
 /// The sides of a tile, in mean spacings of the set. They are flat because walks go plane by plane.
 const TILE: [f64; 3] = [16.0, 16.0, 2.0];
@@ -330,4 +332,71 @@ impl Tile {
 fn is_nearer(a: [f64; 3], b: [f64; 3], distance: f64) -> bool {
     let [dx, dy, dz] = [0, 1, 2].map(|axis| a[axis] - b[axis]);
     dx * dx + dy * dy + dz * dz < distance * distance
+}
+
+/// A walk over the points of a scope that its mask leaves.
+#[derive(Clone, Debug)]
+pub(super) struct Sifted {
+    walk: AnyWalk,
+    backend: Backend,
+    scope: Arc<Scope>,
+    clearance: Clearance,
+}
+
+impl Sifted {
+    /// As [`AnyWalk::new`].
+    pub(super) fn new(
+        scope: Arc<Scope>,
+        ranges: &[Range<i64>; 3],
+        start: Option<[i64; 3]>,
+        wants_ids: bool,
+    ) -> Self {
+        Self {
+            walk: AnyWalk::new(scope.clone(), ranges, start, wants_ids),
+            clearance: Clearance::new(&scope),
+            scope,
+            backend: Backend::best(),
+        }
+    }
+
+    pub(super) fn backend(&self) -> Backend {
+        self.backend
+    }
+
+    pub(super) fn set_backend(&mut self, backend: Backend) {
+        self.backend = backend;
+        self.walk.set_backend(backend);
+    }
+
+    /// Fills a batch with the next points, at least one. Returns false if there are none.
+    pub(super) fn next(&mut self, out: &mut Batch) -> bool {
+        while self.walk.next(out) {
+            self.clearance.sift(&self.scope, out);
+            if !out.is_empty() {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+/// The point of an address that a mask leaves.
+pub(super) fn point(lattice: &Lattice, mask: &Mask, id: PointId) -> Option<Point> {
+    let point = settled::point(lattice, id)?;
+    if mask.is_none() {
+        return Some(point);
+    }
+    let at = point.at();
+    let volume = Volume::Region(Region::between(at, at.map(f64::next_up)));
+    // Beyond the limit there are no points.
+    let scope = Arc::new(Scope::new(lattice, mask, &volume, Stop::default()).ok()?);
+    let mut walk = Sifted::new(scope.clone(), &scope.all, None, true);
+    let mut batch = Batch::default();
+    while walk.next(&mut batch) {
+        let mut addresses = (0..batch.len()).map(|i| batch.address(i));
+        if addresses.any(|address| address == Some(id.lattice())) {
+            return Some(point);
+        }
+    }
+    None
 }

@@ -14,9 +14,9 @@ use super::{
     scope::{Scope, common},
 };
 use crate::{
+    kernel::{Backend, compiled},
     map::Numbers,
     pattern::AxisSet,
-    sample::{Backend, space::compiled},
     table::{Cut, FRACTION_BITS},
 };
 

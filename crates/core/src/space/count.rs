@@ -5,12 +5,11 @@ use core::ops::Range;
 
 use super::{
     Batch, Volume,
-    clearance::Clearance,
+    clearance::{Clearance, Sifted},
     closed,
     columns::{COLUMN_BITS, columns},
     scope::{Scope, State},
     settled::AnyWalk,
-    sieve::Sifted,
     walk::few,
 };
 use crate::table::FRACTION_BITS;

@@ -10,9 +10,8 @@ use super::{
 };
 use crate::{
     F32, F64, Offsets, Points,
-    sample::{
-        Backend, Exactly,
-        space::{PlainLoop, below, compiled_loop, pick_pairs, pick_triples, write_triples},
+    kernel::{
+        Backend, Exactly, PlainLoop, below, compiled_loop, pick_pairs, pick_triples, write_triples,
     },
     table::FRACTION_BITS,
 };

@@ -10,7 +10,8 @@ use super::{
     warp::Shears3,
 };
 use crate::{
-    sample::{Grade, Keep, Placement, Settle, space::PICKS},
+    kernel::PICKS,
+    lattice::{Grade, Keep, Placement, Settle},
     table::{Cut, FRACTION_BITS},
 };
 

@@ -14,15 +14,13 @@
 //! ```
 //!
 //! `pattern` has the pattern, `table` the vectors, `warp` the shears, `lattice` which addresses have
-//! points and where; `scope` what of a lattice is requested, `mask` what narrows a set.
-//! `walk` makes points row by row or batch by batch from `columns` of planes, `cells` and `template`s; `sieve` leaves out
-//! those that `clearance` finds too near other sets; `closed` and `count` count them. `plan` is a request made ready,
-//! `windows` are its parts, and `blocks` writes its points in a `format`; `attributes` are their further values.
-//! `lookups` and `nearest` are about single points and neighbors. `set` is all of this, `shipped` the table
-//! that the crate has.
+//! points and where; `scope` what of a lattice is requested.
+//! `walk` makes points row by row or batch by batch from `columns` of planes, `cells` and `template`s, `settled` those that
+//! settle; `mask` narrows a set, and `clearance` leaves out those too near other sets; `closed` and `count`
+//! count them. `plan` is a request made ready, whose points are written in a `format`; `attributes` are their further
+//! values. `nearest` finds neighbors. `set` is all of this, `shipped` the table that the crate has.
 
 mod attributes;
-mod blocks;
 mod cells;
 mod clearance;
 mod closed;
@@ -30,7 +28,6 @@ mod columns;
 mod count;
 mod format;
 mod lattice;
-mod lookups;
 mod mask;
 mod nearest;
 mod pattern;
@@ -41,20 +38,17 @@ mod set;
 mod settled;
 #[cfg(feature = "tables")]
 mod shipped;
-mod sieve;
 mod table;
 mod template;
 mod walk;
 mod warp;
-mod windows;
 
 pub use attributes::BoundAttributes;
-pub use blocks::{Blocks, Members};
 pub use format::Format;
 pub use lattice::LATTICE_LIMIT;
 pub use nearest::Neighbor;
 pub use pattern::Pattern;
-pub use plan::Plan;
+pub use plan::{Blocks, Members, Plan};
 pub use point::{Point, PointId};
 pub use set::SpaceSet;
 #[cfg(feature = "tables")]

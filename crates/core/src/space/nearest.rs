@@ -4,15 +4,15 @@ use alloc::{sync::Arc, vec::Vec};
 
 use super::{
     Batch, Region, Volume,
+    clearance::Sifted,
     lattice::{LATTICE_LIMIT, Lattice, fixed},
     mask::Mask,
     point::{Point, PointId},
     scope::Scope,
-    sieve::Sifted,
 };
 use crate::{
     error::Error,
-    sample::{
+    near::{
         Visits,
         limits::{
             BORDER, MAX_CANDIDATES, check_neighbors, check_place, check_radius, check_reach,

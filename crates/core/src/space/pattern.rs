@@ -8,8 +8,8 @@
 use core::ops::Range;
 
 use crate::{
+    lattice::seed::Seed,
     pattern::{Alpha, AxisSet},
-    sample::Seed,
 };
 
 /// The pattern of one α in space, seen from one origin in index space.

@@ -1,20 +1,27 @@
-//! Plans: the points of a request, counted.
+//! Plans: the points of a request, counted; windows of them; and the points block by block, and one by one.
 
-use alloc::{sync::Arc, vec, vec::Vec};
+use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
+use core::{marker::PhantomData, ops::Range};
 
 use super::{
-    Batch, Region, Volume,
-    blocks::{Blocks, Members},
+    Batch, Cursor, Region, Volume,
+    clearance::Sifted,
     count,
-    format::Format,
+    format::{Format, write},
     lattice::Lattice,
     mask::Mask,
     point::{Point, PointId},
     scope::Scope,
     table::Table,
+    walk::Rows,
 };
 use crate::{
-    F32, F64, Placement, Points, error::Error, methods::planned, stop::Stop, window::Window,
+    F32, F64, Placement, Points,
+    error::Error,
+    kernel::Backend,
+    methods::{planned, windows},
+    stop::Stop,
+    window::{Window, Windowed},
 };
 
 /// The points of a volume, counted exactly before the first is made.
@@ -131,3 +138,298 @@ planned!(
     3,
     "strew_core::space::SpaceSet::new(strew_core::space::Table::undisplaced(\"sqrt(3)\".parse()?, 5, \"pattern\")?).chunk(20.0, [0, 0, 0])?"
 );
+
+impl Windowed for Plan {
+    type Id = PointId;
+
+    fn part(&self) -> Window<PointId> {
+        self.window
+    }
+
+    fn part_mut(&mut self) -> &mut Window<PointId> {
+        &mut self.window
+    }
+
+    fn locate(&self, numbers: &[u128]) -> Vec<Option<PointId>> {
+        let places = match &self.kept {
+            Some(kept) => {
+                let address = |&k: &u128| kept.address(usize::try_from(k).ok()?);
+                numbers.iter().map(address).collect()
+            }
+            None => count::locate_all(&self.scope, numbers),
+        };
+        places.into_iter().map(|at| at.map(PointId::of)).collect()
+    }
+}
+
+windows!(
+    Plan,
+    Cursor,
+    "strew_core::space::SpaceSet::new(strew_core::space::Table::undisplaced(\"sqrt(3)\".parse()?, 5, \"pattern\")?).chunk(20.0, [0, 0, 0])?"
+);
+
+/// The points of a plan in a format, block by block.
+///
+/// ```
+/// use strew_core::space::{SpaceSet, Table};
+///
+/// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(20.0, [0, 0, 0])?;
+/// let (mut blocks, mut block) = (plan.blocks_f32(), [[0.0; 3]; 1000]);
+/// let mut points = 0;
+/// loop {
+///     match blocks.fill(&mut block) {
+///         0 => break,
+///         filled => points += filled,
+///     }
+/// }
+/// assert_eq!(points as u128, plan.count());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Blocks<F: Format> {
+    scope: Arc<Scope>,
+    source: Source<F>,
+    /// The number of points to come.
+    left: u128,
+    /// The number of points of the request before these, and of all.
+    offset: u128,
+    total: u128,
+    format: PhantomData<F>,
+}
+
+/// Where points come from.
+#[derive(Clone, Debug)]
+enum Source<F: Format> {
+    Rows(Box<Rows<F>>),
+    Walk(Box<Walking>),
+    Kept(Arc<Batch>, Range<usize>),
+}
+
+/// A walk and the batch that it filled last.
+#[derive(Clone, Debug)]
+struct Walking {
+    walk: Sifted,
+    batch: Batch,
+    /// The points of the batch that were written.
+    written: usize,
+}
+
+impl<F: Format> Blocks<F> {
+    /// The next `left` points of a scope from a place on.
+    pub(super) fn walk(scope: Arc<Scope>, start: Option<[i64; 3]>, left: u128) -> Self {
+        let lattice = &scope.lattice;
+        let is_plain = lattice.shears.is_none() && !lattice.is_sifted() && scope.room == 0;
+        let source = if is_plain && scope.clear.is_empty() {
+            Source::Rows(Box::new(Rows::new(scope.clone(), start)))
+        } else {
+            let walk = Sifted::new(scope.clone(), &scope.all, start, F::HAS_IDS);
+            Source::Walk(Box::new(Walking {
+                walk,
+                batch: Batch::default(),
+                written: 0,
+            }))
+        };
+        Self {
+            scope,
+            source,
+            left,
+            offset: 0,
+            total: left,
+            format: PhantomData,
+        }
+    }
+
+    /// Some points that were kept.
+    pub(super) fn kept(scope: Arc<Scope>, kept: Arc<Batch>, points: Range<usize>) -> Self {
+        Self {
+            scope,
+            left: points.len() as u128,
+            offset: 0,
+            total: points.len() as u128,
+            source: Source::Kept(kept, points),
+            format: PhantomData,
+        }
+    }
+
+    /// The same blocks as a part of a request.
+    pub(super) fn of(mut self, offset: u128, total: u128) -> Self {
+        (self.offset, self.total) = (offset, total);
+        self
+    }
+
+    /// Sets the backend; see [`Backend`]. The points are the same.
+    ///
+    /// ```
+    /// use strew_core::{Backend, space::{SpaceSet, Table}};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [0, 0, 0])?;
+    /// let [mut a, mut b] = [[[0.0; 3]; 10]; 2];
+    /// plan.blocks_f64().fill(&mut a);
+    /// plan.blocks_f64().with_backend(Backend::Scalar).fill(&mut b);
+    /// assert_eq!(a, b);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn with_backend(mut self, backend: Backend) -> Self {
+        match &mut self.source {
+            Source::Rows(rows) => rows.backend = backend,
+            Source::Walk(walking) => walking.walk.set_backend(backend),
+            Source::Kept(..) => {}
+        }
+        self
+    }
+
+    /// Fills a slice with the next points. Returns the number of points written: less than the slice holds only at the
+    /// end.
+    pub fn fill(&mut self, out: &mut [F::Item]) -> usize {
+        let most = usize::try_from(self.left)
+            .unwrap_or(usize::MAX)
+            .min(out.len());
+        let mut filled = 0;
+        while filled < most {
+            let room = &mut out[filled..most];
+            match &mut self.source {
+                Source::Kept(batch, points) => {
+                    let from = points.start;
+                    points.start += room.len();
+                    write::<F>(&self.scope, batch, from, Backend::best(), room);
+                    filled = most;
+                }
+                Source::Rows(rows) => {
+                    let number = rows.fill(room);
+                    filled += number;
+                    if number == 0 {
+                        self.left = 0;
+                        return filled;
+                    }
+                    // The cursor is the address of the next point.
+                    if F::HAS_IDS && filled as u128 != self.left {
+                        rows.prepare();
+                    }
+                }
+                Source::Walk(walking) => {
+                    let Walking {
+                        walk,
+                        batch,
+                        written,
+                    } = &mut **walking;
+                    if *written == batch.len() {
+                        *written = 0;
+                        if !walk.next(batch) {
+                            batch.restart([0; 3]);
+                            self.left = 0;
+                            return filled;
+                        }
+                    }
+                    let number = room.len().min(batch.len() - *written);
+                    let from = *written;
+                    *written += number;
+                    write::<F>(
+                        &self.scope,
+                        batch,
+                        from,
+                        walk.backend(),
+                        &mut room[..number],
+                    );
+                    filled += number;
+                    // The cursor is the address of the next point.
+                    if *written == batch.len() && filled as u128 != self.left {
+                        *written = 0;
+                        if !walk.next(batch) {
+                            batch.restart([0; 3]);
+                        }
+                    }
+                }
+            }
+        }
+        self.left -= filled as u128;
+        self.offset += filled as u128;
+        filled
+    }
+}
+
+impl Blocks<Points> {
+    /// The place of the next point, if there is one and some were taken.
+    ///
+    /// ```
+    /// use strew_core::space::{Point, SpaceSet, Table};
+    ///
+    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(8.0, [0, 0, 0])?;
+    /// let mut blocks = plan.blocks_points();
+    /// blocks.fill(&mut [Point::default(); 100]);
+    /// let cursor = blocks.cursor().expect("there are more");
+    /// assert_eq!(plan.from_cursor(cursor).to_vec(), plan.to_vec()[100..]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn cursor(&self) -> Option<Cursor> {
+        if self.left == 0 {
+            return None;
+        }
+        let at = match &self.source {
+            Source::Kept(batch, points) => batch.address(points.start),
+            Source::Walk(walking) => walking.batch.address(walking.written),
+            Source::Rows(rows) => rows.peek().map(|point| point.id.lattice()),
+        };
+        Some(Cursor {
+            offset: self.offset,
+            total: self.total,
+            at: PointId::of(at?),
+        })
+    }
+}
+
+/// The points of a plan, one by one.
+///
+/// ```
+/// use strew_core::space::{SpaceSet, Table};
+///
+/// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [0, 0, 0])?;
+/// let lowest = plan.iter().map(|point| point.z).reduce(f64::min);
+/// assert!(lowest.is_some_and(|z| z < 1.0));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Members {
+    blocks: Blocks<Points>,
+    block: Vec<Point>,
+    next: usize,
+}
+
+impl Members {
+    pub(super) fn new(blocks: Blocks<Points>) -> Self {
+        Self {
+            blocks,
+            block: Vec::new(),
+            next: 0,
+        }
+    }
+}
+
+impl Iterator for Members {
+    type Item = Point;
+
+    fn next(&mut self) -> Option<Point> {
+        /// The number of points that are made together.
+        const AT_ONCE: usize = 256;
+        if self.next == self.block.len() {
+            let mut block = core::mem::take(&mut self.block);
+            let most = usize::try_from(self.blocks.left)
+                .unwrap_or(usize::MAX)
+                .min(AT_ONCE);
+            block.clear();
+            block.extend(vec![Point::default(); most]);
+            let filled = self.blocks.fill(&mut block);
+            block.truncate(filled);
+            (self.block, self.next) = (block, 0);
+        }
+        let point = self.block.get(self.next).copied()?;
+        self.next += 1;
+        Some(point)
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let left = self.blocks.left + (self.block.len() - self.next) as u128;
+        (0, usize::try_from(left).ok())
+    }
+}

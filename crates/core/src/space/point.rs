@@ -2,7 +2,7 @@
 
 use core::{fmt, str::FromStr};
 
-use crate::{error::Error, sample::lattice_of};
+use crate::{error::Error, lattice::lattice_of};
 
 /// The stable id of a point: its lattice address. The text form is `x:y:z`, three decimal integers.
 ///

@@ -9,10 +9,11 @@ use super::{
     mask::{ClearOf, Mask},
     point::PointId,
 };
-pub(super) use crate::sample::common;
+pub(super) use crate::lattice::bounds::common;
 use crate::{
     error::{Error, ErrorKind},
-    sample::{Corner, LEAST_IN_SPACE, Moves, bounds, check_limit, common_box},
+    lattice::bounds::{Corner, bounds, check_limit, common_box},
+    settle::{LEAST_IN_SPACE, Moves},
     stop::Stop,
     table::FRACTION_BITS,
 };

@@ -1,7 +1,7 @@
 //! Points of space that settle: how they are listed, and the walk over them, piece by piece.
 //!
 //! A piece is a slab of a column of planes, cut into tiles. The points around a tile are listed where the warp left them,
-//! all of them settle (`sample/settle` has the steps), and those of the tile that end inside are given in the order of
+//! all of them settle (`settle/` has the steps), and those of the tile that end inside are given in the order of
 //! their addresses. Pieces and tiles decide only the cost: a point goes to the same place in each.
 
 use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
@@ -16,10 +16,9 @@ use super::{
     walk::{Walk, few},
 };
 use crate::{
-    sample::{
-        Backend, Grade, Keep, LEAST_IN_SPACE, List, Listed, Moves, Placed, Settle, Settler,
-        Settling,
-    },
+    kernel::Backend,
+    lattice::{Grade, Keep, Settle},
+    settle::{LEAST_IN_SPACE, List, Listed, Moves, Placed, Settler, Settling},
     table::{FRACTION_BITS, Mix},
 };
 

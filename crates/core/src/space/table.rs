@@ -4,9 +4,9 @@ use alloc::{format, string::String, sync::Arc, vec::Vec};
 
 use crate::{
     error::Error,
+    kernel::PICKS,
     map::Map,
     once::Once,
-    sample::space::PICKS,
     table::{FRACTION_BITS, Order, Parts, Provenance, Ranks, Symmetry, TableOf, Vector},
 };
 

@@ -12,10 +12,7 @@ use super::{
     lattice::{Lattice, fixed},
 };
 use crate::{
-    sample::{
-        Backend,
-        space::{PICKS, add_picked},
-    },
+    kernel::{Backend, PICKS, add_picked},
     table::FRACTION_BITS,
 };
 

@@ -5,9 +5,10 @@
 //! face. Each keeps volumes, has an exact inverse in integers, and is bounded. Distances shrink by a factor of at
 //! most the product of the three planes' factors.
 
-use crate::sample::{
-    Backend, Seed, Warp,
-    space::{PLANES, PatchShears, PlainLoop, Shears, SpaceShears, Stretch, compiled_loop},
+use crate::{
+    kernel::{Backend, PLANES, PlainLoop, SpaceShears, compiled_loop},
+    lattice::seed::Seed,
+    warp::{PatchShears, Shears, Stretch, Warp},
 };
 
 /// The warp of one seed.

@@ -4,8 +4,10 @@ use alloc::{format, string::String, sync::Arc, vec::Vec};
 use core::ops::Range;
 
 use super::{
-    Displacement, FRACTION_BITS, MAX_DISPLACEMENT, Mix, Provenance, TableOf, parts::Parts,
-    to_grid_units, turned::Held, vector::Vector,
+    Displacement, FRACTION_BITS, MAX_DISPLACEMENT, Mix, Provenance, TableOf,
+    parts::{Parts, Vector},
+    symmetry::Held,
+    to_grid_units,
 };
 use crate::{
     error::{Error, number},

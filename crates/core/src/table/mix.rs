@@ -1,4 +1,4 @@
-//! Mixes: which kind the points of each block are.
+//! Mixes: which kind the points of each block are, and tables with them.
 //!
 //! A mix labels each block with a kind. Labels alone meet the shares of kinds only within the area of a block,
 //! so some blocks are split by a strip along dX, at most one for each kind but the last. Then the share of every

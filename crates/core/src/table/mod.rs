@@ -16,12 +16,10 @@
 //! # Ok::<(), strew_core::Error>(())
 //! ```
 //!
-//! `tables` has the tables of the plane and of space, made of the `parts` that a `file` holds, and `vector` what differs
-//! between them; `displacement` has the [`Table`] of the plane, and `derived` makes one from another;
-//! `units` the fixed point, `provenance` the history, `digest` the name, `text` the published text form. `ranks` is the
-//! order in which blocks leave when a set is thinned. `mix` has the kinds of points, in the ratio of `shares`.
-//! `symmetry` has the ways to turn all of these, `turned` a table that is turned, `shipped` the tables and labels built into
-//! this crate.
+//! `tables` has the tables of the plane and of space, made of the `parts` that a `file` holds; `displacement` has the
+//! [`Table`] of the plane, and `derived` makes one from another; `provenance` has the history, `digest` the
+//! name, `text` the published text form. `ranks` is the order in which blocks leave when a set is thinned. `mix` has the
+//! kinds of points, in the ratio of `shares`. `symmetry` has the ways to turn all of these, `shipped` the tables and labels built into this crate.
 
 mod derived;
 mod digest;
@@ -37,25 +35,19 @@ pub(crate) mod shipped;
 mod symmetry;
 mod tables;
 mod text;
-mod turned;
-mod units;
-mod vector;
 
 pub use digest::Digest;
 pub use displacement::Table;
 pub use file::{FORMAT_VERSION, Head, MAX_FILE_BYTES};
 pub(crate) use mix::Labels;
 pub use mix::{Mix, Split};
-pub(crate) use parts::Parts;
+pub use parts::{Displacement, FRACTION_BITS, MAX_DISPLACEMENT, from_grid_units, to_grid_units};
+pub(crate) use parts::{Parts, Vector, fixed};
 pub use provenance::{Figures, Provenance};
 pub use ranks::Ranks;
 pub(crate) use ranks::{Cut, Order};
 pub use shares::Shares;
 #[cfg(feature = "tables")]
 pub use shipped::{BLUE, joint_files};
-pub(crate) use symmetry::Symmetry;
+pub(crate) use symmetry::{Symmetry, TurnedTable};
 pub use tables::TableOf;
-pub(crate) use turned::TurnedTable;
-pub(crate) use units::fixed;
-pub use units::{Displacement, FRACTION_BITS, MAX_DISPLACEMENT, from_grid_units, to_grid_units};
-pub(crate) use vector::Vector;

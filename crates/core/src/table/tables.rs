@@ -3,7 +3,7 @@
 use alloc::{sync::Arc, vec, vec::Vec};
 use core::fmt;
 
-use super::{Digest, Labels, Order, Provenance, Ranks, file, parts::Parts, vector::Vector};
+use super::{Digest, Labels, Order, Parts, Provenance, Ranks, Vector, file};
 use crate::{error::Error, map::Map, once::Once, pattern::Alpha};
 
 /// The displacement vectors of one noise profile for one neighborhood map, with their history: a [`Table`](crate::Table) of the plane,

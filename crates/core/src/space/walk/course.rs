@@ -2,16 +2,22 @@
 //!
 //! Planes are walked in slabs of 32, whose [`Cells`] tell where points need a test. Positions are 32-bit offsets from
 //! the origin of a patch, a slab of 256 rows.
+//!
+//! Points are warped in groups, whose extents tell which cells of the warp they can touch.
 
-use alloc::sync::Arc;
+use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
-use super::super::{
-    cells::{CELL_BITS, Cells, Run},
-    columns::{COLUMN_BITS, Lines, Row, columns, coordinates},
-    lattice::fixed,
-    scope::{Scope, common},
-    template::Plane,
+use crate::{
+    kernel::{Extents, GROUP},
+    space::{
+        cells::{CELL_BITS, Cells, Run},
+        columns::{COLUMN_BITS, Lines, Row, columns, coordinates},
+        lattice::fixed,
+        scope::{Scope, common},
+        template::Plane,
+    },
+    table::FRACTION_BITS,
 };
 
 /// The bits of the height of a patch.
@@ -222,5 +228,27 @@ impl Course {
         }
         self.slab.number += 1;
         self.slab.planes = first..first + (1 << CELL_BITS);
+    }
+}
+
+/// Extends the extents of groups by points of a row from a position on, whose columns are in fixed-point units.
+pub(super) fn cover(extents: &mut Vec<Extents>, start: usize, columns: &[i32], [y, z]: [i32; 2]) {
+    let mut rest = columns;
+    let mut position = start;
+    while !rest.is_empty() {
+        let group = position / GROUP;
+        let (here, after) = rest.split_at(((group + 1) * GROUP - position).min(rest.len()));
+        let [first, last] = [here[0], here[here.len() - 1]].map(|x| x >> FRACTION_BITS);
+        let row = [[first, last], [y, y], [z, z]];
+        match extents.get_mut(group) {
+            Some(all) => {
+                for (ends, [least, most]) in all.iter_mut().zip(row) {
+                    *ends = [ends[0].min(least), ends[1].max(most)];
+                }
+            }
+            None => extents.push(row),
+        }
+        position += here.len();
+        rest = after;
     }
 }

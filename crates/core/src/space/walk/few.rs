@@ -6,10 +6,7 @@ use core::ops::Range;
 
 use super::{relative, world};
 use crate::{
-    sample::{
-        Backend,
-        space::{PLANES, compiled, warp_all},
-    },
+    kernel::{Backend, PLANES, compiled, warp_all},
     space::{
         Batch,
         columns::{Lines, columns, coordinates},

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::{PATCH_BITS, Walk, relative, world};
 use crate::{
-    sample::space::{GROUP, PLANES, compiled, retain_parts, warp_groups, warp_lists},
+    kernel::{GROUP, PLANES, compiled, retain_parts, warp_groups, warp_lists},
     space::{Batch, cells::IN, scope::common},
     table::FRACTION_BITS,
 };

@@ -1,11 +1,10 @@
 //! The walk over the points of a scope, in order.
 //!
 //! `course` goes through the rows. Where there is no warp and no other set to keep clear of, `rows` writes them as items.
-//! Everything else takes batches, in which points can still move and be left out; `finish` warps and tests these, in groups
-//! whose `extents` are known. `few` makes the points of a small scope at once.
+//! Everything else takes batches, in which points can still move and be left out; `finish` warps and tests these, in groups.
+//! `few` makes the points of a small scope at once.
 
 mod course;
-mod extents;
 mod few;
 mod finish;
 mod rows;
@@ -13,11 +12,8 @@ mod rows;
 use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
-use self::{
-    course::{Course, PATCH_BITS},
-    extents::cover,
-};
-pub(super) use self::{few::few, rows::Rows};
+use course::{Course, PATCH_BITS, cover};
+
 use super::{
     Batch,
     cells::{IN, OUT, Run, TEST},
@@ -27,12 +23,11 @@ use super::{
     template::{Plane, Templates},
 };
 use crate::{
-    sample::{
-        Backend,
-        space::{Extents, SpaceShears, lift_picked},
-    },
+    kernel::{Backend, Extents, SpaceShears, lift_picked},
     table::FRACTION_BITS,
 };
+pub(super) use few::few;
+pub(super) use rows::Rows;
 
 /// A batch ends with the row that makes it as long.
 const LONG: usize = 512;

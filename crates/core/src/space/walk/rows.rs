@@ -8,7 +8,7 @@ use core::ops::Range;
 
 use super::{course::Course, relative, world};
 use crate::{
-    sample::Backend,
+    kernel::Backend,
     space::{
         cells::{IN, OUT},
         columns::Row,

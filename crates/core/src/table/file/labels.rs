@@ -6,10 +6,8 @@
 use alloc::{format, vec, vec::Vec};
 
 use super::{
-    layout::{BASE, MIX, RANKS},
+    layout::{BASE, MIX, RANKS, Reader, framed, kind, rank},
     read::{mix, ranks, sections, wrong},
-    wire::Reader,
-    write::{framed, kind, rank},
 };
 use crate::{
     error::{Error, ErrorKind},

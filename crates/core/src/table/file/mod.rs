@@ -23,7 +23,7 @@
 //! A table of points in space has `CUBE` in place of `DISP`: n³ triples of i16, in units of 2⁻¹² grid units. The block
 //! (i, j, k) of the intervals of dX, dY and dZ is number (k·n + j)·n + i.
 //!
-//! `write` and `read` are each other's inverse over the encodings of `wire`.
+//! `read` reads what `layout` writes.
 
 mod head;
 mod labels;
@@ -31,11 +31,9 @@ mod layout;
 mod read;
 #[cfg(test)]
 mod tests;
-mod wire;
-mod write;
 
 pub use head::Head;
 pub(super) use labels::{read_labels, write_labels};
 pub use layout::{FORMAT_VERSION, MAX_FILE_BYTES};
+pub(super) use layout::{digest, write};
 pub(super) use read::read;
-pub(super) use write::{digest, write};

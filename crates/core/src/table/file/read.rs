@@ -3,15 +3,17 @@
 
 use alloc::{format, string::String, vec::Vec};
 
-use super::{
-    layout::{BASE, CUBE, DIGEST_BYTES, HEADER_BYTES, MIX, RANKS, check_header, position_bytes},
-    wire::Reader,
+use super::layout::{
+    BASE, CUBE, DIGEST_BYTES, HEADER_BYTES, MIX, RANKS, Reader, check_header, position_bytes,
 };
 use crate::{
     error::{Error, ErrorKind},
     map::{Map, Twin},
     pattern::Alpha,
-    table::{Digest, Figures, Mix, Provenance, Ranks, Shares, parts::Parts, vector::Vector},
+    table::{
+        Digest, Figures, Mix, Provenance, Ranks, Shares,
+        parts::{Parts, Vector},
+    },
 };
 
 /// The content of a table file, and its digest.

@@ -1,0 +1,16 @@
+//! Points near a place.
+//!
+//! `scan` visits the points around a place. `search` returns the nearest ones and those within a radius,
+//! and `limits` refuses what would take too long; it also counts and stops visits. `mask` decides by such neighbors
+//! which points of a set exist: those in its area that keep clear of other sets. `ground` keeps the points of these
+//! around many places.
+
+mod ground;
+pub(crate) mod limits;
+mod mask;
+mod scan;
+pub(super) mod search;
+
+pub use limits::Visits;
+pub use mask::Clearance;
+pub(super) use mask::{ClearOf, Guard, Mask};

@@ -1,0 +1,292 @@
+//! Plans: requests made ready, before any point is made, and windows of them.
+
+pub(crate) mod amount;
+#[cfg(test)]
+mod chunks;
+pub(crate) mod member;
+pub(crate) mod seek;
+
+use alloc::{sync::Arc, vec, vec::Vec};
+
+use crate::{
+    attribute::{Attributes, BoundAttributes},
+    error::Error,
+    kernel::{F32, F64, Format, Place, Points},
+    lattice::{Keep, Lattice, Placement, Point, PointId, Spacing},
+    methods::{planned, windows},
+    near::Mask,
+    shape::{Area, Region},
+    stop::Stop,
+    table::Table,
+    walk::{Blocks, Counted, Mark, Tile, format_of, locate_graded, scope::Scope, tiles},
+    window::{Cursor, Window, Windowed},
+};
+use member::Members;
+use seek::locate_all;
+
+/// The points of a set in an area: their exact number is known, the points come on demand, in a fixed
+/// order.
+///
+/// The order: bands of 1024 lattice columns at multiples of 1024, ascending; in a band rows ascending; in
+/// a row columns ascending. It is the same whatever the area, so the points of a part of an area come in
+/// the order they have in the whole.
+///
+/// A plan may be a [window](Self::window) of the requested points: those from a place in the order on, up
+/// to a number. Plans are cheap to clone and can be sent between threads.
+///
+/// ```
+/// use strew_core::{PointSet, Region, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let plan = PointSet::new(table).within(Region::new([0.0, 0.0], [20.0, 10.0])?)?;
+/// assert_eq!(plan.iter().len() as u128, plan.count());
+/// for member in &plan {
+///     let [x, y] = member.at();
+///     assert!((0.0..20.0).contains(&x) && (0.0..10.0).contains(&y));
+/// }
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Plan {
+    scope: Arc<Scope>,
+    window: Window<PointId>,
+    /// The results of counting.
+    counted: Counted,
+}
+
+impl Plan {
+    /// The points of a set, given by its lattice and mask, in an area. They are counted unless their
+    /// number is known.
+    pub(crate) fn new(
+        lattice: &Lattice,
+        mask: &Mask,
+        area: Area,
+        stop: Stop,
+        known: Option<u128>,
+    ) -> Result<Self, Error> {
+        let scope = Arc::new(Scope::new(lattice, mask, area, stop)?);
+        let counted = match known {
+            Some(count) => Counted::known(count),
+            None => Counted::new(&scope),
+        };
+        if scope.stop.is_raised() {
+            return Err(Stop::error());
+        }
+        Ok(Self {
+            scope,
+            window: Window::whole(counted.count),
+            counted,
+        })
+    }
+
+    /// The points, one by one.
+    #[must_use]
+    pub fn iter(&self) -> Members {
+        Members::new(self.blocks(), self.window.count, self.placement().seed)
+    }
+
+    /// The points in one of the formats [`F32`], [`F64`], [`Offsets`](crate::Offsets) and [`Points`], block by block:
+    /// the fastest way to make many.
+    ///
+    /// ```
+    /// use strew_core::{Point, PointSet, Points, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(8.0, [0, 0])?;
+    /// let (mut blocks, mut block) = (plan.blocks::<Points>(), [Point::default(); 10]);
+    /// // Blocks have any size. What does not fit comes with the next.
+    /// assert_eq!(blocks.fill(&mut block), 10);
+    /// assert_eq!(block, plan.to_vec()[..10]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn blocks<F: Format>(&self) -> Blocks<F> {
+        match &self.counted.kept {
+            Some(kept) => Blocks::of_kept(self.scope.clone(), self.window, kept.clone()),
+            None => Blocks::of_window(self.scope.clone(), self.window),
+        }
+    }
+
+    /// Exact places of points of this plan, in another format.
+    ///
+    /// ```
+    /// use strew_core::{Exact, Place, PointSet, Points, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(8.0, [3, -2])?;
+    /// let mut places = vec![Place::default(); plan.len().expect("small")];
+    /// plan.blocks::<Exact>().fill(&mut places);
+    /// assert!(plan.converted::<Points>(&places).eq(plan.to_vec()));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn converted<F: Format>(&self, places: &[Place]) -> impl Iterator<Item = F::Item> {
+        let format: F = format_of(&self.scope);
+        places.iter().map(move |place| place.item(&format))
+    }
+
+    /// The whole request cut into tiles of at most `max_points` points each, or one lattice row of a band
+    /// if that has more. The points of the tiles, one tile after another, come in order. Tiles can be
+    /// filled independently: [`tile_blocks`](Self::tile_blocks).
+    ///
+    /// ```
+    /// use rayon::prelude::*;
+    /// use strew_core::{F64, PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).within(Region::new([0.0, 0.0], [200.0, 200.0])?)?;
+    /// let tiles: Vec<_> = plan.tiles(10_000).collect();
+    /// let fill = |tile| {
+    ///     let mut points = vec![[0.0; 2]; 10_000];
+    ///     let filled = plan.tile_blocks::<F64>(tile).fill(&mut points);
+    ///     points.truncate(filled);
+    ///     points
+    /// };
+    /// let points: Vec<Vec<[f64; 2]>> = tiles.par_iter().map(fill).collect();
+    /// assert_eq!(points.concat().len() as u128, plan.count());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn tiles(&self, max_points: usize) -> impl Iterator<Item = Tile> + use<> {
+        tiles(&self.scope, max_points)
+    }
+
+    /// The points of a tile of this plan, block by block.
+    ///
+    /// ```
+    /// use strew_core::{Point, PointSet, Points, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(64.0, [0, 0])?;
+    /// let tile = plan.tiles(1000).next().expect("not empty");
+    /// let mut block = vec![Point::default(); 1000];
+    /// let filled = plan.tile_blocks::<Points>(&tile).fill(&mut block);
+    /// assert_eq!(block[..filled], plan.to_vec()[..filled]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn tile_blocks<F: Format>(&self, tile: &Tile) -> Blocks<F> {
+        Blocks::of_tile(self.scope.clone(), tile)
+    }
+
+    /// Attributes of the plan's points; see [`PointSet::attributes`](crate::PointSet::attributes).
+    ///
+    /// # Errors
+    /// As [`PointSet::attributes`](crate::PointSet::attributes).
+    ///
+    /// ```
+    /// use strew_core::{Attribute, Attributes, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).seed(7).chunk(8.0, [0, 0])?;
+    /// let scale = plan.attributes(&Attributes::new(vec![Attribute::scale(0.8, 1.2)?])?)?;
+    /// for tree in &plan {
+    ///     assert_eq!(scale.value(0, tree.id()), Some(tree.scale(0.8..=1.2)));
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
+        BoundAttributes::new(attributes, &self.scope.lattice)
+    }
+
+    /// The points of the same area at another spacing, all of them, not counted.
+    pub(crate) fn with_spacing(&self, spacing: Spacing) -> Result<Self, Error> {
+        let Scope {
+            lattice,
+            sieve,
+            stop,
+            region,
+            ..
+        } = &*self.scope;
+        let mut placement = Placement {
+            spacing,
+            ..lattice.placement
+        };
+        let whole = self.scope.whole_lattice();
+        if !whole.is_in_field() {
+            placement.keep = Keep::ALL;
+        }
+        let lattice = whole.replaced(placement);
+        let mut mask = sieve
+            .as_ref()
+            .map_or_else(Mask::default, |sieve| sieve.mask().clone());
+        let area = mask.area.take().unwrap_or(Area::Region(*region));
+        Self::new(&lattice, &mask, area, stop.clone(), Some(u64::MAX.into()))
+    }
+
+    /// The bytes of points and places that counting has kept.
+    pub(crate) fn kept(&self) -> usize {
+        self.counted.bytes()
+    }
+
+    /// This plan without points and places that counting has kept: they are found again.
+    pub(crate) fn forgetting(self) -> Self {
+        Self {
+            counted: Counted::known(self.counted.count),
+            ..self
+        }
+    }
+
+    /// This plan with another flag that stops its further counting.
+    pub(crate) fn with_stop(self, stop: Stop) -> Self {
+        let mut scope = Arc::unwrap_or_clone(self.scope);
+        scope.stop = stop;
+        Self {
+            scope: Arc::new(scope),
+            window: self.window,
+            counted: self.counted,
+        }
+    }
+}
+
+planned!(
+    Plan,
+    Table,
+    2,
+    "strew_core::PointSet::new(strew_core::Table::undisplaced(\"sqrt(3)\".parse()?, 20, \"pattern\")?).chunk(30.0, [0, 0])?"
+);
+
+impl Windowed for Plan {
+    type Id = PointId;
+
+    fn part(&self) -> Window<PointId> {
+        self.window
+    }
+
+    fn part_mut(&mut self) -> &mut Window<PointId> {
+        &mut self.window
+    }
+
+    fn locate(&self, numbers: &[u128]) -> Vec<Option<PointId>> {
+        let Window {
+            start,
+            offset,
+            total,
+            ..
+        } = self.window;
+        if let Some(kept) = &self.counted.kept {
+            let id = |&k: &u128| kept.id(usize::try_from(k).ok()?);
+            return numbers.iter().map(id).collect();
+        }
+        if self.scope.lattice.grade.is_none() {
+            return locate_all(&self.scope, total, numbers);
+        }
+        let marks = &self.counted.marks;
+        // The window may begin nearer than a mark, and the point that was found last may lie nearer still.
+        let mut last = start.map(|at| Mark { at, before: offset });
+        let mut locate = |k: u128| {
+            let after = marks.partition_point(|mark| mark.before <= k);
+            let mark = after.checked_sub(1).map(|last| marks[last]);
+            let own = last.filter(|own| own.before <= k);
+            let nearest = [mark, own].into_iter().flatten();
+            let at = locate_graded(&self.scope, nearest.max_by_key(|mark| mark.before), k)?;
+            last = Some(Mark { at, before: k });
+            Some(at)
+        };
+        numbers.iter().map(|&k| locate(k)).collect()
+    }
+}
+
+windows!(
+    Plan,
+    Cursor,
+    "strew_core::PointSet::new(strew_core::Table::undisplaced(\"sqrt(3)\".parse()?, 20, \"pattern\")?).chunk(30.0, [0, 0])?"
+);

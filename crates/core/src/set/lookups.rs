@@ -1,0 +1,321 @@
+//! Single points of a set: by id and near a place, with the values they have.
+
+use alloc::vec::Vec;
+
+use super::PointSet;
+use crate::{
+    LeastDistance,
+    attribute::{Attributes, BoundAttributes},
+    error::Error,
+    lattice::{Placement, Point, PointId},
+    methods::requested,
+    near::{ClearOf, Clearance, Visits, limits, search},
+    pattern::Arrangement,
+    plan::{Plan, member::Member},
+    settle::{Settler, weight},
+    shape::{Area, Region},
+    stop::Stop,
+    window::Cursor,
+};
+
+/// A point of a set near a place, and its distance.
+///
+/// ```
+/// use strew_core::{Neighbor, PointSet, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let set = PointSet::new(table).seed(7);
+/// let Neighbor { member, distance } = set.nearest([10.0, 3.0], 1)?[0];
+/// let [dx, dy] = [member.at()[0] - 10.0, member.at()[1] - 3.0];
+/// assert_eq!(distance, (dx * dx + dy * dy).sqrt());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neighbor {
+    /// The point.
+    pub member: Member,
+    /// The distance from the place, in world units.
+    pub distance: f64,
+}
+
+requested!(
+    #[cfg(feature = "clearance")]
+    PointSet,
+    Area,
+    "Region",
+    Cursor,
+    2,
+    "strew_core::PointSet::new(strew_core::Table::undisplaced(\"sqrt(3)\".parse()?, 20, \"pattern\")?)",
+    "[0, 0]",
+    "[10.0, 3.0]"
+);
+
+impl PointSet {
+    /// The point of an id, or `None` if the set has none there.
+    ///
+    /// ```
+    /// use strew_core::{PointId, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let trees = PointSet::new(table).spacing(4.0)?.seed(7);
+    /// let tree = trees.nearest([10.0, 3.0], 1)?[0].member;
+    /// let saved = tree.id().to_string();
+    /// assert_eq!(trees.point(saved.parse()?), Some(tree));
+    /// // Neighbors on the lattice are never both in the pattern.
+    /// assert_eq!(trees.point(PointId { x: tree.id().x + 1, ..tree.id() }), None);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn point(&self, id: PointId) -> Option<Member> {
+        let point = match Settler::new(&self.lattice) {
+            Some(mut settler) => {
+                let place = settler.point(&self.lattice, id)?;
+                let [x, y] = place.map(|k| self.lattice.world(k));
+                Point { id, x, y }
+            }
+            None => self.lattice.point(id)?,
+        };
+        let is_plain = self.mask.area.is_none() && self.mask.clear.is_empty();
+        (is_plain || self.mask.guards().permit(point.at()))
+            .then(|| Member::new(point, self.placement().seed))
+    }
+
+    /// The block of the neighborhood map of a point: the intervals of its two indices, each below
+    /// [`Map::intervals`](crate::Map::intervals), or `None` if the lattice has no point there. The points
+    /// of a block have the same displacement and, as far as the map reaches, the same neighbors in the
+    /// pattern.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table);
+    /// let id = set.nearest([10.0, 3.0], 1)?[0].member.id();
+    /// let [column, row] = set.block(id).expect("a point of the set");
+    /// let n = set.table().map().intervals();
+    /// assert!(column < n && row < n);
+    /// assert_eq!(set.table().displacements()[row * n + column], [0, 0]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn block(&self, id: PointId) -> Option<[usize; 2]> {
+        self.lattice.block(id)
+    }
+
+    /// The share that decided to keep a point: the share of the [field](Self::in_field) at the point's place at full
+    /// density, times the share of the set. `None` if the set is in no field, or has no such point.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7).in_field(|[x, _]: [f64; 2]| x / 40.0);
+    /// for point in set.within(Region::new([10.0, 0.0], [40.0, 9.0])?)? {
+    ///     // Where points are sparse, they can be drawn larger.
+    ///     let size = set.share(point.id()).map(|share| share.sqrt().recip());
+    ///     assert!(size.is_some_and(|size| (1.0..3.0).contains(&size)));
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn share(&self, id: PointId) -> Option<f64> {
+        self.lattice.share_of(id)
+    }
+
+    /// All points within `radius` of a place, nearest first; of equally near ones the smaller id first. A point lies within
+    /// if its reported [distance](Neighbor::distance), √(dx·dx + dy·dy) in `f64`, is at most the radius.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Radius`](crate::ErrorKind::Radius) unless the radius is a finite number from 0 on,
+    /// [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) if more than `limit` points lie within it (at most
+    /// [`MAX_CANDIDATES`](Self::MAX_CANDIDATES)), and as [`nearest`](Self::nearest).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7);
+    /// let near = set.around([1000.5, -3.25], 2.0, 100)?;
+    /// assert!(near.iter().all(|neighbor| neighbor.distance <= 2.0));
+    /// assert_eq!(set.nearest([1000.5, -3.25], near.len())?, near);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn around(&self, at: [f64; 2], radius: f64, limit: usize) -> Result<Vec<Neighbor>, Error> {
+        self.around_visiting(at, radius, limit, &Visits::any())
+    }
+
+    /// Runs [`nearest`](Self::nearest) or [`nearest_within`](Self::nearest_within) and visits a bounded number of
+    /// points.
+    pub(crate) fn nearest_visiting(
+        &self,
+        at: [f64; 2],
+        k: usize,
+        radius: Option<f64>,
+        visits: &Visits,
+    ) -> Result<Vec<Neighbor>, Error> {
+        let found = search::nearest(&self.lattice, &self.mask, at, k, radius, visits)?;
+        Ok(self.neighbors(found))
+    }
+
+    /// Runs [`around`](Self::around) and visits a bounded number of points.
+    pub(crate) fn around_visiting(
+        &self,
+        at: [f64; 2],
+        radius: f64,
+        limit: usize,
+        visits: &Visits,
+    ) -> Result<Vec<Neighbor>, Error> {
+        let limit = limit.min(Self::MAX_CANDIDATES);
+        let found = search::within(&self.lattice, &self.mask, at, radius, limit, visits)?;
+        Ok(self.neighbors(found))
+    }
+
+    fn neighbors(&self, found: Vec<search::Found>) -> Vec<Neighbor> {
+        let seed = self.placement().seed;
+        let neighbor = |(squared, point)| Neighbor {
+            member: Member::new(point, seed),
+            distance: libm::sqrt(squared),
+        };
+        found.into_iter().map(neighbor).collect()
+    }
+
+    /// A test whether any point lies nearer than `distance` to a place, for many places.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Radius`](crate::ErrorKind::Radius) or [`ErrorKind::TooMany`](crate::ErrorKind::TooMany)
+    /// unless the distance is a finite number from 0 on within which at most
+    /// [`Clearance::MAX_CANDIDATES`] points lie on average.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let mut clearance = PointSet::new(table).spacing(3.0)?.clearance(6.0)?;
+    /// assert!(clearance.is_any_near([10.0, 10.0], |_| true));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn clearance(&self, distance: f64) -> Result<Clearance, Error> {
+        Clearance::new(self.lattice.clone(), &self.mask, distance)
+    }
+
+    /// The least distance between any two points, in world units: a guarantee for reported `f64`
+    /// coordinates out to [`LeastDistance::RANGE`](crate::LeastDistance::RANGE) times this distance from the
+    /// origin, whatever the region. It is 0 for profiles that guarantee none.
+    ///
+    /// [`least_distance_within`](Self::least_distance_within) returns the guarantee farther out.
+    #[must_use]
+    pub fn least_distance(&self) -> f64 {
+        self.least_distance_within(0.0)
+    }
+
+    /// The least distance between any two points whose `f64` coordinates are within ±`reach`, in world
+    /// units; see [`LeastDistance::reported`](crate::LeastDistance::reported).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7);
+    /// assert_eq!(set.least_distance_within(1e6), set.least_distance());
+    /// // World coordinates are coarse there. Offsets in a chunk are not.
+    /// assert!(set.least_distance_within(1e14) < set.least_distance_within(64.0));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn least_distance_within(&self, reach: f64) -> f64 {
+        if self.lattice.is_in_field() && self.lattice.settle().is_some() {
+            return 0.0;
+        }
+        let Placement { spacing, warp, .. } = self.placement();
+        self.table_distance().reported(spacing, warp, reach)
+    }
+
+    /// A bound of the share in a box.
+    pub(crate) fn greatest_share(&self, within: &Region) -> f64 {
+        let all = self.placement().keep.get();
+        match &self.lattice.grade {
+            Some(grade) => grade.bounds(within)[1].min(all),
+            None => all,
+        }
+    }
+
+    /// The number of steps by which points settle.
+    pub(crate) fn steps(&self) -> u32 {
+        let placement = self.placement();
+        match self.lattice.is_in_field() {
+            true => placement.settle.steps(),
+            false => placement.settle.steps_at(placement.keep),
+        }
+    }
+
+    /// About how long points settle near an outline, in steps of a set without kinds.
+    pub(crate) fn settling(&self) -> f64 {
+        f64::from(self.steps()) * weight(&self.lattice)
+    }
+
+    /// The least distance of the table's points that are of the set's kind, if it has one.
+    pub(super) fn table_distance(&self) -> LeastDistance {
+        let of_kind = |kind| self.table().least_distance_of(kind, kind);
+        // Points of a kind keep the distance of all where they settle.
+        let kind = self
+            .lattice
+            .kind()
+            .filter(|_| self.lattice.settle().is_none());
+        let of_kind = kind.and_then(of_kind);
+        of_kind.unwrap_or_else(|| self.table().least_distance())
+    }
+
+    /// The arrangement of `offsets`, in lattice units, in the pattern whose points this set displaces. The arrangement
+    /// has its frequency; [`occurs_at`](Arrangement::occurs_at) answers for a point of the set, by its
+    /// id, whether it occurs there.
+    ///
+    /// # Errors
+    /// As [`Arrangement::new`].
+    ///
+    /// ```
+    /// use strew_core::{PointId, PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7);
+    /// let pair = set.arrangement(&[(1, 2)])?;
+    /// let points = set.within(Region::new([0.0, 0.0], [50.0, 50.0])?)?;
+    /// for point in points.iter().filter(|point| pair.occurs_at(point.id().x, point.id().y)) {
+    ///     let other = set.point(PointId { x: point.id().x + 1, y: point.id().y + 2 });
+    ///     assert!(other.is_some());
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn arrangement(&self, offsets: &[(i64, i64)]) -> Result<Arrangement, Error> {
+        Arrangement::new(self.lattice.pattern, offsets)
+    }
+
+    /// The values that the points of this set have for some attributes. They depend on ids and the seed
+    /// alone, ranks and [kinds](crate::Kinds) also on the table.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Kinds`](crate::ErrorKind::Kinds) for kinds of other shares than those of the table's
+    /// [mix](crate::Table::mix).
+    ///
+    /// ```
+    /// use strew_core::{Attributes, PointId, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let angle = Attributes::new(vec!["angle".parse()?])?;
+    /// let id = PointId { x: 4, y: 9 };
+    /// let value = |set: &PointSet| set.attributes(&angle).map(|bound| bound.value(0, id));
+    /// let set = PointSet::new(table).seed(7);
+    /// // The seed changes the values, spacing and warp do not.
+    /// assert_ne!(value(&set)?, value(&set.clone().seed(8))?);
+    /// assert_eq!(value(&set)?, value(&set.clone().spacing(3.0)?.warp(0.0)?)?);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
+        BoundAttributes::new(attributes, &self.lattice)
+    }
+
+    /// The largest absolute coordinate that a search may reach, in world units.
+    #[must_use]
+    pub fn search_limit(&self) -> f64 {
+        limits::limit(&self.lattice)
+    }
+}

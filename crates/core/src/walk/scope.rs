@@ -1,0 +1,153 @@
+//! Scopes: the part of a lattice that a plan covers.
+
+use core::ops::Range;
+
+use super::sieve::Sieve;
+pub(crate) use crate::lattice::bounds::Corner;
+use crate::{
+    error::{Error, ErrorKind},
+    field::constant,
+    lattice::{
+        BAND_WIDTH, LATTICE_LIMIT, Lattice, Span,
+        bounds::{Bounds, bounds, check_limit},
+    },
+    near::Mask,
+    settle::Settler,
+    shape::{Area, Region},
+    stop::Stop,
+};
+
+/// The columns and rows around an area, and what their points must satisfy.
+#[derive(Clone, Debug)]
+pub(crate) struct Scope {
+    pub(crate) lattice: Lattice,
+    pub(crate) x: Span,
+    pub(crate) y: Span,
+    /// `None` if all points of the box are requested.
+    pub(crate) sieve: Option<Sieve>,
+    /// Ends counting early.
+    pub(crate) stop: Stop,
+    /// The box around the area.
+    pub(crate) region: Region,
+    /// The place that offsets are relative to.
+    pub(crate) corner: Corner<2>,
+    /// The lattice in its field, where that has the same share in all of the scope and
+    /// [`lattice`](Self::lattice) has that share.
+    in_field: Option<Lattice>,
+}
+
+/// The area with its [chunks](Area::chunks) as boxes that hold every point of them by its reported
+/// coordinates, and a little more.
+fn around_chunks(area: &Area) -> Area {
+    match area {
+        Area::Region(region) if region.as_chunk().is_some() => {
+            // Corners and reported coordinates are each rounded once.
+            let below = |v: f64| v.next_down().next_down();
+            let above = |v: f64| v.next_up().next_up();
+            let (min, max) = (region.min().map(below), region.max().map(above));
+            Area::Region(Region::between(min, max))
+        }
+        Area::AllOf(areas) => Area::AllOf(areas.iter().map(around_chunks).collect()),
+        other => other.clone(),
+    }
+}
+
+/// The spans of the points between fixed-point bounds. The addresses of points that settle may lie farther off.
+fn spans(lattice: &Lattice, bounds: Bounds<2>) -> [Span; 2] {
+    let Some(settler) = Settler::new(lattice) else {
+        return Span::of_box(lattice, bounds);
+    };
+    if bounds.iter().any(Range::is_empty) {
+        return Span::of_box(lattice, bounds);
+    }
+    let [x, y] = Span::of_box(lattice, settler.moves.around(&bounds));
+    let [in_x, in_y] = bounds;
+    [Span { bounds: in_x, ..x }, Span { bounds: in_y, ..y }]
+}
+
+impl Scope {
+    /// The part of a set, given by its lattice and mask, that lies in an area.
+    pub(crate) fn new(
+        lattice: &Lattice,
+        mask: &Mask,
+        area: Area,
+        stop: Stop,
+    ) -> Result<Self, Error> {
+        let mask = mask.clone().and_within(area);
+        let area = mask.area.as_ref();
+        let region = area.and_then(Area::bounds).ok_or_else(|| {
+            let (field, value) = ("area", "unbounded");
+            Error::new(ErrorKind::Unbounded, field, value, "within a box")
+        })?;
+        let limit = lattice.limit();
+        check_limit(&region, limit)?;
+        let (chunks, rest) = area.map_or_else(Default::default, |area| {
+            (area.chunks(), area.beside_chunks())
+        });
+        let around_rest = rest.as_ref().and_then(Area::bounds);
+        let bounds = bounds((lattice.step, limit), &chunks, around_rest);
+        let corner = Corner::new(lattice.step, &chunks, &region, &bounds);
+        let [x, y] = spans(lattice, bounds);
+        let piece = [x.all.clone(), y.all.clone()];
+        let share = lattice
+            .grade
+            .as_ref()
+            .and_then(|grade| constant(lattice, grade, &piece));
+        // Points settle, but those of a field not where there are none, or all.
+        let stay = |share| lattice.is_in_field() && (share <= 0.0 || share >= 1.0);
+        let share = share.filter(|&share| lattice.settle().is_none() || stay(share));
+        if let Some(share) = share {
+            let area = area.cloned().unwrap_or(Area::Region(region));
+            let mask = Mask { area: None, ..mask };
+            return Ok(Self {
+                in_field: Some(lattice.clone()),
+                ..Self::new(&lattice.in_constant(share), &mask, area, stop)?
+            });
+        }
+        debug_assert!(x.all.end < 2 * LATTICE_LIMIT && y.all.end < 2 * LATTICE_LIMIT);
+        // Integers decide membership of a box, so it needs no sieve, except together with one.
+        let is_box = matches!(rest, None | Some(Area::Region(_)));
+        let sieve = if is_box && mask.clear.is_empty() && !lattice.picks() {
+            None
+        } else {
+            let area = area.map(around_chunks);
+            Sieve::new(lattice, Mask { area, ..mask }, [x.reach, y.reach])
+        };
+        Ok(Self {
+            lattice: lattice.clone(),
+            x,
+            y,
+            sieve,
+            stop,
+            region,
+            corner,
+            in_field: None,
+        })
+    }
+
+    /// This scope of a lattice at another share.
+    pub(crate) fn with_lattice(&self, lattice: Lattice) -> Self {
+        let bounds = [self.x.bounds.clone(), self.y.bounds.clone()];
+        let [x, y] = Span::of_box(&lattice, bounds);
+        Self {
+            lattice,
+            x,
+            y,
+            ..self.clone()
+        }
+    }
+
+    /// The bands that the scope touches.
+    pub(crate) fn bands(&self) -> Range<i64> {
+        let columns = &self.x.all;
+        if columns.is_empty() || self.y.all.is_empty() {
+            return 0..0;
+        }
+        columns.start.div_euclid(BAND_WIDTH)..(columns.end - 1).div_euclid(BAND_WIDTH) + 1
+    }
+
+    /// The lattice of the set.
+    pub(crate) fn whole_lattice(&self) -> &Lattice {
+        self.in_field.as_ref().unwrap_or(&self.lattice)
+    }
+}
