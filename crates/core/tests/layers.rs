@@ -167,3 +167,23 @@ fn counting_stops() {
         assert!(server::within(&clear, region, &stop).is_err());
     }
 }
+
+#[test]
+fn others_keep_clear_of_the_points_of_all_levels() {
+    let placed =
+        |seed| Placement::new(Spacing::new(1.0).expect("in range"), strew_core::Seed(seed));
+    let table = mixed::tables()[0].clone();
+    let trees = set(
+        &table,
+        placed(1).with_keep(Keep::new(0.3).expect("a share")),
+    );
+    let region = Region::new([0.0; 2], [60.0, 40.0]).expect("valid");
+    let left = |trees: &PointSet| {
+        let flowers = set(&table, placed(2))
+            .clear_of(trees, 1.0)
+            .expect("near enough");
+        flowers.within(region).expect("near").to_vec()
+    };
+    let level = trees.clone().lod(0.1).expect("a part");
+    assert_eq!(left(&level), left(&trees));
+}

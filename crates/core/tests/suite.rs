@@ -11,6 +11,17 @@ mod fields;
 mod kinds;
 mod layers;
 mod missing_pixels;
+// With the labels and tables of all ratios, as in the workspace.
+#[cfg(all(
+    feature = "even-1-1",
+    feature = "even-1-3",
+    feature = "even-1-1-2",
+    feature = "even-1-3-10",
+    feature = "joint-1-1",
+    feature = "joint-1-3",
+    feature = "joint-1-1-2",
+    feature = "joint-1-3-10"
+))]
 mod named_kinds;
 mod nearest;
 mod periodic;

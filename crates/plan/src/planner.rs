@@ -8,7 +8,7 @@ use strew_catalog::{
 };
 use strew_config::Limits;
 use strew_core::{
-    Area, Cursor, ErrorKind, Keep, Placement, Plan, PointId, PointSet, Spacing,
+    Area, Cursor, ErrorKind, Placement, Plan, PointId, PointSet, Spacing,
     server::{self, Stop},
     space::SpaceSet,
 };
@@ -148,8 +148,7 @@ impl<'a> Planner<'a> {
         // Only later layers look back.
         if i + 1 < self.query.sets.len() {
             self.prices.push(set, Some(spacing), region.bounds);
-            let whole = plan.placement().with_lod(Keep::ALL);
-            let layer = selection.set.placed(whole);
+            let layer = selection.set.placed(plan.placement());
             self.layers.push(match &set.region {
                 Some(own) => layer.limited_to(own.area.clone()),
                 None => layer,

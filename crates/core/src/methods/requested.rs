@@ -102,7 +102,7 @@ macro_rules! requested {
             /// ```
             $(#[$part])?
             pub fn clear_of(mut self, other: &Self, distance: f64) -> Result<Self, Error> {
-                let other = ClearOf::new(&other.lattice, &other.mask, distance)?;
+                let other = Other::kept(&other.lattice, &other.mask, distance)?;
                 self.mask = self.mask.and_clear_of(other);
                 Ok(self)
             }

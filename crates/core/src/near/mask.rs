@@ -4,19 +4,20 @@
 //! decided by the other set's points near it in the unbounded plane, never by the region of a request, so
 //! neighboring regions agree.
 
-use alloc::{sync::Arc, vec::Vec};
+use alloc::sync::Arc;
 use core::{cell::RefCell, ops::ControlFlow};
 
 use super::{
-    ground::{Ground, Known, Marked},
+    clear::{Clear, ClearOf, OtherSet, refused},
     limits::{check_number, check_place, check_radius, check_reach, check_work, limit},
     scan::{Scratch, scan},
 };
 use crate::{
-    error::{Error, ErrorKind, number},
-    lattice::{Lattice, Point},
+    error::Error,
+    lattice::{Keep, Lattice, Placement, Point},
     parts::CLEARANCE,
     shape::{Area, Region},
+    stop::Stop,
 };
 
 /// The conditions on the places of a set's points.
@@ -25,40 +26,34 @@ pub(crate) struct Mask {
     /// The area in which they lie, if not everywhere.
     pub(crate) area: Option<Area>,
     /// The sets that they keep clear of.
-    pub(crate) clear: Arc<[ClearOf]>,
+    pub(crate) clear: Arc<[ClearOf<Other>]>,
 }
 
-/// A distance that points keep from all points of another set.
+/// A set of the plane that others keep clear of.
 #[derive(Clone, Debug)]
-pub(crate) struct ClearOf {
+pub(crate) struct Other {
     lattice: Lattice,
     mask: Mask,
-    distance: f64,
+    scratch: Scratch,
 }
 
 impl Mask {
     /// Tests for many places, with memory of their own.
     pub(crate) fn guards(&self) -> Guards {
-        self.guards_holding(MOST_HELD)
-    }
-
-    /// The tests of [`clear`](Self::clear) alone.
-    pub(crate) fn clear_guards(&self) -> Vec<Guard> {
-        self.guards().clear
-    }
-
-    /// Tests that together hold up to `most` points of other sets.
-    fn guards_holding(&self, most: usize) -> Guards {
-        let each = most / self.clear.len().max(1);
-        let clear = self.clear.iter().filter(|_| CLEARANCE);
         Guards {
             area: self.area.clone(),
-            clear: clear.map(|of| of.guard(each)).collect(),
+            clear: self.clear_guard(),
         }
     }
 
+    /// The test of [`clear`](Self::clear) alone.
+    pub(crate) fn clear_guard(&self) -> Guard {
+        let clear: &[ClearOf<Other>] = if CLEARANCE { &self.clear } else { &[] };
+        Guard(RefCell::new(Clear::new(clear, Stop::default())))
+    }
+
     /// This mask with another set to keep clear of.
-    pub(crate) fn and_clear_of(mut self, other: ClearOf) -> Self {
+    pub(crate) fn and_clear_of(mut self, other: ClearOf<Other>) -> Self {
         self.clear = self.clear.iter().cloned().chain([other]).collect();
         self
     }
@@ -76,180 +71,132 @@ impl Mask {
     }
 }
 
-impl ClearOf {
-    /// The largest distance, in mean spacings of the other set. Hardly a place is farther than one
-    /// spacing from the next point, so a larger distance would leave nothing.
-    const MAX_SPACINGS: f64 = 16.0;
-
-    /// A distance from all points of a set, in world units.
-    pub(crate) fn new(lattice: &Lattice, mask: &Mask, distance: f64) -> Result<Self, Error> {
-        let limit = lattice.placement.spacing.get() * Self::MAX_SPACINGS;
-        let refused = || {
-            let allowed = alloc::format!(
-                "a number above 0 and at most {}, {} mean spacings of the other set",
-                number(limit),
-                Self::MAX_SPACINGS
-            );
-            let error = Error::new(ErrorKind::Clearance, "distance", number(distance), allowed);
-            error.with_limit(limit)
-        };
-        if !(distance > 0.0 && distance <= limit) {
-            return Err(refused());
-        }
-        Clearance::check(lattice, distance).map_err(|_| refused())?;
-        Ok(Self {
-            lattice: lattice.clone(),
-            mask: mask.clone(),
-            distance,
-        })
-    }
-
-    /// A test that holds up to `most` points: half of them of the other set, half of those that this keeps clear of.
-    fn guard(&self, most: usize) -> Guard {
-        let (lattice, distance) = (self.lattice.clone(), self.distance);
-        let spacings = distance / lattice.placement.spacing.get();
-        let near = core::f64::consts::PI * spacings * spacings;
-        Guard(RefCell::new(Guarded {
-            search: SEARCH + near * visit(&lattice),
-            ground: Ground::new(most / 2),
-            clearance: Clearance {
-                lattice,
-                guards: self.mask.guards_holding(most / 2),
-                distance,
-                scratch: Scratch::default(),
+impl Other {
+    /// A distance from all points that a lattice and a mask leave, in world units.
+    pub(crate) fn kept(
+        lattice: &Lattice,
+        mask: &Mask,
+        distance: f64,
+    ) -> Result<ClearOf<Self>, Error> {
+        let whole = |placement: Placement| lattice.replaced(placement.with_lod(Keep::ALL));
+        let set = Self {
+            lattice: match lattice.placement.lod {
+                Keep::ALL => lattice.clone(),
+                _ => whole(lattice.placement),
             },
-        }))
+            mask: mask.clone(),
+            scratch: Scratch::default(),
+        };
+        let clear = ClearOf::new(set, distance)?;
+        let spacing = lattice.placement.spacing.get();
+        Clearance::check(lattice, distance).map_err(|_| refused(distance, spacing))?;
+        Ok(clear)
     }
 }
 
-/// The most points of other sets that the tests of a piece of work hold: 16 bytes each.
-const MOST_HELD: usize = 1 << 17;
+impl OtherSet<2> for Other {
+    fn spacing(&self) -> f64 {
+        self.lattice.placement.spacing.get()
+    }
 
-/// The cost of a search near a place, in visits of points without a field.
-const SEARCH: f64 = 40.0;
+    fn spacing_kept(&self) -> f64 {
+        self.spacing()
+    }
 
-/// The cost of a visit of a point.
-const fn visit(lattice: &Lattice) -> f64 {
-    /// With a look at a field.
-    const IN_FIELD: f64 = 4.0;
-    if lattice.grade.is_some() {
-        IN_FIELD
-    } else {
-        1.0
+    fn sides(&self) -> [f64; 2] {
+        /// In mean spacings at full density.
+        const TILE: f64 = 32.0;
+        /// Points that settle are found in tiles of their own, which these fit.
+        const TILE_SETTLED: f64 = 24.0;
+        let tile = match self.lattice.settle() {
+            Some(_) => TILE_SETTLED,
+            None => TILE,
+        };
+        [tile * self.spacing(); 2]
+    }
+
+    fn searches(&self, distance: f64) -> u32 {
+        /// The cost of a search beside its visits, in visits of points.
+        const SEARCH: f64 = 40.0;
+        /// The cost of a visit of a point with a look at a field.
+        const IN_FIELD: f64 = 4.0;
+        let visit = match &self.lattice.grade {
+            Some(_) => IN_FIELD,
+            None => 1.0,
+        };
+        let cost = |side: f64| {
+            let spacings = side / self.spacing();
+            spacings * spacings * visit
+        };
+        (cost(self.sides()[0]) / (SEARCH + cost(2.0 * distance))) as u32
+    }
+
+    fn is_same(&self, _: &Self) -> bool {
+        false
+    }
+
+    fn clear(&self) -> &[ClearOf<Self>] {
+        &self.mask.clear
+    }
+
+    fn reaches(&self, at: [f64; 2], distance: f64) -> bool {
+        check_place(at).is_ok() && check_reach(limit(&self.lattice), at, distance).is_ok()
+    }
+
+    fn visit(&mut self, within: &Region, _: &Stop, mut each: impl FnMut([f64; 2]) -> bool) {
+        let (min, max) = (within.min(), within.max());
+        let center = [0, 1].map(|i| min[i] + (max[i] - min[i]) / 2.0);
+        let half = [0, 1].map(|i| (max[i] - center[i]).max(center[i] - min[i]));
+        let rounding = 4.0 * f64::EPSILON * (center[0].abs().max(center[1].abs()));
+        let radius = libm::hypot(half[0], half[1]) * (1.0 + 1e-9) + rounding;
+        let area = self.mask.area.as_ref();
+        let (lattice, scratch) = (&self.lattice, &mut self.scratch);
+        // It breaks where `each` refuses a point.
+        let _ = scan(lattice, scratch, center, radius, None, |_, point| {
+            let at = point.at();
+            let is_own = within.contains(at) && area.is_none_or(|area| area.contains(at));
+            if is_own && !each(at) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        });
     }
 }
-
-/// The greatest sides of tiles, in mean spacings of the set whose points are listed, beside twice the distance.
-/// Points that settle are found in tiles of their own, which the boxes around these fit.
-const TILE: f64 = 32.0;
-const TILE_SETTLED: f64 = 24.0;
 
 /// Tests places against a mask. Not shared between threads: it keeps memory from place to place.
 #[derive(Clone, Debug)]
 pub(crate) struct Guards {
     area: Option<Area>,
-    clear: Vec<Guard>,
+    clear: Guard,
 }
 
 impl Guards {
     /// Whether a point may be at a place.
     pub(crate) fn permit(&self, p: [f64; 2]) -> bool {
-        self.area.as_ref().is_none_or(|area| area.contains(p))
-            && self.clear.iter().all(|guard| guard.permits(p))
-    }
-
-    /// Turns to places within a box.
-    fn aim(&self, within: Region) {
-        if self.clear.is_empty() {
-            return;
-        }
-        let own = self.area.as_ref().and_then(Area::bounds);
-        let within = own.map_or(within, |own| own.and(within));
-        for guard in &self.clear {
-            guard.aim(within);
-        }
+        self.area.as_ref().is_none_or(|area| area.contains(p)) && self.clear.permits(p)
     }
 }
 
-/// Tests whether places are clear of one set.
+/// Tests whether places are clear of other sets.
 #[derive(Clone, Debug)]
-pub(crate) struct Guard(RefCell<Guarded>);
-
-#[derive(Clone, Debug)]
-struct Guarded {
-    clearance: Clearance,
-    /// The points around the places that are tested, if it is known where these lie.
-    ground: Ground,
-    /// The cost of a search.
-    search: f64,
-}
+pub(crate) struct Guard(RefCell<Clear<Other, 2>>);
 
 impl Guard {
-    /// Whether a place is far enough from all points of the other set.
+    /// Clear of nothing.
+    pub(crate) fn none() -> Self {
+        Mask::default().clear_guard()
+    }
+
+    /// Whether there is no other set.
+    pub(crate) fn is_empty(&self) -> bool {
+        !CLEARANCE || self.0.borrow().is_empty()
+    }
+
+    /// Whether a place is far enough from all points of the other sets.
     #[inline]
     pub(crate) fn permits(&self, p: [f64; 2]) -> bool {
-        !(CLEARANCE && self.0.borrow_mut().is_any_near(p))
-    }
-
-    /// Says that many of the next places lie within a box. They are tested faster; the answers are the same for all
-    /// places.
-    pub(crate) fn aim(&self, within: Region) {
-        if CLEARANCE {
-            self.0.borrow_mut().aim(within);
-        }
-    }
-}
-
-impl Guarded {
-    fn aim(&mut self, within: Region) {
-        let Clearance {
-            lattice,
-            guards,
-            distance,
-            ..
-        } = &self.clearance;
-        let tile = match lattice.settle() {
-            Some(_) => TILE_SETTLED,
-            None => TILE,
-        };
-        let spacing = lattice.placement.spacing.get();
-        let most = tile * spacing + 2.0 * distance;
-        let across = (most + 2.0 * distance) / spacing;
-        self.ground.aim(within, most, across * across);
-        let room = 2.0 * distance;
-        let around = Region::between(
-            within.min().map(|v| v - room),
-            within.max().map(|v| v + room),
-        );
-        guards.aim(around);
-    }
-
-    #[inline]
-    fn is_any_near(&mut self, at: [f64; 2]) -> bool {
-        match self.ground.at(at) {
-            Known::All(marked) => marked.is_any_near(at),
-            Known::In(tile) => self.is_any_near_in(tile, at),
-            Known::Nothing => self.clearance.is_any_near(at, |_| true),
-        }
-    }
-
-    /// Tests a place in a tile whose points are not marked, and marks them if that is worth it.
-    #[cold]
-    fn is_any_near_in(&mut self, tile: usize, at: [f64; 2]) -> bool {
-        let (clearance, ground) = (&mut self.clearance, &mut self.ground);
-        let distance = clearance.distance;
-        if let Some(around) = ground.around(tile, distance)
-            && let Some((center, radius)) = clearance.disk(around)
-            && ground.is_worth(tile, self.search, clearance.listing(radius))
-        {
-            let spacing = clearance.lattice.placement.spacing.get();
-            let places = clearance.list(around, (center, radius));
-            let marked = Marked::new(around, distance, spacing, &places);
-            let is_any_near = marked.is_any_near(at);
-            ground.mark(tile, marked);
-            return is_any_near;
-        }
-        clearance.is_any_near(at, |_| true)
+        !CLEARANCE || self.0.borrow_mut().permits(p)
     }
 }
 
@@ -328,44 +275,5 @@ impl Clearance {
             }
         });
         scanned.is_break()
-    }
-
-    /// The center and radius of a disk around a box, `None` if a search there leaves the limit. Within it every
-    /// place of the box is at least the distance from the limit.
-    fn disk(&self, around: Region) -> Option<([f64; 2], f64)> {
-        let (min, max) = (around.min(), around.max());
-        let center = [0, 1].map(|i| min[i] + (max[i] - min[i]) / 2.0);
-        let half = [0, 1].map(|i| (max[i] - center[i]).max(center[i] - min[i]));
-        let rounding = 4.0 * f64::EPSILON * (center[0].abs().max(center[1].abs()));
-        let radius = libm::hypot(half[0], half[1]) * (1.0 + 1e-9) + rounding;
-        check_place(center).ok()?;
-        check_reach(limit(&self.lattice), center, radius + self.distance).ok()?;
-        Some((center, radius))
-    }
-
-    /// The cost of [listing](Self::list) the points of a disk.
-    fn listing(&self, radius: f64) -> f64 {
-        let spacings = radius / self.lattice.placement.spacing.get();
-        core::f64::consts::PI * spacings * spacings * visit(&self.lattice)
-    }
-
-    /// The places of the points of a box, with the disk around it.
-    fn list(&mut self, within: Region, (center, radius): ([f64; 2], f64)) -> Vec<[f64; 2]> {
-        let Self {
-            lattice,
-            guards,
-            scratch,
-            ..
-        } = self;
-        let mut places = Vec::new();
-        // Nothing breaks this.
-        let _ = scan(lattice, scratch, center, radius, None, |_, point| {
-            let at = point.at();
-            if within.contains(at) && guards.permit(at) {
-                places.push(at);
-            }
-            ControlFlow::Continue(())
-        });
-        places
     }
 }

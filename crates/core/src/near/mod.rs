@@ -2,10 +2,10 @@
 //!
 //! `scan` visits the points around a place. `search` returns the nearest ones and those within a radius,
 //! and `limits` refuses what would take too long; it also counts and stops visits. `mask` decides by such neighbors
-//! which points of a set exist: those in its area that keep clear of other sets. `ground` keeps the points of these
-//! around many places.
+//! which points of a set exist: those in its area that keep clear of other sets. `clear` keeps the points of these
+//! around many places, in the plane and in space.
 
-mod ground;
+pub(crate) mod clear;
 pub(crate) mod limits;
 mod mask;
 mod scan;
@@ -13,4 +13,4 @@ pub(super) mod search;
 
 pub use limits::Visits;
 pub use mask::Clearance;
-pub(super) use mask::{ClearOf, Guard, Mask};
+pub(super) use mask::{Guard, Mask, Other};

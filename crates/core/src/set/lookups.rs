@@ -9,7 +9,7 @@ use crate::{
     error::Error,
     lattice::{Placement, Point, PointId},
     methods::requested,
-    near::{ClearOf, Clearance, Visits, limits, search},
+    near::{Clearance, Other, Visits, limits, search},
     pattern::Arrangement,
     plan::{Plan, member::Member},
     settle::{Settler, weight},

@@ -3,7 +3,7 @@
 use alloc::{sync::Arc, vec::Vec};
 
 use super::{Region, Volume, lattice::Lattice};
-use crate::error::{Error, ErrorKind, number};
+use crate::near::clear::ClearOf;
 
 /// The conditions on the points of a set beside its share.
 #[derive(Clone, Debug, Default)]
@@ -11,37 +11,14 @@ pub(super) struct Mask {
     /// Where points may be.
     within: Option<Arc<Volume>>,
     /// The sets that are kept clear of.
-    pub(super) clear: Arc<[ClearOf]>,
+    pub(super) clear: Arc<[ClearOf<Other>]>,
 }
 
-/// A set that another keeps clear of.
+/// A set of space that others keep clear of.
 #[derive(Clone, Debug)]
-pub(super) struct ClearOf {
+pub(super) struct Other {
     pub(super) lattice: Lattice,
     pub(super) mask: Mask,
-    pub(super) distance: f64,
-}
-
-impl ClearOf {
-    /// The most mean spacings of the other set that may be kept.
-    const MOST_SPACINGS: f64 = 16.0;
-
-    pub(super) fn new(lattice: &Lattice, mask: &Mask, distance: f64) -> Result<Self, Error> {
-        let most = Self::MOST_SPACINGS * lattice.placement.spacing.get();
-        if !(distance > 0.0 && distance <= most) {
-            let allowed = alloc::format!(
-                "above 0 and at most {}, 16 mean spacings of the other set",
-                number(most)
-            );
-            let value = number(distance);
-            return Err(Error::new(ErrorKind::Clearance, "distance", value, allowed));
-        }
-        Ok(Self {
-            lattice: lattice.whole(),
-            mask: mask.clone(),
-            distance,
-        })
-    }
 }
 
 impl Mask {
@@ -52,8 +29,8 @@ impl Mask {
     }
 
     /// This mask, also clear of another set.
-    pub(super) fn and_clear_of(mut self, other: ClearOf) -> Self {
-        let all: Vec<ClearOf> = self.clear.iter().cloned().chain([other]).collect();
+    pub(super) fn and_clear_of(mut self, other: ClearOf<Other>) -> Self {
+        let all: Vec<ClearOf<Other>> = self.clear.iter().cloned().chain([other]).collect();
         self.clear = all.into();
         self
     }

@@ -6,13 +6,14 @@ use core::ops::Range;
 use super::{
     Region, Volume,
     lattice::{Lattice, fixed},
-    mask::{ClearOf, Mask},
+    mask::{Mask, Other},
     point::PointId,
 };
 pub(super) use crate::lattice::bounds::common;
 use crate::{
     error::{Error, ErrorKind},
     lattice::bounds::{Corner, bounds, check_limit, common_box},
+    near::clear::ClearOf,
     settle::{LEAST_IN_SPACE, Moves},
     stop::Stop,
     table::FRACTION_BITS,
@@ -42,7 +43,7 @@ pub struct Scope {
     /// The place that offsets are relative to.
     pub(super) corner: Corner<3>,
     /// The sets that points keep clear of.
-    pub(super) clear: Arc<[ClearOf]>,
+    pub(super) clear: Arc<[ClearOf<Other>]>,
     /// The addresses of the points inside that are left out by their ids; where points settle, of some outside, too.
     pub(super) missing: Arc<[[i64; 3]]>,
     /// How far points may settle from where they are put, in fixed-point units.

@@ -5,7 +5,7 @@ use alloc::{sync::Arc, vec::Vec};
 use super::{
     Cursor, Region, Volume, clearance,
     lattice::Lattice,
-    mask::{ClearOf, Mask},
+    mask::{Mask, Other},
     nearest::{self, Neighbor},
     plan::Plan,
     point::{Point, PointId},

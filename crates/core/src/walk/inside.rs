@@ -67,7 +67,7 @@ pub(super) struct Inside<'a> {
     area: Option<Area>,
     /// The area in each tile of the box in which points end, if it has many parts.
     tiles: Option<(Tiles<'a>, Vec<Area>)>,
-    clear: &'a [Guard],
+    clear: &'a Guard,
     lattice: &'a Lattice,
 }
 
@@ -76,7 +76,7 @@ impl<'a> Inside<'a> {
     pub(super) fn new(
         (bounds, ends): (&'a Box2, &'a Box2),
         area: Option<Area>,
-        clear: &'a [Guard],
+        clear: &'a Guard,
         (lattice, settler): (&'a Lattice, &Settler),
     ) -> Self {
         let many = area.as_ref().filter(|area| area.parts() > MANY);
@@ -109,13 +109,10 @@ impl<'a> Inside<'a> {
             .filter(|(tiles, _)| tiles.has(&settled.place));
         let in_tile = tiles.map(|(tiles, areas)| &areas[tiles.of(settled.place)]);
         let Some(area) = in_tile.or(self.area.as_ref()) else {
-            return self
-                .clear
-                .iter()
-                .all(|guard| guard.permits(self.at(settled)));
+            return self.clear.permits(self.at(settled));
         };
         let at = self.at(settled);
-        area.contains(at) && self.clear.iter().all(|guard| guard.permits(at))
+        area.contains(at) && self.clear.permits(at)
     }
 
     fn at(&self, settled: &Settled) -> [f64; 2] {

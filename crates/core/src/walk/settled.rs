@@ -72,7 +72,7 @@ pub(super) struct Pieces {
     /// The box in which points lie in the end, and the one in which these were placed.
     bounds: Box2,
     around: Box2,
-    clear: Vec<Guard>,
+    clear: Guard,
     halves: Halves,
     /// The part of the scope's area in the current band; `None` for all of it.
     near: Option<Area>,
@@ -87,7 +87,7 @@ impl Pieces {
         Some(Self {
             around: settler.moves.around(&bounds),
             bounds,
-            clear: sieve.map_or_else(Vec::new, |sieve| sieve.mask().clear_guards()),
+            clear: sieve.map_or_else(Guard::none, |sieve| sieve.mask().clear_guard()),
             settler,
             scope: scope.clone(),
             halves: Halves::default(),
@@ -129,12 +129,6 @@ impl Pieces {
         Some(area.focus(&self.settler.moves.region(within)))
     }
 
-    /// Turns the tests of other sets to points that end in a box.
-    fn aim(&self, ends: &Box2) {
-        let within = self.settler.moves.region(&common(ends, &self.bounds));
-        self.clear.iter().for_each(|guard| guard.aim(within));
-    }
-
     /// Calls `visit` for the settled points of some columns and rows of a band that lie inside, in their order.
     fn settle(&mut self, piece: &[Range<i64>; 2], mut visit: impl FnMut(Settled)) {
         let within = self.places(piece);
@@ -142,7 +136,6 @@ impl Pieces {
             return;
         }
         let ends = widened(&within, self.settler.moves.most(&within));
-        self.aim(&ends);
         let area = self.area(&ends);
         let state = area.as_ref().map_or(Some(true), Area::is_all_or_nothing);
         if state == Some(false) {
@@ -224,7 +217,6 @@ impl Pieces {
                 break;
             }
             let ends = common(&ends, &widened(&some, self.settler.moves.most(&some)));
-            self.aim(&ends);
             let near = area
                 .as_ref()
                 .map(|area| area.focus(&self.settler.moves.region(&ends)));

@@ -73,7 +73,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub(crate) struct LocalSieve {
     area: Option<Area>,
-    guards: Vec<Guard>,
+    guard: Guard,
     /// The set, if its points are left out by their kind one by one.
     picked: Option<Arc<Lattice>>,
     /// The least and the greatest distance of a point from its lattice address, in lattice units, by
@@ -98,13 +98,13 @@ pub(crate) struct Run {
 
 impl LocalSieve {
     pub(crate) fn new(
-        (guards, picked): (Vec<Guard>, Option<Arc<Lattice>>),
+        (guard, picked): (Guard, Option<Arc<Lattice>>),
         reach: [[f64; 2]; 2],
         unit: f64,
     ) -> Self {
         Self {
             area: None,
-            guards,
+            guard,
             picked,
             reach,
             unit,
@@ -123,13 +123,6 @@ impl LocalSieve {
     pub(crate) fn aim(&mut self, area: Option<&Area>, rows: &Range<i64>, columns: &Range<i64>) {
         let within = self.world([columns, rows]);
         self.area = area.map(|area| area.focus(&within));
-        if !self.guards.is_empty() {
-            let bounds = area.and_then(Area::bounds);
-            let within = bounds.map_or(within, |bounds| bounds.and(within));
-            for guard in &self.guards {
-                guard.aim(within);
-            }
-        }
     }
 
     /// The area, reduced to what matters here.
@@ -161,7 +154,7 @@ impl LocalSieve {
             (None, Some(area)) => area.contains(p),
             (None, None) => true,
         };
-        inside && self.is_picked(id) && self.guards.iter().all(|guard| guard.permits(p))
+        inside && self.is_picked(id) && self.guard.permits(p)
     }
 
     /// Whether a point is of the kind that is wanted.
@@ -174,7 +167,7 @@ impl LocalSieve {
     pub(crate) fn permits(&self, id: PointId, p: [f64; 2]) -> bool {
         self.area.as_ref().is_none_or(|area| area.contains(p))
             && self.is_picked(id)
-            && self.guards.iter().all(|guard| guard.permits(p))
+            && self.guard.permits(p)
     }
 
     /// Keeps the points of a patch that pass, by the scale of the patch.
@@ -202,7 +195,7 @@ impl LocalSieve {
             Some(area) => area.steps(strip, &mut self.stepper),
             None => self.stepper.steps.restart(State::In),
         }
-        let is_guarded = !self.guards.is_empty() || self.picked.is_some();
+        let is_guarded = !self.guard.is_empty() || self.picked.is_some();
         let mut push = |run: Range<i64>, passes: bool, near: Option<Near>| {
             let passes = passes && !is_guarded;
             match runs.last_mut() {
@@ -304,7 +297,7 @@ impl Sieve {
 
     /// A sieve to be aimed at one piece of the lattice after another.
     pub(crate) fn local(&self) -> LocalSieve {
-        let tests = (self.mask.clear_guards(), self.picked.clone());
+        let tests = (self.mask.clear_guard(), self.picked.clone());
         LocalSieve::new(tests, self.reach, self.unit)
     }
 
