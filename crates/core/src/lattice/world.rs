@@ -342,6 +342,21 @@ impl Lattice {
         }
     }
 
+    /// Whether another lattice is known to have the same points.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        let is_graded = match (&self.grade, &other.grade) {
+            (Some(own), Some(other)) => own.is_same(other),
+            (own, other) => own.is_none() && other.is_none(),
+        };
+        let is_of_kind = match (&self.kinds, &other.kinds) {
+            (Some(own), Some(other)) => core::ptr::eq(&**own, &**other),
+            (own, other) => own.is_none() && other.is_none(),
+        };
+        let is_varied = self.is_varied() || other.is_varied();
+        let is_placed = self.placement == other.placement && self.table == other.table;
+        is_graded && is_of_kind && is_placed && !is_varied
+    }
+
     /// The kind of a point of the pattern, if the table has kinds; `None` for other addresses.
     pub(crate) fn kind_of(&self, id: PointId) -> Option<u8> {
         match &self.varied {

@@ -41,6 +41,9 @@ const EMPTY: usize = 16;
 /// larger distance would leave nothing.
 const MOST_SPACINGS: f64 = 16.0;
 
+/// The most fine cells along a side.
+const MOST_FINE: f64 = 128.0;
+
 /// The most points that are kept of a set; beyond that its tiles are dropped and made again.
 const fn most<const D: usize>() -> usize {
     1 << (13 + 2 * D)
@@ -54,11 +57,11 @@ pub(crate) trait OtherSet<const D: usize>: Clone + Debug {
     /// The mean spacing of those that it has.
     fn spacing_kept(&self) -> f64;
 
-    /// The sides of tiles.
+    /// The greatest sides of tiles.
     fn sides(&self) -> [f64; D];
 
-    /// How many looks at the points within a distance of a place cost as much as a tile.
-    fn searches(&self, distance: f64) -> u32;
+    /// How many looks at the points within a distance of a place cost as much as a tile with some sides.
+    fn searches(&self, sides: [f64; D], distance: f64) -> u32;
 
     /// Whether another one is known to have the same points.
     fn is_same(&self, other: &Self) -> bool;
@@ -66,8 +69,8 @@ pub(crate) trait OtherSet<const D: usize>: Clone + Debug {
     /// The sets that it keeps clear of.
     fn clear(&self) -> &[ClearOf<Self>];
 
-    /// Whether it has points out to a distance from a place, and the place is finite.
-    fn reaches(&self, at: [f64; D], distance: f64) -> bool;
+    /// The largest absolute coordinate near which it has points.
+    fn limit(&self) -> f64;
 
     /// Visits the places of its points in a box, also of those that are too near others, until one is refused.
     fn visit(&mut self, within: &Region<D>, stop: &Stop, each: impl FnMut([f64; D]) -> bool);
@@ -126,9 +129,26 @@ struct Edge {
 struct Other<S, const D: usize> {
     set: S,
     edges: Vec<Edge>,
-    sides: [f64; D],
-    tiles: BTreeMap<[i64; D], Tile<D>>,
+    /// The greatest distance that is kept, and the box in which most points matter.
+    distance: f64,
+    around: Region<D>,
+    limit: f64,
+    grid: Grid<D>,
+    /// The searches near a tile after which it is made.
+    searches: u32,
+    numbers: BTreeMap<[i64; D], usize>,
+    tiles: Vec<Tile<D>>,
+    /// The place and the number of the last tile that was looked at.
+    last: ([i64; D], usize),
     held: usize,
+}
+
+/// Tiles of the world.
+#[derive(Clone, Copy, Debug)]
+struct Grid<const D: usize> {
+    origin: [f64; D],
+    sides: [f64; D],
+    per_side: [f64; D],
 }
 
 #[derive(Clone, Debug)]
@@ -138,13 +158,23 @@ enum Tile<const D: usize> {
     Known(Points<D>),
 }
 
-/// The points of a tile, by the cells of a grid.
-#[derive(Clone, Debug)]
-struct Points<const D: usize> {
+/// Cells over a box.
+#[derive(Clone, Copy, Debug)]
+struct Cells<const D: usize> {
     corner: [f64; D],
     /// The inverse of the side of a cell.
     scale: f64,
-    cells: [usize; D],
+    number: [usize; D],
+}
+
+/// The points of a tile, by the cells of a grid.
+#[derive(Clone, Debug)]
+struct Points<const D: usize> {
+    cells: Cells<D>,
+    /// Smaller cells of the tile and around it, and in the plane which of them any point is near: places in the others
+    /// need no further look.
+    fine: Cells<D>,
+    is_near: Vec<bool>,
     /// For each cell where its points begin; then the end. Empty without points.
     starts: Vec<u32>,
     all: Vec<[f64; D]>,
@@ -153,14 +183,19 @@ struct Points<const D: usize> {
 }
 
 impl<S: OtherSet<D>, const D: usize> Clear<S, D> {
-    /// Tests of some distances, which end with a flag.
-    pub(crate) fn new(clear: &[ClearOf<S>], stop: Stop) -> Self {
+    /// Tests of some distances, which end with a flag. Most of the places are in a box, which decides the cost alone.
+    pub(crate) fn new(clear: &[ClearOf<S>], within: &Region<D>, stop: Stop) -> Self {
         let mut others = Vec::new();
-        Self {
-            own: list(clear, &mut others),
-            others,
-            stop,
+        let own = list(clear, &mut others);
+        widen(&own, within, &mut others);
+        for i in (0..others.len()).rev() {
+            let (earlier, rest) = others.split_at_mut(i);
+            let other = &mut rest[0];
+            widen(&other.edges, &other.around, earlier);
+            other.grid = Grid::new(&other.around, other.set.sides());
+            other.searches = other.set.searches(other.grid.sides, other.distance);
         }
+        Self { own, others, stop }
     }
 
     /// Whether there is no other set.
@@ -185,24 +220,29 @@ fn list<S: OtherSet<D>, const D: usize>(
         let known = others.iter().position(|other| other.set.is_same(set));
         let other = known.unwrap_or_else(|| {
             let edges = list(set.clear(), others);
-            others.push(Other {
-                set: set.clone(),
-                edges,
-                sides: set.sides(),
-                tiles: BTreeMap::new(),
-                held: 0,
-            });
+            others.push(Other::new(set.clone(), edges));
             others.len() - 1
         });
-        for side in &mut others[other].sides {
-            *side = side.max(*distance);
-        }
         edges.push(Edge {
             other,
             distance: *distance,
         });
     }
     edges
+}
+
+/// Adds the surroundings of places in a box, from which edges lead, to the boxes of the sets there.
+fn widen<S, const D: usize>(edges: &[Edge], within: &Region<D>, others: &mut [Other<S, D>]) {
+    for Edge { other, distance } in edges {
+        let (min, max) = (within.min(), within.max());
+        let around = Region::between(min.map(|v| v - distance), max.map(|v| v + distance));
+        let other = &mut others[*other];
+        other.around = match other.distance > 0.0 {
+            true => other.around.around(&around),
+            false => around,
+        };
+        other.distance = distance.max(other.distance);
+    }
 }
 
 impl Edge {
@@ -215,93 +255,230 @@ impl Edge {
     ) -> bool {
         let (earlier, rest) = others.split_at_mut(self.other);
         let (other, distance) = (&mut rest[0], self.distance);
-        if !other.set.reaches(at, distance) {
+        // Not so for numbers that are infinite or not a number.
+        if !(at.iter()).all(|v| v.abs() + distance <= other.limit) {
             return false;
         }
         // More than rounding takes.
         let room = at.map(|v| distance * (1.0 + 1e-9) + v.abs() * 1e-15);
         let ends = [from_fn(|i| at[i] - room[i]), from_fn(|i| at[i] + room[i])];
-        let Other {
-            set,
-            edges,
-            sides,
-            tiles,
-            held,
-        } = other;
-        if *held > most::<D>() {
-            tiles.clear();
-            *held = 0;
-        }
-        let mut stays = |point| !edges.iter().any(|edge| edge.is_near(earlier, point, stop));
-        let [first, last] =
-            ends.map(|p: [f64; D]| from_fn(|i| libm::floor(p[i] / sides[i]) as i64));
+        let [first, last] = other.grid.places(at, room);
         let mut place = first;
         loop {
-            let tile = tiles.entry(place).or_insert_with(|| {
-                *held += EMPTY;
-                Tile::Unknown(0)
-            });
-            if let Tile::Unknown(tested) = tile {
+            let tile = other.number(place);
+            if let Tile::Unknown(tested) = &mut other.tiles[tile] {
                 *tested += 1;
-                let is_worth = *tested >= set.searches(distance);
-                if !is_worth {
-                    break;
+                if *tested < other.searches {
+                    return self.finds(others, at, stop);
                 }
-                let Some(points) = make(set, place, *sides, stop) else {
+                if !other.make(place, stop) {
                     return false;
-                };
-                *held += points.all.len();
-                *tile = Tile::Known(points);
+                }
             }
+            let (edges, tile) = (&other.edges, &mut other.tiles[tile]);
             if let Tile::Known(points) = tile
-                && points.has_near(at, ends, distance, &mut stays)
+                && points.may_have(at)
+                && points.has_near(at, ends, distance, |point| {
+                    !edges.iter().any(|edge| edge.is_near(earlier, point, stop))
+                })
             {
                 return true;
             }
-            // The next one, along x first.
-            let Some(axis) = (0..D).find(|&axis| place[axis] < last[axis]) else {
+            if place == last {
                 return false;
-            };
+            }
+            // The next one, along x first.
+            let axis = (0..D).find(|&axis| place[axis] < last[axis]).unwrap_or(0);
             place[axis] += 1;
             place[..axis].copy_from_slice(&first[..axis]);
         }
+    }
+
+    /// As [`is_near`](Self::is_near), by a look at the points around the place.
+    #[cold]
+    fn finds<S: OtherSet<D>, const D: usize>(
+        &self,
+        others: &mut [Other<S, D>],
+        at: [f64; D],
+        stop: &Stop,
+    ) -> bool {
+        let (earlier, rest) = others.split_at_mut(self.other);
+        let Other { set, edges, .. } = &mut rest[0];
+        let room = at.map(|v| self.distance * (1.0 + 1e-9) + v.abs() * 1e-15);
+        let around = Region::between(from_fn(|i| at[i] - room[i]), from_fn(|i| at[i] + room[i]));
         let mut found = false;
-        set.visit(&Region::between(ends[0], ends[1]), stop, |point| {
-            found = is_nearer(point, at, distance) && stays(point);
+        set.visit(&around, stop, |point| {
+            found = is_nearer(point, at, self.distance)
+                && !edges.iter().any(|edge| edge.is_near(earlier, point, stop));
             !found
         });
         found
     }
 }
 
-/// The points of a tile. `None` once the flag is raised.
-fn make<S: OtherSet<D>, const D: usize>(
-    set: &mut S,
-    place: [i64; D],
-    sides: [f64; D],
-    stop: &Stop,
-) -> Option<Points<D>> {
-    let corner = |by: i64| from_fn(|i| place[i].saturating_add(by) as f64 * sides[i]);
-    let region = Region::between(corner(0), corner(1));
-    let mut all = Vec::new();
-    set.visit(&region, stop, |point| {
-        all.push(point);
-        true
-    });
-    let points = Points::new(&region, set.spacing_kept(), &all);
-    (!stop.is_raised()).then_some(points)
+impl<const D: usize> Grid<D> {
+    /// Tiles of which a few hold a box, with sides up to some.
+    fn new(within: &Region<D>, most: [f64; D]) -> Self {
+        let (min, max) = (within.min(), within.max());
+        let sides: [f64; D] = from_fn(|axis| {
+            let length = (max[axis] - min[axis]) * (1.0 + 1e-6);
+            // Not so for numbers that are infinite or not a number.
+            let number = libm::ceil(length / most[axis]).max(1.0);
+            if number < 1e15 && length > 0.0 {
+                length / number
+            } else {
+                most[axis]
+            }
+        });
+        Self {
+            origin: from_fn(|axis| min[axis] - 4e-7 * (max[axis] - min[axis])),
+            sides,
+            per_side: sides.map(|side| 1.0 / side),
+        }
+    }
+
+    /// The first and the last tile of the places up to `room` from one.
+    #[inline(always)]
+    fn places(&self, at: [f64; D], room: [f64; D]) -> [[i64; D]; 2] {
+        let mut ends = [[0; D]; 2];
+        for axis in 0..D {
+            let v = (at[axis] - self.origin[axis]) * self.per_side[axis];
+            let room = room[axis] * self.per_side[axis];
+            let whole = v as i64;
+            let whole = whole - i64::from(whole as f64 > v);
+            let part = v - whole as f64;
+            let floor = |v: f64| libm::floor(v) as i64;
+            ends[0][axis] = if part > room { whole } else { floor(v - room) };
+            ends[1][axis] = if part + room < 1.0 {
+                whole
+            } else {
+                floor(v + room)
+            };
+        }
+        ends
+    }
+
+    /// The box of a tile.
+    fn region(&self, place: [i64; D]) -> Region<D> {
+        let corner = |by: i64| {
+            from_fn(|axis| {
+                let v = place[axis].saturating_add(by) as f64;
+                v * self.sides[axis] + self.origin[axis]
+            })
+        };
+        Region::between(corner(0), corner(1))
+    }
+}
+
+impl<S: OtherSet<D>, const D: usize> Other<S, D> {
+    fn new(set: S, edges: Vec<Edge>) -> Self {
+        Self {
+            distance: 0.0,
+            around: Region::NOWHERE,
+            grid: Grid::new(&Region::NOWHERE, set.sides()),
+            searches: 0,
+            limit: set.limit(),
+            set,
+            edges,
+            numbers: BTreeMap::new(),
+            tiles: Vec::new(),
+            last: ([i64::MIN; D], 0),
+            held: 0,
+        }
+    }
+
+    /// The number of a tile.
+    #[inline]
+    fn number(&mut self, place: [i64; D]) -> usize {
+        if self.last.0 != place {
+            self.last = (place, self.find(place));
+        }
+        self.last.1
+    }
+
+    #[cold]
+    fn find(&mut self, place: [i64; D]) -> usize {
+        if let Some(number) = self.numbers.get(&place) {
+            return *number;
+        }
+        if self.held > most::<D>() {
+            self.numbers.clear();
+            self.tiles.clear();
+            self.held = 0;
+        }
+        self.held += EMPTY;
+        self.numbers.insert(place, self.tiles.len());
+        self.tiles.push(Tile::Unknown(0));
+        self.tiles.len() - 1
+    }
+
+    /// Makes the last tile. Returns false once the flag is raised.
+    fn make(&mut self, place: [i64; D], stop: &Stop) -> bool {
+        let region = self.grid.region(place);
+        let mut all = Vec::new();
+        self.set.visit(&region, stop, |point| {
+            all.push(point);
+            true
+        });
+        self.held += all.len();
+        let by = (self.set.spacing_kept(), self.distance);
+        self.tiles[self.last.1] = Tile::Known(Points::new(&region, by, &all));
+        !stop.is_raised()
+    }
+}
+
+impl<const D: usize> Cells<D> {
+    /// Cells with about a side.
+    fn new(region: &Region<D>, side: f64) -> Self {
+        let (corner, scale) = (region.min(), 1.0 / side);
+        let across = |axis: usize| (region.max()[axis] - corner[axis]) * scale;
+        Self {
+            corner,
+            scale,
+            number: from_fn(|axis| across(axis) as usize + 1),
+        }
+    }
+
+    fn all(&self) -> usize {
+        self.number.iter().product()
+    }
+
+    /// The row or column of a coordinate, which never falls where the coordinate grows. A float below 0 becomes 0.
+    #[inline(always)]
+    fn line(&self, axis: usize, v: f64) -> usize {
+        // Conversions to 32 bits are faster.
+        let line = ((v - self.corner[axis]) * self.scale) as u32 as usize;
+        line.min(self.number[axis] - 1)
+    }
+
+    /// The number of the cell of a place.
+    #[inline(always)]
+    fn of(&self, at: [f64; D]) -> usize {
+        self.at(from_fn(|axis| self.line(axis, at[axis])))
+    }
+
+    #[inline(always)]
+    fn at(&self, lines: [usize; D]) -> usize {
+        (0..D)
+            .rev()
+            .fold(0, |all, axis| all * self.number[axis] + lines[axis])
+    }
 }
 
 impl<const D: usize> Points<D> {
-    /// Points in a box, in cells with about the side `side`.
-    fn new(region: &Region<D>, side: f64, unsorted: &[[f64; D]]) -> Self {
-        let (corner, scale) = (region.min(), 1.0 / side);
-        let across = |axis: usize| (region.max()[axis] - corner[axis]) * scale;
-        let cells: [usize; D] = from_fn(|axis| across(axis) as usize + 1);
+    /// Points in a box, with a mean spacing, and the greatest distance that is asked for.
+    fn new(region: &Region<D>, (spacing, distance): (f64, f64), unsorted: &[[f64; D]]) -> Self {
+        let cells = Cells::new(region, spacing);
+        let around = Region::between(
+            region.min().map(|v| v - distance),
+            region.max().map(|v| v + distance),
+        );
+        let longest = around.sides().iter().copied().fold(0.0, f64::max);
+        let fine = Cells::new(&around, (0.5 * distance).max(longest / MOST_FINE));
         let mut points = Self {
-            corner,
-            scale,
             cells,
+            fine,
+            is_near: Vec::new(),
             starts: Vec::new(),
             all: vec![[0.0; D]; unsorted.len()],
             stays: vec![None; unsorted.len()],
@@ -309,10 +486,21 @@ impl<const D: usize> Points<D> {
         if unsorted.is_empty() {
             return points;
         }
-        points.starts = vec![0; cells.iter().product::<usize>() + 1];
+        if D == 2 {
+            points.is_near = vec![false; fine.all()];
+            let room = distance * (1.0 + 1e-9);
+            for at in unsorted {
+                let lines = |axis| [at[axis] - room, at[axis] + room].map(|v| fine.line(axis, v));
+                let ([left, right], [bottom, top]) = (lines(0), lines(1));
+                for row in bottom..=top {
+                    let row = row * fine.number[0];
+                    points.is_near[row + left..=row + right].fill(true);
+                }
+            }
+        }
+        points.starts = vec![0; cells.all() + 1];
         for &at in unsorted {
-            let cell = points.own(at);
-            points.starts[cell] += 1;
+            points.starts[cells.of(at)] += 1;
         }
         let mut sum = 0;
         for start in &mut points.starts {
@@ -321,30 +509,21 @@ impl<const D: usize> Points<D> {
         }
         // Each point moves the end of its cell down, in the end to where the cell begins.
         for &at in unsorted {
-            let cell = points.own(at);
-            points.starts[cell] -= 1;
-            points.all[points.starts[cell] as usize] = at;
+            let end = &mut points.starts[cells.of(at)];
+            *end -= 1;
+            points.all[*end as usize] = at;
         }
         points
     }
 
-    /// The cell of a coordinate, which never falls where the coordinate grows. A float below 0 becomes 0.
-    fn cell(&self, axis: usize, v: f64) -> usize {
-        (((v - self.corner[axis]) * self.scale) as usize).min(self.cells[axis] - 1)
-    }
-
-    /// The number of the cell of a place.
-    fn own(&self, at: [f64; D]) -> usize {
-        self.number(from_fn(|axis| self.cell(axis, at[axis])))
-    }
-
-    fn number(&self, cell: [usize; D]) -> usize {
-        (0..D)
-            .rev()
-            .fold(0, |all, axis| all * self.cells[axis] + cell[axis])
+    /// Whether a point may be near a place.
+    #[inline(always)]
+    fn may_have(&self, at: [f64; D]) -> bool {
+        !self.all.is_empty() && (D != 2 || self.is_near[self.fine.of(at)])
     }
 
     /// Whether a point that stays is nearer to a place than a distance; all such points lie between two corners.
+    #[inline]
     fn has_near(
         &mut self,
         at: [f64; D],
@@ -352,13 +531,11 @@ impl<const D: usize> Points<D> {
         distance: f64,
         mut stays: impl FnMut([f64; D]) -> bool,
     ) -> bool {
-        if self.all.is_empty() {
-            return false;
-        }
-        let [first, last]: [[usize; D]; 2] = ends.map(|p| from_fn(|axis| self.cell(axis, p[axis])));
+        let [first, last]: [[usize; D]; 2] =
+            ends.map(|p| from_fn(|axis| self.cells.line(axis, p[axis])));
         let mut row = first;
         loop {
-            let from = self.number(row);
+            let from = self.cells.at(row);
             let [from, to] = [from, from + 1 + last[0] - first[0]].map(|i| self.starts[i] as usize);
             let points = self.all[from..to].iter().zip(&mut self.stays[from..to]);
             for (&point, decided) in points {
@@ -378,7 +555,7 @@ impl<const D: usize> Points<D> {
 /// Whether two places are nearer than a distance.
 fn is_nearer<const D: usize>(a: [f64; D], b: [f64; D], distance: f64) -> bool {
     let squared = (0..D).map(|axis| (a[axis] - b[axis]) * (a[axis] - b[axis]));
-    squared.fold(0.0, |all, part| all + part) < distance * distance
+    squared.sum::<f64>() < distance * distance
 }
 
 #[cfg(test)]
@@ -409,7 +586,7 @@ mod tests {
             [1.5, 0.5]
         }
 
-        fn searches(&self, _: f64) -> u32 {
+        fn searches(&self, _: [f64; 2], _: f64) -> u32 {
             self.searches
         }
 
@@ -421,8 +598,8 @@ mod tests {
             &self.clear
         }
 
-        fn reaches(&self, _: [f64; 2], _: f64) -> bool {
-            true
+        fn limit(&self) -> f64 {
+            f64::MAX
         }
 
         fn visit(&mut self, within: &Region, _: &Stop, each: impl FnMut([f64; 2]) -> bool) {
@@ -447,7 +624,7 @@ mod tests {
         fn places_are_clear_as_all_pairs_say(
             all in proptest::collection::vec(proptest::collection::vec([0.0..6.0f64, 0.0..6.0f64], 0..60), 3),
             tested in proptest::collection::vec([-1.0..7.0f64, -1.0..7.0f64], 1..60),
-            distances in [1e-3..1.2f64, 1e-3..1.2f64, 1e-3..1.2f64, 1e-3..1.2f64], searches in 0..6u32,
+            distances in [1e-3..1.2f64, 1e-3..1.2f64, 1e-3..1.2f64, 1e-3..1.2f64], searches in 0..6u32, size in 1.0..6.0f64,
             at in prop_oneof![Just([0.0; 2]), [-1e3..1e3f64, -1e3..1e3f64], [-1e13..1e13f64, -1e13..1e13f64]],
         ) {
             let moved = |p: &[f64; 2]| [0, 1].map(|i| at[i] + p[i]);
@@ -462,7 +639,8 @@ mod tests {
             let second = given(1, &[(&first, a)]);
             let third = given(2, &[(&second, b), (&first, c)]);
             let own = [ClearOf::new(third, d).expect("near"), ClearOf::new(first, a).expect("near")];
-            let mut clear = Clear::new(&own, Stop::default());
+            let within = Region::between(moved(&[1.0, 2.0]), moved(&[size, 5.0]));
+            let mut clear = Clear::new(&own, &within, Stop::default());
             for place in tested.iter().map(moved) {
                 prop_assert_eq!(clear.permits(place), is_clear(&own, place));
             }
@@ -479,13 +657,14 @@ mod tests {
             number: 0,
         };
         let own = [ClearOf::new(set, 0.01).expect("near")];
-        let mut clear = Clear::new(&own, Stop::default());
+        let within = Region::between([0.0; 2], [0.3; 2]);
+        let mut clear = Clear::new(&own, &within, Stop::default());
         for known in [false, false, true] {
             assert!(clear.permits([0.1, 0.1]));
             let tiles = &clear.others[0].tiles;
-            assert_eq!(matches!(tiles[&[0, 0]], Tile::Known(_)), known);
+            assert_eq!(matches!(tiles[..], [Tile::Known(_)]), known);
         }
-        assert!(!clear.permits([0.2, 0.205]));
-        assert!(matches!(clear.others[0].tiles[&[0, 0]], Tile::Unknown(1)));
+        assert!(!clear.permits([0.2, 0.205]) && clear.permits([1.0, 1.0]));
+        assert!(matches!(clear.others[0].tiles[..], [Tile::Unknown(1)]));
     }
 }

@@ -38,18 +38,18 @@ pub(crate) struct Other {
 }
 
 impl Mask {
-    /// Tests for many places, with memory of their own.
-    pub(crate) fn guards(&self) -> Guards {
+    /// Tests for many places, most of them in a box, with memory of their own.
+    pub(crate) fn guards(&self, within: &Region) -> Guards {
         Guards {
             area: self.area.clone(),
-            clear: self.clear_guard(),
+            clear: self.clear_guard(within),
         }
     }
 
     /// The test of [`clear`](Self::clear) alone.
-    pub(crate) fn clear_guard(&self) -> Guard {
+    pub(crate) fn clear_guard(&self, within: &Region) -> Guard {
         let clear: &[ClearOf<Other>] = if CLEARANCE { &self.clear } else { &[] };
-        Guard(RefCell::new(Clear::new(clear, Stop::default())))
+        Guard(RefCell::new(Clear::new(clear, within, Stop::default())))
     }
 
     /// This mask with another set to keep clear of.
@@ -115,7 +115,7 @@ impl OtherSet<2> for Other {
         [tile * self.spacing(); 2]
     }
 
-    fn searches(&self, distance: f64) -> u32 {
+    fn searches(&self, sides: [f64; 2], distance: f64) -> u32 {
         /// The cost of a search beside its visits, in visits of points.
         const SEARCH: f64 = 40.0;
         /// The cost of a visit of a point with a look at a field.
@@ -124,23 +124,28 @@ impl OtherSet<2> for Other {
             Some(_) => IN_FIELD,
             None => 1.0,
         };
-        let cost = |side: f64| {
-            let spacings = side / self.spacing();
-            spacings * spacings * visit
+        let cost = |sides: [f64; 2]| {
+            let [x, y] = sides.map(|side| side / self.spacing());
+            x * y * visit
         };
-        (cost(self.sides()[0]) / (SEARCH + cost(2.0 * distance))) as u32
+        (cost(sides) / (SEARCH + cost([2.0 * distance; 2]))) as u32
     }
 
-    fn is_same(&self, _: &Self) -> bool {
-        false
+    fn is_same(&self, other: &Self) -> bool {
+        let (own, masked) = (&self.mask, &other.mask);
+        let is_alone = own.clear.is_empty() && masked.clear.is_empty();
+        let is_within = own.area.is_none() && masked.area.is_none();
+        is_within
+            && (is_alone || Arc::ptr_eq(&own.clear, &masked.clear))
+            && self.lattice.is_same(&other.lattice)
     }
 
     fn clear(&self) -> &[ClearOf<Self>] {
         &self.mask.clear
     }
 
-    fn reaches(&self, at: [f64; 2], distance: f64) -> bool {
-        check_place(at).is_ok() && check_reach(limit(&self.lattice), at, distance).is_ok()
+    fn limit(&self) -> f64 {
+        limit(&self.lattice)
     }
 
     fn visit(&mut self, within: &Region, _: &Stop, mut each: impl FnMut([f64; 2]) -> bool) {
@@ -185,7 +190,7 @@ pub(crate) struct Guard(RefCell<Clear<Other, 2>>);
 impl Guard {
     /// Clear of nothing.
     pub(crate) fn none() -> Self {
-        Mask::default().clear_guard()
+        Mask::default().clear_guard(&Region::NOWHERE)
     }
 
     /// Whether there is no other set.
@@ -231,7 +236,7 @@ impl Clearance {
         Self::check(&lattice, distance)?;
         Ok(Self {
             lattice,
-            guards: mask.guards(),
+            guards: mask.guards(&Region::NOWHERE),
             distance,
             scratch: Scratch::default(),
         })

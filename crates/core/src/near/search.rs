@@ -17,6 +17,7 @@ use super::{
 use crate::{
     error::Error,
     lattice::{Lattice, Point},
+    shape::Region,
     stop::Stop,
 };
 
@@ -69,7 +70,8 @@ pub(crate) fn within(
     check_work(lattice, radius, visits.most())?;
     check_reach(limit_of(lattice), at, radius)?;
     let farthest = farthest(radius);
-    let guards = mask.guards();
+    let around = Region::between(at.map(|v| v - radius), at.map(|v| v + radius));
+    let guards = mask.guards(&around);
     let (mut found, mut inside) = (Vec::with_capacity(limit.min(12)), 0usize);
     let mut scratch = Scratch::default();
     let scanned = scan(

@@ -123,6 +123,9 @@ impl<const D: usize> Region<D> {
         Self { min, max, chunk }
     }
 
+    /// A box without points.
+    pub(crate) const NOWHERE: Self = Self::between([0.0; D], [0.0; D]);
+
     /// The chunk that this is, if it is one.
     pub(crate) const fn as_chunk(&self) -> Option<Chunk<D>> {
         self.chunk
@@ -170,7 +173,7 @@ impl<const D: usize> Region<D> {
     }
 
     /// The smallest box around two.
-    pub(super) fn around(&self, other: &Self) -> Self {
+    pub(crate) fn around(&self, other: &Self) -> Self {
         Self::between(
             from_fn(|i| self.min[i].min(other.min[i])),
             from_fn(|i| self.max[i].max(other.max[i])),

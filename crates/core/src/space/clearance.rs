@@ -49,8 +49,14 @@ impl OtherSet<3> for Other {
         TILE.map(|side| side * self.spacing() * wide)
     }
 
-    fn searches(&self, _: f64) -> u32 {
-        4
+    fn searches(&self, sides: [f64; 3], _: f64) -> u32 {
+        /// The points whose making costs as much as a search.
+        const SEARCH: f64 = 128.0;
+        let points: f64 = sides
+            .iter()
+            .map(|side| side / self.spacing_kept())
+            .product();
+        (points / SEARCH) as u32
     }
 
     fn is_same(&self, other: &Self) -> bool {
@@ -61,8 +67,8 @@ impl OtherSet<3> for Other {
         &self.mask.clear
     }
 
-    fn reaches(&self, _: [f64; 3], _: f64) -> bool {
-        true
+    fn limit(&self) -> f64 {
+        f64::MAX
     }
 
     fn visit(&mut self, region: &Region, stop: &Stop, mut each: impl FnMut([f64; 3]) -> bool) {
@@ -97,7 +103,7 @@ pub(super) struct Clearance(Clear<Other, 3>);
 
 impl Clearance {
     pub(super) fn new(scope: &Scope) -> Self {
-        Self(Clear::new(&scope.clear, scope.stop.clone()))
+        Self(Clear::new(&scope.clear, &scope.region, scope.stop.clone()))
     }
 
     /// Removes the points of a batch of a scope that are too near others.

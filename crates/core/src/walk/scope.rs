@@ -111,7 +111,7 @@ impl Scope {
             None
         } else {
             let area = area.map(around_chunks);
-            Sieve::new(lattice, Mask { area, ..mask }, [x.reach, y.reach])
+            Sieve::new(lattice, (Mask { area, ..mask }, region), [x.reach, y.reach])
         };
         Ok(Self {
             lattice: lattice.clone(),

@@ -87,7 +87,7 @@ impl Pieces {
         Some(Self {
             around: settler.moves.around(&bounds),
             bounds,
-            clear: sieve.map_or_else(Guard::none, |sieve| sieve.mask().clear_guard()),
+            clear: sieve.map_or_else(Guard::none, Sieve::guard),
             settler,
             scope: scope.clone(),
             halves: Halves::default(),

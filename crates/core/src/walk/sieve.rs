@@ -269,6 +269,8 @@ fn room(x: f64) -> f64 {
 pub(crate) struct Sieve {
     /// Its area is `None` where all of the plan's box is requested.
     mask: Mask,
+    /// The box around the points.
+    region: Region,
     /// The set, if its points are left out by their kind one by one.
     picked: Option<Arc<Lattice>>,
     /// The least and the greatest distance of a point from its lattice address, in lattice units, by
@@ -281,7 +283,11 @@ pub(crate) struct Sieve {
 impl Sieve {
     /// A sieve, or `None` if everything passes. `reach` has the least and the greatest distance of a point
     /// from its lattice address by axis, in fixed-point units.
-    pub(crate) fn new(lattice: &Lattice, mask: Mask, reach: [[i32; 2]; 2]) -> Option<Self> {
+    pub(crate) fn new(
+        lattice: &Lattice,
+        (mask, region): (Mask, Region),
+        reach: [[i32; 2]; 2],
+    ) -> Option<Self> {
         let picked = lattice.picks().then(|| Arc::new(lattice.clone()));
         if mask.area.is_none() && mask.clear.is_empty() && picked.is_none() {
             return None;
@@ -289,6 +295,7 @@ impl Sieve {
         let grid_units = |v: i32| f64::from(v) / f64::from(1u32 << FRACTION_BITS);
         Some(Self {
             mask,
+            region,
             picked,
             reach: reach.map(|reach| reach.map(grid_units)),
             unit: lattice.step * f64::from(1u32 << FRACTION_BITS),
@@ -297,8 +304,12 @@ impl Sieve {
 
     /// A sieve to be aimed at one piece of the lattice after another.
     pub(crate) fn local(&self) -> LocalSieve {
-        let tests = (self.mask.clear_guard(), self.picked.clone());
-        LocalSieve::new(tests, self.reach, self.unit)
+        LocalSieve::new((self.guard(), self.picked.clone()), self.reach, self.unit)
+    }
+
+    /// A test of the other sets alone.
+    pub(crate) fn guard(&self) -> Guard {
+        self.mask.clear_guard(&self.region)
     }
 
     /// Whether there are other sets to keep clear of.
