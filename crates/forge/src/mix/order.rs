@@ -101,27 +101,23 @@ impl Left<'_, '_> {
     /// The neighbors of each block that serve until only a share is left.
     fn listed(&self, is_left: &[bool], until: f64) -> Vec<Vec<Pair>> {
         let range = CUTOFF * SIGMA / until.max(LEAST).sqrt();
-        let scale = self.ground.scale;
         let list = |block: usize| {
             if !is_left[block] {
                 return Vec::new();
             }
             let kind = self.labels[block];
             let far = range * (1.0 / self.shares[usize::from(kind)].sqrt()).min(RAREST);
-            let at = self.moves[block];
             let mut list = Vec::with_capacity(256);
-            let reach = far + 2.0 * self.longest;
-            self.ground.meets(
+            let moved = (&self.moves[..], self.longest);
+            let ground = &self.ground;
+            ground.near(
                 block,
-                reach,
+                moved,
+                far,
                 |to| is_left[to],
-                |meet| {
-                    let to = meet.to as usize;
-                    let x = scale * f64::from(meet.i) + self.moves[to][0] - at[0];
-                    let y = scale * f64::from(meet.j) + self.moves[to][1] - at[1];
-                    let squared = x * x + y * y;
-                    let range = if self.labels[to] == kind { far } else { range };
-                    if squared < range * range {
+                |meet, squared| {
+                    let is_own = self.labels[meet.to as usize] == kind;
+                    if is_own || squared < range * range {
                         list.push(Pair {
                             to: meet.to,
                             squared: squared as f32,

@@ -24,6 +24,8 @@ pub(crate) struct Ground {
     n: usize,
     /// Mean spacings per grid unit.
     pub(crate) scale: f64,
+    /// The side of the set region, as a part of the torus.
+    side: f64,
     /// For each parity of the other offset, parity of the own offset and interval: the intervals met,
     /// by own offset.
     meetings: Vec<Vec<Meeting>>,
@@ -55,8 +57,12 @@ pub(crate) struct Meet {
 impl Ground {
     /// The frequencies of pairs up to `reach` mean spacings apart in the pattern.
     pub(crate) fn new(map: &Map, reach: f64) -> Self {
-        let n = map.intervals();
-        let scale = map.alpha().set_side_f64();
+        Self::scaled(map, reach, map.alpha().set_side_f64())
+    }
+
+    /// The same in mean spacings of another pattern, of which `scale` make a grid unit.
+    pub(super) fn scaled(map: &Map, reach: f64, scale: f64) -> Self {
+        let (n, side) = (map.intervals(), map.alpha().set_side_f64());
         let reach = (reach / scale) as i64 + 1;
         let mut meetings = vec![Vec::new(); 4 * n];
         for own in -reach..=reach {
@@ -71,10 +77,11 @@ impl Ground {
             }
         }
         let lengths: Vec<f64> = (0..n).map(|i| length(map, i)).collect();
-        let share = |b: usize| lengths[b % n] / scale * (lengths[b / n] / scale);
+        let share = |b: usize| lengths[b % n] / side * (lengths[b / n] / side);
         Self {
             n,
             scale,
+            side,
             meetings,
             shares: (0..n * n).map(share).collect(),
             lengths,
@@ -86,23 +93,30 @@ impl Ground {
         self.lengths[block % self.n] * self.lengths[block / self.n]
     }
 
-    /// Calls `visit` with every neighbor of a block within `reach` mean spacings along each axis of the
-    /// pattern, and its weight in the full set. `alive` says which blocks count.
-    pub(crate) fn neighbors(
+    /// The mean number of neighbors that an instance of a block has by a meeting.
+    pub(crate) fn weight(&self, block: usize, meet: &Meet) -> f32 {
+        (meet.area / (self.shares[block] * self.side * self.side)) as f32
+    }
+
+    /// Calls `visit` with every meeting of a block with points less than `range` away, and the squared distance. Points are
+    /// moved, by `longest` at most. `alive` says which blocks count.
+    pub(crate) fn near(
         &self,
         block: usize,
-        reach: f64,
+        (moves, longest): (&[[f64; 2]], f64),
+        range: f64,
         alive: impl Fn(usize) -> bool,
-        mut visit: impl FnMut(Pair),
+        mut visit: impl FnMut(Meet, f64),
     ) {
-        let area = self.shares[block] * self.scale * self.scale;
-        self.meets(block, reach, alive, |meet| {
-            visit(Pair {
-                to: meet.to,
-                i: meet.i,
-                j: meet.j,
-                weight: (meet.area / area) as f32,
-            });
+        let own = moves[block];
+        self.meets(block, range + 2.0 * longest, alive, |meet| {
+            let to = moves[meet.to as usize];
+            let x = self.scale * f64::from(meet.i) + to[0] - own[0];
+            let y = self.scale * f64::from(meet.j) + to[1] - own[1];
+            let squared = x * x + y * y;
+            if squared < range * range {
+                visit(meet, squared);
+            }
         });
     }
 
