@@ -15,7 +15,7 @@ use crate::{
     optimize::{DescentState, jitter},
     phase::Phase,
     profile::{Profile, Recipe},
-    thinned::with_ranks,
+    ranks::with_ranks,
     twins::Domain,
     watch::Meter,
 };

@@ -15,4 +15,4 @@ mod known;
 mod recipe;
 
 pub use aim::Aim;
-pub use recipe::{Profile, Push, Recipe};
+pub use recipe::{Following, Profile, Push, Recipe, Repulsion};
