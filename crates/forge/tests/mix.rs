@@ -12,7 +12,7 @@ use strew_core::{Map, PointSet, Table, Twin, table::Provenance};
 use strew_forge::{
     MixJob, Progress, ThinnedTwin, Watch, labels,
     measure::{Distances, Sample, Spectrum},
-    mix, read_table,
+    mix, mix_file_name, read_table,
 };
 
 /// A twin of 978,121 points, which is larger than those that the judge looks at. Others have other shares of
@@ -206,7 +206,10 @@ fn work_can_be_stopped_at_any_step() {
 
 #[test]
 fn impossible_jobs_are_refused() {
-    let mut job = MixJob::joint("1:3".parse().expect("valid"));
+    let mut job = MixJob::joint("3:1".parse().expect("valid"));
+    assert_eq!((job.shares.to_string().as_str(), job.steps), ("1:3", 240));
+    let name = mix_file_name(&small(), &job);
+    assert_eq!(name, "blue-5-sqrt3-over-2-r20-mix-1-3.strew");
     job.steps = 0;
     let error = mix(&small(), &job, &()).expect_err("no steps");
     assert_eq!(error.to_string(), "steps is 0; allowed: from 1 to 10000");

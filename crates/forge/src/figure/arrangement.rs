@@ -16,16 +16,6 @@ use super::{
 ///
 /// # Errors
 /// [`FigureError`] if the window is out of range, or the offsets are as [`Arrangement::new`] refuses them.
-///
-/// ```
-/// use strew_forge::figure;
-///
-/// let svg = figure::arrangement("sqrt(3)".parse()?, &[(2, 0), (1, 2)], 40)?.to_svg();
-/// assert!(svg.contains("It occurs"));
-/// let svg = figure::arrangement("sqrt(3)".parse()?, &[(1, 0)], 40)?.to_svg();
-/// assert!(svg.contains("It never occurs"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn arrangement(
     alpha: Alpha,
     offsets: &[(i64, i64)],

@@ -26,14 +26,6 @@ const LEGEND: usize = 12;
 ///
 /// # Errors
 /// [`FigureError`] if the window is out of range, or the others are as [`Clusters::new`] refuses them.
-///
-/// ```
-/// use strew_forge::figure;
-///
-/// let svg = figure::clusters("sqrt(3)".parse()?, 2.0, 16, 48)?.to_svg();
-/// assert!(svg.contains("4 shapes"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn clusters(
     alpha: Alpha,
     distance: f64,
@@ -48,16 +40,6 @@ pub fn clusters(
 ///
 /// # Errors
 /// [`FigureError`] if the window is out of range.
-///
-/// ```
-/// use strew_core::map::Clusters;
-/// use strew_forge::figure;
-///
-/// let alpha = "sqrt(3)".parse()?;
-/// let drawn = figure::found_clusters(&Clusters::new(alpha, 2.0, 16)?, 2.0, 48)?;
-/// assert_eq!(drawn.to_svg(), figure::clusters(alpha, 2.0, 16, 48)?.to_svg());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn found_clusters(
     found: &Clusters,
     distance: f64,

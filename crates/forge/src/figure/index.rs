@@ -30,14 +30,6 @@ fn shade([x, y]: [f64; 2]) -> Color {
 ///
 /// # Errors
 /// [`FigureError`] if the window is out of range.
-///
-/// ```
-/// use strew_forge::figure;
-///
-/// let svg = figure::index("(5-sqrt(3))/2".parse()?, 48)?.to_svg();
-/// assert!(svg.contains("set region"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn index(alpha: Alpha, window: u32) -> Result<Drawing, FigureError> {
     check_window(window)?;
     let (pattern, t) = (Pattern::new(alpha), alpha.set_side_f64());

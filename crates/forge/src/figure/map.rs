@@ -16,16 +16,6 @@ const DARK: Color = [203, 214, 226];
 ///
 /// # Errors
 /// [`FigureError`] if `radius` is out of range, or the map has no such block.
-///
-/// ```
-/// use strew_forge::figure;
-///
-/// let svg = figure::map("(5-sqrt(3))/2".parse()?, 20, [3, 8])?.to_svg();
-/// assert!(svg.contains("27 × 27 blocks"));
-/// let error = figure::map("sqrt(3)".parse()?, 20, [3, 99]).unwrap_err();
-/// assert_eq!(error.to_string(), "block is [3, 99]; it must be two integers from 0 to 30");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn map(alpha: Alpha, radius: u32, block: [usize; 2]) -> Result<Drawing, FigureError> {
     if !(1..=200).contains(&radius) {
         return Err(FigureError::new(

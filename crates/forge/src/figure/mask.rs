@@ -14,16 +14,6 @@ const MOST: f64 = 4.0;
 
 /// Draws the radial power of the pixels of a mask that are on at levels of 1/8, 1/4 and 1/2. Pixels in a random order
 /// have a power of 1, the gray line.
-///
-/// ```
-/// use strew_core::Table;
-/// use strew_forge::{figure, mask::Mask};
-///
-/// let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-/// let svg = figure::mask_spectrum(&Mask::new(&table, 32, 7)?).to_svg();
-/// assert!(svg.contains("Level 1/8"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[must_use]
 pub fn mask_spectrum(mask: &Mask) -> Drawing {
     let mut drawing = sheet(LEVELS.len(), 2);
