@@ -25,7 +25,7 @@ use crate::{
     arguments::Arguments,
     figures,
     ground::Grid,
-    paint::{self, Panel},
+    paint::{self, Dots},
     pictures::Picture,
     tones::Judge,
 };
@@ -84,7 +84,7 @@ pub fn study(mut arguments: Arguments) -> Outcome {
         }
         if let Some(folder) = &folder {
             let out = Path::new(folder).join(format!("{}.png", picture.name));
-            paint::write(&out, &drawn, [2, 12], 4, None)?;
+            paint::write(&out, &drawn, sizes(&picture).0, 2)?;
         }
     }
     for (way, verdicts) in ways.iter().zip(&of_ways) {
@@ -117,15 +117,18 @@ fn relaxed(grid: &Grid, points: &[[f64; 2]], power: i32) -> Outcome<Vec<[f64; 2]
     Ok(points.iter().zip(&sums).map(moved).collect())
 }
 
-/// A stipple as a picture.
-fn panel(picture: &Picture, points: &[[f64; 2]]) -> Panel {
-    let [width, height] = picture.size;
-    let scale = LONGER / width.max(height);
-    let area = width * height * scale * scale;
-    let radius = (area * COVERED / points.len() as f64 / PI).sqrt();
-    let place = |[x, y]: &[f64; 2]| [x * scale, (height - y) * scale];
-    let size = picture.size.map(|v| (v * scale).round() as usize);
-    Panel::dots(size, points.iter().map(place), radius)
+/// The size of a picture in pixels, and the pixels of a unit.
+fn sizes(picture: &Picture) -> ([f64; 2], f64) {
+    let scale = LONGER / picture.size[0].max(picture.size[1]);
+    (picture.size.map(|v| v * scale), scale)
+}
+
+/// A stipple as a panel.
+fn panel(picture: &Picture, points: &[[f64; 2]]) -> Vec<Dots> {
+    let ([width, height], scale) = sizes(picture);
+    let diameter = 2.0 * (width * height * COVERED / points.len() as f64 / PI).sqrt();
+    let place = |[x, y]: &[f64; 2]| [x * scale, height - y * scale];
+    vec![(points.iter().map(place).collect(), diameter, [0; 3])]
 }
 
 /// The seconds for which this thread has had a processor, where Linux counts them; else those of the clock, which are

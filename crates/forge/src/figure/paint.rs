@@ -78,14 +78,6 @@ impl Canvas {
             Mark::Fill(at, size, color, opacity) => self.fill(*at, *size, *color, *opacity),
             Mark::Outline(at, size, pen, dash) => self.lines(&sides(*at, *size, *dash), *pen),
             Mark::Lines(lines, pen) => self.lines(lines, *pen),
-            Mark::Curve(places, pen) => {
-                let lines: Vec<_> = places.windows(2).map(|pair| [pair[0], pair[1]]).collect();
-                self.lines(&lines, *pen);
-            }
-            Mark::Dots(places, pen) => {
-                let dots: Vec<_> = places.iter().map(|&place| [place; 2]).collect();
-                self.lines(&dots, *pen);
-            }
             Mark::Ring(at, radius, pen) => self.ring(*at, *radius, *pen),
             Mark::Checkers(rectangles, color) => self.checkers(rectangles, *color),
             Mark::Cells([x, y], [w, h], columns, cells) => {
@@ -322,7 +314,7 @@ mod tests {
         };
         near(Mark::Fill([1.3, 2.1], [3.3, 4.4], black, 1.0), 3.3 * 4.4);
         near(Mark::Fill([1.3, 2.1], [3.3, 4.4], black, 0.5), 1.65 * 4.4);
-        near(Mark::Dots(vec![[5.0, 5.2]], (black, 6.0)), 28.27);
+        near(Mark::Lines(vec![[[5.0, 5.2]; 2]], (black, 6.0)), 28.27);
         // Ends reach half a pixel farther.
         near(
             Mark::Lines(vec![[[2.0, 2.0], [8.0, 2.0]]], (black, 0.2)),
@@ -343,7 +335,7 @@ mod tests {
     #[test]
     fn what_lies_outside_is_left_out() {
         for mark in [
-            Mark::Dots(vec![[-50.0, 3.0], [500.0, 5.0]], ([0; 3], 3.0)),
+            Mark::Lines(vec![[[-50.0, 3.0]; 2], [[500.0, 5.0]; 2]], ([0; 3], 3.0)),
             Mark::Fill([11.0, -9.0], [40.0, 4.0], [0; 3], 1.0),
             Mark::Ring([5.0, 90.0], 3.0, ([0; 3], 1.0)),
         ] {

@@ -28,16 +28,6 @@ impl LevelSpectrum {
 impl Mask {
     /// The spectrum of the pixels whose rank is below a share of all, from 0 to 1: the mean over frequencies of
     /// |Σ (on − share) exp(−2πi k·x)|² ÷ (size²·share·(1 − share)).
-    ///
-    /// ```
-    /// use strew_core::Table;
-    /// use strew_forge::mask::Mask;
-    ///
-    /// let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let mask = Mask::new(&table, 64, 7)?;
-    /// assert!(mask.spectrum(0.25).low_power < 0.2);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn spectrum(&self, level: f64) -> LevelSpectrum {
         let size = self.size as usize;
@@ -92,21 +82,12 @@ impl Mask {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::SplitMix;
 
     /// Ranks in an order hashed by SplitMix64.
     fn white(size: u32) -> Mask {
-        let mut order: Vec<u32> = (0..size * size).collect();
-        order.sort_by_key(|&i| {
-            let z = (u64::from(i) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-            let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            z ^ (z >> 31)
-        });
-        let mut ranks = vec![0; order.len()];
-        for (rank, pixel) in order.into_iter().enumerate() {
-            ranks[pixel as usize] = rank as u32;
-        }
-        Mask::from_ranks(size, ranks).expect("each once")
+        let hashed = |x, y| SplitMix::new(u64::from(y * size + x)).next_u64();
+        Mask::by_key(size, hashed)
     }
 
     #[test]
@@ -121,15 +102,7 @@ mod tests {
     #[test]
     fn a_lattice_is_nothing_but_peaks() {
         // Every second pixel of every second row comes first.
-        let size = 32;
-        let key = |i: u32| (i % 2 + 2 * (i / size % 2), i);
-        let mut order: Vec<u32> = (0..size * size).collect();
-        order.sort_by_key(|&i| key(i));
-        let mut ranks = vec![0; order.len()];
-        for (rank, pixel) in order.into_iter().enumerate() {
-            ranks[pixel as usize] = rank as u32;
-        }
-        let mask = Mask::from_ranks(size, ranks).expect("each once");
+        let mask = Mask::by_key(32, |x, y| x % 2 + 2 * (y % 2));
         let spectrum = mask.spectrum(0.25);
         assert!(spectrum.low_power < 1e-20);
         // Three peaks share all of the variance.
