@@ -1,7 +1,7 @@
 //! Measuring point sets: spectrum, distances and Voronoi cells of whole periods and of windows.
 //!
 //! A set is a [`Sample`], of the plane or in space: one period of a periodic set, or a window of an unbounded one;
-//! [`twin_set`] and [`window_set`] make them from a table. [`Spectrum`] is computed by `nufft`, in space by `sums` with the
+//! [`twin_set`], [`ThinnedTwin`] and [`window_set`] make them from a table. [`Spectrum`] is computed by `nufft`, in space by `sums` with the
 //! transforms of `fourier`, windows with the weights of `taper`; its [`Ring`]s yield the [`Summary`] and the [`Crispness`].
 //! [`Distances`] and [`Rdf`] look up neighbors in a cell list, [`Voronoi`] in a triangulation. [`recurrence`] is how
 //! much of a set is found again elsewhere in it, [`Shared`] what two sets have in common.
@@ -21,6 +21,7 @@ mod set;
 mod spectrum;
 mod sums;
 mod taper;
+mod thinned;
 mod voronoi;
 
 pub use crispness::Crispness;
@@ -34,4 +35,5 @@ pub(crate) use set::{root, wrap};
 pub(crate) use spectrum::rings_of;
 pub use spectrum::{BANDS, Ring, Spectrum, Summary};
 pub(crate) use sums::waves;
+pub use thinned::ThinnedTwin;
 pub use voronoi::Voronoi;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use strew_core::{
     Map, Pattern, Table, Twin,
     pattern::{Axis, Class, IndexOrigin},
-    table::to_grid_units,
+    table::{Displacement, to_grid_units},
 };
 
 use crate::numeric::SplitMix;
@@ -110,18 +110,17 @@ pub(crate) fn wrap(v: f64, side: f64) -> f64 {
 #[must_use]
 pub fn twin_set(table: &Table, twin: Twin) -> Option<Sample> {
     let n = table.map().intervals();
-    let points = twin
-        .sites(table.map())?
-        .iter()
-        .map(|site| {
-            let [dx, dy] = table.displacements()[site.block_y as usize * n + site.block_x as usize];
-            [
-                f64::from(site.x) + to_grid_units(dx),
-                f64::from(site.y) + to_grid_units(dy),
-            ]
-        })
-        .collect();
-    Some(Sample::torus(twin.period() as f64, points))
+    let sites = twin.sites(table.map())?;
+    let points = sites.iter().map(|site| {
+        let block = site.block_y as usize * n + site.block_x as usize;
+        displaced([site.x, site.y], table.displacements()[block])
+    });
+    Some(Sample::torus(twin.period() as f64, points.collect()))
+}
+
+/// The place of a point, by its lattice address and its vector.
+pub(super) fn displaced(address: [u32; 2], by: Displacement) -> [f64; 2] {
+    [0, 1].map(|axis| f64::from(address[axis]) + to_grid_units(by[axis]))
 }
 
 /// Returns a window of about `points` points of the unbounded displaced pattern of the table's own

@@ -88,34 +88,32 @@ fn pairs(
         .iter()
         .map(|&share| of_kind(share))
         .fold(all, f64::max);
-    let reach = widest * SKIN + 2.0 * longest(moves);
-    let scale = ground.scale;
-    let lists: Vec<Vec<Near>> = (0..moves.len())
-        .into_par_iter()
-        .map(|own| {
-            let mut list = Vec::new();
-            let at = moves[own];
-            let later = |to: usize| to > own;
-            ground.meets(own, reach, later, |meet| {
+    let moved = (moves, longest(moves));
+    let list = |own: usize| {
+        let mut list = Vec::new();
+        ground.near(
+            own,
+            moved,
+            widest * SKIN,
+            |to| to > own,
+            |meet, squared| {
                 let to = meet.to as usize;
-                let by = [meet.i, meet.j].map(|v| scale * f64::from(v));
-                let x = by[0] + moves[to][0] - at[0];
-                let y = by[1] + moves[to][1] - at[1];
                 let shared = kinds.iter().zip(shares);
                 let shared = shared.filter(|(kind, _)| kind[own] > 0.0 && kind[to] > 0.0);
                 let least = shared.map(|(_, &share)| of_kind(share)).fold(all, f64::max);
-                if x * x + y * y < (least * SKIN) * (least * SKIN) {
+                if squared < (least * SKIN) * (least * SKIN) {
                     list.push(Near {
                         own: own as u32,
                         to: meet.to,
-                        by,
+                        by: [meet.i, meet.j].map(|v| ground.scale * f64::from(v)),
                         least,
                     });
                 }
-            });
-            list
-        })
-        .collect();
+            },
+        );
+        list
+    };
+    let lists: Vec<Vec<Near>> = (0..moves.len()).into_par_iter().map(list).collect();
     lists.into_iter().flatten().collect()
 }
 
@@ -127,7 +125,11 @@ mod tests {
     };
 
     use super::*;
-    use crate::{measure::Distances, mix::joint::parts, optimize::moves_of, thinned::ThinnedTwin};
+    use crate::{
+        measure::{Distances, ThinnedTwin},
+        mix::joint::parts,
+        optimize::moves_of,
+    };
 
     #[test]
     fn cleared_pairs_are_clear_on_a_twin() {

@@ -5,8 +5,7 @@ use strew_core::{PointSet, Region, Table, Twin, table::Figures};
 
 use crate::{
     judge::{Bound, Complaint, Figure, named},
-    measure::{Distances, Sample, Spectrum, Summary},
-    thinned::ThinnedTwin,
+    measure::{Distances, Sample, Spectrum, Summary, ThinnedTwin},
     twins::nearest,
     watch::{Meter, Stage, Watch},
 };

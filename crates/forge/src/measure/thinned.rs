@@ -1,11 +1,8 @@
 //! Thinned twins: what is left of one period at a share, to be measured.
 
-use strew_core::{
-    Table, Twin,
-    table::{Displacement, to_grid_units},
-};
+use strew_core::{Table, Twin};
 
-use crate::measure::Sample;
+use super::{Sample, set::displaced};
 
 /// One period of a twin, to be thinned again and again.
 pub struct ThinnedTwin {
@@ -76,11 +73,6 @@ impl ThinnedTwin {
         let points = left.map(|point| point.at);
         Sample::torus(self.period, points.collect())
     }
-}
-
-/// The place of a point of the full set, by its lattice address and its vector.
-fn displaced(address: [u32; 2], by: Displacement) -> [f64; 2] {
-    [0, 1].map(|axis| f64::from(address[axis]) + to_grid_units(by[axis]))
 }
 
 /// The kind of a point of a block, given how far its dX lies beyond the start of the block's interval.
