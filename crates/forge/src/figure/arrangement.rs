@@ -6,8 +6,7 @@ use super::{
     Drawing, FigureError,
     drawing::{COLORS, GRAY},
     panel::{
-        Panel, THREAD, check_window, dot, note, places, points, set_region, sheet, tint, turns,
-        window as grid_window,
+        Panel, THREAD, dot, index_of, note, places, points, set_region, tint, turns, with_grid,
     },
 };
 
@@ -21,14 +20,11 @@ pub fn arrangement(
     offsets: &[(i64, i64)],
     window: u32,
 ) -> Result<Drawing, FigureError> {
-    check_window(window)?;
     let pattern = Pattern::new(alpha);
     let found = Arrangement::new(pattern, offsets)?;
     let t = alpha.set_side_f64();
-    let mut drawing = sheet(3, 2);
     let caption = format!("Occurrences in AA(α), α = {alpha}");
-    let grid = grid_window(&mut drawing, 0, window, &caption);
-    grid.grid(&mut drawing);
+    let (mut drawing, grid) = with_grid(window, &caption)?;
     let place = |(x, y): (i64, i64)| grid.at([x as f64, y as f64]);
     drawing.dots(
         points(pattern, window).map(place),
@@ -75,24 +71,15 @@ pub fn arrangement(
     drawing.dots([around.at([0.0; 2])], 7.0, COLORS[1]);
 
     let region = Panel::new(&mut drawing, 2, 0.0..t, "The margin in the set region");
-    let indices = points(pattern, window).map(|(x, y)| {
-        let (dx, dy) = pattern.index(x, y);
-        region.at([turns(dx), turns(dy)])
-    });
-    let indices: Vec<_> = indices.collect();
-    drawing.dots(indices, 2.5, tint(GRAY, 0.7));
+    let at_index = |p: (i64, i64)| region.at(index_of(pattern, p));
+    drawing.dots(points(pattern, window).map(at_index), 2.5, tint(GRAY, 0.7));
     if let Some([x, y]) = found.margin() {
         let from = [turns(x.start), turns(y.start)];
         let [corner, side] =
             region.rectangle(from, [turns(x.end) - from[0], turns(y.end) - from[1]]);
         drawing.fill(corner, side, COLORS[1], 0.2);
         drawing.outline(corner, side, (COLORS[1], 1.5), 0.0);
-        let inside = occurrences.iter().map(|&(x, y)| {
-            let (dx, dy) = pattern.index(x, y);
-            region.at([turns(dx), turns(dy)])
-        });
-        let inside: Vec<_> = inside.collect();
-        drawing.dots(inside, 4.0, COLORS[1]);
+        drawing.dots(occurrences.iter().map(|&p| at_index(p)), 4.0, COLORS[1]);
         // The image at the two ends of its freedom.
         for from in [
             [turns(x.start), turns(y.start)],

@@ -8,10 +8,7 @@ use strew_core::{
 use super::{
     Drawing, FigureError,
     drawing::{Anchor, COLORS, Color, GRAY},
-    panel::{
-        Panel, check_window, dot, note, points, set_region, sheet, tint, turns,
-        window as grid_window,
-    },
+    panel::{Panel, check_window, dot, note, points, set_region, tint, turns, with_grid},
 };
 
 /// The color of points in clusters that are too large to be distinguished.
@@ -45,17 +42,14 @@ pub fn found_clusters(
     distance: f64,
     window: u32,
 ) -> Result<Drawing, FigureError> {
-    check_window(window)?;
     let (map, most) = (found.map(), found.most());
     let alpha = map.alpha();
     let t = alpha.set_side_f64();
     let color = |shape: Option<usize>| {
         shape.map_or(LARGER, |shape| of_class(found.shapes()[shape].class()))
     };
-    let mut drawing = sheet(3, 2);
     let caption = format!("Clusters of AA(α), α = {alpha}");
-    let grid = grid_window(&mut drawing, 0, window, &caption);
-    grid.grid(&mut drawing);
+    let (mut drawing, grid) = with_grid(window, &caption)?;
     let pattern = Pattern::new(alpha);
     let place = |(x, y): (i64, i64)| grid.at([x as f64, y as f64]);
     let shape_at = |(x, y): (i64, i64)| {

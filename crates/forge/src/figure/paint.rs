@@ -113,29 +113,34 @@ impl Canvas {
         })
     }
 
-    /// Covers a pixel by a color, from 0 not at all to 1 wholly.
-    fn cover(&mut self, x: usize, y: usize, color: Color, share: f64) {
-        let share = share as f32;
-        let pixel = &mut self.pixels[y * self.width + x];
-        for (v, color) in pixel.iter_mut().zip(color) {
-            *v += (f32::from(color) - *v) * share;
+    /// Covers pixels of a box by a color, from 0 not at all to 1 wholly.
+    fn cover(
+        &mut self,
+        [columns, rows]: Pixels,
+        color: Color,
+        share: impl Fn(usize, usize) -> f64,
+    ) {
+        for y in rows[0]..rows[1] {
+            for x in columns[0]..columns[1] {
+                let share = share(x, y) as f32;
+                for (v, color) in self.pixels[y * self.width + x].iter_mut().zip(color) {
+                    *v += (f32::from(color) - *v) * share;
+                }
+            }
         }
     }
 
     fn fill(&mut self, at: [f64; 2], size: [f64; 2], color: Color, opacity: f64) {
         let end = [at[0] + size[0], at[1] + size[1]];
-        let [columns, rows] = self.pixels(at, end, 0.0);
         let scale = self.scale;
         let covered = |axis: usize, pixel: usize| {
             let (low, high) = (at[axis] * scale, end[axis] * scale);
             (high.min(pixel as f64 + 1.0) - low.max(pixel as f64)).clamp(0.0, 1.0)
         };
-        for y in rows[0]..rows[1] {
-            let row = opacity * covered(1, y);
-            for x in columns[0]..columns[1] {
-                self.cover(x, y, color, row * covered(0, x));
-            }
-        }
+        let pixels = self.pixels(at, end, 0.0);
+        self.cover(pixels, color, |x, y| {
+            opacity * covered(1, y) * covered(0, x)
+        });
     }
 
     /// Lines with round ends, covered once where they cross.
@@ -168,31 +173,20 @@ impl Canvas {
                 }
             }
         }
-        for (i, share) in shares
-            .into_iter()
-            .enumerate()
-            .filter(|(_, share)| *share > 0.0)
-        {
-            self.cover(
-                columns[0] + i % across,
-                rows[0] + i / across,
-                color,
-                share.into(),
-            );
-        }
+        self.cover(all, color, |x, y| {
+            shares[(y - rows[0]) * across + x - columns[0]].into()
+        });
     }
 
     fn ring(&mut self, at: [f64; 2], radius: f64, (color, width): Pen) {
         let (low, high) = (at.map(|v| v - radius), at.map(|v| v + radius));
         let width = width * self.scale;
-        let [columns, rows] = self.pixels(low, high, width / 2.0 + 1.0);
         let (center, radius) = (at.map(|v| v * self.scale), radius * self.scale);
-        for y in rows[0]..rows[1] {
-            for x in columns[0]..columns[1] {
-                let away = (x as f64 + 0.5 - center[0]).hypot(y as f64 + 0.5 - center[1]);
-                self.cover(x, y, color, covered((away - radius).abs(), width));
-            }
-        }
+        let pixels = self.pixels(low, high, width / 2.0 + 1.0);
+        self.cover(pixels, color, |x, y| {
+            let away = (x as f64 + 0.5 - center[0]).hypot(y as f64 + 0.5 - center[1]);
+            covered((away - radius).abs(), width)
+        });
     }
 
     fn checkers(&mut self, rectangles: &[[[f64; 2]; 2]], color: Color) {
@@ -222,12 +216,9 @@ impl Canvas {
                     counts[column / SAMPLES] += u8::from(is_inside);
                 }
             }
-            for (x, &count) in counts.iter().enumerate().take(self.width) {
-                if count > 0 {
-                    let share = f64::from(count) / (SAMPLES * SAMPLES) as f64;
-                    self.cover(x, y, color, share);
-                }
-            }
+            let row = [[0, self.width], [y, y + 1]];
+            let share = |x: usize, _| f64::from(counts[x]) / (SAMPLES * SAMPLES) as f64;
+            self.cover(row, color, share);
         }
     }
 }

@@ -112,11 +112,16 @@ impl Panel {
     }
 }
 
-/// The panel of a window of the grid around the origin: places from −window/2 on.
-pub(super) fn window(drawing: &mut Drawing, i: usize, window: u32, caption: &str) -> Panel {
+/// A drawing of three panels and two lines of text, and its first panel: a window of the grid around the origin, places
+/// from −window/2 on. It is refused if points would be too few or too small to see.
+pub(super) fn with_grid(window: u32, caption: &str) -> Result<(Drawing, Panel), SettingError> {
+    check_window(window)?;
+    let mut drawing = sheet(3, 2);
     let first = -f64::from(window / 2);
     let range = first - 0.5..first + f64::from(window) - 0.5;
-    Panel::new(drawing, i, range, caption)
+    let panel = Panel::new(&mut drawing, 0, range, caption);
+    panel.grid(&mut drawing);
+    Ok((drawing, panel))
 }
 
 /// The places of a window.
@@ -140,6 +145,12 @@ pub(super) fn dot(panel: &Panel) -> f64 {
 /// An index, or any length of index space, in turns.
 pub(super) fn turns(index: u64) -> f64 {
     index as f64 / 18_446_744_073_709_551_616.0
+}
+
+/// The index of a point, in turns.
+pub(super) fn index_of(pattern: Pattern, (x, y): (i64, i64)) -> [f64; 2] {
+    let (dx, dy) = pattern.index(x, y);
+    [turns(dx), turns(dy)]
 }
 
 /// Draws the frame of the set region.

@@ -3,6 +3,7 @@
 use rustfft::{FftPlanner, num_complex::Complex};
 
 use super::Mask;
+use crate::measure::{Summary, ring_sums};
 
 /// The spectrum of the pixels of a mask that are on at a level.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,30 +52,20 @@ impl Mask {
         }
         let unit = (pixels as f64 * share.min(1.0 - share)).sqrt();
         let scale = pixels as f64 * share * (1.0 - share);
-        let (mut sums, mut counts) = ([0.0; LevelSpectrum::RINGS], [0u32; LevelSpectrum::RINGS]);
-        let (mut low, mut peak) = ((0.0, 0u32), 0f64);
-        for (i, value) in values.iter().enumerate().skip(1) {
+        let modes = values.iter().enumerate().skip(1);
+        let modes = modes.map(|(i, value)| {
             let frequency = |k: usize| k.min(size - k) as f64;
             let nu = frequency(i % size).hypot(frequency(i / size)) / unit;
-            let power = value.norm_sqr() / scale;
-            peak = peak.max(power);
-            if nu < 0.5 {
-                low = (low.0 + power, low.1 + 1);
-            }
-            let ring = (nu / LevelSpectrum::RING) as usize;
-            if ring < LevelSpectrum::RINGS {
-                sums[ring] += power;
-                counts[ring] += 1;
-            }
-        }
-        let known = sums.iter().zip(&counts);
+            (nu, value.norm_sqr() / scale)
+        });
+        let summary = Summary::of(modes.clone(), &[]);
+        let rings = ring_sums(modes, LevelSpectrum::RING, LevelSpectrum::RINGS);
+        let mean = |[count, _, total, ..]: [f64; 5]| total / count.max(1.0);
         LevelSpectrum {
             level: share,
-            low_power: low.0 / f64::from(low.1.max(1)),
-            peak,
-            rings: known
-                .map(|(sum, &count)| sum / f64::from(count.max(1)))
-                .collect(),
+            low_power: summary.low_power,
+            peak: summary.tallest,
+            rings: rings.into_iter().map(mean).collect(),
         }
     }
 }

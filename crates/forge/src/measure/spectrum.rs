@@ -159,22 +159,28 @@ impl Spectrum {
     }
 }
 
-/// The rings of modes (ν, power), each of a width, from ν = 0 to the last whole one before `end`; without empty ones.
-pub(crate) fn rings_of(modes: impl Iterator<Item = (f64, f64)>, width: f64, end: f64) -> Vec<Ring> {
-    let mut sums = vec![[0.0f64; 5]; (end / width) as usize];
+/// The sums over the modes (ν, power) of some rings of a width: their number, ν, power, squared power, and the tallest.
+pub(crate) fn ring_sums(
+    modes: impl Iterator<Item = (f64, f64)>,
+    width: f64,
+    rings: usize,
+) -> Vec<[f64; 5]> {
+    let mut sums = vec![[0.0f64; 5]; rings];
     for (nu, power) in modes {
-        if let Some(sum) = sums.get_mut((nu / width) as usize) {
-            let [count, nus, total, squares, tallest] = *sum;
-            let squares = squares + power * power;
-            *sum = [
-                count + 1.0,
-                nus + nu,
-                total + power,
-                squares,
-                tallest.max(power),
-            ];
+        if let Some([count, nus, total, squares, tallest]) = sums.get_mut((nu / width) as usize) {
+            *count += 1.0;
+            *nus += nu;
+            *total += power;
+            *squares += power * power;
+            *tallest = tallest.max(power);
         }
     }
+    sums
+}
+
+/// The rings of modes (ν, power), each of a width, from ν = 0 to the last whole one before `end`; without empty ones.
+pub(crate) fn rings_of(modes: impl Iterator<Item = (f64, f64)>, width: f64, end: f64) -> Vec<Ring> {
+    let sums = ring_sums(modes, width, (end / width) as usize);
     let filled = sums.into_iter().filter(|sum| sum[0] > 0.0);
     let ring = |[count, nus, total, squares, tallest]: [f64; 5]| {
         let mean = total / count;

@@ -6,7 +6,7 @@ use strew_core::{PointSet, Region, Table, Twin, table::Figures};
 use crate::{
     judge::{Bound, Complaint, Figure, named},
     measure::{Distances, Sample, Spectrum, Summary, ThinnedTwin},
-    twins::nearest,
+    twins::{LARGE_TWIN, nearest, next_to_alpha},
     watch::{Meter, Stage, Watch},
 };
 
@@ -103,10 +103,14 @@ struct Place {
 
 /// The twins and windows of a table.
 fn places(table: &Table) -> Option<Vec<Place>> {
-    let twins = LARGEST
-        .iter()
-        .filter_map(|&most| nearest(table.map(), most));
-    let mut twins: Vec<Twin> = twins.collect();
+    let large = |most: u64| {
+        let twins = next_to_alpha(table.map()).take_while(move |twin| twin.points() <= most);
+        nearest(
+            table.map(),
+            twins.filter(|twin| twin.points() >= LARGE_TWIN),
+        )
+    };
+    let mut twins: Vec<Twin> = LARGEST.into_iter().filter_map(large).collect();
     twins.dedup();
     let twin = |twin: Twin| {
         let points = ThinnedTwin::new(table, twin)?;

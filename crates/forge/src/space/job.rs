@@ -4,8 +4,7 @@ use strew_core::{Alpha, Map};
 
 use super::{
     descent::Rule,
-    energy::Gaussian,
-    pairs::{LONGEST, longest},
+    pairs::{Gaussian, LONGEST, longest},
 };
 use crate::{ForgeError, MAX_STEPS};
 
