@@ -19,6 +19,8 @@ mod sets;
 pub use descent::Descent;
 pub(crate) use ground::{Ground, Pair, moves_of, overlaps};
 pub(crate) use neighbors::{CHUNK, fill, longest, sum};
+#[cfg(test)]
+pub(crate) use objective::check_slopes;
 pub use objective::{DescentState, Objective, jitter};
 pub use pairs::Pairs;
 pub use radial::Radial;
