@@ -17,7 +17,6 @@ mod paint;
 mod pictures;
 mod settled;
 mod stipple;
-mod tones;
 
 use std::{env, error::Error};
 

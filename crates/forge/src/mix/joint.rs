@@ -8,6 +8,7 @@ use strew_core::{
 
 use super::{
     clear::{Floor, clear},
+    each,
     part::Part,
 };
 use crate::{
@@ -35,9 +36,7 @@ pub(super) fn moved(
     steps: u32,
     meter: &mut Meter<'_>,
 ) -> Option<Vec<Displacement>> {
-    let shares: Vec<f64> = (0..mix.shares().kinds() as u8)
-        .map(|kind| mix.shares().of(kind))
-        .collect();
+    let shares = each(mix.shares());
     let kinds = parts(table, mix);
     let energy = Together::new(table, &shares, &kinds);
     let mut descent = Descent::new(energy, steps, RATE);

@@ -3,6 +3,7 @@
 
 use strew_core::{PointSet, Region, Table, Twin, table::Figures};
 
+use super::each;
 use crate::{
     judge::{Bound, Complaint, Figure, named},
     measure::{Distances, Sample, Spectrum, Summary, ThinnedTwin},
@@ -105,10 +106,8 @@ struct Place {
 fn places(table: &Table) -> Option<Vec<Place>> {
     let large = |most: u64| {
         let twins = next_to_alpha(table.map()).take_while(move |twin| twin.points() <= most);
-        nearest(
-            table.map(),
-            twins.filter(|twin| twin.points() >= LARGE_TWIN),
-        )
+        let large = twins.filter(|twin| twin.points() >= LARGE_TWIN);
+        nearest(table.map(), large)
     };
     let mut twins: Vec<Twin> = LARGEST.into_iter().filter_map(large).collect();
     twins.dedup();
@@ -163,27 +162,19 @@ struct Subject {
 
 /// The kinds at a share, and all points.
 fn subjects(table: &Table, place: &Place, share: f64) -> Option<Vec<Subject>> {
-    let all = (place.set)(share, None)?;
-    let mut subjects = Vec::new();
-    if let Some(mix) = table.mix() {
-        for kind in 0..mix.shares().kinds() as u8 {
-            let wanted = mix.shares().of(kind);
-            let set = (place.set)(share, Some((kind, wanted)))?;
-            subjects.push(Subject {
-                kind: Some(kind),
-                found: set.points().len() as f64 / all.points().len() as f64,
-                wanted,
-                set,
-            });
-        }
-    }
-    subjects.push(Subject {
-        kind: None,
-        set: all,
-        found: 1.0,
-        wanted: 1.0,
-    });
-    Some(subjects)
+    let all = (place.set)(share, None)?.points().len() as f64;
+    let parts = table.mix().map_or_else(Vec::new, |mix| each(mix.shares()));
+    let kinds = (0..).zip(parts).map(Some);
+    let subject = |kind: Option<Kind>| {
+        let set = (place.set)(share, kind)?;
+        Some(Subject {
+            kind: kind.map(|(kind, _)| kind),
+            found: set.points().len() as f64 / all,
+            wanted: kind.map_or(1.0, |(_, part)| part),
+            set,
+        })
+    };
+    kinds.chain([None]).map(subject).collect()
 }
 
 impl Subject {

@@ -18,5 +18,11 @@ mod order;
 mod part;
 mod press;
 
+/// The shares of kinds, one by one.
+fn each(shares: &strew_core::table::Shares) -> Vec<f64> {
+    let kinds = 0..shares.kinds() as u8;
+    kinds.map(|kind| shares.of(kind)).collect()
+}
+
 pub use make::{MixJob, MixOutcome, labels, mix, mix_file_name};
 pub use order::second_order;

@@ -14,6 +14,7 @@ use strew_core::{
     table::{Mix, Ranks, Shares},
 };
 
+use super::each;
 use crate::{
     ForgeError,
     numeric::exp,
@@ -50,9 +51,7 @@ pub(super) fn order(
 ) -> Result<Option<Ranks>, ForgeError> {
     let moves = moves_of(table);
     let longest = longest(&moves);
-    let shares: Vec<f64> = (0..mix.shares().kinds() as u8)
-        .map(|kind| mix.shares().of(kind))
-        .collect();
+    let shares = each(mix.shares());
     let mut left = Left {
         ground: Ground::new(
             table.map(),
