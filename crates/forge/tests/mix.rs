@@ -40,9 +40,10 @@ fn hash(bytes: impl Iterator<Item = u8>) -> u64 {
     bytes.fold(0xcbf2_9ce4_8422_2325, step)
 }
 
-fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-    pool.build().expect("threads").install(work)
+/// A table with labels for some shares.
+fn labeled(table: &Table, shares: &str) -> Table {
+    let made = labels(table, &shares.parse().expect("valid"), &());
+    made.expect("valid").expect("not stopped")
 }
 
 #[test]
@@ -54,8 +55,7 @@ fn labels_of_the_default_table_are_even_on_another_twin_and_at_every_share() {
         ("1:1:2", 0.07),
         ("1:3:10", 0.1),
     ] {
-        let mixed = labels(&table, &shares.parse().expect("valid"), &());
-        let mixed = mixed.expect("valid").expect("not stopped");
+        let mixed = labeled(&table, shares);
         assert_eq!(mixed.displacements(), table.displacements());
         let points = ThinnedTwin::new(&mixed, twin()).expect("a twin");
         let mix = mixed.mix().expect("one").shares().clone();
@@ -118,8 +118,7 @@ fn labels_of_the_library_are_those_of_the_forge() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/tables/even");
     let plain = shipped::table("blue", "(5-sqrt(3))/2", 100);
     for shares in ["1:1", "1:3", "1:1:2", "1:3:10"] {
-        let made = labels(&plain, &shares.parse().expect("shares"), &());
-        let made = made.expect("valid").expect("not stopped");
+        let made = labeled(&plain, shares);
         let name = shares.replace(':', "-");
         let path = folder.join(format!("blue-5-sqrt3-over-2-m-{name}.labels"));
         if std::env::var_os("UPDATE_GOLDEN").is_some() {
@@ -133,12 +132,7 @@ fn labels_of_the_library_are_those_of_the_forge() {
 
 #[test]
 fn labels_and_ranks_are_the_same_with_any_number_of_threads_and_pinned() {
-    let make = || labels(&small(), &"10:1:3".parse().expect("valid"), &());
-    let made = with_threads(1, make).expect("valid").expect("not stopped");
-    assert_eq!(
-        made,
-        with_threads(3, make).expect("valid").expect("not stopped")
-    );
+    let made = shipped::same(|| labeled(&small(), "10:1:3"));
     let mix = made.mix().expect("one");
     assert_eq!(hash(mix.labels().iter().copied()), 596_408_327_707_228_533);
     let ranks = made.ranks().expect("made").positions();
@@ -157,12 +151,8 @@ fn labels_and_ranks_are_the_same_with_any_number_of_threads_and_pinned() {
 fn joint_tables_are_the_same_with_any_number_of_threads_and_pinned() {
     let mut job = MixJob::joint("1:3".parse().expect("valid"));
     job.steps = 12;
-    let make = || mix(&small(), &job, &());
-    let made = with_threads(1, make).expect("valid").expect("not stopped");
-    assert_eq!(
-        made,
-        with_threads(3, make).expect("valid").expect("not stopped")
-    );
+    let made = shipped::same(|| mix(&small(), &job, &()).expect("valid"));
+    let made = made.expect("not stopped");
     let vectors = made.table.displacements().iter().flatten();
     assert_eq!(
         hash(vectors.flat_map(|v| v.to_le_bytes())),

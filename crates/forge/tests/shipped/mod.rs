@@ -1,8 +1,8 @@
-//! The shipped tables, and windows of the sets that are served from them.
+//! The shipped tables, windows of the sets that are served from them, and work with some numbers of threads.
 
 #![allow(dead_code, reason = "each test uses what it needs")]
 
-use std::path::Path;
+use std::{fmt::Debug, path::Path};
 
 use strew_core::{PointSet, Region, Table};
 use strew_forge::{file_name, measure::Sample, read_table};
@@ -26,4 +26,14 @@ pub fn window(set: &PointSet, corner: [f64; 2], side: f64) -> Sample {
         [x - corner[0], y - corner[1]]
     });
     Sample::window(side, 1.0, moved.collect())
+}
+
+/// What is made, which is the same with any number of threads.
+pub fn same<T: PartialEq + Debug + Send>(make: impl Fn() -> T + Sync) -> T {
+    let [one, three] = [1, 3].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.expect("threads").install(&make)
+    });
+    assert_eq!(one, three);
+    one
 }
