@@ -40,7 +40,7 @@ pub fn study(mut arguments: Arguments) -> Outcome {
         let masks = [white(128, 0), bayer(128), Mask::new(&table, 128, 0)?];
         let mut drawing = Drawing::new(768.0, 408.0);
         for (mask, top) in masks.iter().zip([0.0, 140.0, 280.0]) {
-            drawing.cells([0.0, top], [768.0, 128.0], 768, gradient(mask));
+            drawing.cells([[0.0, top], [768.0, 128.0]], 768, gradient(mask));
         }
         paint::save(Path::new(&path), &drawing, [768.0, 408.0])?;
     }

@@ -89,8 +89,11 @@ pub fn found_clusters(
         let mut x = 0;
         for run in row.chunk_by(|a, b| a == b) {
             let (from, to) = ([bound(x), bound(y)], [bound(x + run.len()), bound(next)]);
-            let [corner, size] = region.rectangle(from, [to[0] - from[0], to[1] - from[1]]);
-            drawing.fill(corner, size, run[0], 1.0);
+            drawing.fill(
+                region.rectangle(from, [to[0] - from[0], to[1] - from[1]]),
+                run[0],
+                1.0,
+            );
             x += run.len();
         }
         y = next;

@@ -37,6 +37,9 @@ pub enum Anchor {
 /// A color with the width of its line.
 pub type Pen = (Color, f64);
 
+/// The upper left corner and the size of a rectangle.
+pub type Rectangle = [[f64; 2]; 2];
+
 /// The marks on a drawing, one over another.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Mark {
@@ -48,8 +51,8 @@ pub(super) enum Mark {
     Lines(Vec<[[f64; 2]; 2]>, Pen),
     /// A circle without filling: its center and radius.
     Ring([f64; 2], f64, Pen),
-    /// The area that an odd number of rectangles covers, each by its upper left corner and its size.
-    Checkers(Vec<[[f64; 2]; 2]>, Color),
+    /// The area that an odd number of rectangles covers: stripes in both directions make a checkered field.
+    Checkers(Vec<Rectangle>, Color),
     /// A rectangle of gray cells: its upper left corner, its size, the number of columns, and the cells by rows from the top.
     Cells([f64; 2], [f64; 2], usize, Vec<u8>),
     /// A text on the line of writing at a place, with its size.
@@ -102,13 +105,13 @@ impl Drawing {
         }
     }
 
-    /// A filled rectangle from its upper left corner.
-    pub(super) fn fill(&mut self, at: [f64; 2], size: [f64; 2], color: Color, opacity: f64) {
+    /// A filled rectangle.
+    pub(super) fn fill(&mut self, [at, size]: Rectangle, color: Color, opacity: f64) {
         self.marks.push(Mark::Fill(at, size, color, opacity));
     }
 
-    /// The outline of a rectangle from its upper left corner, dashed if `dash` is above 0.
-    pub(super) fn outline(&mut self, at: [f64; 2], size: [f64; 2], pen: Pen, dash: f64) {
+    /// The outline of a rectangle, dashed if `dash` is above 0.
+    pub(super) fn outline(&mut self, [at, size]: Rectangle, pen: Pen, dash: f64) {
         self.marks.push(Mark::Outline(at, size, pen, dash));
     }
 
@@ -119,7 +122,8 @@ impl Drawing {
     }
 
     /// One line through many places.
-    pub(super) fn curve(&mut self, places: &[[f64; 2]], pen: Pen) {
+    pub(super) fn curve(&mut self, places: impl IntoIterator<Item = [f64; 2]>, pen: Pen) {
+        let places: Vec<_> = places.into_iter().collect();
         self.lines(places.windows(2).map(|pair| [pair[0], pair[1]]), pen);
     }
 
@@ -139,24 +143,8 @@ impl Drawing {
         }
     }
 
-    /// A circle without filling.
-    pub(super) fn ring(&mut self, at: [f64; 2], radius: f64, pen: Pen) {
-        self.marks.push(Mark::Ring(at, radius, pen));
-    }
-
-    /// Fills what an odd number of rectangles covers, each from its upper left corner: stripes in both
-    /// directions make a checkered field.
-    pub(super) fn checkers(
-        &mut self,
-        rectangles: impl IntoIterator<Item = [[f64; 2]; 2]>,
-        color: Color,
-    ) {
-        self.marks
-            .push(Mark::Checkers(rectangles.into_iter().collect(), color));
-    }
-
-    /// Gray cells over a rectangle from its upper left corner; rows of `columns` cells from the top.
-    pub fn cells(&mut self, at: [f64; 2], size: [f64; 2], columns: usize, cells: Vec<u8>) {
+    /// Gray cells over a rectangle; rows of `columns` cells from the top.
+    pub fn cells(&mut self, [at, size]: Rectangle, columns: usize, cells: Vec<u8>) {
         self.unless_empty(cells.is_empty(), Mark::Cells(at, size, columns, cells));
     }
 
@@ -271,7 +259,7 @@ mod tests {
     fn cells_are_an_image_of_them() {
         let mut drawing = Drawing::new(100.0, 50.0);
         let cells = vec![0, 128, 255, 1, 2, 3];
-        drawing.cells([10.0, 20.0], [60.0, 30.0], 3, cells.clone());
+        drawing.cells([[10.0, 20.0], [60.0, 30.0]], 3, cells.clone());
         let svg = drawing.to_svg();
         assert!(svg.contains("width=\"60.00\" height=\"30.00\""), "{svg}");
         let data = svg

@@ -41,8 +41,7 @@ pub fn index(alpha: Alpha, window: u32) -> Result<Drawing, FigureError> {
         .filter(|&(x, y)| !pattern.contains(x, y));
     let rest = rest.map(|p| torus.at(index_of(pattern, p)));
     drawing.dots(rest, 1.4, GRAY);
-    let [corner, size] = torus.rectangle([0.0; 2], [t; 2]);
-    drawing.outline(corner, size, (INK, 1.5), 0.0);
+    drawing.outline(torus.rectangle([0.0; 2], [t; 2]), (INK, 1.5), 0.0);
     for p in points(pattern, window) {
         let at = index_of(pattern, p);
         let color = shade(at.map(|v| v / t));

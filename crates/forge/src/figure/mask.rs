@@ -25,12 +25,10 @@ pub fn mask_spectrum(mask: &Mask) -> Drawing {
             panel.at([x, (power / MOST).min(1.0)])
         };
         let random = [at(0.0, 1.0), at(spectrum.rings.len() as f64, 1.0)];
-        drawing.curve(&random, (tint(GRAY, 0.6), 1.0));
+        drawing.curve(random, (tint(GRAY, 0.6), 1.0));
         let rings = spectrum.rings.iter().enumerate();
-        let curve: Vec<_> = rings
-            .map(|(ring, &power)| at(ring as f64 + 0.5, power))
-            .collect();
-        drawing.curve(&curve, (COLORS[0], 1.6));
+        let curve = rings.map(|(ring, &power)| at(ring as f64 + 0.5, power));
+        drawing.curve(curve, (COLORS[0], 1.6));
         panel.frame(&mut drawing, ["0", ""], ["ν", ""]);
         drawing.text(panel.at([1.0, -0.045]), 12.0, Anchor::End, "2");
         let low = format!("low power {:.4}", spectrum.low_power);
