@@ -260,26 +260,21 @@ mod tests {
     #[test]
     fn a_jittered_grid_has_its_analytic_spectrum() {
         // 1 − sinc²(νx)·sinc²(νy), averaged over ten sets of 64² points.
-        let sinc = |v: f64| {
-            if v == 0.0 {
-                1.0
-            } else {
-                (PI * v).sin() / (PI * v)
-            }
-        };
+        let sinc = |v: f64| (PI * v).sin() / (PI * v);
         let sets: Vec<Spectrum> = (0..10)
             .map(|seed| Spectrum::of(&Sample::torus(64.0, jittered(64, seed)), 2.0))
             .collect();
+        let sum = |kx, ky| -> f64 {
+            let each = sets.iter().map(|s| s.at(kx, ky).expect("measured"));
+            each.sum()
+        };
         let mut worst: f64 = 0.0;
         for ring in 1..30 {
             // Means over rectangles of modes, clear of the peaks of the lattice.
             let (mut found, mut expected, mut modes) = (0.0, 0.0, 0.0);
             for kx in ring * 4 + 1..ring * 4 + 4 {
                 for ky in 65..=120 {
-                    found += sets
-                        .iter()
-                        .map(|s| s.at(kx, ky).expect("measured"))
-                        .sum::<f64>();
+                    found += sum(kx, ky);
                     let shape = sinc(kx as f64 / 64.0) * sinc(ky as f64 / 64.0);
                     expected += 10.0 * (1.0 - shape * shape);
                     modes += 10.0;
@@ -288,11 +283,7 @@ mod tests {
             worst = worst.max((found - expected).abs() / modes);
         }
         assert!(worst < 0.1, "{worst}");
-        let low: f64 = sets
-            .iter()
-            .map(|s| s.at(3, 2).expect("measured"))
-            .sum::<f64>()
-            / 10.0;
+        let low = sum(3, 2) / 10.0;
         let shape = sinc(3.0 / 64.0) * sinc(2.0 / 64.0);
         assert!(low < 5.0 * (1.0 - shape * shape), "{low}");
     }
@@ -303,11 +294,8 @@ mod tests {
         let spectrum = Spectrum::of(&Sample::torus(32.0, lattice.collect()), 2.5);
         for kx in -80..=80i64 {
             for ky in -80..=80i64 {
-                let expected = if kx % 32 == 0 && ky % 32 == 0 {
-                    1024.0
-                } else {
-                    0.0
-                };
+                let is_peak = kx % 32 == 0 && ky % 32 == 0;
+                let expected = if is_peak { 1024.0 } else { 0.0 };
                 let found = spectrum.at(kx, ky).expect("measured");
                 assert!((found - expected).abs() < 1e-7, "({kx}, {ky}): {found}");
             }
@@ -337,10 +325,7 @@ mod tests {
         let rings = spectrum.rings(0.0);
         assert_eq!(rings.len(), 19); // 1 ≤ |k| < 20
         assert!(rings.is_sorted_by(|a, b| a.nu < b.nu));
-        assert!(
-            Spectrum::of(&Sample::torus(1.0, vec![]), 1.0)
-                .rings(0.1)
-                .is_empty()
-        );
+        let none = Spectrum::of(&Sample::torus(1.0, vec![]), 1.0);
+        assert!(none.rings(0.1).is_empty());
     }
 }
