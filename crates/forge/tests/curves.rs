@@ -8,7 +8,7 @@ use strew_core::{Alpha, PointSet, Table, Twin, table::Figures};
 use strew_forge::{
     Job, Profile, Target, forge,
     judge::{Figure, RING_WIDTH, complaints, curve_figures},
-    measure::{Crispness, Sample, Spectrum, twin_set, window_set},
+    measure::{Crispness, Sample, Spectrum, square_set, twin_set, window_set},
 };
 
 fn alpha() -> Alpha {
@@ -89,7 +89,7 @@ fn on_windows(table: &Table, target: &Target) -> Vec<(Figures, Spectrum)> {
 /// 300² mean spacings with the warp on, away from the origin.
 fn warped(table: &Table, seed: u64) -> Sample {
     let set = PointSet::new(table.clone()).seed(seed);
-    shipped::window(&set, [1000.0 * seed as f64; 2], 300.0)
+    square_set(&set, [1000.0 * seed as f64; 2], 300.0, 1.0).expect("near")
 }
 
 #[test]

@@ -3,55 +3,15 @@
 
 mod shipped;
 
-use std::{fmt::Debug, sync::Mutex, time::Duration};
+use std::{fmt::Debug, time::Duration};
 
 use strew_core::{Alpha, Table, Twin, space};
 use strew_forge::{
-    Checkpoint, Job, Progress, Stage, TableOf, Task, Watch, estimate, forge, resume,
+    Checkpoint, Job, Stage, TableOf, Task, estimate, forge, resume,
     space::{SpaceJob, SpaceProfile},
 };
 
-/// Keeps the first progress and the last checkpoint, and stops a stage after a number of steps.
-struct Stopper {
-    stage: Stage,
-    after: u32,
-    seen: Mutex<Vec<Progress>>,
-    kept: Mutex<Option<Checkpoint>>,
-}
-
-impl Stopper {
-    fn new(stage: Stage, after: u32) -> Self {
-        Self {
-            stage,
-            after,
-            seen: Mutex::default(),
-            kept: Mutex::default(),
-        }
-    }
-
-    fn kept(self) -> Checkpoint {
-        let kept = self.kept.into_inner();
-        kept.expect("no panic").expect("kept")
-    }
-}
-
-impl Watch for Stopper {
-    fn progress(&self, progress: &Progress) {
-        self.seen.lock().expect("no panic").push(*progress);
-    }
-
-    fn stop(&self) -> bool {
-        let seen = self.seen.lock().expect("no panic");
-        let last = seen.last();
-        last.is_some_and(|p| p.stage == self.stage && p.step >= self.after)
-    }
-
-    fn checkpoint(&self, checkpoint: &Checkpoint) {
-        // Through a file's bytes, as after a crash.
-        let back = Checkpoint::from_bytes(&checkpoint.to_bytes()).expect("valid");
-        *self.kept.lock().expect("no panic") = Some(back);
-    }
-}
+use shipped::Stopper;
 
 fn job(steps: u32) -> Job {
     Job {

@@ -2,15 +2,11 @@
 
 mod shipped;
 
-use std::{
-    fs,
-    path::Path,
-    sync::atomic::{AtomicU32, Ordering},
-};
+use std::{fs, path::Path};
 
 use strew_core::{Map, PointSet, Table, Twin, table::Provenance};
 use strew_forge::{
-    MixJob, Progress, ThinnedTwin, Watch, labels,
+    MixJob, Stage, ThinnedTwin, labels,
     measure::{Distances, Sample, Spectrum},
     mix, mix_file_name, read_table,
 };
@@ -60,14 +56,14 @@ fn labels_of_the_default_table_are_even_on_another_twin_and_at_every_share() {
         let points = ThinnedTwin::new(&mixed, twin()).expect("a twin");
         let mix = mixed.mix().expect("one").shares().clone();
         for keep in [1.0, 0.43, 0.11] {
-            let all = points.at(keep);
+            let all = points.at(keep, None);
             assert!(
                 keep == 1.0 || low(&all) < 0.16,
                 "{shares} {keep}: {}",
                 low(&all)
             );
             for kind in 0..mix.kinds() as u8 {
-                let set = points.of_kind(keep, kind);
+                let set = points.at(keep, Some(kind));
                 let share = set.points().len() as f64 / all.points().len() as f64;
                 assert!(
                     (share - mix.of(kind)).abs() < 0.005,
@@ -89,15 +85,17 @@ fn shipped_joint_tables_keep_their_promises_on_another_twin() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/tables/joint");
     let plain = shipped::table("blue", "(5-sqrt(3))/2", 100);
     let anisotropy = |set: &Sample| Spectrum::of(set, 1.5).summary(0.04);
-    let before = ThinnedTwin::new(&plain, twin()).expect("a twin").at(1.0);
+    let before = ThinnedTwin::new(&plain, twin())
+        .expect("a twin")
+        .at(1.0, None);
     let before = anisotropy(&before).anisotropy_db;
     for shares in ["1-1", "1-3", "1-1-2", "1-3-10"] {
         let name = format!("blue-5-sqrt3-over-2-m-mix-{shares}.strew");
         let table = read_table(&folder.join(name)).expect("shipped");
         let points = ThinnedTwin::new(&table, twin()).expect("a twin");
-        let all = points.at(1.0);
+        let all = points.at(1.0, None);
         let kinds = table.mix().expect("one").shares().kinds() as u8;
-        let sets = (0..kinds).map(|kind| (points.of_kind(1.0, kind), 0.015, 0.57));
+        let sets = (0..kinds).map(|kind| (points.at(1.0, Some(kind)), 0.015, 0.57));
         for (set, low, delta) in sets.chain([(all, 5e-4, 0.54)]) {
             let summary = anisotropy(&set);
             assert!(summary.low_power < low, "{shares}: {}", summary.low_power);
@@ -164,33 +162,19 @@ fn joint_tables_are_the_same_with_any_number_of_threads_and_pinned() {
     assert!(history.parameters.contains(&of));
 }
 
-/// Stops after some steps.
-struct Stopper {
-    after: u32,
-    step: AtomicU32,
-}
-
-impl Watch for Stopper {
-    fn progress(&self, _: &Progress) {
-        self.step.fetch_add(1, Ordering::Relaxed);
-    }
-
-    fn stop(&self) -> bool {
-        self.step.load(Ordering::Relaxed) > self.after
-    }
-}
-
 #[test]
 fn work_can_be_stopped_at_any_step() {
     let mut job = MixJob::joint("1:3".parse().expect("valid"));
     job.steps = 12;
     // In the annealing, in the descent, in the order of leaving, while measuring.
-    for after in [3, 105, 118, 135] {
-        let step = AtomicU32::new(0);
-        let stopper = Stopper { after, step };
+    let optimizing = [3, 104, 117].map(|after| (Stage::Optimizing, after));
+    for (stage, after) in optimizing.into_iter().chain([(Stage::Measuring, 1)]) {
+        let stopper = shipped::Stopper::new(stage, after);
         let made = mix(&small(), &job, &stopper).expect("valid");
         assert!(made.is_none(), "{after}");
-        assert!(stopper.step.into_inner() <= after + 2, "{after}");
+        let last = stopper.seen.into_inner().expect("no panic").pop();
+        let last = last.expect("some progress");
+        assert!(last.stage == stage && last.step <= after + 2, "{last:?}");
     }
 }
 

@@ -5,7 +5,7 @@ mod shipped;
 use strew_core::{PointSet, table::Figures};
 use strew_forge::{
     judge::{RING_WIDTH, figures},
-    measure::{Sample, Shared, Spectrum},
+    measure::{Sample, Shared, Spectrum, square_set},
 };
 
 const OFF: f64 = 0.0;
@@ -16,7 +16,7 @@ fn window(seed: u64, warp: f64, side: f64) -> Sample {
     let table = shipped::table("blue", "(5-sqrt(3))/2", 49);
     let set = PointSet::new(table).seed(seed).warp(warp);
     let corner = 1000.0 * seed as f64;
-    shipped::window(&set.expect("in range"), [corner, -corner], side)
+    square_set(&set.expect("in range"), [corner, -corner], side, 1.0).expect("near")
 }
 
 fn measured(subject: String, set: &Sample, nu_max: f64) -> Figures {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use strew_core::{
-    Map, Pattern, Table, Twin,
+    Error, Map, Pattern, PointSet, Region, Table, Twin,
     pattern::{Axis, Class, IndexOrigin},
     table::{Displacement, to_grid_units},
 };
@@ -156,6 +156,22 @@ pub fn window_set(table: &Table, points: u64, seed: u64) -> Sample {
         }
     }
     Sample::window(side, density, found)
+}
+
+/// Returns a square of a served set with a number of points per unit area.
+///
+/// # Errors
+/// As [`PointSet::within`].
+pub fn square_set(
+    set: &PointSet,
+    corner: [f64; 2],
+    side: f64,
+    density: f64,
+) -> Result<Sample, Error> {
+    let region = Region::new(corner, corner.map(|v| v + side))?;
+    let points = set.within(region)?.to_vec();
+    let points = points.iter().map(|p| [p.x - corner[0], p.y - corner[1]]);
+    Ok(Sample::window(side, density, points.collect()))
 }
 
 /// The columns (or rows, along [`Axis::Y`]) of a class in a range, each with its interval.

@@ -54,22 +54,13 @@ impl ThinnedTwin {
         })
     }
 
-    /// The points that are left at a share, at unit density.
-    #[must_use]
-    pub fn at(&self, share: f64) -> Sample {
-        self.set(share, |_| true)
-    }
-
-    /// The points of a kind that are left at a share, at unit density. Tables without a mix have points of kind 0
+    /// The points that are left at a share, of a kind or all, at unit density. Tables without a mix have points of kind 0
     /// only.
     #[must_use]
-    pub fn of_kind(&self, share: f64, kind: u8) -> Sample {
-        self.set(share, |point| point.kind == kind)
-    }
-
-    fn set(&self, share: f64, counts: impl Fn(&Candidate) -> bool) -> Sample {
+    pub fn at(&self, share: f64, kind: Option<u8>) -> Sample {
+        let is_of_kind = |point: &Candidate| kind.is_none_or(|kind| point.kind == kind);
         let left = self.points.iter();
-        let left = left.filter(|point| point.rank < share && counts(point));
+        let left = left.filter(|point| point.rank < share && is_of_kind(point));
         let points = left.map(|point| point.at);
         Sample::torus(self.period, points.collect())
     }

@@ -151,9 +151,9 @@ mod tests {
         let table = table.with_mix(mix, ranks).expect("valid");
         let twin = Twin::new(683, 418).expect("reduced");
         let points = ThinnedTwin::new(&table, twin).expect("a twin");
-        assert!(Distances::of(&points.at(1.0)).delta_min > 0.399);
+        assert!(Distances::of(&points.at(1.0, None)).delta_min > 0.399);
         for kind in 0..2 {
-            let set = points.of_kind(1.0, kind);
+            let set = points.at(1.0, Some(kind));
             assert!(Distances::of(&set).delta_min > 0.449, "{kind}");
         }
     }

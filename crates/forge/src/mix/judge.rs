@@ -1,12 +1,12 @@
 //! Judging a mix: all points and each kind, whole and thinned, on twins that it was not made with and on windows
 //! as they are served, with a seed and its warp.
 
-use strew_core::{PointSet, Region, Table, Twin, table::Figures};
+use strew_core::{PointSet, Table, Twin, table::Figures};
 
 use super::each;
 use crate::{
     judge::{Bound, Complaint, Figure, named},
-    measure::{Distances, Sample, Spectrum, Summary, ThinnedTwin},
+    measure::{Distances, Sample, Spectrum, Summary, ThinnedTwin, square_set},
     twins::{LARGE_TWIN, nearest, next_to_alpha},
     watch::{Meter, Stage, Watch},
 };
@@ -116,10 +116,7 @@ fn places(table: &Table) -> Option<Vec<Place>> {
         Some(Place {
             name: format!("twin {twin}"),
             shares: &SHARES,
-            set: Box::new(move |share, kind| match kind {
-                Some((kind, _)) => Some(points.of_kind(share, kind)),
-                None => Some(points.at(share)),
-            }),
+            set: Box::new(move |share, kind| Some(points.at(share, kind.map(|kind| kind.0)))),
         })
     };
     let window = |seed: u64| {
@@ -139,12 +136,8 @@ fn places(table: &Table) -> Option<Vec<Place>> {
 
 /// A window of a set of which a part of all points is at a share, away from the origin.
 fn window(set: &PointSet, share: f64, part: f64) -> Option<Sample> {
-    let side = (POINTS / share).sqrt();
-    let corner = [12_345.0, -6_789.0];
-    let region = Region::new(corner, corner.map(|v| v + side)).ok()?;
-    let points = set.clone().keep(share).ok()?.within(region).ok()?.to_vec();
-    let points = points.iter().map(|p| [p.x - corner[0], p.y - corner[1]]);
-    Some(Sample::window(side, share * part, points.collect()))
+    let (set, side) = (set.clone().keep(share).ok()?, (POINTS / share).sqrt());
+    square_set(&set, [12_345.0, -6_789.0], side, share * part).ok()
 }
 
 fn summary(set: &Sample, nu: f64) -> Summary {
