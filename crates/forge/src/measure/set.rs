@@ -119,7 +119,7 @@ pub fn twin_set(table: &Table, twin: Twin) -> Option<Sample> {
 }
 
 /// The place of a point, by its lattice address and its vector.
-pub(super) fn displaced(address: [u32; 2], by: Displacement) -> [f64; 2] {
+pub(crate) fn displaced(address: [u32; 2], by: Displacement) -> [f64; 2] {
     [0, 1].map(|axis| f64::from(address[axis]) + to_grid_units(by[axis]))
 }
 

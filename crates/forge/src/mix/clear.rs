@@ -125,11 +125,7 @@ mod tests {
     };
 
     use super::*;
-    use crate::{
-        measure::{Distances, ThinnedTwin},
-        mix::joint::parts,
-        optimize::moves_of,
-    };
+    use crate::{measure::Distances, mix::joint::parts, optimize::moves_of, thinned::ThinnedTwin};
 
     #[test]
     fn cleared_pairs_are_clear_on_a_twin() {

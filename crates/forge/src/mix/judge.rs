@@ -6,7 +6,8 @@ use strew_core::{PointSet, Table, Twin, table::Figures};
 use super::each;
 use crate::{
     judge::{Bound, Complaint, Figure, named},
-    measure::{Distances, Sample, Spectrum, Summary, ThinnedTwin, square_set},
+    measure::{Distances, Sample, Spectrum, Summary, square_set},
+    thinned::ThinnedTwin,
     twins::{LARGE_TWIN, nearest, next_to_alpha},
     watch::{Meter, Stage, Watch},
 };

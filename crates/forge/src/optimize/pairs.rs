@@ -154,23 +154,17 @@ mod tests {
         let map = map(9);
         let n = map.intervals();
         let scale = map.alpha().set_side_f64();
-        let maps: Vec<Map> = uniform_twins(&map, 3)
-            .iter()
-            .map(|&t| twin_map(&map, t))
-            .collect();
+        let twins = uniform_twins(&map, 3).into_iter();
+        let maps: Vec<Map> = twins.map(|twin| twin_map(&map, twin)).collect();
         let moves = jitter(n * n, 0.4, 5);
         let mut gradient = vec![[0.0; 2]; n * n];
         let mut value =
             |maps: &[Map]| Pairs::new(energy(), maps, scale).evaluate(&moves, &mut gradient);
-        let areas: Vec<f64> = maps
-            .iter()
-            .map(|m| m.alpha().set_side_f64().powi(2))
-            .collect();
-        let each: f64 = maps
-            .iter()
-            .zip(&areas)
-            .map(|(m, area)| value(std::slice::from_ref(m)) * area)
-            .sum();
+        let areas = maps.iter().map(|map| map.alpha().set_side_f64().powi(2));
+        let areas: Vec<f64> = areas.collect();
+        let each = maps.iter().zip(&areas);
+        let each = each.map(|(map, area)| value(std::slice::from_ref(map)) * area);
+        let each: f64 = each.sum();
         let mean = each / areas.iter().sum::<f64>();
         assert!((value(&maps) - mean).abs() < 1e-6 * mean);
     }
@@ -179,20 +173,15 @@ mod tests {
     fn lists_stay_valid_while_blocks_move() {
         let map = map(9);
         let n = map.intervals();
-        let make = || {
-            Pairs::new(
-                energy(),
-                std::slice::from_ref(&map),
-                map.alpha().set_side_f64(),
-            )
-        };
+        let (maps, scale) = (std::slice::from_ref(&map), map.alpha().set_side_f64());
+        let make = || Pairs::new(energy(), maps, scale);
         let mut used = make();
         let mut gradient = vec![[0.0; 2]; n * n];
         for step in 0..8 {
-            let moves: Vec<[f64; 2]> = jitter(n * n, 1.0, 4)
-                .iter()
-                .map(|m| m.map(|v| v * f64::from(step) / 7.0))
-                .collect();
+            let mut moves = jitter(n * n, 1.0, 4);
+            for v in moves.as_flattened_mut() {
+                *v *= f64::from(step) / 7.0;
+            }
             let value = used.evaluate(&moves, &mut gradient);
             let fresh = make().evaluate(&moves, &mut gradient);
             assert!((value - fresh).abs() < 1e-12, "{step}: {value} {fresh}");

@@ -2,7 +2,7 @@
 
 use strew_core::{Table, Twin};
 
-use super::{Sample, set::displaced};
+use crate::measure::{Sample, displaced};
 
 /// One period of a twin, to be thinned again and again.
 pub struct ThinnedTwin {
