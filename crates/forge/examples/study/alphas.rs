@@ -12,7 +12,7 @@ use strew_forge::{
     file_name, forge, read_table, write_table,
 };
 
-use crate::{Outcome, arguments::Arguments, figures};
+use crate::{Arguments, Outcome, figures};
 
 /// The half-width of the maps: s.
 const RADIUS: u32 = 49;

@@ -14,8 +14,7 @@ use strew_core::{Field, PointId, PointSet, Table, VaryingKinds, table::Shares};
 use strew_forge::{MixJob, MixOutcome, labels, mix, numeric::SplitMix, second_order};
 
 use crate::{
-    Outcome,
-    arguments::Arguments,
+    Arguments, Outcome,
     figures::{self, value},
     ground::{CORNER, square},
     paint,

@@ -10,7 +10,7 @@ use strew_forge::{
     numeric::SplitMix,
 };
 
-use crate::{Outcome, arguments::Arguments, figures, paint};
+use crate::{Arguments, Outcome, figures, paint};
 
 /// Seeds of each mask.
 const SEEDS: u64 = 3;

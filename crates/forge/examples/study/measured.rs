@@ -10,8 +10,7 @@ use strew_forge::{
 };
 
 use crate::{
-    Outcome,
-    arguments::Arguments,
+    Arguments, Outcome,
     figures::{self, value},
     ground::{HEXAGONAL, places, square},
 };

@@ -23,8 +23,7 @@ use strew_core::{
 use strew_forge::measure::{Sample, Spectrum};
 
 use crate::{
-    Outcome,
-    arguments::Arguments,
+    Arguments, Outcome,
     cases::{Case, Kind, Profile},
     figures,
     ground::{CORNER, Ground, Near, noise, places, square},

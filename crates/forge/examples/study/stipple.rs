@@ -23,9 +23,7 @@ use spade::{DelaunayTriangulation, Point2};
 use strew_forge::numeric::SplitMix;
 
 use crate::{
-    Outcome,
-    arguments::Arguments,
-    figures,
+    Arguments, Outcome, figures,
     ground::{Grid, Ground, Near},
     paint::{self, Dots},
     pictures::Picture,
