@@ -14,7 +14,7 @@ const CEILINGS: &[(&str, &[&str], usize)] = &[
     ("crates/core", &["rs"], 50_691),
     ("crates/encode", &["rs"], 8258),
     ("crates/error", &["rs"], 1073),
-    ("crates/forge", &["rs"], 18_544),
+    ("crates/forge", &["rs"], 17_791),
     ("crates/pages", &["rs"], 439),
     ("crates/plan", &["rs"], 4326),
     ("crates/proto", &["rs"], 337),
@@ -43,8 +43,8 @@ const MODULES: &[(&str, &str)] = &[
     ),
     (
         "crates/forge/src",
-        "curve 721 energy 443 figure 1917 judge 815 mask 681 measure 2178 mix 1764 \
-         numeric 314 optimize 1554 profile 710 space 1490 thinned 234",
+        "curve 715 energy 394 figure 1783 judge 750 mask 606 measure 2155 mix 1691 \
+         numeric 314 optimize 1548 profile 688 space 1386",
     ),
 ];
 
@@ -59,9 +59,8 @@ fn no_part_outgrows_its_ceiling() {
             outgrown.push(format!("{part} has {lines} lines, not {ceiling}"));
         }
     };
-    for &(part, endings, ceiling) in CEILINGS {
-        check(part, endings, ceiling);
-    }
+    let parts = CEILINGS.iter();
+    parts.for_each(|&(part, endings, ceiling)| check(part, endings, ceiling));
     for (folder, modules) in MODULES {
         let words: Vec<&str> = modules.split(' ').collect();
         for module in words.chunks_exact(2) {

@@ -9,6 +9,7 @@ use std::{
 use strew_core::{
     Alpha, ErrorKind, Table,
     map::Size,
+    space,
     table::{Head, MAX_FILE_BYTES},
 };
 
@@ -62,8 +63,35 @@ pub fn read_table(path: &Path) -> Result<Table, ForgeError> {
     })
 }
 
+/// Returns the usual name of the file of a table of points in space: that of a table of the plane with `space-` before it.
+///
+/// ```
+/// let name = strew_forge::space::table_file_name("blue", "sqrt(3)".parse()?, 16);
+/// assert_eq!(name, "space-blue-sqrt3-r16.strew");
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[must_use]
+pub fn space_file_name(profile: &str, alpha: Alpha, radius: u32) -> String {
+    format!("space-{}", file_name(profile, alpha, radius))
+}
+
+/// Reads and checks a table file of points in space. Returns `None` for a table of the plane, and for a file whose head is
+/// that of no table.
+///
+/// # Errors
+/// [`ForgeError::File`] if it cannot be read, [`ForgeError::TooLarge`] if it has more than [`MAX_FILE_BYTES`],
+/// [`ForgeError::NotATable`] if its content is damaged beyond the head.
+pub fn read_space_table(path: &Path) -> Result<Option<space::Table>, ForgeError> {
+    let content = read_bytes(path)?;
+    let table = is_space(&content).then(|| space::Table::from_bytes(&content));
+    table.transpose().map_err(|source| ForgeError::NotATable {
+        path: path.to_owned(),
+        source,
+    })
+}
+
 /// Whether the head of a table file says that its points are in space.
-pub(crate) fn is_space(bytes: &[u8]) -> bool {
+fn is_space(bytes: &[u8]) -> bool {
     let head = Head::read(bytes.len() as u64, |at, part: &mut [u8]| {
         let from = at as usize;
         let found = bytes.get(from..from + part.len()).ok_or(())?;
@@ -74,7 +102,7 @@ pub(crate) fn is_space(bytes: &[u8]) -> bool {
 }
 
 /// The content of a table file, at most one byte more than such files may have.
-pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, ForgeError> {
+fn read_bytes(path: &Path) -> Result<Vec<u8>, ForgeError> {
     let failed = |action| ForgeError::file(action, path);
     let file = File::open(path).map_err(failed("open"))?;
     let bytes = file.metadata().map_err(failed("examine"))?.len();
@@ -104,6 +132,14 @@ fn too_large(path: &Path, bytes: u64) -> ForgeError {
 /// # Errors
 /// [`ForgeError::File`] if a step fails; a file that was at `path` is then unchanged.
 pub fn write_table(path: &Path, table: &Table) -> Result<(), ForgeError> {
+    write_whole(path, &table.to_bytes())
+}
+
+/// Writes a table file of points in space as [`write_table`] does.
+///
+/// # Errors
+/// As [`write_table`].
+pub fn write_space_table(path: &Path, table: &space::Table) -> Result<(), ForgeError> {
     write_whole(path, &table.to_bytes())
 }
 
@@ -199,27 +235,23 @@ mod tests {
 
     #[test]
     fn a_table_of_points_in_space_is_read_by_its_own_reader() {
-        use strew_core::space::Table as InSpace;
-
-        use crate::space::{read_table as read_space, write_table as write_space};
-
         let folder = tempfile::tempdir().expect("valid");
         let path = folder.path().join("t.strew");
         let alpha = "sqrt(3)".parse().expect("valid");
-        let other = InSpace::undisplaced(alpha, 4, "pattern").expect("valid");
-        write_space(&path, &other).expect("valid");
-        assert_eq!(read_space(&path).expect("valid"), Some(other.clone()));
+        let other = space::Table::undisplaced(alpha, 4, "pattern").expect("valid");
+        write_space_table(&path, &other).expect("valid");
+        assert_eq!(read_space_table(&path).expect("valid"), Some(other.clone()));
         let error = read_table(&path).expect_err("refused").to_string();
         assert!(
             error.contains("t.strew: a table of points in space"),
             "{error}"
         );
         write_table(&path, &table()).expect("valid");
-        assert_eq!(read_space(&path).expect("valid"), None);
+        assert_eq!(read_space_table(&path).expect("valid"), None);
         let mut damaged = other.to_bytes();
         *damaged.last_mut().expect("bytes") ^= 1;
         std::fs::write(&path, damaged).expect("valid");
-        let error = read_space(&path).expect_err("refused").to_string();
+        let error = read_space_table(&path).expect_err("refused").to_string();
         assert!(error.contains("t.strew: "), "{error}");
     }
 

@@ -15,7 +15,7 @@ use crate::{
     optimize::{DescentState, jitter},
     phase::Phase,
     profile::{Profile, Recipe},
-    thinned::with_ranks,
+    ranks::with_ranks,
     twins::Domain,
     watch::Meter,
 };
@@ -212,67 +212,5 @@ impl Work for Plan {
 
     fn least_correlation(&self) -> Option<LeastCorrelation> {
         self.target.as_ref().map(LeastCorrelation::of)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use strew_core::Alpha;
-
-    use super::*;
-    use crate::{estimate, forge};
-
-    fn of(alpha: &str) -> Alpha {
-        alpha.parse().expect("valid")
-    }
-
-    #[test]
-    fn bad_parts_are_refused_with_name_value_and_allowed_range() {
-        let good = Job {
-            radius: 15,
-            steps: Some(1),
-            ..Job::new("(5-sqrt(3))/2".parse().expect("valid"))
-        };
-        let bad: [(fn(&mut Job), _); 7] = [
-            (|job| job.alpha = of("3/2"), ["alpha", "3/2", "1.1"]),
-            (|job| job.alpha = of("1.01"), ["alpha", "101/100", "1.1"]),
-            (|job| job.steps = Some(0), ["steps", "0", "1 to 1000000"]),
-            (
-                |job| job.steps = Some(u32::MAX),
-                ["steps", "4294967295", "1000000"],
-            ),
-            (|job| job.radius = 0, ["R", "0", "1 to 256"]),
-            (|job| job.radius = 257, ["R", "257", "1 to 256"]),
-            (
-                |job| job.profile = "bleu".into(),
-                ["profile", "bleu", "blue"],
-            ),
-        ];
-        for (change, words) in bad {
-            let mut job = good.clone();
-            change(&mut job);
-            let refused = [
-                forge(&job, &()).expect_err("refused"),
-                estimate(&job).expect_err("refused"),
-            ];
-            for error in refused.map(|e| e.to_string()) {
-                assert!(words.iter().all(|word| error.contains(word)), "{error}");
-            }
-        }
-    }
-
-    #[test]
-    fn an_estimate_states_the_steps_and_sizes_of_the_job() {
-        let job = Job {
-            radius: 15,
-            steps: Some(40),
-            ..Job::new(of("(5-sqrt(3))/2"))
-        };
-        let estimate = estimate(&job).expect("a good job");
-        assert_eq!(estimate.steps, 40);
-        assert_eq!(estimate.blocks, 21 * 21);
-        assert!(estimate.pairs > 60 * estimate.blocks && estimate.pairs < 300 * estimate.blocks);
-        assert!(estimate.measured_points > 3 * 50_000);
-        assert!(estimate.time > Duration::ZERO);
     }
 }

@@ -35,22 +35,16 @@ const LARGE_TWINS: usize = 40;
 pub(crate) fn farthest(map: &Map) -> Option<[Twin; 2]> {
     let large = next_to_alpha(map).filter(|twin| twin.points() >= LARGE_TWIN);
     let twins: Vec<Twin> = large.take(LARGE_TWINS).collect();
-    let least = twins
-        .iter()
-        .min_by(|a, b| fraction(a).total_cmp(&fraction(b)))?;
-    let greatest = twins
-        .iter()
-        .max_by(|a, b| fraction(a).total_cmp(&fraction(b)))?;
-    Some([*least, *greatest])
+    let by_alpha = |a: &&Twin, b: &&Twin| fraction(a).total_cmp(&fraction(b));
+    let [least, greatest] = [twins.iter().min_by(by_alpha), twins.iter().max_by(by_alpha)];
+    Some([*least?, *greatest?])
 }
 
-/// The nearest to α of the twins from [`LARGE_TWIN`] to some number of points.
-pub(crate) fn nearest(map: &Map, most: u64) -> Option<Twin> {
+/// The nearest to α of some twins.
+pub(crate) fn nearest(map: &Map, twins: impl Iterator<Item = Twin>) -> Option<Twin> {
     let alpha = map.alpha().to_f64();
-    let twins = next_to_alpha(map).take_while(|twin| twin.points() <= most);
-    let large = twins.filter(|twin| twin.points() >= LARGE_TWIN);
     let far = |twin: &Twin| (fraction(twin) - alpha).abs();
-    large.min_by(|a, b| far(a).total_cmp(&far(b)))
+    twins.min_by(|a, b| far(a).total_cmp(&far(b)))
 }
 
 /// The α of a twin, p/q.

@@ -6,9 +6,9 @@ mod shipped;
 use rayon::prelude::*;
 use strew_core::{Alpha, PointSet, Table, Twin, table::Figures};
 use strew_forge::{
-    Job, Profile, Target, forge,
-    judge::{Figure, RING_WIDTH, complaints, curve_figures},
-    measure::{Crispness, Sample, Spectrum, twin_set, window_set},
+    Job, Profile, Report, Resolution, Target, forge,
+    judge::complaints,
+    measure::{Sample, square_set, twin_set, window_set},
 };
 
 fn alpha() -> Alpha {
@@ -24,23 +24,9 @@ fn profiles() -> impl Iterator<Item = (&'static Profile, Target)> {
     Profile::ALL.iter().filter_map(|p| Some((p, p.target()?)))
 }
 
-/// The figures that the bounds of these profiles use.
-fn judged(subject: String, spectrum: &Spectrum, target: &Target) -> Figures {
-    let summary = spectrum.summary(RING_WIDTH);
-    let crispness = Crispness::of_rings(&spectrum.rings(RING_WIDTH), RING_WIDTH);
-    let own = [
-        (Figure::LowPower, summary.low_power),
-        (Figure::PeakPower, summary.peak_power),
-        (Figure::PeakNu, summary.peak_nu),
-        (Figure::NuEff, crispness.nu_eff),
-    ];
-    let mut values = curve_figures(spectrum, target);
-    values.extend(own.map(|(figure, value)| (figure.name().to_owned(), value)));
-    Figures {
-        subject,
-        values,
-        ..Figures::default()
-    }
+/// A set beside the curve that it should follow.
+fn compared(subject: String, set: &Sample, target: &Target) -> Report {
+    Report::of(subject, false, set, Resolution::default()).compared(target)
 }
 
 /// Eight of the twins of 65,000 to 200,000 points, which spread over the interval of α that the map
@@ -65,31 +51,28 @@ fn far_and_near(table: &Table) -> Vec<Twin> {
     places.map(|at| large[at]).to_vec()
 }
 
-fn on_twins(table: &Table, target: &Target) -> Vec<(Figures, Spectrum)> {
+fn on_twins(table: &Table, target: &Target) -> Vec<Report> {
     let measure = |twin: Twin| {
         let set = twin_set(table, twin).expect("a twin");
-        let spectrum = Spectrum::of(&set, 4.0);
-        (judged(format!("twin {twin}"), &spectrum, target), spectrum)
+        compared(format!("twin {twin}"), &set, target)
     };
     far_and_near(table).into_par_iter().map(measure).collect()
 }
 
 /// Two windows of the unbounded pattern, and two regions with the warp, as a server returns them.
-fn on_windows(table: &Table, target: &Target) -> Vec<(Figures, Spectrum)> {
+fn on_windows(table: &Table, target: &Target) -> Vec<Report> {
     let windows =
         [100, 101].map(|seed| (format!("window {seed}"), window_set(table, 75_000, seed)));
     let warped = [3, 4].map(|seed| (format!("warped, seed {seed}"), warped(table, seed)));
-    let measure = |(name, set)| {
-        let spectrum = Spectrum::of(&set, 4.0);
-        (judged(name, &spectrum, target), spectrum)
-    };
-    windows.into_iter().chain(warped).map(measure).collect()
+    let all = windows.into_iter().chain(warped);
+    all.map(|(name, set)| compared(name, &set, target))
+        .collect()
 }
 
 /// 300² mean spacings with the warp on, away from the origin.
 fn warped(table: &Table, seed: u64) -> Sample {
     let set = PointSet::new(table.clone()).seed(seed);
-    shipped::window(&set, [1000.0 * seed as f64; 2], 300.0)
+    square_set(&set, [1000.0 * seed as f64; 2], 300.0, 1.0).expect("near")
 }
 
 #[test]
@@ -100,12 +83,12 @@ fn shipped_tables_follow_their_curves_on_far_twins_and_windows() {
         all.extend(on_windows(&table, &target));
         if profile.name == "pink" {
             // Strong long waves: power of at least 4 in the ring from ν = 0.1 to 0.2.
-            for (figures, spectrum) in &all {
-                let rings = spectrum.rings(0.1);
-                assert!(rings[1].power >= 4.0, "{}: {:?}", figures.subject, rings[1]);
+            for report in &all {
+                let ring = report.spectrum.rings(0.1)[1];
+                assert!(ring.power >= 4.0, "{}: {ring:?}", report.figures.subject);
             }
         }
-        let figures: Vec<Figures> = all.into_iter().map(|(figures, _)| figures).collect();
+        let figures: Vec<Figures> = all.into_iter().map(|report| report.figures).collect();
         let wrong = complaints(profile.bounds, &figures);
         assert!(wrong.is_empty(), "{}: {wrong:#?}", profile.name);
     }

@@ -2,8 +2,11 @@
 
 use std::time::Instant;
 
-use strew_core::Alpha;
-use strew_forge::figure::{self, Drawing, FigureError};
+use strew_core::{Alpha, Table, map::Clusters};
+use strew_forge::{
+    figure::{self, Drawing, FigureError},
+    mask::Mask,
+};
 
 const ALPHAS: [&str; 9] = [
     "(5-sqrt(3))/2",
@@ -49,6 +52,35 @@ fn every_alpha_has_all_figures() {
             );
         }
     }
+}
+
+#[test]
+fn figures_say_what_they_show() {
+    let [alpha, other] = ["sqrt(3)", "(5-sqrt(3))/2"].map(|text| text.parse().expect("valid"));
+    let table = Table::undisplaced(other, 49, "pattern").expect("small");
+    let mask = Mask::new(&table, 32, 7).expect("in range");
+    let clusters = Clusters::new(alpha, 2.0, 16).expect("in range");
+    let clusters = figure::found_clusters(&clusters, 2.0, 48);
+    assert_eq!(clusters, figure::clusters(alpha, 2.0, 16, 48));
+    for (drawing, text) in [
+        (figure::index(other, 48), "set region"),
+        (
+            figure::arrangement(alpha, &[(2, 0), (1, 2)], 40),
+            "It occurs",
+        ),
+        (figure::arrangement(alpha, &[(1, 0)], 40), "It never occurs"),
+        (clusters, "4 shapes"),
+        (figure::map(other, 20, [3, 8]), "27 × 27 blocks"),
+        (Ok(figure::mask_spectrum(&mask)), "Level 1/8"),
+    ] {
+        let svg = drawing.expect("in range").to_svg();
+        assert!(svg.contains(text), "{text}");
+    }
+    let error = figure::map(alpha, 20, [3, 99]).expect_err("no such block");
+    assert_eq!(
+        error.to_string(),
+        "block is [3, 99]; it must be two integers from 0 to 30"
+    );
 }
 
 #[test]

@@ -6,10 +6,14 @@ use strew_forge::mask::Mask;
 /// Seeds of each size.
 const SEEDS: u64 = 4;
 
+fn table() -> Table {
+    let bytes = include_bytes!("../../core/tables/blue-5-sqrt3-over-2-m.strew");
+    Table::from_bytes(bytes).expect("a shipped table")
+}
+
 /// Masks of two sizes.
 fn masks() -> [(u32, Vec<Mask>); 2] {
-    let bytes = include_bytes!("../../core/tables/blue-5-sqrt3-over-2-m.strew");
-    let table = Table::from_bytes(bytes).expect("a shipped table");
+    let table = table();
     [64, 128].map(|size| {
         let mask = |seed| Mask::new(&table, size, seed).expect("a valid size");
         (size, (0..SEEDS).map(mask).collect())
@@ -44,6 +48,19 @@ fn no_seam_shows_around_an_eighth() {
             );
         }
     }
+}
+
+#[test]
+fn thresholds_are_ranks_in_8_or_16_bits() {
+    let [(_, masks), _] = masks();
+    let mask = Mask::by_key(2, |x, y| [5, 7, 9, 6][(2 * y + x) as usize]);
+    assert_eq!(mask.ranks(), [0, 2, 3, 1]);
+    assert!(mask.thresholds(8).eq([0, 128, 192, 64]));
+    assert!(mask.to_png(16).expect("16 bits").starts_with(b"\x89PNG"));
+    assert!(mask.to_png(4).is_err());
+    assert!(masks[0].spectrum(0.25).low_power < 0.2);
+    let stopped = Mask::new_while(&table(), 64, 7, || false);
+    assert_eq!(stopped, Ok(None));
 }
 
 /// Plain void and cluster has 0.12 to 0.16 on average. A kernel that reaches no other pixel had 2.4 at 1/256, and a

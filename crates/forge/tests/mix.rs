@@ -2,17 +2,13 @@
 
 mod shipped;
 
-use std::{
-    fs,
-    path::Path,
-    sync::atomic::{AtomicU32, Ordering},
-};
+use std::{fs, path::Path};
 
 use strew_core::{Map, PointSet, Table, Twin, table::Provenance};
 use strew_forge::{
-    MixJob, Progress, ThinnedTwin, Watch, labels,
+    MixJob, Stage, ThinnedTwin, labels,
     measure::{Distances, Sample, Spectrum},
-    mix, read_table,
+    mix, mix_file_name, read_table,
 };
 
 /// A twin of 978,121 points, which is larger than those that the judge looks at. Others have other shares of
@@ -40,9 +36,10 @@ fn hash(bytes: impl Iterator<Item = u8>) -> u64 {
     bytes.fold(0xcbf2_9ce4_8422_2325, step)
 }
 
-fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-    pool.build().expect("threads").install(work)
+/// A table with labels for some shares.
+fn labeled(table: &Table, shares: &str) -> Table {
+    let made = labels(table, &shares.parse().expect("valid"), &());
+    made.expect("valid").expect("not stopped")
 }
 
 #[test]
@@ -54,20 +51,19 @@ fn labels_of_the_default_table_are_even_on_another_twin_and_at_every_share() {
         ("1:1:2", 0.07),
         ("1:3:10", 0.1),
     ] {
-        let mixed = labels(&table, &shares.parse().expect("valid"), &());
-        let mixed = mixed.expect("valid").expect("not stopped");
+        let mixed = labeled(&table, shares);
         assert_eq!(mixed.displacements(), table.displacements());
         let points = ThinnedTwin::new(&mixed, twin()).expect("a twin");
         let mix = mixed.mix().expect("one").shares().clone();
         for keep in [1.0, 0.43, 0.11] {
-            let all = points.at(keep);
+            let all = points.at(keep, None);
             assert!(
                 keep == 1.0 || low(&all) < 0.16,
                 "{shares} {keep}: {}",
                 low(&all)
             );
             for kind in 0..mix.kinds() as u8 {
-                let set = points.of_kind(keep, kind);
+                let set = points.at(keep, Some(kind));
                 let share = set.points().len() as f64 / all.points().len() as f64;
                 assert!(
                     (share - mix.of(kind)).abs() < 0.005,
@@ -89,15 +85,17 @@ fn shipped_joint_tables_keep_their_promises_on_another_twin() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/tables/joint");
     let plain = shipped::table("blue", "(5-sqrt(3))/2", 100);
     let anisotropy = |set: &Sample| Spectrum::of(set, 1.5).summary(0.04);
-    let before = ThinnedTwin::new(&plain, twin()).expect("a twin").at(1.0);
+    let before = ThinnedTwin::new(&plain, twin())
+        .expect("a twin")
+        .at(1.0, None);
     let before = anisotropy(&before).anisotropy_db;
     for shares in ["1-1", "1-3", "1-1-2", "1-3-10"] {
         let name = format!("blue-5-sqrt3-over-2-m-mix-{shares}.strew");
         let table = read_table(&folder.join(name)).expect("shipped");
         let points = ThinnedTwin::new(&table, twin()).expect("a twin");
-        let all = points.at(1.0);
+        let all = points.at(1.0, None);
         let kinds = table.mix().expect("one").shares().kinds() as u8;
-        let sets = (0..kinds).map(|kind| (points.of_kind(1.0, kind), 0.015, 0.57));
+        let sets = (0..kinds).map(|kind| (points.at(1.0, Some(kind)), 0.015, 0.57));
         for (set, low, delta) in sets.chain([(all, 5e-4, 0.54)]) {
             let summary = anisotropy(&set);
             assert!(summary.low_power < low, "{shares}: {}", summary.low_power);
@@ -118,8 +116,7 @@ fn labels_of_the_library_are_those_of_the_forge() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/tables/even");
     let plain = shipped::table("blue", "(5-sqrt(3))/2", 100);
     for shares in ["1:1", "1:3", "1:1:2", "1:3:10"] {
-        let made = labels(&plain, &shares.parse().expect("shares"), &());
-        let made = made.expect("valid").expect("not stopped");
+        let made = labeled(&plain, shares);
         let name = shares.replace(':', "-");
         let path = folder.join(format!("blue-5-sqrt3-over-2-m-{name}.labels"));
         if std::env::var_os("UPDATE_GOLDEN").is_some() {
@@ -133,12 +130,7 @@ fn labels_of_the_library_are_those_of_the_forge() {
 
 #[test]
 fn labels_and_ranks_are_the_same_with_any_number_of_threads_and_pinned() {
-    let make = || labels(&small(), &"10:1:3".parse().expect("valid"), &());
-    let made = with_threads(1, make).expect("valid").expect("not stopped");
-    assert_eq!(
-        made,
-        with_threads(3, make).expect("valid").expect("not stopped")
-    );
+    let made = shipped::same(|| labeled(&small(), "10:1:3"));
     let mix = made.mix().expect("one");
     assert_eq!(hash(mix.labels().iter().copied()), 596_408_327_707_228_533);
     let ranks = made.ranks().expect("made").positions();
@@ -157,12 +149,8 @@ fn labels_and_ranks_are_the_same_with_any_number_of_threads_and_pinned() {
 fn joint_tables_are_the_same_with_any_number_of_threads_and_pinned() {
     let mut job = MixJob::joint("1:3".parse().expect("valid"));
     job.steps = 12;
-    let make = || mix(&small(), &job, &());
-    let made = with_threads(1, make).expect("valid").expect("not stopped");
-    assert_eq!(
-        made,
-        with_threads(3, make).expect("valid").expect("not stopped")
-    );
+    let made = shipped::same(|| mix(&small(), &job, &()).expect("valid"));
+    let made = made.expect("not stopped");
     let vectors = made.table.displacements().iter().flatten();
     assert_eq!(
         hash(vectors.flat_map(|v| v.to_le_bytes())),
@@ -174,39 +162,28 @@ fn joint_tables_are_the_same_with_any_number_of_threads_and_pinned() {
     assert!(history.parameters.contains(&of));
 }
 
-/// Stops after some steps.
-struct Stopper {
-    after: u32,
-    step: AtomicU32,
-}
-
-impl Watch for Stopper {
-    fn progress(&self, _: &Progress) {
-        self.step.fetch_add(1, Ordering::Relaxed);
-    }
-
-    fn stop(&self) -> bool {
-        self.step.load(Ordering::Relaxed) > self.after
-    }
-}
-
 #[test]
 fn work_can_be_stopped_at_any_step() {
     let mut job = MixJob::joint("1:3".parse().expect("valid"));
     job.steps = 12;
     // In the annealing, in the descent, in the order of leaving, while measuring.
-    for after in [3, 105, 118, 135] {
-        let step = AtomicU32::new(0);
-        let stopper = Stopper { after, step };
+    let optimizing = [3, 104, 117].map(|after| (Stage::Optimizing, after));
+    for (stage, after) in optimizing.into_iter().chain([(Stage::Measuring, 1)]) {
+        let stopper = shipped::Stopper::new(stage, after);
         let made = mix(&small(), &job, &stopper).expect("valid");
         assert!(made.is_none(), "{after}");
-        assert!(stopper.step.into_inner() <= after + 2, "{after}");
+        let last = stopper.seen.into_inner().expect("no panic").pop();
+        let last = last.expect("some progress");
+        assert!(last.stage == stage && last.step <= after + 2, "{last:?}");
     }
 }
 
 #[test]
 fn impossible_jobs_are_refused() {
-    let mut job = MixJob::joint("1:3".parse().expect("valid"));
+    let mut job = MixJob::joint("3:1".parse().expect("valid"));
+    assert_eq!((job.shares.to_string().as_str(), job.steps), ("1:3", 240));
+    let name = mix_file_name(&small(), &job);
+    assert_eq!(name, "blue-5-sqrt3-over-2-r20-mix-1-3.strew");
     job.steps = 0;
     let error = mix(&small(), &job, &()).expect_err("no steps");
     assert_eq!(error.to_string(), "steps is 0; allowed: from 1 to 10000");

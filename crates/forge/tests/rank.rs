@@ -2,13 +2,8 @@
 
 mod shipped;
 
-use strew_core::{Point, PointSet, Region};
-use strew_forge::measure::{Distances, Sample, Spectrum};
-
-fn points(set: &PointSet, side: f64) -> Vec<Point> {
-    let region = Region::new([0.0, 0.0], [side, side]).expect("ordered");
-    set.within(region).expect("near").to_vec()
-}
+use strew_core::PointSet;
+use strew_forge::measure::{Distances, Spectrum, square_set};
 
 #[test]
 fn thinned_sets_are_even_with_every_seed_and_warp() {
@@ -23,10 +18,10 @@ fn thinned_sets_are_even_with_every_seed_and_warp() {
                 (0.0625, 600.0),
                 (1.0 / 64.0, 1000.0),
             ] {
-                let left = points(&set.clone().keep(keep).expect("a share"), side);
-                let fraction = left.len() as f64 / (side * side);
+                let set = set.clone().keep(keep).expect("a share");
+                let window = square_set(&set, [0.0; 2], side, keep).expect("near");
+                let fraction = window.points().len() as f64 / (side * side);
                 assert!((fraction / keep - 1.0).abs() < 0.02, "{keep}: {fraction}");
-                let window = Sample::window(side, keep, left.iter().map(|p| [p.x, p.y]).collect());
                 let low = Spectrum::of(&window, 0.6).summary(0.05).low_power;
                 let delta = Distances::of(&window).delta_min;
                 let what = format!("R = {radius}, seed {seed}, warp {warp}, share {keep}");

@@ -1,4 +1,4 @@
-//! Tables of points in space: equal jobs make equal tables, and the shipped ones keep what their history says.
+//! Tables of points in space: their ranks spread what is left, and the shipped ones keep what their history says.
 
 use strew_core::space::{SpaceSet, Table};
 use strew_forge::{
@@ -7,47 +7,14 @@ use strew_forge::{
     space::{LocalPower, SpaceJob, SpacePower, SpaceProfile, window_set},
 };
 
-fn job(profile: SpaceProfile) -> SpaceJob {
-    SpaceJob {
-        radius: 4,
-        steps: Some(40),
-        ..SpaceJob::new(profile)
-    }
-}
-
-#[test]
-fn equal_jobs_make_equal_tables_with_any_number_of_threads() {
-    for profile in SpaceProfile::ALL {
-        let make = |seed, threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let job = SpaceJob {
-                seed,
-                ..job(profile)
-            };
-            let outcome = pool.expect("threads").install(|| forge(&job, &()));
-            outcome.expect("allowed").table
-        };
-        let table = make(1, 1);
-        assert_eq!(table, make(1, 3));
-        assert_ne!(table.vectors(), make(2, 2).vectors());
-        assert!(table.ranks().is_some());
-        let least = table.least_distance().relative();
-        assert!(least > 0.1, "{least}");
-        let history = table.provenance();
-        assert!(history.twins.is_empty() && history.figures.iter().all(|f| !f.seen));
-        let subjects: Vec<&str> = history.figures.iter().map(|f| f.subject.as_str()).collect();
-        assert!(subjects[0].starts_with("twin "), "{subjects:?}");
-        assert_eq!(
-            subjects[1..],
-            ["window seed 0", "window seed 1", "window seed 2"]
-        );
-        assert_eq!(Table::from_bytes(&table.to_bytes()), Ok(table));
-    }
-}
-
 #[test]
 fn ranks_are_an_order_that_spreads_what_is_left() {
-    let ranked = forge(&job(SpaceProfile::Blue), &()).expect("allowed").table;
+    let job = SpaceJob {
+        radius: 4,
+        steps: Some(40),
+        ..SpaceJob::new(SpaceProfile::Blue)
+    };
+    let ranked = forge(&job, &()).expect("allowed").table;
     let (map, vectors) = (ranked.map().clone(), ranked.vectors().to_vec());
     let history = ranked.provenance().clone();
     let without = Table::new(map, "blue", vectors, history, None).expect("valid");

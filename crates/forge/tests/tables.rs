@@ -67,71 +67,54 @@ fn hold(table: &Table, figures: &[Figures], bounds: &[Bound]) {
     );
 }
 
+const BLUE: [Bound; 4] = [
+    Bound::at_most(Figure::LowPower, 1e-5),
+    Bound::at_least(Figure::DeltaMin, 0.62),
+    Bound::at_least(Figure::DeltaAvg, 0.8),
+    Bound::at_most(Figure::PeakPower, 2.4),
+];
+/// Crisper than BNOT.
+const SHARP: [Bound; 5] = [
+    Bound::at_least(Figure::NuEff, 0.93),
+    Bound::at_most(Figure::LowPower, 1e-5),
+    Bound::at_least(Figure::DeltaMin, 0.8),
+    Bound::at_most(Figure::AreaDeviation, 0.1),
+    Bound::at_most(Figure::LargestHole, 0.75),
+];
+/// Neither close pairs nor wide holes.
+const SPACED: [Bound; 3] = [
+    Bound::at_least(Figure::DeltaMin, 0.93),
+    Bound::at_most(Figure::LowPower, 5e-3),
+    Bound::at_most(Figure::LargestHole, 0.85),
+];
+
 #[test]
-fn blue_tables_are_good_on_unseen_twins_and_windows() {
-    for alpha in [DEFAULT, "sqrt(3)", "(1+sqrt(5))/2"] {
-        let table = shipped::table("blue", alpha, 49);
-        let bounds = [
-            Bound::at_most(Figure::LowPower, 1e-5),
-            Bound::at_least(Figure::DeltaMin, 0.62),
-            Bound::at_least(Figure::DeltaAvg, 0.8),
-            Bound::at_most(Figure::PeakPower, 2.4),
-        ];
-        hold(&table, &unseen(&table, 12), &bounds);
+fn small_maps_are_good_on_unseen_twins_and_windows() {
+    let all = [DEFAULT, "sqrt(3)", "(1+sqrt(5))/2"];
+    for (profile, alphas, twins, bounds) in [
+        ("blue", &all[..], 12, &BLUE[..]),
+        ("sharp", &all[..1], 6, &SHARP),
+        ("spaced", &all, 3, &SPACED),
+    ] {
+        for alpha in alphas {
+            let table = shipped::table(profile, alpha, 49);
+            hold(&table, &unseen(&table, twins), bounds);
+        }
     }
 }
 
 #[test]
 fn larger_maps_are_as_good_on_windows_and_unseen_twins() {
-    let blue = [
-        Bound::at_most(Figure::LowPower, 1e-5),
-        Bound::at_least(Figure::DeltaMin, 0.62),
-        Bound::at_most(Figure::PeakPower, 2.4),
-    ];
-    let spaced = [
-        Bound::at_least(Figure::DeltaMin, 0.93),
-        Bound::at_most(Figure::LowPower, 5e-3),
-        Bound::at_most(Figure::LargestHole, 0.85),
-    ];
-    for (profile, radius, bounds) in [
-        ("blue", 100, &blue),
-        ("blue", 200, &blue),
-        ("spaced", 100, &spaced),
-        ("spaced", 200, &spaced),
-    ] {
-        let table = shipped::table(profile, DEFAULT, radius);
-        // Large maps have few twins, and the judge saw the smaller ones.
-        let twins = large_twins(&table, 500_000).take(1);
-        let mut all = on_twins(&table, twins);
-        assert_eq!(all.len(), 1);
-        all.extend(on_windows(&table));
-        hold(&table, &all, bounds);
-    }
-}
-
-#[test]
-fn the_sharp_table_is_crisper_than_bnot_on_unseen_twins_and_windows() {
-    let table = shipped::table("sharp", DEFAULT, 49);
-    let bounds = [
-        Bound::at_least(Figure::NuEff, 0.93),
-        Bound::at_most(Figure::LowPower, 1e-5),
-        Bound::at_least(Figure::DeltaMin, 0.8),
-        Bound::at_most(Figure::AreaDeviation, 0.1),
-        Bound::at_most(Figure::LargestHole, 0.75),
-    ];
-    hold(&table, &unseen(&table, 6), &bounds);
-}
-
-#[test]
-fn spaced_tables_have_neither_close_pairs_nor_wide_holes() {
-    for alpha in [DEFAULT, "sqrt(3)", "(1+sqrt(5))/2"] {
-        let table = shipped::table("spaced", alpha, 49);
-        let bounds = [
-            Bound::at_least(Figure::DeltaMin, 0.93),
-            Bound::at_most(Figure::LowPower, 5e-3),
-            Bound::at_most(Figure::LargestHole, 0.85),
-        ];
-        hold(&table, &unseen(&table, 3), &bounds);
+    for (profile, bounds) in [("blue", &BLUE[..]), ("spaced", &SPACED)] {
+        for radius in [100, 200] {
+            let table = shipped::table(profile, DEFAULT, radius);
+            // Large maps have few twins, and the judge saw the smaller ones.
+            let twins = large_twins(&table, 500_000).take(1);
+            let mut all = on_twins(&table, twins);
+            assert_eq!(all.len(), 1);
+            all.extend(on_windows(&table));
+            hold(&table, &all, bounds);
+        }
     }
 }
 

@@ -6,9 +6,13 @@
 use std::{fs, path::Path};
 
 use strew_core::{Alpha, Map, Table};
-use strew_forge::{Job, file_name, forge, read_table, write_table};
+use strew_forge::{
+    Job,
+    figure::{Anchor, Color, Drawing},
+    file_name, forge, read_table, write_table,
+};
 
-use crate::{Outcome, arguments::Arguments, figures};
+use crate::{Arguments, Outcome, figures};
 
 /// The half-width of the maps: s.
 const RADIUS: u32 = 49;
@@ -43,7 +47,7 @@ pub fn scan(mut arguments: Arguments) -> Outcome {
         });
         rows.sort_by(|a, b| a.alpha.to_f64().total_cmp(&b.alpha.to_f64()));
         fs::write(folder.join("alphas.md"), markdown(&rows))?;
-        fs::write(folder.join("alphas.svg"), svg(&rows))?;
+        fs::write(folder.join("alphas.svg"), drawn(&rows).to_svg())?;
     }
     Ok(())
 }
@@ -92,66 +96,51 @@ fn markdown(rows: &[Row]) -> String {
     text
 }
 
+/// Colors: of levels, of α whose tables miss the bound or meet it, and of numbers of intervals.
+const COLORS: [Color; 4] = [[221; 3], [204, 51, 51], [26, 127, 55], [155, 183, 214]];
+
 /// Low power (logarithmic) above, intervals below, over α.
-fn svg(rows: &[Row]) -> String {
+fn drawn(rows: &[Row]) -> Drawing {
+    let [pale, bad, good, bars] = COLORS;
     let x = |alpha: f64| 60.0 + 660.0 * (alpha - 1.0);
     let power = |low: f64| 20.0 + 200.0 * (-1.0 - low.log10().clamp(-6.0, -1.0)) / 5.0;
     let count = |n: f64| 420.0 - 160.0 * n.min(100.0) / 100.0;
-    let line = |[x1, y1]: [f64; 2], [x2, y2]: [f64; 2], style: &str| {
-        format!("<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" {style}/>\n")
-    };
-    let level = |y: f64, style: &str| line([60.0, y], [720.0, y], style);
-    let text = |[x, y]: [f64; 2], anchor: &str, text: &str| {
-        format!("<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>\n")
-    };
-    let mut s = String::from(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"760\" height=\"460\" font-family=\"sans-serif\" \
-         font-size=\"12\"><rect width=\"760\" height=\"460\" fill=\"#fff\"/>\n",
-    );
+    let level = |y: f64| [[60.0, y], [720.0, y]];
+    let mut drawing = Drawing::new(760.0, 460.0);
     let decades = (1..=6).map(|decade| power(10f64.powi(-decade)));
     let counts = [0.0, 25.0, 50.0, 75.0, 100.0].map(count);
-    s.extend(decades.chain(counts).map(|y| level(y, "stroke=\"#ddd\"")));
-    s += &level(power(LOW_POWER), "stroke=\"#c33\" stroke-dasharray=\"5 4\"");
+    drawing.lines(decades.chain(counts).map(level), (pale, 1.0));
+    drawing.lines([level(power(LOW_POWER))], (bad, 1.0));
     // Every α, to show where the blocks are few.
-    for i in 1..660 {
+    let bar = |i: u32| {
         let alpha = format!("1.{:06}", i * 1515 + 137).parse();
-        if let Ok(map) = alpha.and_then(|alpha: Alpha| Map::new(alpha, RADIUS)) {
-            let at = x(map.alpha().to_f64());
-            let top = count(map.intervals() as f64);
-            s += &line([at, count(0.0)], [at, top], "stroke=\"#9bb7d6\"");
-        }
-    }
+        let map = alpha
+            .and_then(|alpha: Alpha| Map::new(alpha, RADIUS))
+            .ok()?;
+        let at = x(map.alpha().to_f64());
+        Some([[at, count(0.0)], [at, count(map.intervals() as f64)]])
+    };
+    drawing.lines((1..660).filter_map(bar), (bars, 1.0));
     for row in rows {
-        let Some([low, ..]) = row.worst else { continue };
-        let (at, y, alpha) = (x(row.alpha.to_f64()), power(low), row.alpha);
-        let color = if low <= LOW_POWER { "#1a7f37" } else { "#c33" };
-        s += &format!(
-            "<circle cx=\"{at:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"{color}\"><title>{alpha}</title></circle>\n"
-        );
+        if let Some([low, ..]) = row.worst {
+            let color = if low <= LOW_POWER { good } else { bad };
+            drawing.dots([[x(row.alpha.to_f64()), power(low)]], 8.0, color);
+        }
     }
     let powers = [(1e-1, "0.1"), (1e-3, "1e-3"), (1e-6, "1e-6")].map(|(v, t)| (power(v), t));
     let counts = [(0.0, "0"), (50.0, "50"), (100.0, "100")].map(|(v, t)| (count(v), t));
     for (y, label) in powers.into_iter().chain(counts) {
-        s += &text([52.0, y + 4.0], "end", label);
+        drawing.text([52.0, y + 4.0], 12.0, Anchor::End, label);
     }
     for i in 0..=10 {
         let alpha = 1.0 + f64::from(i) / 10.0;
-        s += &text([x(alpha), 438.0], "middle", &format!("{alpha:.1}"));
+        let at = [x(alpha), 438.0];
+        drawing.text(at, 12.0, Anchor::Middle, &format!("{alpha:.1}"));
     }
-    for (at, anchor, label) in [
-        (
-            [66.0, 16.0],
-            "start",
-            "worst power below ν = 0.5 of blue, map s; red line: the bound",
-        ),
-        (
-            [66.0, 252.0],
-            "start",
-            "intervals per axis, R = 49 (cut at 100)",
-        ),
-        ([390.0, 455.0], "middle", "α"),
-    ] {
-        s += &text(at, anchor, label);
-    }
-    s + "</svg>\n"
+    let low = "worst power below ν = 0.5 of blue, map s; red line: the bound";
+    drawing.text([66.0, 16.0], 12.0, Anchor::Start, low);
+    let intervals = "intervals per axis, R = 49 (cut at 100)";
+    drawing.text([66.0, 252.0], 12.0, Anchor::Start, intervals);
+    drawing.text([390.0, 455.0], 12.0, Anchor::Middle, "α");
+    drawing
 }

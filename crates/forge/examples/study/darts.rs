@@ -10,7 +10,7 @@ use std::time::Instant;
 use strew_core::table::Shares;
 use strew_forge::{measure::Sample, numeric::SplitMix};
 
-use crate::{Outcome, arguments::Arguments, figures, ground::HEXAGONAL};
+use crate::{Arguments, Outcome, figures, ground::HEXAGONAL};
 
 /// The radius of a kind over that of the hexagonal lattice of its density: about as dense as darts get.
 const RADIUS: f64 = 0.67;

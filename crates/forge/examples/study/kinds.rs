@@ -14,24 +14,20 @@ use strew_core::{Field, PointId, PointSet, Table, VaryingKinds, table::Shares};
 use strew_forge::{MixJob, MixOutcome, labels, mix, numeric::SplitMix, second_order};
 
 use crate::{
-    Outcome,
-    arguments::Arguments,
+    Arguments, Outcome,
     figures::{self, value},
     ground::{CORNER, square},
-    paint::{self, Panel},
+    paint,
 };
 
-/// The colors of the background and of the kinds, the rarest first.
-const PALETTE: [[u8; 3]; 6] = [
-    [255, 255, 255],
+/// The colors of the kinds, the rarest first.
+const COLORS: [[u8; 3]; 5] = [
     [20, 60, 150],
     [230, 120, 0],
     [120, 180, 90],
     [190, 30, 90],
     [90, 90, 90],
 ];
-/// Steps between a kind's color and white, for smooth edges.
-const SHADES: usize = 4;
 const SEED: u64 = 5;
 
 pub fn fixed(mut arguments: Arguments) -> Outcome {
@@ -78,18 +74,13 @@ pub fn made(table: &Table, shares: &Shares, is_joint: bool) -> Outcome<MixOutcom
 fn draw(table: &Table, shares: &Shares, side: f64, pixels: f64, out: &Path) -> Outcome {
     let panel = |table: &Table, kind: &dyn Fn(&PointSet, PointId) -> Option<u8>| {
         let set = PointSet::new(table.clone()).seed(SEED);
-        let mut panel = Panel::blank([(side * pixels) as usize; 2], 0.0);
+        let mut dots = COLORS.map(|color| (vec![], 0.68 * pixels, color)).to_vec();
         for point in square(&set, CORNER, side)? {
-            let first = SHADES * usize::from(kind(&set, point.id).ok_or("no kind")?);
-            let at = point.at().map(|v| v * pixels);
-            panel.disk(at, 0.34 * pixels, |color, covered| {
-                let shade = (covered * SHADES as f64).round() as usize;
-                if shade > 0 {
-                    *color = (first + shade) as f64 / 255.0;
-                }
-            });
+            let kind = usize::from(kind(&set, point.id).ok_or("no kind")?);
+            let (places, ..) = dots.get_mut(kind).ok_or("at most five kinds")?;
+            places.push(point.at().map(|v| v * pixels));
         }
-        Outcome::Ok(panel)
+        Outcome::Ok(dots)
     };
     let labeled = labels(table, shares, &())?.ok_or("stopped")?;
     let joint = made(table, shares, true)?.table;
@@ -98,15 +89,7 @@ fn draw(table: &Table, shares: &Shares, side: f64, pixels: f64, out: &Path) -> O
         panel(&labeled, &PointSet::kind_of)?,
         panel(&joint, &PointSet::kind_of)?,
     ];
-    let [paper, kinds @ ..] = PALETTE;
-    let mixed = |color: [u8; 3], shade: usize| {
-        let part = shade as f64 / SHADES as f64;
-        [0, 1, 2].map(|i| (f64::from(color[i]) * part + f64::from(paper[i]) * (1.0 - part)) as u8)
-    };
-    let shades = |color| (1..=SHADES).map(move |shade| mixed(color, shade));
-    let colors = kinds.into_iter().flat_map(shades);
-    let palette = [paper].into_iter().chain(colors).flatten().collect();
-    paint::write(out, &panels, [3, 8], 8, Some(palette))
+    paint::write(out, &panels, [side * pixels; 2], 3)
 }
 
 /// A kind drawn by a hash of the id.

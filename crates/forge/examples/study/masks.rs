@@ -5,16 +5,12 @@
 use std::{path::Path, time::Instant};
 
 use strew_forge::{
+    figure::Drawing,
     mask::{LevelSpectrum, Mask},
     numeric::SplitMix,
 };
 
-use crate::{
-    Outcome,
-    arguments::Arguments,
-    figures,
-    paint::{self, Panel},
-};
+use crate::{Arguments, Outcome, figures, paint};
 
 /// Seeds of each mask.
 const SEEDS: u64 = 3;
@@ -35,14 +31,18 @@ pub fn study(mut arguments: Arguments) -> Outcome {
         if size <= 128 {
             print("voids", size, all(&|seed| void_and_cluster(size, seed))?);
         }
-        print("white", size, all(&|seed| white(size, seed))?);
-        print("bayer", size, vec![bayer(size)?]);
+        print("white", size, all(&|seed| Ok(white(size, seed)))?);
+        print("bayer", size, vec![bayer(size)]);
     }
     figures::head("pixels | 64 | 128 | 256");
     figures::row("seconds", &times);
     for path in arguments.rest()? {
-        let masks = [white(128, 0)?, bayer(128)?, Mask::new(&table, 128, 0)?];
-        paint::write(Path::new(&path), &masks.map(gradient), [1, 12], 1, None)?;
+        let masks = [white(128, 0), bayer(128), Mask::new(&table, 128, 0)?];
+        let mut drawing = Drawing::new(768.0, 408.0);
+        for (mask, top) in masks.iter().zip([0.0, 140.0, 280.0]) {
+            drawing.cells([[0.0, top], [768.0, 128.0]], 768, gradient(mask));
+        }
+        paint::save(Path::new(&path), &drawing, [768.0, 408.0])?;
     }
     Ok(())
 }
@@ -58,35 +58,23 @@ fn print(name: &str, size: u32, masks: Vec<Mask>) {
     figures::row(format!("{name} {size}"), &numbers);
 }
 
-/// A gradient from black to white, dithered with a mask.
-fn gradient(mask: Mask) -> Panel {
-    let mut panel = Panel::blank([768, 128], 0.0);
-    let [width, _] = panel.size;
+/// A gradient from black to white of 768 × 128 pixels, dithered with a mask.
+fn gradient(mask: &Mask) -> Vec<u8> {
     let thresholds: Vec<u16> = mask.thresholds(16).collect();
     let size = mask.size() as usize;
-    for (i, shade) in panel.shades.iter_mut().enumerate() {
-        let (x, y) = (i % width, i / width);
-        let gray = x as f64 / (width - 1) as f64 * 65536.0;
+    let shade = |i: usize| {
+        let (x, y) = (i % 768, i / 768);
+        let gray = x as f64 / 767.0 * 65536.0;
         let is_on = gray > f64::from(thresholds[y % size * size + x % size]);
-        *shade = f64::from(u8::from(is_on));
-    }
-    panel
-}
-
-fn ranked(size: u32, key: impl Fn(u32, u32) -> u64) -> Outcome<Mask> {
-    let mut order: Vec<u32> = (0..size * size).collect();
-    order.sort_by_key(|&i| (key(i % size, i / size), i));
-    let mut ranks = vec![0; order.len()];
-    for (rank, pixel) in order.into_iter().enumerate() {
-        ranks[pixel as usize] = rank as u32;
-    }
-    Ok(Mask::from_ranks(size, ranks)?)
+        if is_on { 255 } else { 0 }
+    };
+    (0..768 * 128).map(shade).collect()
 }
 
 /// The order of Bayer (1973): bits of x xor y and of y, the lowest first.
-fn bayer(size: u32) -> Outcome<Mask> {
+fn bayer(size: u32) -> Mask {
     let bits = size.trailing_zeros();
-    ranked(size, |x, y| {
+    Mask::by_key(size, |x, y| {
         (0..bits).fold(0, |key, bit| {
             let pair = 2 * ((x ^ y) >> bit & 1) + (y >> bit & 1);
             key << 2 | u64::from(pair)
@@ -95,8 +83,8 @@ fn bayer(size: u32) -> Outcome<Mask> {
 }
 
 /// A random order.
-fn white(size: u32, seed: u64) -> Outcome<Mask> {
-    ranked(size, |x, y| {
+fn white(size: u32, seed: u64) -> Mask {
+    Mask::by_key(size, |x, y| {
         let place = seed << 40 | u64::from(x) << 20 | u64::from(y);
         // The number with this place in the sequence of the generator.
         let before = place.wrapping_sub(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -133,7 +121,7 @@ fn void_and_cluster(size: u32, seed: u64) -> Outcome<Mask> {
         let off = (0..pixels).filter(|&at| !is_on[at]);
         off.min_by(|&a, &b| energies[a].total_cmp(&energies[b]))
     };
-    for (at, &rank) in white(size, seed)?.ranks().iter().enumerate() {
+    for (at, &rank) in white(size, seed).ranks().iter().enumerate() {
         if rank < size * size / 10 {
             flip(at, &mut energies, &mut is_on);
         }
@@ -163,5 +151,5 @@ fn void_and_cluster(size: u32, seed: u64) -> Outcome<Mask> {
         flip(at, &mut energies, &mut is_on);
         ranks[at] = rank as u32;
     }
-    Ok(Mask::from_ranks(size, ranks)?)
+    Ok(Mask::by_key(size, |x, y| ranks[(y * size + x) as usize]))
 }

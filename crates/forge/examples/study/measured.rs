@@ -4,14 +4,13 @@ use fast_poisson::Poisson2D;
 use strew_core::{PeriodicSet, Placement, PointSet, Seed, Settle, Spacing, Twin, Warp};
 use strew_forge::{
     Report, Resolution, ThinnedTwin,
-    measure::{BANDS, Sample, Shared, recurrence, twin_set},
+    measure::{BANDS, Sample, Shared, recurrence, square_set, twin_set},
     numeric::SplitMix,
     read_table, with_ranks,
 };
 
 use crate::{
-    Outcome,
-    arguments::Arguments,
+    Arguments, Outcome,
     figures::{self, value},
     ground::{HEXAGONAL, places, square},
 };
@@ -92,10 +91,7 @@ pub fn seeds(mut arguments: Arguments) -> Outcome {
         let placement = Placement::new(Spacing::ONE, Seed(seed));
         let placement = placement.with_warp(warp).with_settle(settle);
         let set = PointSet::new(table.clone()).placed(placement);
-        let window = |side: f64| -> Outcome<Sample> {
-            let points = places(&square(&set, [0.0; 2], side)?);
-            Ok(Sample::window(side, 1.0, points))
-        };
+        let window = |side: f64| square_set(&set, [0.0; 2], side, 1.0);
         let (wide, small) = (window(side)?, window(RECURRENCE.0)?);
         let report = Report::of(format!("seed {seed}"), false, &wide, at);
         let found = recurrence(&small, None, seed);
@@ -154,7 +150,7 @@ pub fn thinned(mut arguments: Arguments) -> Outcome {
     let mut found = Vec::new();
     for down in downs.take_while(|&down| down <= octaves) {
         let share = (-down).exp2();
-        let set = thinned.at(share);
+        let set = thinned.at(share, None);
         let few = set.points().len() < 4000;
         let ring_width = if few { 0.08 } else { 0.04 };
         let at = Resolution { nu_max, ring_width };

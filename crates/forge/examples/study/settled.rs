@@ -23,14 +23,13 @@ use strew_core::{
 use strew_forge::measure::{Sample, Spectrum};
 
 use crate::{
-    Outcome,
-    arguments::Arguments,
+    Arguments, Outcome,
     cases::{Case, Kind, Profile},
     figures,
     ground::{CORNER, Ground, Near, noise, places, square},
     kinds::made,
     local::{Octave, Windows, boxes, count},
-    paint::{self, Panel},
+    paint::{self, Dots},
 };
 
 /// The width of a ring.
@@ -58,7 +57,7 @@ pub fn study(mut arguments: Arguments) -> Outcome {
     if let Some(what) = drawn {
         let panels = panels(&all.seed(seeds[0]), &what, &steps)?;
         let out = arguments.next("OUT.png")?;
-        return paint::write(Path::new(&out), &panels, [panels.len(), 12], 4, None);
+        return paint::write(Path::new(&out), &panels.1, [panels.0; 2], panels.1.len());
     }
     let columns = "set | steps | low | median | δ_min | of 1 % | mean δ | near | of D | var";
     figures::head(&format!("{columns} | bias | ± | whole | tall"));
@@ -219,35 +218,34 @@ fn tallest(spectrum: &Spectrum, side: f64) -> f64 {
     over.fold(0.0, f64::max)
 }
 
-/// Pictures of a forest or a set for each number of steps, or of shares.
-fn panels(all: &PointSet, what: &str, steps: &[u32]) -> Outcome<Vec<Panel>> {
+/// Panels of a forest or a set for each number of steps, or of shares, and their side.
+fn panels(all: &PointSet, what: &str, steps: &[u32]) -> Outcome<(f64, Vec<Vec<Dots>>)> {
     let (set, side, width) = match what {
         "shares" => {
             let shares = [0.25, 0.0625, 0.04, 0.005f64].into_iter();
-            let panel = |share: f64| panel(&all.clone().keep(share)?, 32.0 / share.sqrt(), 400);
-            return shares.map(panel).collect();
+            let panel = |share: f64| panel(&all.clone().keep(share)?, 32.0 / share.sqrt(), 400.0);
+            return Ok((400.0, shares.map(panel).collect::<Outcome<_>>()?));
         }
-        "forest" => (all.in_field(forest()?), 110.0, 700),
+        "forest" => (all.in_field(forest()?), 110.0, 700.0),
         name => {
             let mut cases = Case::all().into_iter();
             let case = cases.find(|case| case.name.starts_with(name));
             let case = case.ok_or("no such set")?;
-            (case.set(all, CORNER[0])?.0, case.side(3000.0), 900)
+            (case.set(all, CORNER[0])?.0, case.side(3000.0), 900.0)
         }
     };
     let settled = |&steps: &u32| panel(&set.clone().settle(steps)?, side, width);
-    steps.iter().map(settled).collect()
+    Ok((width, steps.iter().map(settled).collect::<Outcome<_>>()?))
 }
 
 /// A square of a set.
-fn panel(set: &PointSet, side: f64, width: usize) -> Outcome<Panel> {
-    let scale = width as f64 / side;
+fn panel(set: &PointSet, side: f64, width: f64) -> Outcome<Vec<Dots>> {
+    let scale = width / side;
     // Points of all pictures cover about a tenth of the plane where it is densest.
     let radius = 0.2 * scale / set.placement().keep.get().sqrt();
-    let points = square(set, CORNER.map(|v| v - 1.0), side + 2.0)?;
-    let pixel = |p: &Point| [(p.x - 1.0) * scale, (side + 1.0 - p.y) * scale];
-    let pixels = points.iter().map(pixel);
-    Ok(Panel::dots([width; 2], pixels, radius.max(0.9)))
+    let points = square(set, CORNER, side)?;
+    let places = points.iter().map(|p| [p.x * scale, (side - p.y) * scale]);
+    Ok(vec![(places.collect(), 2.0 * radius.max(0.9), [0; 3])])
 }
 
 /// Natural patches, a bare road through them, and a straight edge of a field at their right.

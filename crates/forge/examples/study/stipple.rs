@@ -18,16 +18,15 @@ use std::{
     time::{Duration, Instant},
 };
 
+use rayon::prelude::*;
 use spade::{DelaunayTriangulation, Point2};
+use strew_forge::numeric::SplitMix;
 
 use crate::{
-    Outcome,
-    arguments::Arguments,
-    figures,
-    ground::Grid,
-    paint::{self, Panel},
+    Arguments, Outcome, figures,
+    ground::{Grid, Ground, Near},
+    paint::{self, Dots},
     pictures::Picture,
-    tones::Judge,
 };
 
 /// The steps of weighted Voronoi stippling.
@@ -84,7 +83,7 @@ pub fn study(mut arguments: Arguments) -> Outcome {
         }
         if let Some(folder) = &folder {
             let out = Path::new(folder).join(format!("{}.png", picture.name));
-            paint::write(&out, &drawn, [2, 12], 4, None)?;
+            paint::write(&out, &drawn, sizes(&picture).0, 2)?;
         }
     }
     for (way, verdicts) in ways.iter().zip(&of_ways) {
@@ -117,15 +116,18 @@ fn relaxed(grid: &Grid, points: &[[f64; 2]], power: i32) -> Outcome<Vec<[f64; 2]
     Ok(points.iter().zip(&sums).map(moved).collect())
 }
 
-/// A stipple as a picture.
-fn panel(picture: &Picture, points: &[[f64; 2]]) -> Panel {
-    let [width, height] = picture.size;
-    let scale = LONGER / width.max(height);
-    let area = width * height * scale * scale;
-    let radius = (area * COVERED / points.len() as f64 / PI).sqrt();
-    let place = |[x, y]: &[f64; 2]| [x * scale, (height - y) * scale];
-    let size = picture.size.map(|v| (v * scale).round() as usize);
-    Panel::dots(size, points.iter().map(place), radius)
+/// The size of a picture in pixels, and the pixels of a unit.
+fn sizes(picture: &Picture) -> ([f64; 2], f64) {
+    let scale = LONGER / picture.size[0].max(picture.size[1]);
+    (picture.size.map(|v| v * scale), scale)
+}
+
+/// A stipple as a panel.
+fn panel(picture: &Picture, points: &[[f64; 2]]) -> Vec<Dots> {
+    let ([width, height], scale) = sizes(picture);
+    let diameter = 2.0 * (width * height * COVERED / points.len() as f64 / PI).sqrt();
+    let place = |[x, y]: &[f64; 2]| [x * scale, height - y * scale];
+    vec![(points.iter().map(place).collect(), diameter, [0; 3])]
 }
 
 /// The seconds for which this thread has had a processor, where Linux counts them; else those of the clock, which are
@@ -140,4 +142,110 @@ fn seconds() -> f64 {
         Some(nanoseconds) => nanoseconds * 1e-9,
         None => START.elapsed().as_secs_f64(),
     }
+}
+
+/// The widths of Gaussians, in local spacings.
+const WIDTHS: [f64; 3] = [1.0, 2.0, 4.0];
+/// The standard deviations at which a Gaussian is cut off.
+const REACH: f64 = 4.5;
+/// Places where tones are looked at.
+const PLACES: usize = 4000;
+
+/// A picture to compare points with.
+struct Judge<'a> {
+    ground: &'a Ground<'a>,
+    looks: Vec<Look>,
+    /// The mean squared errors of independent points.
+    chance: [f64; 3],
+}
+
+/// A place, with the picture as it is seen there through each Gaussian.
+struct Look {
+    at: [f64; 2],
+    spreads: [f64; 3],
+    tones: [f64; 3],
+}
+
+impl<'a> Judge<'a> {
+    /// A judge by some sets of `count` independent points.
+    fn new(ground: &'a Ground<'a>, grid: &Grid, count: usize, sets: u64) -> Self {
+        let cell = grid.cell[0] * grid.cell[1];
+        let weights = grid.densities.iter().map(|density| density * cell);
+        let cells: Vec<_> = grid.places().zip(weights).collect();
+        let look = |at: [f64; 2]| {
+            let spreads = WIDTHS.map(|width| width / ground.density(at).sqrt());
+            Look {
+                at,
+                spreads,
+                tones: tones(at, spreads, cells.iter().copied()),
+            }
+        };
+        let places = independent(grid, PLACES, 1).into_par_iter();
+        let mut judge = Self {
+            ground,
+            looks: places.map(look).collect(),
+            chance: [0.0; 3],
+        };
+        for set in 0..sets {
+            let errors = judge.errors(&independent(grid, count, 1000 + set));
+            judge.chance = [0, 1, 2].map(|i| judge.chance[i] + errors[i] / sets as f64);
+        }
+        judge
+    }
+
+    /// The mean squared relative errors of tones.
+    fn errors(&self, points: &[[f64; 2]]) -> [f64; 3] {
+        let each = self.looks.par_iter().map(|look| {
+            let sums = tones(look.at, look.spreads, points.iter().map(|&p| (p, 1.0)));
+            [0, 1, 2].map(|i| (sums[i] / look.tones[i] - 1.0).powi(2) / PLACES as f64)
+        });
+        let add = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| a[i] + b[i]);
+        // In order, so that the sums are the same each time.
+        each.collect::<Vec<_>>().into_iter().fold([0.0; 3], add)
+    }
+
+    /// The errors of tones over those of chance, the distance of the nearest 1 % and the mean one.
+    fn verdict(&self, points: &[[f64; 2]]) -> [f64; 5] {
+        let errors = self.errors(points);
+        let [a, b, c] = [0, 1, 2].map(|i| (errors[i] / self.chance[i]).sqrt());
+        let near = Near::of(self.ground, points);
+        [a, b, c, near.hundredth, near.mean]
+    }
+}
+
+/// Independent places, spread by the densities of a grid.
+fn independent(grid: &Grid, count: usize, seed: u64) -> Vec<[f64; 2]> {
+    let mut random = SplitMix::new(seed);
+    let mut sum = 0.0;
+    let add = |v: &f64| {
+        sum += v;
+        sum
+    };
+    let sums: Vec<f64> = grid.densities.iter().map(add).collect();
+    let places = (0..count).map(|_| {
+        let drawn = random.next_f64() * sum;
+        let i = sums.partition_point(|&v| v <= drawn).min(sums.len() - 1);
+        let corner = [i % grid.columns, i / grid.columns];
+        [0, 1].map(|axis| (corner[axis] as f64 + random.next_f64()) * grid.cell[axis])
+    });
+    places.collect()
+}
+
+/// The density of weighted places through Gaussians around a place.
+fn tones(
+    at: [f64; 2],
+    spreads: [f64; 3],
+    places: impl Iterator<Item = ([f64; 2], f64)>,
+) -> [f64; 3] {
+    let mut sums = [0.0; 3];
+    for ([x, y], weight) in places {
+        let squared = (x - at[0]).powi(2) + (y - at[1]).powi(2);
+        for (sum, spread) in sums.iter_mut().zip(spreads) {
+            let squared = squared / (spread * spread);
+            if squared < REACH * REACH {
+                *sum += weight * (-squared / 2.0).exp() / (2.0 * PI * spread * spread);
+            }
+        }
+    }
+    sums
 }

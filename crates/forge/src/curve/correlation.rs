@@ -40,17 +40,11 @@ impl LeastCorrelation {
             let g = 1.0 + total_correlation(target, &bessel, r);
             Self { g, r }
         };
-        let all: Vec<Self> = (0..=(MAX_R / STEP) as u32)
-            .into_par_iter()
-            .map(at)
-            .collect();
+        let steps = (0..=(MAX_R / STEP) as u32).into_par_iter();
+        let all: Vec<Self> = steps.map(at).collect();
         let none = Self { g: 1.0, r: 0.0 };
-        all.into_iter().fold(
-            none,
-            |least, next| {
-                if next.g < least.g { next } else { least }
-            },
-        )
+        let less = |a: Self, b: Self| if b.g < a.g { b } else { a };
+        all.into_iter().fold(none, less)
     }
 
     /// Whether no point set can have the curve, because g would be negative.

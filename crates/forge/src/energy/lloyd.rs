@@ -152,7 +152,11 @@ mod tests {
     use strew_core::{Map, Twin};
 
     use super::*;
-    use crate::{measure::Voronoi, numeric::SplitMix};
+    use crate::{
+        measure::Voronoi,
+        numeric::SplitMix,
+        optimize::{Sets, check_slopes, jitter},
+    };
 
     fn noise(count: usize) -> Sample {
         Sample::torus(1.0, SplitMix::new(4).places(count, 1.0))
@@ -173,22 +177,11 @@ mod tests {
 
     #[test]
     fn the_gradient_is_that_of_the_energy() {
-        let mut set = noise(400);
-        let mut gradient = vec![[0.0; 2]; 400];
-        Lloyd.evaluate(&set, &mut gradient);
-        let h = 1e-5;
-        for index in [0, 7, 133] {
-            for (axis, &slope) in gradient[index].iter().enumerate() {
-                let mut at = |by: f64| {
-                    set.points_mut()[index][axis] += by;
-                    400.0 * Lloyd.evaluate(&set, &mut [[0.0; 2]; 400])
-                };
-                let (up, down) = (at(h), at(-2.0 * h));
-                at(h);
-                let numeric = (up - down) / (2.0 * h);
-                assert!((slope - numeric).abs() < 1e-5, "{numeric}");
-            }
-        }
+        let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), 9).expect("small");
+        let blocks = map.intervals() * map.intervals();
+        let twin = map.twins().find(|twin| twin.points() > 600);
+        let mut sets = Sets::new(Lloyd, &map, twin.as_slice());
+        check_slopes(&mut sets, &jitter(blocks, 0.4, 4), &[0, 7, blocks / 2]);
     }
 
     /// The largest difference between the displacements of two points of the same block after

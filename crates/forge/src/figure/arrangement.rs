@@ -5,10 +5,7 @@ use strew_core::{Alpha, Pattern, pattern::Arrangement};
 use super::{
     Drawing, FigureError,
     drawing::{COLORS, GRAY},
-    panel::{
-        Panel, THREAD, check_window, dot, note, places, points, set_region, sheet, tint, turns,
-        window as grid_window,
-    },
+    panel::{Panel, dot, index_of, note, places, points, set_region, tint, turns, with_grid},
 };
 
 /// Draws a window of `window` × `window` grid places of AA(α), 8 to 200, with the occurrences of an
@@ -16,29 +13,16 @@ use super::{
 ///
 /// # Errors
 /// [`FigureError`] if the window is out of range, or the offsets are as [`Arrangement::new`] refuses them.
-///
-/// ```
-/// use strew_forge::figure;
-///
-/// let svg = figure::arrangement("sqrt(3)".parse()?, &[(2, 0), (1, 2)], 40)?.to_svg();
-/// assert!(svg.contains("It occurs"));
-/// let svg = figure::arrangement("sqrt(3)".parse()?, &[(1, 0)], 40)?.to_svg();
-/// assert!(svg.contains("It never occurs"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn arrangement(
     alpha: Alpha,
     offsets: &[(i64, i64)],
     window: u32,
 ) -> Result<Drawing, FigureError> {
-    check_window(window)?;
     let pattern = Pattern::new(alpha);
     let found = Arrangement::new(pattern, offsets)?;
     let t = alpha.set_side_f64();
-    let mut drawing = sheet(3, 2);
     let caption = format!("Occurrences in AA(α), α = {alpha}");
-    let grid = grid_window(&mut drawing, 0, window, &caption);
-    grid.grid(&mut drawing);
+    let (mut drawing, grid) = with_grid(window, &caption)?;
     let place = |(x, y): (i64, i64)| grid.at([x as f64, y as f64]);
     drawing.dots(
         points(pattern, window).map(place),
@@ -71,46 +55,31 @@ pub fn arrangement(
     let low = [0, 1].map(|i: usize| signed(*image[i].start()));
     let high = [0, 1].map(|i: usize| signed(*image[i].end()));
     let size = [0, 1].map(|i: usize| high[i] - low[i]);
-    let [corner, side] = around.rectangle(low, [t; 2]);
-    drawing.outline(corner, side, (GRAY, 1.0), 4.0);
-    let [corner, side] = around.rectangle(low, size);
-    drawing.fill(corner, side, COLORS[0], 0.25);
-    drawing.outline(corner, side, (COLORS[0], 1.0), 0.0);
+    drawing.outline(around.rectangle(low, [t; 2]), (GRAY, 1.0), 4.0);
+    let own = around.rectangle(low, size);
+    drawing.fill(own, COLORS[0], 0.25);
+    drawing.outline(own, (COLORS[0], 1.0), 0.0);
     let shifts: Vec<[f64; 2]> = found.shifts().map(|s| around.at(s.map(signed))).collect();
     drawing.lines(
         shifts.iter().map(|&s| [around.at([0.0; 2]), s]),
-        (THREAD, 0.8),
+        (GRAY, 0.8),
     );
     drawing.dots(shifts, 7.0, COLORS[0]);
     drawing.dots([around.at([0.0; 2])], 7.0, COLORS[1]);
 
     let region = Panel::new(&mut drawing, 2, 0.0..t, "The margin in the set region");
-    let indices = points(pattern, window).map(|(x, y)| {
-        let (dx, dy) = pattern.index(x, y);
-        region.at([turns(dx), turns(dy)])
-    });
-    let indices: Vec<_> = indices.collect();
-    drawing.dots(indices, 2.5, tint(GRAY, 0.7));
+    let at_index = |p: (i64, i64)| region.at(index_of(pattern, p));
+    drawing.dots(points(pattern, window).map(at_index), 2.5, tint(GRAY, 0.7));
     if let Some([x, y]) = found.margin() {
-        let from = [turns(x.start), turns(y.start)];
-        let [corner, side] =
-            region.rectangle(from, [turns(x.end) - from[0], turns(y.end) - from[1]]);
-        drawing.fill(corner, side, COLORS[1], 0.2);
-        drawing.outline(corner, side, (COLORS[1], 1.5), 0.0);
-        let inside = occurrences.iter().map(|&(x, y)| {
-            let (dx, dy) = pattern.index(x, y);
-            region.at([turns(dx), turns(dy)])
-        });
-        let inside: Vec<_> = inside.collect();
-        drawing.dots(inside, 4.0, COLORS[1]);
+        let [from, to] = [[x.start, y.start], [x.end, y.end]].map(|p| p.map(turns));
+        let margin = region.rectangle(from, [to[0] - from[0], to[1] - from[1]]);
+        drawing.fill(margin, COLORS[1], 0.2);
+        drawing.outline(margin, (COLORS[1], 1.5), 0.0);
+        drawing.dots(occurrences.iter().map(|&p| at_index(p)), 4.0, COLORS[1]);
         // The image at the two ends of its freedom.
-        for from in [
-            [turns(x.start), turns(y.start)],
-            [turns(x.end), turns(y.end)],
-        ] {
-            let corner = [0, 1].map(|i: usize| from[i] + low[i]);
-            let [corner, side] = region.rectangle(corner, size);
-            drawing.outline(corner, side, (COLORS[0], 1.0), 4.0);
+        for end in [from, to] {
+            let corner = [0, 1].map(|i: usize| end[i] + low[i]);
+            drawing.outline(region.rectangle(corner, size), (COLORS[0], 1.0), 4.0);
         }
     }
     set_region(&mut drawing, &region);

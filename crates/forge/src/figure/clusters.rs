@@ -8,10 +8,7 @@ use strew_core::{
 use super::{
     Drawing, FigureError,
     drawing::{Anchor, COLORS, Color, GRAY},
-    panel::{
-        Panel, check_window, dot, note, points, set_region, sheet, tint, turns,
-        window as grid_window,
-    },
+    panel::{Panel, check_window, dot, note, points, set_region, tint, turns, with_grid},
 };
 
 /// The color of points in clusters that are too large to be distinguished.
@@ -26,14 +23,6 @@ const LEGEND: usize = 12;
 ///
 /// # Errors
 /// [`FigureError`] if the window is out of range, or the others are as [`Clusters::new`] refuses them.
-///
-/// ```
-/// use strew_forge::figure;
-///
-/// let svg = figure::clusters("sqrt(3)".parse()?, 2.0, 16, 48)?.to_svg();
-/// assert!(svg.contains("4 shapes"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn clusters(
     alpha: Alpha,
     distance: f64,
@@ -48,32 +37,19 @@ pub fn clusters(
 ///
 /// # Errors
 /// [`FigureError`] if the window is out of range.
-///
-/// ```
-/// use strew_core::map::Clusters;
-/// use strew_forge::figure;
-///
-/// let alpha = "sqrt(3)".parse()?;
-/// let drawn = figure::found_clusters(&Clusters::new(alpha, 2.0, 16)?, 2.0, 48)?;
-/// assert_eq!(drawn.to_svg(), figure::clusters(alpha, 2.0, 16, 48)?.to_svg());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn found_clusters(
     found: &Clusters,
     distance: f64,
     window: u32,
 ) -> Result<Drawing, FigureError> {
-    check_window(window)?;
     let (map, most) = (found.map(), found.most());
     let alpha = map.alpha();
     let t = alpha.set_side_f64();
     let color = |shape: Option<usize>| {
         shape.map_or(LARGER, |shape| of_class(found.shapes()[shape].class()))
     };
-    let mut drawing = sheet(3, 2);
     let caption = format!("Clusters of AA(α), α = {alpha}");
-    let grid = grid_window(&mut drawing, 0, window, &caption);
-    grid.grid(&mut drawing);
+    let (mut drawing, grid) = with_grid(window, &caption)?;
     let pattern = Pattern::new(alpha);
     let place = |(x, y): (i64, i64)| grid.at([x as f64, y as f64]);
     let shape_at = |(x, y): (i64, i64)| {
@@ -113,8 +89,11 @@ pub fn found_clusters(
         let mut x = 0;
         for run in row.chunk_by(|a, b| a == b) {
             let (from, to) = ([bound(x), bound(y)], [bound(x + run.len()), bound(next)]);
-            let [corner, size] = region.rectangle(from, [to[0] - from[0], to[1] - from[1]]);
-            drawing.fill(corner, size, run[0], 1.0);
+            drawing.fill(
+                region.rectangle(from, [to[0] - from[0], to[1] - from[1]]),
+                run[0],
+                1.0,
+            );
             x += run.len();
         }
         y = next;

@@ -4,7 +4,7 @@ use std::fmt::{self, Write as _};
 
 use base64::{Engine as _, prelude::BASE64_STANDARD};
 
-/// A finished figure.
+/// A figure. Places and lengths are in pixels, from the upper left corner.
 ///
 /// ```
 /// use strew_forge::figure;
@@ -21,36 +21,38 @@ pub struct Drawing {
 }
 
 /// A color, as red, green and blue.
-pub(super) type Color = [u8; 3];
+pub type Color = [u8; 3];
 
-/// The start of a text, relative to its place.
+/// The part of a text that its place names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Anchor {
+pub enum Anchor {
+    /// The first letter.
     Start,
+    /// The middle.
     Middle,
+    /// The last letter.
     End,
 }
 
 /// A color with the width of its line.
-pub(super) type Pen = (Color, f64);
+pub type Pen = (Color, f64);
 
-/// The marks on a drawing, one over another. Places are in pixels from the upper left corner.
+/// The upper left corner and the size of a rectangle.
+pub type Rectangle = [[f64; 2]; 2];
+
+/// The marks on a drawing, one over another.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Mark {
     /// A filled rectangle: its upper left corner, its size, its color and opacity.
     Fill([f64; 2], [f64; 2], Color, f64),
     /// The outline of a rectangle, dashed if the last number is above 0.
     Outline([f64; 2], [f64; 2], Pen, f64),
-    /// Lines with round ends.
+    /// Lines with round ends. One between equal places is a disk.
     Lines(Vec<[[f64; 2]; 2]>, Pen),
-    /// A line through places.
-    Curve(Vec<[f64; 2]>, Pen),
-    /// Disks of a color and a diameter.
-    Dots(Vec<[f64; 2]>, Pen),
     /// A circle without filling: its center and radius.
     Ring([f64; 2], f64, Pen),
-    /// The area that an odd number of rectangles covers, each by its upper left corner and its size.
-    Checkers(Vec<[[f64; 2]; 2]>, Color),
+    /// The area that an odd number of rectangles covers: stripes in both directions make a checkered field.
+    Checkers(Vec<Rectangle>, Color),
     /// A rectangle of gray cells: its upper left corner, its size, the number of columns, and the cells by rows from the top.
     Cells([f64; 2], [f64; 2], usize, Vec<u8>),
     /// A text on the line of writing at a place, with its size.
@@ -93,7 +95,9 @@ impl Drawing {
         svg + "</svg>\n"
     }
 
-    pub(super) const fn new(width: f64, height: f64) -> Self {
+    /// A white page.
+    #[must_use]
+    pub const fn new(width: f64, height: f64) -> Self {
         Self {
             width,
             height,
@@ -101,36 +105,36 @@ impl Drawing {
         }
     }
 
-    /// A filled rectangle from its upper left corner.
-    pub(super) fn fill(&mut self, at: [f64; 2], size: [f64; 2], color: Color, opacity: f64) {
+    /// A filled rectangle.
+    pub(super) fn fill(&mut self, [at, size]: Rectangle, color: Color, opacity: f64) {
         self.marks.push(Mark::Fill(at, size, color, opacity));
     }
 
-    /// The outline of a rectangle from its upper left corner, dashed if `dash` is above 0.
-    pub(super) fn outline(&mut self, at: [f64; 2], size: [f64; 2], pen: Pen, dash: f64) {
+    /// The outline of a rectangle, dashed if `dash` is above 0.
+    pub(super) fn outline(&mut self, [at, size]: Rectangle, pen: Pen, dash: f64) {
         self.marks.push(Mark::Outline(at, size, pen, dash));
     }
 
     /// Lines between pairs of places, as one path.
-    pub(super) fn lines(&mut self, lines: impl IntoIterator<Item = [[f64; 2]; 2]>, pen: Pen) {
+    pub fn lines(&mut self, lines: impl IntoIterator<Item = [[f64; 2]; 2]>, pen: Pen) {
         let lines: Vec<_> = lines.into_iter().collect();
         self.unless_empty(lines.is_empty(), Mark::Lines(lines, pen));
     }
 
     /// One line through many places.
-    pub(super) fn curve(&mut self, places: &[[f64; 2]], pen: Pen) {
-        self.unless_empty(places.is_empty(), Mark::Curve(places.into(), pen));
+    pub(super) fn curve(&mut self, places: impl IntoIterator<Item = [f64; 2]>, pen: Pen) {
+        let places: Vec<_> = places.into_iter().collect();
+        self.lines(places.windows(2).map(|pair| [pair[0], pair[1]]), pen);
     }
 
     /// Dots of one diameter and color, as one path.
-    pub(super) fn dots(
+    pub fn dots(
         &mut self,
         places: impl IntoIterator<Item = [f64; 2]>,
         diameter: f64,
         color: Color,
     ) {
-        let places: Vec<_> = places.into_iter().collect();
-        self.unless_empty(places.is_empty(), Mark::Dots(places, (color, diameter)));
+        self.lines(places.into_iter().map(|at| [at; 2]), (color, diameter));
     }
 
     fn unless_empty(&mut self, is_empty: bool, mark: Mark) {
@@ -139,29 +143,13 @@ impl Drawing {
         }
     }
 
-    /// A circle without filling.
-    pub(super) fn ring(&mut self, at: [f64; 2], radius: f64, pen: Pen) {
-        self.marks.push(Mark::Ring(at, radius, pen));
-    }
-
-    /// Fills what an odd number of rectangles covers, each from its upper left corner: stripes in both
-    /// directions make a checkered field.
-    pub(super) fn checkers(
-        &mut self,
-        rectangles: impl IntoIterator<Item = [[f64; 2]; 2]>,
-        color: Color,
-    ) {
-        self.marks
-            .push(Mark::Checkers(rectangles.into_iter().collect(), color));
-    }
-
-    /// Gray cells over a rectangle from its upper left corner; rows of `columns` cells from the top.
-    pub(super) fn cells(&mut self, at: [f64; 2], size: [f64; 2], columns: usize, cells: Vec<u8>) {
+    /// Gray cells over a rectangle; rows of `columns` cells from the top.
+    pub fn cells(&mut self, [at, size]: Rectangle, columns: usize, cells: Vec<u8>) {
         self.unless_empty(cells.is_empty(), Mark::Cells(at, size, columns, cells));
     }
 
     /// A text on the line of writing at a place.
-    pub(super) fn text(&mut self, at: [f64; 2], size: f64, anchor: Anchor, text: &str) {
+    pub fn text(&mut self, at: [f64; 2], size: f64, anchor: Anchor, text: &str) {
         self.unless_empty(text.is_empty(), Mark::Text(at, size, anchor, text.into()));
     }
 }
@@ -188,26 +176,24 @@ impl fmt::Display for Mark {
                 }
                 f.write_str("/>")
             }
-            Self::Lines(lines, pen) => {
+            Self::Lines(lines, (color, width)) => {
                 f.write_str("<path d=\"")?;
-                for [[a, b], [c, d]] in lines {
-                    write!(f, "M{a:.2} {b:.2}L{c:.2} {d:.2}")?;
+                let mut end = None;
+                for &[from, to] in lines {
+                    if end.replace(to) != Some(from) {
+                        write!(f, "M{:.2} {:.2}", from[0], from[1])?;
+                    }
+                    match from == to {
+                        true => f.write_str("h0")?,
+                        false => write!(f, "L{:.2} {:.2}", to[0], to[1])?,
+                    }
                 }
-                stroke(f, *pen)
-            }
-            Self::Curve(places, pen) => {
-                f.write_str("<path d=\"")?;
-                for (i, [x, y]) in places.iter().enumerate() {
-                    write!(f, "{}{x:.2} {y:.2}", if i == 0 { 'M' } else { 'L' })?;
-                }
-                stroke(f, *pen)
-            }
-            Self::Dots(places, pen) => {
-                f.write_str("<path d=\"")?;
-                for [x, y] in places {
-                    write!(f, "M{x:.2} {y:.2}h0")?;
-                }
-                stroke(f, *pen)
+                write!(
+                    f,
+                    "\" fill=\"none\" stroke=\"{}\" stroke-width=\"{width}\" stroke-linecap=\"round\" \
+                     stroke-linejoin=\"round\"/>",
+                    hex(*color)
+                )
             }
             Self::Ring([x, y], radius, (color, width)) => write!(
                 f,
@@ -251,16 +237,6 @@ impl fmt::Display for Mark {
     }
 }
 
-/// The end of a path that is drawn as a line.
-fn stroke(f: &mut fmt::Formatter<'_>, (color, width): Pen) -> fmt::Result {
-    write!(
-        f,
-        "\" fill=\"none\" stroke=\"{}\" stroke-width=\"{width}\" stroke-linecap=\"round\" \
-         stroke-linejoin=\"round\"/>",
-        hex(color)
-    )
-}
-
 /// Rows of gray cells as a PNG file.
 fn gray(columns: usize, cells: &[u8]) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
@@ -283,7 +259,7 @@ mod tests {
     fn cells_are_an_image_of_them() {
         let mut drawing = Drawing::new(100.0, 50.0);
         let cells = vec![0, 128, 255, 1, 2, 3];
-        drawing.cells([10.0, 20.0], [60.0, 30.0], 3, cells.clone());
+        drawing.cells([[10.0, 20.0], [60.0, 30.0]], 3, cells.clone());
         let svg = drawing.to_svg();
         assert!(svg.contains("width=\"60.00\" height=\"30.00\""), "{svg}");
         let data = svg

@@ -5,10 +5,7 @@ use strew_core::{Alpha, Pattern};
 use super::{
     Drawing, FigureError,
     drawing::{Color, GRAY, INK},
-    panel::{
-        Panel, check_window, dot, note, places, points, set_region, sheet, turns,
-        window as grid_window,
-    },
+    panel::{Panel, dot, index_of, note, places, points, set_region, with_grid},
 };
 
 /// The colors at the corners of the set region: (0, 0), (t, 0), (0, t), (t, t).
@@ -30,26 +27,11 @@ fn shade([x, y]: [f64; 2]) -> Color {
 ///
 /// # Errors
 /// [`FigureError`] if the window is out of range.
-///
-/// ```
-/// use strew_forge::figure;
-///
-/// let svg = figure::index("(5-sqrt(3))/2".parse()?, 48)?.to_svg();
-/// assert!(svg.contains("set region"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn index(alpha: Alpha, window: u32) -> Result<Drawing, FigureError> {
-    check_window(window)?;
     let (pattern, t) = (Pattern::new(alpha), alpha.set_side_f64());
-    let mut drawing = sheet(3, 2);
     let place = |(x, y): (i64, i64)| [x as f64, y as f64];
-    let at_index = |(x, y): (i64, i64)| {
-        let (dx, dy) = pattern.index(x, y);
-        [turns(dx), turns(dy)]
-    };
     let caption = format!("The pattern AA(α), α = {alpha}");
-    let grid = grid_window(&mut drawing, 0, window, &caption);
-    grid.grid(&mut drawing);
+    let (mut drawing, grid) = with_grid(window, &caption)?;
     let torus = Panel::new(&mut drawing, 1, 0.0..1.0, "The index of every grid point");
     torus.frame(&mut drawing, ["0", "1"], ["dX = {(αx + y)/2}", "dY"]);
     let region = Panel::new(&mut drawing, 2, 0.0..t, "The set region");
@@ -57,12 +39,11 @@ pub fn index(alpha: Alpha, window: u32) -> Result<Drawing, FigureError> {
     let rest = places(window)
         .flat_map(|y| places(window).map(move |x| (x, y)))
         .filter(|&(x, y)| !pattern.contains(x, y));
-    let rest = rest.map(|p| torus.at(at_index(p)));
+    let rest = rest.map(|p| torus.at(index_of(pattern, p)));
     drawing.dots(rest, 1.4, GRAY);
-    let [corner, size] = torus.rectangle([0.0; 2], [t; 2]);
-    drawing.outline(corner, size, (INK, 1.5), 0.0);
+    drawing.outline(torus.rectangle([0.0; 2], [t; 2]), (INK, 1.5), 0.0);
     for p in points(pattern, window) {
-        let at = at_index(p);
+        let at = index_of(pattern, p);
         let color = shade(at.map(|v| v / t));
         drawing.dots([grid.at(place(p))], dot(&grid), color);
         drawing.dots([torus.at(at)], 2.4, color);

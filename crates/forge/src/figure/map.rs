@@ -4,7 +4,7 @@ use strew_core::{Alpha, Map, map::MAX_RADIUS};
 
 use super::{
     Drawing, FigureError,
-    drawing::{Anchor, COLORS, Color, GRAY},
+    drawing::{Anchor, COLORS, Color, GRAY, Mark},
     panel::{Panel, note, set_region, sheet, tint, turns},
 };
 
@@ -16,16 +16,6 @@ const DARK: Color = [203, 214, 226];
 ///
 /// # Errors
 /// [`FigureError`] if `radius` is out of range, or the map has no such block.
-///
-/// ```
-/// use strew_forge::figure;
-///
-/// let svg = figure::map("(5-sqrt(3))/2".parse()?, 20, [3, 8])?.to_svg();
-/// assert!(svg.contains("27 × 27 blocks"));
-/// let error = figure::map("sqrt(3)".parse()?, 20, [3, 99]).unwrap_err();
-/// assert_eq!(error.to_string(), "block is [3, 99]; it must be two integers from 0 to 30");
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn map(alpha: Alpha, radius: u32, block: [usize; 2]) -> Result<Drawing, FigureError> {
     if !(1..=200).contains(&radius) {
         return Err(FigureError::new(
@@ -63,26 +53,23 @@ pub fn map(alpha: Alpha, radius: u32, block: [usize; 2]) -> Result<Drawing, Figu
             region.rectangle([0.0, start], [t, length]),
         ]
     });
-    let stripes: Vec<_> = stripes.collect();
-    drawing.checkers(stripes, DARK);
+    let stripes = Mark::Checkers(stripes.collect(), DARK);
+    drawing.marks.push(stripes);
     let bounds = parents.iter().skip(1).flat_map(|&i| {
         let v = turns(coarse.interval(i).start);
         let down = [region.at([v, 0.0]), region.at([v, t])];
         [down, [region.at([0.0, v]), region.at([t, v])]]
     });
-    let bounds: Vec<_> = bounds.collect();
     drawing.lines(bounds, (COLORS[0], 1.0));
     let own = block.map(|i| intervals[i]);
     let sides = own.map(|i| fine.interval(i));
     let low = [0, 1].map(|i: usize| turns(sides[i].start));
     let size = [0, 1].map(|i: usize| turns(sides[i].end - sides[i].start));
     let [corner, size] = region.rectangle(low, size);
-    drawing.fill(corner, size, COLORS[1], 1.0);
-    drawing.ring(
-        [corner[0] + size[0] / 2.0, corner[1] + size[1] / 2.0],
-        9.0,
-        (COLORS[1], 1.5),
-    );
+    drawing.fill([corner, size], COLORS[1], 1.0);
+    let middle = [0, 1].map(|axis: usize| corner[axis] + size[axis] / 2.0);
+    let ring = Mark::Ring(middle, 9.0, (COLORS[1], 1.5));
+    drawing.marks.push(ring);
     set_region(&mut drawing, &region);
 
     let reach = f64::from(radius);
@@ -104,8 +91,8 @@ pub fn map(alpha: Alpha, radius: u32, block: [usize; 2]) -> Result<Drawing, Figu
     drawing.dots(far.into_iter().map(place), diameter, tint(GRAY, 0.8));
     drawing.dots(near.into_iter().map(place), diameter, COLORS[0]);
     let half = inner as f64 + 0.5;
-    let [corner, size] = around.rectangle([-half; 2], [2.0 * half; 2]);
-    drawing.outline(corner, size, (COLORS[0], 1.0), 4.0);
+    let inside = around.rectangle([-half; 2], [2.0 * half; 2]);
+    drawing.outline(inside, (COLORS[0], 1.0), 4.0);
     drawing.dots([around.at([0.0; 2])], diameter * 1.2, COLORS[1]);
 
     growth(&mut drawing, alpha);
@@ -135,13 +122,10 @@ fn growth(drawing: &mut Drawing, alpha: Alpha) {
     let most = slope * f64::from(MAX_RADIUS + 1);
     let at = |radius: f64, count: f64| panel.at([radius / f64::from(MAX_RADIUS), count / most]);
     let law = [at(0.0, slope), at(f64::from(MAX_RADIUS), most)];
-    drawing.curve(&law, (tint(GRAY, 0.8), 4.0));
-    let measured = counts
-        .iter()
-        .enumerate()
-        .map(|(r, &n)| at(r as f64, n as f64));
-    let measured: Vec<_> = measured.collect();
-    drawing.curve(&measured, (COLORS[1], 1.4));
+    drawing.curve(law, (tint(GRAY, 0.8), 4.0));
+    let measured = counts.iter().enumerate();
+    let measured = measured.map(|(r, &n)| at(r as f64, n as f64));
+    drawing.curve(measured, (COLORS[1], 1.4));
     panel.frame(drawing, ["0", ""], ["R", "n"]);
     drawing.text(
         panel.at([1.0, -0.045]),

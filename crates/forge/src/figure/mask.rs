@@ -14,16 +14,6 @@ const MOST: f64 = 4.0;
 
 /// Draws the radial power of the pixels of a mask that are on at levels of 1/8, 1/4 and 1/2. Pixels in a random order
 /// have a power of 1, the gray line.
-///
-/// ```
-/// use strew_core::Table;
-/// use strew_forge::{figure, mask::Mask};
-///
-/// let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-/// let svg = figure::mask_spectrum(&Mask::new(&table, 32, 7)?).to_svg();
-/// assert!(svg.contains("Level 1/8"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[must_use]
 pub fn mask_spectrum(mask: &Mask) -> Drawing {
     let mut drawing = sheet(LEVELS.len(), 2);
@@ -35,12 +25,10 @@ pub fn mask_spectrum(mask: &Mask) -> Drawing {
             panel.at([x, (power / MOST).min(1.0)])
         };
         let random = [at(0.0, 1.0), at(spectrum.rings.len() as f64, 1.0)];
-        drawing.curve(&random, (tint(GRAY, 0.6), 1.0));
+        drawing.curve(random, (tint(GRAY, 0.6), 1.0));
         let rings = spectrum.rings.iter().enumerate();
-        let curve: Vec<_> = rings
-            .map(|(ring, &power)| at(ring as f64 + 0.5, power))
-            .collect();
-        drawing.curve(&curve, (COLORS[0], 1.6));
+        let curve = rings.map(|(ring, &power)| at(ring as f64 + 0.5, power));
+        drawing.curve(curve, (COLORS[0], 1.6));
         panel.frame(&mut drawing, ["0", ""], ["ν", ""]);
         drawing.text(panel.at([1.0, -0.045]), 12.0, Anchor::End, "2");
         let low = format!("low power {:.4}", spectrum.low_power);

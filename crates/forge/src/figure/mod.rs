@@ -23,7 +23,7 @@ mod report;
 pub use crate::SettingError as FigureError;
 pub use arrangement::arrangement;
 pub use clusters::{clusters, found_clusters};
-pub use drawing::Drawing;
+pub use drawing::{Anchor, Color, Drawing, Pen, Rectangle};
 pub use index::index;
 pub use map::map;
 pub use mask::mask_spectrum;

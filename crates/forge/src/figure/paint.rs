@@ -78,14 +78,6 @@ impl Canvas {
             Mark::Fill(at, size, color, opacity) => self.fill(*at, *size, *color, *opacity),
             Mark::Outline(at, size, pen, dash) => self.lines(&sides(*at, *size, *dash), *pen),
             Mark::Lines(lines, pen) => self.lines(lines, *pen),
-            Mark::Curve(places, pen) => {
-                let lines: Vec<_> = places.windows(2).map(|pair| [pair[0], pair[1]]).collect();
-                self.lines(&lines, *pen);
-            }
-            Mark::Dots(places, pen) => {
-                let dots: Vec<_> = places.iter().map(|&place| [place; 2]).collect();
-                self.lines(&dots, *pen);
-            }
             Mark::Ring(at, radius, pen) => self.ring(*at, *radius, *pen),
             Mark::Checkers(rectangles, color) => self.checkers(rectangles, *color),
             Mark::Cells([x, y], [w, h], columns, cells) => {
@@ -121,29 +113,34 @@ impl Canvas {
         })
     }
 
-    /// Covers a pixel by a color, from 0 not at all to 1 wholly.
-    fn cover(&mut self, x: usize, y: usize, color: Color, share: f64) {
-        let share = share as f32;
-        let pixel = &mut self.pixels[y * self.width + x];
-        for (v, color) in pixel.iter_mut().zip(color) {
-            *v += (f32::from(color) - *v) * share;
+    /// Covers pixels of a box by a color, from 0 not at all to 1 wholly.
+    fn cover(
+        &mut self,
+        [columns, rows]: Pixels,
+        color: Color,
+        share: impl Fn(usize, usize) -> f64,
+    ) {
+        for y in rows[0]..rows[1] {
+            for x in columns[0]..columns[1] {
+                let share = share(x, y) as f32;
+                for (v, color) in self.pixels[y * self.width + x].iter_mut().zip(color) {
+                    *v += (f32::from(color) - *v) * share;
+                }
+            }
         }
     }
 
     fn fill(&mut self, at: [f64; 2], size: [f64; 2], color: Color, opacity: f64) {
         let end = [at[0] + size[0], at[1] + size[1]];
-        let [columns, rows] = self.pixels(at, end, 0.0);
         let scale = self.scale;
         let covered = |axis: usize, pixel: usize| {
             let (low, high) = (at[axis] * scale, end[axis] * scale);
             (high.min(pixel as f64 + 1.0) - low.max(pixel as f64)).clamp(0.0, 1.0)
         };
-        for y in rows[0]..rows[1] {
-            let row = opacity * covered(1, y);
-            for x in columns[0]..columns[1] {
-                self.cover(x, y, color, row * covered(0, x));
-            }
-        }
+        let pixels = self.pixels(at, end, 0.0);
+        self.cover(pixels, color, |x, y| {
+            opacity * covered(1, y) * covered(0, x)
+        });
     }
 
     /// Lines with round ends, covered once where they cross.
@@ -176,31 +173,20 @@ impl Canvas {
                 }
             }
         }
-        for (i, share) in shares
-            .into_iter()
-            .enumerate()
-            .filter(|(_, share)| *share > 0.0)
-        {
-            self.cover(
-                columns[0] + i % across,
-                rows[0] + i / across,
-                color,
-                share.into(),
-            );
-        }
+        self.cover(all, color, |x, y| {
+            shares[(y - rows[0]) * across + x - columns[0]].into()
+        });
     }
 
     fn ring(&mut self, at: [f64; 2], radius: f64, (color, width): Pen) {
         let (low, high) = (at.map(|v| v - radius), at.map(|v| v + radius));
         let width = width * self.scale;
-        let [columns, rows] = self.pixels(low, high, width / 2.0 + 1.0);
         let (center, radius) = (at.map(|v| v * self.scale), radius * self.scale);
-        for y in rows[0]..rows[1] {
-            for x in columns[0]..columns[1] {
-                let away = (x as f64 + 0.5 - center[0]).hypot(y as f64 + 0.5 - center[1]);
-                self.cover(x, y, color, covered((away - radius).abs(), width));
-            }
-        }
+        let pixels = self.pixels(low, high, width / 2.0 + 1.0);
+        self.cover(pixels, color, |x, y| {
+            let away = (x as f64 + 0.5 - center[0]).hypot(y as f64 + 0.5 - center[1]);
+            covered((away - radius).abs(), width)
+        });
     }
 
     fn checkers(&mut self, rectangles: &[[[f64; 2]; 2]], color: Color) {
@@ -230,12 +216,9 @@ impl Canvas {
                     counts[column / SAMPLES] += u8::from(is_inside);
                 }
             }
-            for (x, &count) in counts.iter().enumerate().take(self.width) {
-                if count > 0 {
-                    let share = f64::from(count) / (SAMPLES * SAMPLES) as f64;
-                    self.cover(x, y, color, share);
-                }
-            }
+            let row = [[0, self.width], [y, y + 1]];
+            let share = |x: usize, _| f64::from(counts[x]) / (SAMPLES * SAMPLES) as f64;
+            self.cover(row, color, share);
         }
     }
 }
@@ -322,7 +305,7 @@ mod tests {
         };
         near(Mark::Fill([1.3, 2.1], [3.3, 4.4], black, 1.0), 3.3 * 4.4);
         near(Mark::Fill([1.3, 2.1], [3.3, 4.4], black, 0.5), 1.65 * 4.4);
-        near(Mark::Dots(vec![[5.0, 5.2]], (black, 6.0)), 28.27);
+        near(Mark::Lines(vec![[[5.0, 5.2]; 2]], (black, 6.0)), 28.27);
         // Ends reach half a pixel farther.
         near(
             Mark::Lines(vec![[[2.0, 2.0], [8.0, 2.0]]], (black, 0.2)),
@@ -343,7 +326,7 @@ mod tests {
     #[test]
     fn what_lies_outside_is_left_out() {
         for mark in [
-            Mark::Dots(vec![[-50.0, 3.0], [500.0, 5.0]], ([0; 3], 3.0)),
+            Mark::Lines(vec![[[-50.0, 3.0]; 2], [[500.0, 5.0]; 2]], ([0; 3], 3.0)),
             Mark::Fill([11.0, -9.0], [40.0, 4.0], [0; 3], 1.0),
             Mark::Ring([5.0, 90.0], 3.0, ([0; 3], 1.0)),
         ] {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use strew_core::Pattern;
 
-use super::drawing::{Anchor, Color, Drawing, GRAY, INK, PALE};
+use super::drawing::{Anchor, Color, Drawing, INK, PALE, Rectangle};
 use crate::SettingError;
 
 /// The side of a panel, in pixels.
@@ -73,14 +73,14 @@ impl Panel {
     }
 
     /// The upper left corner and the size, in pixels, of a rectangle from its lower left corner.
-    pub(super) fn rectangle(&self, [x, y]: [f64; 2], [w, h]: [f64; 2]) -> [[f64; 2]; 2] {
+    pub(super) fn rectangle(&self, [x, y]: [f64; 2], [w, h]: [f64; 2]) -> Rectangle {
         let scale = self.scale();
         [self.at([x, y + h]), [w * scale, h * scale]]
     }
 
     /// Draws the frame, and labels at both ends of both axes.
     pub(super) fn frame(&self, drawing: &mut Drawing, ends: [&str; 2], names: [&str; 2]) {
-        drawing.outline([self.left, self.top], [SIDE; 2], (INK, 1.0), 0.0);
+        drawing.outline([[self.left, self.top], [SIDE; 2]], (INK, 1.0), 0.0);
         let (right, bottom) = (self.left + SIDE, self.top + SIDE);
         drawing.text([self.left, bottom + 16.0], 12.0, Anchor::Middle, ends[0]);
         drawing.text([right, bottom + 16.0], 12.0, Anchor::End, ends[1]);
@@ -104,7 +104,6 @@ impl Panel {
             let across = [self.at([v, start]), self.at([v, end])];
             [across, [self.at([start, v]), self.at([end, v])]]
         });
-        let lines: Vec<_> = lines.collect();
         drawing.lines(lines, (PALE, 0.5));
         let low = format!("{}", start.ceil()).replace('-', "−");
         let high = format!("{}", end.floor());
@@ -112,11 +111,16 @@ impl Panel {
     }
 }
 
-/// The panel of a window of the grid around the origin: places from −window/2 on.
-pub(super) fn window(drawing: &mut Drawing, i: usize, window: u32, caption: &str) -> Panel {
+/// A drawing of three panels and two lines of text, and its first panel: a window of the grid around the origin, places
+/// from −window/2 on. It is refused if points would be too few or too small to see.
+pub(super) fn with_grid(window: u32, caption: &str) -> Result<(Drawing, Panel), SettingError> {
+    check_window(window)?;
+    let mut drawing = sheet(3, 2);
     let first = -f64::from(window / 2);
     let range = first - 0.5..first + f64::from(window) - 0.5;
-    Panel::new(drawing, i, range, caption)
+    let panel = Panel::new(&mut drawing, 0, range, caption);
+    panel.grid(&mut drawing);
+    Ok((drawing, panel))
 }
 
 /// The places of a window.
@@ -142,6 +146,12 @@ pub(super) fn turns(index: u64) -> f64 {
     index as f64 / 18_446_744_073_709_551_616.0
 }
 
+/// The index of a point, in turns.
+pub(super) fn index_of(pattern: Pattern, (x, y): (i64, i64)) -> [f64; 2] {
+    let (dx, dy) = pattern.index(x, y);
+    [turns(dx), turns(dy)]
+}
+
 /// Draws the frame of the set region.
 pub(super) fn set_region(drawing: &mut Drawing, panel: &Panel) {
     panel.frame(drawing, ["0", "t"], ["dX", "dY"]);
@@ -151,9 +161,6 @@ pub(super) fn set_region(drawing: &mut Drawing, panel: &Panel) {
 pub(super) fn tint(color: Color, share: f64) -> Color {
     color.map(|v| (255.0 + (f64::from(v) - 255.0) * share) as u8)
 }
-
-/// The color of the lines that connect marks.
-pub(super) const THREAD: Color = GRAY;
 
 /// The sides of windows that show single points, in grid units.
 const WINDOWS: std::ops::RangeInclusive<u32> = 8..=200;

@@ -57,8 +57,8 @@ pub fn report(report: &Report, title: &str, target: Option<&Target>) -> Drawing 
 
     let end = SPECTRUM_END.min(report.spectrum.nu_max());
     let spectrum = square(&mut drawing, 1, -end..end, "power spectrum");
-    let [corner, size] = spectrum.rectangle([-end; 2], [2.0 * end; 2]);
-    drawing.cells(corner, size, SPECTRUM_CELLS as usize, shades(report, end));
+    let plane = spectrum.rectangle([-end; 2], [2.0 * end; 2]);
+    drawing.cells(plane, SPECTRUM_CELLS as usize, shades(report, end));
 
     let rings = || report.rings.iter();
     let power: Vec<_> = rings().map(|ring| [ring.nu, ring.power]).collect();
@@ -140,8 +140,7 @@ fn curves(
         );
     }
     for (curve, color) in curves.iter().zip(COLORS) {
-        let places: Vec<_> = curve.iter().map(|&v| at(v)).collect();
-        drawing.curve(&places, (color, 1.2));
+        drawing.curve(curve.iter().map(|&v| at(v)), (color, 1.2));
     }
     panel.frame(drawing, [""; 2], [""; 2]);
 }

@@ -34,35 +34,27 @@ const FINE_RING: f64 = 0.005;
 #[must_use]
 pub fn curve_figures(spectrum: &Spectrum, target: &Target) -> Vec<(String, f64)> {
     let rings = spectrum.rings(TARGET_RING);
-    let errors: Vec<RingError> = rings
-        .iter()
-        .map(|ring| RingError::of(ring, target))
-        .collect();
+    let errors = rings.iter().map(|ring| RingError::of(ring, target));
+    let errors: Vec<RingError> = errors.collect();
     let first = target.points().first().map_or(0.0, |p| p[0]);
-    let drawn = |error: &&RingError| {
+    let drawn = errors.iter().filter(|error| {
         error.from >= first && error.from < target.end() - 1e-9 && error.wanted > 0.0
-    };
-    let worst = errors
-        .iter()
-        .max_by(|a, b| a.error().abs().total_cmp(&b.error().abs()));
-    let tail = errors
-        .iter()
-        .filter(|error| error.from >= target.end() + TAIL_GAP - 1e-9);
+    });
+    let by_size = |a: &&RingError, b: &&RingError| a.size().total_cmp(&b.size());
+    let worst = errors.iter().max_by(by_size);
+    let [worst, worst_nu] = worst.map_or([f64::NAN; 2], |e| [e.size(), e.nu]);
+    let tail = errors.iter();
+    let tail = tail.filter(|error| error.from >= target.end() + TAIL_GAP - 1e-9);
+    let tail = tail.map(|e| (e.found - 1.0).abs());
     let mut figures = vec![
         (Figure::TargetRms, rms(errors.iter().map(RingError::error))),
         (
             Figure::TargetRelative,
-            rms(errors.iter().filter(drawn).map(|e| e.error() / e.wanted)),
+            rms(drawn.map(|e| e.error() / e.wanted)),
         ),
-        (
-            Figure::TargetWorst,
-            worst.map_or(f64::NAN, |e| e.error().abs()),
-        ),
-        (Figure::TargetWorstNu, worst.map_or(f64::NAN, |e| e.nu)),
-        (
-            Figure::TailWorst,
-            tail.map(|e| (e.found - 1.0).abs()).fold(0.0, f64::max),
-        ),
+        (Figure::TargetWorst, worst),
+        (Figure::TargetWorstNu, worst_nu),
+        (Figure::TailWorst, tail.fold(0.0, f64::max)),
     ];
     if let Some(power) = quiet_power(spectrum, target) {
         figures.push((Figure::QuietPower, power));
@@ -93,6 +85,10 @@ impl RingError {
 
     fn error(&self) -> f64 {
         self.found - self.wanted
+    }
+
+    fn size(&self) -> f64 {
+        self.error().abs()
     }
 }
 

@@ -12,91 +12,53 @@ pub const RING_WIDTH: f64 = 1.0 / 64.0;
 /// The largest frequency measured.
 pub(super) const NU_MAX: f64 = 4.0;
 
-/// A figure measured on a point set. Frequencies ν are in units of √N; white noise has power 1.
-/// Distances are over the nearest-neighbor distance of the hexagonal lattice, areas over the mean.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Figure {
-    /// Mean power over the band from ν = 0 where the target is 0, up to 0.9 of its width.
-    QuietPower,
-    /// Root mean square over rings of the radial power's error against the target.
-    TargetRms,
-    /// Root mean square of the relative error, over rings between the ends of the curve.
-    TargetRelative,
-    /// The largest error of a ring.
-    TargetWorst,
-    /// The frequency of the ring with the largest error.
-    TargetWorstNu,
-    /// The largest difference from 1 of a ring beyond the end of the curve.
-    TailWorst,
-    /// Mean power over 0 < ν < 0.5.
-    LowPower,
-    /// The largest radial power.
-    PeakPower,
-    /// The frequency of the largest radial power.
-    PeakNu,
-    /// Median anisotropy over 0.8 < ν < 4, in dB.
-    Anisotropy,
-    /// The largest power of a single mode.
-    Tallest,
-    /// The smallest nearest-neighbor distance (see [`Distances`]).
-    DeltaMin,
-    /// The mean nearest-neighbor distance (see [`Distances`]).
-    DeltaAvg,
-    /// The effective Nyquist frequency ν_eff after Heck et al. (see [`Crispness`]).
-    NuEff,
-    /// The oscillation Ω after Heck et al. (see [`Crispness`]).
-    Omega,
-    /// The largest deviation of a Voronoi cell's area (see [`Voronoi`]).
-    AreaDeviation,
-    /// The radius of the largest empty circle (see [`Voronoi`]).
-    LargestHole,
-    /// Bond-orientational order (see [`Voronoi`]).
-    Q6,
-    /// The error of the share of a kind, up or down.
-    ShareError,
-    /// In space: the frequency of the largest mean power of a shell.
-    PeakFrequency,
-    /// In space: the median anisotropy of shells beyond 0.8, in dB.
-    ShellAnisotropy,
-    /// In space: the mean nearest-neighbor distance over that of the densest packing.
-    MeanDistance,
-    /// In space: the deviation of power over directions in small windows, divided by its mean.
-    LocalDeviation,
-    /// In space: the largest power of a frequency in small windows.
-    LocalLargest,
+/// Figures with their names and what they are.
+macro_rules! figures {
+    ($($name:literal $figure:ident $what:literal)*) => {
+        /// A figure measured on a point set. Frequencies ν are in units of √N; white noise has power 1.
+        /// Distances are over the nearest-neighbor distance of the hexagonal lattice, areas over the mean.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Figure {
+            $(#[doc = $what] $figure,)*
+        }
+
+        impl Figure {
+            /// The name in table files and messages.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$figure => $name,)*
+                }
+            }
+        }
+    };
 }
 
-impl Figure {
-    /// The name in table files and messages.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::QuietPower => "quiet_power",
-            Self::TargetRms => "target_rms",
-            Self::TargetRelative => "target_relative_rms",
-            Self::TargetWorst => "target_worst",
-            Self::TargetWorstNu => "target_worst_nu",
-            Self::TailWorst => "tail_worst",
-            Self::LowPower => "low_power",
-            Self::PeakPower => "peak_power",
-            Self::PeakNu => "peak_nu",
-            Self::Anisotropy => "anisotropy_db",
-            Self::Tallest => "tallest_peak",
-            Self::DeltaMin => "delta_min",
-            Self::DeltaAvg => "delta_avg",
-            Self::NuEff => "nu_eff",
-            Self::Omega => "omega",
-            Self::AreaDeviation => "area_deviation",
-            Self::LargestHole => "largest_hole",
-            Self::Q6 => "q6",
-            Self::ShareError => "share_error",
-            Self::PeakFrequency => "peak_frequency",
-            Self::ShellAnisotropy => "anisotropy",
-            Self::MeanDistance => "mean_distance",
-            Self::LocalDeviation => "local_deviation",
-            Self::LocalLargest => "local_largest",
-        }
-    }
+figures! {
+    "quiet_power" QuietPower "Mean power over the band from ν = 0 where the target is 0, up to 0.9 of its width."
+    "target_rms" TargetRms "Root mean square over rings of the radial power's error against the target."
+    "target_relative_rms" TargetRelative "Root mean square of the relative error, over rings between the ends of the curve."
+    "target_worst" TargetWorst "The largest error of a ring."
+    "target_worst_nu" TargetWorstNu "The frequency of the ring with the largest error."
+    "tail_worst" TailWorst "The largest difference from 1 of a ring beyond the end of the curve."
+    "low_power" LowPower "Mean power over 0 < ν < 0.5."
+    "peak_power" PeakPower "The largest radial power."
+    "peak_nu" PeakNu "The frequency of the largest radial power."
+    "anisotropy_db" Anisotropy "Median anisotropy over 0.8 < ν < 4, in dB."
+    "tallest_peak" Tallest "The largest power of a single mode."
+    "delta_min" DeltaMin "The smallest nearest-neighbor distance (see [`Distances`])."
+    "delta_avg" DeltaAvg "The mean nearest-neighbor distance (see [`Distances`])."
+    "nu_eff" NuEff "The effective Nyquist frequency ν_eff after Heck et al. (see [`Crispness`])."
+    "omega" Omega "The oscillation Ω after Heck et al. (see [`Crispness`])."
+    "area_deviation" AreaDeviation "The largest deviation of a Voronoi cell's area (see [`Voronoi`])."
+    "largest_hole" LargestHole "The radius of the largest empty circle (see [`Voronoi`])."
+    "q6" Q6 "Bond-orientational order (see [`Voronoi`])."
+    "share_error" ShareError "The error of the share of a kind, up or down."
+    "peak_frequency" PeakFrequency "In space: the frequency of the largest mean power of a shell."
+    "anisotropy" ShellAnisotropy "In space: the median anisotropy of shells beyond 0.8, in dB."
+    "mean_distance" MeanDistance "In space: the mean nearest-neighbor distance over that of the densest packing."
+    "local_deviation" LocalDeviation "In space: the deviation of power over directions in small windows, divided by its mean."
+    "local_largest" LocalLargest "In space: the largest power of a frequency in small windows."
 }
 
 /// Rounds to four significant decimal digits.

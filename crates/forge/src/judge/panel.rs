@@ -26,7 +26,7 @@ const MAX_MODES: f64 = 1300.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// Twins that the table was optimized on: at most one.
-    seen: Vec<Twin>,
+    seen: Option<Twin>,
     /// Twins that it was not optimized on.
     unseen: Vec<Twin>,
     /// The curve that the radial power is compared with.
@@ -49,12 +49,7 @@ impl Panel {
             unseen.extend(next);
         }
         Self {
-            seen: seen
-                .iter()
-                .copied()
-                .min_by_key(|t| t.points())
-                .into_iter()
-                .collect(),
+            seen: seen.iter().copied().min_by_key(|twin| twin.points()),
             unseen,
             target: None,
         }
@@ -68,7 +63,7 @@ impl Panel {
         self.target = Some(target);
         self.unseen.retain(|twin| twin.points() >= LARGE_TWIN);
         for twin in farthest(map).into_iter().flatten() {
-            if !self.unseen.contains(&twin) && !self.seen.contains(&twin) {
+            if !self.unseen.contains(&twin) && self.seen != Some(twin) {
                 self.unseen.push(twin);
             }
         }
@@ -88,18 +83,15 @@ impl Panel {
     /// The number of point sets.
     #[must_use]
     pub fn subjects(&self) -> u32 {
-        (self.seen.len() + self.unseen.len() + WINDOW_SEEDS.len()) as u32
+        (self.seen.iter().count() + self.unseen.len() + WINDOW_SEEDS.len()) as u32
     }
 
     /// The approximate number of points in all sets.
     #[must_use]
     pub fn points(&self) -> u64 {
-        let twins = self
-            .seen
-            .iter()
-            .chain(&self.unseen)
-            .map(|twin| twin.points());
-        twins.sum::<u64>() + WINDOW_POINTS * WINDOW_SEEDS.len() as u64
+        let twins = self.seen.iter().chain(&self.unseen);
+        let points: u64 = twins.map(|twin| twin.points()).sum();
+        points + WINDOW_POINTS * WINDOW_SEEDS.len() as u64
     }
 
     /// Measures `table` on all point sets, or returns `None` if the watch stops it.
@@ -148,7 +140,7 @@ mod tests {
         let first = Panel::new(&map, &[]).unseen[0];
         let seen = [map.twins().next().expect("valid"), first];
         let panel = Panel::new(&map, &seen);
-        assert_eq!(panel.seen, [seen[0]]);
+        assert_eq!(panel.seen, Some(seen[0]));
         assert_eq!(panel.unseen.len(), 3);
         assert!(
             panel

@@ -59,15 +59,6 @@ impl Mask {
     ///
     /// # Errors
     /// As [`Mask::new`].
-    ///
-    /// ```
-    /// use strew_core::Table;
-    /// use strew_forge::mask::Mask;
-    ///
-    /// let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// assert!(Mask::new_while(&table, 64, 7, || false)?.is_none());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn new_while(
         table: &Table,
         size: u32,
@@ -116,30 +107,17 @@ impl Mask {
         Ok(Some(Self { size, ranks }))
     }
 
-    /// A mask of ranks, one for each pixel, row by row: to compare other masks with.
-    ///
-    /// # Errors
-    /// [`MaskError`] unless they are each number below size² once.
-    ///
-    /// ```
-    /// use strew_forge::mask::Mask;
-    ///
-    /// assert!(Mask::from_ranks(2, vec![0, 2, 3, 1]).is_ok());
-    /// assert!(Mask::from_ranks(2, vec![0, 2, 3, 3]).is_err());
-    /// ```
-    pub fn from_ranks(size: u32, ranks: Vec<u32>) -> Result<Self, MaskError> {
-        let pixels = (size as usize).pow(2);
-        let mut seen = vec![false; pixels];
-        let is_new = |&rank: &u32| match seen.get_mut(rank as usize) {
-            Some(seen) => !std::mem::replace(seen, true),
-            None => false,
-        };
-        if ranks.len() != pixels || !ranks.iter().all(is_new) {
-            let value = format!("{} numbers", ranks.len());
-            let allowed = format!("each number below {pixels} once");
-            return Err(MaskError::new("ranks", value, allowed));
+    /// A mask whose pixels turn on by ascending keys of their columns and rows, equal ones row by row: to compare other
+    /// masks with.
+    #[must_use]
+    pub fn by_key<K: Ord>(size: u32, key: impl Fn(u32, u32) -> K) -> Self {
+        let mut order: Vec<u32> = (0..size * size).collect();
+        order.sort_by_key(|&i| key(i % size, i / size));
+        let mut ranks = vec![0; order.len()];
+        for (rank, pixel) in (0..).zip(order) {
+            ranks[pixel as usize] = rank;
         }
-        Ok(Self { size, ranks })
+        Self { size, ranks }
     }
 
     /// The side in pixels.
@@ -156,14 +134,6 @@ impl Mask {
 
     /// The thresholds of pixels, from 0 up to 2^`bits`: rank · 2^`bits` / size², rounded down. A pixel is on
     /// where the gray, from 0 to 2^`bits`, is above its threshold.
-    ///
-    /// ```
-    /// use strew_forge::mask::Mask;
-    ///
-    /// let mask = Mask::from_ranks(2, vec![0, 2, 3, 1])?;
-    /// assert!(mask.thresholds(8).eq([0, 128, 192, 64]));
-    /// # Ok::<(), strew_forge::mask::MaskError>(())
-    /// ```
     pub fn thresholds(&self, bits: u8) -> impl Iterator<Item = u16> + '_ {
         let pixels = self.ranks.len() as u64;
         let levels = 1u64 << bits.min(16);
@@ -198,15 +168,6 @@ impl Mask {
     ///
     /// # Errors
     /// [`MaskError`] for another number of bits.
-    ///
-    /// ```
-    /// use strew_forge::mask::Mask;
-    ///
-    /// let mask = Mask::from_ranks(2, vec![0, 2, 3, 1])?;
-    /// assert!(mask.to_png(16)?.starts_with(b"\x89PNG"));
-    /// assert!(mask.to_png(4).is_err());
-    /// # Ok::<(), strew_forge::mask::MaskError>(())
-    /// ```
     pub fn to_png(&self, bits: u8) -> Result<Vec<u8>, MaskError> {
         let thresholds = self.thresholds(bits);
         let (depth, bytes): (_, Vec<u8>) = match bits {

@@ -3,6 +3,7 @@
 use rustfft::{FftPlanner, num_complex::Complex};
 
 use super::Mask;
+use crate::measure::{Summary, ring_sums};
 
 /// The spectrum of the pixels of a mask that are on at a level.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,16 +29,6 @@ impl LevelSpectrum {
 impl Mask {
     /// The spectrum of the pixels whose rank is below a share of all, from 0 to 1: the mean over frequencies of
     /// |Σ (on − share) exp(−2πi k·x)|² ÷ (size²·share·(1 − share)).
-    ///
-    /// ```
-    /// use strew_core::Table;
-    /// use strew_forge::mask::Mask;
-    ///
-    /// let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let mask = Mask::new(&table, 64, 7)?;
-    /// assert!(mask.spectrum(0.25).low_power < 0.2);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn spectrum(&self, level: f64) -> LevelSpectrum {
         let size = self.size as usize;
@@ -61,30 +52,20 @@ impl Mask {
         }
         let unit = (pixels as f64 * share.min(1.0 - share)).sqrt();
         let scale = pixels as f64 * share * (1.0 - share);
-        let (mut sums, mut counts) = ([0.0; LevelSpectrum::RINGS], [0u32; LevelSpectrum::RINGS]);
-        let (mut low, mut peak) = ((0.0, 0u32), 0f64);
-        for (i, value) in values.iter().enumerate().skip(1) {
+        let modes = values.iter().enumerate().skip(1);
+        let modes = modes.map(|(i, value)| {
             let frequency = |k: usize| k.min(size - k) as f64;
             let nu = frequency(i % size).hypot(frequency(i / size)) / unit;
-            let power = value.norm_sqr() / scale;
-            peak = peak.max(power);
-            if nu < 0.5 {
-                low = (low.0 + power, low.1 + 1);
-            }
-            let ring = (nu / LevelSpectrum::RING) as usize;
-            if ring < LevelSpectrum::RINGS {
-                sums[ring] += power;
-                counts[ring] += 1;
-            }
-        }
-        let known = sums.iter().zip(&counts);
+            (nu, value.norm_sqr() / scale)
+        });
+        let summary = Summary::of(modes.clone(), &[]);
+        let rings = ring_sums(modes, LevelSpectrum::RING, LevelSpectrum::RINGS);
+        let mean = |[count, _, total, ..]: [f64; 5]| total / count.max(1.0);
         LevelSpectrum {
             level: share,
-            low_power: low.0 / f64::from(low.1.max(1)),
-            peak,
-            rings: known
-                .map(|(sum, &count)| sum / f64::from(count.max(1)))
-                .collect(),
+            low_power: summary.low_power,
+            peak: summary.tallest,
+            rings: rings.into_iter().map(mean).collect(),
         }
     }
 }
@@ -92,21 +73,12 @@ impl Mask {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::SplitMix;
 
     /// Ranks in an order hashed by SplitMix64.
     fn white(size: u32) -> Mask {
-        let mut order: Vec<u32> = (0..size * size).collect();
-        order.sort_by_key(|&i| {
-            let z = (u64::from(i) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-            let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            z ^ (z >> 31)
-        });
-        let mut ranks = vec![0; order.len()];
-        for (rank, pixel) in order.into_iter().enumerate() {
-            ranks[pixel as usize] = rank as u32;
-        }
-        Mask::from_ranks(size, ranks).expect("each once")
+        let hashed = |x, y| SplitMix::new(u64::from(y * size + x)).next_u64();
+        Mask::by_key(size, hashed)
     }
 
     #[test]
@@ -121,15 +93,7 @@ mod tests {
     #[test]
     fn a_lattice_is_nothing_but_peaks() {
         // Every second pixel of every second row comes first.
-        let size = 32;
-        let key = |i: u32| (i % 2 + 2 * (i / size % 2), i);
-        let mut order: Vec<u32> = (0..size * size).collect();
-        order.sort_by_key(|&i| key(i));
-        let mut ranks = vec![0; order.len()];
-        for (rank, pixel) in order.into_iter().enumerate() {
-            ranks[pixel as usize] = rank as u32;
-        }
-        let mask = Mask::from_ranks(size, ranks).expect("each once");
+        let mask = Mask::by_key(32, |x, y| x % 2 + 2 * (y % 2));
         let spectrum = mask.spectrum(0.25);
         assert!(spectrum.low_power < 1e-20);
         // Three peaks share all of the variance.

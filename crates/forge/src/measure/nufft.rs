@@ -11,6 +11,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use rustfft::{Fft, FftPlanner, num_complex::Complex};
 
+use super::fourier::Fourier;
 use crate::numeric::Kernel;
 
 /// The width of the kernel, in grid cells.
@@ -51,16 +52,7 @@ pub(super) fn transform<T: Send>(
 /// The side of the grid: the least multiple of [`BAND`] that is twice as fine as needed and has no
 /// prime factor above 5, for the FFT.
 fn grid_size(modes: usize) -> usize {
-    let smooth = |mut m: usize| {
-        for p in [2usize, 3, 5] {
-            while m.is_multiple_of(p) {
-                m /= p;
-            }
-        }
-        m == 1
-    };
-    let least = (2 * (2 * modes + 1)).div_ceil(BAND).max(1);
-    (least..).find(|&m| smooth(m)).unwrap_or(least) * BAND
+    Fourier::size_from((2 * (2 * modes + 1)).div_ceil(BAND)) * BAND
 }
 
 /// Spreads the points onto the band of grid rows from `first_row` on, given those whose kernels begin in each row.

@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use strew_core::{
-    Map, Pattern, Table, Twin,
+    Error, Map, Pattern, PointSet, Region, Table, Twin,
     pattern::{Axis, Class, IndexOrigin},
-    table::to_grid_units,
+    table::{Displacement, to_grid_units},
 };
 
 use crate::numeric::SplitMix;
@@ -110,18 +110,17 @@ pub(crate) fn wrap(v: f64, side: f64) -> f64 {
 #[must_use]
 pub fn twin_set(table: &Table, twin: Twin) -> Option<Sample> {
     let n = table.map().intervals();
-    let points = twin
-        .sites(table.map())?
-        .iter()
-        .map(|site| {
-            let [dx, dy] = table.displacements()[site.block_y as usize * n + site.block_x as usize];
-            [
-                f64::from(site.x) + to_grid_units(dx),
-                f64::from(site.y) + to_grid_units(dy),
-            ]
-        })
-        .collect();
-    Some(Sample::torus(twin.period() as f64, points))
+    let sites = twin.sites(table.map())?;
+    let points = sites.iter().map(|site| {
+        let block = site.block_y as usize * n + site.block_x as usize;
+        displaced([site.x, site.y], table.displacements()[block])
+    });
+    Some(Sample::torus(twin.period() as f64, points.collect()))
+}
+
+/// The place of a point, by its lattice address and its vector.
+pub(crate) fn displaced(address: [u32; 2], by: Displacement) -> [f64; 2] {
+    [0, 1].map(|axis| f64::from(address[axis]) + to_grid_units(by[axis]))
 }
 
 /// Returns a window of about `points` points of the unbounded displaced pattern of the table's own
@@ -157,6 +156,22 @@ pub fn window_set(table: &Table, points: u64, seed: u64) -> Sample {
         }
     }
     Sample::window(side, density, found)
+}
+
+/// Returns a square of a served set with a number of points per unit area.
+///
+/// # Errors
+/// As [`PointSet::within`].
+pub fn square_set(
+    set: &PointSet,
+    corner: [f64; 2],
+    side: f64,
+    density: f64,
+) -> Result<Sample, Error> {
+    let region = Region::new(corner, corner.map(|v| v + side))?;
+    let points = set.within(region)?.to_vec();
+    let points = points.iter().map(|p| [p.x - corner[0], p.y - corner[1]]);
+    Ok(Sample::window(side, density, points.collect()))
 }
 
 /// The columns (or rows, along [`Axis::Y`]) of a class in a range, each with its interval.

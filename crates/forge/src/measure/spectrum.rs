@@ -159,22 +159,28 @@ impl Spectrum {
     }
 }
 
-/// The rings of modes (ν, power), each of a width, from ν = 0 to the last whole one before `end`; without empty ones.
-pub(crate) fn rings_of(modes: impl Iterator<Item = (f64, f64)>, width: f64, end: f64) -> Vec<Ring> {
-    let mut sums = vec![[0.0f64; 5]; (end / width) as usize];
+/// The sums over the modes (ν, power) of some rings of a width: their number, ν, power, squared power, and the tallest.
+pub(crate) fn ring_sums(
+    modes: impl Iterator<Item = (f64, f64)>,
+    width: f64,
+    rings: usize,
+) -> Vec<[f64; 5]> {
+    let mut sums = vec![[0.0f64; 5]; rings];
     for (nu, power) in modes {
-        if let Some(sum) = sums.get_mut((nu / width) as usize) {
-            let [count, nus, total, squares, tallest] = *sum;
-            let squares = squares + power * power;
-            *sum = [
-                count + 1.0,
-                nus + nu,
-                total + power,
-                squares,
-                tallest.max(power),
-            ];
+        if let Some([count, nus, total, squares, tallest]) = sums.get_mut((nu / width) as usize) {
+            *count += 1.0;
+            *nus += nu;
+            *total += power;
+            *squares += power * power;
+            *tallest = tallest.max(power);
         }
     }
+    sums
+}
+
+/// The rings of modes (ν, power), each of a width, from ν = 0 to the last whole one before `end`; without empty ones.
+pub(crate) fn rings_of(modes: impl Iterator<Item = (f64, f64)>, width: f64, end: f64) -> Vec<Ring> {
+    let sums = ring_sums(modes, width, (end / width) as usize);
     let filled = sums.into_iter().filter(|sum| sum[0] > 0.0);
     let ring = |[count, nus, total, squares, tallest]: [f64; 5]| {
         let mean = total / count;
@@ -254,26 +260,21 @@ mod tests {
     #[test]
     fn a_jittered_grid_has_its_analytic_spectrum() {
         // 1 − sinc²(νx)·sinc²(νy), averaged over ten sets of 64² points.
-        let sinc = |v: f64| {
-            if v == 0.0 {
-                1.0
-            } else {
-                (PI * v).sin() / (PI * v)
-            }
-        };
+        let sinc = |v: f64| (PI * v).sin() / (PI * v);
         let sets: Vec<Spectrum> = (0..10)
             .map(|seed| Spectrum::of(&Sample::torus(64.0, jittered(64, seed)), 2.0))
             .collect();
+        let sum = |kx, ky| -> f64 {
+            let each = sets.iter().map(|s| s.at(kx, ky).expect("measured"));
+            each.sum()
+        };
         let mut worst: f64 = 0.0;
         for ring in 1..30 {
             // Means over rectangles of modes, clear of the peaks of the lattice.
             let (mut found, mut expected, mut modes) = (0.0, 0.0, 0.0);
             for kx in ring * 4 + 1..ring * 4 + 4 {
                 for ky in 65..=120 {
-                    found += sets
-                        .iter()
-                        .map(|s| s.at(kx, ky).expect("measured"))
-                        .sum::<f64>();
+                    found += sum(kx, ky);
                     let shape = sinc(kx as f64 / 64.0) * sinc(ky as f64 / 64.0);
                     expected += 10.0 * (1.0 - shape * shape);
                     modes += 10.0;
@@ -282,11 +283,7 @@ mod tests {
             worst = worst.max((found - expected).abs() / modes);
         }
         assert!(worst < 0.1, "{worst}");
-        let low: f64 = sets
-            .iter()
-            .map(|s| s.at(3, 2).expect("measured"))
-            .sum::<f64>()
-            / 10.0;
+        let low = sum(3, 2) / 10.0;
         let shape = sinc(3.0 / 64.0) * sinc(2.0 / 64.0);
         assert!(low < 5.0 * (1.0 - shape * shape), "{low}");
     }
@@ -297,11 +294,8 @@ mod tests {
         let spectrum = Spectrum::of(&Sample::torus(32.0, lattice.collect()), 2.5);
         for kx in -80..=80i64 {
             for ky in -80..=80i64 {
-                let expected = if kx % 32 == 0 && ky % 32 == 0 {
-                    1024.0
-                } else {
-                    0.0
-                };
+                let is_peak = kx % 32 == 0 && ky % 32 == 0;
+                let expected = if is_peak { 1024.0 } else { 0.0 };
                 let found = spectrum.at(kx, ky).expect("measured");
                 assert!((found - expected).abs() < 1e-7, "({kx}, {ky}): {found}");
             }
@@ -331,10 +325,7 @@ mod tests {
         let rings = spectrum.rings(0.0);
         assert_eq!(rings.len(), 19); // 1 ≤ |k| < 20
         assert!(rings.is_sorted_by(|a, b| a.nu < b.nu));
-        assert!(
-            Spectrum::of(&Sample::torus(1.0, vec![]), 1.0)
-                .rings(0.1)
-                .is_empty()
-        );
+        let none = Spectrum::of(&Sample::torus(1.0, vec![]), 1.0);
+        assert!(none.rings(0.1).is_empty());
     }
 }

@@ -8,7 +8,7 @@ use spade::{DelaunayTriangulation, Point2, Triangulation};
 use super::{Sample, distance::HEXAGONAL, set::wrap};
 
 /// The figures of a Voronoi diagram.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Voronoi {
     /// The largest deviation of a cell's area from the mean area, over the mean area.
     pub area_deviation: f64,
@@ -58,22 +58,16 @@ impl Voronoi {
     }
 
     fn of_cells(points: &[[f64; 2]], counts: impl Fn(usize, &[f64; 2]) -> bool) -> Self {
-        let none = Self {
-            area_deviation: 0.0,
-            area_spread: 0.0,
-            largest_hole: 0.0,
-            q6: 0.0,
-        };
         let vertices = points.iter().map(|p| Point2::new(p[0], p[1])).collect();
         let Ok(mesh) = DelaunayTriangulation::<Point2<f64>>::bulk_load_stable(vertices) else {
-            return none;
+            return Self::default();
         };
         // Coincident points share a vertex; then vertices and points no longer correspond.
         if mesh.num_vertices() != points.len() {
             return Self {
                 area_deviation: 1.0,
                 area_spread: 1.0,
-                ..none
+                ..Self::default()
             };
         }
         let (mut worst, mut spread, mut hole, mut order, mut counted) =

@@ -88,34 +88,32 @@ fn pairs(
         .iter()
         .map(|&share| of_kind(share))
         .fold(all, f64::max);
-    let reach = widest * SKIN + 2.0 * longest(moves);
-    let scale = ground.scale;
-    let lists: Vec<Vec<Near>> = (0..moves.len())
-        .into_par_iter()
-        .map(|own| {
-            let mut list = Vec::new();
-            let at = moves[own];
-            let later = |to: usize| to > own;
-            ground.meets(own, reach, later, |meet| {
+    let moved = (moves, longest(moves));
+    let list = |own: usize| {
+        let mut list = Vec::new();
+        ground.near(
+            own,
+            moved,
+            widest * SKIN,
+            |to| to > own,
+            |meet, squared| {
                 let to = meet.to as usize;
-                let by = [meet.i, meet.j].map(|v| scale * f64::from(v));
-                let x = by[0] + moves[to][0] - at[0];
-                let y = by[1] + moves[to][1] - at[1];
                 let shared = kinds.iter().zip(shares);
                 let shared = shared.filter(|(kind, _)| kind[own] > 0.0 && kind[to] > 0.0);
                 let least = shared.map(|(_, &share)| of_kind(share)).fold(all, f64::max);
-                if x * x + y * y < (least * SKIN) * (least * SKIN) {
+                if squared < (least * SKIN) * (least * SKIN) {
                     list.push(Near {
                         own: own as u32,
                         to: meet.to,
-                        by,
+                        by: [meet.i, meet.j].map(|v| ground.scale * f64::from(v)),
                         least,
                     });
                 }
-            });
-            list
-        })
-        .collect();
+            },
+        );
+        list
+    };
+    let lists: Vec<Vec<Near>> = (0..moves.len()).into_par_iter().map(list).collect();
     lists.into_iter().flatten().collect()
 }
 
@@ -149,9 +147,9 @@ mod tests {
         let table = table.with_mix(mix, ranks).expect("valid");
         let twin = Twin::new(683, 418).expect("reduced");
         let points = ThinnedTwin::new(&table, twin).expect("a twin");
-        assert!(Distances::of(&points.at(1.0)).delta_min > 0.399);
+        assert!(Distances::of(&points.at(1.0, None)).delta_min > 0.399);
         for kind in 0..2 {
-            let set = points.of_kind(1.0, kind);
+            let set = points.at(1.0, Some(kind));
             assert!(Distances::of(&set).delta_min > 0.449, "{kind}");
         }
     }

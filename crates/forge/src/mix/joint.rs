@@ -8,6 +8,7 @@ use strew_core::{
 
 use super::{
     clear::{Floor, clear},
+    each,
     part::Part,
 };
 use crate::{
@@ -35,9 +36,7 @@ pub(super) fn moved(
     steps: u32,
     meter: &mut Meter<'_>,
 ) -> Option<Vec<Displacement>> {
-    let shares: Vec<f64> = (0..mix.shares().kinds() as u8)
-        .map(|kind| mix.shares().of(kind))
-        .collect();
+    let shares = each(mix.shares());
     let kinds = parts(table, mix);
     let energy = Together::new(table, &shares, &kinds);
     let mut descent = Descent::new(energy, steps, RATE);
@@ -138,7 +137,7 @@ impl Objective for Together {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optimize::jitter;
+    use crate::optimize::{check_slopes, jitter};
 
     #[test]
     fn slopes_are_those_of_the_energy() {
@@ -152,23 +151,7 @@ mod tests {
         for (to, by) in moves.iter_mut().zip(jitter::<2>(blocks, 0.4, 5)) {
             *to = [to[0] + by[0], to[1] + by[1]];
         }
-        let mut slopes = vec![[0.0; 2]; blocks];
-        let mut unused = slopes.clone();
-        energy.evaluate(&moves, &mut slopes);
-        let masses = energy.masses().to_vec();
         let split = mix.splits()[0].block as usize;
-        for block in [0, 3, blocks / 2, split] {
-            for axis in 0..2 {
-                let step = 1e-4;
-                let mut at = |by: f64| {
-                    let mut moves = moves.clone();
-                    moves[block][axis] += by;
-                    energy.evaluate(&moves, &mut unused)
-                };
-                let numeric = (at(step) - at(-step)) / (2.0 * step);
-                let found = slopes[block][axis] * masses[block];
-                assert!((found - numeric).abs() < 1e-6, "{block}: {found} {numeric}");
-            }
-        }
+        check_slopes(&mut energy, &moves, &[0, 3, blocks / 2, split]);
     }
 }

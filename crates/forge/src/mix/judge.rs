@@ -1,13 +1,14 @@
 //! Judging a mix: all points and each kind, whole and thinned, on twins that it was not made with and on windows
 //! as they are served, with a seed and its warp.
 
-use strew_core::{PointSet, Region, Table, Twin, table::Figures};
+use strew_core::{PointSet, Table, Twin, table::Figures};
 
+use super::each;
 use crate::{
     judge::{Bound, Complaint, Figure, named},
-    measure::{Distances, Sample, Spectrum, Summary},
+    measure::{Distances, Sample, Spectrum, Summary, square_set},
     thinned::ThinnedTwin,
-    twins::nearest,
+    twins::{LARGE_TWIN, nearest, next_to_alpha},
     watch::{Meter, Stage, Watch},
 };
 
@@ -104,20 +105,19 @@ struct Place {
 
 /// The twins and windows of a table.
 fn places(table: &Table) -> Option<Vec<Place>> {
-    let twins = LARGEST
-        .iter()
-        .filter_map(|&most| nearest(table.map(), most));
-    let mut twins: Vec<Twin> = twins.collect();
+    let large = |most: u64| {
+        let twins = next_to_alpha(table.map()).take_while(move |twin| twin.points() <= most);
+        let large = twins.filter(|twin| twin.points() >= LARGE_TWIN);
+        nearest(table.map(), large)
+    };
+    let mut twins: Vec<Twin> = LARGEST.into_iter().filter_map(large).collect();
     twins.dedup();
     let twin = |twin: Twin| {
         let points = ThinnedTwin::new(table, twin)?;
         Some(Place {
             name: format!("twin {twin}"),
             shares: &SHARES,
-            set: Box::new(move |share, kind| match kind {
-                Some((kind, _)) => Some(points.of_kind(share, kind)),
-                None => Some(points.at(share)),
-            }),
+            set: Box::new(move |share, kind| Some(points.at(share, kind.map(|kind| kind.0)))),
         })
     };
     let window = |seed: u64| {
@@ -137,12 +137,8 @@ fn places(table: &Table) -> Option<Vec<Place>> {
 
 /// A window of a set of which a part of all points is at a share, away from the origin.
 fn window(set: &PointSet, share: f64, part: f64) -> Option<Sample> {
-    let side = (POINTS / share).sqrt();
-    let corner = [12_345.0, -6_789.0];
-    let region = Region::new(corner, corner.map(|v| v + side)).ok()?;
-    let points = set.clone().keep(share).ok()?.within(region).ok()?.to_vec();
-    let points = points.iter().map(|p| [p.x - corner[0], p.y - corner[1]]);
-    Some(Sample::window(side, share * part, points.collect()))
+    let (set, side) = (set.clone().keep(share).ok()?, (POINTS / share).sqrt());
+    square_set(&set, [12_345.0, -6_789.0], side, share * part).ok()
 }
 
 fn summary(set: &Sample, nu: f64) -> Summary {
@@ -160,27 +156,19 @@ struct Subject {
 
 /// The kinds at a share, and all points.
 fn subjects(table: &Table, place: &Place, share: f64) -> Option<Vec<Subject>> {
-    let all = (place.set)(share, None)?;
-    let mut subjects = Vec::new();
-    if let Some(mix) = table.mix() {
-        for kind in 0..mix.shares().kinds() as u8 {
-            let wanted = mix.shares().of(kind);
-            let set = (place.set)(share, Some((kind, wanted)))?;
-            subjects.push(Subject {
-                kind: Some(kind),
-                found: set.points().len() as f64 / all.points().len() as f64,
-                wanted,
-                set,
-            });
-        }
-    }
-    subjects.push(Subject {
-        kind: None,
-        set: all,
-        found: 1.0,
-        wanted: 1.0,
-    });
-    Some(subjects)
+    let all = (place.set)(share, None)?.points().len() as f64;
+    let parts = table.mix().map_or_else(Vec::new, |mix| each(mix.shares()));
+    let kinds = (0..).zip(parts).map(Some);
+    let subject = |kind: Option<Kind>| {
+        let set = (place.set)(share, kind)?;
+        Some(Subject {
+            kind: kind.map(|(kind, _)| kind),
+            found: set.points().len() as f64 / all,
+            wanted: kind.map_or(1.0, |(_, part)| part),
+            set,
+        })
+    };
+    kinds.chain([None]).map(subject).collect()
 }
 
 impl Subject {

@@ -13,6 +13,7 @@ use strew_core::{
 
 use super::{
     anneal::{Annealer, Kind, UNIT},
+    each,
     press::{Kernel, Presses},
 };
 use crate::{
@@ -39,7 +40,7 @@ pub(super) fn annealed(
     meter: &mut Meter<'_>,
 ) -> Result<Option<Mix>, ForgeError> {
     let start = Mix::scattered(table.map(), shares.clone())?;
-    let of: Vec<f64> = (0..shares.kinds() as u8).map(|k| shares.of(k)).collect();
+    let of = each(shares);
     let mut felt: Vec<f64> = Vec::new();
     let lists: Vec<usize> = of
         .iter()

@@ -18,15 +18,6 @@ const ARITHMETIC: u32 = 1;
 const MAX_STEPS: u32 = 10_000;
 
 /// The mix to make.
-///
-/// ```
-/// use strew_forge::MixJob;
-///
-/// let job = MixJob::labels("3:1".parse()?);
-/// assert_eq!((job.shares.to_string().as_str(), job.is_joint), ("1:3", false));
-/// assert_eq!(MixJob::joint("3:1".parse()?).steps, 240);
-/// # Ok::<(), strew_core::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MixJob {
     /// The shares of the kinds.
@@ -71,16 +62,6 @@ impl MixJob {
 
 /// Returns the usual name of the file of a mix: that of the table's file with `mix` for a joint table or `labels`,
 /// and the shares, such as `blue-5-sqrt3-over-2-m-mix-1-3.strew`.
-///
-/// ```
-/// use strew_core::Table;
-/// use strew_forge::{MixJob, mix_file_name};
-///
-/// let table = Table::undisplaced("sqrt(3)".parse()?, 49, "pattern")?;
-/// let name = mix_file_name(&table, &MixJob::labels("1:3".parse()?));
-/// assert_eq!(name, "pattern-sqrt3-s-labels-1-3.strew");
-/// # Ok::<(), strew_core::Error>(())
-/// ```
 #[must_use]
 pub fn mix_file_name(table: &Table, job: &MixJob) -> String {
     let name = file_name(table.profile(), table.alpha(), table.map().radius());

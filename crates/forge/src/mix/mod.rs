@@ -5,8 +5,8 @@
 //! and all points together are the table itself. A *joint* table (`joint`) also moves the points: the energy of
 //! all of them and of each kind (`part`) is lowered by descent, then the few pairs that are too near
 //! are pushed apart (`clear`). Either way blocks get an order of leaving made for the labels (`order`), because
-//! the table's own would remove some kinds before others. `second` makes the order from which kinds are cut whose shares
-//! vary. `judge` measures, `make` is the way in.
+//! the table's own would remove some kinds before others. It also makes the order from which kinds are cut
+//! whose shares vary. `judge` measures, `make` is the way in.
 
 mod anneal;
 mod clear;
@@ -17,7 +17,12 @@ mod make;
 mod order;
 mod part;
 mod press;
-mod second;
+
+/// The shares of kinds, one by one.
+fn each(shares: &strew_core::table::Shares) -> Vec<f64> {
+    let kinds = 0..shares.kinds() as u8;
+    kinds.map(|kind| shares.of(kind)).collect()
+}
 
 pub use make::{MixJob, MixOutcome, labels, mix, mix_file_name};
-pub use second::second_order;
+pub use order::second_order;

@@ -2,19 +2,25 @@
 //!
 //! A potential is a Gaussian sum over all that is left, and one over what is left of a block's own kind, each in units of its
 //! own spacing. Points do not move.
+//!
+//! Kinds whose shares vary from place to place are cut from a second order. The points whose second rank lies in an
+//! interval must be evenly spread, among all points and among those that are left when a set is thinned out by the ranks of
+//! its table. So the second order is that of a mix whose kinds are the points by when they leave: the first quarter of the
+//! ranks, the second, and the upper half.
 
 use rayon::prelude::*;
 use strew_core::{
     Table,
-    table::{Mix, Ranks},
+    table::{Mix, Ranks, Shares},
 };
 
+use super::each;
 use crate::{
     ForgeError,
     numeric::exp,
     optimize::{Ground, longest, moves_of},
     order::{Surroundings, positions},
-    watch::Meter,
+    watch::{Meter, Stage, Watch},
 };
 
 /// σ in spacings of what is left, of all and of a kind.
@@ -45,9 +51,7 @@ pub(super) fn order(
 ) -> Result<Option<Ranks>, ForgeError> {
     let moves = moves_of(table);
     let longest = longest(&moves);
-    let shares: Vec<f64> = (0..mix.shares().kinds() as u8)
-        .map(|kind| mix.shares().of(kind))
-        .collect();
+    let shares = each(mix.shares());
     let mut left = Left {
         ground: Ground::new(
             table.map(),
@@ -101,27 +105,23 @@ impl Left<'_, '_> {
     /// The neighbors of each block that serve until only a share is left.
     fn listed(&self, is_left: &[bool], until: f64) -> Vec<Vec<Pair>> {
         let range = CUTOFF * SIGMA / until.max(LEAST).sqrt();
-        let scale = self.ground.scale;
         let list = |block: usize| {
             if !is_left[block] {
                 return Vec::new();
             }
             let kind = self.labels[block];
             let far = range * (1.0 / self.shares[usize::from(kind)].sqrt()).min(RAREST);
-            let at = self.moves[block];
             let mut list = Vec::with_capacity(256);
-            let reach = far + 2.0 * self.longest;
-            self.ground.meets(
+            let moved = (&self.moves[..], self.longest);
+            let ground = &self.ground;
+            ground.near(
                 block,
-                reach,
+                moved,
+                far,
                 |to| is_left[to],
-                |meet| {
-                    let to = meet.to as usize;
-                    let x = scale * f64::from(meet.i) + self.moves[to][0] - at[0];
-                    let y = scale * f64::from(meet.j) + self.moves[to][1] - at[1];
-                    let squared = x * x + y * y;
-                    let range = if self.labels[to] == kind { far } else { range };
-                    if squared < range * range {
+                |meet, squared| {
+                    let is_own = self.labels[meet.to as usize] == kind;
+                    if is_own || squared < range * range {
                         list.push(Pair {
                             to: meet.to,
                             squared: squared as f32,
@@ -184,4 +184,43 @@ impl Surroundings for Left<'_, '_> {
             lose(to, self.press(block, pair) / self.share(to));
         }
     }
+}
+
+/// The parts of the ranks that are each evenly ordered. More of them are no more even when thinned out, and
+/// less so as a whole.
+const PARTS: &str = "1:1:2";
+
+/// Makes the second order of a table's blocks: the ranks of [`VaryingKinds`](strew_core::VaryingKinds). Takes about
+/// a second on map m. `None` if it was stopped.
+///
+/// # Errors
+/// [`ForgeError`] if the table has too few blocks.
+///
+/// ```
+/// use strew_core::Table;
+/// use strew_forge::second_order;
+///
+/// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let order = second_order(&table, &())?.expect("not stopped");
+/// assert_eq!(order.positions().len(), table.displacements().len());
+/// // It is another order than that in which points leave.
+/// assert_ne!(Some(&order), table.ranks());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn second_order(table: &Table, watch: &dyn Watch) -> Result<Option<Ranks>, ForgeError> {
+    let shares: Shares = PARTS.parse()?;
+    let sums = shares.parts().iter().scan(0.0, |sum, part| {
+        *sum += f64::from(*part);
+        Some(*sum / f64::from(shares.total()))
+    });
+    let ends: Vec<f64> = sums.take(shares.kinds() - 1).collect();
+    let label = |block: usize| {
+        let ranks = table.block_ranks(block);
+        let middle = 0.5 * (ranks.start + ranks.end);
+        ends.partition_point(|end| *end <= middle) as u8
+    };
+    let labels = (0..table.displacements().len()).map(label).collect();
+    let mix = Mix::new(table.map(), shares, labels)?;
+    let mut meter = Meter::new(watch, Stage::Optimizing, STEPS);
+    order(table, &mix, &mut meter)
 }

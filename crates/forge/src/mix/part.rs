@@ -84,28 +84,20 @@ impl<E: PairEnergy> Part<E> {
 
     fn build(&mut self, ground: &Ground, moves: &[[f64; 2]]) {
         let range = (self.energy.cutoff() + Self::SKIN) / self.share.sqrt();
-        let reach = range + 2.0 * longest(moves);
-        let scale = ground.scale;
-        let lists: Vec<Vec<Pair>> = self
-            .blocks
-            .par_iter()
-            .map(|&(block, _)| {
-                let own = moves[block as usize];
-                let mut list = Vec::with_capacity(128);
-                let is_of_kind = |to: usize| self.weights[to] > 0.0;
-                ground.neighbors(block as usize, reach, is_of_kind, |near| {
-                    let to = moves[near.to as usize];
-                    let x = scale * f64::from(near.i) + to[0] - own[0];
-                    let y = scale * f64::from(near.j) + to[1] - own[1];
-                    if x * x + y * y < range * range {
-                        let weight = near.weight * self.weights[near.to as usize] as f32;
-                        list.push(Pair { weight, ..near });
-                    }
-                });
-                fill(&mut list);
-                list
-            })
-            .collect();
+        let moved = (moves, longest(moves));
+        let list = |&(block, _): &(u32, f64)| {
+            let (block, mut list) = (block as usize, Vec::with_capacity(128));
+            let is_of_kind = |to: usize| self.weights[to] > 0.0;
+            ground.near(block, moved, range, is_of_kind, |meet, _| {
+                let part = self.weights[meet.to as usize] as f32;
+                let weight = ground.weight(block, &meet) * part;
+                let (to, i, j) = (meet.to, meet.i, meet.j);
+                list.push(Pair { to, i, j, weight });
+            });
+            fill(&mut list);
+            list
+        };
+        let lists: Vec<Vec<Pair>> = self.blocks.par_iter().map(list).collect();
         self.lists = lists;
         self.built_for = moves.to_vec();
     }

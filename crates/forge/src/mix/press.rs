@@ -118,20 +118,15 @@ mod tests {
         let moves = moves_of(&table);
         for block in 0..ground.shares.len() {
             let mut expected = vec![0.0; ground.shares.len()];
-            ground.neighbors(
+            ground.near(
                 block,
+                (&moves, longest(&moves)),
                 range,
                 |_| true,
-                |near| {
-                    let by = [near.i, near.j].map(|v| ground.scale * f64::from(v));
-                    let to = near.to as usize;
-                    let [x, y] = [0, 1].map(|axis| by[axis] + moves[to][axis] - moves[block][axis]);
-                    let squared = x * x + y * y;
-                    if squared < range * range {
-                        let value = (-squared / (2.0 * sigma * sigma)).exp();
-                        expected[to] +=
-                            f64::from(near.weight) * ground.shares[block] * value * unit;
-                    }
+                |meet, squared| {
+                    let value = (-squared / (2.0 * sigma * sigma)).exp();
+                    let share = f64::from(ground.weight(block, &meet)) * ground.shares[block];
+                    expected[meet.to as usize] += share * value * unit;
                 },
             );
             for (to, expected) in expected.into_iter().enumerate() {

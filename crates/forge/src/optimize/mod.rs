@@ -2,7 +2,7 @@
 //!
 //! An [`Objective`] is an energy as a function of the vectors, which are called *moves* here. Three
 //! objectives exist. [`Pairs`] (a pair energy) and [`Radial`] (the error of a radial power curve)
-//! are sums over pairs of blocks and need no points: `ground` knows which blocks meet and how often, by the `overlap` of
+//! are sums over pairs of blocks and need no points: `ground` knows which blocks meet and how often, by the overlaps of
 //! intervals, and `neighbors` lists those that are near each other. [`Sets`] evaluates any other energy on twins. For
 //! [`Radial`], `rings` turns a histogram of distances into radial power. A [`Descent`] lowers an
 //! objective from the random start of [`jitter`]; its [`DescentState`] can be kept and resumed.
@@ -11,17 +11,17 @@ mod descent;
 mod ground;
 mod neighbors;
 mod objective;
-mod overlap;
 mod pairs;
 mod radial;
 mod rings;
 mod sets;
 
 pub use descent::Descent;
-pub(crate) use ground::{Ground, Pair, moves_of};
+pub(crate) use ground::{Ground, Pair, moves_of, overlaps};
 pub(crate) use neighbors::{CHUNK, fill, longest, sum};
+#[cfg(test)]
+pub(crate) use objective::check_slopes;
 pub use objective::{DescentState, Objective, jitter};
-pub(crate) use overlap::overlaps;
 pub use pairs::Pairs;
 pub use radial::Radial;
 pub use rings::RadialWeights;

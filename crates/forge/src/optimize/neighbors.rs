@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 use strew_core::Map;
 
-use super::ground::{Ground, Pair};
+use super::ground::{Ground, Meet, Pair};
 
 /// Lists have whole groups of this many pairs, so that the compiler can vectorize sums over them.
 /// The number also fixes the order of summation, so tables depend on it.
@@ -91,7 +91,7 @@ impl Neighbors {
     /// is the number of mean spacings per grid unit. Weights are means over the patterns.
     pub(super) fn new(cutoff: f64, maps: &[Map], scale: f64) -> Self {
         let reach = cutoff + SKIN + MAX_APPROACH;
-        let ground = |map: &Map| Ground::new(map, reach * map.alpha().set_side_f64() / scale);
+        let ground = |map: &Map| Ground::scaled(map, reach, scale);
         let patterns: Vec<Ground> = maps.iter().map(ground).collect();
         let mut masses: Vec<f64> = (0..patterns[0].shares.len())
             .map(|block| area(&patterns, block))
@@ -126,34 +126,19 @@ impl Neighbors {
 
     /// Builds the lists for these moves.
     pub(super) fn build(&mut self, moves: &[[f64; 2]]) {
-        let longest = longest(moves);
-        let range = self.cutoff + SKIN;
+        let moved = (moves, longest(moves));
         let blocks = (0..moves.len()).into_par_iter();
-        let lists = blocks.map(|block| self.pairs_of(block, moves, range, longest));
+        let lists = blocks.map(|block| self.pairs_of(block, moved));
         self.lists = lists.collect();
         self.built_for = moves.to_vec();
     }
 
-    /// The pairs of one block within `range`, merged over the patterns and sorted by key. `longest`
-    /// is the length of the longest move.
-    fn pairs_of(&self, block: usize, moves: &[[f64; 2]], range: f64, longest: f64) -> Vec<Pair> {
-        let (own, scale) = (moves[block], self.scale);
+    /// The pairs of one block, merged over the patterns and sorted by key, given all moves and the length of the longest.
+    fn pairs_of(&self, block: usize, moved: (&[[f64; 2]], f64)) -> Vec<Pair> {
         let mut found: Vec<(Key, f64)> = Vec::new();
         for ground in &self.patterns {
-            let reach = (range + 2.0 * longest) * ground.scale / scale;
-            ground.meets(
-                block,
-                reach,
-                |_| true,
-                |meet| {
-                    let to = moves[meet.to as usize];
-                    let dx = scale * f64::from(meet.i) + to[0] - own[0];
-                    let dy = scale * f64::from(meet.j) + to[1] - own[1];
-                    if dx * dx + dy * dy < range * range {
-                        found.push(((meet.j, meet.i, meet.to), meet.area));
-                    }
-                },
-            );
+            let add = |meet: Meet, _| found.push(((meet.j, meet.i, meet.to), meet.area));
+            ground.near(block, moved, self.cutoff + SKIN, |_| true, add);
         }
         merge(found, area(&self.patterns, block))
     }

@@ -166,3 +166,24 @@ pub trait Objective {
         0
     }
 }
+
+/// Checks the slopes of some blocks against differences of the energy.
+#[cfg(test)]
+pub(crate) fn check_slopes(of: &mut impl Objective, moves: &[[f64; 2]], blocks: &[usize]) {
+    let mut gradient = vec![[0.0; 2]; moves.len()];
+    of.evaluate(moves, &mut gradient);
+    for (&block, axis) in blocks.iter().flat_map(|block| [(block, 0), (block, 1)]) {
+        let mut at = |by: f64| {
+            let mut moves = moves.to_vec();
+            moves[block][axis] += by;
+            of.evaluate(&moves, &mut vec![[0.0; 2]; moves.len()])
+        };
+        let numeric = (at(1e-6) - at(-1e-6)) / 2e-6;
+        let found = gradient[block][axis] * of.masses()[block];
+        let error = (found - numeric).abs();
+        assert!(
+            error < 1e-4 * numeric.abs().max(1e-4),
+            "{block}: {found} {numeric}"
+        );
+    }
+}

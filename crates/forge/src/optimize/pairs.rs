@@ -80,9 +80,29 @@ mod tests {
 
     use super::*;
     use crate::{
-        energy::{Gaussian, Guard, Pairwise},
+        energy::{Gaussian, Guard, SetEnergy},
+        measure::Sample,
         optimize::{Sets, jitter},
     };
+
+    /// The energy of a set by the definition, over all pairs of its points, each at its nearest image.
+    struct AllPairs;
+
+    impl SetEnergy for AllPairs {
+        fn evaluate(&self, set: &Sample, gradient: &mut [[f64; 2]]) -> f64 {
+            let (points, side, mut total) = (set.points(), set.side(), 0.0);
+            for (i, (p, slope)) in points.iter().zip(gradient).enumerate() {
+                *slope = [0.0; 2];
+                for q in points[..i].iter().chain(&points[i + 1..]) {
+                    let by = [p[0] - q[0], p[1] - q[1]].map(|v| v - (v / side).round() * side);
+                    let (value, factor) = energy().pair(by[0] * by[0] + by[1] * by[1]);
+                    total += value;
+                    *slope = [slope[0] + factor * by[0], slope[1] + factor * by[1]];
+                }
+            }
+            0.5 * total / points.len() as f64
+        }
+    }
 
     fn map(radius: u32) -> Map {
         Map::new("(5-sqrt(3))/2".parse().expect("valid"), radius).expect("small")
@@ -109,8 +129,8 @@ mod tests {
         for twin in uniform_twins(&map, 3) {
             let scale = twin.t() as f64 / twin.period() as f64;
             let mut pairs = Pairs::new(energy(), &[twin_map(&map, twin)], scale);
-            // The definition: displaced sites, all pairs, the mean over each block's instances.
-            let mut sets = Sets::new(Pairwise(energy()), &map, &[twin]);
+            // Displaced sites, and the mean over each block's instances.
+            let mut sets = Sets::new(AllPairs, &map, &[twin]);
             assert!((sets.masses().iter().sum::<f64>() - 1.0).abs() < 1e-12);
             for (spread, seed) in [(0.1, 1), (0.9, 2), (0.95, 2)] {
                 let moves = jitter(n * n, spread, seed);
@@ -134,23 +154,17 @@ mod tests {
         let map = map(9);
         let n = map.intervals();
         let scale = map.alpha().set_side_f64();
-        let maps: Vec<Map> = uniform_twins(&map, 3)
-            .iter()
-            .map(|&t| twin_map(&map, t))
-            .collect();
+        let twins = uniform_twins(&map, 3).into_iter();
+        let maps: Vec<Map> = twins.map(|twin| twin_map(&map, twin)).collect();
         let moves = jitter(n * n, 0.4, 5);
         let mut gradient = vec![[0.0; 2]; n * n];
         let mut value =
             |maps: &[Map]| Pairs::new(energy(), maps, scale).evaluate(&moves, &mut gradient);
-        let areas: Vec<f64> = maps
-            .iter()
-            .map(|m| m.alpha().set_side_f64().powi(2))
-            .collect();
-        let each: f64 = maps
-            .iter()
-            .zip(&areas)
-            .map(|(m, area)| value(std::slice::from_ref(m)) * area)
-            .sum();
+        let areas = maps.iter().map(|map| map.alpha().set_side_f64().powi(2));
+        let areas: Vec<f64> = areas.collect();
+        let each = maps.iter().zip(&areas);
+        let each = each.map(|(map, area)| value(std::slice::from_ref(map)) * area);
+        let each: f64 = each.sum();
         let mean = each / areas.iter().sum::<f64>();
         assert!((value(&maps) - mean).abs() < 1e-6 * mean);
     }
@@ -159,20 +173,15 @@ mod tests {
     fn lists_stay_valid_while_blocks_move() {
         let map = map(9);
         let n = map.intervals();
-        let make = || {
-            Pairs::new(
-                energy(),
-                std::slice::from_ref(&map),
-                map.alpha().set_side_f64(),
-            )
-        };
+        let (maps, scale) = (std::slice::from_ref(&map), map.alpha().set_side_f64());
+        let make = || Pairs::new(energy(), maps, scale);
         let mut used = make();
         let mut gradient = vec![[0.0; 2]; n * n];
         for step in 0..8 {
-            let moves: Vec<[f64; 2]> = jitter(n * n, 1.0, 4)
-                .iter()
-                .map(|m| m.map(|v| v * f64::from(step) / 7.0))
-                .collect();
+            let mut moves = jitter(n * n, 1.0, 4);
+            for v in moves.as_flattened_mut() {
+                *v *= f64::from(step) / 7.0;
+            }
             let value = used.evaluate(&moves, &mut gradient);
             let fresh = make().evaluate(&moves, &mut gradient);
             assert!((value - fresh).abs() < 1e-12, "{step}: {value} {fresh}");

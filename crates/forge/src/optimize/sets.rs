@@ -68,25 +68,15 @@ impl<E: SetEnergy> Objective for Sets<E> {
 
     fn evaluate(&mut self, moves: &[[f64; 2]], gradient: &mut [[f64; 2]]) -> f64 {
         let energy = &self.energy;
-        let energies: Vec<f64> = self
-            .twins
-            .par_iter_mut()
-            .map(
-                |TwinPoints {
-                     sites,
-                     blocks,
-                     set,
-                     gradient,
-                 }| {
-                    for ((p, site), block) in set.points_mut().iter_mut().zip(&*sites).zip(&*blocks)
-                    {
-                        let by = moves[*block as usize];
-                        *p = [site[0] + by[0], site[1] + by[1]];
-                    }
-                    energy.evaluate(set, gradient)
-                },
-            )
-            .collect();
+        let displaced = |twin: &mut TwinPoints| {
+            let places = twin.set.points_mut().iter_mut().zip(&twin.sites);
+            for ((p, site), block) in places.zip(&twin.blocks) {
+                let by = moves[*block as usize];
+                *p = [site[0] + by[0], site[1] + by[1]];
+            }
+            energy.evaluate(&twin.set, &mut twin.gradient)
+        };
+        let energies: Vec<f64> = self.twins.par_iter_mut().map(displaced).collect();
         gradient.fill([0.0; 2]);
         let (mut sum, mut points) = (0.0, 0.0);
         for (twin, energy) in self.twins.iter().zip(energies) {

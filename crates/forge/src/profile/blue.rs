@@ -1,20 +1,20 @@
 //! The blue-noise profiles `blue`, `sharp`, `spaced` and `lloyd`.
 
-use super::{Profile, Push, Recipe};
+use super::{Profile, Push, Recipe, Repulsion};
 use crate::judge::{Bound, Figure};
 
 /// Gaussian blue noise of σ = 1: the least power at low frequencies.
 pub(super) const BLUE: Profile = Profile {
     name: "blue",
     summary: "Gaussian blue noise, sigma 1: least power at low frequencies",
-    recipe: Recipe::Gaussian {
+    recipe: Recipe::Gaussian(Repulsion {
         sigma: 1.0,
         polish_sigma: 1.15,
         polish_share: 0.52,
         guard_reach: 0.72,
         guard_strength: 0.3,
         rate: 0.2,
-    },
+    }),
     jitter: 0.7,
     steps: 250,
     bounds: &[
@@ -30,14 +30,14 @@ pub(super) const BLUE: Profile = Profile {
 pub(super) const SHARP: Profile = Profile {
     name: "sharp",
     summary: "Gaussian blue noise, sigma 0.8: a steep edge, cells of nearly equal areas",
-    recipe: Recipe::Gaussian {
+    recipe: Recipe::Gaussian(Repulsion {
         sigma: 0.8,
         polish_sigma: 1.0,
         polish_share: 0.16,
         guard_reach: 0.9,
         guard_strength: 0.3,
         rate: 0.1,
-    },
+    }),
     jitter: 0.7,
     steps: 640,
     bounds: &[

@@ -1,6 +1,6 @@
 //! Profiles that follow a radial power curve.
 
-use super::{Profile, Recipe};
+use super::{Following, Profile, Recipe};
 use crate::{
     judge::{Bound, Figure},
     optimize::RadialWeights,
@@ -22,12 +22,12 @@ const WEIGHTS: RadialWeights = RadialWeights {
 pub(super) const STEP: Profile = Profile {
     name: "step",
     summary: "Step blue noise: no power up to nu 0.56, flat beyond",
-    recipe: Recipe::Radial {
+    recipe: Recipe::Radial(Following {
         curve: &[[0.0, 0.0], [0.56, 0.0], [0.56, 1.0]],
         weights: WEIGHTS,
         warm_share: 0.0,
         rate: 0.1,
-    },
+    }),
     jitter: 0.7,
     steps: 250,
     bounds: &[
@@ -42,7 +42,7 @@ pub(super) const STEP: Profile = Profile {
 pub(super) const GREEN: Profile = Profile {
     name: "green",
     summary: "Green noise: silent up to nu 0.42, a broad peak at 0.62, flat from 0.9 on",
-    recipe: Recipe::Radial {
+    recipe: Recipe::Radial(Following {
         curve: &[[0.0, 0.0], [0.42, 0.0], [0.62, 3.0], [0.9, 1.0]],
         weights: RadialWeights {
             quiet: 0.8,
@@ -50,7 +50,7 @@ pub(super) const GREEN: Profile = Profile {
         },
         warm_share: 0.0,
         rate: 0.05,
-    },
+    }),
     jitter: 0.7,
     steps: 200,
     bounds: &[
@@ -66,7 +66,7 @@ pub(super) const GREEN: Profile = Profile {
 pub(super) const PINK: Profile = Profile {
     name: "pink",
     summary: "Pink noise: power falls as 1/nu from 5.5 at nu 0.127 to 1 at nu 0.7, flat beyond",
-    recipe: Recipe::Radial {
+    recipe: Recipe::Radial(Following {
         curve: &[
             [0.1, 5.5],
             [0.1273, 5.5],
@@ -92,7 +92,7 @@ pub(super) const PINK: Profile = Profile {
         },
         warm_share: 0.0,
         rate: 0.05,
-    },
+    }),
     jitter: 0.7,
     steps: 250,
     bounds: &[
@@ -107,7 +107,7 @@ pub(super) const PINK: Profile = Profile {
 pub(super) const SINGLE_PEAK: Profile = Profile {
     name: "single-peak",
     summary: "Single-peak blue noise: no power up to nu 0.67, one peak, a shallow dip, flat from nu 1.9 on",
-    recipe: Recipe::Radial {
+    recipe: Recipe::Radial(Following {
         curve: &[
             [0.0, 0.0],
             [0.668, 0.0],
@@ -141,7 +141,7 @@ pub(super) const SINGLE_PEAK: Profile = Profile {
         },
         warm_share: 0.3,
         rate: 0.05,
-    },
+    }),
     jitter: 0.7,
     steps: 400,
     bounds: &[
@@ -155,12 +155,12 @@ pub(super) const SINGLE_PEAK: Profile = Profile {
 pub(super) const CUSTOM: Profile = Profile {
     name: "custom",
     summary: "A custom radial power curve",
-    recipe: Recipe::Radial {
+    recipe: Recipe::Radial(Following {
         curve: &[],
         weights: WEIGHTS,
         warm_share: 0.0,
         rate: 0.1,
-    },
+    }),
     jitter: 0.7,
     steps: 250,
     bounds: &[],

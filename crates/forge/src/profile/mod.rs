@@ -8,11 +8,10 @@
 //! To add a profile, add a constant in the file of its family and its name to [`Profile::ALL`]. For
 //! a new kind of optimizer, also add a variant of [`Recipe`].
 
-mod aim;
 mod blue;
 mod curves;
 mod known;
 mod recipe;
 
-pub use aim::Aim;
-pub use recipe::{Profile, Push, Recipe};
+pub use known::Aim;
+pub use recipe::{Following, Profile, Push, Recipe, Repulsion};

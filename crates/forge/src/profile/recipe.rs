@@ -33,7 +33,7 @@ impl Profile {
     #[must_use]
     pub fn target(&self) -> Option<Target> {
         match self.recipe {
-            Recipe::Radial { curve, .. } => Some(Target::fixed(curve)),
+            Recipe::Radial(following) => Some(Target::fixed(following.curve)),
             _ => None,
         }
     }
@@ -44,22 +44,7 @@ impl Profile {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Recipe {
     /// Gaussian repulsion with a [`Guard`] against close pairs, in two phases.
-    Gaussian {
-        /// The width of the Gaussian in the first phase.
-        sigma: f64,
-        /// The width of the Gaussian in the second phase. A wider Gaussian goes on lowering the power
-        /// at low frequencies and leaves the rest as it is. The first phase alone, run until the power
-        /// there is as low, also sharpens the set and raises its spectral peak.
-        polish_sigma: f64,
-        /// The share of the steps that the second phase takes.
-        polish_share: f64,
-        /// The range of the guard. The smallest distance ends a little below it.
-        guard_reach: f64,
-        /// The height of the guard at distance 0; see [`Guard::new`].
-        guard_strength: f64,
-        /// The rate of both phases.
-        rate: f64,
-    },
+    Gaussian(Repulsion),
     /// Push and pull in table space, after Ahmed, Guo, Yan, Franceschi, Zhang, Deussen (2017).
     ///
     /// A [`Guard`] that hardens from stage to stage pushes pairs in conflict apart. A Gaussian assigns
@@ -78,19 +63,42 @@ pub enum Recipe {
         rate: f64,
     },
     /// The descent on the error of a radial power curve, on unbounded patterns.
-    Radial {
-        /// The points (ν, power) of the curve; see [`Target`].
-        curve: &'static [[f64; 2]],
-        /// The weights in the cost of its error.
-        weights: RadialWeights,
-        /// The share of the steps that Gaussian repulsion (σ = 1) takes first. It quickly removes the
-        /// power at low frequencies, which suits curves that are 0 over nearly the same range.
-        warm_share: f64,
-        /// The rate at first.
-        rate: f64,
-    },
+    Radial(Following),
     /// No optimization: every vector is zero.
     Undisplaced,
+}
+
+/// The parameters of a Gaussian repulsion in two phases.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Repulsion {
+    /// The width of the Gaussian in the first phase.
+    pub sigma: f64,
+    /// The width of the Gaussian in the second phase. A wider Gaussian goes on lowering the power
+    /// at low frequencies and leaves the rest as it is. The first phase alone, run until the power
+    /// there is as low, also sharpens the set and raises its spectral peak.
+    pub polish_sigma: f64,
+    /// The share of the steps that the second phase takes.
+    pub polish_share: f64,
+    /// The range of the guard. The smallest distance ends a little below it.
+    pub guard_reach: f64,
+    /// The height of the guard at distance 0; see [`Guard::new`].
+    pub guard_strength: f64,
+    /// The rate of both phases.
+    pub rate: f64,
+}
+
+/// The parameters of a descent on the error of a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Following {
+    /// The points (ν, power) of the curve; see [`Target`].
+    pub curve: &'static [[f64; 2]],
+    /// The weights in the cost of its error.
+    pub weights: RadialWeights,
+    /// The share of the steps that Gaussian repulsion (σ = 1) takes first. It quickly removes the
+    /// power at low frequencies, which suits curves that are 0 over nearly the same range.
+    pub warm_share: f64,
+    /// The rate at first.
+    pub rate: f64,
 }
 
 /// A stage of the push. The upper limit for a smallest distance is that of the hexagonal lattice, 1.0746.
@@ -128,21 +136,14 @@ impl Recipe {
             all.iter().map(text).collect()
         };
         match *self {
-            Self::Gaussian {
-                sigma,
-                polish_sigma,
-                polish_share,
-                guard_reach,
-                guard_strength,
-                rate,
-            } => {
+            Self::Gaussian(own) => {
                 let all = [
-                    ("sigma", sigma),
-                    ("polish_sigma", polish_sigma),
-                    ("polish_share", polish_share),
-                    ("guard_reach", guard_reach),
-                    ("guard_strength", guard_strength),
-                    ("rate", rate),
+                    ("sigma", own.sigma),
+                    ("polish_sigma", own.polish_sigma),
+                    ("polish_share", own.polish_share),
+                    ("guard_reach", own.guard_reach),
+                    ("guard_strength", own.guard_strength),
+                    ("rate", own.rate),
                 ];
                 ("gaussian", numbers(&all))
             }
@@ -161,12 +162,8 @@ impl Recipe {
                 ("spacing", all)
             }
             Self::Lloyd { rate } => ("lloyd", numbers(&[("rate", rate)])),
-            Self::Radial {
-                weights,
-                warm_share,
-                rate,
-                ..
-            } => {
+            Self::Radial(own) => {
+                let weights = own.weights;
                 let all = [
                     ("reach", weights.reach),
                     ("nu_max", weights.nu_max),
@@ -174,10 +171,10 @@ impl Recipe {
                     ("quiet", weights.quiet),
                     ("edge", weights.edge),
                     ("leash", weights.leash),
-                    ("rate", rate),
-                    ("warm_share", warm_share),
+                    ("rate", own.rate),
+                    ("warm_share", own.warm_share),
                 ];
-                let has_warm = usize::from(warm_share > 0.0);
+                let has_warm = usize::from(own.warm_share > 0.0);
                 ("radial", numbers(&all[..7 + has_warm]))
             }
             Self::Undisplaced => ("none", Vec::new()),
@@ -193,24 +190,18 @@ impl Recipe {
         steps: u32,
     ) -> Vec<BoxedPhase> {
         let share = |share: f64| (f64::from(steps) * share) as u32;
-        let repelled = |sigma, reach, strength, steps, rate| {
-            let energy = (Gaussian::new(sigma), Guard::new(reach, strength));
-            let pairs = Pairs::new(energy, &domain.twin_maps(), domain.scale());
+        let repelled = |sigma, guard, steps, rate| {
+            let pairs = (Gaussian::new(sigma), guard);
+            let pairs = Pairs::new(pairs, &domain.twin_maps(), domain.scale());
             phase(pairs, steps, rate)
         };
         match *self {
-            Self::Gaussian {
-                sigma,
-                polish_sigma,
-                polish_share,
-                guard_reach: reach,
-                guard_strength: strength,
-                rate,
-            } => {
-                let polish = share(polish_share);
+            Self::Gaussian(own) => {
+                let guard = Guard::new(own.guard_reach, own.guard_strength);
+                let polish = share(own.polish_share);
                 vec![
-                    repelled(sigma, reach, strength, steps - polish, rate),
-                    repelled(polish_sigma, reach, strength, polish, rate),
+                    repelled(own.sigma, guard, steps - polish, own.rate),
+                    repelled(own.polish_sigma, guard, polish, own.rate),
                 ]
             }
             Self::Spacing { sigma, pushes } => {
@@ -223,7 +214,8 @@ impl Recipe {
                         share(push.share).min(left)
                     };
                     left -= steps;
-                    repelled(sigma, push.reach, push.strength, steps, push.rate)
+                    let guard = Guard::new(push.reach, push.strength);
+                    repelled(sigma, guard, steps, push.rate)
                 });
                 stages.collect()
             }
@@ -233,25 +225,20 @@ impl Recipe {
             }
             // The repulsion uses the pattern of α alone. The error is averaged over several α of the same map, so that the
             // table follows its curve on every twin.
-            Self::Radial {
-                weights,
-                warm_share,
-                rate,
-                ..
-            } => {
+            Self::Radial(own) => {
                 let Some(target) = target else {
                     return Vec::new();
                 };
-                let warm = share(warm_share);
+                let warm = share(own.warm_share);
                 let map = slice::from_ref(&domain.map);
                 let repulsion = Pairs::new(Gaussian::new(1.0), map, domain.scale());
-                let error = Radial::new(&domain.spread(), target, &weights);
-                let phases = [
+                let error = Radial::new(&domain.spread(), target, &own.weights);
+                let mut phases = vec![
                     phase(repulsion, warm, WARM_RATE),
-                    phase(error, steps - warm, rate),
+                    phase(error, steps - warm, own.rate),
                 ];
-                let some = phases.into_iter().filter(|phase| phase.steps() > 0);
-                some.collect()
+                phases.retain(|phase| phase.steps() > 0);
+                phases
             }
             Self::Undisplaced => Vec::new(),
         }

@@ -3,10 +3,7 @@
 
 use strew_core::Map;
 
-use super::{
-    energy::Gaussian,
-    pairs::{Blocks, Pairs},
-};
+use super::pairs::{Blocks, Gaussian, Pairs};
 use crate::{
     ForgeError,
     checkpoint::Kept,

@@ -15,7 +15,7 @@ use crate::{
     Figure, Meter,
     judge::{Bound, Complaint, complaints as missed, measured, named},
     measure::{Distances, Ring, Sample},
-    twins::{fraction, next_to_alpha},
+    twins::{nearest, next_to_alpha},
 };
 
 /// The side of a window, in mean spacings: some 314,000 points.
@@ -110,12 +110,10 @@ impl Judge {
         let side = side(map);
         let volume = side * side * side;
         let [least, most] = [0.25, 1.2].map(|part| (part * volume) as u64);
-        let alpha = map.alpha().to_f64();
-        let far = |twin: &Twin| (fraction(twin) - alpha).abs();
         let all = unseen_twins(map, least).take_while(|twin| twin.t().pow(3) <= most);
         Self {
             // The pattern of a twin differs from that of α the more, the farther they are apart.
-            twin: all.min_by(|a, b| far(a).total_cmp(&far(b))),
+            twin: nearest(map, all),
             side,
             places: (map.intervals() as u32 * 3).min(PLACES),
         }

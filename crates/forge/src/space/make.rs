@@ -134,21 +134,3 @@ impl Work for SpacePlan {
         Ok(with_ranks(&table)?)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::estimate;
-
-    #[test]
-    fn an_estimate_states_the_steps_and_sizes_of_the_job() {
-        let job = SpaceJob {
-            radius: 5,
-            steps: Some(97),
-            ..SpaceJob::new(SpaceProfile::Spaced)
-        };
-        let estimate = estimate(&job).expect("allowed");
-        assert_eq!((estimate.blocks, estimate.steps), (343, 97));
-        assert!(estimate.measured_points > 10_000 && estimate.time > Duration::ZERO);
-    }
-}

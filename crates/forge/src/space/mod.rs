@@ -1,13 +1,11 @@
 //! Tables of points in space: making and judging them.
 //!
-//! [`forge`](crate::forge()) works off a [`SpaceJob`] in phases: descents of a Gaussian energy (`energy`), first on a coarse
+//! [`forge`](crate::forge()) works off a [`SpaceJob`] in phases: descents of a Gaussian energy, first on a coarse
 //! map, and pushes (both in `descent`). The table is made on the exact frequencies of pairs of its blocks in the unbounded
 //! set (`pairs`), so no twin is favored, and every periodic twin is one that it was not made on. `make` has the phases, the
 //! judge and the `order` in which blocks leave; `local` has the power of points.
 
 mod descent;
-mod energy;
-mod file;
 mod job;
 mod judge;
 mod local;
@@ -16,7 +14,10 @@ mod order;
 mod pairs;
 mod points;
 
-pub use file::{read_table, table_file_name, write_table};
+pub use crate::file::{
+    read_space_table as read_table, space_file_name as table_file_name,
+    write_space_table as write_table,
+};
 pub use job::{MAX_SPACE_RADIUS, SpaceJob, SpaceProfile};
 pub use judge::{PLACES, SIDE, SpaceReport, unseen_twins};
 pub use local::{LocalPower, SpacePower};

@@ -7,7 +7,7 @@ use strew_core::{Table, table::Ranks};
 use crate::{
     ForgeError,
     numeric::exp,
-    optimize::{Ground, Pair, longest, moves_of},
+    optimize::{Ground, longest, moves_of},
     order::{Surroundings, positions},
 };
 
@@ -79,14 +79,25 @@ impl Surroundings for Left<'_> {
         let spacing = 1.0 / target.max(LEAST).sqrt();
         let rate = -0.5 / (SIGMA * spacing * SIGMA * spacing);
         let range = CUTOFF * SIGMA * spacing;
+        let near = range * GUARD / (CUTOFF * SIGMA);
         let list = |block: usize| {
             let mut list = Vec::new();
             if is_left[block] {
-                let reach = range + 2.0 * self.longest;
-                let is_left = |to: usize| is_left[to];
-                self.ground.neighbors(block, reach, is_left, |neighbor| {
-                    list.extend(self.felt(block, &neighbor, range, rate));
-                });
+                let moved = (self.moves, self.longest);
+                let ground = self.ground;
+                ground.near(
+                    block,
+                    moved,
+                    range,
+                    |to| is_left[to],
+                    |meet, squared| {
+                        list.push(Felt {
+                            to: meet.to,
+                            value: f64::from(ground.weight(block, &meet)) * exp(rate * squared),
+                            press: PRESSURE * (1.0 - squared / (near * near)).max(0.0),
+                        });
+                    },
+                );
             }
             list
         };
@@ -113,21 +124,4 @@ struct Felt {
     value: f64,
     /// The penalty for being too near, however seldom they meet.
     press: f64,
-}
-
-impl Left<'_> {
-    /// The force on an instance of a block from a neighbor, or `None` beyond the range.
-    fn felt(&self, block: usize, neighbor: &Pair, range: f64, rate: f64) -> Option<Felt> {
-        let (own, other) = (self.moves[block], self.moves[neighbor.to as usize]);
-        let scale = self.ground.scale;
-        let dx = scale * f64::from(neighbor.i) + other[0] - own[0];
-        let dy = scale * f64::from(neighbor.j) + other[1] - own[1];
-        let squared = dx * dx + dy * dy;
-        let near = range * GUARD / (CUTOFF * SIGMA);
-        (squared < range * range).then(|| Felt {
-            to: neighbor.to,
-            value: f64::from(neighbor.weight) * exp(rate * squared),
-            press: PRESSURE * (1.0 - squared / (near * near)).max(0.0),
-        })
-    }
 }

@@ -1,11 +1,8 @@
 //! Thinned twins: what is left of one period at a share, to be measured.
 
-use strew_core::{
-    Table, Twin,
-    table::{Displacement, to_grid_units},
-};
+use strew_core::{Table, Twin};
 
-use crate::measure::Sample;
+use crate::measure::{Sample, displaced};
 
 /// One period of a twin, to be thinned again and again.
 pub struct ThinnedTwin {
@@ -57,30 +54,16 @@ impl ThinnedTwin {
         })
     }
 
-    /// The points that are left at a share, at unit density.
-    #[must_use]
-    pub fn at(&self, share: f64) -> Sample {
-        self.set(share, |_| true)
-    }
-
-    /// The points of a kind that are left at a share, at unit density. Tables without a mix have points of kind 0
+    /// The points that are left at a share, of a kind or all, at unit density. Tables without a mix have points of kind 0
     /// only.
     #[must_use]
-    pub fn of_kind(&self, share: f64, kind: u8) -> Sample {
-        self.set(share, |point| point.kind == kind)
-    }
-
-    fn set(&self, share: f64, counts: impl Fn(&Candidate) -> bool) -> Sample {
+    pub fn at(&self, share: f64, kind: Option<u8>) -> Sample {
+        let is_of_kind = |point: &Candidate| kind.is_none_or(|kind| point.kind == kind);
         let left = self.points.iter();
-        let left = left.filter(|point| point.rank < share && counts(point));
+        let left = left.filter(|point| point.rank < share && is_of_kind(point));
         let points = left.map(|point| point.at);
         Sample::torus(self.period, points.collect())
     }
-}
-
-/// The place of a point of the full set, by its lattice address and its vector.
-fn displaced(address: [u32; 2], by: Displacement) -> [f64; 2] {
-    [0, 1].map(|axis| f64::from(address[axis]) + to_grid_units(by[axis]))
 }
 
 /// The kind of a point of a block, given how far its dX lies beyond the start of the block's interval.
