@@ -53,7 +53,7 @@ export class Controls {
     this.stipple = stipple;
     this.picked = 0;
     this.notes = [];
-    this.root = byId("choose");
+    this.root = byId("fields");
     this.typing = null;
     this.type = settled(350, (change) => {
       this.typing = null;
@@ -136,7 +136,13 @@ export class Controls {
 
   kind() {
     return [field("Profile", "profile", select("profile", (profile) => this.change({ profile, alpha: "", map: "" }), { "aria-describedby": "about-profile" }),
-      make("p", { class: "note", id: "about-profile" }))];
+      make("p", { class: "note", id: "about-profile" }),
+      make("button", { type: "button", id: "open-gallery", onclick: () => this.openGallery() }, "Compare all profiles"))];
+  }
+
+  openGallery() {
+    this.session.choose((state) => (state.tab = "gallery"), "tab");
+    byId("gallery").focus({ preventScroll: true });
   }
 
   amount() {

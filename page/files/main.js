@@ -26,7 +26,6 @@ import { Paint } from "./paint/paint.js";
 import { palette, watchTheme } from "./theme.js";
 import { Understand } from "./understand.js";
 import { worldNames } from "./worlds.js";
-import { Works } from "./works/works.js";
 
 const root = document.documentElement;
 /** Whether the visitor comes without a link to a view. */
@@ -206,11 +205,14 @@ async function refresh(isChosen = false) {
   show(layers, notes.map((note) => note.understood), isChosen);
 }
 
+/** Whether the fields of layers are in sight. */
+const isChoosing = () => ["choose", "understand"].includes(session.state.tab);
+
 /** Says what is wrong with layers: at the fields if they were just changed, over the plane if a link leads here. */
 function sayFaults(notes, isChosen) {
   const other = notes.map((note) => note.faults?.[""]).find(Boolean);
   const wrong = notes.findIndex((note) => note.faults);
-  const isSeen = wrong === controls?.picked && session.state.tab === "choose";
+  const isSeen = wrong === controls?.picked && isChoosing();
   const words = other ?? Object.values(notes[wrong].faults)[0];
   const named = notes.length > 1 ? `Layer ${wrong + 1}: ${words}` : words;
   if (isChosen && isSeen && !other) return;
@@ -236,7 +238,7 @@ function afresh() {
 function pointOut(layer) {
   banner(null);
   controls?.pick(layer);
-  if (session.state.tab !== "choose") session.choose((state) => (state.tab = "choose"), "tab");
+  if (!isChoosing()) session.choose((state) => (state.tab = "choose"), "tab");
   byId("choose").querySelector('[aria-invalid="true"]')?.focus();
 }
 
@@ -347,7 +349,6 @@ let tables = [];
 
 const [understand, take] = [new Understand(session, plane), new Take(session, plane)];
 const shade = new Shade(plane);
-const works = new Works(session);
 const card = new Card(session, plane);
 const paint = new Paint(session, plane, {
   picked: () => controls?.picked ?? 0,
@@ -357,7 +358,7 @@ const start = new Start(session, () => {
   fold(matchMedia("(max-width: 46rem)").matches);
   byId("plane").focus();
 });
-parts.push(pour, start, card, understand, take, shade, works, paint);
+parts.push(pour, start, card, understand, take, shade, paint);
 tools();
 skipLinks();
 takeDrops(byId("stage"), stipple);
@@ -460,5 +461,5 @@ async function begin() {
 }
 
 // For the curious, and for tests.
-globalThis.strew = { plane, pour, start, card, shade, stipple, session, status, understand, take, works, paint };
+globalThis.strew = { plane, pour, start, card, shade, stipple, session, status, understand, take, paint };
 begin();

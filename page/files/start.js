@@ -102,11 +102,11 @@ export class Start extends Part {
     if (!view.page) {
       element.addEventListener("click", () => {
         this.session.choose((state) => {
-          const { renderer, works } = state;
-          Object.assign(state, view.isOpen ? { ...initial(), tab: "choose" } : fromHash(view.hash), { renderer, works });
+          const { renderer } = state;
+          Object.assign(state, view.isOpen ? { ...initial(), tab: "choose" } : fromHash(view.hash), { renderer });
         }, "layers", "view", "tab");
         if (view.isOpen) this.shows();
-        else byId(this.session.state.tab).focus({ preventScroll: true });
+        else byId("choose").focus({ preventScroll: true });
       });
     }
     return { ...view, canvas: element.querySelector("canvas"), img: element.querySelector("img") };

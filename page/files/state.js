@@ -76,23 +76,6 @@ export const LAYER = Object.freeze({
   clear: "",
 });
 
-/** @typedef {Record<"mode" | "alpha" | "point" | "offsets" | "distance" | "radius" | "moved" | "profile", string>} Works */
-
-/**
- * The first state of the laboratory.
- * @type {Readonly<Works>}
- */
-export const WORKS = Object.freeze({
-  mode: "index",
-  alpha: "(5-sqrt(3))/2",
-  point: "2:-1",
-  offsets: "2,1 3,3",
-  distance: "2.24",
-  radius: "7",
-  moved: "0",
-  profile: "blue",
-});
-
 /** The short names of a layer's members in the address. */
 const KEYS = {
   profile: "profile",
@@ -137,7 +120,6 @@ export const MOST_LAYERS = 6;
  * @property {string} [worldSeed] Another seed than the world's own, or nothing.
  * @property {Layer[]} layers
  * @property {string} tab
- * @property {Works} works
  * @property {string} renderer `2d`, `webgl2` or nothing.
  */
 
@@ -155,7 +137,6 @@ export function initial() {
     worldSeed: "",
     layers: [{ ...LAYER }],
     tab: "start",
-    works: { ...WORKS },
     renderer: "",
   };
 }
@@ -173,36 +154,14 @@ export function fromHash(hash) {
   if (Number.isFinite(span) && span > 0) state.span = span;
   if (given.size > 0) state.tab = "choose";
   const [tab, renderer] = ["tab", "renderer"].map((name) => given.get(name) ?? "");
-  if (["start", "choose", "understand", "take", "gallery", "works"].includes(tab)) state.tab = tab;
+  if (["start", "choose", "understand", "take", "gallery"].includes(tab)) state.tab = tab;
   if (["2d", "webgl2"].includes(renderer)) state.renderer = renderer;
-  state.works = worksFrom(given);
   const [world, seed] = ["world", "world.seed"].map((name) => given.get(name) ?? "");
   if (/^[\w.-]{1,64}$/.test(world)) state.world = world;
   if (/^\d{1,20}$/.test(seed)) state.worldSeed = seed;
   const layers = Math.min(MOST_LAYERS, Math.max(1, Number(given.get("layers")) || 1));
   state.layers = Array.from({ length: layers }, (_, i) => layerFrom(given, i));
   return state;
-}
-
-/** The parameters of the laboratory in the address. */
-const WORKS_VALUES = {
-  mode: /^(index|arrangement|clusters|map|displacement)$/,
-  alpha: /^.{1,40}$/,
-  point: /^-?\d{1,4}:-?\d{1,4}$/,
-  offsets: /^(-?\d{1,4},-?\d{1,4}( (?=.)|$))*$/,
-  distance: /^\d(\.\d{1,2})?$/,
-  radius: /^[1-9]\d?$/,
-  moved: /^(0|1|0?\.\d{1,2})$/,
-  profile: /^[\w.-]{1,64}$/,
-};
-
-function worksFrom(given) {
-  const works = { ...WORKS };
-  for (const [member, pattern] of Object.entries(WORKS_VALUES)) {
-    const text = given.get(`how.${member}`);
-    if (text !== null && pattern.test(text)) works[member] = text;
-  }
-  return works;
 }
 
 function layerFrom(given, i) {
@@ -254,9 +213,6 @@ export function toHash(state) {
     }
   });
   if (state.tab !== "choose") said.push(["tab", state.tab]);
-  for (const [member, standard] of Object.entries(WORKS)) {
-    if (state.works[member] !== standard) said.push([`how.${member}`, state.works[member]]);
-  }
   if (state.renderer) said.push(["renderer", state.renderer]);
   return `#${said.map(([key, value]) => `${key}=${encoded(value)}`).join("&")}`;
 }

@@ -5,7 +5,7 @@ import { byId, bytes, icon, make } from "../dom.js";
 import { refusal } from "../form.js";
 import { formatPlace, parsePlace, place } from "../place.js";
 import { joined, setOf } from "../query.js";
-import { LAYER, WORKS, toHash } from "../state.js";
+import { LAYER, toHash } from "../state.js";
 import { watchTheme } from "../theme.js";
 import { cameraOf } from "./camera.js";
 import { mapOn, smallMapOn } from "./map.js";
@@ -183,7 +183,7 @@ function remember() {
 /** The plane with the same points around the walker. */
 function planeHash() {
   const { rank, ...layer } = layersOf(given.seed)[0];
-  return toHash({ ...walker, span: 80, tab: "choose", layers: [{ ...LAYER, ...layer, color: 3 }], works: WORKS, renderer: "" });
+  return toHash({ ...walker, span: 80, tab: "choose", layers: [{ ...LAYER, ...layer, color: 3 }], renderer: "" });
 }
 
 let asked = 0;

@@ -118,8 +118,8 @@ fn what_lies_under_another_tab_takes_no_focus() {
     let Some((daemon, browser)) = looking(1280, 900) else {
         return;
     };
-    browser.look(&daemon, "#at=0,0&span=30&tab=works");
-    let covered = "['plane', 'jump-at', 'theme', 'works-slider'] \
+    browser.look(&daemon, "#at=0,0&span=30&tab=gallery");
+    let covered = "['plane', 'jump-at', 'theme', 'gallery'] \
         .map((id) => Boolean(document.getElementById(id).closest('[inert]')))";
     assert_eq!(
         browser.value(covered),

@@ -81,7 +81,7 @@ fn malformed_links_show_what_they_can() {
     let strokes = "p(1:0,0/1,1)".repeat(6000);
     for hash in [
         "#%E0%A4%A&at=,&span=-1&tab=nope&dot=NaN&color=99&layers=1e9&renderer=no",
-        "#span=Infinity&at=NaN,NaN&how.alpha=7&works=nope",
+        "#span=Infinity&at=NaN,NaN&how.alpha=7&tab=works",
         "#at=0,0&span=30&paint=((((&2.paint=r(1:",
         &format!("#at=0,0&span=30&paint={strokes}"),
     ] {

@@ -9,18 +9,16 @@ const SIZES: [(u32, u32); 2] = [(390, 844), (1280, 800)];
 const MOST: f64 = 0.05;
 
 /// Other contents of pages, by the hashes of their addresses.
-const MORE: [&str; 5] = [
+const MORE: [&str; 3] = [
     "/#tab=gallery",
-    "/#tab=works",
-    "/#tab=works&how.mode=displacement&how.moved=1",
     "/compare#show=strew,poisson,tile,jitter,halton,white",
     "/docs#getNearest",
 ];
 
 /// The elements that each page shows last: its points, then its pictures or its times.
-const READY: &str = "(({ state, start, timed, gallery, works }) => location.pathname !== '/' ? state === 'ready' || timed \
+const READY: &str = "(({ state, start, timed, gallery }) => location.pathname !== '/' ? state === 'ready' || timed \
                      : location.hash.includes('tab=gallery') ? gallery \
-                     : state === 'ready' && (location.hash.includes('tab=works') ? works : start === 'ready'))\
+                     : state === 'ready' && start === 'ready')\
                      (document.documentElement.dataset)";
 
 /// The layout shift since the page was opened, with the elements that moved.
