@@ -379,7 +379,6 @@ session.on((changed) => {
 /** Stipples a picture with the layer that is picked. */
 async function stipple(file) {
   if (!controls) return;
-  if (file.name.endsWith(".json")) return paint.open(file);
   try {
     banner(`Sending “${file.name}” …`);
     const members = await sendPicture(file, plane.view);

@@ -4,6 +4,7 @@
 import { contextOf } from "./dom.js";
 import { masksOf, packed, setDots } from "./dots.js";
 import { ARROW, SHAPES, isMarked, slotsOf } from "./marks.js";
+import { cssOf } from "./theme.js";
 
 const TRIANGLE = [[0.95, 0], [-0.5, 0.83], [-0.5, -0.83]];
 const SQUARE = [[0.62, 0.62], [-0.62, 0.62], [-0.62, -0.62], [0.62, -0.62]];
@@ -50,10 +51,6 @@ export function plainPainter(canvas) {
   return context ? new PlainPainter(context, canvas) : null;
 }
 
-function css([r, g, b]) {
-  return `rgb(${[r, g, b].map((v) => Math.round(v * 255)).join(" ")})`;
-}
-
 class PlainPainter {
   constructor(context, canvas) {
     this.context = context;
@@ -85,7 +82,7 @@ class PlainPainter {
     if (sheet.isDots) sheet.pixels.fill(packed(ground));
     else {
       sheet.context.setTransform(1, 0, 0, 1, 0, 0);
-      sheet.context.fillStyle = css(ground);
+      sheet.context.fillStyle = cssOf(ground);
       sheet.context.fillRect(0, 0, sheet.width, sheet.height);
     }
   }
@@ -112,10 +109,10 @@ class PlainPainter {
     const { context } = sheet;
     const { data, stride } = chunk;
     const slots = slotsOf(layer, chunk.columns);
-    context.fillStyle = css(color);
+    context.fillStyle = cssOf(color);
     for (let k = first; k < first + count; k += 1) {
       const [x, y] = [left + data[k * stride] * zoom, top - data[k * stride + 1] * zoom];
-      if (tones) context.fillStyle = css(tones[data[k * stride + slots.variant]] ?? color);
+      if (tones) context.fillStyle = cssOf(tones[data[k * stride + slots.variant]] ?? color);
       this.mark(context, layer, [x, y], size, slots, data.subarray(k * stride, (k + 1) * stride));
     }
     context.setTransform(1, 0, 0, 1, 0, 0);
@@ -143,7 +140,7 @@ class PlainPainter {
   begin(ground) {
     const { context, canvas } = this;
     context.setTransform(1, 0, 0, 1, 0, 0);
-    context.fillStyle = css(ground);
+    context.fillStyle = cssOf(ground);
     context.fillRect(0, 0, canvas.width, canvas.height);
   }
 

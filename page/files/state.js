@@ -102,8 +102,8 @@ const KEYS = {
   clear: "clear",
 };
 
-/** The most characters of a painting in the address; a longer one goes into a file. */
-export const MOST_PAINT = 4000;
+/** The most characters of a painting in the address; a longer one is in the requests of Take alone. */
+export const MOST_PAINT = 16_000;
 
 /** The most layers that the page offers. */
 export const MOST_LAYERS = 6;
@@ -120,6 +120,7 @@ export const MOST_LAYERS = 6;
  * @property {string} [worldSeed] Another seed than the world's own, or nothing.
  * @property {Layer[]} layers
  * @property {string} tab
+ * @property {string} take What is taken away: nothing for the view, or what repeats, `tile` or `mask`.
  * @property {string} renderer `2d`, `webgl2` or nothing.
  */
 
@@ -137,6 +138,7 @@ export function initial() {
     worldSeed: "",
     layers: [{ ...LAYER }],
     tab: "start",
+    take: "",
     renderer: "",
   };
 }
@@ -153,9 +155,10 @@ export function fromHash(hash) {
   const span = Number(given.get("span"));
   if (Number.isFinite(span) && span > 0) state.span = span;
   if (given.size > 0) state.tab = "choose";
-  const [tab, renderer] = ["tab", "renderer"].map((name) => given.get(name) ?? "");
+  const [tab, renderer, take] = ["tab", "renderer", "take"].map((name) => given.get(name) ?? "");
   if (["start", "choose", "understand", "take", "gallery"].includes(tab)) state.tab = tab;
   if (["2d", "webgl2"].includes(renderer)) state.renderer = renderer;
+  if (["tile", "mask"].includes(take)) state.take = take;
   const [world, seed] = ["world", "world.seed"].map((name) => given.get(name) ?? "");
   if (/^[\w.-]{1,64}$/.test(world)) state.world = world;
   if (/^\d{1,20}$/.test(seed)) state.worldSeed = seed;
@@ -213,6 +216,7 @@ export function toHash(state) {
     }
   });
   if (state.tab !== "choose") said.push(["tab", state.tab]);
+  if (state.take) said.push(["take", state.take]);
   if (state.renderer) said.push(["renderer", state.renderer]);
   return `#${said.map(([key, value]) => `${key}=${encoded(value)}`).join("&")}`;
 }

@@ -39,6 +39,7 @@ export class Tabs {
   /** Shows the tab that is chosen. */
   show() {
     const { tab } = this.session.state;
+    const had = byId("panel-body").contains(document.activeElement);
     const root = document.documentElement;
     for (const name of TABS) {
       const isOpen = name === tabOf(tab);
@@ -56,6 +57,8 @@ export class Tabs {
     for (const part of /** @type {HTMLCollectionOf<HTMLElement>} */ (byId("stage").children)) {
       if (part.role !== "alert" && part.role !== "status") part.inert = tab === "gallery" && part.id !== tab;
     }
+    // What had the focus may be hidden now.
+    if (had && !document.activeElement?.checkVisibility()) byId(tabOf(tab)).focus({ preventScroll: true });
     this.opened(tab);
   }
 }

@@ -46,6 +46,11 @@ function channels(color) {
   return (color.match(/[\d.]+/g) ?? []).slice(0, 3).map((v) => Number(v) / 255);
 }
 
+/** Red, green and blue from 0 to 1 as canvases take a color. */
+export function cssOf(rgb) {
+  return `rgb(${rgb.map((v) => Math.round(v * 255)).join(" ")})`;
+}
+
 /** Whether the theme of now is dark. */
 function isDark() {
   const { theme } = document.documentElement.dataset;

@@ -1,7 +1,7 @@
 // One method: its points, what had to be made for them, and what they measure.
 
 import { lineChart, spectrumPicture } from "../charts.js";
-import { byId, contextOf, make, spoken } from "../dom.js";
+import { contextOf, make } from "../dom.js";
 import { MOST_NU } from "../spectrum.js";
 import { measure } from "../measure.js";
 import { distance } from "../place.js";
@@ -17,28 +17,12 @@ import { Asked, Made, windowAround } from "./sources.js";
  */
 const NOTHING = { version: "none", runs: () => [] };
 
-/** Nanoseconds as people say them. */
-function time(nanoseconds) {
-  if (!Number.isFinite(nanoseconds)) return "–";
-  return nanoseconds < 1000 ? `${spoken(nanoseconds, 2)} ns` : `${spoken(nanoseconds / 1000, 2)} µs`;
-}
-
-/** Goes to the words about times; the address keeps what is compared. */
-function toTime(event) {
-  event.preventDefault();
-  byId("about-time").scrollIntoView();
-  byId("about-time").focus();
-}
-
 export class Panel {
   constructor(method, { changed, failed }) {
     this.method = method;
     this.changed = changed;
     this.failed = failed;
-    this.isTimed = false;
     this.isOutside = false;
-    /** @type {number | undefined} */
-    this.nanoseconds = undefined;
     /** The window whose points are drawn alone, and these. */
     this.aloneKey = "";
     this.aloneSource = NOTHING;
@@ -53,17 +37,15 @@ export class Panel {
     this.spectrum = canvas("Spectrum", { class: "spectrum" });
     this.radial = canvas("Radial power", { class: "radial" });
     this.none = make("p", { class: "note", hidden: true }, `Not measured here: the square of ${MEASURED} × ${MEASURED} reaches past its region.`);
-    this.figures = Object.fromEntries(["least", "mean", "count", "time"].map((key) => [key, make("dd", { id: `${key}-${id}` }, "…")]));
-    this.timing = make("dd", { class: "timing", id: `timing-${id}` });
+    this.figures = Object.fromEntries(["least", "mean", "count"].map((key) => [key, make("dd", { id: `${key}-${id}` }, "…")]));
     this.price = { made: make("b", { id: `made-${id}` }, "…"), words: make("span", { id: `price-${id}` }), why: make("p", { class: "why", id: `why-${id}` }) };
-    const row = (words, key, ...more) => make("div", {}, make("dt", {}, words), this.figures[key], more);
+    const row = (words, key) => make("div", {}, make("dt", {}, words), this.figures[key]);
     this.element = make("article", { id: `method-${id}`, "aria-labelledby": `name-${id}` },
       make("h2", { id: `name-${id}` }, name),
       make("div", { class: "frame" }, this.plane, this.outside),
       make("div", { class: "price" }, make("p", {}, this.price.made, " ", this.price.words), this.price.why),
       make("div", { class: "spectra" }, make("div", { class: "frame" }, this.spectrum, this.none), this.radial),
-      make("dl", {}, row("Minimum distance", "least"), row("Mean distance", "mean"), row("Points", "count"),
-        row("Time per point", "time", this.timing)),
+      make("dl", {}, row("Minimum distance", "least"), row("Mean distance", "mean"), row("Points", "count")),
       make("p", { class: "words" }, words, " ", make("cite", {}, source)));
   }
 
@@ -123,7 +105,7 @@ export class Panel {
     }
     // Nothing is said of points that are still on their way.
     const { made, words, why } = seen === 0 && !this.isOutside ? { words: "", why: "" } : priceOf(this.method.id, window, {
-      seen, total: this.source.total, isOutside: this.isOutside, nanoseconds: this.nanoseconds,
+      seen, total: this.source.total, isOutside: this.isOutside, nanoseconds: this.source.nanoseconds,
     });
     for (const [key, text] of Object.entries({ made: made === undefined ? "…" : large(made), words, why })) {
       if (this.price[key].textContent !== text) this.price[key].textContent = text;
@@ -158,17 +140,5 @@ export class Panel {
     lineChart(this.radial, {
       series: [...beside, { values: radial, color: "accent" }], x: [0, MOST_NU], y: [0, top], name: "ν", aspect: 0.55,
     });
-  }
-
-  /** Times the method, once for each choice. */
-  async time() {
-    const { nanoseconds, built } = await this.source.time();
-    this.nanoseconds = nanoseconds;
-    this.figures.time.textContent = time(nanoseconds);
-    if (nanoseconds === undefined) this.timing.replaceChildren("made by the server: ", make("a", { href: "#about-time", onclick: toTime }, "its own figures"));
-    else if (this.method.box) this.timing.textContent = `all of its region, built in ${spoken(built, 2)} ms`;
-    else if (built) this.timing.textContent = `after ${spoken(built, 2)} ms for the tile`;
-    else this.timing.textContent = "for any window alone";
-    this.changed();
   }
 }

@@ -4,6 +4,7 @@ import { contextOf } from "../dom.js";
 import { dotSize } from "../marks.js";
 import { distance } from "../place.js";
 import { themeColor } from "../theme.js";
+import { sized } from "../view.js";
 
 /** How much larger than the canvas the sheet is, on each side, as a share of the canvas. */
 const MARGIN = 0.3;
@@ -39,7 +40,7 @@ export class Sheet {
   draw(view, source) {
     const { canvas, held } = this;
     const [width, height] = view.pixels;
-    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    sized(canvas, view.pixels);
     if (!held || held.version !== source.version || !this.fits(view)) this.paint(view, source);
     const pixel = view.unit / view.ratio;
     const context = contextOf(canvas);

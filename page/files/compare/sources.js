@@ -7,7 +7,7 @@ import { decimalsFor, distance, formatPlace, moved, place } from "../place.js";
 import { joined, setOf } from "../query.js";
 import { LAYER } from "../state.js";
 import { callsOf } from "../worker.js";
-import { MEASURED, TILE, boxOf } from "./methods.js";
+import { MEASURED, boxOf } from "./methods.js";
 
 /** The part of the world that is held around a view, in views. */
 const AHEAD = 2;
@@ -29,6 +29,8 @@ export class Made {
     this.points = new Float64Array(0);
     /** Points in the region of a method that has one. */
     this.total = 0;
+    /** The time of each, as far as it is known. */
+    this.nanoseconds = NaN;
     this.version = 0;
     this.seed = NaN;
   }
@@ -69,6 +71,7 @@ export class Made {
       this.window = window;
       this.points = made.points;
       this.total = made.total ?? 0;
+      this.nanoseconds = made.nanoseconds;
       this.version += 1;
     }
     this.changed();
@@ -88,20 +91,12 @@ export class Made {
     return isWhole ? points : null;
   }
 
-  /** What has to be made for a window: all of its region for a method that has one, one tile of a repeated one. */
+  /** What has to be made for a window: all of its region for a method that has one. */
   async alone(window) {
     const box = boxOf(this.method);
-    const corner = (at) => place(Math.floor(at.i / TILE) * TILE);
-    let all = window;
-    if (box) all = { x: place(box[0]), y: place(box[1]), width: box[2] - box[0], height: box[3] - box[1] };
-    else if (this.method === "tile") all = { x: corner(window.x), y: corner(window.y), width: TILE, height: TILE };
+    const all = box ? { x: place(box[0]), y: place(box[1]), width: box[2] - box[0], height: box[3] - box[1] } : window;
     const { points } = await make({ method: this.method, seed: this.seed, window: all });
     return { points, count: points.length / 2, stride: 2, x: all.x, y: all.y };
-  }
-
-  /** The time per point. */
-  time() {
-    return make({ method: this.method, seed: this.seed });
   }
 }
 
@@ -116,6 +111,7 @@ export class Asked {
     this.wanted = [];
     this.seed = "";
     this.total = 0;
+    this.nanoseconds = NaN;
   }
 
   use({ seed, profile }) {
@@ -150,10 +146,5 @@ export class Asked {
   async alone(window) {
     const points = await this.answer(window);
     return { points, count: points.length / 2, stride: 2, x: window.x, y: window.y };
-  }
-
-  /** No time: the points are made elsewhere, by another program. */
-  time() {
-    return {};
   }
 }

@@ -1,6 +1,6 @@
 // Points by chance beside as many of Strew's: they fall one by one, cells and a ring count them.
 
-import { streamOf } from "../compare/hash.js";
+import { streamOf } from "../hash.js";
 import { disk, disks, line, pair, palette, words } from "./pen.js";
 
 /** The side of the square in mean spacings, the points in it, and the cells along a side. */

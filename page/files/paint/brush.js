@@ -3,6 +3,7 @@
 
 import { contextOf } from "../dom.js";
 import { themeColor } from "../theme.js";
+import { sized } from "../view.js";
 import { toNumber } from "../place.js";
 
 /** How far an arrow key moves the cursor, in brush sizes; with Shift four times as far. */
@@ -146,7 +147,7 @@ export class Brush {
     const { canvas, plane, cursor, line } = this;
     const { view } = plane;
     const [width, height] = view.pixels;
-    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    sized(canvas, view.pixels);
     const context = contextOf(canvas);
     context.clearRect(0, 0, width, height);
     const pixel = view.unit / view.ratio;

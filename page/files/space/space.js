@@ -1,5 +1,4 @@
-// The page of space: a volume to turn, zoom and fly through, the request for the chunk in the middle, and slabs beside
-// those of other methods.
+// The page of space: a volume to turn, zoom and fly through, and the request for the chunk in the middle.
 
 import { Gone, Problem, isAway, onPresence } from "../api.js";
 import { tools } from "../bar.js";
@@ -7,33 +6,28 @@ import { byId, bytes, copy, counted, icon, make, settled, skipLinks } from "../d
 import { fault, field, refusal, select, setOptions } from "../form.js";
 import { formatPlace, place } from "../place.js";
 import { themeColor } from "../theme.js";
+import { fineness, sized } from "../view.js";
 import { cameraOf } from "../walk/camera.js";
-import { flatOn } from "./flat.js";
 import { sceneOn } from "./scene.js";
-import { Slabs } from "./slabs.js";
 import { PROFILES, REACH, fromHash, isInReach, isSeed, isSpacing, toHash } from "./state.js";
 import { Viewer } from "./viewer.js";
 import { Volume, chunkAt, cornerOf, pathOf, sizeFor } from "./volume.js";
 
 /** Milliseconds without a byte after which the page says that it waits. */
 const PATIENCE = 1500;
-/** Milliseconds until slabs are requested again from a server that was busy. */
-const AGAIN = 1500;
-/** Pixels of the picture for each CSS pixel. */
-const RATIO = Math.min(2, devicePixelRatio);
 
 const root = document.documentElement;
 const canvas = byId("view");
 const state = fromHash(location.hash);
-const scene = (!state.isFlat && sceneOn(canvas)) || flatOn(canvas);
-root.dataset.renderer = scene.isFlat ? "2d" : "webgl2";
+/** Nothing where there is no WebGL2: the fields and the request work without a picture. */
+const scene = sceneOn(canvas);
 
 /**
  * What the banner says, by subject; the first that there is is shown.
- * @type {Record<"gone" | "busy" | "refused" | "flat" | "link", string | Error | null>}
+ * @type {Record<"gone" | "busy" | "refused" | "blind" | "link", string | Error | null>}
  */
-const notes = { gone: null, busy: null, refused: null, link: state.wrong.join(" ") || null, flat: null };
-if (scene.isFlat) notes.flat = "This browser draws without WebGL2, so the picture is plainer and slower.";
+const notes = { gone: null, busy: null, refused: null, link: state.wrong.join(" ") || null, blind: null };
+if (!scene) notes.blind = "The picture needs WebGL2, which this browser does not have. The request for the points works without.";
 
 function note(subject, words) {
   if (notes[subject] === words) return;
@@ -74,7 +68,6 @@ const viewer = new Viewer(canvas, state, () => {
   note("link", null);
   later();
 });
-const slabs = new Slabs(byId("slabs"));
 
 /** @type {import("./scene.js").Colors} */
 let colors;
@@ -82,9 +75,8 @@ let isStale = true;
 
 function themed() {
   const of = (/** @type {string} */ name) => (themeColor(name).match(/[\d.]+/g) ?? []).slice(0, 3).map((v) => Number(v) / 255);
-  colors = { ground: of("void"), near: of("near"), far: of("far"), slab: of("slab"), line: of("ink") };
+  colors = { ground: of("void"), near: of("near"), far: of("far"), line: of("ink") };
   isStale = true;
-  slabs.draw();
 }
 
 /** What is seen from the eye, in mean spacings. */
@@ -99,7 +91,6 @@ function look() {
   return {
     camera, middle, reach, colors,
     scale: 1 / unit,
-    slab: 0.5,
     depths: [Math.max(0, away - reach), away + reach],
     chunks: done.map((chunk) => ({ chunk, corner: seen(cornerOf(chunk, at)) })),
     box: { corner: seen(cornerOf(here, at)), side: here.size / unit },
@@ -113,13 +104,13 @@ function frame(now) {
   const seconds = Math.min(0.1, (now - before) / 1000);
   before = now;
   viewer.step(seconds);
-  const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((v) => Math.round(v * RATIO));
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((v) => Math.round(v * fineness()));
   const same = [...state.at.flatMap(({ i, f }) => [i, f]), state.yaw, state.pitch, state.away, state.reach, width, height].join();
   // A still picture is drawn once.
   if (isStale || same !== pictured) {
-    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    sized(canvas, [width, height]);
     volume.move(state);
-    scene.draw(look());
+    scene?.draw(look());
     [isStale, pictured] = [false, same];
     tell(now);
   } else if (root.dataset.state === "loading") {
@@ -144,7 +135,7 @@ function tell(now) {
   byId("turn").setAttribute("aria-pressed", String(viewer.isTurning));
 }
 
-/** What follows a move, once it is over: the address, the request, the slabs. */
+/** What follows a move, once it is over: the address and the request. */
 const later = settled(350, () => {
   const hash = toHash(state);
   if (hash !== location.hash) history.replaceState(null, "", hash);
@@ -152,11 +143,6 @@ const later = settled(350, () => {
   byId("command").textContent = `curl -f '${location.origin}${pathOf(state, here, "csv")}' -o chunk.csv`;
   const { points, chunks } = volume.sums;
   byId("spoken").textContent = `${counted(points)} in ${counted(chunks, "chunk")} around ${state.at.map((one) => formatPlace(one, 0)).join(", ")}`;
-  slabs.show(state).catch((error) => {
-    // A busy server is asked again, as for chunks.
-    if (error.isPassing) setTimeout(later, AGAIN);
-    else failed(error);
-  });
 });
 
 /** Takes another value of a field. */
@@ -200,8 +186,7 @@ function fill() {
 
 /** Goes to a state of an address. */
 function go(next) {
-  const { isFlat, ...rest } = next;
-  Object.assign(state, rest);
+  Object.assign(state, next);
   home = null;
   byId("jump").textContent = "Jump far away";
   note("link", state.wrong.join(" ") || null);
@@ -251,5 +236,5 @@ banner();
 later();
 
 // For the curious, and for tests.
-globalThis.strew = { state, viewer, volume, slabs, scene };
+globalThis.strew = { state, viewer, volume, scene };
 requestAnimationFrame(frame);

@@ -29,7 +29,6 @@ const BEGINNING = { yaw: 30, pitch: -18, away: 30, reach: 16, spacing: "1", seed
  * @property {string} spacing
  * @property {string} seed
  * @property {string} profile
- * @property {boolean} isFlat Whether it is drawn without WebGL2.
  * @property {boolean} isPlain Whether the address says nothing of the view.
  * @property {string[]} wrong What was not understood, in words.
  */
@@ -81,14 +80,13 @@ export function fromHash(hash) {
     spacing,
     seed: text("seed", isSeed, "The seed in the address is not a whole number below 2⁶⁴, so it is 7."),
     profile: text("profile", (value) => PROFILES.includes(value), "The profile in the address is not for space, so it is blue."),
-    isFlat: given.get("renderer") === "2d",
     isPlain: !given.has("at"),
     wrong,
   };
 }
 
 /** The address of a state. */
-export function toHash({ at, yaw, pitch, away, reach, spacing, seed, profile, isFlat }) {
+export function toHash({ at, yaw, pitch, away, reach, spacing, seed, profile }) {
   const degrees = (angle) => String(Math.round((angle * 180) / Math.PI) % 360);
   const decimals = Math.max(0, Math.ceil(2 - Math.log10(Number(spacing))));
   const parts = [
@@ -96,6 +94,5 @@ export function toHash({ at, yaw, pitch, away, reach, spacing, seed, profile, is
     `away=${Number(away.toFixed(1))}`, `reach=${reach}`, `spacing=${spacing}`, `seed=${seed}`,
   ];
   if (profile !== "blue") parts.push(`profile=${profile}`);
-  if (isFlat) parts.push("renderer=2d");
   return `#${parts.join("&")}`;
 }

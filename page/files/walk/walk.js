@@ -183,7 +183,7 @@ function remember() {
 /** The plane with the same points around the walker. */
 function planeHash() {
   const { rank, ...layer } = layersOf(given.seed)[0];
-  return toHash({ ...walker, span: 80, tab: "choose", layers: [{ ...LAYER, ...layer, color: 3 }], renderer: "" });
+  return toHash({ ...walker, span: 80, tab: "choose", take: "", layers: [{ ...LAYER, ...layer, color: 3 }], renderer: "" });
 }
 
 let asked = 0;

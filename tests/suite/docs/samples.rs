@@ -109,8 +109,12 @@ fn a_forest_of_three_js_grows_around_the_camera() {
         return;
     };
     // Far away, where f32 alone would not know one tree from the next; and not far to see, because no GPU draws.
-    let address =
-        |url: &str| format!("{}/index.html?x=3e8&y=-7e8&speed=0&far=96&url={url}", files.url);
+    let address = |url: &str| {
+        format!(
+            "{}/index.html?x=3e8&y=-7e8&speed=0&far=96&url={url}",
+            files.url
+        )
+    };
     browser.go(&address(&daemon.url("")));
     let said = "document.querySelector('#said').textContent";
     let whole = "document.querySelector('#said').dataset.missing === '0'";

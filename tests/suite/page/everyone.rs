@@ -43,7 +43,7 @@ fn no_page_is_wider_than_its_window() {
     };
     for (width, height) in [(390, 844), (320, 568)] {
         browser.resize(width, height);
-        for path in ["/", "/how", "/compare", "/walk", "/space", "/tile", "/docs"] {
+        for path in ["/", "/how", "/compare", "/walk", "/space", "/docs"] {
             browser.go(&daemon.url(path));
             browser.until(
                 "document.querySelector('button, a, canvas') && document.readyState === 'complete'",
@@ -84,7 +84,6 @@ fn the_first_key_leads_past_what_repeats() {
         ("/", "panel-body"),
         ("/how", "essay"),
         ("/compare", "methods"),
-        ("/tile", "choices"),
         ("/space#at=4,4,4", "choices"),
         ("/docs#getPoints", "main"),
     ] {

@@ -107,8 +107,8 @@ fn malformed_links_show_what_they_can() {
         assert_eq!(browser.text("main h2"), "The API", "{hash}");
     }
     for hash in [
-        "#show=nothing&span=0&seed=1e99&at=1e300,0&profile=%2F..%2F",
-        "#%E0%A4%A&show=white&span=NaN",
+        "#show=tile&span=0&seed=1e99&at=1e300,0&profile=%2F..%2F",
+        "#%E0%A4%A&span=NaN",
     ] {
         open(
             &format!("/compare{hash}"),

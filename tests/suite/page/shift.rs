@@ -9,14 +9,10 @@ const SIZES: [(u32, u32); 2] = [(390, 844), (1280, 800)];
 const MOST: f64 = 0.05;
 
 /// Other contents of pages, by the hashes of their addresses.
-const MORE: [&str; 3] = [
-    "/#tab=gallery",
-    "/compare#show=strew,poisson,tile,jitter,halton,white",
-    "/docs#getNearest",
-];
+const MORE: [&str; 2] = ["/#tab=gallery", "/docs#getNearest"];
 
 /// The elements that each page shows last: its points, then its pictures or its times.
-const READY: &str = "(({ state, start, timed, gallery }) => location.pathname !== '/' ? state === 'ready' || timed \
+const READY: &str = "(({ state, start, measured, gallery }) => location.pathname !== '/' ? state === 'ready' || measured \
                      : location.hash.includes('tab=gallery') ? gallery \
                      : state === 'ready' && start === 'ready')\
                      (document.documentElement.dataset)";
