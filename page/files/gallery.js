@@ -1,13 +1,14 @@
 // The gallery: every profile as points, spectrum and radial power, side by side; each opens in the
 // view.
 
+import { encoded } from "./address.js";
 import { ask, wordsOf } from "./api.js";
 import { lineChart, pointPicture, spectrumPicture, topOf } from "./charts.js";
 import { byId, make, spoken } from "./dom.js";
 import { measure } from "./measure.js";
 import { Part } from "./part.js";
 import { PROFILE_WORDS, profileNames } from "./profiles.js";
-import { LAYER, encoded } from "./state.js";
+import { LAYER } from "./state.js";
 import { figureOf, recordedOf } from "./understand.js";
 
 /** The side of what is measured and of what is drawn of it, in mean spacings. */

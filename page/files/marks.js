@@ -1,4 +1,4 @@
-// How points look: the size of a dot at a zoom, and the shapes of marks. Both painters draw by these.
+// How points look: the size of a dot at a zoom, and the shapes of marks.
 
 import { allVariants, variantNames } from "./query.js";
 import { COLOR_NAMES, KIND_COLORS } from "./state.js";

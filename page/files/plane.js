@@ -2,8 +2,7 @@
 
 import { chunkSize, cornerFrom, farthest, isTooFar } from "./grid.js";
 import { Chunks, runsOf } from "./chunks.js";
-import { glPainter } from "./painter_gl.js";
-import { plainPainter } from "./painter_2d.js";
+import { Painter } from "./painter.js";
 import { moved, place, toNumber } from "./place.js";
 import { Sheets } from "./sheets.js";
 import { Moving, sized } from "./view.js";
@@ -39,14 +38,12 @@ const REST = 140;
 export class Plane extends Moving {
   /**
    * @param {HTMLCanvasElement} canvas
-   * @param {string} renderer `2d`, `webgl2`, or nothing for the faster one.
    * @param {Events} events
    */
-  constructor(canvas, renderer, events) {
+  constructor(canvas, events) {
     super();
     this.events = events;
-    /** @type {any} */
-    this.painter = (renderer === "2d" ? null : glPainter(canvas, renderer === "webgl2")) ?? plainPainter(canvas);
+    this.painter = new Painter(canvas);
     this.canvas = canvas;
     this.chunks = new Chunks(() => this.draw(), events.failed);
     this.sheets = new Sheets(this.painter, this.chunks);
@@ -55,9 +52,6 @@ export class Plane extends Moving {
     this.isWaiting = false;
     this.zoomedAt = -Infinity;
     new ResizeObserver(() => canvas.clientWidth && canvas.clientHeight && this.resize(canvas.clientWidth, canvas.clientHeight)).observe(canvas);
-    canvas.addEventListener("webglcontextlost", () => events.failed(new Error(
-      "The graphics driver gave up. Load the page again, or add &renderer=2d to its address.",
-    )));
   }
 
   changed() {

@@ -31,10 +31,7 @@ export class Session {
     this.isHeld = false;
     addEventListener("popstate", () => {
       this.write.cancel();
-      const { renderer } = this.state;
       this.state = fromHash(location.hash);
-      // A canvas that has one kind of context never gets another.
-      if (this.state.renderer !== renderer) return location.reload();
       this.tell("layers", "view", "tab");
     });
   }

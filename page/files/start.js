@@ -51,7 +51,7 @@ export class Start extends Part {
     });
     byId("view-plane").addEventListener("click", (event) => {
       event.preventDefault();
-      session.choose((state) => Object.assign(state, { ...initial(), tab: "choose", renderer: state.renderer }), "layers", "view", "tab");
+      session.choose((state) => Object.assign(state, { ...initial(), tab: "choose" }), "layers", "view", "tab");
       opened();
     });
   }

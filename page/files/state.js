@@ -1,7 +1,8 @@
 // The state of the page, and its form in the address: everything that is not a default is in the
 // hash, so that a link shows the same view.
 
-import { decimalsFor, formatPlace, parsePlace, place } from "./place.js";
+import { givenIn, hashOf } from "./address.js";
+import { decimalsFor, formatPlace, place } from "./place.js";
 
 /** The amounts that an unbounded plane can have, by the names that requests use. */
 export const AMOUNTS = ["spacing", "density", "min_distance"];
@@ -76,32 +77,6 @@ export const LAYER = Object.freeze({
   clear: "",
 });
 
-/** The short names of a layer's members in the address. */
-const KEYS = {
-  profile: "profile",
-  alpha: "alpha",
-  map: "map",
-  by: "by",
-  amount: "amount",
-  seed: "seed",
-  warp: "warp",
-  settle: "settle",
-  field: "field",
-  paint: "paint",
-  lod: "lod",
-  shade: "shade",
-  paper: "paper",
-  color: "color",
-  dot: "dot",
-  angle: "angle",
-  scale: "scale",
-  range: "range",
-  variant: "variant",
-  variants: "variants",
-  spread: "spread",
-  clear: "clear",
-};
-
 /** The most characters of a painting in the address; a longer one is in the requests of Take alone. */
 export const MOST_PAINT = 16_000;
 
@@ -121,7 +96,6 @@ export const MOST_LAYERS = 6;
  * @property {Layer[]} layers
  * @property {string} tab
  * @property {string} take What is taken away: nothing for the view, or what repeats, `tile` or `mask`.
- * @property {string} renderer `2d`, `webgl2` or nothing.
  */
 
 /**
@@ -139,7 +113,6 @@ export function initial() {
     layers: [{ ...LAYER }],
     tab: "start",
     take: "",
-    renderer: "",
   };
 }
 
@@ -148,30 +121,28 @@ export function initial() {
  * @param {string} hash
  */
 export function fromHash(hash) {
-  const given = new URLSearchParams(hash.replace(/^#/, ""));
+  const given = givenIn(hash);
   const state = initial();
-  const [x, y] = (given.get("at") ?? "").split(",").map(parsePlace);
+  const [x, y] = given.at();
   if (x && y) Object.assign(state, { x, y });
-  const span = Number(given.get("span"));
-  if (Number.isFinite(span) && span > 0) state.span = span;
+  const span = given.number("span", 0);
+  if (span > 0) state.span = span;
   if (given.size > 0) state.tab = "choose";
-  const [tab, renderer, take] = ["tab", "renderer", "take"].map((name) => given.get(name) ?? "");
-  if (["start", "choose", "understand", "take", "gallery"].includes(tab)) state.tab = tab;
-  if (["2d", "webgl2"].includes(renderer)) state.renderer = renderer;
-  if (["tile", "mask"].includes(take)) state.take = take;
-  const [world, seed] = ["world", "world.seed"].map((name) => given.get(name) ?? "");
-  if (/^[\w.-]{1,64}$/.test(world)) state.world = world;
-  if (/^\d{1,20}$/.test(seed)) state.worldSeed = seed;
-  const layers = Math.min(MOST_LAYERS, Math.max(1, Number(given.get("layers")) || 1));
+  state.tab = given.matching("tab", /^(start|choose|understand|take|gallery)$/, state.tab);
+  state.take = given.matching("take", /^(tile|mask)$/);
+  state.world = given.matching("world", /^[\w.-]{1,64}$/);
+  state.worldSeed = given.matching("world.seed", /^\d{1,20}$/);
+  const layers = Math.trunc(given.number("layers", 1, [1, MOST_LAYERS]));
   state.layers = Array.from({ length: layers }, (_, i) => layerFrom(given, i));
   return state;
 }
 
 function layerFrom(given, i) {
   const layer = { ...LAYER, color: i };
-  for (const [member, key] of Object.entries(KEYS)) {
-    const text = given.get(named(key, i));
-    if (text === null) continue;
+  for (const member of Object.keys(LAYER)) {
+    const name = named(member, i);
+    if (!given.has(name)) continue;
+    const text = given.text(name);
     if (typeof LAYER[member] === "boolean") layer[member] = text === "1";
     else if (typeof LAYER[member] === "number") {
       if (Number.isFinite(Number(text))) layer[member] = Number(text);
@@ -206,22 +177,16 @@ export function toHash(state) {
   const layers = state.world ? [] : state.layers;
   if (layers.length > 1) said.push(["layers", String(layers.length)]);
   layers.forEach((layer, i) => {
-    for (const [member, key] of Object.entries(KEYS)) {
+    for (const member of Object.keys(LAYER)) {
       const standard = member === "color" ? i : LAYER[member];
       const must = member === "profile" || member === "amount" || member === "seed";
       if (!must && layer[member] === standard) continue;
       if (member === "paint" && layer.paint.length > MOST_PAINT) continue;
       const value = typeof layer[member] === "boolean" ? (layer[member] ? "1" : "0") : String(layer[member]);
-      said.push([named(key, i), value]);
+      said.push([named(member, i), value]);
     }
   });
   if (state.tab !== "choose") said.push(["tab", state.tab]);
   if (state.take) said.push(["take", state.take]);
-  if (state.renderer) said.push(["renderer", state.renderer]);
-  return `#${said.map(([key, value]) => `${key}=${encoded(value)}`).join("&")}`;
-}
-
-/** Percent-encodes only what an address cannot hold, so that people can read it. */
-export function encoded(text) {
-  return encodeURIComponent(text).replace(/%(2C|3A|28|29|2F)/g, (whole) => decodeURIComponent(whole));
+  return hashOf(said);
 }

@@ -1,6 +1,7 @@
 // The view that all panels share, and what of the page stands in its address.
 
-import { decimalsFor, formatPlace, parsePlace, place, toNumber } from "../place.js";
+import { givenIn, hashOf } from "../address.js";
+import { decimalsFor, formatPlace, place, toNumber } from "../place.js";
 import { Moving } from "../view.js";
 
 /** The fewest and the most mean spacings along the shorter side of a panel. */
@@ -11,35 +12,27 @@ const NARROW_SPAN = 20;
 /** Farther out, doubles do not tell places within a spacing apart. */
 export const FARTHEST = 1e12;
 
-/** The first state, before anything is chosen: `isNarrow` on phones. */
-function initial(isNarrow) {
-  return { x: place(0), y: place(0), span: isNarrow ? NARROW_SPAN : SPAN, seed: 1, profile: "blue" };
-}
-
 const bounded = (span) => Math.min(MOST_SPAN, Math.max(LEAST_SPAN, span));
-const isNear = (at) => at && Math.abs(toNumber(at)) <= FARTHEST;
+const isNear = (at) => Math.abs(toNumber(at)) <= FARTHEST;
 
-/** Reads the hash; what it does not say, or says wrongly, stays at its default. */
+/** Reads the hash; what it does not say, or says wrongly, stays at its default: `isNarrow` on phones. */
 export function fromHash(hash, isNarrow) {
-  const given = new URLSearchParams(hash.replace(/^#/, ""));
-  const state = initial(isNarrow);
-  const [x, y] = (given.get("at") ?? "").split(",").map(parsePlace);
-  if (isNear(x) && isNear(y)) Object.assign(state, { x, y });
-  const span = Number(given.get("span"));
-  if (span > 0) state.span = bounded(span);
-  const seed = given.get("seed") ?? "";
-  if (/^\d{1,9}$/.test(seed)) state.seed = Number(seed);
-  const profile = given.get("profile") ?? "";
-  if (/^[\w.-]{1,64}$/.test(profile)) state.profile = profile;
-  return state;
+  const given = givenIn(hash);
+  const [x, y] = given.at();
+  const span = given.number("span", 0);
+  const isPlace = x && y && isNear(x) && isNear(y);
+  return {
+    ...(isPlace ? { x, y } : { x: place(0), y: place(0) }),
+    span: span > 0 ? bounded(span) : isNarrow ? NARROW_SPAN : SPAN,
+    seed: Number(given.matching("seed", /^\d{1,9}$/, "1")),
+    profile: given.matching("profile", /^[\w.-]{1,64}$/, "blue"),
+  };
 }
 
 /** Writes the hash. */
-export function toHash(state) {
-  const at = [state.x, state.y].map((v) => formatPlace(v, decimalsFor(state.span) + 3)).join(",");
-  const said = [`at=${at}`, `span=${Number(state.span.toPrecision(5))}`, `seed=${state.seed}`];
-  if (state.profile !== "blue") said.push(`profile=${encodeURIComponent(state.profile)}`);
-  return `#${said.join("&")}`;
+export function toHash({ x, y, span, seed, profile }) {
+  const at = [x, y].map((v) => formatPlace(v, decimalsFor(span) + 3)).join(",");
+  return hashOf([["at", at], ["span", Number(span.toPrecision(5))], ["seed", seed], ...(profile === "blue" ? [] : [["profile", profile]])]);
 }
 
 /** One view for all panels; `moved()` hears of every move. */

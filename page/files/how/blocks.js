@@ -21,10 +21,8 @@ export class Blocks {
   point;
   /** @type {bigint[]} */
   starts;
-  /** @type {number} */
-  radius;
-  /** @type {number} */
-  seconds;
+  radius = 0;
+  seconds = 0;
 
   constructor() {
     this.pattern = new Pattern();

@@ -22,10 +22,8 @@ export class Chance {
   panels;
   /** @type {number[][]} */
   chance;
-  /** @type {number} */
-  fallen;
-  /** @type {number} */
-  seconds;
+  fallen = 0;
+  seconds = 0;
   /** @type {number[] | null} */
   ring;
   /** @type {number[][] | null} */

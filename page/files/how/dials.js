@@ -19,12 +19,9 @@ export class Row {
   chart;
   /** @type {((at: number) => void) | undefined} */
   told;
-  /** @type {number} */
-  at;
-  /** @type {number} */
-  seconds;
-  /** @type {number} */
-  visited;
+  at = 0;
+  seconds = 0;
+  visited = 0;
 
   constructor() {
     this.pattern = new Pattern();

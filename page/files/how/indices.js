@@ -39,10 +39,8 @@ export class Indices {
   grid;
   /** @type {import("./pen.js").Panel} */
   square;
-  /** @type {number} */
-  walked;
-  /** @type {number} */
-  seconds;
+  walked = 0;
+  seconds = 0;
 
   constructor() {
     this.pattern = new Pattern();

@@ -26,10 +26,8 @@ export class Race {
   misses;
   /** @type {number[][]} */
   missed;
-  /** @type {number} */
-  seconds;
-  /** @type {number} */
-  due;
+  seconds = 0;
+  due = 0;
 
   constructor() {
     this.seed = 11;

@@ -70,10 +70,8 @@ export class Same {
   point;
   /** @type {number[][]} */
   alike;
-  /** @type {number} */
-  laid;
-  /** @type {number} */
-  seconds;
+  laid = 0;
+  seconds = 0;
   /** @type {{ key: string, counts: Map<string, number> } | undefined} */
   counted;
 

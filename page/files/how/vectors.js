@@ -33,10 +33,8 @@ export class Vectors {
   points;
   /** @type {number[]} */
   point;
-  /** @type {number} */
-  seconds;
-  /** @type {number} */
-  share;
+  seconds = 0;
+  share = 0;
 
   constructor() {
     this.pattern = new Pattern();

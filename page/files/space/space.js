@@ -1,5 +1,6 @@
 // The page of space: a volume to turn, zoom and fly through, and the request for the chunk in the middle.
 
+import { isSeed } from "../address.js";
 import { Gone, Problem, isAway, onPresence } from "../api.js";
 import { tools } from "../bar.js";
 import { byId, bytes, copy, counted, icon, make, settled, skipLinks } from "../dom.js";
@@ -9,7 +10,7 @@ import { themeColor } from "../theme.js";
 import { fineness, sized } from "../view.js";
 import { cameraOf } from "../walk/camera.js";
 import { sceneOn } from "./scene.js";
-import { PROFILES, REACH, fromHash, isInReach, isSeed, isSpacing, toHash } from "./state.js";
+import { PROFILES, REACH, fromHash, isInReach, isSpacing, toHash } from "./state.js";
 import { Viewer } from "./viewer.js";
 import { Volume, chunkAt, cornerOf, pathOf, sizeFor } from "./volume.js";
 

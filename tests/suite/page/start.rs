@@ -98,7 +98,7 @@ fn pictures() {
         }
         // Dots of the portrait would be finer than the pixels of its picture.
         let hash = hash.replace("amount=0.42", "amount=0.8");
-        browser.look(&daemon, &format!("{hash}&renderer=2d"));
+        browser.look(&daemon, &hash);
         browser.value(
             "(Object.assign(document.querySelector('#stage').style, \
                 { right: 'auto', bottom: 'auto', width: '480px', height: '320px' }), 0)",

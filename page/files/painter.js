@@ -1,5 +1,4 @@
-// Points by a plain canvas, where there is no WebGL2 or nothing but a processor to do it: the same
-// sheets, the same marks. Sheets of mere dots are set pixel by pixel.
+// Points on a plain canvas. Sheets of mere dots are set pixel by pixel.
 
 import { contextOf } from "./dom.js";
 import { masksOf, packed, setDots } from "./dots.js";
@@ -45,17 +44,11 @@ function open(c, corners) {
   polygon(c, corners.map(([x, y]) => [x * HOLE, y * HOLE]).reverse());
 }
 
-/** A painter. */
-export function plainPainter(canvas) {
-  const context = contextOf(canvas, { alpha: false });
-  return context ? new PlainPainter(context, canvas) : null;
-}
-
-class PlainPainter {
-  constructor(context, canvas) {
-    this.context = context;
+export class Painter {
+  /** @param {HTMLCanvasElement} canvas */
+  constructor(canvas) {
+    this.context = contextOf(canvas, { alpha: false });
     this.canvas = canvas;
-    this.name = "2d";
     /** Points painted at once between looks at the clock. */
     this.slice = 4000;
     this.budget = 250_000;
