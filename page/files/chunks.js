@@ -37,7 +37,6 @@ const ROOM = (navigator.deviceMemory ?? 8) >= 4 ? 256e6 : 96e6;
  * @property {AbortController} [abort]
  * @property {(() => void) | null} [dropped] Called when its points are let go.
  * @property {any} [buffer] Where a painter keeps it.
- * @property {number} [uploaded]
  */
 /** @typedef {Address & Loaded} Chunk */
 

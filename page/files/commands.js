@@ -56,7 +56,7 @@ function isShort(layers) {
 }
 
 /** A word of a shell. */
-function quoted(text) {
+export function quoted(text) {
   return `'${text.replace(/'/g, "'\\''")}'`;
 }
 

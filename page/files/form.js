@@ -5,8 +5,14 @@ import { byId, make } from "./dom.js";
 
 /** A control with its label, further lines, and a line for what is wrong with its value. */
 export function field(words, id, control, ...more) {
-  const wrong = make("p", { class: "note bad", id: `wrong-${id}`, role: "alert", hidden: true });
-  return make("div", { class: "field" }, make("label", { for: id }, words), control, ...more, wrong);
+  const element = make("div", { class: "field" }, make("label", { for: id }, words), control, ...more);
+  wrongAt(control, element);
+  return element;
+}
+
+/** Adds the line for what is wrong with the value of a control to its field. */
+export function wrongAt(control, element = control.closest(".field")) {
+  element.append(make("p", { class: "note bad", id: `wrong-${control.id}`, role: "alert", hidden: true }));
 }
 
 /** A list to choose from; `changed(value)` hears what is chosen. */
@@ -23,12 +29,6 @@ export function setOptions(list, options, value) {
     list.dataset.options = text;
   }
   list.value = value;
-}
-
-/** A box to check; `changed(isChecked)` hears of it. */
-export function check(id, words, changed) {
-  const box = make("input", { type: "checkbox", id, onchange: (event) => changed(event.target.checked) });
-  return make("label", { class: "check" }, box, words);
 }
 
 /** Says what is wrong with the value of a field, at the field; no words if nothing is. */

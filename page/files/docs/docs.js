@@ -37,18 +37,12 @@ function wordsOf({ path, operation, method, tag, id }) {
 
 function list() {
   const about = new Map((api.tags ?? []).map(({ name, description }) => [name, description]));
-  const groups = Map.groupBy ? Map.groupBy(all, ({ tag }) => tag) : grouped();
+  const groups = Map.groupBy(all, ({ tag }) => tag);
   byId("operations").replaceChildren(...[...groups].map(([tag, members]) => make("section", { "data-tag": tag },
     make("h2", { title: about.get(tag) }, tag),
     make("ul", {}, members.map((one) => make("li", { "data-id": one.id }, make("a", { href: `#${one.id}` },
       make("span", { class: `method ${one.method.toLowerCase()}` }, one.method), make("span", {}, one.operation.summary),
       make("code", {}, one.path), make("small", { class: "hit", hidden: true }))))))));
-}
-
-function grouped() {
-  const groups = new Map();
-  for (const one of all) groups.set(one.tag, [...(groups.get(one.tag) ?? []), one]);
-  return groups;
 }
 
 /** Shows the operations that have all words of the search, and the parameters that have them. */
