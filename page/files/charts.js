@@ -5,7 +5,7 @@ import { themeColor } from "./theme.js";
 import { fineness } from "./view.js";
 
 /** Makes a canvas as fine as the screen; returns its context in CSS pixels with its size. */
-export function prepared(canvas, aspect) {
+function prepared(canvas, aspect) {
   const width = canvas.clientWidth || 280;
   const height = Math.round(width * aspect);
   const ratio = fineness();

@@ -148,12 +148,13 @@ export class Plane extends Moving {
   }
 
   /**
-   * Calls `visit(layer, x, y, chunk, k)` for the points in view, x and y from its middle.
+   * Calls `visit(layer, x, y, chunk, k)` for the points in view and up to `margin` around it, x and y from its middle.
    * @param {(layer: number, x: number, y: number, chunk: Chunk, k: number) => void} visit
+   * @param {number} [margin] In units of the world.
    */
-  each(visit) {
+  each(visit, margin = 0) {
     const { view, sheets } = this;
-    const [halfX, halfY] = [(view.width * view.unit) / 2, (view.height * view.unit) / 2];
+    const [halfX, halfY] = [(view.width * view.unit) / 2 + margin, (view.height * view.unit) / 2 + margin];
     for (const { chunk } of sheets.front?.parts ?? []) {
       const [left, low] = [cornerFrom(chunk.cx, chunk.size, view.x), cornerFrom(chunk.cy, chunk.size, view.y)];
       if (left > halfX || low > halfY || left + chunk.size < -halfX || low + chunk.size < -halfY) continue;
@@ -163,23 +164,6 @@ export class Plane extends Moving {
           const y = low + chunk.data[k * chunk.stride + 1];
           if (x >= -halfX && x < halfX && y >= -halfY && y < halfY) visit(layer, x, y, chunk, k);
         }
-      }
-    }
-  }
-
-  /**
-   * Calls `visit(x, y, chunk, k)` for the points in view and up to `margin` around it, x and y from its middle.
-   * @param {number} margin In units of the world.
-   * @param {(x: number, y: number, chunk: any, k: number) => void} visit
-   */
-  near(margin, visit) {
-    const { view, sheets } = this;
-    const [halfX, halfY] = [(view.width * view.unit) / 2 + margin, (view.height * view.unit) / 2 + margin];
-    for (const { chunk } of sheets.front?.parts ?? []) {
-      const [left, low] = [cornerFrom(chunk.cx, chunk.size, view.x), cornerFrom(chunk.cy, chunk.size, view.y)];
-      for (let k = 0; k < chunk.count; k += 1) {
-        const [x, y] = [left + chunk.data[k * chunk.stride], low + chunk.data[k * chunk.stride + 1]];
-        if (Math.abs(x) < halfX && Math.abs(y) < halfY) visit(x, y, chunk, k);
       }
     }
   }

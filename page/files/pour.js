@@ -92,14 +92,14 @@ export class Pour extends Part {
     const half = [canvas.width / 2, canvas.height / 2];
     context.fillStyle = cssOf(look.colors[look.layers[0].color]);
     context.beginPath();
-    this.plane.near(far * pixel, (x, y, chunk, k) => {
+    this.plane.each((_, x, y, chunk, k) => {
       const later = chance(chunk, k, 1) * (1 - SHARE);
       const left = 1 - eased(Math.min(1, Math.max(0, (time - later) / SHARE)));
       const [turn, away] = [2 * Math.PI * chance(chunk, k, 2), far * Math.sqrt(chance(chunk, k, 3)) * left];
       const [px, py] = [half[0] + x / pixel + away * Math.cos(turn), half[1] - y / pixel + away * Math.sin(turn)];
       context.moveTo(px + radius, py);
       context.arc(px, py, radius, 0, 2 * Math.PI);
-    });
+    }, far * pixel);
     context.fill();
     if (time > 0.7 && this.caption.textContent === CHANCE) this.say(EVEN);
   }

@@ -5,7 +5,7 @@ import { givenIn, hashOf } from "./address.js";
 import { decimalsFor, formatPlace, place } from "./place.js";
 
 /** The amounts that an unbounded plane can have, by the names that requests use. */
-export const AMOUNTS = ["spacing", "density", "min_distance"];
+const AMOUNTS = ["spacing", "density", "min_distance"];
 
 /** How kinds can be spread; no word for points of one kind. */
 const SPREADS = ["", "chance", "even", "joint"];

@@ -80,6 +80,11 @@ export function palette(layers = []) {
   };
 }
 
+/** A color of the theme as red, green and blue from 0 to 1. */
+export function themeNumbers(name) {
+  return channels(themeColor(name));
+}
+
 /** A color of the theme as CSS, for drawing on canvases. */
 export function themeColor(name) {
   const probe = document.createElement("i");

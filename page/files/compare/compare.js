@@ -10,7 +10,7 @@ import { parsePlace, place } from "../place.js";
 import { FARTHEST, Joint, fromHash, toHash } from "./joint.js";
 import { METHODS } from "./methods.js";
 import { Panel } from "./panel.js";
-import { Asked, windowAround } from "./sources.js";
+import { windowAround } from "./sources.js";
 
 /** Where the button leads: a billion units to the right and up. */
 const FAR = 1e9;
@@ -36,7 +36,7 @@ const AWAY = "The server does not answer. This page tries again by itself; what 
 function refused(error) {
   if (error instanceof Gone) return;
   refusal(byId("banner"), error, () => {
-    for (const { source } of panels) if (source instanceof Asked) source.chunks.retry();
+    for (const { source } of panels) source.chunks.retry();
     begin();
   });
 }
@@ -156,7 +156,7 @@ function home() {
 
 function listen() {
   tools(joint, home, () => {
-    for (const panel of panels) panel.sheet.renew();
+    for (const panel of panels) panel.themed();
     chart();
     draw();
   });

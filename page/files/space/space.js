@@ -6,7 +6,7 @@ import { tools } from "../bar.js";
 import { byId, bytes, copy, counted, icon, make, settled, skipLinks } from "../dom.js";
 import { fault, field, refusal, select, setOptions } from "../form.js";
 import { formatPlace, place } from "../place.js";
-import { themeColor } from "../theme.js";
+import { themeNumbers } from "../theme.js";
 import { fineness, sized } from "../view.js";
 import { cameraOf } from "../walk/camera.js";
 import { sceneOn } from "./scene.js";
@@ -75,8 +75,7 @@ let colors;
 let isStale = true;
 
 function themed() {
-  const of = (/** @type {string} */ name) => (themeColor(name).match(/[\d.]+/g) ?? []).slice(0, 3).map((v) => Number(v) / 255);
-  colors = { ground: of("void"), near: of("near"), far: of("far"), line: of("ink") };
+  colors = { ground: themeNumbers("void"), near: themeNumbers("near"), far: themeNumbers("far"), line: themeNumbers("ink") };
   isStale = true;
 }
 

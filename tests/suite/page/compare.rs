@@ -117,9 +117,9 @@ fn what_each_method_has_to_make_is_counted() {
     assert!((figure(&browser, "made-poisson") - 65_536.0).abs() < 1000.0);
     // Alone: what has to be made, drawn beside nothing else; a move ends that.
     browser.click("#alone");
-    browser.until("strew.panels[1].aloneSource?.runs(strew.joint.view)[0]?.count > 60000");
-    browser.until("strew.panels[0].aloneSource?.runs(strew.joint.view)[0]?.count > 0");
-    let drawn = browser.value("strew.panels[0].aloneSource.runs(strew.joint.view)[0].count");
+    browser.until("strew.panels[1].alone[0]?.count > 60000");
+    browser.until("strew.panels[0].alone[0]?.count > 0");
+    let drawn = browser.value("strew.panels[0].alone[0].count");
     assert!(
         (drawn.as_f64().expect("a count") - count).abs() <= 1.0,
         "{drawn}"
@@ -186,7 +186,7 @@ fn one_view_moves_all_and_stands_in_the_address() {
     );
     // The drawings of all have moved: the middle of each sheet is the view's.
     let shown = browser.value(
-        "strew.panels.filter((panel) => panel.sheet.held).map((panel) => panel.source.runs(strew.joint.view).length > 0)",
+        "strew.panels.map((panel) => panel.sheets.front.parts.some(({ done }) => done > 0))",
     );
     assert_eq!(shown, serde_json::json!([true, true, true]));
     browser.wheel([x, y], -300);
