@@ -1,7 +1,7 @@
 // Fields of a form that stay where they are: they are made once, and set again when the choice changes.
 
-import { hasKey, useKey } from "./api.js";
-import { byId, make } from "./dom.js";
+import { useKey } from "./api.js";
+import { make } from "./dom.js";
 
 /** A control with its label, further lines, and a line for what is wrong with its value. */
 export function field(words, id, control, ...more) {
@@ -43,23 +43,6 @@ export function fault(root, id, words) {
   const about = [control.dataset.about, words && line.id].filter(Boolean).join(" ");
   if (about) control.setAttribute("aria-describedby", about);
   else control.removeAttribute("aria-describedby");
-}
-
-/**
- * Says in a banner what the server refused, and takes a key where it needs one: `used()` is called once there is one.
- */
-export function refusal(banner, error, used) {
-  banner.hidden = false;
-  if (!error.isLocked) {
-    banner.textContent = error.message;
-    return;
-  }
-  if (byId("key")) return;
-  banner.replaceChildren(hasKey() ? error.message : "This server needs a key.", keyForm(() => {
-    banner.hidden = true;
-    banner.replaceChildren();
-    used();
-  }));
 }
 
 /** A form for a key, which stays in this tab; `used()` is called once there is one. */

@@ -1,11 +1,11 @@
 // The page Compare: one view for all methods, and what each measures there.
 
-import { Gone, askJson, isAway, onPresence } from "../api.js";
+import { askJson } from "../api.js";
 import { tools } from "../bar.js";
 import { topOf } from "../charts.js";
 import { byId, make, settled, skipLinks } from "../dom.js";
-import { refusal } from "../form.js";
 import { moveBy } from "../gestures.js";
+import { Notice } from "../notice.js";
 import { parsePlace, place } from "../place.js";
 import { FARTHEST, Joint, fromHash, toHash } from "./joint.js";
 import { METHODS } from "./methods.js";
@@ -22,24 +22,12 @@ const narrow = matchMedia("(max-width: 46rem)");
 let state = fromHash(location.hash, narrow.matches);
 
 const joint = new Joint(state, () => draw());
-const panels = METHODS.map((method) => new Panel(method, { changed: () => draw(), failed: (error) => refused(error) }));
-/** Says something above the panels; `null` takes it away. That the server is away stays until it is back. */
-function say(words) {
-  const all = [isAway() && AWAY, words].filter(Boolean).join(" ");
-  byId("banner").hidden = all === "";
-  byId("banner").textContent = all;
-}
-
-const AWAY = "The server does not answer. This page tries again by itself; what is drawn stays, and the other methods are made here.";
-
-/** Says what went wrong, and takes a key where that is what the server needs; that it is away is said by itself. */
-function refused(error) {
-  if (error instanceof Gone) return;
-  refusal(byId("banner"), error, () => {
-    for (const { source } of panels) source.chunks.retry();
-    begin();
-  });
-}
+const panels = METHODS.map((method) => new Panel(method, { changed: () => draw(), failed: (error) => notice.refused(error) }));
+const notice = new Notice(byId("banner"), () => {
+  for (const { source } of panels) source.chunks.retry();
+  begin();
+}, () => begin());
+const say = (words) => notice.say("wrong", words);
 
 let isWaiting = false;
 /**
@@ -104,7 +92,7 @@ async function measureAll() {
     } catch (error) {
       // The others do without the server.
       isWhole = false;
-      if (isLatest()) refused(error);
+      if (isLatest()) notice.refused(error);
     }
   }
   if (isWhole && isLatest()) root.dataset.measured = `${root.dataset.at} ${state.seed}`;
@@ -186,11 +174,6 @@ function build() {
   }
 }
 
-onPresence((gone) => {
-  say(null);
-  if (!gone) begin();
-});
-
 addEventListener("hashchange", () => {
   state = Object.assign(joint.state, fromHash(location.hash, narrow.matches));
   joint.lookAt(state.x, state.y, state.span);
@@ -207,7 +190,7 @@ async function begin() {
     }
     byId("profile").replaceChildren(...names.map((name) => make("option", { value: name }, name)));
   } catch (error) {
-    refused(error);
+    notice.refused(error);
   }
   show();
 }

@@ -1,7 +1,8 @@
 // The API as a page: shows /openapi.json, an operation at a time. Everything is put in as text, never as markup.
 
-import { Gone, askJson, onPresence } from "../api.js";
+import { Gone, askJson } from "../api.js";
 import { byId, counted, icon, make, skipLinks } from "../dom.js";
+import { Notice } from "../notice.js";
 import { watchTheme } from "../theme.js";
 import { operationView } from "./operation.js";
 import { resolved } from "./schema.js";
@@ -150,11 +151,7 @@ async function begin() {
   document.documentElement.dataset.state = "ready";
 }
 
-onPresence((gone) => {
-  byId("banner").hidden = !gone;
-  byId("banner").textContent = gone ? "The server does not answer. This page tries again by itself; what is shown stays." : "";
-  if (!gone && !api) begin();
-});
+new Notice(byId("banner"), () => api || begin());
 
 byId("theme").append(icon("M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z"));
 watchTheme(byId("theme"), () => {});

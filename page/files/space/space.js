@@ -1,10 +1,11 @@
 // The page of space: a volume to turn, zoom and fly through, and the request for the chunk in the middle.
 
 import { isSeed } from "../address.js";
-import { Gone, Problem, isAway, onPresence } from "../api.js";
+import { isAway } from "../api.js";
 import { tools } from "../bar.js";
 import { byId, bytes, copy, counted, icon, make, settled, skipLinks } from "../dom.js";
-import { fault, field, refusal, select, setOptions } from "../form.js";
+import { fault, field, select, setOptions } from "../form.js";
+import { Notice } from "../notice.js";
 import { formatPlace, place } from "../place.js";
 import { themeNumbers } from "../theme.js";
 import { fineness, sized } from "../view.js";
@@ -23,50 +24,16 @@ const state = fromHash(location.hash);
 /** Nothing where there is no WebGL2: the fields and the request work without a picture. */
 const scene = sceneOn(canvas);
 
-/**
- * What the banner says, by subject; the first that there is is shown.
- * @type {Record<"gone" | "busy" | "refused" | "blind" | "link", string | Error | null>}
- */
-const notes = { gone: null, busy: null, refused: null, link: state.wrong.join(" ") || null, blind: null };
-if (!scene) notes.blind = "The picture needs WebGL2, which this browser does not have. The request for the points works without.";
-
-function note(subject, words) {
-  if (notes[subject] === words) return;
-  notes[subject] = words;
-  banner();
-}
-
-function banner() {
-  const words = Object.values(notes).find(Boolean);
-  const box = byId("banner");
-  box.hidden = !words;
-  if (words instanceof Error) {
-    refusal(box, words, retry);
-    if (!(words instanceof Problem && words.isLocked)) box.append(" ", make("button", { type: "button", onclick: retry }, "Try again"));
-  } else {
-    box.textContent = words ?? "";
-  }
-}
-
-function failed(error) {
-  if (error instanceof Gone) return;
-  note("refused", error);
-}
-
-function retry() {
-  note("refused", null);
+const notice = new Notice(byId("banner"), () => {
   volume.chunks.retry();
   later();
-}
+}, () => later());
+notice.say("wrong", state.wrong.join(" ") || null);
+if (!scene) notice.say("blind", "The picture needs WebGL2, which this browser does not have. The request for the points works without.");
 
-onPresence((gone) => {
-  note("gone", gone ? "The server does not answer. This page tries again by itself; what is drawn stays." : null);
-  if (!gone) later();
-});
-
-const volume = new Volume(() => (isStale = true), failed);
+const volume = new Volume(() => (isStale = true), (error) => notice.refused(error));
 const viewer = new Viewer(canvas, state, () => {
-  note("link", null);
+  notice.say("wrong", null);
   later();
 });
 
@@ -126,8 +93,8 @@ function tell(now) {
   const { points, chunks, wanted, received, isBusy } = volume.sums;
   if (received !== heard.received || chunks === wanted) heard = { received, at: now };
   const isLong = now - heard.at > PATIENCE && !isAway();
-  note("busy", isBusy ? "The server is busy. This page tries again by itself." : isLong ? "The server is slow to answer." : null);
-  root.dataset.state = notes.refused ? "failed" : chunks === wanted ? "ready" : "loading";
+  notice.say("busy", isBusy ? "The server is busy. This page tries again by itself." : isLong ? "The server is slow to answer." : null);
+  root.dataset.state = notice.said.refused ? "failed" : chunks === wanted ? "ready" : "loading";
   const parts = [`${counted(points)} in ${chunks === wanted ? counted(chunks, "chunk") : `${chunks} of ${wanted} chunks`}`, bytes(received),
     `at ${state.at.map((one) => formatPlace(one, Number(state.spacing) < 1 ? 2 : 0)).join(", ")}`];
   const text = parts.join(" · ");
@@ -148,8 +115,8 @@ const later = settled(350, () => {
 /** Takes another value of a field. */
 function choose(name, value) {
   state[name] = value;
-  note("refused", null);
-  note("link", null);
+  notice.say("refused", null);
+  notice.say("wrong", null);
   isStale = true;
   later();
 }
@@ -189,8 +156,8 @@ function go(next) {
   Object.assign(state, next);
   home = null;
   byId("jump").textContent = "Jump far away";
-  note("link", state.wrong.join(" ") || null);
-  note("refused", null);
+  notice.say("wrong", state.wrong.join(" ") || null);
+  notice.say("refused", null);
   fill();
   isStale = true;
   later();
@@ -232,7 +199,6 @@ canvas.addEventListener("webglcontextlost", () => location.reload());
 addEventListener("hashchange", ({ newURL }) => go(fromHash(new URL(newURL).hash)));
 skipLinks();
 fill();
-banner();
 later();
 
 // For the curious, and for tests.

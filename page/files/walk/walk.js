@@ -1,9 +1,9 @@
 // The walk: puts its parts together and draws, as finely as the machine can.
 
 import { givenIn, hashOf, isSeed } from "../address.js";
-import { Gone, askJson, onPresence } from "../api.js";
+import { askJson } from "../api.js";
 import { byId, bytes, icon, make } from "../dom.js";
-import { refusal } from "../form.js";
+import { Notice } from "../notice.js";
 import { formatPlace, place } from "../place.js";
 import { joined, setOf } from "../query.js";
 import { LAYER, toHash } from "../state.js";
@@ -44,7 +44,7 @@ function fromHash(hash) {
   const isNear = x && y && Math.max(Math.abs(x.i), Math.abs(y.i)) <= 1e14;
   const radians = (name, otherwise) => ((given.number(name, otherwise) % 360) * Math.PI) / 180;
   const quality = given.matching("quality", /^[0-3]$/);
-  if (x && y && !isNear) banner("This walk ends at 1e14 in every direction, so it starts at its beginning instead.");
+  if (x && y && !isNear) notice.say("wrong", "This walk ends at 1e14 in every direction, so it starts at its beginning instead.");
   return {
     x: isNear ? x : place(START.x), y: isNear ? y : place(START.y),
     yaw: radians("yaw", START.yaw), pitch: Math.max(-STEEPEST, Math.min(STEEPEST, radians("pitch", -5))),
@@ -59,26 +59,21 @@ function fromHash(hash) {
 /** Where a walk begins: above the trail, or in a clearing nearby. */
 const START = { x: -126, y: 0, yaw: 16 };
 
-/** Says something above the picture, with buttons; `null` takes it away. */
-function banner(words, ...more) {
-  byId("banner").hidden = words === null;
-  byId("banner").replaceChildren(words ?? "", make("div", {}, more));
-}
+const notice = new Notice(byId("banner"), () => {
+  root.dataset.state = "loading";
+  for (const { chunks } of world.sets) chunks.retry();
+}, () => {});
 
 let given = fromHash(location.hash);
 const wantsMap = location.hash.includes("map=1");
 const scene = (!wantsMap && sceneOn(canvas)) || mapOn(canvas);
 root.dataset.renderer = scene.isMap ? "map" : "webgl2";
-if (scene.isMap) banner("This browser cannot draw in three dimensions (WebGL2 is missing), so here is the map. Keys and sticks walk as usual.");
+if (scene.isMap) notice.say("blind", "This browser cannot draw in three dimensions (WebGL2 is missing), so here is the map. Keys and sticks walk as usual.");
 
 function failed(error) {
   root.dataset.state = "failed";
-  refusal(byId("banner"), error, () => {
-    root.dataset.state = "loading";
-    for (const { chunks } of world.sets) chunks.retry();
-  });
+  notice.refused(error);
 }
-onPresence((gone) => banner(gone ? "The server does not answer. This page tries again by itself; what is drawn stays." : null));
 
 let world = new World(scene, given.seed, failed);
 const walker = new Walker(canvas, given, (at) => pick(at));
@@ -196,7 +191,7 @@ async function pick(at) {
     const { neighbors } = await askJson(`/v1/nearest?at=${where}&k=1&${set}`);
     if (mine === asked) show(found, neighbors[0], set);
   } catch (error) {
-    if (!(error instanceof Gone)) failed(error);
+    notice.refused(error);
   }
 }
 
