@@ -10,14 +10,14 @@ import { joined } from "./query.js";
 const SIDES = ["64", "128", "256", "512"];
 /** Periods of more points are not offered here, but for the smallest one. */
 const MOST_POINTS = 60_000;
-/** The side of the picture, in pixels: two copies of a period lie along it. */
-const PICTURE = 480;
+/** The sides of the picture, in pixels: two copies of a period lie side by side. */
+const PICTURE = { width: 480, height: 240 };
 
 export class Repeat {
   /** `changed()` hears that another size is chosen. */
   constructor(changed) {
     this.sizes = select("repeat-size", changed);
-    this.picture = make("canvas", { id: "repeat-picture", width: PICTURE, height: PICTURE, role: "img", "aria-label": "Copies side by side" });
+    this.picture = make("canvas", { id: "repeat-picture", ...PICTURE, role: "img", "aria-label": "Copies side by side" });
     this.note = make("p", { class: "note" });
     this.element = make("div", { class: "field" }, make("label", { for: "repeat-size" }, "Size"), this.sizes, this.picture, this.note);
     /** The map of the layer, or the smallest that its profile has: it has the shortest periods. */
@@ -48,16 +48,16 @@ export class Repeat {
     this.map = layer.map || maps[0];
     await (what === "mask" ? this.offer(SIDES.map((side) => [side, `${side} × ${side} pixels`]), "128") : this.periods({ ...layer, alpha }, signal));
     const path = this.path(what, layer);
-    const answer = await ask(what === "mask" ? path : `${path}&format=png&size=${PICTURE / 2}`, { signal });
+    const answer = await ask(what === "mask" ? path : `${path}&format=png&size=${PICTURE.height}`, { signal });
     const count = Number(answer.headers.get("strew-count"));
     const copy = await createImageBitmap(await answer.blob());
     const context = contextOf(this.picture);
     context.fillStyle = /** @type {CanvasPattern} */ (context.createPattern(copy, "repeat"));
-    context.clearRect(0, 0, PICTURE, PICTURE);
-    context.fillRect(0, 0, PICTURE, PICTURE);
+    context.clearRect(0, 0, PICTURE.width, PICTURE.height);
+    context.fillRect(0, 0, PICTURE.width, PICTURE.height);
     this.note.textContent = what === "mask"
       ? "Repeat it over a picture, pixel by pixel: a pixel turns white where its gray is above the threshold."
-      : `${counted(count)} on a square of ${Math.sqrt(Number(this.sizes.value))} mean spacings. Copies laid side by side, four of them here, join without a seam.`;
+      : `${counted(count)} on a square of ${Math.sqrt(Number(this.sizes.value))} mean spacings. Its copies, two of them here, join without a seam.`;
     return count;
   }
 

@@ -22,7 +22,7 @@ fn three_kinds_of_points_are_shown_with_views_to_begin_with() {
     let counts = browser.value("strew.start.trio.map((one) => one.points.length / 2)");
     assert_eq!(counts, json!([196, 196, 196]));
     let sizes =
-        "[...document.querySelectorAll('.view img')].every((one) => one.naturalWidth === 480)";
+        "[...document.querySelectorAll('.view img')].every((one) => one.naturalWidth >= 360)";
     browser.until(sizes);
     let before = browser.value("strew.start.trio[2].points[0]");
     browser.click("#kinds-again");
@@ -71,13 +71,15 @@ fn the_open_plane_is_one_click_away_and_level_of_detail_shows_each_level() {
 
 /// What a card shows of the view that is open, as JPEG: the plane and its spectrum, or copies of a tile.
 const PICTURE: &str = "await (async () => { \
-    const small = Object.assign(document.createElement('canvas'), { width: 480, height: 320 }); \
+    const small = Object.assign(document.createElement('canvas'), { width: 360, height: 240 }); \
     const context = small.getContext('2d'); \
+    context.imageSmoothingQuality = 'high'; \
+    context.scale(0.75, 0.75); \
     const { state } = strew.session; \
     if (state.take) context.drawImage(document.querySelector('#repeat-picture'), 0, 0); \
     else context.drawImage(document.querySelector('#plane'), 0, 0); \
     if (state.tab === 'understand') context.drawImage(document.querySelector('#spectrum'), 160, 0, 320, 320); \
-    const picture = await new Promise((done) => small.toBlob(done, 'image/jpeg', 0.7)); \
+    const picture = await new Promise((done) => small.toBlob(done, 'image/jpeg', 0.5)); \
     return [...new Uint8Array(await picture.arrayBuffer())]; })()";
 
 /// Writes the pictures of the cards: `just pictures`.
