@@ -14,6 +14,8 @@ const NEIGHBORS = 8;
 /** The room beside the card at the edge of the plane, and above and below it, where the page's buttons and numbers are. */
 const EDGE = 10;
 const ROWS = 64;
+/** The room around a point for its ring. */
+const RING = 14;
 
 /** @typedef {import("./place.js").Place} Place */
 
@@ -177,8 +179,10 @@ export class Card extends Part {
     const { width, height } = this.plane.view;
     const [x, y] = this.onCanvas(point.x, point.y);
     element.style.left = `${x > width / 2 ? EDGE : Math.max(EDGE, width - element.offsetWidth - EDGE)}px`;
-    const last = Math.max(EDGE, height - element.offsetHeight - ROWS);
-    element.style.top = `${y > height / 2 ? Math.min(ROWS, last) : last}px`;
+    // Where there is little room, the point matters more than the buttons.
+    const last = height - element.offsetHeight;
+    const top = y > height / 2 ? Math.min(ROWS, y - RING - element.offsetHeight) : Math.min(last - EDGE, Math.max(last - ROWS, y + RING));
+    element.style.top = `${Math.max(EDGE, top)}px`;
   }
 
   /** Draws a ring around the point, and lines to its neighbors. */

@@ -6,8 +6,9 @@ import { select, setOptions } from "./form.js";
 import { choicesOf } from "./profiles.js";
 import { joined } from "./query.js";
 
-/** The sides of masks, in pixels. */
+/** The sides of masks, in pixels, and the one to begin with. */
 const SIDES = ["64", "128", "256", "512"];
+const STANDARD = "128";
 /** Periods of more points are not offered here, but for the smallest one. */
 const MOST_POINTS = 60_000;
 /** The sides of the picture, in pixels: two copies of a period lie side by side. */
@@ -31,9 +32,10 @@ export class Repeat {
    */
   path(what, { profile, alpha, seed, warp }) {
     const pairs = [["profile", profile], ["alpha", alpha], ["map", this.map], ["seed", seed.trim()]].filter(([, value]) => value);
-    if (what === "mask") return `/v1/mask.png?${joined([["size", this.sizes.value], ...pairs])}`;
+    const size = this.sizes.value;
+    if (what === "mask") return `/v1/mask.png?${joined([["size", SIDES.includes(size) ? size : STANDARD], ...pairs])}`;
     if (warp) pairs.push(["warp", warp]);
-    return `/v1/points?${joined([["periodic", this.sizes.value], ["spacing", "1"], ...pairs])}`;
+    return `/v1/points?${joined([["periodic", size || "1"], ["spacing", "1"], ...pairs])}`;
   }
 
   /**
@@ -46,7 +48,7 @@ export class Repeat {
     const { profiles } = await askJson("/v1/profiles", { signal });
     const { alpha, maps } = choicesOf(profiles, { ...layer, map: "" });
     this.map = layer.map || maps[0];
-    await (what === "mask" ? this.offer(SIDES.map((side) => [side, `${side} × ${side} pixels`]), "128") : this.periods({ ...layer, alpha }, signal));
+    await (what === "mask" ? this.offer(SIDES.map((side) => [side, `${side} × ${side} pixels`]), STANDARD) : this.periods({ ...layer, alpha }, signal));
     const path = this.path(what, layer);
     const answer = await ask(what === "mask" ? path : `${path}&format=png&size=${PICTURE.height}`, { signal });
     const count = Number(answer.headers.get("strew-count"));
