@@ -81,9 +81,9 @@ types:
 firefox:
     STREW_TEST_BROWSER=firefox cargo test --locked --test suite -- page:: --test-threads 1
 
-# The pictures of the walk at dusk that previews of links and the cards of the first page show, drawn in Chromium.
-forest:
-    STREW_TEST_PICTURES=1 cargo test --locked --test suite -- page::walk::pictures
+# The pictures that previews of links and the cards of the first page show, drawn in Chromium.
+pictures:
+    STREW_TEST_PICTURES=1 cargo test --locked --test suite -- page::walk::pictures page::start::pictures
 
 # The extension for Blender and its sample; Blender's module of 370 MB comes from PyPI for one version of Python.
 blender:

@@ -11,9 +11,11 @@ import { themeColor } from "./theme.js";
 const HOVER = 14;
 const TAP = 48;
 const NEIGHBORS = 8;
-/** The room around points for their rings, and around the card at the edge of the plane, in CSS pixels. */
-const RING = 14;
+/** The room beside the card at the edge of the plane, and above and below it, where the page's buttons and numbers are. */
 const EDGE = 10;
+const ROWS = 64;
+/** The room around a point for its ring. */
+const RING = 14;
 
 /** @typedef {import("./place.js").Place} Place */
 
@@ -169,36 +171,18 @@ export class Card extends Part {
     return [view.width / 2 + distance(x, view.x) / view.unit, view.height / 2 - distance(y, view.y) / view.unit];
   }
 
-  /** The box around the point and its neighbors, in CSS pixels: `[left, top, right, bottom]`. */
-  surroundings() {
-    const all = this.point ? [this.onCanvas(this.point.x, this.point.y)] : [];
-    for (const { x, y } of this.found?.near ?? []) all.push(this.onCanvas(parsePlace(String(x)), parsePlace(String(y))));
-    const [xs, ys] = [all.map(([x]) => x), all.map(([, y]) => y)];
-    return [Math.min(...xs) - RING, Math.min(...ys) - RING, Math.max(...xs) + RING, Math.max(...ys) + RING];
-  }
-
-  /** Puts the card beside its point and neighbors, or, where nothing is free, where it covers least of them. */
+  /** Puts the card into the corner that is farthest from its point. */
   place() {
     const { element, point } = this;
     if (!point) return;
     element.hidden = false;
     const { width, height } = this.plane.view;
-    const [w, h] = [element.offsetWidth, element.offsetHeight];
-    const [left, top, right, bottom] = this.surroundings();
-    const [lastX, lastY] = [Math.max(EDGE, width - w - EDGE), Math.max(EDGE, height - h - EDGE)];
-    const [x, y] = [Math.min(lastX, Math.max(EDGE, (left + right - w) / 2)), Math.min(lastY, Math.max(EDGE, (top + bottom - h) / 2))];
-    const places = [[right, y], [left - w, y], [x, bottom], [x, top - h], [EDGE, EDGE], [lastX, EDGE], [EDGE, lastY], [lastX, lastY]]
-      .map(([px, py]) => [Math.min(lastX, Math.max(EDGE, px)), Math.min(lastY, Math.max(EDGE, py))]);
-    const at = this.onCanvas(point.x, point.y);
-    const cost = (/** @type {number[]} */ [px, py]) => {
-      const across = Math.max(0, Math.min(px + w, right) - Math.max(px, left));
-      const down = Math.max(0, Math.min(py + h, bottom) - Math.max(py, top));
-      const isOver = at[0] > px - RING && at[0] < px + w + RING && at[1] > py - RING && at[1] < py + h + RING;
-      return across * down + (isOver ? 1e9 : 0);
-    };
-    const best = places.reduce((a, b) => (cost(b) < cost(a) ? b : a));
-    element.style.left = `${best[0]}px`;
-    element.style.top = `${best[1]}px`;
+    const [x, y] = this.onCanvas(point.x, point.y);
+    element.style.left = `${x > width / 2 ? EDGE : Math.max(EDGE, width - element.offsetWidth - EDGE)}px`;
+    // Where there is little room, the point matters more than the buttons.
+    const last = height - element.offsetHeight;
+    const top = y > height / 2 ? Math.min(ROWS, y - RING - element.offsetHeight) : Math.min(last - EDGE, Math.max(last - ROWS, y + RING));
+    element.style.top = `${Math.max(EDGE, top)}px`;
   }
 
   /** Draws a ring around the point, and lines to its neighbors. */

@@ -2,12 +2,13 @@
 
 import { contextOf } from "./dom.js";
 import { themeColor } from "./theme.js";
+import { fineness } from "./view.js";
 
 /** Makes a canvas as fine as the screen; returns its context in CSS pixels with its size. */
-export function prepared(canvas, aspect) {
+function prepared(canvas, aspect) {
   const width = canvas.clientWidth || 280;
   const height = Math.round(width * aspect);
-  const ratio = Math.min(2, globalThis.devicePixelRatio || 1);
+  const ratio = fineness();
   Object.assign(canvas, { width: Math.round(width * ratio), height: Math.round(height * ratio) });
   const context = contextOf(canvas);
   context.scale(ratio, ratio);
@@ -79,8 +80,8 @@ export function spectrumPicture(canvas, image, cells) {
   context.putImageData(pixels, 0, 0);
 }
 
-/** Draws points x, y of a square of `side` as dots; y upward. */
-export function pointPicture(canvas, points, side) {
+/** Draws points x, y of a square of `side` as dots of a radius in pixels; y upward. */
+export function pointPicture(canvas, points, side, radius = 1.7) {
   const { context, width } = prepared(canvas, 1);
   context.fillStyle = themeColor("sunken");
   context.fillRect(0, 0, width, width);
@@ -89,8 +90,8 @@ export function pointPicture(canvas, points, side) {
   for (let p = 0; p < points.length; p += 2) {
     const [x, y] = [(points[p] / side) * width, width - (points[p + 1] / side) * width];
     if (x > width || y < 0) continue;
-    context.moveTo(x + 1.7, y);
-    context.arc(x, y, 1.7, 0, 2 * Math.PI);
+    context.moveTo(x + radius, y);
+    context.arc(x, y, radius, 0, 2 * Math.PI);
   }
   context.fill();
 }

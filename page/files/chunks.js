@@ -37,7 +37,6 @@ const ROOM = (navigator.deviceMemory ?? 8) >= 4 ? 256e6 : 96e6;
  * @property {AbortController} [abort]
  * @property {(() => void) | null} [dropped] Called when its points are let go.
  * @property {any} [buffer] Where a painter keeps it.
- * @property {number} [uploaded]
  */
 /** @typedef {Address & Loaded} Chunk */
 
@@ -47,6 +46,7 @@ const ROOM = (navigator.deviceMemory ?? 8) >= 4 ? 256e6 : 96e6;
  * @property {(layers: any[], address: any, keep: number) => { path: string, body?: string }} requestOf
  * @property {(layers: any[]) => string[]} columnsOf The columns that follow x and y.
  * @property {(address: any) => string} nameOf An address as text.
+ * @property {(layers: any[], address: any) => Promise<Float32Array<ArrayBuffer>>} [make] Makes the points where no server is asked.
  */
 
 /** @type {Kind} */
@@ -187,7 +187,7 @@ export class Chunks {
   }
 
   pump() {
-    while (this.running < this.parallel && !this.refused && !isAway() && performance.now() >= this.restsUntil) {
+    while (this.running < this.parallel && !this.refused && (this.kind.make || !isAway()) && performance.now() >= this.restsUntil) {
       const next = this.wanted.find((chunk) => chunk.state === "waiting");
       if (!next) return;
       this.load(next);
@@ -200,9 +200,14 @@ export class Chunks {
     chunk.state = "loading";
     chunk.abort = new AbortController();
     try {
-      const { path, body } = this.kind.requestOf(chunk.layers, chunk, chunk.keep);
-      const answer = await ask(path, { body, signal: chunk.abort.signal });
-      await this.receive(chunk, answer);
+      if (this.kind.make) {
+        chunk.data = await this.kind.make(chunk.layers, chunk);
+        chunk.abort.signal.throwIfAborted();
+        chunk.count = chunk.total = chunk.data.length / chunk.stride;
+      } else {
+        const { path, body } = this.kind.requestOf(chunk.layers, chunk, chunk.keep);
+        await this.receive(chunk, await ask(path, { body, signal: chunk.abort.signal }));
+      }
       chunk.state = "done";
       this.bytes += chunk.data.byteLength;
     } catch (error) {

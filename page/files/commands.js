@@ -1,6 +1,5 @@
-// Texts to paste elsewhere that return the points in view: the address, curl, grpcurl, Python.
+// Texts to paste elsewhere that return the points in view: the address, curl, Python.
 
-import { messageOf } from "./paint/message.js";
 import { Digits, json } from "./digits.js";
 import { documentOf } from "./sent.js";
 import { bodyOf, joined, memberOf, setOf, worldIn, worldPairs } from "./query.js";
@@ -24,9 +23,9 @@ export const FORMATS = [
 /** A field is written out in a request up to this number of characters: shells take words of 131,071 bytes. */
 const MOST_FIELD = 60_000;
 
-/** The parameter that pictures take beside. */
-function looksOf(format) {
-  return format === "png" || format === "svg" ? { size: 2048 } : {};
+/** The parameter that pictures take beside, as pairs. */
+export function looksOf(format) {
+  return format === "png" || format === "svg" ? [["size", "2048"]] : [];
 }
 
 /** The request for the points in a box of four decimals: `{ path }`, with a `body` for layers. */
@@ -34,19 +33,19 @@ export function requestOf(layers, box, keep, format) {
   const looks = looksOf(format);
   const world = worldIn(layers);
   if (world) {
-    const pairs = [["bbox", box.join(",")], ...worldPairs(world, keep), ["format", format], ...Object.entries(looks)];
+    const pairs = [["bbox", box.join(",")], ...worldPairs(world, keep), ["format", format], ...looks];
     return { path: `/v1/points?${joined(pairs)}` };
   }
   const isWhole = isShort(layers);
   if (layers.length === 1 && !isWhole) {
-    const pairs = [["bbox", box.join(",")], ...setOf(layers[0], keep), ["format", format]];
-    pairs.push(...Object.entries(looks).map(([name, value]) => [name, String(value)]));
+    const pairs = [["bbox", box.join(",")], ...setOf(layers[0], keep), ["format", format], ...looks];
     return { path: `/v1/points?${joined(pairs)}` };
   }
   const region = { bbox: box.map((side) => new Digits(side)) };
+  const form = { format, ...Object.fromEntries(looks.map(([name, value]) => [name, Number(value)])) };
   const set = layers.length === 1
-    ? { region, ...memberOf(layers[0], keep, isWhole), format, ...looks }
-    : bodyOf(layers, region, keep, { format, ...looks }, isWhole);
+    ? { region, ...memberOf(layers[0], keep, isWhole), ...form }
+    : bodyOf(layers, region, keep, form, isWhole);
   return { path: "/v1/points:query", body: json(set, 2) };
 }
 
@@ -57,7 +56,7 @@ function isShort(layers) {
 }
 
 /** A word of a shell. */
-function quoted(text) {
+export function quoted(text) {
   return `'${text.replace(/'/g, "'\\''")}'`;
 }
 
@@ -70,44 +69,6 @@ function quoted(text) {
 export function curl(origin, { path, body }, file) {
   const data = body ? ` \\\n  -d ${quoted(body)}` : "";
   return `curl -f ${quoted(origin + path)} -o ${file}${data}`;
-}
-
-/** The line for grpcurl: the request is the same, the answer consists of messages. */
-export function grpcurl(host, layers, box, keep) {
-  const [minX, minY, maxX, maxY] = box.map((side) => new Digits(side));
-  const region = { bbox: { min_x: minX, min_y: minY, max_x: maxX, max_y: maxY } };
-  const message = { region, ...messageFor(layers, keep) };
-  const plain = location.protocol === "https:" ? "" : " -plaintext";
-  return `grpcurl${plain} -d ${quoted(json(message, 2))} \\\n  ${host} strew.v1.PointService/StreamPoints`;
-}
-
-/** The members of a message for layers, or for the world that they are of. */
-function messageFor(layers, keep) {
-  const world = worldIn(layers);
-  if (world) {
-    const set = { ...(world.seed ? { seed: new Digits(world.seed) } : {}), ...(keep < 1 ? { lod: keep } : {}) };
-    return Object.keys(set).length > 0 ? { world: world.name, set } : { world: world.name };
-  }
-  const isWhole = isShort(layers);
-  if (layers.length === 1) return typed(memberOf(layers[0], keep, isWhole));
-  return { layers: bodyOf(layers, undefined, keep, {}, isWhole).layers.map(typed) };
-}
-
-/**
- * A layer as the message has it: its set in a member, numbers for the warp, objects for ranges and variants.
- * @param {Record<string, any>} layer
- */
-function typed({ name, region, clear_of, ...set }) {
-  const message = { ...set };
-  if (set.warp === "off" || set.warp === "on") message.warp = set.warp === "on" ? 1 : 0;
-  if (set.field) message.field = messageOf(set.field);
-  if (set.scale_range) message.scale_range = { min: set.scale_range[0], max: set.scale_range[1] };
-  if (set.variants) {
-    const weights = set.variants.split(",").map((one) => one.split(":"));
-    message.variants = Object.fromEntries(weights.map(([kind, weight]) => [kind, Number(weight ?? 1)]));
-  }
-  const around = Object.entries({ name, region, clear_of }).filter(([, value]) => value !== undefined);
-  return { ...Object.fromEntries(around), set: message };
 }
 
 /**

@@ -1,13 +1,13 @@
-// The tab Choose: layers, and for the one that is picked everything that makes its points. Its fields are made
-// once; a choice sets their values, so the panel keeps its focus and scroll position.
+// The tab Choose: layers, and for the one that is picked everything that makes its points. Its fields are in the markup;
+// a choice sets their values, so the panel keeps its focus and scroll position.
 
 import { byId, icon, make, settled, spoken } from "./dom.js";
 import { faultsBefore } from "./faults.js";
-import { check, fault, field, select, setOptions } from "./form.js";
+import { fault, setOptions, wrongAt } from "./form.js";
 import { isSent } from "./sent.js";
 import { MAP_WORDS, PROFILE_WORDS, choicesOf, including, nice, profileNames } from "./profiles.js";
 import { COLOR_NAMES, LAYER, MOST_LAYERS } from "./state.js";
-import { Kinds } from "./kinds.js";
+import { Kinds, named } from "./kinds.js";
 
 const AMOUNT_WORDS = { spacing: "Spacing", density: "Density", min_distance: "Minimum distance" };
 const WARP_WORDS = { "": "Set by the seed", off: "Off", on: "On", 0.5: "Half as strong", 1.5: "Stronger", 2: "Strongest" };
@@ -15,35 +15,23 @@ const SETTLE_WORDS = { "": "Default", 0: "Off", 1: "One step", 2: "Two steps", 3
 const DIE = "M5 3h14a2 2 0 0 1 2 2v14a2 2 0 0 1-2 2H5a2 2 0 0 1-2-2V5a2 2 0 0 1 2-2zM8.5 8.5h.01M15.5 8.5h.01M12 12h.01M8.5 15.5h.01M15.5 15.5h.01";
 /** The slider of the amount reaches this many doublings to each side. */
 const DOUBLINGS = 3;
-/** The fields that can be wrong. */
+/** The fields that can be wrong; the texts among them. */
 const FIELDS = ["profile", "alpha", "map", "amount", "seed", "warp", "settle", "field", "range", "variants", "spread", "clear"];
+const TEXTS = ["amount", "seed", "range", "variants", "clear"];
+/** The input of an id. */
+const inputAt = (id) => /** @type {HTMLInputElement} */ (byId(id));
+/** The element that is shown or hidden with a control: it, its label and its words. */
+const lineOf = (id) => /** @type {HTMLElement} */ (byId(id).closest(".field, .check"));
+
+/** Calls a function with a control when something happens to it. */
+function listen(id, event, call) {
+  byId(id).addEventListener(event, () => call(inputAt(id)));
+}
+
 /** A number for a seed, as the die throws it. */
 const thrown = () => String(1 + Math.floor(Math.random() * 999_999));
 
 export class Controls {
-  /** @type {HTMLElement} */
-  bar;
-  /** @type {HTMLElement} */
-  shade;
-  /** @type {HTMLElement} */
-  range;
-  /** @type {HTMLElement} */
-  clear;
-  /** @type {HTMLElement} */
-  remove;
-  /** @type {HTMLElement} */
-  own;
-  /** @type {HTMLElement} */
-  worldField;
-  /** @type {HTMLElement} */
-  worldOwn;
-  /** @type {HTMLElement} */
-  worldLayers;
-  /** @type {HTMLElement} */
-  variant;
-  /** @type {Kinds} */
-  kinds;
-
   /** The server's lists: its tables (`profiles`), its fields, the names of its worlds; `stipple` takes a picture's file. */
   constructor(session, { profiles, fields, worlds }, stipple) {
     this.session = session;
@@ -53,7 +41,6 @@ export class Controls {
     this.stipple = stipple;
     this.picked = 0;
     this.notes = [];
-    this.root = byId("choose");
     this.typing = null;
     this.type = settled(350, (change) => {
       this.typing = null;
@@ -65,6 +52,7 @@ export class Controls {
       if (changed.has("view")) this.stopTyping();
       this.update();
     });
+    this.kinds = new Kinds(profiles);
     this.build();
     this.update();
   }
@@ -91,95 +79,81 @@ export class Controls {
     this.session.hold((state) => Object.assign(state.layers[picked], members), "layers");
   }
 
+  /** Has the fields, which the markup has, change the layer. */
   build() {
-    this.bar = make("div", { class: "layers", role: "group", "aria-label": "Layers" });
-    this.kinds = new Kinds(this.profiles, (members) => this.change(members), this.text("variants"));
-    this.own = make("div", { class: "fields" },
-      this.bar, ...this.kind(), ...this.amount(), this.where(), this.kinds.element, this.expert(), this.shown(), this.looks());
-    this.root.replaceChildren(this.world(), this.own, this.ofWorld());
-  }
-
-  /** The choice of a world of the server. */
-  world() {
-    const choose = (world) => this.session.choose((state) => Object.assign(state, { world, worldSeed: "" }), "layers");
-    this.worldField = field("World", "world", select("world", choose));
-    return this.worldField;
-  }
-
-  /** A world: its seed and what its layers are, which the server says. */
-  ofWorld() {
-    const choose = (worldSeed) => this.session.choose((state) => (state.worldSeed = worldSeed), "layers");
-    const seed = make("input", {
-      type: "text", id: "world-seed", inputmode: "numeric", placeholder: "the world's own", autocomplete: "off",
-      onchange: (event) => /^\d{0,20}$/.test(event.target.value.trim()) && choose(event.target.value.trim()),
+    const { session } = this;
+    for (const id of FIELDS) wrongAt(byId(id));
+    const standard = () => choicesOf(this.profiles, this.layer);
+    /** @type {Record<string, (value: string) => object>} */
+    const lists = {
+      profile: (profile) => ({ profile, alpha: "", map: "" }),
+      by: (by) => ({ by, amount: this.converted(by) }),
+      field: (field) => ({ field, paint: "" }),
+      spread: (spread) => this.kinds.changed(spread),
+      ratio: (ratio) => ({ variants: named(ratio) }),
+      alpha: (alpha) => ({ alpha: alpha === standard().standard ? "" : alpha, map: "" }),
+      map: (map) => ({ map: map === standard().maps[0] ? "" : map }),
+      warp: (warp) => ({ warp }),
+      settle: (settle) => ({ settle }),
+    };
+    for (const [id, members] of Object.entries(lists)) listen(id, "change", ({ value }) => this.change(members(value)));
+    for (const member of TEXTS) this.text(member);
+    for (const member of ["angle", "scale", "variant"]) listen(member, "change", ({ checked }) => this.change({ [member]: checked }));
+    listen("shade-field", "change", ({ checked }) => this.change({ shade: checked }));
+    listen("picture", "change", ({ files }) => files?.[0] && this.stipple(files[0]));
+    listen("choose-picture", "click", () => byId("picture").click());
+    listen("another-seed", "click", () => this.change({ seed: thrown() }));
+    listen("dot", "input", ({ value }) => this.hold({ dot: Number(value) }));
+    listen("dot", "change", () => session.release());
+    listen("remove-layer", "click", () => session.choose((state) => state.layers.splice(this.picked, 1), "layers"));
+    listen("open-gallery", "click", () => {
+      session.choose((state) => (state.tab = "gallery"), "tab");
+      byId("gallery").focus({ preventScroll: true });
     });
-    const again = make("button", { type: "button", title: "Another seed", onclick: () => choose(thrown()) }, icon(DIE, "Another seed"));
-    this.worldLayers = make("p", { class: "note legend", id: "world-layers" });
-    this.worldOwn = make("div", { class: "fields", id: "of-world" },
-      make("p", { class: "note" }, "A world is described once, on the server, and requested by its name: layers with their distances, fields and seeds."),
-      this.worldLayers, field("Seed", "world-seed", make("div", { class: "joined" }, seed, again)));
-    return this.worldOwn;
+    for (const id of ["another-seed", "another-world-seed"]) byId(id).append(icon(DIE, "Another seed"));
+    byId("swatches").append(...COLOR_NAMES.map((name, i) => make("label", { title: name },
+      make("input", { type: "radio", name: "color", id: `color-${i}`, "aria-label": name, onchange: () => this.change({ color: i }) }),
+      make("i", { class: `swatch-${i}` }))));
+    const { layer } = this;
+    byId("expert").open = Boolean(layer.alpha || layer.map || layer.warp || layer.settle);
+    this.slider();
+    this.world();
+    byId("fields").hidden = false;
+  }
+
+  /** The choice of a world of the server, and its seed. */
+  world() {
+    const choose = (members) => this.session.choose((state) => Object.assign(state, members), "layers");
+    listen("world", "change", ({ value }) => choose({ world: value, worldSeed: "" }));
+    listen("world-seed", "change", ({ value }) => /^\d{0,20}$/.test(value.trim()) && choose({ worldSeed: value.trim() }));
+    listen("another-world-seed", "click", () => choose({ worldSeed: thrown() }));
   }
 
   updateWorld() {
     const { world, worldSeed, layers } = this.session.state;
     setOptions(byId("world"), [["", "Layers of your own"], ...(world ? including(this.worlds, world) : this.worlds)], world);
-    this.worldField.hidden = this.worlds.length === 0 && !world;
-    this.own.hidden = Boolean(world);
-    this.worldOwn.hidden = !world;
+    byId("worlds").hidden = this.worlds.length === 0 && !world;
+    byId("of-layers").hidden = Boolean(world);
+    byId("of-world").hidden = !world;
     byId("paint-open").disabled = Boolean(world);
-    const seed = /** @type {HTMLInputElement} */ (byId("world-seed"));
+    const seed = byId("world-seed");
     if (document.activeElement !== seed) seed.value = worldSeed ?? "";
-    this.worldLayers.replaceChildren(...(layers[0].world ? layers : [])
+    byId("world-layers").replaceChildren(...(layers[0].world ? layers : [])
       .map(({ name, color }) => make("span", {}, make("i", { class: `swatch-${color}` }), name)));
   }
 
-  kind() {
-    return [field("Profile", "profile", select("profile", (profile) => this.change({ profile, alpha: "", map: "" }), { "aria-describedby": "about-profile" }),
-      make("p", { class: "note", id: "about-profile" }))];
-  }
-
-  amount() {
-    const by = select("by", (to) => this.change({ by: to, amount: this.converted(to) }), { "aria-label": "Amount by" });
-    const slide = (event) => {
-      const { layer } = this;
+  /** The slider of the amount. */
+  slider() {
+    listen("amount-slider", "input", ({ value }) => {
       this.holds = true;
-      this.hold({ amount: String(Number((2 ** Number(event.target.value)).toPrecision(3))) });
-      /** @type {HTMLInputElement} */ (byId("amount")).value = layer.amount;
-    };
-    const slider = make("input", {
-      type: "range", id: "amount-slider", step: "any", "aria-label": "Amount", oninput: slide,
-      onchange: () => {
-        this.holds = false;
-        this.session.release();
-        this.update();
-      },
+      this.hold({ amount: String(Number((2 ** Number(value)).toPrecision(3))) });
+      byId("amount").value = this.layer.amount;
     });
-    const again = make("button", {
-      type: "button", id: "another-seed", title: "Another seed",
-      onclick: () => this.change({ seed: thrown() }),
-    }, icon(DIE, "Another seed"));
-    return [
-      field("How many", "amount",
-        make("div", { class: "joined" }, by, this.text("amount", { inputmode: "decimal", "aria-describedby": "about-amount" })),
-        slider, make("p", { class: "note", id: "about-amount" })),
-      field("Seed", "seed", make("div", { class: "joined" }, this.text("seed", { inputmode: "numeric" }), again)),
-    ];
-  }
-
-  /** The controls that experts need: few readers change them. */
-  expert() {
-    const { layer } = this;
-    const standard = () => choicesOf(this.profiles, this.layer);
-    const isOpen = Boolean(layer.alpha || layer.map || layer.warp || layer.settle);
-    return make("details", { class: "group", id: "expert", open: isOpen }, make("summary", {}, "Pattern, warp and settling"),
-      make("div", { class: "pair" },
-        field("Pattern α", "alpha", select("alpha", (value) => this.change({ alpha: value === standard().standard ? "" : value, map: "" }))),
-        field("Map size", "map", select("map", (map) => this.change({ map: map === standard().maps[0] ? "" : map })))),
-      field("Warp", "warp", select("warp", (warp) => this.change({ warp })),
-        make("p", { class: "note" }, "The warp bends the pattern a little, so that no direction is special.")),
-      field("Settling", "settle", select("settle", (settle) => this.change({ settle })),
-        make("p", { class: "note" }, "In a field, points take small steps, two by default, until they lie evenly. Without a field, one step moves the closest pairs apart.")));
+    listen("amount-slider", "change", () => {
+      this.holds = false;
+      this.session.release();
+      this.update();
+    });
   }
 
   /** The amount in other terms, as the server has said it. */
@@ -189,59 +163,14 @@ export class Controls {
     return value ? String(Number(value.toPrecision(6))) : this.layer.amount;
   }
 
-  /** Where the points are: everywhere, in a field, or as a picture is dark. */
-  where() {
-    const file = make("input", {
-      type: "file", id: "picture", accept: "image/*", hidden: true,
-      onchange: (event) => event.target.files[0] && this.stipple(event.target.files[0]),
-    });
-    this.shade = check("shade-field", "Show it under the points", (shade) => this.change({ shade }));
-    return make("div", { class: "group", role: "group", "aria-label": "Where" },
-      field("Field", "field", select("field", (value) => this.change({ field: value, paint: "" }))),
-      this.shade, file,
-      make("button", { type: "button", id: "choose-picture", onclick: () => file.click() }, "Stipple a picture …"),
-      make("p", { class: "note" }, "Or drop one on the plane: dots gather where it is dark."));
-  }
-
-  shown() {
-    const box = (member, words) => check(member, words, (is) => this.change({ [member]: is }));
-    this.range = field("Smallest and largest scale", "range", this.text("range"));
-    this.clear = field("Distance to the layers above", "clear", this.text("clear", { inputmode: "decimal", placeholder: "0" }),
-      make("p", { class: "note", id: "about-clear", role: "status" }));
-    return make("div", { class: "group", role: "group", "aria-label": "Values of each point" },
-      make("span", { class: "label" }, "Values of each point"),
-      box("angle", "Angle, as arrows"), box("scale", "Scale, as sizes"), this.range,
-      this.variant = box("variant", "Variant, as shapes"), this.clear);
-  }
-
-  looks() {
-    const swatches = COLOR_NAMES.map((name, i) => make("label", { title: name },
-      make("input", { type: "radio", name: "color", id: `color-${i}`, "aria-label": name, onchange: () => this.change({ color: i }) }),
-      make("i", { class: `swatch-${i}` })));
-    const size = make("input", {
-      type: "range", id: "dot", min: "0.25", max: "4", step: "0.05", "aria-label": "Size of points",
-      oninput: (event) => this.hold({ dot: Number(event.target.value) }),
-      onchange: () => this.session.release(),
-    });
-    const remove = () => this.session.choose((state) => state.layers.splice(this.picked, 1), "layers");
-    this.remove = make("button", { type: "button", id: "remove-layer", onclick: remove }, "Remove this layer");
-    return make("div", { class: "group", role: "group", "aria-label": "Looks" },
-      make("span", { class: "label" }, "Color and size"),
-      make("div", { class: "swatches", role: "radiogroup", "aria-label": "Color" }, swatches),
-      size, this.remove);
-  }
-
-  text(member, attributes = {}) {
-    const typed = (event) => {
+  /** Takes what is typed: after a while, or when the field is left. */
+  text(member) {
+    listen(member, "input", ({ value }) => {
       const { picked } = this;
-      const { value } = event.target;
       this.typing = member;
       this.type((state) => Object.assign(state.layers[picked], { [member]: value }));
-    };
-    return make("input", {
-      type: "text", id: member, spellcheck: "false", autocomplete: "off", ...attributes, oninput: typed,
-      onchange: (event) => event.target.value === this.layer[member] || this.change({ [member]: event.target.value }),
     });
+    listen(member, "change", ({ value }) => value === this.layer[member] || this.change({ [member]: value }));
   }
 
   /** Shows a layer's fields. */
@@ -265,17 +194,18 @@ export class Controls {
   /** The layers as buttons: as many as there are, and one more to add. */
   updateBar() {
     const { layers } = this.session.state;
-    if (this.bar.childElementCount !== layers.length + (layers.length < MOST_LAYERS ? 1 : 0)) {
-      const focused = this.bar.contains(document.activeElement) ? document.activeElement?.id : null;
+    const bar = byId("layers");
+    if (bar.childElementCount !== layers.length + (layers.length < MOST_LAYERS ? 1 : 0)) {
+      const focused = bar.contains(document.activeElement) ? document.activeElement?.id : null;
       const buttons = layers.map((_, i) => make("button", {
         type: "button", id: `layer-${i}`, onclick: () => this.pick(i),
       }, make("i"), make("span")));
       const add = make("button", { type: "button", id: "add-layer", onclick: () => this.addLayer() }, "+ Add a layer");
-      this.bar.replaceChildren(...buttons, ...(layers.length < MOST_LAYERS ? [add] : []));
+      bar.replaceChildren(...buttons, ...(layers.length < MOST_LAYERS ? [add] : []));
       if (focused) (byId(focused) ?? add).focus();
     }
     layers.forEach((layer, i) => {
-      const button = this.bar.children[i];
+      const button = bar.children[i];
       button.setAttribute("aria-pressed", String(i === this.picked));
       const [swatch, name] = button.children;
       swatch.className = `swatch-${layer.color}`;
@@ -286,37 +216,34 @@ export class Controls {
   /** Sets every field to what is chosen, but for one that is being typed in. */
   update() {
     this.picked = Math.min(this.picked, this.session.state.layers.length - 1);
-    const { layer, picked, root } = this;
+    const { layer, picked } = this;
     this.updateWorld();
     if (layer.world) return;
     this.updateBar();
-    /** @type {(id: string) => any} */
-    const set = (id) => root.querySelector(`#${id}`);
     const { alphas, alpha, maps, map } = choicesOf(this.profiles, layer);
-    setOptions(set("profile"), including(profileNames(this.profiles), layer.profile), layer.profile);
-    setOptions(set("alpha"), alphas.map((a) => [a, nice(a)]), alpha);
-    setOptions(set("map"), maps.map((m) => [m, MAP_WORDS[m] ?? m]), map);
-    setOptions(set("by"), Object.entries(AMOUNT_WORDS), layer.by);
-    const warps = including(Object.keys(WARP_WORDS), layer.warp).map((w) => [w, WARP_WORDS[w] ?? w]);
-    setOptions(set("warp"), warps.sort((a, b) => warpOrder(a[0]) - warpOrder(b[0])), layer.warp);
-    const steps = including(Object.keys(SETTLE_WORDS), layer.settle).map((k) => [k, SETTLE_WORDS[k] ?? k]);
-    setOptions(set("settle"), steps.sort((a, b) => (a[0] || -1) - (b[0] || -1)), layer.settle);
-    setOptions(set("field"), this.fieldChoices(), layer.field);
-    for (const member of ["amount", "seed", "range", "variants", "clear"]) {
-      const input = set(member);
+    const inWords = (words, value) => including(Object.keys(words), value).map((one) => [one, words[one] ?? one]);
+    setOptions(byId("profile"), including(profileNames(this.profiles), layer.profile), layer.profile);
+    setOptions(byId("alpha"), alphas.map((a) => [a, nice(a)]), alpha);
+    setOptions(byId("map"), maps.map((m) => [m, MAP_WORDS[m] ?? m]), map);
+    setOptions(byId("by"), Object.entries(AMOUNT_WORDS), layer.by);
+    setOptions(byId("warp"), inWords(WARP_WORDS, layer.warp).sort((a, b) => warpOrder(a[0]) - warpOrder(b[0])), layer.warp);
+    setOptions(byId("settle"), inWords(SETTLE_WORDS, layer.settle).sort((a, b) => (a[0] || -1) - (b[0] || -1)), layer.settle);
+    setOptions(byId("field"), this.fieldChoices(), layer.field);
+    for (const member of TEXTS) {
+      const input = inputAt(member);
       if (this.typing !== member && input.value !== layer[member]) input.value = layer[member];
     }
-    this.updateSlider(set("amount-slider"));
-    for (const member of ["angle", "scale", "variant"]) set(member).checked = layer[member];
-    set("shade-field").checked = layer.shade;
-    set(`color-${layer.color}`).checked = true;
-    if (set("dot").value !== String(layer.dot)) set("dot").value = String(layer.dot);
-    this.shade.hidden = !layer.field;
-    this.range.hidden = !layer.scale;
-    this.variant.hidden = Boolean(layer.spread);
-    this.clear.hidden = picked === 0;
-    this.remove.hidden = this.session.state.layers.length < 2;
-    this.kinds.update(layer, this.session.state.layers, this.root);
+    this.updateSlider(byId("amount-slider"));
+    for (const member of ["angle", "scale", "variant"]) inputAt(member).checked = layer[member];
+    byId("shade-field").checked = layer.shade;
+    inputAt(`color-${layer.color}`).checked = true;
+    if (byId("dot").value !== String(layer.dot)) byId("dot").value = String(layer.dot);
+    lineOf("shade-field").hidden = !layer.field;
+    lineOf("range").hidden = !layer.scale;
+    lineOf("variant").hidden = Boolean(layer.spread);
+    lineOf("clear").hidden = picked === 0;
+    byId("remove-layer").hidden = this.session.state.layers.length < 2;
+    this.kinds.update(layer, this.session.state.layers);
     this.tell();
   }
 
@@ -355,8 +282,8 @@ export class Controls {
     if (this.layer.world) return;
     const { understood, faults } = this.notes[this.picked] ?? {};
     const all = { ...faults, ...faultsBefore(this.layer, this.picked) };
-    for (const id of FIELDS) fault(this.root, id, all[id]);
-    if (all.alpha || all.map || all.warp || all.settle) /** @type {HTMLDetailsElement} */ (byId("expert")).open = true;
+    for (const id of FIELDS) fault(byId("fields"), id, all[id]);
+    if (all.alpha || all.map || all.warp || all.settle) byId("expert").open = true;
     byId("about-amount").textContent = understood && !faults ? said(understood) : "";
     byId("about-profile").textContent = PROFILE_WORDS[this.layer.profile] ?? "";
     byId("amount").setAttribute("aria-label", AMOUNT_WORDS[this.layer.by]);

@@ -1,5 +1,4 @@
-// Dots set straight into pixels. Without graphics hardware this is several times as fast as drawing
-// thousands of small shapes on a canvas.
+// Dots set straight into pixels: several times as fast as drawing thousands of small shapes on a canvas.
 
 /** The places within a pixel that are kept apart, along each axis. */
 const STEPS = 4;

@@ -1,12 +1,18 @@
 // Fields of a form that stay where they are: they are made once, and set again when the choice changes.
 
-import { hasKey, useKey } from "./api.js";
-import { byId, make } from "./dom.js";
+import { useKey } from "./api.js";
+import { make } from "./dom.js";
 
 /** A control with its label, further lines, and a line for what is wrong with its value. */
 export function field(words, id, control, ...more) {
-  const wrong = make("p", { class: "note bad", id: `wrong-${id}`, role: "alert", hidden: true });
-  return make("div", { class: "field" }, make("label", { for: id }, words), control, ...more, wrong);
+  const element = make("div", { class: "field" }, make("label", { for: id }, words), control, ...more);
+  wrongAt(control, element);
+  return element;
+}
+
+/** Adds the line for what is wrong with the value of a control to its field. */
+export function wrongAt(control, element = control.closest(".field")) {
+  element.append(make("p", { class: "note bad", id: `wrong-${control.id}`, role: "alert", hidden: true }));
 }
 
 /** A list to choose from; `changed(value)` hears what is chosen. */
@@ -25,12 +31,6 @@ export function setOptions(list, options, value) {
   list.value = value;
 }
 
-/** A box to check; `changed(isChecked)` hears of it. */
-export function check(id, words, changed) {
-  const box = make("input", { type: "checkbox", id, onchange: (event) => changed(event.target.checked) });
-  return make("label", { class: "check" }, box, words);
-}
-
 /** Says what is wrong with the value of a field, at the field; no words if nothing is. */
 export function fault(root, id, words) {
   const control = root.querySelector(`#${id}`);
@@ -43,23 +43,6 @@ export function fault(root, id, words) {
   const about = [control.dataset.about, words && line.id].filter(Boolean).join(" ");
   if (about) control.setAttribute("aria-describedby", about);
   else control.removeAttribute("aria-describedby");
-}
-
-/**
- * Says in a banner what the server refused, and takes a key where it needs one: `used()` is called once there is one.
- */
-export function refusal(banner, error, used) {
-  banner.hidden = false;
-  if (!error.isLocked) {
-    banner.textContent = error.message;
-    return;
-  }
-  if (byId("key")) return;
-  banner.replaceChildren(hasKey() ? error.message : "This server needs a key.", keyForm(() => {
-    banner.hidden = true;
-    banner.replaceChildren();
-    used();
-  }));
 }
 
 /** A form for a key, which stays in this tab; `used()` is called once there is one. */

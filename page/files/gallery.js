@@ -1,18 +1,28 @@
 // The gallery: every profile as points, spectrum and radial power, side by side; each opens in the
 // view.
 
+import { encoded } from "./address.js";
 import { ask, wordsOf } from "./api.js";
 import { lineChart, pointPicture, spectrumPicture, topOf } from "./charts.js";
 import { byId, make, spoken } from "./dom.js";
 import { measure } from "./measure.js";
 import { Part } from "./part.js";
 import { PROFILE_WORDS, profileNames } from "./profiles.js";
-import { LAYER, encoded } from "./state.js";
+import { LAYER } from "./state.js";
 import { figureOf, recordedOf } from "./understand.js";
 
 /** The side of what is measured and of what is drawn of it, in mean spacings. */
 const MEASURED = 64;
 const DRAWN = 20;
+
+/** What the pictures mean. */
+const MEANING = [
+  ["Profile", ": a kind of noise: how evenly points lie, and at which distances."],
+  ["Points", ": a square 20 spacings wide."],
+  ["Spectrum", ": how much of each frequency there is in every direction, with frequency 0 in the middle. An empty middle means an even "
+    + "spread, rings mean regular distances, and a round picture favors no direction."],
+  ["Curve", ": the same, averaged over all directions, as measured on the table. 1 is pure chance."],
+];
 
 export class Gallery extends Part {
   constructor(session, profiles) {
@@ -36,12 +46,12 @@ export class Gallery extends Part {
   async show() {
     if (this.cards) return;
     this.cards = this.names.map((name) => this.card(name));
-    // Where the panel is only a strip, what the pictures mean is said here.
-    const words = [...byId("gallery-help").children].map((one) => one.cloneNode(true));
     byId("gallery").replaceChildren(
       make("header", {}, make("h2", {}, "All profiles side by side"),
-        make("span", { class: "soft" }, "points · spectrum to ν 2.5 · radial power to ν 3")),
-      make("details", { class: "meaning" }, make("summary", {}, "What the pictures mean"), words),
+        make("span", { class: "soft" }, "points · spectrum to ν 2.5 · radial power to ν 3"),
+        make("button", { type: "button", id: "close-gallery", onclick: () => this.session.choose((state) => (state.tab = "choose"), "tab") }, "Close")),
+      make("details", { class: "meaning" }, make("summary", {}, "What the pictures mean"),
+        MEANING.map(([name, words]) => make("p", { class: "note" }, make("b", {}, name), words))),
       make("div", { class: "cards" }, this.cards.map((card) => card.element)),
     );
     const isWhole = await Promise.all(this.cards.map((card) => this.fill(card)));

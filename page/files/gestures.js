@@ -5,15 +5,19 @@ import { followPointers, followWheel, placeOf } from "./hands.js";
 /** How far a key moves the view, as a share of its shorter side; with Shift a whole one. */
 const STEP = 0.15;
 
+/** Moves and zooms a plane as two fingers do. */
+export function pinch(plane, { was, is }) {
+  plane.drag(is.middle[0] - was.middle[0], is.middle[1] - was.middle[1]);
+  plane.zoom(is.apart / was.apart, is.middle);
+}
+
 /** Lets a canvas move its plane; `tapped(at)` and `hovered(at)` get CSS pixels, or `null` on leaving. */
 export function moveBy(canvas, plane, { tapped, hovered }) {
   followPointers(canvas, {
     tapped, hovered,
-    moved: ({ dx, dy, fingers, was, is, isDrag }) => {
-      if (was && is) {
-        plane.drag(is.middle[0] - was.middle[0], is.middle[1] - was.middle[1]);
-        plane.zoom(is.apart / was.apart, is.middle);
-      } else if (fingers === 1 && isDrag) plane.drag(dx, dy);
+    moved: (step) => {
+      if (step.was) pinch(plane, step);
+      else if (step.fingers === 1 && step.isDrag) plane.drag(step.dx, step.dy);
     },
   });
   followWheel(canvas, (factor, at) => plane.zoom(factor, at));

@@ -18,7 +18,7 @@ const MOST_CHUNKS = 64;
 const REACH = 1.4e15;
 
 /** @typedef {import("./place.js").Place} Place */
-/** @typedef {Pick<import("./plane.js").View, "x" | "y" | "unit" | "width" | "height">} View */
+/** @typedef {Pick<import("./view.js").View, "x" | "y" | "unit" | "width" | "height">} View */
 
 /**
  * The side of chunks for a view, a power of two, so that corners are exact.

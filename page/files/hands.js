@@ -6,10 +6,11 @@ const unheard = (..._) => {};
 const TAP = 5;
 
 /**
- * Follows the pointers on a canvas. `moved` hears of a step by `dx`, `dy` of one of the `fingers` that are down, and where two
- * are: where they `was` and `is` now; `isDrag` says that it is more than a tap. All is in CSS pixels.
+ * Follows the pointers on a canvas. `moved` hears of a step by `dx`, `dy` of one of the `fingers` that are down, which is `at` a
+ * place now, and where two are: where they `was` and `is` now; `isDrag` says that it is more than a tap. `lifted(isWhole)`
+ * hears of a finger that goes, or whose way was cut off. All is in CSS pixels.
  */
-export function followPointers(canvas, { moved, tapped = unheard, hovered = unheard }) {
+export function followPointers(canvas, { moved, pressed = unheard, lifted = unheard, tapped = unheard, hovered = unheard }) {
   const down = new Map();
   let travel = 0;
   const pair = () => {
@@ -21,6 +22,7 @@ export function followPointers(canvas, { moved, tapped = unheard, hovered = unhe
     if (down.size === 0) travel = 0;
     down.set(event.pointerId, placeOf(event, canvas));
     canvas.classList.add("held");
+    pressed(placeOf(event, canvas), down.size);
   });
   canvas.addEventListener("pointermove", (event) => {
     const before = down.get(event.pointerId);
@@ -33,10 +35,12 @@ export function followPointers(canvas, { moved, tapped = unheard, hovered = unhe
     down.set(event.pointerId, now);
     const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
     travel += Math.abs(dx) + Math.abs(dy);
-    moved({ dx, dy, fingers: down.size, was, is: was && pair(), isDrag: travel > TAP });
+    moved({ at: now, dx, dy, fingers: down.size, was, is: was && pair(), isDrag: travel > TAP });
   });
   const up = (event) => {
-    if (!down.delete(event.pointerId) || down.size > 0) return;
+    if (!down.delete(event.pointerId)) return;
+    lifted(event.type === "pointerup");
+    if (down.size > 0) return;
     canvas.classList.remove("held");
     if (event.type === "pointerup" && travel <= TAP) tapped(placeOf(event, canvas));
   };

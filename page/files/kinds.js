@@ -1,7 +1,7 @@
 // The fields for kinds in the tab Choose: how they are spread, their names with their shares, and their colors.
 
-import { make } from "./dom.js";
-import { field, select, setOptions } from "./form.js";
+import { byId, make } from "./dom.js";
+import { setOptions } from "./form.js";
 import { SHAPES, SHAPE_SIGNS, isColored, kindColors } from "./marks.js";
 import { choicesOf } from "./profiles.js";
 import { allVariants, variantNames } from "./query.js";
@@ -23,16 +23,9 @@ const NAMES = ["birch", "oak", "pine", "rowan", "bush", "fern"];
 const SHARES = "birch:1,oak:3";
 
 export class Kinds {
-  /** `profiles` are the server's tables; `change(members)` changes the layer; `names` is the field for names. */
-  constructor(profiles, change, names) {
+  /** `profiles` are the server's tables. */
+  constructor(profiles) {
     this.profiles = profiles;
-    this.about = make("p", { class: "note", id: "about-spread" });
-    this.legend = make("p", { class: "note legend", id: "legend" });
-    this.ratio = field("Shares", "ratio", select("ratio", (ratio) => change({ variants: named(ratio) })));
-    this.variants = field("Kinds with their shares", "variants", names);
-    this.element = make("div", { class: "group", role: "group", "aria-label": "Kinds" },
-      field("Kinds", "spread", select("spread", (spread) => change(this.changed(spread)), { "aria-describedby": "about-spread" }), this.about),
-      this.ratio, this.variants, this.legend);
   }
 
   /** The shares for which the server has a joint table of a layer's profile and pattern, with its map. */
@@ -57,20 +50,21 @@ export class Kinds {
   }
 
   /** Shows a layer of those that there are. */
-  update(layer, layers, root) {
+  update(layer, layers) {
     this.layer = layer;
     const ratios = this.joint(layer)?.joint_kinds ?? [];
     const offered = Object.keys(SPREAD_WORDS).filter((spread) => spread !== "joint" || ratios.length > 0 || layer.spread === "joint");
-    setOptions(root.querySelector("#spread"), offered.map((spread) => [spread, SPREAD_WORDS[spread]]), layer.spread);
+    setOptions(byId("spread"), offered.map((spread) => [spread, SPREAD_WORDS[spread]]), layer.spread);
     const ratio = ratioOf(layer.variants);
     const list = ratios.includes(ratio) ? ratios : [...ratios, ratio];
-    setOptions(root.querySelector("#ratio"), list, ratio);
-    this.about.textContent = ABOUT[layer.spread] ?? "";
-    this.ratio.hidden = layer.spread !== "joint";
-    this.variants.hidden = this.legend.hidden = !layer.variant && !layer.spread;
+    setOptions(byId("ratio"), list, ratio);
+    byId("about-spread").textContent = ABOUT[layer.spread] ?? "";
+    const [shares, names] = ["ratio", "variants"].map((id) => /** @type {HTMLElement} */ (byId(id).parentElement));
+    shares.hidden = layer.spread !== "joint";
+    names.hidden = byId("legend").hidden = !layer.variant && !layer.spread;
     const signs = allVariants(layers);
     const colors = kindColors(layer);
-    this.legend.replaceChildren(...variantNames(layer).map((name, i) => (isColored(layer)
+    byId("legend").replaceChildren(...variantNames(layer).map((name, i) => (isColored(layer)
       ? make("span", {}, make("i", { class: `swatch-${colors[i % colors.length]}` }), name)
       : make("span", {}, `${SHAPE_SIGNS[signs.indexOf(name) % SHAPES.length] ?? "●"} ${name}`))));
   }
@@ -82,6 +76,6 @@ function ratioOf(variants) {
 }
 
 /** Names for the shares of a ratio. */
-function named(ratio) {
+export function named(ratio) {
   return ratio.split(":").map((share, i) => `${NAMES[i % NAMES.length]}:${share}`).join(",");
 }

@@ -1,6 +1,7 @@
 // The page: puts its parts together.
 
 import { Gone, Problem, askJson, onPresence, wordsOf } from "./api.js";
+import { tools } from "./bar.js";
 import { Card } from "./card.js";
 import { Controls } from "./controls.js";
 import { byId, icon, make, settled, skipLinks, spoken } from "./dom.js";
@@ -23,10 +24,9 @@ import { Tabs } from "./tabs.js";
 import { Take } from "./take.js";
 import { Trouble } from "./trouble.js";
 import { Paint } from "./paint/paint.js";
-import { palette, watchTheme } from "./theme.js";
+import { palette } from "./theme.js";
 import { Understand } from "./understand.js";
 import { worldNames } from "./worlds.js";
-import { Works } from "./works/works.js";
 
 const root = document.documentElement;
 /** Whether the visitor comes without a link to a view. */
@@ -35,7 +35,7 @@ const session = new Session();
 
 /** @type {import("./part.js").Part[]} */
 const parts = [];
-const plane = new Plane(byId("plane"), session.state.renderer, {
+const plane = new Plane(byId("plane"), {
   moved: () => {
     // Before the server has said what a spacing is, nothing is looked at.
     if (!plane.span) return;
@@ -120,7 +120,6 @@ function arrived() {
 
 const status = new Status(session, plane);
 const pour = new Pour(plane);
-root.dataset.renderer = plane.painter.name;
 const rested = settled(250, () => {
   for (const part of parts) part.rested();
   if (session.state.layers.length > 1) controls?.counted(countsInView());
@@ -206,11 +205,14 @@ async function refresh(isChosen = false) {
   show(layers, notes.map((note) => note.understood), isChosen);
 }
 
+/** Whether the fields of layers are in sight. */
+const isChoosing = () => ["choose", "understand"].includes(session.state.tab);
+
 /** Says what is wrong with layers: at the fields if they were just changed, over the plane if a link leads here. */
 function sayFaults(notes, isChosen) {
   const other = notes.map((note) => note.faults?.[""]).find(Boolean);
   const wrong = notes.findIndex((note) => note.faults);
-  const isSeen = wrong === controls?.picked && session.state.tab === "choose";
+  const isSeen = wrong === controls?.picked && isChoosing();
   const words = other ?? Object.values(notes[wrong].faults)[0];
   const named = notes.length > 1 ? `Layer ${wrong + 1}: ${words}` : words;
   if (isChosen && isSeen && !other) return;
@@ -236,7 +238,7 @@ function afresh() {
 function pointOut(layer) {
   banner(null);
   controls?.pick(layer);
-  if (session.state.tab !== "choose") session.choose((state) => (state.tab = "choose"), "tab");
+  if (!isChoosing()) session.choose((state) => (state.tab = "choose"), "tab");
   byId("choose").querySelector('[aria-invalid="true"]')?.focus();
 }
 
@@ -291,31 +293,25 @@ function jump(event) {
 }
 
 const ICONS = {
-  closer: "M12 5v14M5 12h14",
-  farther: "M5 12h14",
-  home: "M3 11.5 12 4l9 7.5M6 10v10h12V10",
   share: "M10 14a4.5 4.5 0 0 0 6.4 0l3-3a4.5 4.5 0 0 0-6.4-6.4l-1 1M14 10a4.5 4.5 0 0 0-6.4 0l-3 3a4.5 4.5 0 0 0 6.4 6.4l1-1",
-  theme: "M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z",
   fold: "M6 15l6-6 6 6",
 };
 
-function tools() {
+function buttons() {
   for (const [id, path] of Object.entries(ICONS)) byId(id).append(icon(path));
   byId("jump").addEventListener("submit", jump);
-  byId("closer").addEventListener("click", () => plane.zoom(1.5));
-  byId("farther").addEventListener("click", () => plane.zoom(1 / 1.5));
-  byId("home").addEventListener("click", () => {
-    byId("jump-at").value = "";
-    byId("jump-at").removeAttribute("aria-invalid");
-    session.choose((state) => Object.assign(state, { x: place(0), y: place(0), span: initial().span * (plane.look?.spacing ?? 1) }), "view");
-  });
   byId("brand").addEventListener("click", (event) => {
     event.preventDefault();
     afresh();
   });
   byId("share").addEventListener("click", share);
   byId("fold").addEventListener("click", () => fold(byId("fold").getAttribute("aria-expanded") === "true"));
-  watchTheme(byId("theme"), () => {
+  const home = () => {
+    byId("jump-at").value = "";
+    byId("jump-at").removeAttribute("aria-invalid");
+    session.choose((state) => Object.assign(state, { x: place(0), y: place(0), span: initial().span * (plane.look?.spacing ?? 1) }), "view");
+  };
+  tools(plane, home, () => {
     if (plane.look) plane.show({ ...plane.look, ...palette(plane.look.layers) });
     for (const part of parts) part.themed();
   });
@@ -347,7 +343,6 @@ let tables = [];
 
 const [understand, take] = [new Understand(session, plane), new Take(session, plane)];
 const shade = new Shade(plane);
-const works = new Works(session);
 const card = new Card(session, plane);
 const paint = new Paint(session, plane, {
   picked: () => controls?.picked ?? 0,
@@ -357,8 +352,8 @@ const start = new Start(session, () => {
   fold(matchMedia("(max-width: 46rem)").matches);
   byId("plane").focus();
 });
-parts.push(pour, start, card, understand, take, shade, works, paint);
-tools();
+parts.push(pour, start, card, understand, take, shade, paint);
+buttons();
 skipLinks();
 takeDrops(byId("stage"), stipple);
 const tabs = new Tabs(session, fold, (tab) => {
@@ -378,7 +373,6 @@ session.on((changed) => {
 /** Stipples a picture with the layer that is picked. */
 async function stipple(file) {
   if (!controls) return;
-  if (file.name.endsWith(".json")) return paint.open(file);
   try {
     banner(`Sending “${file.name}” …`);
     const members = await sendPicture(file, plane.view);
@@ -460,5 +454,5 @@ async function begin() {
 }
 
 // For the curious, and for tests.
-globalThis.strew = { plane, pour, start, card, shade, stipple, session, status, understand, take, works, paint };
+globalThis.strew = { plane, pour, start, card, shade, stipple, session, status, understand, take, paint };
 begin();

@@ -1,4 +1,4 @@
-// How points look: the size of a dot at a zoom, and the shapes of marks. Both painters draw by these.
+// How points look: the size of a dot at a zoom, and the shapes of marks.
 
 import { allVariants, variantNames } from "./query.js";
 import { COLOR_NAMES, KIND_COLORS } from "./state.js";
@@ -13,7 +13,7 @@ export const SHAPE_SIGNS = ["●", "▲", "■", "◆", "✚", "○", "△", "�
 export const ARROW = SHAPES.length;
 
 /** The diameter of a dot in CSS pixels, where neighbors are a number of pixels apart. */
-export function dotSize(gap, factor) {
+function dotSize(gap, factor) {
   return Math.min(14, Math.max(1.1, gap * 0.3)) * factor;
 }
 

@@ -2,10 +2,10 @@
 
 import { chunkSize, cornerFrom, farthest, isTooFar } from "./grid.js";
 import { Chunks, runsOf } from "./chunks.js";
-import { glPainter } from "./painter_gl.js";
-import { plainPainter } from "./painter_2d.js";
+import { Painter } from "./painter.js";
 import { moved, place, toNumber } from "./place.js";
 import { Sheets } from "./sheets.js";
+import { Moving, sized } from "./view.js";
 
 /** A view shows at least half a spacing, and at most this number of spacings: hundreds of millions of points, drawn as gray. */
 const LEAST_SPAN = 0.5;
@@ -15,18 +15,6 @@ const REST = 140;
 
 /** @typedef {import("./place.js").Place} Place */
 /** @typedef {import("./chunks.js").Chunk} Chunk */
-
-/**
- * What a canvas shows of the plane.
- * @typedef {object} View
- * @property {Place} x The middle.
- * @property {Place} y
- * @property {number} unit World units for each CSS pixel.
- * @property {number} width In CSS pixels.
- * @property {number} height
- * @property {number} ratio Device pixels for each of them.
- * @property {number[]} pixels Width and height in device pixels.
- */
 
 /**
  * What is shown, and in which colors: red, green and blue from 0 to 1.
@@ -47,41 +35,27 @@ const REST = 140;
  */
 
 /** A canvas that shows the points of some layers. */
-export class Plane {
+export class Plane extends Moving {
   /**
    * @param {HTMLCanvasElement} canvas
-   * @param {string} renderer `2d`, `webgl2`, or nothing for the faster one.
    * @param {Events} events
    */
-  constructor(canvas, renderer, events) {
+  constructor(canvas, events) {
+    super();
     this.events = events;
-    /** @type {any} */
-    this.painter = (renderer === "2d" ? null : glPainter(canvas, renderer === "webgl2")) ?? plainPainter(canvas);
+    this.painter = new Painter(canvas);
     this.canvas = canvas;
     this.chunks = new Chunks(() => this.draw(), events.failed);
     this.sheets = new Sheets(this.painter, this.chunks);
-    /** @type {View} */
-    this.view = { x: place(0), y: place(0), unit: 1, width: 1, height: 1, ratio: 1, pixels: [1, 1] };
-    /** How much of the world the shorter side shows; 0 until a place is looked at. */
-    this.span = 0;
     /** @type {Look & { spacing: number } | null} */
     this.look = null;
     this.isWaiting = false;
     this.zoomedAt = -Infinity;
-    new ResizeObserver(() => this.resize()).observe(canvas);
-    canvas.addEventListener("webglcontextlost", () => events.failed(new Error(
-      "The graphics driver gave up. Load the page again, or add &renderer=2d to its address.",
-    )));
+    new ResizeObserver(() => canvas.clientWidth && canvas.clientHeight && this.resize(canvas.clientWidth, canvas.clientHeight)).observe(canvas);
   }
 
-  resize() {
-    const { clientWidth: width, clientHeight: height } = this.canvas;
-    if (!width || !height) return;
-    const ratio = Math.min(2, globalThis.devicePixelRatio || 1);
-    const pixels = [Math.round(width * ratio), Math.round(height * ratio)];
-    Object.assign(this.view, { width, height, ratio, pixels });
-    [this.canvas.width, this.canvas.height] = pixels;
-    if (this.span) this.view.unit = this.span / Math.min(width, height);
+  changed() {
+    sized(this.canvas, this.view.pixels);
     this.draw();
     this.events.moved();
   }
@@ -99,36 +73,11 @@ export class Plane {
     this.draw();
   }
 
-  /**
-   * Looks at a place; `span` is how much of the world the shorter side shows.
-   * @param {Place} x
-   * @param {Place} y
-   */
-  lookAt(x, y, span = this.span) {
-    this.span = this.bounded(span);
-    Object.assign(this.view, { x, y, unit: this.span / Math.min(this.view.width, this.view.height) });
-    this.draw();
-    this.events.moved();
-  }
-
   /** @param {number} span */
   bounded(span) {
     const spacing = this.look?.spacing;
     if (!spacing) return span;
     return Math.min(MOST_SPAN * spacing, Math.max(LEAST_SPAN * spacing, span));
-  }
-
-  /**
-   * Moves the view by CSS pixels, as a hand moves the plane.
-   * @param {number} dx
-   * @param {number} dy
-   */
-  drag(dx, dy) {
-    const { view } = this;
-    view.x = this.within(moved(view.x, -dx * view.unit));
-    view.y = this.within(moved(view.y, dy * view.unit));
-    this.draw();
-    this.events.moved();
   }
 
   /**
@@ -141,22 +90,10 @@ export class Plane {
     return Math.abs(toNumber(at)) > most ? place(Math.sign(toNumber(at)) * most) : at;
   }
 
-  /**
-   * Enlarges by a factor about a place on the canvas, in CSS pixels.
-   * @param {number} factor
-   */
+  /** @param {number} factor */
   zoom(factor, at = [this.view.width / 2, this.view.height / 2]) {
-    const { view } = this;
-    const span = this.bounded(this.span / factor);
-    const grown = span / this.span;
-    const [dx, dy] = [at[0] - view.width / 2, view.height / 2 - at[1]];
-    view.x = this.within(moved(view.x, dx * view.unit * (1 - grown)));
-    view.y = this.within(moved(view.y, dy * view.unit * (1 - grown)));
-    this.span = span;
-    view.unit *= grown;
     this.zoomedAt = performance.now();
-    this.draw();
-    this.events.moved();
+    super.zoom(factor, at);
   }
 
   draw() {
@@ -211,12 +148,13 @@ export class Plane {
   }
 
   /**
-   * Calls `visit(layer, x, y, chunk, k)` for the points in view, x and y from its middle.
+   * Calls `visit(layer, x, y, chunk, k)` for the points in view and up to `margin` around it, x and y from its middle.
    * @param {(layer: number, x: number, y: number, chunk: Chunk, k: number) => void} visit
+   * @param {number} [margin] In units of the world.
    */
-  each(visit) {
+  each(visit, margin = 0) {
     const { view, sheets } = this;
-    const [halfX, halfY] = [(view.width * view.unit) / 2, (view.height * view.unit) / 2];
+    const [halfX, halfY] = [(view.width * view.unit) / 2 + margin, (view.height * view.unit) / 2 + margin];
     for (const { chunk } of sheets.front?.parts ?? []) {
       const [left, low] = [cornerFrom(chunk.cx, chunk.size, view.x), cornerFrom(chunk.cy, chunk.size, view.y)];
       if (left > halfX || low > halfY || left + chunk.size < -halfX || low + chunk.size < -halfY) continue;
@@ -226,23 +164,6 @@ export class Plane {
           const y = low + chunk.data[k * chunk.stride + 1];
           if (x >= -halfX && x < halfX && y >= -halfY && y < halfY) visit(layer, x, y, chunk, k);
         }
-      }
-    }
-  }
-
-  /**
-   * Calls `visit(x, y, chunk, k)` for the points in view and up to `margin` around it, x and y from its middle.
-   * @param {number} margin In units of the world.
-   * @param {(x: number, y: number, chunk: any, k: number) => void} visit
-   */
-  near(margin, visit) {
-    const { view, sheets } = this;
-    const [halfX, halfY] = [(view.width * view.unit) / 2 + margin, (view.height * view.unit) / 2 + margin];
-    for (const { chunk } of sheets.front?.parts ?? []) {
-      const [left, low] = [cornerFrom(chunk.cx, chunk.size, view.x), cornerFrom(chunk.cy, chunk.size, view.y)];
-      for (let k = 0; k < chunk.count; k += 1) {
-        const [x, y] = [left + chunk.data[k * chunk.stride], low + chunk.data[k * chunk.stride + 1]];
-        if (Math.abs(x) < halfX && Math.abs(y) < halfY) visit(x, y, chunk, k);
       }
     }
   }

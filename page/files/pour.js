@@ -4,6 +4,8 @@
 import { byId, contextOf } from "./dom.js";
 import { sizesOf } from "./marks.js";
 import { Part } from "./part.js";
+import { cssOf } from "./theme.js";
+import { sized } from "./view.js";
 
 /** Milliseconds for which the points stay where chance put them, and until the last of them is in place. */
 const [HELD, POURED] = [500, 2000];
@@ -80,25 +82,24 @@ export class Pour extends Part {
   /** Draws all points on their way: `time` goes from 0 to 1. */
   draw(time) {
     const { plane: { view, look }, canvas } = this;
-    if (canvas.width !== view.pixels[0] || canvas.height !== view.pixels[1]) [canvas.width, canvas.height] = view.pixels;
+    sized(canvas, view.pixels);
     const context = contextOf(canvas);
-    const css = (rgb) => `rgb(${rgb.map((v) => Math.round(v * 255)).join(" ")})`;
-    context.fillStyle = css(look.ground);
+    context.fillStyle = cssOf(look.ground);
     context.fillRect(0, 0, canvas.width, canvas.height);
     const pixel = view.unit / view.ratio;
     const radius = (sizesOf(look.layers, look.spacings, view.unit)[0] * view.ratio) / 2;
     const far = (FAR * look.spacing) / pixel;
     const half = [canvas.width / 2, canvas.height / 2];
-    context.fillStyle = css(look.colors[look.layers[0].color]);
+    context.fillStyle = cssOf(look.colors[look.layers[0].color]);
     context.beginPath();
-    this.plane.near(far * pixel, (x, y, chunk, k) => {
+    this.plane.each((_, x, y, chunk, k) => {
       const later = chance(chunk, k, 1) * (1 - SHARE);
       const left = 1 - eased(Math.min(1, Math.max(0, (time - later) / SHARE)));
       const [turn, away] = [2 * Math.PI * chance(chunk, k, 2), far * Math.sqrt(chance(chunk, k, 3)) * left];
       const [px, py] = [half[0] + x / pixel + away * Math.cos(turn), half[1] - y / pixel + away * Math.sin(turn)];
       context.moveTo(px + radius, py);
       context.arc(px, py, radius, 0, 2 * Math.PI);
-    });
+    }, far * pixel);
     context.fill();
     if (time > 0.7 && this.caption.textContent === CHANCE) this.say(EVEN);
   }

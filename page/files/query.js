@@ -1,7 +1,7 @@
 // From the choices on the page to a request: parameters of an address for one layer, a body for several.
 
 import { Digits, json } from "./digits.js";
-import { encoded } from "./state.js";
+import { encoded } from "./address.js";
 import { decimalsFor, formatPlace, moved } from "./place.js";
 import { documentOf } from "./sent.js";
 

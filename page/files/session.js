@@ -9,7 +9,7 @@ import { layersOfWorld } from "./worlds.js";
 /** @typedef {import("./place.js").Place} Place */
 /** @typedef {import("./state.js").Layer} Layer */
 /** @typedef {import("./state.js").State} State */
-/** @typedef {"layers" | "picked" | "view" | "tab" | "works"} Changed */
+/** @typedef {"layers" | "picked" | "view" | "tab"} Changed */
 
 /**
  * The server's values of a layer, everything filled in.
@@ -31,11 +31,8 @@ export class Session {
     this.isHeld = false;
     addEventListener("popstate", () => {
       this.write.cancel();
-      const { renderer } = this.state;
       this.state = fromHash(location.hash);
-      // A canvas that has one kind of context never gets another.
-      if (this.state.renderer !== renderer) return location.reload();
-      this.tell("layers", "view", "tab", "works");
+      this.tell("layers", "view", "tab");
     });
   }
 

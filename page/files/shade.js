@@ -7,6 +7,7 @@ import { chunksOf, cornerFrom } from "./grid.js";
 import { Part } from "./part.js";
 import { GRAY } from "./sheets.js";
 import { themeColor } from "./theme.js";
+import { sized } from "./view.js";
 
 /** The width of a tile in CSS pixels, about. */
 const SIDE = 360;
@@ -80,7 +81,7 @@ export class Shade extends Part {
     if (!this.field) return;
     const { view } = this.plane;
     const [width, height] = view.pixels;
-    if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
+    sized(this.canvas, view.pixels);
     const context = contextOf(this.canvas);
     context.clearRect(0, 0, width, height);
     const size = 2 ** Math.round(Math.log2(SIDE * view.unit));

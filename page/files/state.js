@@ -1,10 +1,11 @@
 // The state of the page, and its form in the address: everything that is not a default is in the
 // hash, so that a link shows the same view.
 
-import { decimalsFor, formatPlace, parsePlace, place } from "./place.js";
+import { givenIn, hashOf } from "./address.js";
+import { decimalsFor, formatPlace, place } from "./place.js";
 
 /** The amounts that an unbounded plane can have, by the names that requests use. */
-export const AMOUNTS = ["spacing", "density", "min_distance"];
+const AMOUNTS = ["spacing", "density", "min_distance"];
 
 /** How kinds can be spread; no word for points of one kind. */
 const SPREADS = ["", "chance", "even", "joint"];
@@ -76,51 +77,8 @@ export const LAYER = Object.freeze({
   clear: "",
 });
 
-/** @typedef {Record<"mode" | "alpha" | "point" | "offsets" | "distance" | "radius" | "moved" | "profile", string>} Works */
-
-/**
- * The first state of the laboratory.
- * @type {Readonly<Works>}
- */
-export const WORKS = Object.freeze({
-  mode: "index",
-  alpha: "(5-sqrt(3))/2",
-  point: "2:-1",
-  offsets: "2,1 3,3",
-  distance: "2.24",
-  radius: "7",
-  moved: "0",
-  profile: "blue",
-});
-
-/** The short names of a layer's members in the address. */
-const KEYS = {
-  profile: "profile",
-  alpha: "alpha",
-  map: "map",
-  by: "by",
-  amount: "amount",
-  seed: "seed",
-  warp: "warp",
-  settle: "settle",
-  field: "field",
-  paint: "paint",
-  lod: "lod",
-  shade: "shade",
-  paper: "paper",
-  color: "color",
-  dot: "dot",
-  angle: "angle",
-  scale: "scale",
-  range: "range",
-  variant: "variant",
-  variants: "variants",
-  spread: "spread",
-  clear: "clear",
-};
-
-/** The most characters of a painting in the address; a longer one goes into a file. */
-export const MOST_PAINT = 4000;
+/** The most characters of a painting in the address; a longer one is in the requests of Take alone. */
+export const MOST_PAINT = 16_000;
 
 /** The most layers that the page offers. */
 export const MOST_LAYERS = 6;
@@ -137,8 +95,7 @@ export const MOST_LAYERS = 6;
  * @property {string} [worldSeed] Another seed than the world's own, or nothing.
  * @property {Layer[]} layers
  * @property {string} tab
- * @property {Works} works
- * @property {string} renderer `2d`, `webgl2` or nothing.
+ * @property {string} take What is taken away: nothing for the view, or what repeats, `tile` or `mask`.
  */
 
 /**
@@ -155,8 +112,7 @@ export function initial() {
     worldSeed: "",
     layers: [{ ...LAYER }],
     tab: "start",
-    works: { ...WORKS },
-    renderer: "",
+    take: "",
   };
 }
 
@@ -165,51 +121,28 @@ export function initial() {
  * @param {string} hash
  */
 export function fromHash(hash) {
-  const given = new URLSearchParams(hash.replace(/^#/, ""));
+  const given = givenIn(hash);
   const state = initial();
-  const [x, y] = (given.get("at") ?? "").split(",").map(parsePlace);
+  const [x, y] = given.at();
   if (x && y) Object.assign(state, { x, y });
-  const span = Number(given.get("span"));
-  if (Number.isFinite(span) && span > 0) state.span = span;
+  const span = given.number("span", 0);
+  if (span > 0) state.span = span;
   if (given.size > 0) state.tab = "choose";
-  const [tab, renderer] = ["tab", "renderer"].map((name) => given.get(name) ?? "");
-  if (["start", "choose", "understand", "take", "gallery", "works"].includes(tab)) state.tab = tab;
-  if (["2d", "webgl2"].includes(renderer)) state.renderer = renderer;
-  state.works = worksFrom(given);
-  const [world, seed] = ["world", "world.seed"].map((name) => given.get(name) ?? "");
-  if (/^[\w.-]{1,64}$/.test(world)) state.world = world;
-  if (/^\d{1,20}$/.test(seed)) state.worldSeed = seed;
-  const layers = Math.min(MOST_LAYERS, Math.max(1, Number(given.get("layers")) || 1));
+  state.tab = given.matching("tab", /^(start|choose|understand|take|gallery)$/, state.tab);
+  state.take = given.matching("take", /^(tile|mask)$/);
+  state.world = given.matching("world", /^[\w.-]{1,64}$/);
+  state.worldSeed = given.matching("world.seed", /^\d{1,20}$/);
+  const layers = Math.trunc(given.number("layers", 1, [1, MOST_LAYERS]));
   state.layers = Array.from({ length: layers }, (_, i) => layerFrom(given, i));
   return state;
 }
 
-/** The parameters of the laboratory in the address. */
-const WORKS_VALUES = {
-  mode: /^(index|arrangement|clusters|map|displacement)$/,
-  alpha: /^.{1,40}$/,
-  point: /^-?\d{1,4}:-?\d{1,4}$/,
-  offsets: /^(-?\d{1,4},-?\d{1,4}( (?=.)|$))*$/,
-  distance: /^\d(\.\d{1,2})?$/,
-  radius: /^[1-9]\d?$/,
-  moved: /^(0|1|0?\.\d{1,2})$/,
-  profile: /^[\w.-]{1,64}$/,
-};
-
-function worksFrom(given) {
-  const works = { ...WORKS };
-  for (const [member, pattern] of Object.entries(WORKS_VALUES)) {
-    const text = given.get(`how.${member}`);
-    if (text !== null && pattern.test(text)) works[member] = text;
-  }
-  return works;
-}
-
 function layerFrom(given, i) {
   const layer = { ...LAYER, color: i };
-  for (const [member, key] of Object.entries(KEYS)) {
-    const text = given.get(named(key, i));
-    if (text === null) continue;
+  for (const member of Object.keys(LAYER)) {
+    const name = named(member, i);
+    if (!given.has(name)) continue;
+    const text = given.text(name);
     if (typeof LAYER[member] === "boolean") layer[member] = text === "1";
     else if (typeof LAYER[member] === "number") {
       if (Number.isFinite(Number(text))) layer[member] = Number(text);
@@ -244,24 +177,16 @@ export function toHash(state) {
   const layers = state.world ? [] : state.layers;
   if (layers.length > 1) said.push(["layers", String(layers.length)]);
   layers.forEach((layer, i) => {
-    for (const [member, key] of Object.entries(KEYS)) {
+    for (const member of Object.keys(LAYER)) {
       const standard = member === "color" ? i : LAYER[member];
       const must = member === "profile" || member === "amount" || member === "seed";
       if (!must && layer[member] === standard) continue;
       if (member === "paint" && layer.paint.length > MOST_PAINT) continue;
       const value = typeof layer[member] === "boolean" ? (layer[member] ? "1" : "0") : String(layer[member]);
-      said.push([named(key, i), value]);
+      said.push([named(member, i), value]);
     }
   });
   if (state.tab !== "choose") said.push(["tab", state.tab]);
-  for (const [member, standard] of Object.entries(WORKS)) {
-    if (state.works[member] !== standard) said.push([`how.${member}`, state.works[member]]);
-  }
-  if (state.renderer) said.push(["renderer", state.renderer]);
-  return `#${said.map(([key, value]) => `${key}=${encoded(value)}`).join("&")}`;
-}
-
-/** Percent-encodes only what an address cannot hold, so that people can read it. */
-export function encoded(text) {
-  return encodeURIComponent(text).replace(/%(2C|3A|28|29|2F)/g, (whole) => decodeURIComponent(whole));
+  if (state.take) said.push(["take", state.take]);
+  return hashOf(said);
 }

@@ -1,15 +1,18 @@
-// The tab Take away: the view's request to paste, and its points as a file.
+// The tab Take: the points in view, or what repeats, as a file and as a request to paste.
 
 import { hasKey, isAborted, wordsOf } from "./api.js";
-import { FORMATS, curl, grpcurl, python, requestOf } from "./commands.js";
+import { FORMATS, curl, looksOf, python, requestOf } from "./commands.js";
 import { byId, bytes, copy, counted, make, settled } from "./dom.js";
 import { MOST_HELD, save, sizeOf } from "./download.js";
-import { worldOf } from "./paint/world.js";
+import { select, setOptions } from "./form.js";
 import { Part } from "./part.js";
-import { boxOf } from "./query.js";
+import { boxOf, joined } from "./query.js";
+import { Repeat } from "./repeat.js";
 import { countIn } from "./status.js";
 
-const WAYS = { curl: "curl", grpcurl: "grpcurl", python: "Python", url: "URL", world: "World" };
+/** What can be taken away, as the address has it. */
+const WHAT = [["", "The points in view"], ["tile", "A tile that repeats without a seam"], ["mask", "A mask for dithering, which repeats"]];
+const WAYS = { curl: "curl", python: "Python", url: "URL" };
 
 export class Take extends Part {
   constructor(session, plane) {
@@ -23,7 +26,9 @@ export class Take extends Part {
     /** @type {{ bytes: number, isExact: boolean } | null} */
     this.weight = null;
     this.again = settled(250, () => this.weigh());
-    this.what = make("p", { class: "note" });
+    this.what = select("take-what", (take) => session.choose((state) => Object.assign(state, { take }), "tab"));
+    this.repeat = new Repeat(() => this.again());
+    this.help = make("p", { class: "note" });
     this.thin = make("input", { type: "checkbox", id: "take-thinned", checked: true, onchange: (event) => {
       this.isThinned = event.target.checked;
       this.render();
@@ -35,6 +40,7 @@ export class Take extends Part {
       this.render();
       this.again();
     } }, FORMATS.map(([name, , use]) => make("option", { value: name }, `${name} — ${use}`)));
+    this.formatLine = make("div", { class: "field" }, make("label", { for: "format" }, "Format"), this.formats);
     this.ways = make("div", { class: "choices", role: "group", "aria-label": "How to ask" }, Object.entries(WAYS).map(([id, words]) => make("button", {
       type: "button", id: `way-${id}`, onclick: () => {
         this.way = /** @type {keyof typeof WAYS} */ (id);
@@ -48,11 +54,13 @@ export class Take extends Part {
     this.button = make("button", { type: "button", id: "download", class: "main", onclick: () => this.download() }, "Download");
     this.bar = make("progress", { hidden: true, "aria-label": "Download" });
     byId("take").append(
+      make("div", { class: "field" }, make("label", { for: "take-what" }, "What"), this.what),
+      this.repeat.element,
       make("div", { class: "field" }, this.amount, this.size, this.thinLine),
-      make("div", { class: "field" }, make("label", { for: "format" }, "Format"), this.formats),
+      this.formatLine,
       this.button, this.bar,
       make("div", { class: "group" }, make("span", { class: "label" }, "Or request exactly these points yourself"),
-        this.ways, make("pre", { tabindex: "0", "aria-label": "The request" }, this.text), this.copyButton, this.what),
+        this.ways, make("pre", { tabindex: "0", "aria-label": "The request" }, this.text), this.copyButton, this.help),
     );
   }
 
@@ -64,12 +72,28 @@ export class Take extends Part {
     return this.isThinned ? this.plane.keep : 1;
   }
 
+  /** What is taken away in place of the view: `tile` or `mask`. A world has layers of its own. */
+  get repeats() {
+    const { take, world } = this.session.state;
+    return world ? "" : take;
+  }
+
+  /** The format of the file. */
+  get form() {
+    return this.repeats === "mask" ? "png" : this.format;
+  }
+
   get request() {
-    return requestOf(this.session.state.layers, boxOf(this.plane.view), this.keep, this.format);
+    const { repeats, form } = this;
+    const [layer] = this.session.state.layers;
+    if (repeats === "mask") return { path: this.repeat.path(repeats, layer) };
+    if (repeats) return { path: `${this.repeat.path(repeats, layer)}&${joined([["format", form], ...looksOf(form)])}` };
+    return requestOf(this.session.state.layers, boxOf(this.plane.view), this.keep, form);
   }
 
   get file() {
-    return `points.${FORMATS.find(([name]) => name === this.format)?.[1]}`;
+    const ending = FORMATS.find(([name]) => name === this.form)?.[1];
+    return `${this.repeats || "points"}.${ending}`;
   }
 
   opened() {
@@ -93,25 +117,25 @@ export class Take extends Part {
 
   render() {
     const { layers } = this.session.state;
-    this.thinLine.hidden = this.plane.keep >= 1;
+    const { repeats } = this;
+    setOptions(this.what, layers[0].world ? WHAT.slice(0, 1) : WHAT, repeats);
+    this.repeat.element.hidden = !repeats;
+    this.thinLine.hidden = Boolean(repeats) || this.plane.keep >= 1;
+    this.formatLine.hidden = repeats === "mask";
     const { request } = this;
     const texts = {
       curl: () => curl(location.origin, request, this.file),
-      grpcurl: () => grpcurl(location.host, layers, boxOf(this.plane.view), this.keep),
-      python: () => python(location.origin, request, this.format, this.file),
+      python: () => python(location.origin, request, this.form, this.file),
       url: () => (request.body ? `POST ${location.origin}${request.path}\n\n${request.body}` : location.origin + request.path),
-      world: () => (layers[0].world ? `${location.origin}/v1/worlds/${layers[0].world.name}` : worldOf(layers)),
     };
     this.text.textContent = texts[this.way]();
     for (const id of Object.keys(WAYS)) byId(`way-${id}`).setAttribute("aria-pressed", String(id === this.way));
-    this.what.textContent = {
+    this.help.textContent = {
       curl: "For a shell.",
-      grpcurl: "For a shell; gRPC streams messages, whatever the format above.",
-      python: this.format === "npy" ? "For Python 3 with numpy." : "For Python 3, with nothing installed.",
+      python: this.form === "npy" ? "For Python 3 with numpy." : "For Python 3, with nothing installed.",
       url: request.body ? "Several layers, and fields that were sent, need a body, which an address cannot hold." : "For a browser, or anything else that reads addresses.",
-      world: layers[0].world ? "The description of this world." : "A file for the daemon's folder of worlds (worlds.folder), such as forest.json; then chunks are at /v1/worlds/forest/chunks/…",
     }[this.way];
-    if (hasKey()) this.what.textContent += " Add your key, as the header “Authorization: Bearer …”.";
+    if (hasKey()) this.help.textContent += " Add your key, as the header “Authorization: Bearer …”.";
     this.copyButton.textContent = "Copy";
   }
 
@@ -121,16 +145,22 @@ export class Take extends Part {
     this.abort?.abort();
     this.abort = new AbortController();
     const { signal } = this.abort;
-    const { request, format } = this;
+    const { repeats, form } = this;
     this.size.classList.remove("bad");
     try {
-      this.count = await countIn(this.session.state.layers, boxOf(this.plane.view), this.keep, signal);
-      this.amount.textContent = counted(this.count);
+      const { layers } = this.session.state;
+      this.count = repeats
+        ? await this.repeat.show(repeats, layers[0], signal)
+        : await countIn(layers, boxOf(this.plane.view), this.keep, signal);
+      // The sizes that repeat are known now.
+      this.render();
+      const { request } = this;
+      this.amount.textContent = repeats === "mask" ? "" : counted(this.count);
       this.size.textContent = "weighing …";
-      this.weight = await sizeOf(request, format, this.count, signal);
+      this.weight = await sizeOf(request, form, this.count, signal);
       const { bytes: size, isExact } = this.weight;
       const words = Number.isFinite(size) ? `${isExact ? "" : "about "}${bytes(size)}` : "size not known in advance";
-      this.size.textContent = `${words} as ${format}`;
+      this.size.textContent = `${words} as ${form}`;
       const isHeld = request.body && size > MOST_HELD;
       if (isHeld) this.size.textContent += ": too much for this page to hold, use the command below";
       this.button.disabled = Boolean(isHeld);

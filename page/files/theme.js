@@ -46,6 +46,11 @@ function channels(color) {
   return (color.match(/[\d.]+/g) ?? []).slice(0, 3).map((v) => Number(v) / 255);
 }
 
+/** Red, green and blue from 0 to 1 as canvases take a color. */
+export function cssOf(rgb) {
+  return `rgb(${rgb.map((v) => Math.round(v * 255)).join(" ")})`;
+}
+
 /** Whether the theme of now is dark. */
 function isDark() {
   const { theme } = document.documentElement.dataset;
@@ -73,6 +78,11 @@ export function palette(layers = []) {
     ground: resolved("probe-ground", isPaper),
     colors: COLOR_NAMES.map((_, i) => resolved(`swatch-${i}`, isPaper)),
   };
+}
+
+/** A color of the theme as red, green and blue from 0 to 1. */
+export function themeNumbers(name) {
+  return channels(themeColor(name));
 }
 
 /** A color of the theme as CSS, for drawing on canvases. */

@@ -1,6 +1,7 @@
 // What keeps the plane from being drawn, said over its middle: a busy server, one that is slow, one that refuses. It goes
 // away by itself when the points come.
 
+import { isAway } from "./api.js";
 import { byId, icon, make } from "./dom.js";
 
 /** Milliseconds without anything from the server after which it is called slow. */
@@ -74,7 +75,7 @@ export class Trouble {
       const seconds = Math.ceil((until - now) / 1000);
       const line = this.element.querySelector(".until");
       if (line) line.textContent = seconds > 0 ? `Trying again in ${seconds} s.` : "Trying again now.";
-    } else if (isWaiting && now - this.newsAt > PATIENCE) {
+    } else if (isWaiting && !isAway() && now - this.newsAt > PATIENCE) {
       this.show("slow", { words: "The server is slow to answer. The points appear as soon as they come." });
     } else this.show("");
     if (!isWaiting && !this.isBusy && document.documentElement.dataset.state !== "loading") {

@@ -91,7 +91,7 @@ pub(super) fn endpoints(pages: &Pages, public_url: &str) -> Vec<Endpoint> {
         .collect();
     let (path, example) = ("/page/{file}", "/page/main.js");
     all.push(parts_at(path, "getPagePart", example, &[&FILE], &parts));
-    let (path, example) = ("/page/{folder}/{file}", "/page/works/works.js");
+    let (path, example) = ("/page/{folder}/{file}", "/page/walk/walk.js");
     let within = &[&FOLDER, &FILE];
     all.push(parts_at(path, "getPagePartIn", example, within, &parts));
     all

@@ -1,7 +1,7 @@
 // Poisson disk sampling as R. Bridson described it (SIGGRAPH 2007 sketches): begin with one point; try up to 30
 // places around a point that is still active, between r and 2 r away; keep those that have no point within r.
 
-import { streamOf } from "./hash.js";
+import { streamOf } from "../hash.js";
 
 /** Tries around a point before it is given up: the number of the paper. */
 const TRIES = 30;

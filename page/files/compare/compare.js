@@ -1,16 +1,16 @@
 // The page Compare: one view for all methods, and what each measures there.
 
-import { Gone, askJson, isAway, onPresence } from "../api.js";
+import { askJson } from "../api.js";
 import { tools } from "../bar.js";
 import { topOf } from "../charts.js";
 import { byId, make, settled, skipLinks } from "../dom.js";
-import { refusal } from "../form.js";
 import { moveBy } from "../gestures.js";
+import { Notice } from "../notice.js";
 import { parsePlace, place } from "../place.js";
-import { FARTHEST, Joint, PAIR, fromHash, toHash } from "./joint.js";
+import { FARTHEST, Joint, fromHash, toHash } from "./joint.js";
 import { METHODS } from "./methods.js";
 import { Panel } from "./panel.js";
-import { Asked, windowAround } from "./sources.js";
+import { windowAround } from "./sources.js";
 
 /** Where the button leads: a billion units to the right and up. */
 const FAR = 1e9;
@@ -22,26 +22,12 @@ const narrow = matchMedia("(max-width: 46rem)");
 let state = fromHash(location.hash, narrow.matches);
 
 const joint = new Joint(state, () => draw());
-const panels = METHODS.map((method) => new Panel(method, { changed: () => draw(), failed: (error) => refused(error) }));
-const shown = () => panels.filter(({ method }) => state.shown.includes(method.id));
-
-/** Says something above the panels; `null` takes it away. That the server is away stays until it is back. */
-function say(words) {
-  const all = [isAway() && AWAY, words].filter(Boolean).join(" ");
-  byId("banner").hidden = all === "";
-  byId("banner").textContent = all;
-}
-
-const AWAY = "The server does not answer. This page tries again by itself; what is drawn stays, and the other methods are made here.";
-
-/** Says what went wrong, and takes a key where that is what the server needs; that it is away is said by itself. */
-function refused(error) {
-  if (error instanceof Gone) return;
-  refusal(byId("banner"), error, () => {
-    for (const { source } of panels) if (source instanceof Asked) source.chunks.retry();
-    begin();
-  });
-}
+const panels = METHODS.map((method) => new Panel(method, { changed: () => draw(), failed: (error) => notice.refused(error) }));
+const notice = new Notice(byId("banner"), () => {
+  for (const { source } of panels) source.chunks.retry();
+  begin();
+}, () => begin());
+const say = (words) => notice.say("wrong", words);
 
 let isWaiting = false;
 /**
@@ -73,7 +59,7 @@ function draw() {
     isWaiting = false;
     // Who moves the view wants to see all points.
     if (alone && alone.key !== keyOf(joint.view)) showAlone(false);
-    for (const panel of shown()) panel.draw(joint.view, alone);
+    for (const panel of panels) panel.draw(joint.view, alone);
     const { x, y } = joint.view;
     const isFar = Math.abs(x.i) > FAR / 2;
     byId("far").textContent = isFar ? "Back to the origin" : "A billion units away";
@@ -90,51 +76,38 @@ const write = settled(250, () => {
 
 let turn = 0;
 
-/** Measures all that is shown, one after another, then how long points take. */
+/** Measures all that is shown, one after another. */
 async function measureAll() {
   // A view may settle before it is known which profiles there are.
-  if (!shown().every(({ isReady }) => isReady)) return;
+  if (!panels.every(({ isReady }) => isReady)) return;
   turn += 1;
   const mine = turn;
   const isLatest = () => mine === turn;
   const at = { x: joint.view.x, y: joint.view.y };
-  const each = async (act) => {
-    let isWhole = true;
-    for (const panel of shown()) {
-      try {
-        if (isLatest()) await act(panel);
-      } catch (error) {
-        // The others do without the server.
-        isWhole = false;
-        if (isLatest()) refused(error);
-      }
+  let isWhole = true;
+  for (const panel of panels) {
+    try {
+      if (isLatest()) await panel.measure(at, isLatest);
+      if (isLatest()) chart();
+    } catch (error) {
+      // The others do without the server.
+      isWhole = false;
+      if (isLatest()) notice.refused(error);
     }
-    return isWhole && isLatest();
-  };
-  const isMeasured = await each(async (panel) => {
-    await panel.measure(at, isLatest);
-    if (isLatest()) chart();
-  });
-  if (isMeasured) root.dataset.measured = `${root.dataset.at} ${state.seed} ${state.shown.join()}`;
-  const isTimed = await each(async (panel) => {
-    if (!panel.isTimed) await panel.time();
-    panel.isTimed = true;
-  });
-  if (isTimed) root.dataset.timed = String(shown().length);
+  }
+  if (isWhole && isLatest()) root.dataset.measured = `${root.dataset.at} ${state.seed}`;
 }
 
 /** Draws what is measured by now, all curves to the same power. */
 function chart() {
-  const all = shown().filter(({ curve }) => curve !== undefined);
+  const all = panels.filter(({ curve }) => curve !== undefined);
   const top = topOf(...all.map(({ curve }) => curve));
-  // Strew's curve is there to compare with while Strew is shown; otherwise it may be that of another place.
-  const reference = all.includes(panels[0]) ? panels[0].curve : undefined;
-  for (const panel of all) panel.chart(top, reference);
+  for (const panel of all) panel.chart(top, panels[0].curve);
 }
 
 const again = settled(300, measureAll);
 
-/** Takes another choice of methods, seed or profile. */
+/** Takes another seed or profile. */
 function choose(change) {
   Object.assign(state, change);
   show();
@@ -142,36 +115,16 @@ function choose(change) {
 
 function show() {
   root.dataset.measured = "";
-  arrange();
-  for (const panel of shown()) panel.use(state);
+  for (const panel of panels) panel.use(state);
   if (byId("seed").value !== String(state.seed)) byId("seed").value = String(state.seed);
   byId("profile").value = state.profile;
   resize();
   again();
 }
 
-/** Shows the panels of the chosen methods. */
-function arrange() {
-  for (const { element, method } of panels) {
-    const isShown = state.shown.includes(method.id);
-    element.hidden = !isShown;
-    byId(`show-${method.id}`).setAttribute("aria-pressed", String(isShown));
-  }
-  byId("methods").dataset.count = String(state.shown.length);
-  byId("all").setAttribute("aria-pressed", String(state.shown.length === METHODS.length));
-  byId("show").hidden = state.shown.join() === PAIR.join();
-}
-
 function resize() {
-  const { clientWidth, clientHeight } = shown()[0].plane;
+  const { clientWidth, clientHeight } = panels[0].plane;
   if (clientWidth && clientHeight) joint.resize(clientWidth, clientHeight);
-}
-
-function pick(id) {
-  const without = state.shown.filter((one) => one !== id);
-  if (without.length === 0) return;
-  const isShown = without.length < state.shown.length;
-  choose({ shown: isShown ? without : METHODS.map((one) => one.id).filter((one) => one === id || without.includes(one)) });
 }
 
 function jump(event) {
@@ -191,7 +144,7 @@ function home() {
 
 function listen() {
   tools(joint, home, () => {
-    for (const panel of shown()) panel.sheet.renew();
+    for (const panel of panels) panel.themed();
     chart();
     draw();
   });
@@ -202,40 +155,24 @@ function listen() {
     if (isFar) home();
     else joint.lookAt(place(FAR), place(FAR));
   });
-  byId("all").addEventListener("click", () => {
-    const isAll = state.shown.length === METHODS.length;
-    choose({ shown: isAll ? [...PAIR] : METHODS.map(({ id }) => id) });
-  });
   const [field, profile] = [byId("seed"), byId("profile")];
   field.addEventListener("change", () => {
     const seed = Number(field.value);
     const isSeed = Number.isInteger(seed) && seed >= 0 && seed < 1e9;
     field.setAttribute("aria-invalid", String(!isSeed));
     say(isSeed ? null : "The seed must be a whole number from 0 to 999,999,999.");
-    if (isSeed) reseed(seed);
+    if (isSeed) choose({ seed });
   });
   profile.addEventListener("change", () => choose({ profile: profile.value }));
 }
 
-function reseed(seed) {
-  for (const panel of panels) panel.isTimed = false;
-  choose({ seed });
-}
-
 function build() {
-  byId("show").append(...METHODS.map(({ id, name }) => make("button", { type: "button", id: `show-${id}`, onclick: () => pick(id) }, name)));
   byId("methods").append(...panels.map(({ element }) => element));
-  arrange();
   for (const { plane } of panels) {
     moveBy(plane, joint, { tapped: () => {}, hovered: () => {} });
     new ResizeObserver(resize).observe(plane);
   }
 }
-
-onPresence((gone) => {
-  say(null);
-  if (!gone) begin();
-});
 
 addEventListener("hashchange", () => {
   state = Object.assign(joint.state, fromHash(location.hash, narrow.matches));
@@ -253,7 +190,7 @@ async function begin() {
     }
     byId("profile").replaceChildren(...names.map((name) => make("option", { value: name }, name)));
   } catch (error) {
-    refused(error);
+    notice.refused(error);
   }
   show();
 }
@@ -261,7 +198,6 @@ async function begin() {
 // For tests.
 globalThis.strew = { joint, panels };
 build();
-arrange();
 byId("said").textContent = TRY;
 listen();
 skipLinks();

@@ -1,69 +1,51 @@
 // One method: its points, what had to be made for them, and what they measure.
 
 import { lineChart, spectrumPicture } from "../charts.js";
-import { byId, contextOf, make, spoken } from "../dom.js";
+import { make } from "../dom.js";
+import { cornerFrom } from "../grid.js";
 import { MOST_NU } from "../spectrum.js";
 import { measure } from "../measure.js";
+import { Painter } from "../painter.js";
 import { distance } from "../place.js";
-import { themeColor } from "../theme.js";
+import { Sheets } from "../sheets.js";
+import { LAYER } from "../state.js";
+import { themeColor, themeNumbers } from "../theme.js";
+import { sized } from "../view.js";
 import { MEASURED } from "./methods.js";
 import { large, priceOf } from "./price.js";
-import { Sheet } from "./sheet.js";
-import { Asked, Made, windowAround } from "./sources.js";
-
-/**
- * A source of no points.
- * @type {{ version: string, runs: (view: any) => object[] }}
- */
-const NOTHING = { version: "none", runs: () => [] };
-
-/** Nanoseconds as people say them. */
-function time(nanoseconds) {
-  if (!Number.isFinite(nanoseconds)) return "–";
-  return nanoseconds < 1000 ? `${spoken(nanoseconds, 2)} ns` : `${spoken(nanoseconds / 1000, 2)} µs`;
-}
-
-/** Goes to the words about times; the address keeps what is compared. */
-function toTime(event) {
-  event.preventDefault();
-  byId("about-time").scrollIntoView();
-  byId("about-time").focus();
-}
+import { Source, windowAround } from "./sources.js";
 
 export class Panel {
   constructor(method, { changed, failed }) {
     this.method = method;
     this.changed = changed;
     this.failed = failed;
-    this.isTimed = false;
     this.isOutside = false;
-    /** @type {number | undefined} */
-    this.nanoseconds = undefined;
     /** The window whose points are drawn alone, and these. */
     this.aloneKey = "";
-    this.aloneSource = NOTHING;
+    this.alone = [];
     const { id, name, words, source } = method;
-    this.source = id === "strew" ? new Asked(changed, failed) : new Made(id, changed, failed);
+    this.source = new Source(id, changed, failed);
     const canvas = (label, attributes = {}) => make("canvas", { role: "img", "aria-label": `${label} of ${name}`, ...attributes });
     this.plane = canvas("Points", {
       id: `plane-${id}`, class: "plane", tabindex: "0", role: "application", "aria-describedby": "plane-help",
     });
-    this.sheet = new Sheet(this.plane, method.box);
+    this.painter = new Painter(this.plane);
+    this.sheets = new Sheets(this.painter, this.source.chunks);
+    this.sheetsAlone = new Sheets(this.painter, { want: () => this.alone });
     this.outside = make("p", { class: "outside", hidden: true }, "No points here: the window is outside of its region.");
     this.spectrum = canvas("Spectrum", { class: "spectrum" });
     this.radial = canvas("Radial power", { class: "radial" });
     this.none = make("p", { class: "note", hidden: true }, `Not measured here: the square of ${MEASURED} × ${MEASURED} reaches past its region.`);
-    this.figures = Object.fromEntries(["least", "mean", "count", "time"].map((key) => [key, make("dd", { id: `${key}-${id}` }, "…")]));
-    this.timing = make("dd", { class: "timing", id: `timing-${id}` });
+    this.figures = Object.fromEntries(["least", "mean", "count"].map((key) => [key, make("dd", { id: `${key}-${id}` }, "…")]));
     this.price = { made: make("b", { id: `made-${id}` }, "…"), words: make("span", { id: `price-${id}` }), why: make("p", { class: "why", id: `why-${id}` }) };
-    const row = (words, key, ...more) => make("div", {}, make("dt", {}, words), this.figures[key], more);
+    const row = (words, key) => make("div", {}, make("dt", {}, words), this.figures[key]);
     this.element = make("article", { id: `method-${id}`, "aria-labelledby": `name-${id}` },
       make("h2", { id: `name-${id}` }, name),
       make("div", { class: "frame" }, this.plane, this.outside),
       make("div", { class: "price" }, make("p", {}, this.price.made, " ", this.price.words), this.price.why),
       make("div", { class: "spectra" }, make("div", { class: "frame" }, this.spectrum, this.none), this.radial),
-      make("dl", {}, row("Minimum distance", "least"), row("Mean distance", "mean"), row("Points", "count"),
-        row("Time per point", "time", this.timing)),
+      make("dl", {}, row("Minimum distance", "least"), row("Mean distance", "mean"), row("Points", "count")),
       make("p", { class: "words" }, words, " ", make("cite", {}, source)));
   }
 
@@ -71,59 +53,93 @@ export class Panel {
   use(choice) {
     this.source.use(choice);
     this.isReady = true;
-    this.sheet.renew();
+    this.themed();
     this.isMeasured = false;
   }
 
-  /** Draws the points around a view; with a window, only what has to be made for it. */
+  /** Other colors, or other points: all is painted again. */
+  themed() {
+    this.look = { layers: [{ ...LAYER, dot: 1.25 }], spacings: [1], spacing: 1, colors: [themeNumbers("ink")], ground: themeNumbers("sunken") };
+    this.sheets.renew(false);
+    this.sheetsAlone.renew(false);
+  }
+
+  /** Draws the points around a view; with a window, only what has to be made for it, from farther away. */
   draw(view, alone) {
     if (!this.isReady) return;
-    if (alone) return this.drawAlone(view, alone);
-    this.source.cover(view);
-    this.sheet.draw(view, this.source);
     const { box } = this.method;
-    if (box) {
-      const half = [view.width * view.unit / 2, view.height * view.unit / 2];
-      const from = box.map((v, i) => distance({ i: v, f: 0 }, [view.x, view.y][i % 2]));
-      this.isOutside = !(from[0] < half[0] && from[1] < half[1] && from[2] > -half[0] && from[3] > -half[1]);
-      this.outside.hidden = !this.isOutside;
-    }
+    const seen = alone ? { ...view, unit: alone.unit } : view;
+    sized(this.plane, view.pixels);
+    if (alone) this.prepare(alone.window);
+    if ((alone ? this.sheetsAlone : this.sheets).frame(seen, this.look, false)) this.changed();
+    if (box) this.edge(box, seen);
+    if (alone) return this.frame(seen, alone.window);
+    const half = [view.width * view.unit / 2, view.height * view.unit / 2];
+    const from = box?.map((v, i) => distance({ i: v, f: 0 }, [view.x, view.y][i % 2]));
+    this.isOutside = Boolean(from) && !(from[0] < half[0] && from[1] < half[1] && from[2] > -half[0] && from[3] > -half[1]);
+    this.outside.hidden = !this.isOutside;
     this.say(view);
   }
 
-  /** Draws what has to be made for a window. */
-  drawAlone(view, { window, unit }) {
+  /** Has what a window needs made, unless it is that of before. */
+  prepare(window) {
     const key = [window.x.i, window.x.f, window.y.i, window.y.f, window.width, window.height, this.source.seed].join();
-    if (this.aloneKey !== key) {
-      this.aloneKey = key;
-      this.aloneSource = NOTHING;
-      this.source.alone(window).then((run) => {
-        if (this.aloneKey !== key) return;
-        this.aloneSource = { version: key, runs: ({ x, y }) => [{ ...run, left: distance(run.x, x), low: distance(run.y, y) }] };
-        this.changed();
-      }, (error) => this.failed(error));
-    }
-    this.sheet.draw({ ...view, unit }, this.aloneSource);
-    // The window that is wanted.
-    const [width, height] = [window.width, window.height].map((side) => (side / unit) * view.ratio);
-    const context = contextOf(this.plane);
+    if (this.aloneKey === key) return;
+    const show = (chunks) => {
+      if (this.aloneKey !== key) return;
+      this.alone = chunks;
+      this.sheetsAlone.renew(false);
+      this.changed();
+    };
+    this.aloneKey = key;
+    show([]);
+    this.source.alone(window).then((chunk) => show([chunk]), (error) => this.failed(error));
+  }
+
+  /** Draws a frame around the window that is wanted. */
+  frame({ unit, ratio }, window) {
+    const { context, canvas } = this.painter;
+    const [width, height] = [window.width, window.height].map((side) => (side / unit) * ratio);
     context.strokeStyle = themeColor("accent");
-    context.lineWidth = 2 * view.ratio;
-    context.strokeRect((this.plane.width - width) / 2, (this.plane.height - height) / 2, width, height);
+    context.lineWidth = 2 * ratio;
+    context.strokeRect((canvas.width - width) / 2, (canvas.height - height) / 2, width, height);
+  }
+
+  /** Shades what lies outside of the region, and draws its edge. */
+  edge(box, view) {
+    const { context } = this.painter;
+    const pixel = view.unit / view.ratio;
+    const [width, height] = view.pixels;
+    const within = (v, side) => Math.min(side + 4, Math.max(-4, v));
+    const [left, low, right, top] = box.map((v, i) => {
+      const at = distance({ i: v, f: 0 }, [view.x, view.y][i % 2]) / pixel;
+      return i % 2 === 0 ? within(width / 2 + at, width) : within(height / 2 - at, height);
+    });
+    context.fillStyle = themeColor("outside");
+    context.beginPath();
+    context.rect(0, 0, width, height);
+    context.rect(left, top, right - left, low - top);
+    context.fill("evenodd");
+    context.strokeStyle = themeColor("accent");
+    context.lineWidth = 1.5 * view.ratio;
+    context.setLineDash([6 * view.ratio, 4 * view.ratio]);
+    context.strokeRect(left, top, right - left, low - top);
+    context.setLineDash([]);
   }
 
   /** Says what has to be made for a view. */
   say(view) {
     const window = windowAround(view, view.width * view.unit, view.height * view.unit);
     let seen = 0;
-    for (const { points, count, stride, left, low } of this.source.runs(view)) {
+    for (const { chunk: { data, count, stride, cx, cy, size } } of this.sheets.front.parts) {
+      const [left, low] = [cornerFrom(cx, size, view.x), cornerFrom(cy, size, view.y)];
       for (let p = 0; p < count * stride; p += stride) {
-        seen += Number(2 * Math.abs(points[p] + left) < window.width && 2 * Math.abs(points[p + 1] + low) < window.height);
+        seen += Number(2 * Math.abs(data[p] + left) < window.width && 2 * Math.abs(data[p + 1] + low) < window.height);
       }
     }
     // Nothing is said of points that are still on their way.
     const { made, words, why } = seen === 0 && !this.isOutside ? { words: "", why: "" } : priceOf(this.method.id, window, {
-      seen, total: this.source.total, isOutside: this.isOutside, nanoseconds: this.nanoseconds,
+      seen, total: this.source.total, isOutside: this.isOutside, nanoseconds: this.source.nanoseconds,
     });
     for (const [key, text] of Object.entries({ made: made === undefined ? "…" : large(made), words, why })) {
       if (this.price[key].textContent !== text) this.price[key].textContent = text;
@@ -158,17 +174,5 @@ export class Panel {
     lineChart(this.radial, {
       series: [...beside, { values: radial, color: "accent" }], x: [0, MOST_NU], y: [0, top], name: "ν", aspect: 0.55,
     });
-  }
-
-  /** Times the method, once for each choice. */
-  async time() {
-    const { nanoseconds, built } = await this.source.time();
-    this.nanoseconds = nanoseconds;
-    this.figures.time.textContent = time(nanoseconds);
-    if (nanoseconds === undefined) this.timing.replaceChildren("made by the server: ", make("a", { href: "#about-time", onclick: toTime }, "its own figures"));
-    else if (this.method.box) this.timing.textContent = `all of its region, built in ${spoken(built, 2)} ms`;
-    else if (built) this.timing.textContent = `after ${spoken(built, 2)} ms for the tile`;
-    else this.timing.textContent = "for any window alone";
-    this.changed();
   }
 }

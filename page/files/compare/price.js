@@ -1,8 +1,6 @@
 // What a method has to make before it can show a window: the number of points, and why.
 
-import { counted } from "../dom.js";
 import { toNumber } from "../place.js";
-import { TILE } from "./methods.js";
 
 const SECONDS = { years: 31_557_600, days: 86_400, hours: 3600, minutes: 60 };
 const DIGITS = "⁰¹²³⁴⁵⁶⁷⁸⁹";
@@ -30,7 +28,6 @@ function upTo({ x, y, width, height }) {
 
 const ALONE = {
   strew: "These and no others. Each follows from its own place, so any window can be made alone, here or anywhere.",
-  jitter: "These and no others: each cell is made alone, from a hash of its place.",
   white: "These and no others: each cell is made alone, from a hash of its place.",
 };
 
@@ -41,19 +38,12 @@ const ALONE = {
  */
 export function priceOf(id, window, { seen, total, isOutside, nanoseconds }) {
   if (ALONE[id]) return { made: seen, words: `${seen === 1 ? "point" : "points"} made to show ${large(seen)}`, why: ALONE[id] };
-  if (id === "tile") {
-    const made = TILE * TILE;
-    return { made, words: `points made to show ${large(seen)}`, why: `Made once; the ${counted(seen)} in view are copies, and so are all others.` };
-  }
-  const isHalton = id === "halton";
   if (!isOutside) {
-    const why = isHalton ? "All of its box: each point may lie anywhere in it, and a larger box is another set."
-      : "All of its square of 256 × 256: whether a point fits depends on its neighbors, on theirs, and so on back to the first.";
+    const why = "All of its square of 256 × 256: whether a point fits depends on its neighbors, on theirs, and so on back to the first.";
     return { made: total, words: `points made to show ${large(seen)}`, why };
   }
   const made = upTo(window);
   const time = nanoseconds ? `, about ${lasting((made * nanoseconds) / 1e9)} in this browser` : "";
-  const why = isHalton ? `A box that reaches here has that many points${time}. Begun afresh here, it is another set.`
-    : `Everything from its first point to here${time}. Begun afresh here, it is another set, with a seam where the two meet.`;
+  const why = `Everything from its first point to here${time}. Begun afresh here, it is another set, with a seam where the two meet.`;
   return { made, words: "points to make first", why };
 }

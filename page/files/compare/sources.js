@@ -1,16 +1,13 @@
-// Where the points of a panel come from: the server, chunk by chunk, or the worker, window by window.
+// Where the points of a panel come from, chunk by chunk: the server, or the worker.
 
 import { ask } from "../api.js";
 import { Chunks } from "../chunks.js";
-import { chunkSize, chunksOf, cornerFrom } from "../grid.js";
-import { decimalsFor, distance, formatPlace, moved, place } from "../place.js";
+import { decimalsFor, formatPlace, moved, place } from "../place.js";
 import { joined, setOf } from "../query.js";
 import { LAYER } from "../state.js";
 import { callsOf } from "../worker.js";
-import { MEASURED, TILE, boxOf } from "./methods.js";
+import { MEASURED, boxOf } from "./methods.js";
 
-/** The part of the world that is held around a view, in views. */
-const AHEAD = 2;
 const make = callsOf("/page/compare/worker.js");
 
 /** A window of a size around a place: its lower corner and its size. */
@@ -18,142 +15,65 @@ export function windowAround({ x, y }, width, height) {
   return { x: moved(x, -width / 2), y: moved(y, -height / 2), width, height };
 }
 
-/** Points that the worker makes. */
-export class Made {
+export class Source {
+  /** `method` is its id; `changed()` hears of points that have come, `failed(error)` of what is refused. */
   constructor(method, changed, failed) {
     this.method = method;
-    this.changed = changed;
-    this.failed = failed;
-    /** @type {any} */
-    this.window = null;
-    this.points = new Float64Array(0);
-    /** Points in the region of a method that has one. */
-    this.total = 0;
-    this.version = 0;
-    this.seed = NaN;
-  }
-
-  use({ seed }) {
-    if (seed === this.seed) return;
-    this.seed = seed;
-    this.window = null;
-  }
-
-  /** Makes what a view needs, if it is not there. */
-  cover(view) {
-    this.view = view;
-    if (!this.isBusy && !this.covers(view)) this.fetch();
-  }
-
-  covers({ x, y, width, height, unit }) {
-    const { window } = this;
-    if (!window) return false;
-    const [w, h] = [width * unit, height * unit];
-    const [dx, dy] = [distance(x, window.x) - w / 2, distance(y, window.y) - h / 2];
-    return dx >= 0 && dy >= 0 && dx + w <= window.width && dy + h <= window.height && window.width < 4 * AHEAD * w;
-  }
-
-  async fetch() {
-    this.isBusy = true;
-    const { view, seed } = this;
-    const window = windowAround(view, AHEAD * view.width * view.unit, AHEAD * view.height * view.unit);
-    let made;
-    try {
-      made = await make({ method: this.method, seed, window });
-    } catch (error) {
-      return this.failed(error);
-    } finally {
-      this.isBusy = false;
-    }
-    if (seed === this.seed) {
-      this.window = window;
-      this.points = made.points;
-      this.total = made.total ?? 0;
-      this.version += 1;
-    }
-    this.changed();
-  }
-
-  /** Runs of points, with where each run's origin is from the middle of a view. */
-  runs({ x, y }) {
-    const { window, points } = this;
-    if (!window) return [];
-    return [{ points, count: points.length / 2, stride: 2, left: distance(window.x, x), low: distance(window.y, y) }];
-  }
-
-  /** The points of the measured square around a place, `null` if it is not all in the method's region. */
-  async square(at) {
-    const window = windowAround(at, MEASURED, MEASURED);
-    const { points, isWhole } = await make({ method: this.method, seed: this.seed, window });
-    return isWhole ? points : null;
-  }
-
-  /** What has to be made for a window: all of its region for a method that has one, one tile of a repeated one. */
-  async alone(window) {
-    const box = boxOf(this.method);
-    const corner = (at) => place(Math.floor(at.i / TILE) * TILE);
-    let all = window;
-    if (box) all = { x: place(box[0]), y: place(box[1]), width: box[2] - box[0], height: box[3] - box[1] };
-    else if (this.method === "tile") all = { x: corner(window.x), y: corner(window.y), width: TILE, height: TILE };
-    const { points } = await make({ method: this.method, seed: this.seed, window: all });
-    return { points, count: points.length / 2, stride: 2, x: all.x, y: all.y };
-  }
-
-  /** The time per point. */
-  time() {
-    return make({ method: this.method, seed: this.seed });
-  }
-}
-
-/** Points of the server. */
-export class Asked {
-  constructor(changed, failed) {
-    this.chunks = new Chunks(() => {
-      this.version += 1;
-      changed();
-    }, failed);
-    this.version = 0;
-    this.wanted = [];
+    this.isServed = method === "strew";
     this.seed = "";
+    /** The number of points in the region of a method that has one, and the time of each, as far as it is known. */
     this.total = 0;
+    this.nanoseconds = NaN;
+    /** @type {import("../state.js").Layer} */
+    this.layer = LAYER;
+    /** @type {import("../chunks.js").Kind | undefined} */
+    const kind = this.isServed ? undefined : {
+      requestOf: (layers) => ({ path: `${method} ${layers[0].seed}` }),
+      columnsOf: () => [],
+      nameOf: ({ size, cx, cy }) => `${size}/${cx}/${cy}`,
+      make: async (_, { size, cx, cy }) => {
+        const { points } = await this.made({ x: place(cx * size), y: place(cy * size), width: size, height: size });
+        return Float32Array.from(points);
+      },
+    };
+    this.chunks = new Chunks(changed, failed, { kind });
   }
 
   use({ seed, profile }) {
     this.layer = { ...LAYER, seed: String(seed), profile };
-    this.seed = `${seed} ${profile}`;
+    this.seed = this.isServed ? `${seed} ${profile}` : String(seed);
     this.chunks.show([this.layer]);
-    this.size = 0;
   }
 
-  cover(view) {
-    const wide = { ...view, width: 1.6 * view.width, height: 1.6 * view.height };
-    this.wanted = this.chunks.want(chunksOf(wide, chunkSize(view, 1)), 1);
+  /** The points of a window that the worker makes. */
+  async made(window) {
+    const made = await make({ method: this.method, seed: Number(this.layer.seed), window });
+    if (made.total) Object.assign(this, { total: made.total, nanoseconds: made.nanoseconds });
+    return made;
   }
 
-  runs(view) {
-    return this.wanted.map(({ data, count, stride, cx, cy, size }) => ({
-      points: data, count, stride, left: cornerFrom(cx, size, view.x), low: cornerFrom(cy, size, view.y),
-    }));
-  }
-
-  async answer({ x, y, width, height }) {
+  /** The points of a window, and whether the method's region holds all of it. */
+  async window({ x, y, width, height }) {
+    if (!this.isServed) return this.made({ x, y, width, height });
     const box = [x, y, moved(x, width), moved(y, height)].map((v) => formatPlace(v, decimalsFor(1e-9)));
     const answer = await ask(`/v1/points?bbox=${box.join(",")}&${joined([...setOf(this.layer), ["format", "f32"]])}`);
-    return new Float32Array(await answer.arrayBuffer());
+    return { points: new Float32Array(await answer.arrayBuffer()), isWhole: true };
   }
 
+  /** The points of the measured square around a place, `null` if it is not all in the method's region. */
   async square(at) {
-    return Float64Array.from(await this.answer(windowAround(at, MEASURED, MEASURED)));
+    const { points, isWhole } = await this.window(windowAround(at, MEASURED, MEASURED));
+    return isWhole ? Float64Array.from(points) : null;
   }
 
-  /** The points of a window, which are all that the server makes for it. */
+  /** What has to be made for a window, as one chunk: its points, or all of its region for a method that has one. */
   async alone(window) {
-    const points = await this.answer(window);
-    return { points, count: points.length / 2, stride: 2, x: window.x, y: window.y };
-  }
-
-  /** No time: the points are made elsewhere, by another program. */
-  time() {
-    return {};
+    const box = boxOf(this.method);
+    const all = box ? { x: place(box[0]), y: place(box[1]), width: box[2] - box[0], height: box[3] - box[1] } : window;
+    const { points } = await this.window(all);
+    const [x, y] = [all.x, all.y];
+    const data = Float32Array.from(points, (v, i) => v + [x, y][i % 2].f);
+    const count = data.length / 2;
+    return { cx: x.i, cy: y.i, size: 1, data, stride: 2, count, total: count, columns: [], layers: [this.layer], state: "done" };
   }
 }

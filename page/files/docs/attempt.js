@@ -1,7 +1,9 @@
 // Trying an operation: a form with its parameters, the curl line of what the form says, and what the server answers.
 
 import { brokeOff, hasKey, headersFor } from "../api.js";
-import { bytes, contextOf, make } from "../dom.js";
+import { encoded } from "../address.js";
+import { quoted } from "../commands.js";
+import { bytes, contextOf, copy, make } from "../dom.js";
 import { keyForm } from "../form.js";
 import { resolved } from "./schema.js";
 
@@ -39,9 +41,6 @@ function control(parameter, value, api) {
   return { parameter, field, row: make("div", { class: "field" }, make("label", { for: id }, parameter.name, parameter.required && make("span", { class: "required" }, " required")), field) };
 }
 
-/** Quotes a text for a shell. */
-const quoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;
-
 /** JSON without the spaces between its parts; digits stay as they are. */
 const compact = (text) => text.replace(/("(?:[^"\\]|\\.)*")|\s+/g, "$1");
 
@@ -57,8 +56,8 @@ export function attempt(path, method, operation, api) {
     let address = path;
     const query = [];
     for (const { parameter, field } of fields) {
-      if (parameter.in === "path") address = address.replace(`{${parameter.name}}`, encodeURIComponent(field.value).replace(/%(2C|3A)/g, decodeURIComponent));
-      else if (parameter.in === "query" && field.value !== "") query.push(`${parameter.name}=${encodeURIComponent(field.value).replace(/%(2C|3A|2F|28|29)/g, decodeURIComponent)}`);
+      if (parameter.in === "path") address = address.replace(`{${parameter.name}}`, encoded(field.value).replaceAll("/", "%2F"));
+      else if (parameter.in === "query" && field.value !== "") query.push(`${parameter.name}=${encoded(field.value)}`);
     }
     const headers = fields.filter(({ parameter, field }) => parameter.in === "header" && field.value !== "")
       .map(({ parameter, field }) => [parameter.name, field.value]);
@@ -74,6 +73,7 @@ export function attempt(path, method, operation, api) {
   };
 
   const line = make("code", {}, curl());
+  const copyButton = make("button", { type: "button", "aria-label": "Copy the command", onclick: () => copy(line, copyButton) }, "Copy");
   const answer = make("div", { id: "answer", "aria-live": "polite" });
   const send = make("button", { type: "submit", class: "main" }, "Send");
   const update = () => (line.textContent = curl());
@@ -84,7 +84,7 @@ export function attempt(path, method, operation, api) {
     make("div", { class: "fields" }, shown),
     others.length > 0 && make("details", {}, make("summary", {}, `${others.length} more parameters`), make("div", { class: "fields" }, others)),
     body && make("div", { class: "field wide" }, make("label", { for: "try-body" }, `Body, ${content[0]}`), body),
-    make("div", { class: "line" }, make("pre", { role: "group", tabindex: "0", "aria-label": "The line for curl" }, line), copy(() => line.textContent)),
+    make("div", { class: "line" }, make("pre", { role: "group", tabindex: "0", "aria-label": "The line for curl" }, line), copyButton),
     send);
   form.addEventListener("input", update, true);
   form.addEventListener("submit", async (event) => {
@@ -97,21 +97,6 @@ export function attempt(path, method, operation, api) {
     }
   });
   return [form, answer];
-}
-
-/** A button that copies a text. */
-function copy(text) {
-  const button = make("button", { type: "button", "aria-label": "Copy the command" }, "Copy");
-  button.addEventListener("click", async () => {
-    try {
-      await navigator.clipboard.writeText(text());
-      button.textContent = "Copied";
-    } catch {
-      if (button.previousSibling) getSelection()?.selectAllChildren(button.previousSibling);
-      button.textContent = "Selected";
-    }
-  });
-  return button;
 }
 
 async function sent({ address, headers, text }, method, type, update) {

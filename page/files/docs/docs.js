@@ -1,7 +1,8 @@
 // The API as a page: shows /openapi.json, an operation at a time. Everything is put in as text, never as markup.
 
-import { Gone, askJson, onPresence } from "../api.js";
+import { Gone, askJson } from "../api.js";
 import { byId, counted, icon, make, skipLinks } from "../dom.js";
+import { Notice } from "../notice.js";
 import { watchTheme } from "../theme.js";
 import { operationView } from "./operation.js";
 import { resolved } from "./schema.js";
@@ -37,18 +38,12 @@ function wordsOf({ path, operation, method, tag, id }) {
 
 function list() {
   const about = new Map((api.tags ?? []).map(({ name, description }) => [name, description]));
-  const groups = Map.groupBy ? Map.groupBy(all, ({ tag }) => tag) : grouped();
+  const groups = Map.groupBy(all, ({ tag }) => tag);
   byId("operations").replaceChildren(...[...groups].map(([tag, members]) => make("section", { "data-tag": tag },
     make("h2", { title: about.get(tag) }, tag),
     make("ul", {}, members.map((one) => make("li", { "data-id": one.id }, make("a", { href: `#${one.id}` },
       make("span", { class: `method ${one.method.toLowerCase()}` }, one.method), make("span", {}, one.operation.summary),
       make("code", {}, one.path), make("small", { class: "hit", hidden: true }))))))));
-}
-
-function grouped() {
-  const groups = new Map();
-  for (const one of all) groups.set(one.tag, [...(groups.get(one.tag) ?? []), one]);
-  return groups;
 }
 
 /** Shows the operations that have all words of the search, and the parameters that have them. */
@@ -156,11 +151,7 @@ async function begin() {
   document.documentElement.dataset.state = "ready";
 }
 
-onPresence((gone) => {
-  byId("banner").hidden = !gone;
-  byId("banner").textContent = gone ? "The server does not answer. This page tries again by itself; what is shown stays." : "";
-  if (!gone && !api) begin();
-});
+new Notice(byId("banner"), () => api || begin());
 
 byId("theme").append(icon("M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z"));
 watchTheme(byId("theme"), () => {});

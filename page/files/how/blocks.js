@@ -1,7 +1,6 @@
 // The gate cut into blocks by how far points look, and the points of one block in the pattern.
 
-import { Pattern, intervalOf, turns } from "../works/pattern.js";
-import { ALPHA } from "./dials.js";
+import { Pattern, intervalOf, turns } from "./pattern.js";
 import { colorOf, indexOf } from "./indices.js";
 import { disk, dotOf, line, pair, palette } from "./pen.js";
 import { REACH, blockOf, nearest, nextOf, sociable } from "./same.js";
@@ -22,13 +21,11 @@ export class Blocks {
   point;
   /** @type {bigint[]} */
   starts;
-  /** @type {number} */
-  radius;
-  /** @type {number} */
-  seconds;
+  radius = 0;
+  seconds = 0;
 
   constructor() {
-    this.pattern = /** @type {Pattern} */ (Pattern.of(ALPHA));
+    this.pattern = new Pattern();
     this.points = this.pattern.points(REACH);
     this.point = sociable(this.pattern, this.points, this.pattern.starts(7));
     this.restart();

@@ -1,6 +1,6 @@
 // Points by chance beside as many of Strew's: they fall one by one, cells and a ring count them.
 
-import { streamOf } from "../compare/hash.js";
+import { streamOf } from "../hash.js";
 import { disk, disks, line, pair, palette, words } from "./pen.js";
 
 /** The side of the square in mean spacings, the points in it, and the cells along a side. */
@@ -22,10 +22,8 @@ export class Chance {
   panels;
   /** @type {number[][]} */
   chance;
-  /** @type {number} */
-  fallen;
-  /** @type {number} */
-  seconds;
+  fallen = 0;
+  seconds = 0;
   /** @type {number[] | null} */
   ring;
   /** @type {number[][] | null} */

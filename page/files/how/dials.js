@@ -1,10 +1,8 @@
 // A row of places and one hand that turns by α a place: where it stands in the gate, there is a point.
 
-import { Pattern, turns } from "../works/pattern.js";
+import { Pattern, turns } from "./pattern.js";
 import { Panel, dial, disk, line, palette, words } from "./pen.js";
 
-/** The α of Strew's default tables: half turns for each step. */
-export const ALPHA = "(5-sqrt(3))/2";
 /** The places that are shown. */
 const SHOWN = 24;
 /** The seconds that the hand takes for a step, and stays. */
@@ -21,15 +19,12 @@ export class Row {
   chart;
   /** @type {((at: number) => void) | undefined} */
   told;
-  /** @type {number} */
-  at;
-  /** @type {number} */
-  seconds;
-  /** @type {number} */
-  visited;
+  at = 0;
+  seconds = 0;
+  visited = 0;
 
   constructor() {
-    this.pattern = /** @type {Pattern} */ (Pattern.of(ALPHA));
+    this.pattern = new Pattern();
     this.first = 0;
     this.restart();
   }
@@ -62,7 +57,7 @@ export class Row {
 
   /** Another α: half turns between 1 and 2. */
   choose(alpha) {
-    this.pattern = Pattern.of(String(alpha)) ?? this.pattern;
+    this.pattern = new Pattern(alpha);
     this.tell();
   }
 

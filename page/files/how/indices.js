@@ -1,10 +1,11 @@
 // The grid with two hands, and beside it the square of indices, which the places of the grid fill evenly.
 
-import { shade } from "../works/draw.js";
-import { Pattern, turns } from "../works/pattern.js";
-import { ALPHA, degrees } from "./dials.js";
+import { Pattern, turns } from "./pattern.js";
+import { degrees } from "./dials.js";
 import { Panel, dial, disk, disks, isDark, line, palette } from "./pen.js";
 
+/** The colors at the corners of the set region: (0, 0), (t, 0), (0, t), (t, t). */
+const CORNERS = [[42, 98, 190], [219, 68, 92], [28, 158, 108], [232, 172, 40]];
 /** How far toward white colors go on a dark ground. */
 const LIFT = 0.35;
 
@@ -24,7 +25,11 @@ export function indexOf(pattern, [x, y]) {
 
 /** The color of a point by its index: lighter on a dark ground. */
 export function colorOf(pattern, index) {
-  return shade(index.map((v) => v / pattern.t), isDark() ? LIFT : 0);
+  const [u, v] = index.map((at) => at / pattern.t);
+  const weights = [(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v];
+  const lift = isDark() ? LIFT : 0;
+  const mixed = [0, 1, 2].map((channel) => CORNERS.reduce((sum, color, i) => sum + color[channel] * weights[i], 0));
+  return `rgb(${mixed.map((value) => Math.round(value + lift * (255 - value))).join(" ")})`;
 }
 
 export class Indices {
@@ -34,13 +39,11 @@ export class Indices {
   grid;
   /** @type {import("./pen.js").Panel} */
   square;
-  /** @type {number} */
-  walked;
-  /** @type {number} */
-  seconds;
+  walked = 0;
+  seconds = 0;
 
   constructor() {
-    this.pattern = /** @type {Pattern} */ (Pattern.of(ALPHA));
+    this.pattern = new Pattern();
     this.places = Array.from({ length: (LAST + 1) ** 2 }, (_, i) => [i % (LAST + 1), Math.floor(i / (LAST + 1))]);
     this.indices = this.places.map((place) => indexOf(this.pattern, place));
     this.restart();

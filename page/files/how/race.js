@@ -1,6 +1,6 @@
 // Two pieces of Poisson disks that are made at the same time, or one after the other, and where they clash.
 
-import { streamOf } from "../compare/hash.js";
+import { streamOf } from "../hash.js";
 import { Panel, disk, disks, line, palette, words } from "./pen.js";
 
 /** The sides of a piece, in widths of a piece, and the least distance. */
@@ -26,10 +26,8 @@ export class Race {
   misses;
   /** @type {number[][]} */
   missed;
-  /** @type {number} */
-  seconds;
-  /** @type {number} */
-  due;
+  seconds = 0;
+  due = 0;
 
   constructor() {
     this.seed = 11;

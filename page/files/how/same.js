@@ -1,7 +1,6 @@
 // Points of one block, that is of nearly the same index, and their surroundings laid over each other: they agree.
 
-import { Pattern, intervalOf } from "../works/pattern.js";
-import { ALPHA } from "./dials.js";
+import { Pattern, intervalOf } from "./pattern.js";
 import { colorOf, indexOf } from "./indices.js";
 import { disk, dotOf, pair, palette } from "./pen.js";
 
@@ -71,15 +70,13 @@ export class Same {
   point;
   /** @type {number[][]} */
   alike;
-  /** @type {number} */
-  laid;
-  /** @type {number} */
-  seconds;
+  laid = 0;
+  seconds = 0;
   /** @type {{ key: string, counts: Map<string, number> } | undefined} */
   counted;
 
   constructor() {
-    this.pattern = /** @type {Pattern} */ (Pattern.of(ALPHA));
+    this.pattern = new Pattern();
     this.points = this.pattern.points(REACH);
     this.starts = this.pattern.starts(RADIUS);
     this.isSame = true;

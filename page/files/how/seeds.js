@@ -36,12 +36,9 @@ export class Seeds {
   follow;
   /** @type {Chosen} */
   chosen;
-  /** @type {number} */
-  stop;
-  /** @type {number} */
-  seconds;
-  /** @type {number} */
-  share;
+  stop = 0;
+  seconds = 0;
+  share = 0;
 
   constructor() {
     this.known = new Map();

@@ -1,8 +1,8 @@
 // One point, from its address to the server's answer: hands, block, vector, warp, and the line for curl.
 
 import { byId, make } from "../dom.js";
-import { Pattern, intervalOf, turns } from "../works/pattern.js";
-import { ALPHA, degrees } from "./dials.js";
+import { Pattern, intervalOf, turns } from "./pattern.js";
+import { degrees } from "./dials.js";
 import { Panel, arrow, disk, palette } from "./pen.js";
 import { nearest, nextOf } from "./same.js";
 
@@ -51,7 +51,7 @@ export class Served {
   path;
 
   constructor() {
-    this.pattern = /** @type {Pattern} */ (Pattern.of(ALPHA));
+    this.pattern = new Pattern();
     this.starts = this.pattern.starts(RADIUS);
     this.corner = [0, 0];
     this.points = [];

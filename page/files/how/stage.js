@@ -3,6 +3,7 @@
 
 import { Gone, Problem, ask, onPresence, wordsOf } from "../api.js";
 import { byId, contextOf } from "../dom.js";
+import { fineness, sized } from "../view.js";
 import { forget } from "./pen.js";
 
 /** The least time between two frames, in seconds: figures are calm, and processors may be slow. */
@@ -186,9 +187,8 @@ export class Stage {
     const [width, height] = [canvas.clientWidth, canvas.clientHeight];
     // Before its style is there a canvas has next to no size.
     if (width < 60 || height < 40) return;
-    const ratio = Math.min(2, devicePixelRatio || 1);
-    const pixels = [Math.round(width * ratio), Math.round(height * ratio)];
-    if (canvas.width !== pixels[0] || canvas.height !== pixels[1]) [canvas.width, canvas.height] = pixels;
+    const ratio = fineness();
+    sized(canvas, [width, height].map((side) => Math.round(side * ratio)));
     const context = contextOf(canvas);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, width, height);

@@ -1,7 +1,6 @@
 // From the pattern to the points: a point and its twin far away, in the same block, on their way along the same vector.
 
-import { Pattern } from "../works/pattern.js";
-import { ALPHA } from "./dials.js";
+import { Pattern } from "./pattern.js";
 import { colorOf, indexOf } from "./indices.js";
 import { arrow, disk, dotOf, lines, pair, palette } from "./pen.js";
 import { blockOf, nearest, nextOf } from "./same.js";
@@ -34,13 +33,11 @@ export class Vectors {
   points;
   /** @type {number[]} */
   point;
-  /** @type {number} */
-  seconds;
-  /** @type {number} */
-  share;
+  seconds = 0;
+  share = 0;
 
   constructor() {
-    this.pattern = /** @type {Pattern} */ (Pattern.of(ALPHA));
+    this.pattern = new Pattern();
     /** The vectors by the address of the point. */
     this.vectors = new Map();
     this.pair = [[0, 0], [0, 0]];

@@ -2,7 +2,10 @@
 // and the wheel move the view as always.
 
 import { contextOf } from "../dom.js";
+import { pinch } from "../gestures.js";
+import { followPointers, followWheel } from "../hands.js";
 import { themeColor } from "../theme.js";
+import { sized } from "../view.js";
 import { toNumber } from "../place.js";
 
 /** How far an arrow key moves the cursor, in brush sizes; with Shift four times as far. */
@@ -16,29 +19,33 @@ export class Brush {
     this.drawn = drawn;
     this.left = left;
     this.say = say;
-    /** @type {Map<number, number[]>} */
-    this.down = new Map();
     /** @type {number[][] | null} */
     this.line = null;
     /** @type {number[] | null} */
     this.cursor = null;
     this.size = 1;
     this.kind = "paint";
-    canvas.addEventListener("pointerdown", (event) => this.press(event));
-    canvas.addEventListener("pointermove", (event) => this.move(event));
-    for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, (event) => this.lift(event));
-    canvas.addEventListener("pointerleave", () => this.down.size > 0 || this.point(null));
-    canvas.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      plane.zoom(Math.exp(-Math.max(-240, Math.min(240, event.deltaY)) * 0.0022), this.pixel(event));
-    }, { passive: false });
+    followPointers(canvas, {
+      pressed: (at, fingers) => {
+        // A second finger means that the view is to move.
+        this.line = fingers === 1 ? [this.world(at)] : null;
+        this.point(this.world(at));
+      },
+      moved: (step) => {
+        if (step.was) pinch(plane, step);
+        else this.line?.push(this.world(step.at));
+        this.point(this.world(step.at));
+      },
+      lifted: (isWhole) => {
+        if (isWhole) this.finish();
+        this.line = null;
+        this.draw();
+      },
+      hovered: (at) => this.point(at && this.world(at)),
+    });
+    followWheel(canvas, (factor, at) => plane.zoom(factor, at));
     canvas.addEventListener("keydown", (event) => this.key(event));
     canvas.addEventListener("focus", () => this.point(this.cursor ?? this.world([plane.view.width / 2, plane.view.height / 2])));
-  }
-
-  pixel(event) {
-    const box = this.canvas.getBoundingClientRect();
-    return [event.clientX - box.left, event.clientY - box.top];
   }
 
   /** @param {number[]} pixel */
@@ -49,39 +56,6 @@ export class Brush {
 
   point(at) {
     this.cursor = at;
-    this.draw();
-  }
-
-  press(event) {
-    this.canvas.setPointerCapture(event.pointerId);
-    this.down.set(event.pointerId, this.pixel(event));
-    // A second finger means that the view is to move.
-    this.line = this.down.size === 1 ? [this.world(this.pixel(event))] : null;
-    this.point(this.world(this.pixel(event)));
-  }
-
-  move(event) {
-    const before = this.down.get(event.pointerId);
-    const now = this.pixel(event);
-    if (before && this.down.size === 2) this.pinch(event.pointerId, now);
-    else if (before && this.line) this.line.push(this.world(now));
-    if (before) this.down.set(event.pointerId, now);
-    if (before || event.pointerType === "mouse") this.point(this.world(now));
-  }
-
-  pinch(id, now) {
-    const [, other] = [...this.down].find(([key]) => key !== id) ?? [];
-    const before = this.down.get(id);
-    if (!other || !before) return;
-    const apart = (/** @type {number[]} */ a) => Math.hypot(a[0] - other[0], a[1] - other[1]) || 1;
-    this.plane.drag((now[0] - before[0]) / 2, (now[1] - before[1]) / 2);
-    this.plane.zoom(apart(now) / apart(before), [(now[0] + other[0]) / 2, (now[1] + other[1]) / 2]);
-  }
-
-  lift(event) {
-    if (!this.down.delete(event.pointerId)) return;
-    if (event.type === "pointerup") this.finish();
-    this.line = null;
     this.draw();
   }
 
@@ -135,7 +109,6 @@ export class Brush {
   escape() {
     if (this.line) {
       this.line = null;
-      this.down.clear();
       this.say("Line discarded");
       this.draw();
     } else this.left();
@@ -146,7 +119,7 @@ export class Brush {
     const { canvas, plane, cursor, line } = this;
     const { view } = plane;
     const [width, height] = view.pixels;
-    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    sized(canvas, view.pixels);
     const context = contextOf(canvas);
     context.clearRect(0, 0, width, height);
     const pixel = view.unit / view.ratio;

@@ -7,7 +7,6 @@ import { describe, documentOf, isSent, send } from "../sent.js";
 import { MOST_PAINT } from "../state.js";
 import { Brush } from "./brush.js";
 import { blank, excess, fieldOf, read, simplified, written } from "./strokes.js";
-import { layersOf, worldOf } from "./world.js";
 
 const TOOLS = [["paint", "Brush", "More points"], ["road", "Road", "A line that keeps points away"], ["erase", "Erase", "Fewer points"]];
 /** Shares of the points outside of what is painted. */
@@ -37,8 +36,6 @@ export class Paint extends Part {
   undoButton;
   /** @type {HTMLButtonElement} */
   clearButton;
-  /** @type {HTMLInputElement} */
-  file;
   /** @type {HTMLElement} */
   said;
   /** @type {HTMLElement} */
@@ -99,19 +96,13 @@ export class Paint extends Part {
       GROUNDS.map(([share, words]) => make("option", { value: String(share) }, words)));
     this.undoButton = button("undo", "Undo", () => this.undo());
     this.clearButton = button("clear", "Clear", () => this.clear());
-    this.file = make("input", { type: "file", id: "paint-file", accept: ".json,application/json", hidden: true, "aria-label": "A world file", onchange: () => {
-      const file = this.file.files?.[0];
-      if (file) this.open(file);
-      this.file.value = "";
-    } });
     this.said = make("span", { id: "paint-said", role: "status" });
     const rows = [
       [...this.tools, this.undoButton, button("done", "Done", () => this.use(null), { class: "main" })],
       [this.size, this.strong],
-      [make("label", {}, "Elsewhere", this.elsewhere), this.clearButton, button("save", "Save", () => this.save(), { title: "The world as a file" }),
-        button("load", "Open", () => this.file.click(), { title: "A world from a file" })],
+      [make("label", {}, "Elsewhere", this.elsewhere), this.clearButton],
     ];
-    this.bar = make("div", { id: "paint", role: "group", "aria-label": "Paint", hidden: true }, ...rows.map((row) => make("div", {}, row)), this.said, this.file);
+    this.bar = make("div", { id: "paint", role: "group", "aria-label": "Paint", hidden: true }, ...rows.map((row) => make("div", {}, row)), this.said);
     this.canvas = make("canvas", {
       id: "brush", tabindex: "0", role: "application", hidden: true,
       "aria-label": "Paint on the plane. Arrow keys move the brush, Space puts the pen down and lifts it, plus and minus zoom, Escape leaves.",
@@ -281,7 +272,7 @@ export class Paint extends Part {
       if (text) this.texts.set(field, text);
       const amount = layer.by === "min_distance" ? { by: "spacing", amount: await this.spacing(layer) } : {};
       this.session.choose(() => Object.assign(layer, { field, paint: text, ...amount }), "layers");
-      const where = text.length > MOST_PAINT ? ", too many for the address: save them as a file" : "";
+      const where = text.length > MOST_PAINT ? ", too many for the address: Take has them in the request" : "";
       this.say(`${words ? `${words}: ` : ""}${strokes(work)}${where}`);
     } catch (error) {
       if (mine !== this.turn) return;
@@ -295,28 +286,5 @@ export class Paint extends Part {
   async spacing(layer) {
     const { spacing } = await this.session.understand({ ...layer, field: "" });
     return String(Number(spacing.toPrecision(6)));
-  }
-
-  /** Saves the layers as a world, which the page, the daemon and the command line read. */
-  save() {
-    const url = URL.createObjectURL(new Blob([worldOf(this.session.state.layers)], { type: "application/json" }));
-    const link = make("a", { href: url, download: "world.json" });
-    document.body.append(link);
-    link.click();
-    link.remove();
-    setTimeout(() => URL.revokeObjectURL(url), 60_000);
-    this.say("world.json is in your downloads. The daemon's folder of worlds takes it, too.");
-  }
-
-  /** Opens a world from a file. */
-  async open(file) {
-    try {
-      const layers = await layersOf(await file.text(), file.name);
-      this.session.choose((state) => Object.assign(state, { world: "", worldSeed: "", layers }), "layers");
-      this.say(`“${file.name}” is open`);
-    } catch (error) {
-      this.say("");
-      this.fail(wordsOf(error));
-    }
   }
 }

@@ -95,38 +95,6 @@ export function fieldOf({ base, ground, strokes }, ofBase = (name) => ({ name })
   return field;
 }
 
-/** The kind and the size of the strokes that a `distance` shape of a list was made from; nothing if it was not. */
-function strokesOf(list, shape) {
-  const { distance } = shape ?? {};
-  const { lines, distances: [near, far] = [], shares: [inside, outside] = [] } = distance ?? {};
-  if (!Array.isArray(lines) || !(far > 0)) return [];
-  const isRoad = list === "multiply" && inside === 0 && near * 1.5 === far;
-  const kind = list === "max" ? "paint" : isRoad ? "road" : "erase";
-  const strength = { paint: inside, erase: Number((outside - inside).toFixed(4)), road: 1 }[kind];
-  return lines.map((line) => ({ kind, size: 2 * (isRoad ? near : far), strength, line }));
-}
-
-/**
- * What was painted, of a field that `fieldOf` made, with the field below described (`below`); `null` of any other field.
- */
-export function paintedIn(field) {
-  const strokes = [];
-  let below = field;
-  for (;;) {
-    const [[list, shapes] = []] = Object.entries(below ?? {});
-    const isList = (list === "max" || list === "multiply") && Array.isArray(shapes) && shapes.length > 0;
-    const isOurs = isList && shapes.slice(1).every((shape) => strokesOf(list, shape).length > 0);
-    // A list of one shape is a field below to which nothing of its kind was added.
-    if (!isOurs) break;
-    strokes.unshift(...shapes.slice(1).flatMap((shape) => strokesOf(list, shape)));
-    [below] = shapes;
-  }
-  const isBlank = Object.hasOwn(below ?? {}, "constant");
-  const work = { base: isBlank ? "" : "below", ground: isBlank ? below.constant : 1, strokes };
-  const isSame = strokes.length > 0 && JSON.stringify(fieldOf(work, () => below)) === JSON.stringify(field);
-  return isSame ? { ...work, below: isBlank ? null : below } : null;
-}
-
 /** The shapes of a field, how deep they lie within each other, and the vertices of their lines. */
 function extentOf(field) {
   const [[shape, value]] = Object.entries(field);

@@ -3,15 +3,15 @@
 import { bufferOf, glOn, programOf } from "../program.js";
 
 /** Half of a dot's width in mean spacings. */
-export const RADIUS = 0.13;
+const RADIUS = 0.13;
 /** The share of the reach within which dots have their whole size; from there they shrink to nothing. */
-export const WHOLE = 0.72;
+const WHOLE = 0.72;
 
 const DOTS = [`#version 300 es
 in vec3 place;
 uniform mat4 matrix;
-uniform vec3 corner, middle, near_color, far_color, ground, slab_color;
-uniform float scale, reach, lens, slab;
+uniform vec3 corner, middle, near_color, far_color, ground;
+uniform float scale, reach, lens;
 uniform vec2 depths;
 flat out vec3 color;
 flat out float radius;
@@ -25,9 +25,7 @@ void main() {
   float far = clamp((depth - depths.x) / (depths.y - depths.x), 0.0, 1.0);
   // What is smaller than a pixel is paler instead.
   float faint = min(1.0, radius * 1.6);
-  bool is_slab = abs(off.z) < slab;
-  vec3 own = is_slab ? slab_color : mix(near_color, far_color, far);
-  color = mix(ground, own, faint * (1.0 - (is_slab ? 0.5 : 0.88) * far) * smoothstep(0.0, 0.15, edge));
+  color = mix(ground, mix(near_color, far_color, far), faint * (1.0 - 0.88 * far) * smoothstep(0.0, 0.15, edge));
   gl_PointSize = edge > 0.0 ? max(1.0, 2.0 * radius + 1.0) : 0.0;
   if (edge <= 0.0 || depth < 0.3) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }`, `#version 300 es
@@ -58,7 +56,7 @@ out vec4 result;
 void main() { result = vec4(color, 1.0); }`];
 
 /** The ends of the edges of a cube. */
-export const EDGES = [0, 1, 2].flatMap((axis) => [[0, 0], [0, 1], [1, 0], [1, 1]].flatMap((rest) => (
+const EDGES = [0, 1, 2].flatMap((axis) => [[0, 0], [0, 1], [1, 0], [1, 1]].flatMap((rest) => (
   [0, 1].map((end) => [...rest.slice(0, axis), end, ...rest.slice(axis)])
 )));
 
@@ -73,12 +71,10 @@ export function sceneOn(canvas) {
 
 /**
  * Colors by what they are for: red, green and blue from 0 to 1.
- * @typedef {Record<"ground" | "near" | "far" | "slab" | "line", number[]>} Colors
+ * @typedef {Record<"ground" | "near" | "far" | "line", number[]>} Colors
  */
 
 class Scene {
-  isFlat = false;
-
   /**
    * @param {WebGL2RenderingContext} gl
    * @param {HTMLCanvasElement} canvas
@@ -107,7 +103,7 @@ class Scene {
   }
 
   /** @param {Record<string, any>} seen */
-  draw({ camera, chunks, scale, middle, reach, depths, slab, box, colors }) {
+  draw({ camera, chunks, scale, middle, reach, depths, box, colors }) {
     const { gl, canvas } = this;
     gl.viewport(0, 0, canvas.width, canvas.height);
     const [red, green, blue] = colors.ground;
@@ -120,11 +116,9 @@ class Scene {
     gl.uniform3fv(uniforms.near_color, colors.near);
     gl.uniform3fv(uniforms.far_color, colors.far);
     gl.uniform3fv(uniforms.ground, colors.ground);
-    gl.uniform3fv(uniforms.slab_color, colors.slab);
     gl.uniform2fv(uniforms.depths, depths);
     gl.uniform1f(uniforms.scale, scale);
     gl.uniform1f(uniforms.reach, reach);
-    gl.uniform1f(uniforms.slab, slab);
     gl.uniform1f(uniforms.lens, canvas.height / 2 / camera.tall);
     for (const { chunk, corner } of chunks) {
       gl.bindBuffer(gl.ARRAY_BUFFER, this.bufferOf(chunk));

@@ -1,90 +1,49 @@
-// The page of space: a volume to turn, zoom and fly through, the request for the chunk in the middle, and slabs beside
-// those of other methods.
+// The page of space: a volume to turn, zoom and fly through, and the request for the chunk in the middle.
 
-import { Gone, Problem, isAway, onPresence } from "../api.js";
+import { isSeed } from "../address.js";
+import { isAway } from "../api.js";
 import { tools } from "../bar.js";
 import { byId, bytes, copy, counted, icon, make, settled, skipLinks } from "../dom.js";
-import { fault, field, refusal, select, setOptions } from "../form.js";
+import { fault, field, select, setOptions } from "../form.js";
+import { Notice } from "../notice.js";
 import { formatPlace, place } from "../place.js";
-import { themeColor } from "../theme.js";
+import { themeNumbers } from "../theme.js";
+import { fineness, sized } from "../view.js";
 import { cameraOf } from "../walk/camera.js";
-import { flatOn } from "./flat.js";
 import { sceneOn } from "./scene.js";
-import { Slabs } from "./slabs.js";
-import { PROFILES, REACH, fromHash, isInReach, isSeed, isSpacing, toHash } from "./state.js";
+import { PROFILES, REACH, fromHash, isInReach, isSpacing, toHash } from "./state.js";
 import { Viewer } from "./viewer.js";
 import { Volume, chunkAt, cornerOf, pathOf, sizeFor } from "./volume.js";
 
 /** Milliseconds without a byte after which the page says that it waits. */
 const PATIENCE = 1500;
-/** Milliseconds until slabs are requested again from a server that was busy. */
-const AGAIN = 1500;
-/** Pixels of the picture for each CSS pixel. */
-const RATIO = Math.min(2, devicePixelRatio);
 
 const root = document.documentElement;
 const canvas = byId("view");
 const state = fromHash(location.hash);
-const scene = (!state.isFlat && sceneOn(canvas)) || flatOn(canvas);
-root.dataset.renderer = scene.isFlat ? "2d" : "webgl2";
+/** Nothing where there is no WebGL2: the fields and the request work without a picture. */
+const scene = sceneOn(canvas);
 
-/**
- * What the banner says, by subject; the first that there is is shown.
- * @type {Record<"gone" | "busy" | "refused" | "flat" | "link", string | Error | null>}
- */
-const notes = { gone: null, busy: null, refused: null, link: state.wrong.join(" ") || null, flat: null };
-if (scene.isFlat) notes.flat = "This browser draws without WebGL2, so the picture is plainer and slower.";
-
-function note(subject, words) {
-  if (notes[subject] === words) return;
-  notes[subject] = words;
-  banner();
-}
-
-function banner() {
-  const words = Object.values(notes).find(Boolean);
-  const box = byId("banner");
-  box.hidden = !words;
-  if (words instanceof Error) {
-    refusal(box, words, retry);
-    if (!(words instanceof Problem && words.isLocked)) box.append(" ", make("button", { type: "button", onclick: retry }, "Try again"));
-  } else {
-    box.textContent = words ?? "";
-  }
-}
-
-function failed(error) {
-  if (error instanceof Gone) return;
-  note("refused", error);
-}
-
-function retry() {
-  note("refused", null);
+const notice = new Notice(byId("banner"), () => {
   volume.chunks.retry();
   later();
-}
+}, () => later());
+notice.say("wrong", state.wrong.join(" ") || null);
+if (!scene) notice.say("blind", "The picture needs WebGL2, which this browser does not have. The request for the points works without.");
 
-onPresence((gone) => {
-  note("gone", gone ? "The server does not answer. This page tries again by itself; what is drawn stays." : null);
-  if (!gone) later();
-});
-
-const volume = new Volume(() => (isStale = true), failed);
+const volume = new Volume(() => (isStale = true), (error) => notice.refused(error));
 const viewer = new Viewer(canvas, state, () => {
-  note("link", null);
+  notice.say("wrong", null);
   later();
 });
-const slabs = new Slabs(byId("slabs"));
 
 /** @type {import("./scene.js").Colors} */
 let colors;
 let isStale = true;
 
 function themed() {
-  const of = (/** @type {string} */ name) => (themeColor(name).match(/[\d.]+/g) ?? []).slice(0, 3).map((v) => Number(v) / 255);
-  colors = { ground: of("void"), near: of("near"), far: of("far"), slab: of("slab"), line: of("ink") };
+  colors = { ground: themeNumbers("void"), near: themeNumbers("near"), far: themeNumbers("far"), line: themeNumbers("ink") };
   isStale = true;
-  slabs.draw();
 }
 
 /** What is seen from the eye, in mean spacings. */
@@ -99,7 +58,6 @@ function look() {
   return {
     camera, middle, reach, colors,
     scale: 1 / unit,
-    slab: 0.5,
     depths: [Math.max(0, away - reach), away + reach],
     chunks: done.map((chunk) => ({ chunk, corner: seen(cornerOf(chunk, at)) })),
     box: { corner: seen(cornerOf(here, at)), side: here.size / unit },
@@ -113,13 +71,13 @@ function frame(now) {
   const seconds = Math.min(0.1, (now - before) / 1000);
   before = now;
   viewer.step(seconds);
-  const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((v) => Math.round(v * RATIO));
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((v) => Math.round(v * fineness()));
   const same = [...state.at.flatMap(({ i, f }) => [i, f]), state.yaw, state.pitch, state.away, state.reach, width, height].join();
   // A still picture is drawn once.
   if (isStale || same !== pictured) {
-    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    sized(canvas, [width, height]);
     volume.move(state);
-    scene.draw(look());
+    scene?.draw(look());
     [isStale, pictured] = [false, same];
     tell(now);
   } else if (root.dataset.state === "loading") {
@@ -135,8 +93,8 @@ function tell(now) {
   const { points, chunks, wanted, received, isBusy } = volume.sums;
   if (received !== heard.received || chunks === wanted) heard = { received, at: now };
   const isLong = now - heard.at > PATIENCE && !isAway();
-  note("busy", isBusy ? "The server is busy. This page tries again by itself." : isLong ? "The server is slow to answer." : null);
-  root.dataset.state = notes.refused ? "failed" : chunks === wanted ? "ready" : "loading";
+  notice.say("busy", isBusy ? "The server is busy. This page tries again by itself." : isLong ? "The server is slow to answer." : null);
+  root.dataset.state = notice.said.refused ? "failed" : chunks === wanted ? "ready" : "loading";
   const parts = [`${counted(points)} in ${chunks === wanted ? counted(chunks, "chunk") : `${chunks} of ${wanted} chunks`}`, bytes(received),
     `at ${state.at.map((one) => formatPlace(one, Number(state.spacing) < 1 ? 2 : 0)).join(", ")}`];
   const text = parts.join(" · ");
@@ -144,7 +102,7 @@ function tell(now) {
   byId("turn").setAttribute("aria-pressed", String(viewer.isTurning));
 }
 
-/** What follows a move, once it is over: the address, the request, the slabs. */
+/** What follows a move, once it is over: the address and the request. */
 const later = settled(350, () => {
   const hash = toHash(state);
   if (hash !== location.hash) history.replaceState(null, "", hash);
@@ -152,18 +110,13 @@ const later = settled(350, () => {
   byId("command").textContent = `curl -f '${location.origin}${pathOf(state, here, "csv")}' -o chunk.csv`;
   const { points, chunks } = volume.sums;
   byId("spoken").textContent = `${counted(points)} in ${counted(chunks, "chunk")} around ${state.at.map((one) => formatPlace(one, 0)).join(", ")}`;
-  slabs.show(state).catch((error) => {
-    // A busy server is asked again, as for chunks.
-    if (error.isPassing) setTimeout(later, AGAIN);
-    else failed(error);
-  });
 });
 
 /** Takes another value of a field. */
 function choose(name, value) {
   state[name] = value;
-  note("refused", null);
-  note("link", null);
+  notice.say("refused", null);
+  notice.say("wrong", null);
   isStale = true;
   later();
 }
@@ -200,12 +153,11 @@ function fill() {
 
 /** Goes to a state of an address. */
 function go(next) {
-  const { isFlat, ...rest } = next;
-  Object.assign(state, rest);
+  Object.assign(state, next);
   home = null;
   byId("jump").textContent = "Jump far away";
-  note("link", state.wrong.join(" ") || null);
-  note("refused", null);
+  notice.say("wrong", state.wrong.join(" ") || null);
+  notice.say("refused", null);
   fill();
   isStale = true;
   later();
@@ -247,9 +199,8 @@ canvas.addEventListener("webglcontextlost", () => location.reload());
 addEventListener("hashchange", ({ newURL }) => go(fromHash(new URL(newURL).hash)));
 skipLinks();
 fill();
-banner();
 later();
 
 // For the curious, and for tests.
-globalThis.strew = { state, viewer, volume, slabs, scene };
+globalThis.strew = { state, viewer, volume, scene };
 requestAnimationFrame(frame);

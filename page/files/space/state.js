@@ -1,6 +1,7 @@
 // What the page shows, as its address has it: a place in space, where the eye is from there, and what the points are.
 
-import { formatPlace, parsePlace, place, toNumber } from "../place.js";
+import { givenIn, hashOf, isSeed } from "../address.js";
+import { formatPlace, place, toNumber } from "../place.js";
 
 /** The profiles of points in space. */
 export const PROFILES = ["blue", "spaced"];
@@ -29,15 +30,9 @@ const BEGINNING = { yaw: 30, pitch: -18, away: 30, reach: 16, spacing: "1", seed
  * @property {string} spacing
  * @property {string} seed
  * @property {string} profile
- * @property {boolean} isFlat Whether it is drawn without WebGL2.
  * @property {boolean} isPlain Whether the address says nothing of the view.
  * @property {string[]} wrong What was not understood, in words.
  */
-
-/** Whether a text is a seed: an integer of 64 bits. */
-export function isSeed(text) {
-  return /^\d{1,20}$/.test(text) && BigInt(text) < 2n ** 64n;
-}
 
 /** Whether a text is a spacing that this page shows. */
 export function isSpacing(text) {
@@ -55,20 +50,16 @@ export function isInReach(at, spacing) {
  * @returns {State}
  */
 export function fromHash(hash) {
-  const given = new URLSearchParams(hash.slice(1));
+  const given = givenIn(hash);
   const wrong = [];
   const text = (name, isRight, words) => {
-    const value = given.get(name);
-    if (value === null || isRight(value)) return value ?? BEGINNING[name];
-    wrong.push(words);
+    if (given.has(name) && isRight(given.text(name))) return given.text(name);
+    if (given.has(name)) wrong.push(words);
     return BEGINNING[name];
   };
-  const number = (/** @type {string} */ name, /** @type {number[]} */ [least, most]) => {
-    const value = given.has(name) ? Number(given.get(name)) : NaN;
-    return Number.isFinite(value) ? Math.max(least, Math.min(most, value)) : BEGINNING[name];
-  };
+  const number = (/** @type {string} */ name, /** @type {number[]} */ bounds) => given.number(name, BEGINNING[name], bounds);
   const spacing = text("spacing", isSpacing, "The spacing in the address is not a number from 0.001 to 1000000, so it is 1.");
-  const at = given.get("at")?.split(",").map(parsePlace) ?? MIDDLE();
+  const at = given.has("at") ? given.at() : MIDDLE();
   const isNear = at.length === 3 && isInReach(at, spacing);
   if (!isNear) wrong.push("The place in the address is out of reach. Here is the beginning instead.");
   const turn = Math.PI / 180;
@@ -81,21 +72,18 @@ export function fromHash(hash) {
     spacing,
     seed: text("seed", isSeed, "The seed in the address is not a whole number below 2⁶⁴, so it is 7."),
     profile: text("profile", (value) => PROFILES.includes(value), "The profile in the address is not for space, so it is blue."),
-    isFlat: given.get("renderer") === "2d",
     isPlain: !given.has("at"),
     wrong,
   };
 }
 
 /** The address of a state. */
-export function toHash({ at, yaw, pitch, away, reach, spacing, seed, profile, isFlat }) {
+export function toHash({ at, yaw, pitch, away, reach, spacing, seed, profile }) {
   const degrees = (angle) => String(Math.round((angle * 180) / Math.PI) % 360);
   const decimals = Math.max(0, Math.ceil(2 - Math.log10(Number(spacing))));
-  const parts = [
-    `at=${at.map((one) => formatPlace(one, decimals)).join(",")}`, `yaw=${degrees(yaw)}`, `pitch=${degrees(pitch)}`,
-    `away=${Number(away.toFixed(1))}`, `reach=${reach}`, `spacing=${spacing}`, `seed=${seed}`,
-  ];
-  if (profile !== "blue") parts.push(`profile=${profile}`);
-  if (isFlat) parts.push("renderer=2d");
-  return `#${parts.join("&")}`;
+  return hashOf([
+    ["at", at.map((one) => formatPlace(one, decimals)).join(",")], ["yaw", degrees(yaw)], ["pitch", degrees(pitch)],
+    ["away", Number(away.toFixed(1))], ["reach", reach], ["spacing", spacing], ["seed", seed],
+    ...(profile === "blue" ? [] : [["profile", profile]]),
+  ]);
 }

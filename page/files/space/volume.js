@@ -19,7 +19,7 @@ const SPACE = {
 };
 
 /** The parameters that say what the points are. */
-export function parametersOf({ spacing, seed, profile }) {
+function parametersOf({ spacing, seed, profile }) {
   return `${profile === "blue" ? "" : `profile=${profile}&`}spacing=${spacing}&seed=${seed}`;
 }
 

@@ -2,6 +2,7 @@
 
 import { contextOf } from "../dom.js";
 import { distance, place } from "../place.js";
+import { fineness, sized } from "../view.js";
 import { INSTANCE_FLOATS } from "./ground.js";
 import { TRAIL, landFrom } from "./land.js";
 
@@ -134,8 +135,8 @@ export function smallMapOn(canvas) {
   const plan = new Plan(canvas, SMALL);
   return {
     draw(look, mode) {
-      const side = Math.round(canvas.clientWidth * Math.min(2, devicePixelRatio));
-      if (side > 0 && canvas.width !== side) Object.assign(canvas, { width: side, height: side });
+      const side = Math.round(canvas.clientWidth * fineness());
+      if (side > 0) sized(canvas, [side, side]);
       return plan.draw({ ...look, isSmall: true }, mode);
     },
   };

@@ -2,6 +2,7 @@
 // to the graphics processor once; which of them are drawn is a beginning of each run, as these are sorted by rank.
 
 import { bufferOf, glOn, isSoftware, programOf } from "../program.js";
+import { sized } from "../view.js";
 import { sees } from "./camera.js";
 import { GROUND_FLOATS, INSTANCE_FLOATS, below, netOf } from "./ground.js";
 import { GROUND, SHADOWS, SKY, THINGS } from "./shaders.js";
@@ -78,8 +79,7 @@ class Scene {
   /** Makes the picture as large as its canvas on the screen, with `ratio` pixels to a CSS pixel. */
   resize(ratio) {
     const { canvas } = this;
-    const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((v) => Math.max(1, Math.round(v * ratio)));
-    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    sized(canvas, [canvas.clientWidth, canvas.clientHeight].map((v) => Math.max(1, Math.round(v * ratio))));
   }
 
   /**

@@ -1,11 +1,12 @@
 // The walk: puts its parts together and draws, as finely as the machine can.
 
-import { Gone, askJson, onPresence } from "../api.js";
+import { givenIn, hashOf, isSeed } from "../address.js";
+import { askJson } from "../api.js";
 import { byId, bytes, icon, make } from "../dom.js";
-import { refusal } from "../form.js";
-import { formatPlace, parsePlace, place } from "../place.js";
+import { Notice } from "../notice.js";
+import { formatPlace, place } from "../place.js";
 import { joined, setOf } from "../query.js";
-import { LAYER, WORKS, toHash } from "../state.js";
+import { LAYER, toHash } from "../state.js";
 import { watchTheme } from "../theme.js";
 import { cameraOf } from "./camera.js";
 import { mapOn, smallMapOn } from "./map.js";
@@ -38,54 +39,41 @@ const canvas = byId("view");
 const FAR = [place(1e9), place(1e9)];
 
 function fromHash(hash) {
-  const given = new URLSearchParams(hash.slice(1));
-  const [x, y] = (given.get("at") ?? "").split(",").map(parsePlace);
+  const given = givenIn(hash);
+  const [x, y] = given.at();
   const isNear = x && y && Math.max(Math.abs(x.i), Math.abs(y.i)) <= 1e14;
-  const degrees = (name, otherwise) => {
-    const value = given.has(name) ? Number(given.get(name)) : NaN;
-    return ((Number.isFinite(value) ? value % 360 : otherwise) * Math.PI) / 180;
-  };
-  const pitch = Math.max(-STEEPEST, Math.min(STEEPEST, degrees("pitch", -5)));
-  const quality = given.get("quality") ?? "";
-  if (x && y && !isNear) banner("This walk ends at 1e14 in every direction, so it starts at its beginning instead.");
+  const radians = (name, otherwise) => ((given.number(name, otherwise) % 360) * Math.PI) / 180;
+  const quality = given.matching("quality", /^[0-3]$/);
+  if (x && y && !isNear) notice.say("wrong", "This walk ends at 1e14 in every direction, so it starts at its beginning instead.");
   return {
-    x: isNear ? x : place(START.x), y: isNear ? y : place(START.y), yaw: degrees("yaw", START.yaw), pitch,
-    seed: isSeed(given.get("seed") ?? "") ? given.get("seed") : "7",
-    quality: /^\d$/.test(quality) && QUALITIES[quality] ? Number(quality) : null,
-    isFlying: given.get("fly") !== "0" && !given.has("at"),
-    isAloft: given.get("fly") === "1",
+    x: isNear ? x : place(START.x), y: isNear ? y : place(START.y),
+    yaw: radians("yaw", START.yaw), pitch: Math.max(-STEEPEST, Math.min(STEEPEST, radians("pitch", -5))),
+    seed: isSeed(given.text("seed")) ? given.text("seed") : "7",
+    quality: quality ? Number(quality) : null,
+    isFlying: given.text("fly") !== "0" && !given.has("at"),
+    isAloft: given.text("fly") === "1",
     isAnywhere: !isNear,
   };
-}
-
-/** Whether a text is a seed: an integer of 64 bits. */
-function isSeed(text) {
-  return /^\d{1,20}$/.test(text) && BigInt(text) < 2n ** 64n;
 }
 
 /** Where a walk begins: above the trail, or in a clearing nearby. */
 const START = { x: -126, y: 0, yaw: 16 };
 
-/** Says something above the picture, with buttons; `null` takes it away. */
-function banner(words, ...more) {
-  byId("banner").hidden = words === null;
-  byId("banner").replaceChildren(words ?? "", make("div", {}, more));
-}
+const notice = new Notice(byId("banner"), () => {
+  root.dataset.state = "loading";
+  for (const { chunks } of world.sets) chunks.retry();
+}, () => {});
 
 let given = fromHash(location.hash);
 const wantsMap = location.hash.includes("map=1");
 const scene = (!wantsMap && sceneOn(canvas)) || mapOn(canvas);
 root.dataset.renderer = scene.isMap ? "map" : "webgl2";
-if (scene.isMap) banner("This browser cannot draw in three dimensions (WebGL2 is missing), so here is the map. Keys and sticks walk as usual.");
+if (scene.isMap) notice.say("blind", "This browser cannot draw in three dimensions (WebGL2 is missing), so here is the map. Keys and sticks walk as usual.");
 
 function failed(error) {
   root.dataset.state = "failed";
-  refusal(byId("banner"), error, () => {
-    root.dataset.state = "loading";
-    for (const { chunks } of world.sets) chunks.retry();
-  });
+  notice.refused(error);
 }
-onPresence((gone) => banner(gone ? "The server does not answer. This page tries again by itself; what is drawn stays." : null));
 
 let world = new World(scene, given.seed, failed);
 const walker = new Walker(canvas, given, (at) => pick(at));
@@ -172,9 +160,9 @@ function tell(now) {
 /** Keeps the place in the address. */
 function remember() {
   const turned = (angle) => String(Math.round((angle * 180) / Math.PI));
-  const hash = `#at=${formatPlace(walker.x, 2)},${formatPlace(walker.y, 2)}&yaw=${turned(walker.yaw)}&pitch=${turned(walker.pitch)}`;
-  const rest = [walker.isAloft && "fly=1", given.seed !== "7" && `seed=${given.seed}`, given.quality !== null && `quality=${given.quality}`, wantsMap && "map=1"];
-  const address = [hash, ...rest.filter(Boolean)].join("&");
+  const at = [walker.x, walker.y].map((v) => formatPlace(v, 2)).join(",");
+  const rest = { fly: walker.isAloft && 1, seed: given.seed !== "7" && given.seed, quality: given.quality ?? false, map: wantsMap && 1 };
+  const address = hashOf([["at", at], ["yaw", turned(walker.yaw)], ["pitch", turned(walker.pitch)], ...Object.entries(rest).filter(([, value]) => value !== false)]);
   if (address === location.hash) return;
   history.replaceState(null, "", address);
   byId("plane").href = `/${planeHash()}`;
@@ -183,7 +171,7 @@ function remember() {
 /** The plane with the same points around the walker. */
 function planeHash() {
   const { rank, ...layer } = layersOf(given.seed)[0];
-  return toHash({ ...walker, span: 80, tab: "choose", layers: [{ ...LAYER, ...layer, color: 3 }], works: WORKS, renderer: "" });
+  return toHash({ ...walker, span: 80, tab: "choose", take: "", layers: [{ ...LAYER, ...layer, color: 3 }] });
 }
 
 let asked = 0;
@@ -203,7 +191,7 @@ async function pick(at) {
     const { neighbors } = await askJson(`/v1/nearest?at=${where}&k=1&${set}`);
     if (mine === asked) show(found, neighbors[0], set);
   } catch (error) {
-    if (!(error instanceof Gone)) failed(error);
+    notice.refused(error);
   }
 }
 

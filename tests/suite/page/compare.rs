@@ -7,9 +7,6 @@ use crate::support::{
     daemon::Daemon,
 };
 
-/// All methods.
-const SIX: &str = "#show=strew,poisson,tile,jitter,halton,white";
-
 /// Opens the page, and waits until all that is shown is measured.
 fn open(browser: &Browser, daemon: &Daemon, hash: &str) {
     browser.go("about:blank");
@@ -31,12 +28,10 @@ fn figure(browser: &Browser, id: &str) -> f64 {
 /// The faults of the methods: their modules run in the page, on the seeds 1 to 3.
 const FAULTS: &str = "(async () => {
   const load = (name) => import(`/page/compare/${name}.js`);
-  const [{ bridson, LEAST }, { jittered, white }, { halton, mirrored }, { made }] =
-    await Promise.all(['bridson', 'cells', 'halton', 'made'].map(load));
+  const [{ bridson, LEAST }, { white }, { made }] = await Promise.all(['bridson', 'white', 'made'].map(load));
   const faults = [];
   const check = (holds, words) => holds || faults.push(words);
   const pairs = (points) => Array.from({ length: points.length / 2 }, (_, p) => [points[2 * p], points[2 * p + 1]]);
-  const near = (a, b) => Math.abs(a - b) < 1e-9;
   const window = (x, y, width, height) => ({ x: { i: x, f: 0.25 }, y: { i: y, f: 0 }, width, height });
   const perCell = (points, left) => {
     const cells = new Map();
@@ -47,11 +42,6 @@ const FAULTS: &str = "(async () => {
     return cells;
   };
 
-  const digits = (base) => [0, 1, 2, 3, 4, 5, 6].map((i) => mirrored(i, base));
-  check(digits(2).every((v, i) => near(v, [0, 1 / 2, 1 / 4, 3 / 4, 1 / 8, 5 / 8, 3 / 8][i])), `base 2: ${digits(2)}`);
-  check(digits(3).every((v, i) => near(v, [0, 1 / 3, 2 / 3, 1 / 9, 4 / 9, 7 / 9, 2 / 9][i])), `base 3: ${digits(3)}`);
-  check(perCell(halton(64 * 81, 64, 81).map((v) => v + 1e-9), 0).size === 64 * 81, 'Halton leaves a cell empty');
-
   for (const seed of [1, 2, 3]) {
     const disks = pairs(bridson(seed, 60));
     const least = Math.min(...disks.map(([x, y], i) => Math.min(...disks.slice(i + 1)
@@ -59,29 +49,23 @@ const FAULTS: &str = "(async () => {
     check(least >= LEAST, `Poisson disk: ${least} apart`);
     check(Math.abs(disks.length / 3600 - 1) < 0.03, `Poisson disk: ${disks.length} of 3600 points`);
 
-    const cells = perCell(jittered(seed, window(1e12, -7, 40.75, 40)), 0.25);
-    const inner = [...cells].filter(([cell]) => !cell.startsWith('0,'));
-    check(inner.length === 1600 && inner.every(([, count]) => count === 1), `jitter: ${inner.length} cells`);
-
     const counts = perCell(white(seed, window(0, 0, 100.75, 100)), 0.25);
     const of = (k) => [...counts.values()].filter((count) => count === k).length / 10075;
     const chances = [[1, Math.exp(-1)], [2, Math.exp(-1) / 2], [3, Math.exp(-1) / 6]];
     check(chances.every(([k, chance]) => Math.abs(of(k) - chance) < 0.02), `white: ${chances.map(([k]) => of(k))}`);
   }
 
-  for (const id of ['jitter', 'white', 'tile', 'poisson', 'halton']) {
-    const points = (x, y, side) => pairs(made(id, 5).window(window(x, y, side, side)).points);
+  for (const id of ['white', 'poisson']) {
+    const points = (x, y, side) => pairs(made(id, 5, window(x, y, side, side)).points);
     const [large, part] = [points(-20, -30, 40), points(-10, -25, 20)];
     const within = large.filter(([x, y]) => x >= 10 && x < 30 && y >= 5 && y < 25).map(([x, y]) => `${(x - 10).toFixed(6)},${(y - 5).toFixed(6)}`);
     const same = part.map(([x, y]) => `${x.toFixed(6)},${y.toFixed(6)}`);
     check(within.sort().join() === same.sort().join(), `${id}: windows differ`);
     check(Math.abs(large.length - 1600) < 150, `${id}: ${large.length} of 1600 points`);
-    const far = made(id, 5).window(window(1e9, 0, 50, 50));
-    const isBounded = ['poisson', 'halton'].includes(id);
+    const far = made(id, 5, window(1e9, 0, 50, 50));
+    const isBounded = id === 'poisson';
     check(far.isWhole !== isBounded && (far.points.length === 0) === isBounded, `${id} far away`);
   }
-  const tile = (x) => made('tile', 5).window(window(x, 0, 16, 16)).points;
-  check(tile(0).length === 512 && tile(0).every((v, i) => near(v, tile(1600)[i])), 'the tile does not repeat');
   return faults;
 })()";
 
@@ -90,15 +74,12 @@ fn methods_are_what_they_say() {
     let Some((daemon, browser)) = looking(1440, 900) else {
         return;
     };
-    open(&browser, &daemon, SIX);
+    open(&browser, &daemon, "");
     assert_eq!(browser.value(FAULTS), Value::from(Vec::<String>::new()));
     // Distances and counts as they are known of each kind, in mean spacings.
     for (id, least, mean) in [
         ("strew", 0.6, 0.83..0.92),
         ("poisson", 0.76, 0.82..0.88),
-        ("tile", 0.6, 0.83..0.92),
-        ("jitter", 0.0, 0.6..0.66),
-        ("halton", 0.05, 0.6..0.68),
         ("white", 0.0, 0.48..0.52),
     ] {
         let count = figure(&browser, &format!("count-{id}"));
@@ -107,16 +88,6 @@ fn methods_are_what_they_say() {
         assert!(found >= least, "{id}: {found}");
         let found = figure(&browser, &format!("mean-{id}"));
         assert!(mean.contains(&found), "{id}: {found}");
-    }
-    browser.until("document.documentElement.dataset.timed === '6'");
-    // Points that another program makes are not timed beside those that are made here.
-    assert_eq!(browser.text("#time-strew"), "–");
-    for id in ["poisson", "tile", "jitter", "halton", "white"] {
-        let text = browser.text(&format!("#time-{id}"));
-        assert!(
-            text.ends_with(" ns") || text.ends_with(" µs"),
-            "{id}: {text}"
-        );
     }
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
@@ -127,7 +98,6 @@ fn what_each_method_has_to_make_is_counted() {
         return;
     };
     open(&browser, &daemon, "#at=0,0&span=40");
-    browser.until("document.documentElement.dataset.timed === '2'");
     // The window holds as many points as the server counts, and Strew makes no others.
     let window = "(({ x, y, unit, width, height }) => [-1, 1].flatMap((side) => \
         [x.i + x.f + side * width * unit / 2, y.i + y.f + side * height * unit / 2]).join())(strew.joint.view)";
@@ -147,9 +117,9 @@ fn what_each_method_has_to_make_is_counted() {
     assert!((figure(&browser, "made-poisson") - 65_536.0).abs() < 1000.0);
     // Alone: what has to be made, drawn beside nothing else; a move ends that.
     browser.click("#alone");
-    browser.until("strew.panels[1].aloneSource?.runs(strew.joint.view)[0]?.count > 60000");
-    browser.until("strew.panels[0].aloneSource?.runs(strew.joint.view)[0]?.count > 0");
-    let drawn = browser.value("strew.panels[0].aloneSource.runs(strew.joint.view)[0].count");
+    browser.until("strew.panels[1].alone[0]?.count > 60000");
+    browser.until("strew.panels[0].alone[0]?.count > 0");
+    let drawn = browser.value("strew.panels[0].alone[0].count");
     assert!(
         (drawn.as_f64().expect("a count") - count).abs() <= 1.0,
         "{drawn}"
@@ -171,10 +141,6 @@ fn what_each_method_has_to_make_is_counted() {
     assert_eq!(browser.text("#far"), "Back to the origin");
     browser.click("#far");
     browser.until("strew.joint.view.x.i === 0");
-    // The others on request; the address has them.
-    browser.click("#all");
-    browser.until(&format!("location.hash.endsWith('{}')", &SIX[1..]));
-    browser.until("Number(document.querySelector('#made-tile').textContent) === 256");
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
@@ -205,7 +171,7 @@ fn one_view_moves_all_and_stands_in_the_address() {
     let Some((daemon, browser)) = looking(1440, 900) else {
         return;
     };
-    open(&browser, &daemon, "#at=0,0&span=30&show=strew,jitter");
+    open(&browser, &daemon, "#at=0,0&span=30");
     let plane = |id: &str| {
         let place = browser.value(&format!(
             "(() => {{ const box = document.querySelector('#plane-{id}').getBoundingClientRect(); \
@@ -213,24 +179,23 @@ fn one_view_moves_all_and_stands_in_the_address() {
         ));
         serde_json::from_value::<[i32; 3]>(place).expect("a place")
     };
-    let [x, y, side] = plane("jitter");
+    let [x, y, side] = plane("white");
     browser.drag([x, y], [-side / 4, 0]);
     browser.until(
         "strew.joint.view.x.i === 7 && document.documentElement.dataset.measured.startsWith('7.')",
     );
     // The drawings of all have moved: the middle of each sheet is the view's.
     let shown = browser.value(
-        "strew.panels.filter((panel) => panel.sheet.held).map((panel) => panel.source.runs(strew.joint.view).length > 0)",
+        "strew.panels.map((panel) => panel.sheets.front.parts.some(({ done }) => done > 0))",
     );
-    assert_eq!(shown, serde_json::json!([true, true]));
+    assert_eq!(shown, serde_json::json!([true, true, true]));
     browser.wheel([x, y], -300);
     browser.until("strew.joint.state.span < 20");
     browser.value("document.querySelector('#plane-strew').focus()");
     browser.keys(&["\u{E012}"]);
     browser.until("strew.joint.view.x.i < 7");
-    browser.click("#show-jitter");
     browser.choose("#seed", "9");
-    browser.until("location.hash.includes('seed=9') && location.hash.endsWith('show=strew')");
+    browser.until("location.hash.includes('seed=9')");
     measured(&browser);
     let (hash, least) = (browser.hash(), browser.text("#least-strew"));
     open(&browser, &daemon, &hash);
@@ -245,11 +210,6 @@ fn far_away_on_a_phone_bounded_methods_say_that_they_end() {
         return;
     };
     open(&browser, &daemon, "#at=1e9,0.5&span=20");
-    // Two at a time, and nothing wider than the window.
-    assert_eq!(
-        browser.value("document.querySelectorAll('article:not([hidden])').length"),
-        2
-    );
     assert_eq!(
         browser.value("document.documentElement.scrollWidth <= innerWidth"),
         true
@@ -269,11 +229,7 @@ fn far_away_on_a_phone_bounded_methods_say_that_they_end() {
     browser.until("!document.querySelector('#banner').hidden");
     assert!(browser.text("#banner").contains("not a place here"));
     // A meaningless hash leaves the defaults.
-    open(
-        &browser,
-        &daemon,
-        "#at=1e18,0&span=-3&seed=x&show=nothing&profile=%22",
-    );
+    open(&browser, &daemon, "#at=1e18,0&span=-3&seed=x&profile=%22");
     assert_eq!(browser.value("strew.joint.view.x.i"), 0);
     assert_eq!(browser.errors(), Vec::<String>::new());
 }

@@ -43,7 +43,7 @@ fn no_page_is_wider_than_its_window() {
     };
     for (width, height) in [(390, 844), (320, 568)] {
         browser.resize(width, height);
-        for path in ["/", "/how", "/compare", "/walk", "/space", "/tile", "/docs"] {
+        for path in ["/", "/how", "/compare", "/walk", "/space", "/docs"] {
             browser.go(&daemon.url(path));
             browser.until(
                 "document.querySelector('button, a, canvas') && document.readyState === 'complete'",
@@ -84,7 +84,6 @@ fn the_first_key_leads_past_what_repeats() {
         ("/", "panel-body"),
         ("/how", "essay"),
         ("/compare", "methods"),
-        ("/tile", "choices"),
         ("/space#at=4,4,4", "choices"),
         ("/docs#getPoints", "main"),
     ] {
@@ -118,8 +117,8 @@ fn what_lies_under_another_tab_takes_no_focus() {
     let Some((daemon, browser)) = looking(1280, 900) else {
         return;
     };
-    browser.look(&daemon, "#at=0,0&span=30&tab=works");
-    let covered = "['plane', 'jump-at', 'theme', 'works-slider'] \
+    browser.look(&daemon, "#at=0,0&span=30&tab=gallery");
+    let covered = "['plane', 'jump-at', 'theme', 'gallery'] \
         .map((id) => Boolean(document.getElementById(id).closest('[inert]')))";
     assert_eq!(
         browser.value(covered),

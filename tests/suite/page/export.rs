@@ -128,21 +128,45 @@ fn a_copied_request_for_layers_returns_the_points_in_view() {
     let answer = daemon.post("/v1/points:query", &body);
     assert_eq!(answer.status, 200, "{}", answer.text());
     assert_same(&browser, &rows(answer.text()));
-    let message = copied(&browser, "grpcurl");
-    let message = message
-        .split("-d '")
-        .nth(1)
-        .expect("a message")
-        .split('\'')
-        .next();
-    let message: Value = serde_json::from_str(message.expect("a message")).expect("JSON");
-    assert_eq!(message["layers"][1]["clear_of"]["layer1"], 0.6);
-    let set = &message["layers"][1]["set"];
-    assert_eq!(set["variants"]["oak"], 3);
-    assert_eq!(set["scale_range"], json!({ "min": 0.5, "max": 1.5 }));
+    let layer = &body["layers"][1];
+    assert_eq!(layer["clear_of"]["layer1"], 0.6);
+    assert_eq!(layer["scale_range"], json!([0.5, 1.5]));
+}
+
+#[test]
+fn what_repeats_is_taken_away_as_it_is_shown() {
+    let Some((daemon, browser)) = looking(1280, 900) else {
+        return;
+    };
+    browser.look(&daemon, "#at=0,0&span=30&seed=7&tab=take&take=tile");
+    browser.until("document.documentElement.dataset.weighed === '5041'");
+    assert_eq!(browser.text("#take-count"), "5,041 points");
+    // The picture shows two copies along each side.
+    let half = "(() => { const { width, height } = document.querySelector('#repeat-picture'); \
+        const part = (x) => document.querySelector('#repeat-picture').getContext('2d') \
+            .getImageData(x, 0, width / 2, height).data; \
+        const [left, right] = [part(0), part(width / 2)]; \
+        return left.some((v) => v !== left[0]) && left.every((v, i) => v === right[i]); })()";
+    assert_eq!(browser.value(half), true);
+    browser.allow_clipboard();
+    let url = copied(&browser, "url");
+    let path = url.strip_prefix(&daemon.url("")).expect("of this daemon");
+    let answer = daemon.get(path);
+    assert_eq!(answer.header("strew-count"), "5041", "{path}");
+    // Another size, then a mask, and Back to the tile.
+    browser.choose("#repeat-size", "9409");
+    browser.until("document.querySelector('#take-count').textContent === '9,409 points'");
+    assert!(browser.text("#command").contains("periodic=9409"));
+    browser.choose("#take-what", "mask");
+    browser.until("document.querySelector('#take-size').textContent.endsWith(' as png')");
+    let line = copied(&browser, "curl");
     assert!(
-        message["region"]["bbox"]["max_x"].as_f64() > message["region"]["bbox"]["min_x"].as_f64()
+        line.contains("/v1/mask.png?size=128") && line.contains("-o mask.png"),
+        "{line}"
     );
+    browser.value("(history.back(), 0)");
+    browser.until("document.querySelector('#take-what').value === 'tile'");
+    assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
 #[test]

@@ -126,7 +126,7 @@ fn what_leads_on_is_in_sight_on_phones() {
         "#view-walk",
         "#view-portrait",
         "#view-plane",
-        "#tab-works",
+        "#tab-take",
         "#paint-open",
     ] {
         assert_in_sight(&browser, selector);
@@ -144,7 +144,7 @@ fn what_leads_on_is_in_sight_on_phones() {
             "#jump-at",
             "#jump button",
             "#theme",
-            "#tab-works",
+            "#tab-take",
         ] {
             assert_in_sight(&browser, selector);
         }
@@ -157,5 +157,5 @@ fn what_leads_on_is_in_sight_on_phones() {
     browser.click(".meaning summary");
     assert!(browser.text(".meaning").contains("Spectrum"));
     assert_in_sight(&browser, ".meaning p:last-child");
-    assert_in_sight(&browser, "#tab-gallery");
+    assert_in_sight(&browser, "#tab-choose");
 }

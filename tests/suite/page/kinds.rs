@@ -29,7 +29,7 @@ fn kinds_are_chosen_and_drawn_in_their_colors() {
         ("even", "spread=even"),
         ("joint", "spread=joint"),
     ] {
-        browser.look(&daemon, "#at=0,0&span=12&renderer=2d");
+        browser.look(&daemon, "#at=0,0&span=12");
         browser.choose("#spread", spread);
         browser.until(&format!(
             "location.hash.includes('spread={spread}') && strew.plane.look.layers[0].spread === '{spread}'"
@@ -63,41 +63,6 @@ fn kinds_are_chosen_and_drawn_in_their_colors() {
 }
 
 #[test]
-fn both_painters_color_kinds_alike() {
-    let Some((daemon, browser)) = looking(800, 700) else {
-        return;
-    };
-    if browser.lacks_webgl2() {
-        return;
-    }
-    let pixels = |renderer: &str| {
-        browser.look(
-            &daemon,
-            &format!(
-                "#at=0,0&span=8&spread=chance&variants=a:1,b:1,c:1&color=1&renderer={renderer}"
-            ),
-        );
-        // The counts of pixels that are nearest to each color.
-        let counts = browser.value(
-            "(() => { strew.plane.paint(); const { canvas, look } = strew.plane; const c = document.createElement('canvas'); \
-             Object.assign(c, { width: canvas.width, height: canvas.height }); const t = c.getContext('2d'); t.drawImage(canvas, 0, 0); \
-             const d = t.getImageData(0, 0, c.width, c.height).data; const counts = [1, 2, 3].map(() => 0); \
-             const colors = [1, 2, 3].map((i) => look.colors[i].map((v) => v * 255)); \
-             for (let i = 0; i < d.length; i += 4) colors.forEach((rgb, k) => { \
-               if (Math.hypot(d[i] - rgb[0], d[i + 1] - rgb[1], d[i + 2] - rgb[2]) < 3) counts[k] += 1; }); \
-             return counts; })()",
-        );
-        (0..3)
-            .map(|i| counts[i].as_f64().expect("a number"))
-            .collect::<Vec<_>>()
-    };
-    let (flat, gl) = (pixels("2d"), pixels("webgl2"));
-    for (a, b) in flat.iter().zip(&gl) {
-        assert!(*a > 500.0 && (a - b).abs() < 0.2 * a, "{flat:?} {gl:?}");
-    }
-}
-
-#[test]
 fn a_world_of_the_server_is_shown_by_its_name() {
     let Some((daemon, browser)) = looking(1280, 900) else {
         return;
@@ -105,7 +70,7 @@ fn a_world_of_the_server_is_shown_by_its_name() {
     drop(daemon);
     let folder = concat!("worlds.folder=", env!("CARGO_MANIFEST_DIR"), "/docs/worlds");
     let daemon = Daemon::with_tables(no_tables(), &[folder, "server.first_byte_seconds=300"]);
-    browser.look(&daemon, "#at=0,0&span=60&renderer=2d");
+    browser.look(&daemon, "#at=0,0&span=60");
     browser.choose("#world", "forest");
     browser.until("location.hash.includes('world=forest') && strew.plane.look.layers.length === 3");
     let count = browser.ready();

@@ -81,7 +81,7 @@ fn malformed_links_show_what_they_can() {
     let strokes = "p(1:0,0/1,1)".repeat(6000);
     for hash in [
         "#%E0%A4%A&at=,&span=-1&tab=nope&dot=NaN&color=99&layers=1e9&renderer=no",
-        "#span=Infinity&at=NaN,NaN&how.alpha=7&works=nope",
+        "#span=Infinity&at=NaN,NaN&how.alpha=7&tab=works",
         "#at=0,0&span=30&paint=((((&2.paint=r(1:",
         &format!("#at=0,0&span=30&paint={strokes}"),
     ] {
@@ -107,8 +107,8 @@ fn malformed_links_show_what_they_can() {
         assert_eq!(browser.text("main h2"), "The API", "{hash}");
     }
     for hash in [
-        "#show=nothing&span=0&seed=1e99&at=1e300,0&profile=%2F..%2F",
-        "#%E0%A4%A&show=white&span=NaN",
+        "#show=tile&span=0&seed=1e99&at=1e300,0&profile=%2F..%2F",
+        "#%E0%A4%A&span=NaN",
     ] {
         open(
             &format!("/compare{hash}"),

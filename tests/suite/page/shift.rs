@@ -9,18 +9,12 @@ const SIZES: [(u32, u32); 2] = [(390, 844), (1280, 800)];
 const MOST: f64 = 0.05;
 
 /// Other contents of pages, by the hashes of their addresses.
-const MORE: [&str; 5] = [
-    "/#tab=gallery",
-    "/#tab=works",
-    "/#tab=works&how.mode=displacement&how.moved=1",
-    "/compare#show=strew,poisson,tile,jitter,halton,white",
-    "/docs#getNearest",
-];
+const MORE: [&str; 2] = ["/#tab=gallery", "/docs#getNearest"];
 
 /// The elements that each page shows last: its points, then its pictures or its times.
-const READY: &str = "(({ state, start, timed, gallery, works }) => location.pathname !== '/' ? state === 'ready' || timed \
+const READY: &str = "(({ state, start, measured, gallery }) => location.pathname !== '/' ? state === 'ready' || measured \
                      : location.hash.includes('tab=gallery') ? gallery \
-                     : state === 'ready' && (location.hash.includes('tab=works') ? works : start === 'ready'))\
+                     : state === 'ready' && start === 'ready')\
                      (document.documentElement.dataset)";
 
 /// The layout shift since the page was opened, with the elements that moved.
@@ -49,7 +43,7 @@ fn no_page_shifts_while_it_loads() {
     let paths = api["paths"].as_object().expect("paths");
     let pages = paths.iter().filter(|(_, what)| is_page(what));
     let pages: Vec<&str> = pages.map(|(path, _)| path.as_str()).chain(MORE).collect();
-    assert!(pages.len() > 8, "{pages:?}");
+    assert!(pages.len() > 7, "{pages:?}");
     let mut failed = vec![];
     for (width, height) in SIZES {
         for path in &pages {

@@ -21,12 +21,9 @@ fn three_kinds_of_points_are_shown_with_views_to_begin_with() {
     first_visit(&browser, &daemon);
     let counts = browser.value("strew.start.trio.map((one) => one.points.length / 2)");
     assert_eq!(counts, json!([196, 196, 196]));
-    let drawn = browser.value("strew.start.views.filter((view) => view.draw).length");
-    assert_eq!(drawn, 6);
-    assert_eq!(
-        browser.value("document.querySelector('#view-walk img').naturalWidth"),
-        480
-    );
+    let sizes =
+        "[...document.querySelectorAll('.view img')].every((one) => one.naturalWidth >= 360)";
+    browser.until(sizes);
     let before = browser.value("strew.start.trio[2].points[0]");
     browser.click("#kinds-again");
     browser.until(&format!("strew.start.trio[2].points[0] !== {before}"));
@@ -41,9 +38,10 @@ fn three_kinds_of_points_are_shown_with_views_to_begin_with() {
         browser.until(&format!("location.hash.includes('{part}')"));
         assert!(browser.ready() > 500, "{view}");
     }
-    // The tile has a page of its own.
-    let tile = browser.value("document.querySelector('#view-tile').getAttribute('href')");
-    assert_eq!(tile, "/tile");
+    // The tile is something to take away.
+    browser.click("#tab-start");
+    browser.click("#view-tile");
+    browser.until("location.hash.includes('take=tile') && document.documentElement.dataset.weighed === '5041'");
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
@@ -69,4 +67,51 @@ fn the_open_plane_is_one_click_away_and_level_of_detail_shows_each_level() {
         browser.value("strew.plane.sheets.front.sizes.every((size, i, all) => i === 0 || size > 1.5 * all[i - 1])"),
         true
     );
+}
+
+/// What a card shows of the view that is open, as JPEG: the plane and its spectrum, or copies of a tile.
+const PICTURE: &str = "await (async () => { \
+    const small = Object.assign(document.createElement('canvas'), { width: 360, height: 240 }); \
+    const context = small.getContext('2d'); \
+    context.imageSmoothingQuality = 'high'; \
+    context.scale(0.75, 0.75); \
+    const { state } = strew.session; \
+    if (state.take) context.drawImage(document.querySelector('#repeat-picture'), 0, 0); \
+    else context.drawImage(document.querySelector('#plane'), 0, 0); \
+    if (state.tab === 'understand') context.drawImage(document.querySelector('#spectrum'), 160, 0, 320, 320); \
+    const picture = await new Promise((done) => small.toBlob(done, 'image/jpeg', 0.5)); \
+    return [...new Uint8Array(await picture.arrayBuffer())]; })()";
+
+/// Writes the pictures of the cards: `just pictures`.
+#[test]
+fn pictures() {
+    if std::env::var_os("STREW_TEST_PICTURES").is_none() {
+        eprintln!("skipped: STREW_TEST_PICTURES writes the pictures of the cards");
+        return;
+    }
+    let (daemon, browser) = looking(1280, 800).expect("a browser");
+    browser.look(&daemon, "");
+    let links =
+        browser.value("[...document.querySelectorAll('.view')].map(({ id, hash }) => [id, hash])");
+    for link in links.as_array().expect("a list") {
+        let [id, hash] = [0, 1].map(|i| link[i].as_str().expect("text"));
+        if hash.is_empty() {
+            continue;
+        }
+        // Dots of the portrait would be finer than the pixels of its picture.
+        let hash = hash.replace("amount=0.42", "amount=0.8");
+        browser.look(&daemon, &hash);
+        browser.value(
+            "(Object.assign(document.querySelector('#stage').style, \
+                { right: 'auto', bottom: 'auto', width: '480px', height: '320px' }), 0)",
+        );
+        browser.until(
+            "strew.plane.view.width === 480 && document.documentElement.dataset.state === 'ready'",
+        );
+        browser.until("!location.hash.includes('tab=') || ['measured', 'weighed'].some((one) => document.documentElement.dataset[one])");
+        let bytes: Vec<u8> = serde_json::from_value(browser.value(PICTURE)).expect("a picture");
+        let name = id.trim_start_matches("view-");
+        let path = format!("{}/page/files/start/{name}.jpg", env!("CARGO_MANIFEST_DIR"));
+        std::fs::write(path, bytes).expect("a file");
+    }
 }

@@ -47,42 +47,40 @@ fn a_jump_to_1e12_is_as_sharp_as_the_origin_and_back_returns() {
     let Some((daemon, browser)) = looking(1280, 800) else {
         return;
     };
-    for renderer in ["&renderer=webgl2", "&renderer=2d"] {
-        browser.look(&daemon, &format!("#at=0,0&span=8{renderer}"));
-        browser.click("#jump-at");
-        let keys: Vec<String> = "1e12, -1e12".chars().map(String::from).collect();
-        browser.keys(&keys.iter().map(String::as_str).collect::<Vec<_>>());
-        browser.click("#jump button");
-        browser.until("strew.plane.view.x.i === 1e12");
-        let count = browser.ready();
-        let far = browser.in_view();
-        assert_eq!(far.len() as u64, count);
-        // Points of seed 1 are at least 0.57 apart. Here doubles are 1e-4 apart, the page's own
-        // coordinates 1e-7. The server takes the corner of a chunk as a double, so its points agree
-        // within 2e-4.
-        for (i, a) in far.iter().enumerate() {
-            for b in &far[..i] {
-                assert!((a[0] - b[0]).hypot(a[1] - b[1]) > 0.57, "{a:?} {b:?}");
-            }
+    browser.look(&daemon, "#at=0,0&span=8");
+    browser.click("#jump-at");
+    let keys: Vec<String> = "1e12, -1e12".chars().map(String::from).collect();
+    browser.keys(&keys.iter().map(String::as_str).collect::<Vec<_>>());
+    browser.click("#jump button");
+    browser.until("strew.plane.view.x.i === 1e12");
+    let count = browser.ready();
+    let far = browser.in_view();
+    assert_eq!(far.len() as u64, count);
+    // Points of seed 1 are at least 0.57 apart. Here doubles are 1e-4 apart, the page's own
+    // coordinates 1e-7. The server takes the corner of a chunk as a double, so its points agree
+    // within 2e-4.
+    for (i, a) in far.iter().enumerate() {
+        for b in &far[..i] {
+            assert!((a[0] - b[0]).hypot(a[1] - b[1]) > 0.57, "{a:?} {b:?}");
         }
-        let fine = |v: f64| ((v * 8192.0).fract() != 0.0) as usize;
-        let digits: usize = far.iter().map(|p| fine(p[0]) + fine(p[1])).sum();
-        assert!(digits > far.len(), "coordinates are rounded: {digits}");
-        let exact = chunk_points(&daemon);
-        assert!(
-            exact
-                .iter()
-                .filter(|p| p[0].abs() < 3.9 && p[1].abs() < 3.9)
-                .all(|p| {
-                    far.iter()
-                        .any(|q| (p[0] - q[0]).abs() < 2e-4 && (p[1] - q[1]).abs() < 2e-4)
-                }),
-            "{exact:?} {far:?}"
-        );
-        browser.value("history.back()");
-        browser.until("strew.plane.view.x.i === 0");
-        assert!(browser.ready() > 0);
     }
+    let fine = |v: f64| ((v * 8192.0).fract() != 0.0) as usize;
+    let digits: usize = far.iter().map(|p| fine(p[0]) + fine(p[1])).sum();
+    assert!(digits > far.len(), "coordinates are rounded: {digits}");
+    let exact = chunk_points(&daemon);
+    assert!(
+        exact
+            .iter()
+            .filter(|p| p[0].abs() < 3.9 && p[1].abs() < 3.9)
+            .all(|p| {
+                far.iter()
+                    .any(|q| (p[0] - q[0]).abs() < 2e-4 && (p[1] - q[1]).abs() < 2e-4)
+            }),
+        "{exact:?} {far:?}"
+    );
+    browser.value("history.back()");
+    browser.until("strew.plane.view.x.i === 0");
+    assert!(browser.ready() > 0);
 }
 
 /// The server's points around (1e12, -1e12), relative to there: the four chunks of size 8 that
@@ -107,37 +105,6 @@ fn chunk_points(daemon: &Daemon) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn webgl2_and_the_plain_canvas_show_the_same_points() {
-    let Some((daemon, browser)) = looking(1000, 700) else {
-        return;
-    };
-    if browser.lacks_webgl2() {
-        return;
-    }
-    let hash = "#at=-77,4.5&span=25&seed=9&variant=1&angle=1&layers=2&2.amount=3&2.scale=1";
-    browser.look(&daemon, &format!("{hash}&renderer=webgl2"));
-    assert_eq!(
-        browser.value("document.documentElement.dataset.renderer"),
-        "webgl2"
-    );
-    let (count, mut shown) = (browser.ready(), browser.in_view());
-    browser.look(&daemon, &format!("{hash}&renderer=2d"));
-    assert_eq!(
-        browser.value("document.documentElement.dataset.renderer"),
-        "2d"
-    );
-    assert_eq!(browser.ready(), count);
-    let mut plain = browser.in_view();
-    for list in [&mut shown, &mut plain] {
-        list.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
-    }
-    assert_eq!(plain, shown);
-    let colors = "(() => { const c = strew.plane.canvas; const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; return new Set(new Uint32Array(d.buffer)).size; })()";
-    assert!(browser.value(colors).as_u64().expect("a number") > 20);
-    assert_eq!(browser.errors(), Vec::<String>::new());
-}
-
-#[test]
 fn beyond_a_million_points_the_page_thins_and_says_so() {
     let Some((daemon, browser)) = looking(1280, 800) else {
         return;
@@ -159,7 +126,7 @@ fn beyond_a_64th_of_the_points_density_is_gray() {
         return;
     };
     // The least share at which points are drawn has no rows; see docs/quality.md.
-    browser.look(&daemon, "#at=0,0&span=7300&renderer=2d");
+    browser.look(&daemon, "#at=0,0&span=7300");
     assert_eq!(browser.value("strew.plane.keep"), 1.0 / 64.0);
     let number = |value: Value| value.as_f64().expect("a number");
     let mean = "(() => { const c = strew.plane.canvas; \
@@ -175,7 +142,7 @@ fn beyond_a_64th_of_the_points_density_is_gray() {
     assert!((0.9..1.0).contains(&number(browser.value("strew.plane.gray"))));
     assert_eq!([gray(1000), gray(2828), gray(8001)], [0.0, 0.0, 1.0]);
     assert!((0.45..0.55).contains(&gray(4757)));
-    browser.look(&daemon, "#at=0,0&span=20000&renderer=2d");
+    browser.look(&daemon, "#at=0,0&span=20000");
     assert!(browser.text("#tally").contains("gray shows how dense"));
     let beyond = number(browser.value(mean));
     assert!((last - beyond).abs() < 4.0, "{last} {beyond}");
@@ -262,32 +229,27 @@ fn frames_of_a_drag_over_100_000_points() {
     let Some((daemon, browser)) = looking(1280, 800) else {
         return;
     };
-    for renderer in ["&renderer=webgl2", "&renderer=2d"] {
-        browser.look(&daemon, &format!("#at=0,0&span=293{renderer}"));
-        let count = browser.ready();
-        let script = "new Promise((resolve) => { const costs = [], gaps = []; let last = 0, n = 0; \
-            const step = (now) => { if (last) gaps.push(now - last); last = now; n += 1; \
-            strew.plane.drag(n % 240 < 120 ? -7 : 7, n % 160 < 80 ? 4 : -4); \
-            strew.plane.paint(true); costs.push(strew.plane.cost); \
-            if (n < 480) requestAnimationFrame(step); else resolve([costs, gaps]); }; \
-            requestAnimationFrame(step); })";
-        let measured = browser.value(script);
-        let sorted = |i: usize| {
-            let list = measured[i].as_array().expect("a list").iter();
-            let mut list: Vec<f64> = list.filter_map(Value::as_f64).collect();
-            list.sort_by(f64::total_cmp);
-            let at = |share: f64| list[((list.len() - 1) as f64 * share) as usize];
-            (at(0.5), at(0.95), at(1.0))
-        };
-        let name = browser.value("document.documentElement.dataset.renderer");
-        let ((median, p95, most), gaps) = (sorted(0), sorted(1));
-        eprintln!(
-            "{count} points in view, {name}: a frame takes {median:.1} ms (median), {p95:.1} ms \
-             (95 %), {most:.1} ms (most); frames are {:.1} ms apart, {:.1} ms (95 %)",
-            gaps.0, gaps.1
-        );
-        // Without graphics hardware the page chooses the plain canvas by itself.
-        let is_slow = name != "2d";
-        assert!(is_slow || median < 16.0 && p95 < 16.0, "{median} {p95}");
-    }
+    browser.look(&daemon, "#at=0,0&span=293");
+    let count = browser.ready();
+    let script = "new Promise((resolve) => { const costs = [], gaps = []; let last = 0, n = 0; \
+        const step = (now) => { if (last) gaps.push(now - last); last = now; n += 1; \
+        strew.plane.drag(n % 240 < 120 ? -7 : 7, n % 160 < 80 ? 4 : -4); \
+        strew.plane.paint(true); costs.push(strew.plane.cost); \
+        if (n < 480) requestAnimationFrame(step); else resolve([costs, gaps]); }; \
+        requestAnimationFrame(step); })";
+    let measured = browser.value(script);
+    let sorted = |i: usize| {
+        let list = measured[i].as_array().expect("a list").iter();
+        let mut list: Vec<f64> = list.filter_map(Value::as_f64).collect();
+        list.sort_by(f64::total_cmp);
+        let at = |share: f64| list[((list.len() - 1) as f64 * share) as usize];
+        (at(0.5), at(0.95), at(1.0))
+    };
+    let ((median, p95, most), gaps) = (sorted(0), sorted(1));
+    eprintln!(
+        "{count} points in view: a frame takes {median:.1} ms (median), {p95:.1} ms \
+         (95 %), {most:.1} ms (most); frames are {:.1} ms apart, {:.1} ms (95 %)",
+        gaps.0, gaps.1
+    );
+    assert!(median < 16.0 && p95 < 16.0, "{median} {p95}");
 }

@@ -1,4 +1,4 @@
-//! The path of a first visit: understand, pick the forest, change the density, paint a road, take away a curl line;
+//! The path of a first visit: pick the forest, change the density, paint a road, take away a curl line;
 //! with keys alone, and with a finger alone.
 
 use super::{
@@ -8,7 +8,7 @@ use super::{
 };
 use crate::support::browser::{
     Browser,
-    key::{ENTER, ESCAPE, LEFT, PAGE_DOWN, RIGHT, TAB},
+    key::{ENTER, ESCAPE, LEFT, PAGE_DOWN, RIGHT},
     looking,
 };
 
@@ -47,19 +47,10 @@ fn a_first_visit_with_keys_alone() {
     };
     first_visit(&browser, &daemon);
     browser.allow_clipboard();
-    // How it works is the last tab, so it is to the left of the first.
+    // Take is the last tab, so it is to the left of the first.
     browser.tab_to("tab-start");
     browser.keys(&[LEFT]);
-    browser.until("document.documentElement.dataset.works?.startsWith('index')");
-    browser.keys(&[TAB]);
-    assert_eq!(browser.value("document.activeElement.id"), "works");
-    browser.tab_to("works-slider");
-    let words = browser.text("#works-facts");
-    browser.keys(&[RIGHT, RIGHT]);
-    browser.until(&format!(
-        "document.querySelector('#works-facts').textContent !== {words:?}"
-    ));
-    browser.tab_to("tab-works");
+    browser.until("document.documentElement.dataset.weighed");
     browser.keys(&[RIGHT]);
     browser.tab_to("view-forest");
     browser.keys(&[ENTER]);
@@ -84,7 +75,7 @@ fn a_first_visit_with_keys_alone() {
     browser.keys(&[ESCAPE]);
     browser.until("document.activeElement.id === 'paint-open'");
     browser.tab_to("tab-choose");
-    browser.keys(&[RIGHT, RIGHT]);
+    browser.keys(&[RIGHT]);
     browser.until("document.documentElement.dataset.weighed");
     browser.tab_to("copy");
     browser.keys(&[ENTER]);
@@ -100,15 +91,6 @@ fn a_first_visit_with_a_finger() {
     browser.use_touch();
     first_visit(&browser, &daemon);
     browser.allow_clipboard();
-    browser.touch("#tab-works");
-    browser.until("document.documentElement.dataset.works?.startsWith('index')");
-    let words = browser.text("#works-facts");
-    let [x, y] = browser.middle("#works-plane");
-    browser.tap([x + 60, y - 70]);
-    browser.until(&format!(
-        "document.querySelector('#works-facts').textContent !== {words:?}"
-    ));
-    browser.touch("#tab-start");
     browser.touch("#view-forest");
     browser.until("location.hash.includes('field=forest')");
     let before = browser.ready();

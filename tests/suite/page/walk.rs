@@ -236,7 +236,7 @@ const PICTURES: &str = "await (async () => { const { scene, walker } = strew; co
       const picture = await new Promise((done) => small.toBlob(done, 'image/jpeg', quality)); \
       return [...new Uint8Array(await picture.arrayBuffer())]; })); })()";
 
-/// Writes the pictures of the walk that previews of links and cards show: `just forest`.
+/// Writes the pictures of the walk that previews of links and cards show: `just pictures`.
 #[test]
 fn pictures() {
     if std::env::var_os("STREW_TEST_PICTURES").is_none() {
@@ -247,7 +247,10 @@ fn pictures() {
     browser.go(&daemon.url("/walk#at=-126,0&yaw=16&pitch=-5&fly=0&quality=3"));
     browser.until("globalThis.strew?.look");
     let pictures = browser.value(PICTURES);
-    for (i, name) in ["walk/preview.jpg", "forest.jpg"].into_iter().enumerate() {
+    for (i, name) in ["walk/preview.jpg", "start/walk.jpg"]
+        .into_iter()
+        .enumerate()
+    {
         let bytes: Vec<u8> = serde_json::from_value(pictures[i].clone()).expect("a picture");
         let path = format!("{}/page/files/{name}", env!("CARGO_MANIFEST_DIR"));
         std::fs::write(path, bytes).expect("a file");

@@ -44,7 +44,7 @@ fn every_answer_has_security_headers() {
 fn pages_name_a_picture_for_those_who_pass_on_a_link() {
     let public = "https://points.example";
     let known = Daemon::start(&["http.public_url=https://points.example"]);
-    for path in ["/", "/how", "/compare", "/tile", "/walk", "/space"] {
+    for path in ["/", "/how", "/compare", "/walk", "/space"] {
         let page = known.get(path);
         let text = page.text();
         assert!(text.contains("summary_large_image"), "{path}");
@@ -78,7 +78,7 @@ fn pages_name_a_picture_for_those_who_pass_on_a_link() {
 #[test]
 fn the_small_picture_of_the_forest_is_small() {
     let daemon = Daemon::start(&[]);
-    let image = daemon.get("/page/forest.jpg");
+    let image = daemon.get("/page/start/walk.jpg");
     assert_eq!(image.header("content-type"), "image/jpeg");
     assert_eq!(size_of_jpeg(&image.body), [480, 252]);
     assert!(image.body.len() <= 15_000, "{}", image.body.len());

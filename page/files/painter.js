@@ -1,9 +1,9 @@
-// Points by a plain canvas, where there is no WebGL2 or nothing but a processor to do it: the same
-// sheets, the same marks. Sheets of mere dots are set pixel by pixel.
+// Points on a plain canvas. Sheets of mere dots are set pixel by pixel.
 
 import { contextOf } from "./dom.js";
 import { masksOf, packed, setDots } from "./dots.js";
 import { ARROW, SHAPES, isMarked, slotsOf } from "./marks.js";
+import { cssOf } from "./theme.js";
 
 const TRIANGLE = [[0.95, 0], [-0.5, 0.83], [-0.5, -0.83]];
 const SQUARE = [[0.62, 0.62], [-0.62, 0.62], [-0.62, -0.62], [0.62, -0.62]];
@@ -44,21 +44,11 @@ function open(c, corners) {
   polygon(c, corners.map(([x, y]) => [x * HOLE, y * HOLE]).reverse());
 }
 
-/** A painter. */
-export function plainPainter(canvas) {
-  const context = contextOf(canvas, { alpha: false });
-  return context ? new PlainPainter(context, canvas) : null;
-}
-
-function css([r, g, b]) {
-  return `rgb(${[r, g, b].map((v) => Math.round(v * 255)).join(" ")})`;
-}
-
-class PlainPainter {
-  constructor(context, canvas) {
-    this.context = context;
+export class Painter {
+  /** @param {HTMLCanvasElement} canvas */
+  constructor(canvas) {
+    this.context = contextOf(canvas, { alpha: false });
     this.canvas = canvas;
-    this.name = "2d";
     /** Points painted at once between looks at the clock. */
     this.slice = 4000;
     this.budget = 250_000;
@@ -85,7 +75,7 @@ class PlainPainter {
     if (sheet.isDots) sheet.pixels.fill(packed(ground));
     else {
       sheet.context.setTransform(1, 0, 0, 1, 0, 0);
-      sheet.context.fillStyle = css(ground);
+      sheet.context.fillStyle = cssOf(ground);
       sheet.context.fillRect(0, 0, sheet.width, sheet.height);
     }
   }
@@ -112,10 +102,10 @@ class PlainPainter {
     const { context } = sheet;
     const { data, stride } = chunk;
     const slots = slotsOf(layer, chunk.columns);
-    context.fillStyle = css(color);
+    context.fillStyle = cssOf(color);
     for (let k = first; k < first + count; k += 1) {
       const [x, y] = [left + data[k * stride] * zoom, top - data[k * stride + 1] * zoom];
-      if (tones) context.fillStyle = css(tones[data[k * stride + slots.variant]] ?? color);
+      if (tones) context.fillStyle = cssOf(tones[data[k * stride + slots.variant]] ?? color);
       this.mark(context, layer, [x, y], size, slots, data.subarray(k * stride, (k + 1) * stride));
     }
     context.setTransform(1, 0, 0, 1, 0, 0);
@@ -143,7 +133,7 @@ class PlainPainter {
   begin(ground) {
     const { context, canvas } = this;
     context.setTransform(1, 0, 0, 1, 0, 0);
-    context.fillStyle = css(ground);
+    context.fillStyle = cssOf(ground);
     context.fillRect(0, 0, canvas.width, canvas.height);
   }
 
