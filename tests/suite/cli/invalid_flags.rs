@@ -19,7 +19,7 @@ sample --spacing 1 | region is missing | --chunk | --region
 sample --bbox 0,0,1,1 | amount is missing | --density | --count
 sample --bbox 0,0,1 --spacing x --keep 3 | 3 errors | --bbox 0,0,1 | --spacing x | --keep 3 | 1e-6
 sample --bbox 0,0,1,1 --chunk 1/1/1 --spacing 1 | --bbox and --chunk
-sample --chunk 64/1 --spacing 1 | --chunk 64/1 | SIZE/CX/CY
+sample --chunk 64/1 --spacing 1 | --chunk 64/1 | not a chunk | SIZE/CX/CY
 sample --chunk 0/1/1 --spacing 1 | --chunk 0 | above 0
 sample --region /nowhere --spacing 1 | --region | /nowhere | No such file
 sample --query /nowhere | --query | /nowhere | No such file
