@@ -8,7 +8,7 @@ use super::files;
 
 /// A part, the endings of its files, and the most lines that it may have.
 const CEILINGS: &[(&str, &[&str], usize)] = &[
-    ("src", &["rs"], 21_599),
+    ("src", &["rs"], 21_596),
     ("crates/catalog", &["rs"], 5040),
     ("crates/config", &["rs"], 1560),
     ("crates/core", &["rs"], 50_924),
@@ -16,13 +16,13 @@ const CEILINGS: &[(&str, &[&str], usize)] = &[
     ("crates/error", &["rs"], 1073),
     ("crates/forge", &["rs"], 17_791),
     ("crates/pages", &["rs"], 439),
-    ("crates/plan", &["rs"], 4326),
+    ("crates/plan", &["rs"], 4325),
     ("crates/proto", &["rs"], 337),
-    ("crates/query", &["rs"], 8795),
+    ("crates/query", &["rs"], 8787),
     ("crates/raster", &["rs"], 2976),
     ("crates/service", &["rs"], 5975),
     ("crates/testkit", &["rs"], 1197),
-    ("tests", &["rs", "py"], 29_503),
+    ("tests", &["rs", "py"], 29_493),
     ("engines", &["rs", "py", "gd", "cs", "c"], 3894),
     ("fuzz", &["rs"], 747),
     ("benches", &["rs", "py"], 2949),
