@@ -136,8 +136,9 @@ struct Other<S, const D: usize> {
     searches: u32,
     numbers: BTreeMap<[i64; D], usize>,
     tiles: Vec<Tile<D>>,
-    /// The place and the number of the last tile that was looked at.
+    /// The place and the number of the last tile that was looked at, and its box.
     last: ([i64; D], usize),
+    within: Region<D>,
     held: usize,
 }
 
@@ -227,8 +228,10 @@ impl Edge {
         }
         // More than rounding takes.
         let room = at.map(|v| distance * (1.0 + 1e-9) + v.abs() * 1e-15);
-        let ends = [from_fn(|i| at[i] - room[i]), from_fn(|i| at[i] + room[i])];
-        let [first, last] = other.grid.places(at, room);
+        let [first, last] = match other.is_in_last(at, room) {
+            true => [other.last.0; 2],
+            false => other.grid.places(at, room),
+        };
         let mut place = first;
         loop {
             let tile = other.number(place);
@@ -244,7 +247,7 @@ impl Edge {
             let (edges, tile) = (&other.edges, &mut other.tiles[tile]);
             if let Tile::Known(points) = tile
                 && points.may_have(at)
-                && points.has_near(at, ends, distance, |point| {
+                && points.has_near((at, room), distance, |point| {
                     !edges.iter().any(|edge| edge.is_near(earlier, point, stop))
                 })
             {
@@ -295,8 +298,16 @@ impl<S: OtherSet<D>, const D: usize> Other<S, D> {
             numbers: BTreeMap::new(),
             tiles: Vec::new(),
             last: ([i64::MIN; D], 0),
+            within: Region::NOWHERE,
             held: 0,
         }
+    }
+
+    /// Whether everything up to `room` from a place lies in the last tile.
+    #[inline(always)]
+    fn is_in_last(&self, at: [f64; D], room: [f64; D]) -> bool {
+        let (min, max) = (self.within.min(), self.within.max());
+        (0..D).all(|axis| min[axis] <= at[axis] - room[axis] && at[axis] + room[axis] < max[axis])
     }
 
     /// The number of a tile.
@@ -304,6 +315,7 @@ impl<S: OtherSet<D>, const D: usize> Other<S, D> {
     fn number(&mut self, place: [i64; D]) -> usize {
         if self.last.0 != place {
             self.last = (place, self.find(place));
+            self.within = self.grid.region(place);
         }
         self.last.1
     }

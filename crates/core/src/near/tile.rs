@@ -193,17 +193,16 @@ impl<const D: usize> Points<D> {
         !self.all.is_empty() && (D != 2 || self.is_near[self.fine.of(at)])
     }
 
-    /// Whether a point that stays is nearer to a place than a distance; all such points lie between two corners.
+    /// Whether a point that stays is nearer to a place than a distance; all such points lie up to `room` from it along each axis.
     #[inline]
     pub(super) fn has_near(
         &mut self,
-        at: [f64; D],
-        ends: [[f64; D]; 2],
+        (at, room): ([f64; D], [f64; D]),
         distance: f64,
         mut stays: impl FnMut([f64; D]) -> bool,
     ) -> bool {
-        let [first, last]: [[usize; D]; 2] =
-            ends.map(|p| from_fn(|axis| self.cells.line(axis, p[axis])));
+        let [first, last]: [[usize; D]; 2] = [-1.0, 1.0]
+            .map(|sign| from_fn(|axis| self.cells.line(axis, at[axis] + sign * room[axis])));
         let mut row = first;
         loop {
             let from = self.cells.at(row);
