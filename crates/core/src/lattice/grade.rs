@@ -46,11 +46,7 @@ impl<const D: usize> Grade<D> {
 
     /// Whether it has the same shares for the same reason.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
-        let is_field = match (&self.field, &other.field) {
-            (Some(own), Some(other)) => Arc::ptr_eq(own, other),
-            (own, other) => own.is_none() && other.is_none(),
-        };
-        is_field && self.factor == other.factor
+        alike(&self.field, &other.field, Arc::ptr_eq) && self.factor == other.factor
     }
 
     /// The field, if there is one.
@@ -103,4 +99,11 @@ impl<const D: usize> Grade<D> {
             0.0
         }
     }
+}
+
+/// Whether both are there and the same, or neither is.
+pub(crate) fn alike<T>(a: &Option<T>, b: &Option<T>, same: impl Fn(&T, &T) -> bool) -> bool {
+    a.as_ref()
+        .zip(b.as_ref())
+        .map_or(a.is_none() && b.is_none(), |(a, b)| same(a, b))
 }

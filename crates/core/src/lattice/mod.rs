@@ -26,7 +26,7 @@ pub(crate) mod seed;
 mod span;
 mod world;
 
-pub(crate) use grade::Grade;
+pub(crate) use grade::{Grade, alike};
 pub use kinds::VaryingKinds;
 pub(super) use kinds::{OneKind, check_kind};
 pub(super) use lines::{Columns, PrefixCounts, lines_of_class, places};

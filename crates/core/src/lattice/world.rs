@@ -6,7 +6,7 @@ use core::ops::Range;
 use super::{
     Keep, OneKind, Placement, Point, PointId, Settle,
     bounds::world,
-    grade::Grade,
+    grade::{Grade, alike},
     kinds::{Chosen, KindRow, Varied},
     point::{kind, rank},
 };
@@ -344,14 +344,8 @@ impl Lattice {
 
     /// Whether another lattice is known to have the same points.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
-        let is_graded = match (&self.grade, &other.grade) {
-            (Some(own), Some(other)) => own.is_same(other),
-            (own, other) => own.is_none() && other.is_none(),
-        };
-        let is_of_kind = match (&self.kinds, &other.kinds) {
-            (Some(own), Some(other)) => core::ptr::eq(&**own, &**other),
-            (own, other) => own.is_none() && other.is_none(),
-        };
+        let is_graded = alike(&self.grade, &other.grade, Grade::is_same);
+        let is_of_kind = alike(&self.kinds, &other.kinds, |a, b| core::ptr::eq(&**a, &**b));
         let is_varied = self.is_varied() || other.is_varied();
         let is_placed = self.placement == other.placement && self.table == other.table;
         is_graded && is_of_kind && is_placed && !is_varied

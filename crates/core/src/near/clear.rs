@@ -23,7 +23,7 @@
 //!   not show which way decided.
 //! - Cells and tiles round, but monotonically: the cell of a coordinate never falls where the coordinate grows. So those
 //!   between x − `room` and x + `room` hold every point between, however each of them was rounded.
-//! - A set holds at most [`most`] points. Beyond that all its tiles are dropped and begin anew.
+//! - The tiles of a set hold about as much as [`most`] points. Beyond that all of them are dropped and begin anew.
 
 use alloc::{collections::BTreeMap, vec::Vec};
 use core::{array::from_fn, fmt::Debug};
@@ -40,11 +40,11 @@ const EMPTY: usize = 16;
 
 /// The most mean spacings of another set that may be kept. Hardly a place is farther than one from the next point, so a
 /// larger distance would leave nothing.
-const MOST_SPACINGS: f64 = 16.0;
+pub(crate) const MOST_SPACINGS: f64 = 16.0;
 
-/// The most points that are kept of a set; beyond that its tiles are dropped and made again.
+/// The most points that the tiles of a set hold, or other memory of their size: about 4 MB in the plane, 12 MB in space.
 const fn most<const D: usize>() -> usize {
-    1 << (13 + 2 * D)
+    1 << (16 + D)
 }
 
 /// A set that others keep clear of.
@@ -87,10 +87,9 @@ impl<S> ClearOf<S> {
     where
         S: OtherSet<D>,
     {
-        if distance > 0.0 && distance <= set.spacing() * MOST_SPACINGS {
-            Ok(Self { set, distance })
-        } else {
-            Err(refused(distance, set.spacing()))
+        match distance > 0.0 && distance <= set.spacing() * MOST_SPACINGS {
+            true => Ok(Self { set, distance }),
+            false => Err(refused(distance, set.spacing())),
         }
     }
 }
@@ -127,9 +126,9 @@ struct Edge {
 struct Other<S, const D: usize> {
     set: S,
     edges: Vec<Edge>,
-    /// The greatest distance that is kept, and the box in which most points matter.
+    /// The greatest distance that is kept, and the box in which most points matter, if one is known.
     distance: f64,
-    around: Region<D>,
+    around: Option<Region<D>>,
     limit: f64,
     grid: Grid<D>,
     /// The searches near a tile after which it is made.
@@ -150,16 +149,17 @@ enum Tile<const D: usize> {
 }
 
 impl<S: OtherSet<D>, const D: usize> Clear<S, D> {
-    /// Tests of some distances, which end with a flag. Most of the places are in a box, which decides the cost alone.
-    pub(crate) fn new(clear: &[ClearOf<S>], within: &Region<D>, stop: Stop) -> Self {
+    /// Tests of some distances, which end with a flag. If most of the places are known to be in a box, they cost less.
+    pub(crate) fn new(clear: &[ClearOf<S>], within: Option<&Region<D>>, stop: Stop) -> Self {
         let mut others = Vec::new();
         let own = list(clear, &mut others);
         widen(&own, within, &mut others);
         for i in (0..others.len()).rev() {
             let (earlier, rest) = others.split_at_mut(i);
             let other = &mut rest[0];
-            widen(&other.edges, &other.around, earlier);
-            other.grid = Grid::new(&other.around, other.set.sides());
+            widen(&other.edges, other.around.as_ref(), earlier);
+            let around = other.around.as_ref().filter(|around| !around.is_empty());
+            other.grid = Grid::new(around, other.set.sides());
             other.searches = other.set.searches(other.grid.sides, other.distance);
         }
         Self { own, others, stop }
@@ -199,16 +199,22 @@ fn list<S: OtherSet<D>, const D: usize>(
 }
 
 /// Adds the surroundings of places in a box, from which edges lead, to the boxes of the sets there.
-fn widen<S, const D: usize>(edges: &[Edge], within: &Region<D>, others: &mut [Other<S, D>]) {
+fn widen<S, const D: usize>(
+    edges: &[Edge],
+    within: Option<&Region<D>>,
+    others: &mut [Other<S, D>],
+) {
     for Edge { other, distance } in edges {
-        let (min, max) = (within.min(), within.max());
-        let around = Region::between(min.map(|v| v - distance), max.map(|v| v + distance));
         let other = &mut others[*other];
-        other.around = match other.distance > 0.0 {
-            true => other.around.around(&around),
-            false => around,
-        };
         other.distance = distance.max(other.distance);
+        if let Some(within) = within {
+            // Beyond the limit no tile is looked at.
+            let end = |v: f64| v.clamp(-other.limit, other.limit);
+            let min = within.min().map(|v| end(v - distance));
+            let around = Region::between(min, within.max().map(|v| end(v + distance)));
+            let all = other.around.map(|all| all.around(&around));
+            other.around = Some(all.unwrap_or(around));
+        }
     }
 }
 
@@ -238,7 +244,7 @@ impl Edge {
             if let Tile::Unknown(tested) = &mut other.tiles[tile] {
                 *tested += 1;
                 if *tested < other.searches {
-                    return self.finds(others, at, stop);
+                    return self.finds(others, (at, room), stop);
                 }
                 if !other.make(place, stop) {
                     return false;
@@ -268,12 +274,11 @@ impl Edge {
     fn finds<S: OtherSet<D>, const D: usize>(
         &self,
         others: &mut [Other<S, D>],
-        at: [f64; D],
+        (at, room): ([f64; D], [f64; D]),
         stop: &Stop,
     ) -> bool {
         let (earlier, rest) = others.split_at_mut(self.other);
         let Other { set, edges, .. } = &mut rest[0];
-        let room = at.map(|v| self.distance * (1.0 + 1e-9) + v.abs() * 1e-15);
         let around = Region::between(from_fn(|i| at[i] - room[i]), from_fn(|i| at[i] + room[i]));
         let mut found = false;
         set.visit(&around, stop, |point| {
@@ -289,8 +294,8 @@ impl<S: OtherSet<D>, const D: usize> Other<S, D> {
     fn new(set: S, edges: Vec<Edge>) -> Self {
         Self {
             distance: 0.0,
-            around: Region::NOWHERE,
-            grid: Grid::new(&Region::NOWHERE, set.sides()),
+            around: None,
+            grid: Grid::new(None, set.sides()),
             searches: 0,
             limit: set.limit(),
             set,
@@ -298,7 +303,7 @@ impl<S: OtherSet<D>, const D: usize> Other<S, D> {
             numbers: BTreeMap::new(),
             tiles: Vec::new(),
             last: ([i64::MIN; D], 0),
-            within: Region::NOWHERE,
+            within: Region::between([0.0; D], [0.0; D]),
             held: 0,
         }
     }
@@ -344,9 +349,10 @@ impl<S: OtherSet<D>, const D: usize> Other<S, D> {
             all.push(point);
             true
         });
-        self.held += all.len();
         let by = (self.set.spacing_kept(), self.distance);
-        self.tiles[self.last.1] = Tile::Known(Points::new(&region, by, &all));
+        let points = Points::new(&region, by, &all);
+        self.held += points.bytes() / size_of::<[f64; D]>();
+        self.tiles[self.last.1] = Tile::Known(points);
         !stop.is_raised()
     }
 }
@@ -418,6 +424,7 @@ mod tests {
             all in proptest::collection::vec(proptest::collection::vec([0.0..6.0f64, 0.0..6.0f64], 0..60), 3),
             tested in proptest::collection::vec([-1.0..7.0f64, -1.0..7.0f64], 1..60),
             distances in [1e-3..1.2f64, 1e-3..1.2f64, 1e-3..1.2f64, 1e-3..1.2f64], searches in 0..6u32, size in 1.0..6.0f64,
+            is_known in any::<bool>(), far in prop_oneof![Just(0.0), Just(1e6), Just(1e12)],
             at in prop_oneof![Just([0.0; 2]), [-1e3..1e3f64, -1e3..1e3f64], [-1e13..1e13f64, -1e13..1e13f64]],
         ) {
             let moved = |p: &[f64; 2]| [0, 1].map(|i| at[i] + p[i]);
@@ -432,8 +439,8 @@ mod tests {
             let second = given(1, &[(&first, a)]);
             let third = given(2, &[(&second, b), (&first, c)]);
             let own = [ClearOf::new(third, d).expect("near"), ClearOf::new(first, a).expect("near")];
-            let within = Region::between(moved(&[1.0, 2.0]), moved(&[size, 5.0]));
-            let mut clear = Clear::new(&own, &within, Stop::default());
+            let within = Region::between(moved(&[1.0 - far, 2.0 - far]), moved(&[size, 5.0]));
+            let mut clear = Clear::new(&own, is_known.then_some(&within), Stop::default());
             for place in tested.iter().map(moved) {
                 prop_assert_eq!(clear.permits(place), is_clear(&own, place));
             }
@@ -451,7 +458,7 @@ mod tests {
         };
         let own = [ClearOf::new(set, 0.01).expect("near")];
         let within = Region::between([0.0; 2], [0.3; 2]);
-        let mut clear = Clear::new(&own, &within, Stop::default());
+        let mut clear = Clear::new(&own, Some(&within), Stop::default());
         for known in [false, false, true] {
             assert!(clear.permits([0.1, 0.1]));
             let tiles = &clear.others[0].tiles;

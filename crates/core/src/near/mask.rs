@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     error::Error,
-    lattice::{Keep, Lattice, Placement, Point},
+    lattice::{Keep, Lattice, Point},
     parts::CLEARANCE,
     shape::{Area, Region},
     stop::Stop,
@@ -38,18 +38,13 @@ pub(crate) struct Other {
 }
 
 impl Mask {
-    /// Tests for many places, most of them in a box, with memory of their own.
-    pub(crate) fn guards(&self, within: &Region) -> Guards {
-        Guards {
-            area: self.area.clone(),
-            clear: self.clear_guard(within),
-        }
-    }
-
-    /// The test of [`clear`](Self::clear) alone.
-    pub(crate) fn clear_guard(&self, within: &Region) -> Guard {
+    /// A test for many places, with memory of its own; most of them in a box, if one is known.
+    pub(crate) fn guard(&self, within: Option<&Region>) -> Guard {
         let clear: &[ClearOf<Other>] = if CLEARANCE { &self.clear } else { &[] };
-        Guard(RefCell::new(Clear::new(clear, within, Stop::default())))
+        Guard {
+            area: self.area.clone(),
+            clear: RefCell::new(Clear::new(clear, within, Stop::default())),
+        }
     }
 
     /// This mask with another set to keep clear of.
@@ -78,19 +73,18 @@ impl Other {
         mask: &Mask,
         distance: f64,
     ) -> Result<ClearOf<Self>, Error> {
-        let whole = |placement: Placement| lattice.replaced(placement.with_lod(Keep::ALL));
+        let placement = lattice.placement;
         let set = Self {
-            lattice: match lattice.placement.lod {
+            lattice: match placement.lod {
                 Keep::ALL => lattice.clone(),
-                _ => whole(lattice.placement),
+                _ => lattice.replaced(placement.with_lod(Keep::ALL)),
             },
             mask: mask.clone(),
             scratch: Scratch::default(),
         };
-        let clear = ClearOf::new(set, distance)?;
-        let spacing = lattice.placement.spacing.get();
-        Clearance::check(lattice, distance).map_err(|_| refused(distance, spacing))?;
-        Ok(clear)
+        let refused = |_| refused(distance, placement.spacing.get());
+        Clearance::check(lattice, distance).map_err(refused)?;
+        ClearOf::new(set, distance)
     }
 }
 
@@ -124,10 +118,7 @@ impl OtherSet<2> for Other {
             Some(_) => IN_FIELD,
             None => 1.0,
         };
-        let cost = |sides: [f64; 2]| {
-            let [x, y] = sides.map(|side| side / self.spacing());
-            x * y * visit
-        };
+        let cost = |[x, y]: [f64; 2]| visit * (x / self.spacing()) * (y / self.spacing());
         (cost(sides) / (SEARCH + cost([2.0 * distance; 2]))) as u32
     }
 
@@ -160,10 +151,9 @@ impl OtherSet<2> for Other {
         let _ = scan(lattice, scratch, center, radius, None, |_, point| {
             let at = point.at();
             let is_own = within.contains(at) && area.is_none_or(|area| area.contains(at));
-            if is_own && !each(at) {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
+            match is_own && !each(at) {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
             }
         });
     }
@@ -171,37 +161,26 @@ impl OtherSet<2> for Other {
 
 /// Tests places against a mask. Not shared between threads: it keeps memory from place to place.
 #[derive(Clone, Debug)]
-pub(crate) struct Guards {
+pub(crate) struct Guard {
     area: Option<Area>,
-    clear: Guard,
+    clear: RefCell<Clear<Other, 2>>,
 }
-
-impl Guards {
-    /// Whether a point may be at a place.
-    pub(crate) fn permit(&self, p: [f64; 2]) -> bool {
-        self.area.as_ref().is_none_or(|area| area.contains(p)) && self.clear.permits(p)
-    }
-}
-
-/// Tests whether places are clear of other sets.
-#[derive(Clone, Debug)]
-pub(crate) struct Guard(RefCell<Clear<Other, 2>>);
 
 impl Guard {
-    /// Clear of nothing.
-    pub(crate) fn none() -> Self {
-        Mask::default().clear_guard(&Region::NOWHERE)
-    }
-
     /// Whether there is no other set.
     pub(crate) fn is_empty(&self) -> bool {
-        !CLEARANCE || self.0.borrow().is_empty()
+        !CLEARANCE || self.clear.borrow().is_empty()
     }
 
-    /// Whether a place is far enough from all points of the other sets.
+    /// Whether a place is far enough from all points of the other sets, in the area or not.
     #[inline]
+    pub(crate) fn is_clear(&self, p: [f64; 2]) -> bool {
+        !CLEARANCE || self.clear.borrow_mut().permits(p)
+    }
+
+    /// Whether a point may be at a place.
     pub(crate) fn permits(&self, p: [f64; 2]) -> bool {
-        !CLEARANCE || self.0.borrow_mut().permits(p)
+        self.area.as_ref().is_none_or(|area| area.contains(p)) && self.is_clear(p)
     }
 }
 
@@ -223,7 +202,7 @@ impl Guard {
 #[derive(Clone, Debug)]
 pub struct Clearance {
     lattice: Lattice,
-    guards: Guards,
+    guard: Guard,
     distance: f64,
     scratch: Scratch,
 }
@@ -236,7 +215,7 @@ impl Clearance {
         Self::check(&lattice, distance)?;
         Ok(Self {
             lattice,
-            guards: mask.guards(&Region::NOWHERE),
+            guard: mask.guard(None),
             distance,
             scratch: Scratch::default(),
         })
@@ -264,7 +243,7 @@ impl Clearance {
     pub fn is_any_near(&mut self, at: [f64; 2], mut accept: impl FnMut(&Point) -> bool) -> bool {
         let Self {
             lattice,
-            guards,
+            guard,
             distance,
             scratch,
         } = self;
@@ -273,7 +252,7 @@ impl Clearance {
         }
         let squared = *distance * *distance;
         let scanned = scan(lattice, scratch, at, *distance, None, |d, point| {
-            if d < squared && guards.permit(point.at()) && accept(&point) {
+            if d < squared && guard.permits(point.at()) && accept(&point) {
                 ControlFlow::Break(())
             } else {
                 ControlFlow::Continue(())

@@ -71,7 +71,7 @@ pub(crate) fn within(
     check_reach(limit_of(lattice), at, radius)?;
     let farthest = farthest(radius);
     let around = Region::between(at.map(|v| v - radius), at.map(|v| v + radius));
-    let guards = mask.guards(&around);
+    let guard = mask.guard(Some(&around));
     let (mut found, mut inside) = (Vec::with_capacity(limit.min(12)), 0usize);
     let mut scratch = Scratch::default();
     let scanned = scan(
@@ -81,7 +81,7 @@ pub(crate) fn within(
         radius,
         Some(visits),
         |d, point| {
-            if d <= farthest && guards.permit(point.at()) {
+            if d <= farthest && guard.permits(point.at()) {
                 inside += 1;
                 if inside <= limit {
                     found.push((d, point));

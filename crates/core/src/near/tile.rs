@@ -11,6 +11,8 @@ pub(super) struct Grid<const D: usize> {
     origin: [f64; D],
     pub(super) sides: [f64; D],
     per_side: [f64; D],
+    /// More than rounding moves a place, in tiles.
+    slack: [f64; D],
 }
 
 /// The most fine cells along a side.
@@ -41,45 +43,30 @@ pub(super) struct Points<const D: usize> {
 }
 
 impl<const D: usize> Grid<D> {
-    /// Tiles of which a few hold a box, with sides up to some.
-    pub(super) fn new(within: &Region<D>, most: [f64; D]) -> Self {
-        let (min, max) = (within.min(), within.max());
-        let sides: [f64; D] = from_fn(|axis| {
-            let length = (max[axis] - min[axis]) * (1.0 + 1e-6);
-            // Not so for numbers that are infinite or not a number.
-            let number = libm::ceil(length / most[axis]).max(1.0);
-            if number < 1e15 && length > 0.0 {
-                length / number
-            } else {
-                most[axis]
-            }
-        });
+    /// Tiles with sides up to some, of which as few as can be hold a box, if there is one.
+    pub(super) fn new(within: Option<&Region<D>>, most: [f64; D]) -> Self {
+        let (min, max) = within.map_or(([0.0; D], most), |within| (within.min(), within.max()));
+        let length: [f64; D] = from_fn(|axis| (max[axis] - min[axis]) * (1.0 + 1e-6));
+        let origin: [f64; D] = from_fn(|axis| min[axis] - 4e-7 * (max[axis] - min[axis]));
+        let sides: [f64; D] =
+            from_fn(|axis| length[axis] / libm::ceil(length[axis] / most[axis]).max(1.0));
         Self {
-            origin: from_fn(|axis| min[axis] - 4e-7 * (max[axis] - min[axis])),
+            origin,
             sides,
             per_side: sides.map(|side| 1.0 / side),
+            slack: from_fn(|axis| 1e-15 * origin[axis].abs() / sides[axis]),
         }
     }
 
     /// The first and the last tile of the places up to `room` from one.
     #[inline(always)]
     pub(super) fn places(&self, at: [f64; D], room: [f64; D]) -> [[i64; D]; 2] {
-        let mut ends = [[0; D]; 2];
-        for axis in 0..D {
+        let end = |sign: f64, axis: usize| {
             let v = (at[axis] - self.origin[axis]) * self.per_side[axis];
-            let room = room[axis] * self.per_side[axis];
-            let whole = v as i64;
-            let whole = whole - i64::from(whole as f64 > v);
-            let part = v - whole as f64;
-            let floor = |v: f64| libm::floor(v) as i64;
-            ends[0][axis] = if part > room { whole } else { floor(v - room) };
-            ends[1][axis] = if part + room < 1.0 {
-                whole
-            } else {
-                floor(v + room)
-            };
-        }
-        ends
+            let room = room[axis] * self.per_side[axis] + 1e-15 * v.abs() + self.slack[axis];
+            libm::floor(v + sign * room) as i64
+        };
+        [-1.0, 1.0].map(|sign| from_fn(|axis| end(sign, axis)))
     }
 
     /// The box of a tile.
@@ -106,10 +93,6 @@ impl<const D: usize> Cells<D> {
         }
     }
 
-    fn all(&self) -> usize {
-        self.number.iter().product()
-    }
-
     /// The row or column of a coordinate, which never falls where the coordinate grows. A float below 0 becomes 0.
     #[inline(always)]
     fn line(&self, axis: usize, v: f64) -> usize {
@@ -133,7 +116,7 @@ impl<const D: usize> Cells<D> {
 }
 
 impl<const D: usize> Points<D> {
-    /// Points in a box, with a mean spacing, and the greatest distance that is asked for.
+    /// The points of a box, given their mean spacing and the greatest distance of a test.
     pub(super) fn new(
         region: &Region<D>,
         (spacing, distance): (f64, f64),
@@ -158,7 +141,7 @@ impl<const D: usize> Points<D> {
             return points;
         }
         if D == 2 {
-            points.is_near = vec![false; fine.all()];
+            points.is_near = vec![false; fine.number.iter().product()];
             let room = distance * (1.0 + 1e-9);
             for at in unsorted {
                 let lines = |axis| [at[axis] - room, at[axis] + room].map(|v| fine.line(axis, v));
@@ -169,7 +152,7 @@ impl<const D: usize> Points<D> {
                 }
             }
         }
-        points.starts = vec![0; cells.all() + 1];
+        points.starts = vec![0; cells.number.iter().product::<usize>() + 1];
         for &at in unsorted {
             points.starts[cells.of(at)] += 1;
         }
@@ -187,13 +170,20 @@ impl<const D: usize> Points<D> {
         points
     }
 
+    /// The memory that this takes.
+    pub(super) fn bytes(&self) -> usize {
+        let points = self.all.len() * (size_of::<[f64; D]>() + 1);
+        points + size_of_val(&self.starts[..]) + self.is_near.len()
+    }
+
     /// Whether a point may be near a place.
     #[inline(always)]
     pub(super) fn may_have(&self, at: [f64; D]) -> bool {
         !self.all.is_empty() && (D != 2 || self.is_near[self.fine.of(at)])
     }
 
-    /// Whether a point that stays is nearer to a place than a distance; all such points lie up to `room` from it along each axis.
+    /// Whether a point that stays is nearer to a place than a distance. All such points lie up to `room` from it along each
+    /// axis.
     #[inline]
     pub(super) fn has_near(
         &mut self,
@@ -226,4 +216,28 @@ impl<const D: usize> Points<D> {
 pub(super) fn is_nearer<const D: usize>(a: [f64; D], b: [f64; D], distance: f64) -> bool {
     let squared = (0..D).map(|axis| (a[axis] - b[axis]) * (a[axis] - b[axis]));
     squared.sum::<f64>() < distance * distance
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn points_at_the_edges_of_tiles_are_found(
+            min in -1e12..0.0f64, side in 1.0..100.0f64, part in 0.0..1.0f64, distance in 0.01..3.0f64,
+        ) {
+            let grid = Grid::new(Some(&Region::between([min], [10.0])), [side]);
+            // Most places near the origin, far from that of the grid.
+            let number = (-min * part.powi(20) / side) as i64;
+            let [[place], _] = grid.places([-(number as f64) * side], [0.0]);
+            let edge = grid.region([place]).min()[0];
+            let places = |at: f64| grid.places([at], [distance * (1.0 + 1e-9) + at.abs() * 1e-15]);
+            let below = edge.next_down();
+            prop_assert!(places(below + distance)[0][0] < place);
+            prop_assert!(places(edge - distance)[1][0] >= place);
+        }
+    }
 }

@@ -76,7 +76,7 @@ impl PointSet {
             None => self.lattice.point(id)?,
         };
         let is_plain = self.mask.area.is_none() && self.mask.clear.is_empty();
-        (is_plain || self.mask.guards(&Region::NOWHERE).permit(point.at()))
+        (is_plain || self.mask.guard(None).permits(point.at()))
             .then(|| Member::new(point, self.placement().seed))
     }
 

@@ -123,9 +123,6 @@ impl<const D: usize> Region<D> {
         Self { min, max, chunk }
     }
 
-    /// A box without points.
-    pub(crate) const NOWHERE: Self = Self::between([0.0; D], [0.0; D]);
-
     /// The chunk that this is, if it is one.
     pub(crate) const fn as_chunk(&self) -> Option<Chunk<D>> {
         self.chunk

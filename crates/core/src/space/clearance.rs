@@ -15,7 +15,7 @@ use super::{
 use crate::{
     error::Error,
     kernel::Backend,
-    near::clear::{Clear, ClearOf, OtherSet},
+    near::clear::{Clear, ClearOf, MOST_SPACINGS, OtherSet},
     stop::Stop,
 };
 
@@ -68,7 +68,8 @@ impl OtherSet<3> for Other {
     }
 
     fn limit(&self) -> f64 {
-        f64::MAX
+        // A place beyond its points may be near them.
+        self.lattice.limit() + 2.0 * MOST_SPACINGS * self.spacing()
     }
 
     fn visit(&mut self, region: &Region, stop: &Stop, mut each: impl FnMut([f64; 3]) -> bool) {
@@ -103,7 +104,11 @@ pub(super) struct Clearance(Clear<Other, 3>);
 
 impl Clearance {
     pub(super) fn new(scope: &Scope) -> Self {
-        Self(Clear::new(&scope.clear, &scope.region, scope.stop.clone()))
+        Self(Clear::new(
+            &scope.clear,
+            Some(&scope.region),
+            scope.stop.clone(),
+        ))
     }
 
     /// Removes the points of a batch of a scope that are too near others.

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     kernel::PICKS,
-    lattice::{Grade, Keep, Placement, Settle},
+    lattice::{Grade, Keep, Placement, Settle, alike},
     table::{Cut, FRACTION_BITS},
 };
 
@@ -97,10 +97,7 @@ impl Lattice {
 
     /// Whether another lattice has the same points.
     pub(super) fn is_same(&self, other: &Self) -> bool {
-        let is_graded = match (&self.grade, &other.grade) {
-            (Some(own), Some(other)) => own.is_same(other),
-            (own, other) => own.is_none() && other.is_none(),
-        };
+        let is_graded = alike(&self.grade, &other.grade, Grade::is_same);
         let mut lists = self.without.iter().zip(&other.without);
         let is_without = self.without.len() == other.without.len()
             && lists.all(|(own, other)| Arc::ptr_eq(own, other));

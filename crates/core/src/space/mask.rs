@@ -3,7 +3,7 @@
 use alloc::{sync::Arc, vec::Vec};
 
 use super::{Region, Volume, lattice::Lattice};
-use crate::near::clear::ClearOf;
+use crate::{lattice::alike, near::clear::ClearOf};
 
 /// The conditions on the points of a set beside its share.
 #[derive(Clone, Debug, Default)]
@@ -45,10 +45,7 @@ impl Mask {
 
     /// Whether this and another mask are made of the same parts.
     pub(super) fn is_same(&self, other: &Self) -> bool {
-        let is_within = match (&self.within, &other.within) {
-            (Some(own), Some(other)) => Arc::ptr_eq(own, other),
-            (own, other) => own.is_none() && other.is_none(),
-        };
+        let is_within = alike(&self.within, &other.within, Arc::ptr_eq);
         let is_alone = self.clear.is_empty() && other.clear.is_empty();
         is_within && (is_alone || Arc::ptr_eq(&self.clear, &other.clear))
     }

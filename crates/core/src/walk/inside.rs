@@ -109,10 +109,10 @@ impl<'a> Inside<'a> {
             .filter(|(tiles, _)| tiles.has(&settled.place));
         let in_tile = tiles.map(|(tiles, areas)| &areas[tiles.of(settled.place)]);
         let Some(area) = in_tile.or(self.area.as_ref()) else {
-            return self.clear.permits(self.at(settled));
+            return self.clear.is_clear(self.at(settled));
         };
         let at = self.at(settled);
-        area.contains(at) && self.clear.permits(at)
+        area.contains(at) && self.clear.is_clear(at)
     }
 
     fn at(&self, settled: &Settled) -> [f64; 2] {

@@ -51,7 +51,7 @@ use super::{
 use crate::{
     kernel::{Backend, Format},
     lattice::{BAND_WIDTH, Found, PATCH_HEIGHT, PointId, clip_to_band, places_of},
-    near::Guard,
+    near::{Guard, Mask},
     settle::{Box2, Placed, Settled, Settler, add_place, common, joined, widened},
     shape::Area,
     table::fixed,
@@ -87,7 +87,7 @@ impl Pieces {
         Some(Self {
             around: settler.moves.around(&bounds),
             bounds,
-            clear: sieve.map_or_else(Guard::none, Sieve::guard),
+            clear: sieve.map_or_else(|| Mask::default().guard(None), Sieve::guard),
             settler,
             scope: scope.clone(),
             halves: Halves::default(),

@@ -154,7 +154,7 @@ impl LocalSieve {
             (None, Some(area)) => area.contains(p),
             (None, None) => true,
         };
-        inside && self.is_picked(id) && self.guard.permits(p)
+        inside && self.is_picked(id) && self.guard.is_clear(p)
     }
 
     /// Whether a point is of the kind that is wanted.
@@ -167,7 +167,7 @@ impl LocalSieve {
     pub(crate) fn permits(&self, id: PointId, p: [f64; 2]) -> bool {
         self.area.as_ref().is_none_or(|area| area.contains(p))
             && self.is_picked(id)
-            && self.guard.permits(p)
+            && self.guard.is_clear(p)
     }
 
     /// Keeps the points of a patch that pass, by the scale of the patch.
@@ -309,7 +309,7 @@ impl Sieve {
 
     /// A test of the other sets alone.
     pub(crate) fn guard(&self) -> Guard {
-        self.mask.clear_guard(&self.region)
+        self.mask.guard(Some(&self.region))
     }
 
     /// Whether there are other sets to keep clear of.
