@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use proptest::prelude::*;
+use proptest::{prelude::*, test_runner::TestCaseResult};
 use strew_core::{
     ErrorKind, Field, Raster, Region,
     field::{Edges, FieldSpec, Filter, Marks, Noise, Pixels, Terrain},
@@ -187,6 +187,17 @@ fn spec() -> impl Strategy<Value = FieldSpec> {
     })
 }
 
+fn are_those_of_each<const D: usize>(spec: &FieldSpec, places: &[[f64; D]]) -> TestCaseResult
+where
+    FieldSpec: Field<D>,
+{
+    let mut shares = vec![f64::NAN; places.len()];
+    spec.shares(places, &mut shares);
+    let one_by_one = places.iter().map(|&at| spec.share(at).to_bits());
+    prop_assert!(one_by_one.eq(shares.iter().map(|&share| share.to_bits())));
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 1500, ..ProptestConfig::default() })]
 
@@ -229,13 +240,12 @@ proptest! {
         spec in spec(), number in 0usize..90, scale in prop_oneof![Just(1.0), Just(1e5), Just(1e14)],
         step in place(),
     ) {
-        let at = |i: usize| step.map(|v| scale * v * (i as f64 * 0.618).fract());
+        let part = |i: usize, by: f64| scale * (i as f64 * by).fract();
+        let at = |i: usize| step.map(|v| v * part(i, 0.618));
         let places: Vec<[f64; 2]> = (0..number).map(at).collect();
-        let mut shares = vec![f64::NAN; number];
-        spec.shares(&places, &mut shares);
-        let bits = |share: f64| share.to_bits();
-        let one_by_one = places.iter().map(|&at| bits(spec.share(at)));
-        prop_assert!(one_by_one.eq(shares.iter().map(|&share| bits(share))));
+        let in_space = |(i, [x, y]): (usize, &[f64; 2])| [*x, *y, step[0] * part(i, 0.755)];
+        are_those_of_each(&spec, &places)?;
+        are_those_of_each(&spec, &places.iter().enumerate().map(in_space).collect::<Vec<_>>())?;
     }
 
     #[test]

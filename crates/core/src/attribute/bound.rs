@@ -1,19 +1,18 @@
 //! The attributes of one point set, as columns.
 
 use alloc::{sync::Arc, vec::Vec};
-use core::fmt;
+use core::{f64::consts::TAU, fmt};
 
 use super::{
     Attribute, Attributes, Kinds, ScaleRange,
-    hash::{angle, hash, in_row, key, of_row, scale, unit},
+    hash::{Hashed, angle, hash, in_row, key, scale, unit},
     scales::{Spread, VariantScales},
 };
 use crate::{
-    error::{Error, ErrorKind},
+    error::Error,
     kernel::{Backend, PlainLoop, compiled_loop, write_numbers},
-    lattice::{Lattice, Point, PointId, kind, rank, seed::Seed},
-    pattern::Pattern,
-    table::{Mix, Shares, Table, TurnedTable},
+    lattice::{Lattice, PointId, seed::Seed},
+    table::Shares,
 };
 
 /// The values of one attribute for some points.
@@ -89,45 +88,37 @@ impl Column {
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct BoundAttributes {
-    indexed: Indexed,
+pub struct BoundAttributes<Id = PointId> {
+    indices: Arc<dyn Indices<Id>>,
+    seed: Seed,
     /// The key of variants, on which scales may depend.
     variant_key: u64,
     list: Vec<Bound>,
 }
 
-/// The way to a point's place in index space.
-#[derive(Clone, Debug)]
-enum Indexed {
-    Plane(TurnedTable, Pattern),
-    /// In the plane, with kinds whose shares vary.
-    Varied(Arc<Lattice>),
-    Other(Arc<dyn Indices>),
-}
-
-/// The ranks and kinds of the points of a set that is not one of the plane.
-pub(crate) trait Indices: fmt::Debug + Send + Sync {
+/// The ranks and kinds of the points of a set.
+pub(crate) trait Indices<Id = PointId>: fmt::Debug + Send + Sync {
     /// The rank of a point, in [0, 1); the greatest for an id without a point.
-    fn rank(&self, id: PointId) -> f64;
+    fn rank(&self, id: Id) -> f64;
     /// The kind of a point, `None` for an id without a point and a table without kinds.
-    fn kind(&self, id: PointId) -> Option<u8>;
+    fn kind(&self, id: Id) -> Option<u8>;
 }
 
-impl Indexed {
+impl Lattice {
+    /// The attributes of its points.
+    pub(crate) fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
+        let of = (self.kind_parts(), self.placement.seed);
+        BoundAttributes::new(attributes, of, Arc::new(self.clone()))
+    }
+}
+
+impl Indices for Lattice {
     fn rank(&self, id: PointId) -> f64 {
-        match self {
-            Self::Plane(table, pattern) => rank(table, pattern, id),
-            Self::Varied(lattice) => lattice.rank(id),
-            Self::Other(indices) => indices.rank(id),
-        }
+        self.rank(id)
     }
 
     fn kind(&self, id: PointId) -> Option<u8> {
-        match self {
-            Self::Plane(table, pattern) => kind(table, pattern, id),
-            Self::Varied(lattice) => lattice.kind_of(id),
-            Self::Other(indices) => indices.kind(id),
-        }
+        self.kind_of(id)
     }
 }
 
@@ -138,43 +129,43 @@ struct Bound {
 }
 
 /// Ids by rows.
-struct Rows {
-    ids: Vec<PointId>,
+struct Rows<Id> {
+    ids: Vec<Id>,
     /// The numbers of neighbors with the same row.
     lengths: Vec<usize>,
 }
 
-impl Rows {
+impl<Id: Hashed> Rows<Id> {
     /// Writes the numbers that `number` makes of hashes.
     fn write(&self, key: u64, number: impl Fn(u64) -> f64, out: &mut [f64]) {
-        let mut hashed = Hashed {
+        let mut numbers = Numbers {
             rows: self,
             key,
             number,
             out,
         };
-        compiled_loop(Backend::best(), &mut hashed);
+        compiled_loop(Backend::best(), &mut numbers);
     }
 }
 
 /// The numbers of ids by rows, which share a round of their hashes.
-struct Hashed<'a, N> {
-    rows: &'a Rows,
+struct Numbers<'a, Id, N> {
+    rows: &'a Rows<Id>,
     key: u64,
     number: N,
     out: &'a mut [f64],
 }
 
-impl<N: Fn(u64) -> f64> PlainLoop for Hashed<'_, N> {
+impl<Id: Hashed, N: Fn(u64) -> f64> PlainLoop for Numbers<'_, Id, N> {
     #[inline(always)]
     fn run(&mut self) {
         let (mut ids, mut out) = (&self.rows.ids[..], &mut *self.out);
         for &length in &self.rows.lengths {
             let (row, more) = ids.split_at(length);
             let (numbers, rest) = out.split_at_mut(length);
-            let hash = row.first().map_or(0, |id| of_row(self.key, id.y));
+            let hash = row.first().map_or(0, |id| id.of_row(self.key));
             for (out, id) in numbers.iter_mut().zip(row) {
-                *out = (self.number)(in_row(hash, id.x));
+                *out = (self.number)(in_row(hash, id.column()));
             }
             (ids, out) = (more, rest);
         }
@@ -182,36 +173,16 @@ impl<N: Fn(u64) -> f64> PlainLoop for Hashed<'_, N> {
 }
 
 impl BoundAttributes {
-    pub(crate) fn new(attributes: &Attributes, lattice: &Lattice) -> Result<Self, Error> {
-        let indexed = match lattice.is_varied() {
-            true => Indexed::Varied(Arc::new(lattice.clone())),
-            false => Indexed::Plane(lattice.turned.clone(), lattice.pattern),
-        };
-        let seed = lattice.placement.seed;
-        Self::indexed(attributes, (lattice.kind_parts(), seed), indexed)
-    }
-
-    /// The attributes of a set that is not one of the plane.
-    pub(crate) fn of(
-        attributes: &Attributes,
-        of: (&Table, Seed),
-        indices: Arc<dyn Indices>,
-    ) -> Result<Self, Error> {
-        let (table, seed) = of;
-        let shares = table.mix().map(Mix::shares);
-        Self::indexed(attributes, (shares, seed), Indexed::Other(indices))
-    }
-
-    fn indexed(
+    /// The attributes of a set of the plane, whose kinds have some shares.
+    pub(crate) fn new(
         attributes: &Attributes,
         (shares, seed): (Option<&Shares>, Seed),
-        indexed: Indexed,
+        indices: Arc<dyn Indices>,
     ) -> Result<Self, Error> {
         for attribute in attributes.as_slice() {
             if *attribute == Attribute::Rotation {
                 let allowed = "angle, scale, variant, rank or u1 to u16, in the plane";
-                let (kind, name) = (ErrorKind::Attribute, attribute.name());
-                return Err(Error::new(kind, "attribute", name, allowed));
+                return Err(attribute.refused(allowed));
             }
             let kinds = match attribute {
                 Attribute::Kind(kinds) => Some(kinds),
@@ -223,15 +194,7 @@ impl BoundAttributes {
             };
             kinds.map_or(Ok(()), |kinds| kinds.check(shares))?;
         }
-        let bind = |attribute: &Attribute| Bound {
-            key: key(seed, attribute.code()),
-            attribute: attribute.clone(),
-        };
-        Ok(Self {
-            indexed,
-            variant_key: key(seed, Attribute::VARIANT),
-            list: attributes.as_slice().iter().map(bind).collect(),
-        })
+        Ok(Self::of(attributes, seed, indices))
     }
 
     /// The value of attribute number `i` at one point, or `None` past the last attribute. A variant is
@@ -244,8 +207,24 @@ impl BoundAttributes {
         let bound = self.list.get(i)?;
         Some(self.number(&bound.attribute, bound.key, id))
     }
+}
 
-    /// One column per attribute, one value per id.
+impl<Id: Hashed> BoundAttributes<Id> {
+    /// Attributes that a set is known to have.
+    pub(crate) fn of(attributes: &Attributes, seed: Seed, indices: Arc<dyn Indices<Id>>) -> Self {
+        let bind = |attribute: &Attribute| Bound {
+            key: key(seed, attribute.code()),
+            attribute: attribute.clone(),
+        };
+        Self {
+            indices,
+            seed,
+            variant_key: key(seed, Attribute::VARIANT),
+            list: attributes.as_slice().iter().map(bind).collect(),
+        }
+    }
+
+    /// One column per attribute, and four for a rotation (x, y, z and w of a unit quaternion), one value per id.
     ///
     /// ```
     /// use strew_core::{Attributes, PointSet, Table};
@@ -261,16 +240,14 @@ impl BoundAttributes {
     #[must_use]
     pub fn columns<I>(&self, ids: I) -> Vec<Column>
     where
-        I: IntoIterator<Item = PointId>,
-        I::IntoIter: Clone,
+        I: IntoIterator<Item = Id>,
     {
         let mut columns = Vec::new();
         self.write(ids.into_iter(), &mut columns);
         columns
     }
 
-    /// Replaces `columns` by one column per attribute, one value per id, reusing their memory. Faster than
-    /// [`columns`](Self::columns) for block after block.
+    /// Replaces `columns` by those of [`columns`](Self::columns), reusing their memory: faster for block after block.
     ///
     /// ```
     /// use strew_core::{Attributes, PointId, PointSet, Table};
@@ -285,48 +262,65 @@ impl BoundAttributes {
     /// }
     /// # Ok::<(), strew_core::Error>(())
     /// ```
-    pub fn write(&self, ids: impl Iterator<Item = PointId> + Clone, columns: &mut Vec<Column>) {
-        columns.resize_with(self.list.len(), || Column::Numbers(Vec::new()));
+    pub fn write(&self, ids: impl Iterator<Item = Id>, columns: &mut Vec<Column>) {
+        let width = |bound: &Bound| bound.attribute.columns();
+        let number = self.list.iter().map(width).sum();
+        columns.resize_with(number, || Column::Numbers(Vec::new()));
         if self.list.is_empty() {
             return;
         }
-        let ids: Vec<PointId> = ids.collect();
-        let rows = ids.chunk_by(|a, b| a.y == b.y).map(<[PointId]>::len);
+        let ids: Vec<Id> = ids.collect();
+        let rows = ids.chunk_by(Hashed::shares_row).map(<[Id]>::len);
         let ids = Rows {
             lengths: rows.collect(),
             ids,
         };
-        for (bound, column) in self.list.iter().zip(columns) {
-            let key = bound.key;
-            match &bound.attribute {
-                Attribute::Variant(variants) => {
-                    let picked = ids.ids.iter().map(|&id| variants.pick(hash(key, id)));
-                    replace(column, picked);
-                    continue;
-                }
-                Attribute::Kind(kinds) => {
-                    replace(column, ids.ids.iter().map(|&id| self.index(kinds, id)));
-                    continue;
-                }
-                _ => {}
+        let mut columns = &mut columns[..];
+        for bound in &self.list {
+            let (own, more) = columns.split_at_mut(width(bound));
+            columns = more;
+            match own {
+                [column] => self.write_one(bound, &ids, column),
+                parts => self.write_rotations(&ids, parts),
             }
-            let mut values = match core::mem::replace(column, Column::Numbers(Vec::new())) {
-                Column::Numbers(values) => values,
-                Column::Variants(_) => Vec::new(),
-            };
-            values.resize(ids.ids.len(), 0.0);
-            let out = values.as_mut_slice();
-            // Loops of their own, without a branch at each point.
-            match bound.attribute {
-                Attribute::Angle => ids.write(key, angle, out),
-                Attribute::Scale(range) => ids.write(key, |hash| scale(range, hash), out),
-                Attribute::Uniform(_) => ids.write(key, unit, out),
-                ref other => {
-                    let all = ids.ids.iter().map(|&id| self.number(other, key, id));
-                    write_numbers(all, out);
-                }
+        }
+    }
+
+    fn write_one(&self, bound: &Bound, ids: &Rows<Id>, column: &mut Column) {
+        let key = bound.key;
+        match &bound.attribute {
+            Attribute::Variant(variants) => {
+                let picked = ids.ids.iter().map(|&id| variants.pick(hash(key, id)));
+                return replace(column, picked);
             }
-            *column = Column::Numbers(values);
+            Attribute::Kind(kinds) => {
+                return replace(column, ids.ids.iter().map(|&id| self.index(kinds, id)));
+            }
+            _ => {}
+        }
+        let out = numbers(column, ids.ids.len());
+        // Loops of their own, without a branch at each point.
+        match bound.attribute {
+            Attribute::Angle => ids.write(key, angle, out),
+            Attribute::Scale(range) => ids.write(key, |hash| scale(range, hash), out),
+            Attribute::Uniform(_) => ids.write(key, unit, out),
+            ref other => {
+                let all = ids.ids.iter().map(|&id| self.number(other, key, id));
+                write_numbers(all, out);
+            }
+        }
+    }
+
+    fn write_rotations(&self, ids: &Rows<Id>, parts: &mut [Column]) {
+        let keys = [0, 1, 2].map(|i| key(self.seed, Attribute::ROTATION + i));
+        let mut parts: Vec<&mut [f64]> = (parts.iter_mut())
+            .map(|part| numbers(part, ids.ids.len()))
+            .collect();
+        for (i, &id) in ids.ids.iter().enumerate() {
+            let all = rotation(keys.map(|key| unit(hash(key, id))));
+            for (part, v) in parts.iter_mut().zip(all) {
+                part[i] = v;
+            }
         }
     }
 
@@ -344,18 +338,18 @@ impl BoundAttributes {
     /// assert_eq!(columns[0].numbers().map(<[f64]>::len), Some(64));
     /// # Ok::<(), strew_core::Error>(())
     /// ```
-    pub fn write_points(&self, points: &[Point], columns: &mut Vec<Column>) {
-        self.write(points.iter().map(|point| point.id), columns);
+    pub fn write_points(&self, points: &[Id::Point], columns: &mut Vec<Column>) {
+        self.write(points.iter().map(Id::of), columns);
     }
 
-    fn number(&self, attribute: &Attribute, key: u64, id: PointId) -> f64 {
+    fn number(&self, attribute: &Attribute, key: u64, id: Id) -> f64 {
         match attribute {
             Attribute::Angle => angle(hash(key, id)),
-            // Refused when the list was bound.
+            // It has four.
             Attribute::Rotation => 0.0,
             Attribute::Scale(range) => scale(*range, hash(key, id)),
             Attribute::VariantScale(scales) => scale(self.range(scales, id), hash(key, id)),
-            Attribute::Rank => self.indexed.rank(id),
+            Attribute::Rank => self.indices.rank(id),
             Attribute::Uniform(_) => unit(hash(key, id)),
             Attribute::Variant(variants) => variants.pick(hash(key, id)).into(),
             Attribute::Kind(kinds) => self.index(kinds, id).into(),
@@ -363,7 +357,7 @@ impl BoundAttributes {
     }
 
     /// The range of the scale of a point's variant.
-    fn range(&self, scales: &VariantScales, id: PointId) -> ScaleRange {
+    fn range(&self, scales: &VariantScales, id: Id) -> ScaleRange {
         scales.range(match scales.of() {
             Spread::Chance(variants) => variants.pick(hash(self.variant_key, id)),
             Spread::Kinds(kinds) => self.index(kinds, id),
@@ -371,9 +365,36 @@ impl BoundAttributes {
     }
 
     /// The index of the variant of a point's kind.
-    fn index(&self, kinds: &Kinds, id: PointId) -> u32 {
-        let kind = self.indexed.kind(id).unwrap_or(0);
+    fn index(&self, kinds: &Kinds, id: Id) -> u32 {
+        let kind = self.indices.kind(id).unwrap_or(0);
         kinds.index(kind).unwrap_or(0)
+    }
+}
+
+/// A rotation as a unit quaternion x, y, z, w, uniform for uniform numbers (Shoemake, "Uniform random rotations", 1992).
+fn rotation([u, v, w]: [f64; 3]) -> [f64; 4] {
+    let (low, high) = (libm::sqrt(1.0 - u), libm::sqrt(u));
+    let (sine, cosine) = libm::sincos(TAU * v);
+    let (other_sine, other_cosine) = libm::sincos(TAU * w);
+    [
+        low * sine,
+        low * cosine,
+        high * other_sine,
+        high * other_cosine,
+    ]
+}
+
+/// Makes a column one of numbers, in its memory if it is.
+fn numbers(column: &mut Column, length: usize) -> &mut [f64] {
+    if let Column::Variants(_) = column {
+        *column = Column::Numbers(Vec::new());
+    }
+    match column {
+        Column::Numbers(values) => {
+            values.resize(length, 0.0);
+            values
+        }
+        Column::Variants(_) => &mut [],
     }
 }
 

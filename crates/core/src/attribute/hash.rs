@@ -8,7 +8,7 @@ use core::f64::consts::TAU;
 
 use super::ScaleRange;
 use crate::lattice::{
-    PointId,
+    Point, PointId,
     seed::{Seed, split_mix},
 };
 
@@ -18,10 +18,47 @@ pub(crate) fn key(seed: Seed, code: u64) -> u64 {
     split_mix(split_mix(seed.0 ^ PURPOSE).wrapping_add(code << 32))
 }
 
+/// The id of a point, in the plane or in space.
+pub trait Hashed: Copy {
+    /// The points that have such ids.
+    type Point;
+    /// The id of a point.
+    fn of(point: &Self::Point) -> Self;
+    /// Whether both are of one row.
+    fn shares_row(&self, other: &Self) -> bool;
+    /// The part of the hash under a key that the points of the row share.
+    fn of_row(self, key: u64) -> u64;
+    /// The column.
+    fn column(self) -> i64;
+}
+
+impl Hashed for PointId {
+    type Point = Point;
+
+    fn of(point: &Point) -> Self {
+        point.id
+    }
+
+    #[inline]
+    fn shares_row(&self, other: &Self) -> bool {
+        self.y == other.y
+    }
+
+    #[inline]
+    fn of_row(self, key: u64) -> u64 {
+        of_row(key, self.y)
+    }
+
+    #[inline]
+    fn column(self) -> i64 {
+        self.x
+    }
+}
+
 /// The hash of a point under a key, uniform over `u64`.
 #[inline]
-pub(crate) fn hash(key: u64, id: PointId) -> u64 {
-    in_row(of_row(key, id.y), id.x)
+pub(crate) fn hash(key: u64, id: impl Hashed) -> u64 {
+    in_row(id.of_row(key), id.column())
 }
 
 /// The part of the hash that the points of a row share.

@@ -156,6 +156,19 @@ impl Attribute {
         }
     }
 
+    /// The number of its columns.
+    pub(crate) const fn columns(&self) -> usize {
+        match self {
+            Self::Rotation => 4,
+            _ => 1,
+        }
+    }
+
+    /// The error of an attribute that points of a set do not have.
+    pub(crate) fn refused(&self, allowed: &'static str) -> Error {
+        Error::new(ErrorKind::Attribute, "attribute", self.name(), allowed)
+    }
+
     /// The code of this attribute. Those that are not hashed have 0.
     pub(crate) const fn code(&self) -> u64 {
         match self {

@@ -170,9 +170,7 @@ impl FieldSpec {
             Shape::Raster(raster) if D == 2 => {
                 raster.shares(places.as_flattened().as_chunks().0, shares)
             }
-            Shape::Noise(noise) if D == 2 => {
-                noise.shares(places.as_flattened().as_chunks().0, shares)
-            }
+            Shape::Noise(noise) => noise.shares(places, shares),
             Shape::Multiply(parts) => together(parts, 1.0, |a, b| a * b, places, shares),
             Shape::Min(parts) => together(parts, 1.0, f64::min, places, shares),
             Shape::Max(parts) => together(parts, 0.0, f64::max, places, shares),

@@ -74,7 +74,7 @@ impl Noise {
         let mut place = at.map(|v| v / self.wavelength);
         let (mut sum, mut weight, mut weights) = (0.0, 1.0, 0.0);
         for octave in 0..self.octaves {
-            sum += weight * octave_at(self.key(octave), place);
+            sum += weight * octave_at(self.key(octave), place, whole);
             weights += weight;
             weight *= 0.5;
             place = next(place);
@@ -83,12 +83,12 @@ impl Noise {
     }
 
     /// The shares at some places.
-    pub(super) fn shares(&self, places: &[[f64; 2]], shares: &mut [f64]) {
+    pub(super) fn shares<const D: usize>(&self, places: &[[f64; D]], shares: &mut [f64]) {
         let backend = Backend::best();
         for (places, shares) in places.chunks(SOME).zip(shares.chunks_mut(SOME)) {
             let mut work = Batch {
                 noise: self,
-                places: [[0.0; SOME]; 2],
+                places: [[0.0; SOME]; D],
                 sums: [0.0; SOME],
             };
             for (i, place) in places.iter().enumerate() {
@@ -179,9 +179,9 @@ const FAR: f64 = 1e12;
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 /// Some places, and their numbers.
-struct Batch<'a> {
+struct Batch<'a, const D: usize> {
     noise: &'a Noise,
-    places: [[f64; SOME]; 2],
+    places: [[f64; SOME]; D],
     sums: [f64; SOME],
 }
 
@@ -194,25 +194,27 @@ fn floor(v: f64) -> (f64, i64) {
     (whole, bits as i64)
 }
 
-impl PlainLoop for Batch<'_> {
+/// The largest integer up to a number, twice.
+fn whole(v: f64) -> (f64, i64) {
+    let whole = libm::floor(v);
+    (whole, whole as i64)
+}
+
+impl<const D: usize> PlainLoop for Batch<'_, D> {
     #[inline(always)]
     fn run(&mut self) {
         let (mut weight, mut weights) = (1.0, 0.0);
-        let [xs, ys] = &mut self.places;
         for octave in 0..self.noise.octaves {
             let key = self.noise.key(octave);
-            for i in 0..SOME {
-                let place = [xs[i], ys[i]];
-                let ((left, x), (bottom, y)) = (floor(place[0]), floor(place[1]));
-                let (u, v) = (eased(place[0] - left), eased(place[1] - bottom));
-                let [low, high] = [row(key, y), row(key, y.wrapping_add(1))];
-                let along = |row: u64| {
-                    let (a, b) = (in_row(row, x), in_row(row, x.wrapping_add(1)));
-                    a + (b - a) * u
-                };
-                let (low, high) = (along(low), along(high));
-                self.sums[i] += weight * (low + (high - low) * v);
-                [xs[i], ys[i]] = next(place);
+            for (i, sum) in self.sums.iter_mut().enumerate() {
+                let mut place = [0.0; D];
+                for (v, list) in place.iter_mut().zip(&self.places) {
+                    *v = list[i];
+                }
+                *sum += weight * octave_at(key, place, floor);
+                for (list, v) in self.places.iter_mut().zip(next(place)) {
+                    list[i] = v;
+                }
             }
             weights += weight;
             weight *= 0.5;
@@ -269,28 +271,30 @@ fn eased(t: f64) -> f64 {
 }
 
 #[inline(always)]
-fn octave_at<const D: usize>(key: u64, place: [f64; D]) -> f64 {
+fn octave_at<const D: usize>(
+    key: u64,
+    place: [f64; D],
+    floor: impl Fn(f64) -> (f64, i64) + Copy,
+) -> f64 {
     let flat = [place[0], place[1]];
     let Some(&height) = place.get(2) else {
-        return octave_in_plane(key, flat);
+        return octave_in_plane(key, flat, floor);
     };
-    let cell = libm::floor(height);
-    let (z, w) = (cell as i64, eased(height - cell));
-    let planes = [plane(key, z), plane(key, z.wrapping_add(1))];
-    let [low, high] = planes.map(|key| octave_in_plane(key, flat));
-    low + (high - low) * w
+    let (cell, z) = floor(height);
+    let of = |z| octave_in_plane(plane(key, z), flat, floor);
+    let (low, high) = (of(z), of(z.wrapping_add(1)));
+    low + (high - low) * eased(height - cell)
 }
 
 #[inline(always)]
-fn octave_in_plane(key: u64, place: [f64; 2]) -> f64 {
-    let cell = place.map(libm::floor);
-    let [x, y] = cell.map(|v| v as i64);
-    let (u, v) = (eased(place[0] - cell[0]), eased(place[1] - cell[1]));
-    let along = |y: i64| {
-        let (a, b) = (corner(key, x, y), corner(key, x.wrapping_add(1), y));
+fn octave_in_plane(key: u64, place: [f64; 2], floor: impl Fn(f64) -> (f64, i64)) -> f64 {
+    let ((left, x), (bottom, y)) = (floor(place[0]), floor(place[1]));
+    let (u, v) = (eased(place[0] - left), eased(place[1] - bottom));
+    let along = |row: u64| {
+        let (a, b) = (in_row(row, x), in_row(row, x.wrapping_add(1)));
         a + (b - a) * u
     };
-    let (low, high) = (along(y), along(y.wrapping_add(1)));
+    let (low, high) = (along(row(key, y)), along(row(key, y.wrapping_add(1))));
     low + (high - low) * v
 }
 

@@ -35,7 +35,6 @@ pub(super) use patch::{BAND_WIDTH, Flat, Found, PATCH_HEIGHT, Patch, Scale, clip
 pub use placement::{Keep, Placement, Settle, Spacing};
 pub(crate) use point::lattice_of;
 pub use point::{Point, PointId};
-pub(super) use point::{kind, rank};
 pub(super) use span::{Span, places_of};
 pub use world::LATTICE_LIMIT;
 pub(super) use world::{Lattice, Line};

@@ -1,6 +1,6 @@
 //! The points of a lattice by kinds whose shares vary: which kind each is of, and which are left if one is wanted.
 
-use super::{Lattice, PointId, VaryingKinds, kinds::Varied, rank};
+use super::{Lattice, PointId, VaryingKinds, kinds::Varied};
 use crate::table::{Mix, Shares};
 
 impl Lattice {
@@ -52,7 +52,7 @@ impl Lattice {
         let x = self.map().interval_of(index_x)?;
         let y = self.map().interval_of(index_y)?;
         let place = self.displaced_place(id, self.turned.row(y)[x]);
-        let rank = rank(&varied.turned, &self.pattern, id);
+        let rank = self.rank_in(&varied.turned, id);
         Some(varied.kinds.kind(rank, place.map(|k| self.world(k))))
     }
 }

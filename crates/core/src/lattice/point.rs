@@ -15,11 +15,7 @@
 
 use core::{fmt, str::FromStr};
 
-use crate::{
-    error::{Error, ErrorKind, shown},
-    pattern::Pattern,
-    table::TurnedTable,
-};
+use crate::error::{Error, ErrorKind, shown};
 
 /// The stable id of a point: its lattice address. The text form is `x:y`, two decimal integers.
 ///
@@ -101,32 +97,6 @@ pub(crate) fn lattice_of<const D: usize>(
         return Ok(at);
     }
     Err(Error::new(ErrorKind::PointId, "id", shown(text), allowed))
-}
-
-/// The largest number below 1.
-const GREATEST: f64 = 1.0 - f64::EPSILON / 2.0;
-
-/// The rank of a point of a turned table's pattern, in [0, 1); the greatest for an address without a point.
-pub(crate) fn rank(turned: &TurnedTable, pattern: &Pattern, id: PointId) -> f64 {
-    let (index_x, index_y) = pattern.index(id.x, id.y);
-    let map = turned.table().map();
-    let (Some(x), Some(y)) = (map.interval_of(index_x), map.interval_of(index_y)) else {
-        return GREATEST;
-    };
-    let (order, interval) = (turned.order(), map.interval(x));
-    let position = order.position(y * map.intervals() + x);
-    let (offset, length) = (index_x - interval.start, interval.end - interval.start);
-    order.rank(position, offset, length)
-}
-
-/// The kind of a point of a turned table's pattern; `None` for an address without a point, and for a table without
-/// kinds.
-pub(crate) fn kind(turned: &TurnedTable, pattern: &Pattern, id: PointId) -> Option<u8> {
-    let (index_x, index_y) = pattern.index(id.x, id.y);
-    let map = turned.table().map();
-    let block = [map.interval_of(index_x)?, map.interval_of(index_y)?];
-    let labels = turned.labels()?;
-    Some(labels.kind(map.intervals(), block, index_x))
 }
 
 #[cfg(test)]

@@ -8,7 +8,6 @@ use super::{
     bounds::world,
     grade::{Grade, alike},
     kinds::{Chosen, KindRow, Varied},
-    point::{kind, rank},
 };
 use crate::{
     field::Field,
@@ -355,7 +354,13 @@ impl Lattice {
     pub(crate) fn kind_of(&self, id: PointId) -> Option<u8> {
         match &self.varied {
             Some(varied) => self.varied_kind_of(varied, id),
-            None => kind(&self.turned, &self.pattern, id),
+            None => {
+                let (index_x, index_y) = self.pattern.index(id.x, id.y);
+                let map = self.map();
+                let block = [map.interval_of(index_x)?, map.interval_of(index_y)?];
+                let labels = self.turned.labels()?;
+                Some(labels.kind(map.intervals(), block, index_x))
+            }
         }
     }
 
@@ -374,7 +379,20 @@ impl Lattice {
 
     /// The rank of a point of the pattern; the greatest for other addresses.
     pub(crate) fn rank(&self, id: PointId) -> f64 {
-        rank(&self.turned, &self.pattern, id)
+        self.rank_in(&self.turned, id)
+    }
+
+    /// The same in the order of another table.
+    pub(super) fn rank_in(&self, turned: &TurnedTable, id: PointId) -> f64 {
+        let (index_x, index_y) = self.pattern.index(id.x, id.y);
+        let map = self.map();
+        let (Some(x), Some(y)) = (map.interval_of(index_x), map.interval_of(index_y)) else {
+            return 1.0_f64.next_down();
+        };
+        let (order, interval) = (turned.order(), map.interval(x));
+        let position = order.position(y * map.intervals() + x);
+        let (offset, length) = (index_x - interval.start, interval.end - interval.start);
+        order.rank(position, offset, length)
     }
 
     /// The fixed-point place of an address, or `None` if it has no point.

@@ -13,7 +13,7 @@ use crate::{
     field::Field,
     lattice::{Grade, Keep, Placement, Point, PointId, Settle, Spacing, check_kind},
     stop::Stop,
-    table::{Displacement, FRACTION_BITS},
+    table::{Displacement, FRACTION_BITS, Mix},
     warp::Warp,
 };
 
@@ -236,7 +236,8 @@ impl PeriodicSet {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
-        BoundAttributes::of(attributes, (&self.table, self.seed), Arc::new(self.clone()))
+        let shares = self.table.mix().map(Mix::shares);
+        BoundAttributes::new(attributes, (shares, self.seed), Arc::new(self.clone()))
     }
 
     /// Whether it has all points of the period.

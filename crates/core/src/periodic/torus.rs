@@ -61,8 +61,8 @@ impl Strip {
 
     /// Where the point of an address has settled that was placed somewhere, without its row.
     pub(super) fn one(&mut self, set: &PeriodicSet, id: PointId, place: [i64; 2]) -> [f64; 2] {
-        let wants = |placed: &Placed| PointId::of(placed.address) == id;
-        let settled = self.settler.settled(place.map(i128::from), wants);
+        let mut wants = |placed: &Placed| PointId::of(placed.address) == id;
+        let settled = self.settler.settled(place.map(i128::from), &mut wants);
         set.wrapped(settled.map_or(place, |settled| settled.map(|k| k as i64)))
     }
 
@@ -93,8 +93,8 @@ impl Strip {
             let points = &mut self.points;
             self.settler.settle(
                 &within,
-                |placed| wanted(placed.address).is_some(),
-                |settled| {
+                &mut |placed| wanted(placed.address).is_some(),
+                &mut |settled| {
                     let at = settled.place.map(|k| k as i64);
                     points.extend(wanted(settled.address).map(|id| (id, set.wrapped(at))));
                 },
@@ -189,7 +189,7 @@ impl Settling<2> for Torus {
         within: &Box2,
         corner: [i128; 2],
         (grade, _): (&Grade, Backend),
-        mut visit: impl FnMut(List<'_, Found, 2>),
+        visit: &mut dyn FnMut(List<'_, Found, 2>),
     ) {
         let reach = self.reach();
         let [columns, rows] = [0, 1].map(|i| {

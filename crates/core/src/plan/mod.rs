@@ -184,7 +184,7 @@ impl Plan {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
-        BoundAttributes::new(attributes, &self.scope.lattice)
+        self.scope.lattice.attributes(attributes)
     }
 
     /// The points of the same area at another spacing, all of them, not counted.

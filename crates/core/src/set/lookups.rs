@@ -310,7 +310,7 @@ impl PointSet {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
-        BoundAttributes::new(attributes, &self.lattice)
+        self.lattice.attributes(attributes)
     }
 
     /// The largest absolute coordinate that a search may reach, in world units.

@@ -1,6 +1,6 @@
 //! Sets that settle: the points of a box where their ranks left them, many at a time.
 
-use core::{array::from_fn, ops::Range};
+use core::{array::from_fn, fmt::Debug, ops::Range};
 
 use super::Box2;
 use crate::{
@@ -14,7 +14,7 @@ use crate::{
 const TOGETHER: usize = 2048;
 
 /// A set of all kinds whose points settle: one of the plane or of space, or of a torus, by addresses that do not wrap.
-pub(crate) trait Settling<const D: usize>: Clone {
+pub(crate) trait Settling<const D: usize>: Clone + Debug {
     /// A point of a list.
     type Found: Listed<D>;
 
@@ -46,7 +46,7 @@ pub(crate) trait Settling<const D: usize>: Clone {
         within: &[Range<i128>; D],
         corner: [i128; D],
         by: (&Grade<D>, Backend),
-        visit: impl FnMut(List<'_, Self::Found, D>),
+        visit: &mut dyn FnMut(List<'_, Self::Found, D>),
     );
 }
 
@@ -150,7 +150,7 @@ impl Settling<2> for Lister {
         within: &Box2,
         corner: [i128; 2],
         (grade, backend): (&Grade, Backend),
-        mut visit: impl FnMut(List<'_, Found, 2>),
+        visit: &mut dyn FnMut(List<'_, Found, 2>),
     ) {
         let Self {
             lattice,

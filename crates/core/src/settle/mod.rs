@@ -36,7 +36,7 @@
 //! to some others and settles these; `reach` says how far those lie, `lister` lists them, of the plane or of a set that is
 //! given. `step` is one step, over points that `cells` has sorted. `freedom` has f. `near` limits the step of sets with
 //! all points. `kin` adds the pushes of points of a kind, and `past` lets these go past near neighbors. `tiles` keeps
-//! settled points for places that follow.
+//! settled points for places that follow. `pieces` finds and counts those that a request has.
 //!
 //! # Invariants
 //!
@@ -59,17 +59,18 @@ mod lister;
 mod moves;
 mod near;
 mod past;
+mod pieces;
 mod plain;
 mod reach;
 mod step;
 mod tiles;
 mod window;
 
-pub(crate) use moves::{Box2, Moves, Placed, Settled, add_place, joined, widened};
+pub(crate) use moves::{Box2, Moves, Placed, Settled};
+pub(crate) use pieces::{Pieces, Request};
 
-pub(crate) use crate::lattice::bounds::common_box as common;
 pub(crate) use kin::weight;
-pub(crate) use lister::{List, Listed, Settling};
+pub(crate) use lister::{List, Listed, Lister, Settling};
 use step::Kernel;
 pub(crate) use tiles::SettledTiles;
 pub(crate) use window::Settler;

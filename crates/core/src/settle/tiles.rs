@@ -83,7 +83,7 @@ impl SettledTiles {
         let within = at.map(|v| v << bits..(v + 1) << bits);
         let mut points = Vec::new();
         self.settler
-            .settle(&within, |_| true, |settled| points.push(settled));
+            .settle(&within, &mut |_| true, &mut |settled| points.push(settled));
         let tile = Tile { bits, at, points };
         if self.tiles.len() < MOST {
             self.tiles.push(tile);
@@ -106,7 +106,7 @@ impl Settler {
     /// The settled place of an address, or `None` if it has no point.
     pub(crate) fn point(&mut self, lattice: &Lattice, id: PointId) -> Option<[i128; 2]> {
         let place = lattice.place(id)?;
-        self.settled(place, |placed| {
+        self.settled(place, &mut |placed| {
             PointId::of(placed.address) == id && lattice.shows(id, placed.share)
         })
     }

@@ -153,20 +153,20 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
     pub(crate) fn settled(
         &mut self,
         place: [i128; D],
-        wants: impl FnMut(&Placed<D>) -> bool,
+        wants: &mut dyn FnMut(&Placed<D>) -> bool,
     ) -> Option<[i128; D]> {
         let mut found = None;
         let within = place.map(|k| k..k + 1);
-        self.settle(&within, wants, |settled| found = Some(settled.place));
+        self.settle(&within, wants, &mut |settled| found = Some(settled.place));
         found
     }
 
     /// Calls `visit` for every point that was placed in a box.
-    pub(crate) fn list(&mut self, within: &[Range<i128>; D], mut visit: impl FnMut(Placed<D>)) {
+    pub(crate) fn list(&mut self, within: &[Range<i128>; D], visit: &mut dyn FnMut(Placed<D>)) {
         let (unit, shift) = (self.moves.unit, self.moves.shift);
         let corner = within.each_ref().map(|range| range.start);
         let by = (&self.moves.grade, self.backend);
-        self.set.list(within, corner, by, |some| {
+        self.set.list(within, corner, by, &mut |some| {
             for (found, &share) in some.found.iter().zip(some.shares) {
                 let (address, offset) = (some.address(found), some.offset(found));
                 let place = from_fn(|i| corner[i] + i128::from(offset[i]));
@@ -180,8 +180,8 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
     pub(crate) fn settle(
         &mut self,
         within: &[Range<i128>; D],
-        mut wants: impl FnMut(&Placed<D>) -> bool,
-        mut found: impl FnMut(Settled<D>),
+        wants: &mut dyn FnMut(&Placed<D>) -> bool,
+        found: &mut dyn FnMut(Settled<D>),
     ) {
         if within.iter().any(Range::is_empty) {
             return;
@@ -201,7 +201,7 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
             f64::from(self.scale.unit),
         );
         loop {
-            self.list_window(corner, window, own, &mut wants);
+            self.list_window(corner, window, own, wants);
             let needed = self.prepare(corner, window);
             if needed.is_within(&window) {
                 break;
@@ -242,7 +242,7 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
         corner: [i128; D],
         window: Extent<D>,
         own: Extent<D>,
-        wants: &mut impl FnMut(&Placed<D>) -> bool,
+        wants: &mut dyn FnMut(&Placed<D>) -> bool,
     ) {
         let within = from_fn(|i| {
             let fixed = |v: i64| corner[i] + (i128::from(v) << self.moves.shift);
@@ -255,7 +255,7 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
         let (shift, unit) = (self.moves.shift, self.moves.unit);
         let below = (1 << shift) - 1;
         let by = (&self.moves.grade, self.backend);
-        self.set.list(&within, corner, by, |some| {
+        self.set.list(&within, corner, by, &mut |some| {
             let offsets = || some.found.iter().map(|found| some.offset(found));
             for (axis, list) in places.placed.iter_mut().enumerate() {
                 list.extend(offsets().map(|offset| (offset[axis] >> shift) as i32 as f32));

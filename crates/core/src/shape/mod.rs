@@ -27,5 +27,6 @@ pub use polygon::Polygon;
 pub use prism::{Prism, Volume};
 pub(crate) use region::Chunk;
 pub use region::Region;
+pub(crate) use shape::Outlined;
 pub use shape::{Area, Shape};
 pub(crate) use steps::{Near, State, Stepper};

@@ -123,6 +123,10 @@ impl Outlined<3> for Prism {
         self.vertices()
     }
 
+    fn parts(&self) -> usize {
+        self.base.parts()
+    }
+
     fn focus(&self, within: &Region<3>) -> Result<bool, Self> {
         self.focus(within)
     }

@@ -1,6 +1,7 @@
 //! Shapes: boxes, balls and what polygons bound, combined.
 
 use alloc::{boxed::Box, vec::Vec};
+use core::fmt::Debug;
 
 use super::{
     Ball, Chunk, Polygon, Region,
@@ -48,13 +49,15 @@ pub enum Shape<const D: usize, P> {
 pub type Area = Shape<2, Polygon>;
 
 /// A shape with an outline of polygons: a [`Polygon`] in the plane, a [`Prism`](crate::space::Prism) in space.
-pub trait Outlined<const D: usize>: Clone {
+pub trait Outlined<const D: usize>: Clone + Debug {
     /// Whether a place lies inside.
     fn contains(&self, p: [f64; D]) -> bool;
     /// A box around it.
     fn bounds(&self) -> Region<D>;
     /// The number of vertices.
     fn vertices(&self) -> usize;
+    /// The number of edges that matter in the box in focus.
+    fn parts(&self) -> usize;
     /// Looks at the points of a box, its upper sides included: `Ok` if all of them are inside, or all outside; else the
     /// part of the outline that decides.
     fn focus(&self, within: &Region<D>) -> Result<bool, Self>;
@@ -71,6 +74,10 @@ impl Outlined<2> for Polygon {
 
     fn vertices(&self) -> usize {
         self.vertices()
+    }
+
+    fn parts(&self) -> usize {
+        self.sides().count()
     }
 
     fn focus(&self, within: &Region) -> Result<bool, Self> {
@@ -212,6 +219,16 @@ impl<const D: usize, P: Outlined<D>> Shape<D, P> {
         }
     }
 
+    /// The number of boxes, balls and edges that points are compared with.
+    pub(crate) fn parts(&self) -> usize {
+        match self {
+            Self::Region(_) | Self::Ball(_) => 1,
+            Self::Outlined(part) => part.parts(),
+            Self::AnyOf(shapes) | Self::AllOf(shapes) => shapes.iter().map(Self::parts).sum(),
+            Self::Outside(shape) => shape.parts(),
+        }
+    }
+
     /// The chunks of which this is the intersection with [`beside_chunks`](Self::beside_chunks). Membership of a chunk
     /// is exact, which reported coordinates cannot decide, so integers decide these and coordinates the rest.
     pub(crate) fn chunks(&self) -> Vec<Chunk<D>> {
@@ -285,16 +302,6 @@ impl<const D: usize, P: Outlined<D>> Shape<D, P> {
 }
 
 impl Area {
-    /// The number of boxes, circles and edges that points are compared with.
-    pub(crate) fn parts(&self) -> usize {
-        match self {
-            Self::Region(_) | Self::Ball(_) => 1,
-            Self::Outlined(polygon) => polygon.sides().count(),
-            Self::AnyOf(areas) | Self::AllOf(areas) => areas.iter().map(Self::parts).sum(),
-            Self::Outside(area) => area.parts(),
-        }
-    }
-
     /// The states of a strip y₀ ≤ y ≤ y₁ along x. After [`focus`](Self::focus) they hold within the box.
     pub(crate) fn steps(&self, strip: [f64; 2], stepper: &mut Stepper) {
         match self {

@@ -3,8 +3,7 @@
 //! They are those of the plane with one more round of the hash, for z. In place of an angle points have a whole
 //! rotation.
 
-use alloc::{sync::Arc, vec::Vec};
-use core::f64::consts::TAU;
+use alloc::sync::Arc;
 
 use super::{
     lattice::Lattice,
@@ -13,13 +12,16 @@ use super::{
     set::SpaceSet,
 };
 use crate::{
-    Attribute, Attributes, Column, ScaleRange, VariantScales,
-    attribute::hash,
-    error::{Error, ErrorKind},
+    Attribute, Attributes,
+    attribute::{
+        Indices,
+        hash::{Hashed, of_row},
+    },
+    error::Error,
     lattice::seed::split_mix,
 };
 
-/// The attributes of the points of one set in space. Cheap to clone.
+/// The attributes of the points of one set in space.
 ///
 /// ```
 /// use strew_core::{Attributes, space::{SpaceSet, Table}};
@@ -32,124 +34,58 @@ use crate::{
 /// assert_eq!(columns.len(), 5);
 /// # Ok::<(), strew_core::Error>(())
 /// ```
-#[derive(Clone, Debug)]
-pub struct BoundAttributes {
-    lattice: Arc<Lattice>,
-    list: Attributes,
+pub type BoundAttributes = crate::BoundAttributes<PointId>;
+
+/// Its hash is that of the plane, under a key that z is hashed into.
+impl Hashed for PointId {
+    type Point = Point;
+
+    fn of(point: &Point) -> Self {
+        point.id
+    }
+
+    #[inline]
+    fn shares_row(&self, other: &Self) -> bool {
+        [self.y, self.z] == [other.y, other.z]
+    }
+
+    #[inline]
+    fn of_row(self, key: u64) -> u64 {
+        const LEVEL: u64 = 0xa076_1d64_78bd_642f;
+        let level = split_mix(key ^ (self.z as u64).wrapping_mul(LEVEL)).wrapping_add(key);
+        of_row(level, self.y)
+    }
+
+    #[inline]
+    fn column(self) -> i64 {
+        self.x
+    }
 }
 
-impl BoundAttributes {
-    pub(super) fn new(attributes: &Attributes, lattice: &Lattice) -> Result<Self, Error> {
-        for attribute in attributes.as_slice() {
-            let is_even = match attribute {
-                Attribute::Angle | Attribute::Kind(_) => true,
-                Attribute::VariantScale(scales) => scales.by_chance().is_none(),
-                _ => false,
-            };
-            if is_even {
-                let allowed = "rotation, scale, variant (by chance), rank or u1 to u16, in space";
-                let (kind, name) = (ErrorKind::Attribute, attribute.name());
-                return Err(Error::new(kind, "attribute", name, allowed));
-            }
+impl Indices<PointId> for Lattice {
+    fn rank(&self, id: PointId) -> f64 {
+        self.rank(id)
+    }
+
+    fn kind(&self, _: PointId) -> Option<u8> {
+        None
+    }
+}
+
+fn bound(attributes: &Attributes, lattice: &Lattice) -> Result<BoundAttributes, Error> {
+    for attribute in attributes.as_slice() {
+        let is_even = match attribute {
+            Attribute::Angle | Attribute::Kind(_) => true,
+            Attribute::VariantScale(scales) => scales.by_chance().is_none(),
+            _ => false,
+        };
+        if is_even {
+            let allowed = "rotation, scale, variant (by chance), rank or u1 to u16, in space";
+            return Err(attribute.refused(allowed));
         }
-        Ok(Self {
-            lattice: Arc::new(lattice.clone()),
-            list: attributes.clone(),
-        })
     }
-
-    /// One column per attribute, and four for a rotation, with one value per id. An id without a point has values as
-    /// well; its rank is the greatest.
-    #[must_use]
-    pub fn columns(&self, ids: impl IntoIterator<Item = PointId>) -> Vec<Column> {
-        let ids: Vec<PointId> = ids.into_iter().collect();
-        let mut columns = Vec::new();
-        for attribute in self.list.as_slice() {
-            self.push(attribute, &ids, &mut columns);
-        }
-        columns
-    }
-
-    /// The columns of some points; see [`columns`](Self::columns).
-    ///
-    /// ```
-    /// use strew_core::{Attributes, space::{SpaceSet, Table}};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// let points = set.chunk(8.0, [0, 0, 0])?.to_vec();
-    /// let u1 = set.attributes(&Attributes::new(vec!["u1".parse()?])?)?;
-    /// let mut columns = vec![];
-    /// u1.write_points(&points, &mut columns);
-    /// assert_eq!(columns[0].numbers().map(<[f64]>::len), Some(points.len()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn write_points(&self, points: &[Point], columns: &mut Vec<Column>) {
-        *columns = self.columns(points.iter().map(|point| point.id));
-    }
-
-    fn push(&self, attribute: &Attribute, ids: &[PointId], columns: &mut Vec<Column>) {
-        let seed = self.lattice.placement.seed;
-        let key = hash::key(seed, attribute.code());
-        let hashed = |key| ids.iter().map(move |&id| in_space(key, id));
-        columns.push(match attribute {
-            Attribute::Scale(range) => {
-                Column::Numbers(hashed(key).map(|bits| hash::scale(*range, bits)).collect())
-            }
-            Attribute::VariantScale(scales) => {
-                let variants = hashed(hash::key(seed, Attribute::VARIANT));
-                let pairs = hashed(key).zip(variants);
-                let scaled = pairs.map(|(bits, own)| hash::scale(range(scales, own), bits));
-                Column::Numbers(scaled.collect())
-            }
-            Attribute::Uniform(_) => Column::Numbers(hashed(key).map(hash::unit).collect()),
-            Attribute::Rank => {
-                Column::Numbers(ids.iter().map(|&id| self.lattice.rank(id)).collect())
-            }
-            Attribute::Variant(variants) => {
-                Column::Variants(hashed(key).map(|bits| variants.pick(bits)).collect())
-            }
-            Attribute::Rotation => {
-                let keys = [0, 1, 2].map(|i| hash::key(seed, Attribute::ROTATION + i));
-                let mut parts = [0; 4].map(|_| Vec::with_capacity(ids.len()));
-                for &id in ids {
-                    let all = rotation(keys.map(|key| hash::unit(in_space(key, id))));
-                    for (part, v) in parts.iter_mut().zip(all) {
-                        part.push(v);
-                    }
-                }
-                columns.extend(parts.map(Column::Numbers));
-                return;
-            }
-            // Refused when the list was bound.
-            Attribute::Angle | Attribute::Kind(_) => Column::Numbers(Vec::new()),
-        });
-    }
-}
-
-/// The hash of a point: that of the plane, under a key that z is hashed into.
-fn in_space(key: u64, id: PointId) -> u64 {
-    const LEVEL: u64 = 0xa076_1d64_78bd_642f;
-    let level = split_mix(key ^ (id.z as u64).wrapping_mul(LEVEL)).wrapping_add(key);
-    hash::in_row(hash::of_row(level, id.y), id.x)
-}
-
-/// The range of the scale of the variant that a hash picks.
-fn range(scales: &VariantScales, hash: u64) -> ScaleRange {
-    let picked = scales.by_chance().map_or(0, |variants| variants.pick(hash));
-    scales.range(picked)
-}
-
-/// A rotation as a unit quaternion x, y, z, w, uniform for uniform numbers (Shoemake, "Uniform random rotations", 1992).
-fn rotation([u, v, w]: [f64; 3]) -> [f64; 4] {
-    let (low, high) = (libm::sqrt(1.0 - u), libm::sqrt(u));
-    let (sine, cosine) = libm::sincos(TAU * v);
-    let (other_sine, other_cosine) = libm::sincos(TAU * w);
-    [
-        low * sine,
-        low * cosine,
-        high * other_sine,
-        high * other_cosine,
-    ]
+    let (seed, lattice) = (lattice.placement.seed, Arc::new(lattice.clone()));
+    Ok(BoundAttributes::of(attributes, seed, lattice))
 }
 
 impl SpaceSet {
@@ -167,7 +103,7 @@ impl SpaceSet {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
-        BoundAttributes::new(attributes, &self.lattice)
+        bound(attributes, &self.lattice)
     }
 }
 
@@ -185,7 +121,7 @@ impl Plan {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
-        BoundAttributes::new(attributes, &self.scope.lattice)
+        bound(attributes, &self.scope.lattice)
     }
 }
 
@@ -194,7 +130,7 @@ mod tests {
     use alloc::vec;
 
     use super::*;
-    use crate::space::Table;
+    use crate::{Column, space::Table};
 
     fn set() -> SpaceSet {
         let alpha = "sqrt(3)".parse().expect("a number");

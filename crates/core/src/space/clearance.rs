@@ -1,6 +1,6 @@
 //! The points that keep clear of other sets.
 
-use alloc::sync::Arc;
+use alloc::{boxed::Box, sync::Arc};
 use core::ops::Range;
 
 use super::{
@@ -9,8 +9,8 @@ use super::{
     mask::{Mask, Other},
     point::{Point, PointId},
     scope::Scope,
-    settled::{self, AnyWalk},
-    walk::few,
+    settled::{self, SettledWalk},
+    walk::{Walk, few},
 };
 use crate::{
     error::Error,
@@ -98,75 +98,68 @@ impl OtherSet<3> for Other {
     }
 }
 
-/// The tests of the points of a scope.
-#[derive(Clone, Debug)]
-pub(super) struct Clearance(Clear<Other, 3>);
-
-impl Clearance {
-    pub(super) fn new(scope: &Scope) -> Self {
-        Self(Clear::new(
-            &scope.clear,
-            Some(&scope.region),
-            scope.stop.clone(),
-        ))
+/// Removes the points of a batch of a scope that are too near others.
+pub(super) fn sift(scope: &Scope, clear: &mut Clear<Other, 3>, batch: &mut Batch) {
+    if clear.is_empty() || scope.stop.is_raised() {
+        return;
     }
-
-    /// Removes the points of a batch of a scope that are too near others.
-    pub(super) fn sift(&mut self, scope: &Scope, batch: &mut Batch) {
-        if self.0.is_empty() || scope.stop.is_raised() {
-            return;
-        }
-        let origin = batch.origin;
-        batch.retain(|place| {
-            let place = |axis| fixed(origin[axis]) + i64::from(place[axis]);
-            self.0.permits(scope.lattice.at([0, 1, 2].map(place)))
-        });
-    }
+    let origin = batch.origin;
+    batch.retain(|place| {
+        let place = |axis| fixed(origin[axis]) + i64::from(place[axis]);
+        clear.permits(scope.lattice.at([0, 1, 2].map(place)))
+    });
 }
 
-/// A walk over the points of a scope that its mask leaves.
-#[derive(Clone, Debug)]
-pub(super) struct Sifted {
-    walk: AnyWalk,
-    backend: Backend,
-    scope: Arc<Scope>,
-    clearance: Clearance,
+/// The sets that the points of a scope keep clear of.
+pub(super) fn clear_of(scope: &Scope) -> Clear<Other, 3> {
+    Clear::new(&scope.clear, Some(&scope.region), scope.stop.clone())
 }
 
-impl Sifted {
-    /// As [`AnyWalk::new`].
+/// A walk over the points of a scope, whether they settle or stay.
+#[derive(Clone, Debug)]
+pub(super) enum AnyWalk {
+    Still(Box<Walk>, Box<Clear<Other, 3>>),
+    Settled(Box<SettledWalk>),
+}
+
+impl AnyWalk {
+    /// As [`Walk::new`].
     pub(super) fn new(
         scope: Arc<Scope>,
         ranges: &[Range<i64>; 3],
         start: Option<[i64; 3]>,
         wants_ids: bool,
     ) -> Self {
-        Self {
-            walk: AnyWalk::new(scope.clone(), ranges, start, wants_ids),
-            clearance: Clearance::new(&scope),
-            scope,
-            backend: Backend::best(),
+        match SettledWalk::new(&scope, ranges, start) {
+            Some(walk) => Self::Settled(Box::new(walk)),
+            None => {
+                let clear = Box::new(clear_of(&scope));
+                Self::Still(Box::new(Walk::new(scope, ranges, start, wants_ids)), clear)
+            }
         }
     }
 
-    pub(super) fn backend(&self) -> Backend {
-        self.backend
-    }
-
     pub(super) fn set_backend(&mut self, backend: Backend) {
-        self.backend = backend;
-        self.walk.set_backend(backend);
+        match self {
+            Self::Still(walk, _) => walk.backend = backend,
+            Self::Settled(walk) => walk.pieces.settler.set_backend(backend),
+        }
     }
 
     /// Fills a batch with the next points, at least one. Returns false if there are none.
     pub(super) fn next(&mut self, out: &mut Batch) -> bool {
-        while self.walk.next(out) {
-            self.clearance.sift(&self.scope, out);
-            if !out.is_empty() {
-                return true;
+        match self {
+            Self::Still(walk, clear) => {
+                while walk.next(out) {
+                    sift(walk.scope(), clear, out);
+                    if !out.is_empty() {
+                        return true;
+                    }
+                }
+                false
             }
+            Self::Settled(walk) => walk.next(out),
         }
-        false
     }
 }
 
@@ -180,7 +173,7 @@ pub(super) fn point(lattice: &Lattice, mask: &Mask, id: PointId) -> Option<Point
     let volume = Volume::Region(Region::between(at, at.map(f64::next_up)));
     // Beyond the limit there are no points.
     let scope = Arc::new(Scope::new(lattice, mask, &volume, Stop::default()).ok()?);
-    let mut walk = Sifted::new(scope.clone(), &scope.all, None, true);
+    let mut walk = AnyWalk::new(scope.clone(), &scope.all, None, true);
     let mut batch = Batch::default();
     while walk.next(&mut batch) {
         let mut addresses = (0..batch.len()).map(|i| batch.address(i));

@@ -1,18 +1,18 @@
 //! Counting points, and finding their places by their numbers.
 
-use alloc::{sync::Arc, vec, vec::Vec};
+use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
 use super::{
     Batch, Volume,
-    clearance::{Clearance, Sifted},
+    clearance::{AnyWalk, clear_of, sift},
     closed,
     columns::{COLUMN_BITS, columns},
+    mask::Other,
     scope::{Scope, State},
-    settled::AnyWalk,
-    walk::few,
+    walk::{Walk, few},
 };
-use crate::table::FRACTION_BITS;
+use crate::{near::clear::Clear, settle::Pieces, table::FRACTION_BITS};
 
 /// The number of points of a scope at places of a box of the lattice. It is meaningless once the scope's flag is raised.
 pub(super) fn count(scope: &Arc<Scope>, ranges: &[Range<i64>; 3]) -> u128 {
@@ -23,14 +23,23 @@ pub(super) fn count(scope: &Arc<Scope>, ranges: &[Range<i64>; 3]) -> u128 {
     if scope.is_closed() {
         return closed::count(scope, &ranges) - scope.missing(&ranges);
     }
-    let mut clearance = Clearance::new(scope);
-    divide(scope, &mut clearance, ranges, scope.volume.as_ref())
+    let mut leaves = match Pieces::new(scope) {
+        Some(pieces) => Leaves::Settled(Box::new(pieces)),
+        None => Leaves::Still(clear_of(scope)),
+    };
+    divide(scope, &mut leaves, ranges, scope.volume.as_ref())
+}
+
+/// The ways to count point by point.
+enum Leaves {
+    Still(Clear<Other, 3>),
+    Settled(Box<Pieces<Scope, 3>>),
 }
 
 /// Counts by halves, until all points of a part lie inside or outside, or they are few.
 fn divide(
     scope: &Arc<Scope>,
-    clearance: &mut Clearance,
+    leaves: &mut Leaves,
     ranges: [Range<i64>; 3],
     volume: Option<&Volume>,
 ) -> u128 {
@@ -52,7 +61,7 @@ fn divide(
     let leaf = scope.leaf;
     // A little more than a leaf is not worth two.
     if side(longest) <= leaf + leaf / 2 {
-        return walked(scope, clearance, &ranges);
+        return leaves.count(scope, &ranges, near.as_ref());
     }
     // Parts that begin at multiples of the side of a leaf.
     let range = &ranges[longest];
@@ -66,20 +75,30 @@ fn divide(
     halves[0][longest].end = middle;
     halves[1][longest].start = middle;
     halves
-        .map(|half| divide(scope, clearance, half, near.as_ref()))
+        .map(|half| divide(scope, leaves, half, near.as_ref()))
         .iter()
         .sum()
 }
 
-/// Counts point by point.
-fn walked(scope: &Arc<Scope>, clearance: &mut Clearance, ranges: &[Range<i64>; 3]) -> u128 {
-    let mut walk = AnyWalk::new(scope.clone(), ranges, None, false);
-    let (mut batch, mut count) = (Batch::default(), 0);
-    while walk.next(&mut batch) {
-        clearance.sift(scope, &mut batch);
-        count += batch.len() as u128;
+impl Leaves {
+    fn count(
+        &mut self,
+        scope: &Arc<Scope>,
+        ranges: &[Range<i64>; 3],
+        near: Option<&Volume>,
+    ) -> u128 {
+        let clear = match self {
+            Self::Still(clear) => clear,
+            Self::Settled(pieces) => return pieces.count(ranges, near),
+        };
+        let mut walk = Walk::new(scope.clone(), ranges, None, false);
+        let (mut batch, mut count) = (Batch::default(), 0);
+        while walk.next(&mut batch) {
+            sift(scope, clear, &mut batch);
+            count += batch.len() as u128;
+        }
+        count
     }
-    count
 }
 
 /// A part of the points, one after another in the order: all of a box of the lattice.
@@ -162,7 +181,7 @@ fn walk_to(
     numbers: &[u128],
     found: &mut Vec<Option<[i64; 3]>>,
 ) {
-    let mut walk = Sifted::new(scope.clone(), ranges, None, true);
+    let mut walk = AnyWalk::new(scope.clone(), ranges, None, true);
     let (mut batch, mut start) = (Batch::default(), before);
     let mut numbers = numbers.iter().peekable();
     while numbers.peek().is_some() && walk.next(&mut batch) {
@@ -182,7 +201,7 @@ pub(super) fn keep(scope: &Arc<Scope>) -> Batch {
     if let Some(few) = few(scope) {
         return few;
     }
-    let mut walk = Sifted::new(scope.clone(), &scope.all, None, true);
+    let mut walk = AnyWalk::new(scope.clone(), &scope.all, None, true);
     let mut kept = Batch::default();
     let mut batch = Batch::default();
     let mut is_first = true;
@@ -229,7 +248,11 @@ mod tests {
         let scope = Arc::new(scope.expect("near"));
         let inner = [-20..21, -9..30, -25..7];
         assert!(matches!(scope.state(&inner, None), State::In));
-        let walked = walked(&scope, &mut Clearance::new(&scope), &inner);
+        let mut walk = AnyWalk::new(scope.clone(), &inner, None, false);
+        let (mut batch, mut walked) = (Batch::default(), 0);
+        while walk.next(&mut batch) {
+            walked += batch.len() as u128;
+        }
         assert!(walked > 100);
         assert_eq!(count(&scope, &inner), walked);
     }

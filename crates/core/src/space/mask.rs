@@ -16,7 +16,7 @@ pub(super) struct Mask {
 
 /// A set of space that others keep clear of.
 #[derive(Clone, Debug)]
-pub(super) struct Other {
+pub(crate) struct Other {
     pub(super) lattice: Lattice,
     pub(super) mask: Mask,
 }

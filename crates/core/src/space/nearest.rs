@@ -4,7 +4,7 @@ use alloc::{sync::Arc, vec::Vec};
 
 use super::{
     Batch, Region, Volume,
-    clearance::Sifted,
+    clearance::AnyWalk,
     lattice::{LATTICE_LIMIT, Lattice, fixed},
     mask::Mask,
     point::{Point, PointId},
@@ -109,7 +109,7 @@ fn around(
     ];
     let volume = Volume::Region(Region::between(min, max));
     let scope = Arc::new(Scope::new(lattice, mask, &volume, visits.stop().clone())?);
-    let mut walk = Sifted::new(scope.clone(), &scope.all, None, true);
+    let mut walk = AnyWalk::new(scope.clone(), &scope.all, None, true);
     let (mut batch, mut found) = (Batch::default(), Vec::new());
     let farthest = farthest(radius);
     while walk.next(&mut batch) {

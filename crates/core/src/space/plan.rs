@@ -5,7 +5,7 @@ use core::{marker::PhantomData, ops::Range};
 
 use super::{
     Batch, Cursor, Region, Volume,
-    clearance::Sifted,
+    clearance::AnyWalk,
     count,
     format::{Format, write},
     lattice::Lattice,
@@ -208,7 +208,8 @@ enum Source<F: Format> {
 /// A walk and the batch that it filled last.
 #[derive(Clone, Debug)]
 struct Walking {
-    walk: Sifted,
+    walk: AnyWalk,
+    backend: Backend,
     batch: Batch,
     /// The points of the batch that were written.
     written: usize,
@@ -222,9 +223,10 @@ impl<F: Format> Blocks<F> {
         let source = if is_plain && scope.clear.is_empty() {
             Source::Rows(Box::new(Rows::new(scope.clone(), start)))
         } else {
-            let walk = Sifted::new(scope.clone(), &scope.all, start, F::HAS_IDS);
+            let walk = AnyWalk::new(scope.clone(), &scope.all, start, F::HAS_IDS);
             Source::Walk(Box::new(Walking {
                 walk,
+                backend: Backend::best(),
                 batch: Batch::default(),
                 written: 0,
             }))
@@ -273,7 +275,10 @@ impl<F: Format> Blocks<F> {
     pub fn with_backend(mut self, backend: Backend) -> Self {
         match &mut self.source {
             Source::Rows(rows) => rows.backend = backend,
-            Source::Walk(walking) => walking.walk.set_backend(backend),
+            Source::Walk(walking) => {
+                walking.backend = backend;
+                walking.walk.set_backend(backend);
+            }
             Source::Kept(..) => {}
         }
         self
@@ -310,6 +315,7 @@ impl<F: Format> Blocks<F> {
                 Source::Walk(walking) => {
                     let Walking {
                         walk,
+                        backend,
                         batch,
                         written,
                     } = &mut **walking;
@@ -324,13 +330,7 @@ impl<F: Format> Blocks<F> {
                     let number = room.len().min(batch.len() - *written);
                     let from = *written;
                     *written += number;
-                    write::<F>(
-                        &self.scope,
-                        batch,
-                        from,
-                        walk.backend(),
-                        &mut room[..number],
-                    );
+                    write::<F>(&self.scope, batch, from, *backend, &mut room[..number]);
                     filled += number;
                     // The cursor is the address of the next point.
                     if *written == batch.len() && filled as u128 != self.left {

@@ -4,21 +4,25 @@
 //! all of them settle (`settle/` has the steps), and those of the tile that end inside are given in the order of
 //! their addresses. Pieces and tiles decide only the cost: a point goes to the same place in each.
 
-use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
+use alloc::{sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
 use super::{
-    Batch,
+    Batch, Region, Volume, closed,
     columns::{COLUMN_BITS, columns, coordinates},
     lattice::{Lattice, fixed},
+    mask::Other,
     point::{Point, PointId},
-    scope::{Scope, State, TILE, common, power, tile},
+    scope::{Scope, TILE, common, power, tile},
     walk::{Walk, few},
 };
 use crate::{
     kernel::Backend,
     lattice::{Grade, Keep, Settle},
-    settle::{LEAST_IN_SPACE, List, Listed, Moves, Placed, Settler, Settling},
+    near::clear::ClearOf,
+    settle::{LEAST_IN_SPACE, List, Listed, Moves, Pieces, Placed, Request, Settler, Settling},
+    shape::Prism,
+    stop::Stop,
     table::{FRACTION_BITS, Mix},
 };
 
@@ -29,7 +33,7 @@ const MOST: f64 = 400_000.0;
 
 /// Lists points of space where they were placed.
 #[derive(Clone, Debug)]
-pub(super) struct Lister(Lattice);
+pub(crate) struct Lister(Lattice);
 
 /// The place and the address of a point relative to the origin of a batch.
 type Found = ([i32; 3], [i32; 3]);
@@ -95,7 +99,7 @@ impl Settling<3> for Lister {
         within: &[Range<i128>; 3],
         corner: [i128; 3],
         (grade, backend): (&Grade<3>, Backend),
-        mut visit: impl FnMut(List<'_, Found, 3>),
+        visit: &mut dyn FnMut(List<'_, Found, 3>),
     ) {
         if within.iter().any(Range::is_empty) {
             return;
@@ -131,17 +135,60 @@ impl Settling<3> for Lister {
     }
 }
 
+impl Request<3> for Scope {
+    type Set = Lister;
+    type Outline = Prism;
+    type Other = Other;
+
+    fn settler(&self) -> Option<Settler<Lister, 3>> {
+        settler(&self.lattice)
+    }
+
+    fn bounds(&self) -> [Range<i128>; 3] {
+        (self.bounds.clone()).map(|range| range.start.into()..range.end.into())
+    }
+
+    fn region(&self) -> &Region {
+        &self.region
+    }
+
+    fn shape(&self) -> Option<&Volume> {
+        self.volume.as_ref()
+    }
+
+    fn others(&self) -> &[ClearOf<Other>] {
+        &self.clear
+    }
+
+    fn stop(&self) -> &Stop {
+        &self.stop
+    }
+
+    fn places(&self, addresses: &[Range<i64>; 3]) -> [Range<i128>; 3] {
+        (self.placed(addresses)).map(|[least, most]| least.into()..i128::from(most) + 1)
+    }
+
+    fn shows(&self, address: [i64; 3], share: f64) -> bool {
+        self.lattice.shows(PointId::of(address), share)
+    }
+
+    fn at(&self, place: [i128; 3]) -> [f64; 3] {
+        self.lattice.at(place.map(|k| k as i64))
+    }
+
+    fn count_all(&self, addresses: &[Range<i64>; 3]) -> Option<u128> {
+        let is_known = self.lattice.grade.is_none();
+        is_known.then(|| closed::count_all(&self.lattice, addresses) - self.missing(addresses))
+    }
+}
+
 /// A walk over the points of a scope that settle.
 #[derive(Clone, Debug)]
 pub(super) struct SettledWalk {
-    scope: Arc<Scope>,
-    settler: Settler<Lister, 3>,
+    pub(super) pieces: Pieces<Scope, 3>,
     /// The addresses that are walked, and the first one unless that is the first of all.
     ranges: [Range<i64>; 3],
     start: Option<[i64; 3]>,
-    /// The box in which points lie in the end, and the one in which these were placed.
-    bounds: [Range<i128>; 3],
-    around: [Range<i128>; 3],
     /// The height of pieces and the sides of tiles.
     sides: [i64; 2],
     /// The columns along x and y, and where the next piece begins.
@@ -156,29 +203,22 @@ impl SettledWalk {
         ranges: &[Range<i64>; 3],
         start: Option<[i64; 3]>,
     ) -> Option<Self> {
-        let settler = settler(&scope.lattice)?;
+        let pieces = Pieces::new(scope)?;
         let ranges = scope.clip(ranges);
         let columns = [0, 1].map(|axis| columns(&ranges[axis]));
-        let bounds = (scope.bounds.clone()).map(|range| range.start.into()..range.end.into());
         let at = match start {
             Some([x, y, z]) => [x >> COLUMN_BITS, y >> COLUMN_BITS, z],
             None => [columns[0].start, columns[1].start, ranges[2].start],
         };
-        let around = settler.moves.around(&bounds);
         let along = [0, 1].map(|axis| ranges[axis].end - ranges[axis].start);
         let density = scope.lattice.table.map().alpha().set_side_f64();
         let density = density * density * density;
+        let (moves, around) = (&pieces.settler.moves, &pieces.inside.around);
         Some(Self {
-            sides: [
-                height(&settler.moves, &around, along, density),
-                tile(&settler.moves, &around),
-            ],
-            scope: scope.clone(),
-            around,
-            settler,
+            sides: [height(moves, around, along, density), tile(moves, around)],
+            pieces,
             ranges,
             start,
-            bounds,
             columns,
             at,
         })
@@ -215,7 +255,7 @@ impl SettledWalk {
     fn next_piece(&mut self) -> Option<[Range<i64>; 3]> {
         let [xs, ys] = &self.columns;
         let [x, y, z] = self.at;
-        if self.scope.stop.is_raised() || !xs.contains(&x) || !ys.contains(&y) {
+        if self.pieces.inside.request.stop.is_raised() || !xs.contains(&x) || !ys.contains(&y) {
             return None;
         }
         let [along_x, along_y, along_z] = &self.ranges;
@@ -236,38 +276,18 @@ impl SettledWalk {
 
     /// Adds the points of a tile that end inside, relative to an origin.
     fn settle(&mut self, tile: &[Range<i64>; 3], origin: [i64; 3], found: &mut Vec<Found>) {
-        let scope = &self.scope;
-        let lattice = &scope.lattice;
-        if tile.iter().any(Range::is_empty) || scope.stop.is_raised() {
+        if self.pieces.inside.request.stop.is_raised() {
             return;
         }
-        let volume = match scope.state(tile, scope.volume.as_ref()) {
-            State::Out => return,
-            State::In => None,
-            State::Test(volume) => volume,
-        };
-        let places = scope.placed(tile);
-        let within = [0, 1, 2].map(|axis| {
-            let ([least, most], around) = (places[axis].map(i128::from), &self.around[axis]);
-            around.start.max(least)..around.end.min(most + 1)
-        });
         let column = |[x, y, _]: [i64; 3]| [x >> COLUMN_BITS, y >> COLUMN_BITS];
         let start = self.start.filter(|at| column(*at) == column(origin));
         let reversed = |[x, y, z]: [i64; 3]| [z, y, x];
-        let wants = |placed: &Placed<3>| {
-            (0..3).all(|axis| tile[axis].contains(&placed.address[axis]))
-                && start.is_none_or(|start| reversed(placed.address) >= reversed(start))
-                && placed.side(&self.bounds) != Some(false)
-                && lattice.shows(PointId::of(placed.address), placed.share)
-        };
-        self.settler.settle(&within, wants, |settled| {
-            let place = settled.place.map(|k| k as i64);
-            let is_inside = (0..3).all(|axis| scope.bounds[axis].contains(&place[axis]));
-            let holds = |volume: &super::Volume| volume.contains(lattice.at(place));
-            if is_inside && volume.as_ref().is_none_or(holds) {
+        self.pieces.settle(tile, None, &mut |settled| {
+            let address = settled.address;
+            if start.is_none_or(|start| reversed(address) >= reversed(start)) {
                 found.push((
-                    [0, 1, 2].map(|axis| (place[axis] - fixed(origin[axis])) as i32),
-                    [0, 1, 2].map(|axis| (settled.address[axis] - origin[axis]) as i32),
+                    [0, 1, 2].map(|i| (settled.place[i] as i64 - fixed(origin[i])) as i32),
+                    [0, 1, 2].map(|i| (address[i] - origin[i]) as i32),
                 ));
             }
         });
@@ -289,46 +309,9 @@ fn height(moves: &Moves<3>, within: &[Range<i128>; 3], sides: [i64; 2], density:
 /// The point of an address, or `None` if there is none.
 pub(super) fn point(lattice: &Lattice, id: PointId) -> Option<Point> {
     let placed = lattice.place(id)?;
-    let is = |placed: &Placed<3>| placed.address == id.lattice();
+    let mut is = |placed: &Placed<3>| placed.address == id.lattice();
     let settled = settler(lattice);
-    let settled = settled.and_then(|mut settler| settler.settled(placed.map(i128::from), is));
+    let settled = settled.and_then(|mut settler| settler.settled(placed.map(i128::from), &mut is));
     let place = settled.map_or(placed, |place| place.map(|k| k as i64));
     Some(lattice.point_at(id, place))
-}
-
-/// A walk over the points of a scope, whether they settle or stay.
-#[derive(Clone, Debug)]
-pub(super) enum AnyWalk {
-    Still(Box<Walk>),
-    Settled(Box<SettledWalk>),
-}
-
-impl AnyWalk {
-    /// As [`Walk::new`].
-    pub(super) fn new(
-        scope: Arc<Scope>,
-        ranges: &[Range<i64>; 3],
-        start: Option<[i64; 3]>,
-        wants_ids: bool,
-    ) -> Self {
-        match SettledWalk::new(&scope, ranges, start) {
-            Some(walk) => Self::Settled(Box::new(walk)),
-            None => Self::Still(Box::new(Walk::new(scope, ranges, start, wants_ids))),
-        }
-    }
-
-    pub(super) fn set_backend(&mut self, backend: Backend) {
-        match self {
-            Self::Still(walk) => walk.backend = backend,
-            Self::Settled(walk) => walk.settler.set_backend(backend),
-        }
-    }
-
-    /// Fills a batch with the next points, at least one. Returns false if there are none.
-    pub(super) fn next(&mut self, out: &mut Batch) -> bool {
-        match self {
-            Self::Still(walk) => walk.next(out),
-            Self::Settled(walk) => walk.next(out),
-        }
-    }
 }

@@ -203,11 +203,6 @@ impl TurnedTable {
         }
     }
 
-    /// The table as it is.
-    pub(crate) const fn table(&self) -> &TableOf<Displacement> {
-        &self.table
-    }
-
     /// The least and the greatest displacement along x and y.
     pub(crate) const fn reach(&self) -> [[i32; 2]; 2] {
         self.reach

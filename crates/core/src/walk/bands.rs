@@ -241,11 +241,8 @@ impl Rows {
         }
     }
 
-    /// Moves to the next rows: the end of the piece that holds the next row, or further.
-    pub(super) fn take(
-        &mut self,
-        sure: impl FnOnce(i64) -> Range<i64>,
-    ) -> Option<(i64, Range<i64>, bool)> {
+    /// Moves to the next rows: the end of the piece that holds the next row.
+    pub(super) fn take(&mut self) -> Option<(i64, Range<i64>)> {
         if self.is_new_band() {
             self.band = self.ahead.next()?;
             self.next = self.all.start;
@@ -254,15 +251,9 @@ impl Rows {
             }
         }
         let start = self.next;
-        let sure = sure(self.band);
-        let is_sure = sure.contains(&start);
-        let end = if is_sure {
-            sure.end
-        } else {
-            (start.div_euclid(PIECE) + 1) * PIECE
-        };
+        let end = (start.div_euclid(PIECE) + 1) * PIECE;
         self.next = end.min(self.all.end);
-        Some((self.band, start..self.next, is_sure))
+        Some((self.band, start..self.next))
     }
 
     /// Whether the next rows are the first of a band.

@@ -5,8 +5,7 @@
 //!
 //! `blocks` fills blocks of points of a window or a tile. Four walks make the points: `rows` in boxes and areas, `graded`
 //! in a field, `settled` where points settle, and `few` has those of small plans, which were found when `counted`
-//! counted them. `bands` is where a walk is, and has the tiles that threads fill independently; `inside` is what points
-//! that settle must meet, `sifting` the state of a walk in a sieve, and `template` holds the columns that the rows of a
+//! counted them. `bands` is where a walk is, and has the tiles that threads fill independently; `sifting` the state of a walk in a sieve, and `template` holds the columns that the rows of a
 //! band share.
 
 mod bands;
@@ -15,7 +14,6 @@ pub(crate) mod count;
 mod counted;
 mod few;
 mod graded;
-mod inside;
 mod rows;
 pub(crate) mod scope;
 mod settled;

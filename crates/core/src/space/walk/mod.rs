@@ -83,6 +83,10 @@ impl Walk {
         }
     }
 
+    pub(super) fn scope(&self) -> &Scope {
+        &self.course.scope
+    }
+
     /// Fills a batch with the next points, at least one. Returns false if there are none.
     pub(super) fn next(&mut self, out: &mut Batch) -> bool {
         loop {
