@@ -215,7 +215,7 @@ impl<R: Request<D>, const D: usize> Pieces<R, D> {
         let mut number = 0;
         // By tile: the box of the points that have to settle.
         let mut unsure: Vec<Option<[Range<i128>; D]>> = vec![None; states.len()];
-        settler.list(within, &mut |placed| {
+        settler.list(within, |placed| {
             if inside.wants(addresses, &placed) {
                 match decide(&placed) {
                     Some(is_inside) => number += u128::from(is_inside),

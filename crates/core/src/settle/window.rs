@@ -162,7 +162,7 @@ impl<S: Settling<D>, const D: usize> Settler<S, D> {
     }
 
     /// Calls `visit` for every point that was placed in a box.
-    pub(crate) fn list(&mut self, within: &[Range<i128>; D], visit: &mut dyn FnMut(Placed<D>)) {
+    pub(crate) fn list(&mut self, within: &[Range<i128>; D], mut visit: impl FnMut(Placed<D>)) {
         let (unit, shift) = (self.moves.unit, self.moves.shift);
         let corner = within.each_ref().map(|range| range.start);
         let by = (&self.moves.grade, self.backend);

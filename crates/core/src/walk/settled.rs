@@ -265,8 +265,9 @@ pub(super) fn count_settled(mut pieces: Pieces, mut mark: impl FnMut(PointId, u1
             let Range { start: y, end } = rows;
             let piece = [clip_to_band(band, &scope.x.all), rows];
             let known = pieces.all.known(&piece, pieces.near.as_ref());
-            let middle = y.midpoint(end).div_euclid(PIECE) * PIECE;
-            if known.is_none() && y < middle {
+            let [next, middle] = [y + PIECE, y.midpoint(end)].map(|v| v.div_euclid(PIECE) * PIECE);
+            let middle = middle.max(next);
+            if known.is_none() && middle < end {
                 open.extend([middle..end, y..middle]);
                 continue;
             }
