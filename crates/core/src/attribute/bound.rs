@@ -37,13 +37,6 @@ pub enum Column {
 
 impl Column {
     /// The numbers, unless this is a column of variants.
-    ///
-    /// ```
-    /// use strew_core::Column;
-    ///
-    /// assert_eq!(Column::Numbers(vec![0.5]).numbers(), Some(&[0.5][..]));
-    /// assert_eq!(Column::Variants(vec![1]).numbers(), None);
-    /// ```
     #[must_use]
     pub fn numbers(&self) -> Option<&[f64]> {
         match self {
@@ -53,16 +46,6 @@ impl Column {
     }
 
     /// The indices of variants, unless this is a column of numbers.
-    ///
-    /// ```
-    /// use strew_core::{Column, Variants};
-    ///
-    /// let kinds: Variants = "oak:3,birch:1".parse()?;
-    /// let column = Column::Variants(vec![1, 0]);
-    /// let indices = column.variants().expect("a column of variants");
-    /// assert_eq!(kinds.name(indices[0]), Some("birch"));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn variants(&self) -> Option<&[u32]> {
         match self {
@@ -225,18 +208,6 @@ impl<Id: Hashed> BoundAttributes<Id> {
     }
 
     /// One column per attribute, and four for a rotation (x, y, z and w of a unit quaternion), one value per id.
-    ///
-    /// ```
-    /// use strew_core::{Attributes, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).seed(7).chunk(20.0, [0, 0])?;
-    /// let points = plan.to_vec();
-    /// let angle = plan.attributes(&Attributes::new(vec!["angle".parse()?])?)?;
-    /// let columns = angle.columns(points.iter().map(|point| point.id));
-    /// assert_eq!(columns[0].numbers().map(<[f64]>::len), Some(points.len()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn columns<I>(&self, ids: I) -> Vec<Column>
     where
@@ -248,20 +219,6 @@ impl<Id: Hashed> BoundAttributes<Id> {
     }
 
     /// Replaces `columns` by those of [`columns`](Self::columns), reusing their memory: faster for block after block.
-    ///
-    /// ```
-    /// use strew_core::{Attributes, PointId, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let rank = Attributes::new(vec!["rank".parse()?])?;
-    /// let rank = PointSet::new(table).attributes(&rank)?;
-    /// let mut columns = Vec::new();
-    /// for x in 0..3 {
-    ///     rank.write((0..4).map(|y| PointId { x, y }), &mut columns);
-    ///     assert_eq!(columns[0].numbers().map(<[f64]>::len), Some(4));
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn write(&self, ids: impl Iterator<Item = Id>, columns: &mut Vec<Column>) {
         let width = |bound: &Bound| bound.attribute.columns();
         let number = self.list.iter().map(width).sum();
@@ -325,19 +282,6 @@ impl<Id: Hashed> BoundAttributes<Id> {
     }
 
     /// Replaces `columns` by the values of some points; see [`write`](Self::write).
-    ///
-    /// ```
-    /// use strew_core::{Attributes, Point, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).seed(7).chunk(20.0, [0, 0])?;
-    /// let angle = plan.attributes(&Attributes::new(vec!["angle".parse()?])?)?;
-    /// let (mut block, mut columns) = ([Point::default(); 64], Vec::new());
-    /// let filled = plan.blocks_points().fill(&mut block);
-    /// angle.write_points(&block[..filled], &mut columns);
-    /// assert_eq!(columns[0].numbers().map(<[f64]>::len), Some(64));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn write_points(&self, points: &[Id::Point], columns: &mut Vec<Column>) {
         self.write(points.iter().map(Id::of), columns);
     }
