@@ -10,7 +10,6 @@ use rounds::{Turns, fill_all, filling, micros, size, timed};
 use strew_core::{
     Error, F32, PointSet, Raster, Region,
     field::{Edges, FieldSpec, Filter, Marks, Noise, Pixels},
-    server,
 };
 
 mod rounds;
@@ -148,7 +147,7 @@ fn masked(set: &PointSet) {
         let region = square(size as f64 * part);
         let (plan, counted) = timed(|| graded.within(region).expect("near"));
         let (_, filled) = timed(|| fill_all::<F32>(&plan, &mut vec![[0f32; 2]; BLOCK]));
-        let candidates = || server::candidates(&graded, region, 8192).expect("near");
+        let candidates = || graded.candidates(region, 8192).expect("near");
         let (candidates, estimated) = timed(candidates);
         let [counted, filled, estimated] = [counted, filled, estimated].map(|v| 1e3 * v);
         println!(

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use strew_core::{
     Area, Circle, ErrorKind, F32, Field, Offsets, Point, PointSet, Points, Raster, Region, Table,
     field::{Edges, FieldSpec, Filter, Marks, Pixels},
-    server::{self, Stop},
+    server::Stop,
 };
 use subject::{
     all, any_area, any_box, any_placement, definition,
@@ -247,7 +247,7 @@ fn no_number_is_sought_where_a_field_leaves_nothing() {
     let thin = Region::new([0.0, 0.0], [0.2, 274.0]).expect("ordered");
     let beyond = FieldSpec::radial([16.0, 20.0], [2.0, 10.0], [1.0, 0.0]).expect("valid");
     let refused = |set: &PointSet, least: f64| {
-        let error = server::exactly(set, 800, &thin.into(), least, &Stop::default());
+        let error = set.exactly_until(800, thin, least, &Stop::default());
         let error = error.expect_err("nothing");
         (error.kind(), error.problem().to_owned())
     };
@@ -266,7 +266,7 @@ fn numbers_are_found_in_every_field() {
     for (i, field) in fields().iter().enumerate() {
         let set = PointSet::new(tables()[0].clone()).seed(5);
         let set = set.in_field(Shared(field.clone(), i));
-        let plan = server::exactly(&set, 5000, &region.into(), 0.05, &Stop::default());
+        let plan = set.exactly_until(5000, region, 0.05, &Stop::default());
         // Field 4 is 0 everywhere.
         assert_eq!(
             plan.ok().map(|plan| plan.to_vec().len()),

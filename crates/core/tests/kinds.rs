@@ -5,8 +5,7 @@ use crate::subject;
 use proptest::prelude::*;
 use strew_core::{
     Attribute, Attributes, Circle, ErrorKind, Kinds, Point, PointId, PointSet, Points, Region,
-    ScaleRange, Variants,
-    server::{self, Stop},
+    ScaleRange, Variants, server::Stop,
 };
 use subject::{
     all, any_area, any_box, any_placement, definition,
@@ -119,7 +118,7 @@ proptest! {
         let is_own = |point: &&Point| set.kind_of(point.id) == Some(kind);
         let expected: Vec<Point> = whole.iter().filter(is_own).copied().collect();
         agree(&only(&set, kind), area.clone(), &expected, parts);
-        let counts = server::kind_counts(&set, area, &Stop::default()).expect("near");
+        let counts = set.kind_counts_until(&area, &Stop::default()).expect("near");
         prop_assert_eq!(counts[usize::from(kind)], expected.len() as u128);
         prop_assert_eq!(counts.iter().sum::<u128>(), whole.len() as u128);
     }
@@ -175,7 +174,7 @@ fn previews_and_chunks_are_of_the_kind() {
     let set = PointSet::new(tables()[1].clone()).seed(3);
     let own = only(&set, 1);
     let plan = own.chunk(60.0, [-2, 1]).expect("near");
-    let preview = server::preview(&plan, 2.0).expect("in range");
+    let preview = plan.preview(2.0).expect("in range");
     let points = all::<Points>(&preview, 64);
     let other = set.spacing(2.0).expect("in range");
     assert!(points.len() > 50);
@@ -203,7 +202,7 @@ fn kinds_that_are_not_there_are_refused() {
     assert_eq!(plain.kind_of(PointId { x: 0, y: 0 }), None);
     assert_eq!(plain.least_distance_of(0, 0), None);
     let area = Circle::new([0.0; 2], 5.0).expect("round");
-    assert_eq!(plain.kind_counts(area).expect("near"), []);
+    assert!(plain.kind_counts(area).expect("near").is_empty());
 }
 
 #[test]

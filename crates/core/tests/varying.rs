@@ -6,9 +6,7 @@ use std::sync::Arc;
 
 use proptest::prelude::*;
 use strew_core::{
-    ErrorKind, Field, Point, PointId, PointSet, Table, VaryingKinds,
-    server::{self, Stop},
-    table::Ranks,
+    ErrorKind, Field, Point, PointId, PointSet, Table, VaryingKinds, server::Stop, table::Ranks,
 };
 use subject::{
     any_area, any_placement, definition,
@@ -135,7 +133,7 @@ proptest! {
         let points = within(&subject.plain, area.clone());
         prop_assert_eq!(&within(&varied, area.clone()), &points);
         let defined = Subject { plain: unthinned, ..subject };
-        let counts = server::kind_counts(&varied, area.clone(), &Stop::default()).expect("near");
+        let counts = varied.kind_counts_until(&area.clone(), &Stop::default()).expect("near");
         for kind in 0..defined.kinds() {
             let expected = defined.expected(&points, kind);
             let own = varied.clone().only(kind).expect("a kind");

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use strew_core::{Plan, server};
+use strew_core::Plan;
 use strew_error::{Error, Fault};
 
 use super::{
@@ -131,7 +131,7 @@ impl Frame {
                 let fault = Fault::new("format", "png", detail, allowed);
                 return Err(fault.into());
             };
-            let plan = server::preview(plan, coarse).map_err(EncodeError::of)?;
+            let plan = plan.preview(coarse).map_err(EncodeError::of)?;
             Ok(Part {
                 plan: Arc::new(plan),
                 ..part

@@ -7,9 +7,7 @@ use std::{fmt, sync::Arc};
 
 use strew_core::{
     Attributes, Blocks, BoundAttributes, Error, PeriodicBlocks, PeriodicPlan, Plan, Point, Points,
-    Region,
-    server::{self, Stop},
-    space,
+    Region, server::Stop, space,
 };
 
 use crate::place::{Height, Located, Mark};
@@ -150,8 +148,8 @@ impl Source for Plan {
     }
 
     fn marks(&self, numbers: &[u128]) -> Vec<Option<Mark>> {
-        let windows = server::windows(self, numbers).into_iter();
-        windows.map(|window| window.mark()).collect()
+        let cursors = self.cursors(numbers).into_iter();
+        cursors.map(|cursor| cursor.map(Into::into)).collect()
     }
 
     fn beginning(&self) -> Option<Mark> {
@@ -175,7 +173,7 @@ impl Source for Plan {
     }
 
     fn stopped_by(&self, stop: &Stop) -> Arc<dyn Source> {
-        Arc::new(server::stopped_by(self.clone(), stop.clone()))
+        Arc::new(self.clone().stopped_by(stop.clone()))
     }
 }
 

@@ -8,8 +8,7 @@ use strew_catalog::{
 };
 use strew_config::Limits;
 use strew_core::{
-    Area, Cursor, ErrorKind, Placement, Plan, PointId, PointSet, Spacing,
-    server::{self, Stop},
+    Area, Cursor, ErrorKind, Placement, Plan, PointId, PointSet, Spacing, server::Stop,
     space::SpaceSet,
 };
 use strew_error::Error;
@@ -101,7 +100,7 @@ impl<'a> Planner<'a> {
                 let cursor = here.map_or_else(nothing, |token| token.mark.in_plane());
                 let plan = selection.set.resume(selection.area.clone(), cursor);
                 let plan = plan.map_err(|error| region.too_far(spacing, &error))?;
-                let plan = server::stopped_by(plan, self.stop.clone());
+                let plan = plan.stopped_by(self.stop.clone());
                 match set.amount {
                     // The spacing may give a few points more.
                     Amount::Count(count) => {
@@ -113,7 +112,8 @@ impl<'a> Planner<'a> {
             }
             (Ok(spacing), _) => {
                 self.check_rows(&selection, 1.0 + effort::kinds(set))?;
-                let plan = server::within(&selection.set, selection.area.clone(), self.stop);
+                let area = selection.area.clone();
+                let plan = selection.set.within_until(area, self.stop.clone());
                 plan.map_err(|error| region.too_far(spacing, &error))?
             }
             (Err(count), here) => {
@@ -122,12 +122,11 @@ impl<'a> Planner<'a> {
                 plan.window(start, is_over.then_some(0))
             }
         };
-        let kept = server::kept(&plan);
-        let plan = match self.kept + kept > MOST_KEPT {
-            true => server::forgetting(plan),
+        let plan = match self.kept + plan.kept() > MOST_KEPT {
+            true => plan.forgetting(),
             false => plan,
         };
-        self.kept += server::kept(&plan);
+        self.kept += plan.kept();
         let spacing = plan.placement().spacing;
         let candidates = match set.field {
             Some(_) => {
@@ -217,12 +216,12 @@ impl<'a> Planner<'a> {
                     let rows = rows as u128;
                     return Err(Error::TooManyRows { rows, limit });
                 }
-                server::period(&points, self.stop).map_err(unfinished)?
+                points.plan_until(self.stop).map_err(unfinished)?
             }
         };
         let kinds = match &set.kinds {
             Some(kinds) if cursor.is_none() => {
-                let counts = server::kinds_of_period(&points, self.stop).map_err(unfinished)?;
+                let counts = points.kind_counts_until(self.stop).map_err(unfinished)?;
                 let count = |name: &str| {
                     counts
                         .get(usize::from(kinds.variants.number(name)?))
@@ -261,8 +260,9 @@ impl<'a> Planner<'a> {
     ) -> Result<Vec<u128>, Error> {
         let set = selection.set.clone().placed(plan.placement());
         let unfinished = |_| Error::Internal("a plan was stopped before its request ended");
-        let mut counts =
-            server::kind_counts(&set, selection.area.clone(), self.stop).map_err(unfinished)?;
+        let mut counts = set
+            .kind_counts_until(&selection.area, self.stop)
+            .map_err(unfinished)?;
         // A number of points can leave out a few that lie inside.
         let beyond = plan.next_cursor().map(|next| plan.from_cursor(next));
         for point in beyond.iter().flat_map(Plan::iter) {
@@ -317,7 +317,7 @@ impl<'a> Planner<'a> {
         let Selection {
             set: points, area, ..
         } = &*selection;
-        let plan = server::exactly(points, count.into(), area, least, self.stop);
+        let plan = points.exactly_until(count.into(), area.clone(), least, self.stop);
         plan.map_err(|error| self.no_count(set, count, (points.placement().spacing, &error)))
     }
 

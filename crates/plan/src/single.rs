@@ -5,7 +5,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use strew_core::{
     ErrorKind, Member, Neighbor, Point, PointId, PointSet,
-    server::{self, Stop, Visits},
+    server::{Stop, Visits},
     space::{self, SpaceSet},
 };
 use strew_encode::{Attributes as _, Column, Height, Kind, Located, Place, Values};
@@ -180,8 +180,8 @@ fn in_plane(
     visits: &Visits,
 ) -> Result<Vec<Neighbor>, Error> {
     let found = match (nearest.k, nearest.radius) {
-        (None, Some(radius)) => server::around(points, at, radius, MOST_WITHIN, visits),
-        (k, radius) => server::nearest(points, at, k.unwrap_or(1), radius, visits),
+        (None, Some(radius)) => points.around_visiting(at, radius, MOST_WITHIN, visits),
+        (k, radius) => points.nearest_visiting(at, k.unwrap_or(1), radius, visits),
     };
     found.map_err(|error| fault(nearest, &error))
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use strew_core::{Area, server, space::Volume};
+use strew_core::{Area, space::Volume};
 
 use super::{QueryRegion, QueryVolume, Token, amount::Amount, set::Set};
 
@@ -106,7 +106,7 @@ impl Query {
             // A few trial looks measure how long a look takes.
             let is_plain = field.parts() <= 4 && field.vertices() <= 64;
             looks += if is_plain {
-                server::look(field, self.region.bounds)
+                field.nanoseconds(self.region.bounds)
             } else {
                 0.0
             };

@@ -3,7 +3,7 @@
 //! A point is left out by a hole in the area that holds its reported coordinates and no others. The area then
 //! decides everything, as it does for polygons.
 
-use strew_core::{Area, PointId, PointSet, Polygon, server};
+use strew_core::{Area, PointId, PointSet, Polygon};
 
 use super::{Except, Fault, MOST_HOLES};
 
@@ -21,7 +21,7 @@ impl Except {
         room: &mut usize,
     ) -> Result<Area, Fault> {
         // An area out of reach is refused when it is planned.
-        let Ok([columns, rows]) = server::addresses(points, area.clone()) else {
+        let Ok([columns, rows]) = points.addresses(area.clone()) else {
             return Ok(area);
         };
         let mut rings: Vec<[[f64; 2]; 4]> = vec![];

@@ -1,9 +1,6 @@
 //! Fields made of their documents. Later code relies on the checks made here.
 
-use strew_core::{
-    field::{FieldSpec, Filter, Marks, Noise, Raster, Terrain},
-    server,
-};
+use strew_core::field::{FieldSpec, Filter, Marks, Noise, Raster, Terrain};
 use strew_error::{Checked, Fault, Faults, Together as _, all};
 
 use super::{
@@ -64,7 +61,7 @@ pub fn build(path: &str, document: &Document, sources: &Sources<'_>) -> Checked<
             let path = inside("slope");
             let terrain = terrain(&format!("{path}.terrain"), &slope.terrain, sources)?;
             let stop = sources.allowance.stop;
-            let spec = server::slope(terrain, slope.slopes, slope.shares, stop);
+            let spec = FieldSpec::slope_until(terrain, slope.slopes, slope.shares, stop);
             spec.map_err(|error| within(&path, &error))
         }
         Document::Multiply(parts) => {
@@ -137,13 +134,7 @@ fn raster(path: &str, document: &Pixels, sources: &Sources<'_>) -> Checked<Field
         let raster = raster.edges(document.edges.into()).filter(filter);
         let (low, high) = (document.low.unwrap_or(0.0), document.high.unwrap_or(1.0));
         let gamma = document.gamma.unwrap_or(1.0);
-        FieldSpec::raster(server::tone(
-            raster,
-            low,
-            high,
-            gamma,
-            sources.allowance.stop,
-        )?)
+        FieldSpec::raster(raster.tone_until(low, high, gamma, sources.allowance.stop)?)
     });
     raster.map_err(|error| within(path, &error))
 }

@@ -1,10 +1,7 @@
 //! Pictures of fields.
 
 use png::{BitDepth, ColorType, Encoder};
-use strew_core::{
-    Field as _, Region,
-    server::{self, Stop},
-};
+use strew_core::{Field as _, Region, server::Stop};
 use strew_error::{Error, Fault};
 
 use super::NamedField;
@@ -17,7 +14,7 @@ impl NamedField {
     pub fn picture_price(&self, size: f64, cell: [i64; 2]) -> u128 {
         /// The nanoseconds to place and pack a pixel.
         const PIXEL: f64 = 20.0;
-        let look = Region::chunk(size, cell).map_or(0.0, |region| server::look(&self.spec, region));
+        let look = Region::chunk(size, cell).map_or(0.0, |region| self.spec.nanoseconds(region));
         ((SIDE * SIDE) as f64 * (PIXEL + look) / 1e3) as u128
     }
 

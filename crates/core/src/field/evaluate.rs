@@ -382,8 +382,9 @@ const PLACES: u32 = 4;
 
 impl FieldSpec {
     /// About the nanoseconds that a look at a place takes on a processor of some years ago: the mean over a few
-    /// places of a region. It depends on nothing else, so it is the same on every machine.
-    pub(crate) fn nanoseconds(&self, within: Region) -> f64 {
+    /// places of a region. It counts steps and reads no clock, so it is the same on every machine.
+    #[must_use]
+    pub fn nanoseconds(&self, within: Region) -> f64 {
         let (min, max) = (within.min(), within.max());
         // Off the middles of even parts, where shapes that are symmetric are special.
         let along = |i: usize, k: u32| {

@@ -106,13 +106,18 @@ impl Raster {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn tone(self, low: f64, high: f64, gamma: f64) -> Result<Self, Error> {
-        self.tone_unless([low, high, gamma], &Stop::default())
+        self.tone_until(low, high, gamma, &Stop::default())
     }
 
-    /// As [`tone`](Self::tone), unless stopped.
-    pub(crate) fn tone_unless(
+    /// [`tone`](Self::tone), which ends early once a flag is raised.
+    ///
+    /// # Errors
+    /// As [`tone`](Self::tone), and [`ErrorKind::Stopped`].
+    pub fn tone_until(
         mut self,
-        [low, high, gamma]: [f64; 3],
+        low: f64,
+        high: f64,
+        gamma: f64,
         stop: &Stop,
     ) -> Result<Self, Error> {
         check_share("low", low)?;

@@ -292,13 +292,17 @@ impl FieldSpec {
     /// # Errors
     /// [`ErrorKind::Field`] unless the shares are from 0 to 1 and the slopes in ascending order.
     pub fn slope(terrain: Terrain, slopes: [f64; 2], shares: [f64; 2]) -> Result<Self, Error> {
-        Self::slope_unless(terrain, [slopes, shares], &Stop::default())
+        Self::slope_until(terrain, slopes, shares, &Stop::default())
     }
 
-    /// As [`slope`](Self::slope), unless stopped.
-    pub(crate) fn slope_unless(
+    /// [`slope`](Self::slope), which ends early once a flag is raised.
+    ///
+    /// # Errors
+    /// As [`slope`](Self::slope), and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+    pub fn slope_until(
         terrain: Terrain,
-        [slopes, shares]: [[f64; 2]; 2],
+        slopes: [f64; 2],
+        shares: [f64; 2],
         stop: &Stop,
     ) -> Result<Self, Error> {
         let slide = Slide::new("slopes", slopes, shares)?;

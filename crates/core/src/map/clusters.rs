@@ -69,13 +69,11 @@ impl Clusters {
         Self::until(alpha, distance, most, &Stop::default())
     }
 
-    /// The clusters, unless the flag is raised before they are found.
-    pub(crate) fn until(
-        alpha: Alpha,
-        distance: f64,
-        most: usize,
-        stop: &Stop,
-    ) -> Result<Self, Error> {
+    /// [`new`](Self::new), which stops once a flag is raised. The search looks at the flag for each block.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and [`ErrorKind::Stopped`].
+    pub fn until(alpha: Alpha, distance: f64, most: usize, stop: &Stop) -> Result<Self, Error> {
         if !(1.0..=Self::MAX_DISTANCE).contains(&distance) {
             let allowed = alloc::format!("a number from 1 to {} grid units", Self::MAX_DISTANCE);
             let value = number(distance);

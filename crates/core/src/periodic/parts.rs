@@ -113,7 +113,10 @@ impl PeriodicSet {
     }
 
     /// The number of points of each kind, the rarest first; empty for a table without kinds.
-    pub(crate) fn kind_counts_until(&self, stop: &Stop) -> Result<Vec<u64>, Error> {
+    ///
+    /// # Errors
+    /// [`ErrorKind::Stopped`](crate::ErrorKind::Stopped) once a flag is raised.
+    pub fn kind_counts_until(&self, stop: &Stop) -> Result<Vec<u64>, Error> {
         let mut counts = vec![0; self.kinds()];
         if counts.is_empty() {
             return Ok(counts);

@@ -76,8 +76,11 @@ impl PeriodicSet {
         PeriodicPlan::new(self, before)
     }
 
-    /// Runs [`plan`](Self::plan), whose counting a flag stops.
-    pub(crate) fn plan_until(&self, stop: &Stop) -> Result<PeriodicPlan, Error> {
+    /// [`plan`](Self::plan), whose counting stops once a flag is raised.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+    pub fn plan_until(&self, stop: &Stop) -> Result<PeriodicPlan, Error> {
         Ok(PeriodicPlan::new(self, self.before(stop)?))
     }
 

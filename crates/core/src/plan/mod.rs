@@ -122,8 +122,15 @@ impl Plan {
         self.scope.lattice.attributes(attributes)
     }
 
-    /// The points of the same area at another spacing, all of them, not counted.
-    pub(crate) fn with_spacing(&self, spacing: Spacing) -> Result<Self, Error> {
+    /// A sparser or denser set of the same table and seed in the same area, whatever the window and the share, clear of
+    /// the same other sets. Its points are not counted: [`count`](Self::count) is only a bound.
+    ///
+    /// A picture whose pixels are larger than the spacing can show it in place of this plan.
+    ///
+    /// # Errors
+    /// As [`Spacing::new`] and [`PointSet::within`](crate::PointSet::within).
+    pub fn preview(&self, spacing: f64) -> Result<Self, Error> {
+        let spacing = Spacing::new(spacing)?;
         let Scope {
             lattice,
             sieve,
@@ -147,21 +154,25 @@ impl Plan {
         Self::new(&lattice, &mask, area, stop.clone(), Some(u64::MAX.into()))
     }
 
-    /// The bytes of points and places that counting has kept.
-    pub(crate) fn kept(&self) -> usize {
+    /// The bytes of the points and places that counting has kept, beside the area.
+    #[must_use]
+    pub fn kept(&self) -> usize {
         self.counted.bytes()
     }
 
-    /// This plan without points and places that counting has kept: they are found again.
-    pub(crate) fn forgetting(self) -> Self {
+    /// This plan without the points and places that counting has kept. It finds them again, which takes time.
+    #[must_use]
+    pub fn forgetting(self) -> Self {
         Self {
             counted: Counted::known(self.counted.count),
             ..self
         }
     }
 
-    /// This plan with another flag that stops its further counting.
-    pub(crate) fn with_stop(self, stop: Stop) -> Self {
+    /// The plan with another flag. Its windows and cursors may have to count, and stop once that flag is raised. Their
+    /// results are then meaningless.
+    #[must_use]
+    pub fn stopped_by(self, stop: Stop) -> Self {
         let mut scope = Arc::unwrap_or_clone(self.scope);
         scope.stop = stop;
         Self {

@@ -178,8 +178,11 @@ impl PointSet {
         self.kind_counts_until(&area.into(), &Stop::default())
     }
 
-    /// Runs [`kind_counts`](Self::kind_counts), whose counting a flag stops.
-    pub(crate) fn kind_counts_until(&self, area: &Area, stop: &Stop) -> Result<Vec<u128>, Error> {
+    /// [`kind_counts`](Self::kind_counts), whose counting stops once a flag is raised.
+    ///
+    /// # Errors
+    /// As [`kind_counts`](Self::kind_counts), and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+    pub fn kind_counts_until(&self, area: &Area, stop: &Stop) -> Result<Vec<u128>, Error> {
         if self.lattice.is_varied() {
             return self.varied_counts(area, stop);
         }

@@ -107,9 +107,13 @@ impl PointSet {
         self.around_visiting(at, radius, limit, &Visits::any())
     }
 
-    /// Runs [`nearest`](Self::nearest) or [`nearest_within`](Self::nearest_within) and visits a bounded number of
-    /// points.
-    pub(crate) fn nearest_visiting(
+    /// [`nearest`](Self::nearest), or [`nearest_within`](Self::nearest_within) if there is a radius, which visits a bounded
+    /// number of points.
+    ///
+    /// # Errors
+    /// As those, [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) where more points would have to be visited, and
+    /// [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+    pub fn nearest_visiting(
         &self,
         at: [f64; 2],
         k: usize,
@@ -120,8 +124,11 @@ impl PointSet {
         Ok(self.neighbors(found))
     }
 
-    /// Runs [`around`](Self::around) and visits a bounded number of points.
-    pub(crate) fn around_visiting(
+    /// [`around`](Self::around), which visits a bounded number of points.
+    ///
+    /// # Errors
+    /// As [`nearest_visiting`](Self::nearest_visiting).
+    pub fn around_visiting(
         &self,
         at: [f64; 2],
         radius: f64,
@@ -173,8 +180,9 @@ impl PointSet {
         self.table_distance().reported(spacing, warp, reach)
     }
 
-    /// A bound of the share in a box.
-    pub(crate) fn greatest_share(&self, within: &Region) -> f64 {
+    /// A bound of the share of points that the set has in a box: its share, times that of its field.
+    #[must_use]
+    pub fn greatest_share(&self, within: &Region) -> f64 {
         let all = self.placement().keep.get();
         match &self.lattice.grade {
             Some(grade) => grade.bounds(within)[1].min(all),
@@ -182,8 +190,9 @@ impl PointSet {
         }
     }
 
-    /// The number of steps by which points settle.
-    pub(crate) fn steps(&self) -> u32 {
+    /// The number of steps by which points settle, 0 if they stay.
+    #[must_use]
+    pub fn steps(&self) -> u32 {
         let placement = self.placement();
         match self.lattice.is_in_field() {
             true => placement.settle.steps(),
@@ -191,8 +200,10 @@ impl PointSet {
         }
     }
 
-    /// About how long points settle near an outline, in steps of a set without kinds.
-    pub(crate) fn settling(&self) -> f64 {
+    /// About how long points settle near an outline, in steps of a set without kinds; 0 if they do not. Points of kinds
+    /// push each other twice and reach farther.
+    #[must_use]
+    pub fn settling(&self) -> f64 {
         f64::from(self.steps()) * weight(&self.lattice)
     }
 

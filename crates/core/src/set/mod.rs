@@ -148,7 +148,7 @@ impl PointSet {
     /// [`ErrorKind::Count`](crate::ErrorKind::Count) if the count is 0 or no spacing places it, and as
     /// [`within`](Self::within).
     pub fn exactly(&self, count: u128, area: impl Into<Area>) -> Result<Plan, Error> {
-        self.exactly_until(count, &area.into(), 0.0, &Stop::default())
+        self.exactly_until(count, area, 0.0, &Stop::default())
     }
 
     /// The largest absolute coordinate of a requested area, in world units: 2⁵² lattice units.
@@ -157,18 +157,27 @@ impl PointSet {
         self.lattice.limit()
     }
 
-    /// The columns and rows that hold all points of an area.
-    pub(crate) fn addresses(&self, area: Area) -> Result<[Range<i64>; 2], Error> {
-        let scope = Scope::new(&self.lattice, &self.mask, area, Stop::default())?;
+    /// The columns and rows of the lattice that hold all points of an area, and a few more around it: an id beyond them
+    /// is no point there.
+    ///
+    /// # Errors
+    /// As [`within`](Self::within).
+    pub fn addresses(&self, area: impl Into<Area>) -> Result<[Range<i64>; 2], Error> {
+        let scope = Scope::new(&self.lattice, &self.mask, area.into(), Stop::default())?;
         Ok([scope.x.all, scope.y.all])
     }
 
-    /// About the number of points that counting an area visits one by one; 0 without a field.
-    pub(crate) fn candidates(&self, area: Area, pieces: usize) -> Result<u128, Error> {
+    /// Estimates the number of points that counting an area visits one by one in a [field](Self::in_field); making them
+    /// visits them again. The area's box is cut into up to `pieces` pieces, in each of which the points at full density
+    /// are multiplied by the greatest share. It is 0 in no field.
+    ///
+    /// # Errors
+    /// As [`within`](Self::within).
+    pub fn candidates(&self, area: impl Into<Area>, pieces: usize) -> Result<u128, Error> {
         if self.lattice.grade.is_none() {
             return Ok(0);
         }
-        let scope = Scope::new(&self.lattice, &self.mask, area, Stop::default())?;
+        let scope = Scope::new(&self.lattice, &self.mask, area.into(), Stop::default())?;
         let Some(grade) = &scope.lattice.grade else {
             return Ok(0);
         };
@@ -179,19 +188,28 @@ impl PointSet {
         Ok(candidates(&scope.lattice, grade, piece, pieces))
     }
 
-    /// Runs [`within`](Self::within), whose counting a flag stops.
-    pub(crate) fn within_until(&self, area: Area, stop: Stop) -> Result<Plan, Error> {
-        Plan::new(&self.lattice, &self.mask, area, stop, None)
+    /// The points in an area, whose counting stops once a flag is raised.
+    ///
+    /// # Errors
+    /// As [`within`](Self::within), and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+    pub fn within_until(&self, area: impl Into<Area>, stop: Stop) -> Result<Plan, Error> {
+        Plan::new(&self.lattice, &self.mask, area.into(), stop, None)
     }
 
-    /// Runs [`exactly`](Self::exactly) without spacings below `least`; a flag stops its counting.
-    pub(crate) fn exactly_until(
+    /// [`exactly`](Self::exactly) without spacings below `least`, whose counting stops once a flag is raised. Where
+    /// counting takes time in proportion to the lattice rows, `least` bounds it.
+    ///
+    /// # Errors
+    /// As [`exactly`](Self::exactly), and [`ErrorKind::TooDense`](crate::ErrorKind::TooDense) or
+    /// [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+    pub fn exactly_until(
         &self,
         count: u128,
-        area: &Area,
+        area: impl Into<Area>,
         least: f64,
         stop: &Stop,
     ) -> Result<Plan, Error> {
+        let area = area.into();
         let within = self.mask.clone().and_within(area.clone()).area;
         let grade = self.lattice.grade.as_ref();
         let sought = Sought {

@@ -5,17 +5,23 @@ use alloc::vec::Vec;
 use super::{Area, Region};
 
 impl Area {
-    /// About half the length, along the axes, of the outlines of all shapes inside `within`: width +
-    /// height for a box.
-    pub(crate) fn outline(&self, within: Region) -> f64 {
+    /// About half the length, along the axes and in world units, of the outlines of all shapes inside `within`: width +
+    /// height for a box. Counting takes time in proportion to this and to the height.
+    #[must_use]
+    pub fn outline(&self, within: Region) -> f64 {
         let mut all = 0.0;
         self.sides(&within, &mut |side| all += length(side));
         all / 2.0
     }
 
-    /// About how many comparisons of points with sides of polygons, boxes and circles it takes to count this area in a
-    /// lattice with a unit of this length. Points beside an outline are compared with all sides in their patch.
-    pub(crate) fn comparisons(&self, within: Region, unit: f64) -> f64 {
+    /// About how many comparisons of points with sides of polygons, boxes and circles it takes to count this area inside
+    /// `within`, at a mean spacing: points beside an outline are compared with all sides in their patch. It takes time in
+    /// proportion to the sides and to the outline.
+    #[must_use]
+    pub fn comparisons(&self, within: Region, spacing: f64) -> f64 {
+        /// About the lattice units in a mean spacing.
+        const UNITS: f64 = 3.0;
+        let unit = spacing / UNITS;
         let least = within.min();
         // Larger cells overestimate.
         let cells = self.outline(within) / (PATCH[1] * unit);
@@ -140,15 +146,15 @@ mod tests {
             let ring = [[at, 0.0], [at + side, 0.0], [at, side]];
             Area::from(Polygon::new(&[ring]).expect("valid"))
         };
-        let one = triangle(0.0, 1e-3).comparisons(all, 1.0);
+        let one = triangle(0.0, 1e-3).comparisons(all, 3.0);
         let beside = REACH * (3.0 * REACH + 4e-3);
         assert!(near(one, 3.0 * beside * DENSITY), "{one}");
         let apart = Area::any_of([triangle(-99.0, 1e-3), triangle(0.0, 1e-3)]);
-        let twice = 2.0 * triangle(0.0, 1e-3).comparisons(all, 0.05);
-        assert!(near(apart.comparisons(all, 0.05), twice), "{twice}");
+        let twice = 2.0 * triangle(0.0, 1e-3).comparisons(all, 0.15);
+        assert!(near(apart.comparisons(all, 0.15), twice), "{twice}");
         let many = Area::any_of((0..1000).map(|_| triangle(0.0, 1e-3)));
         let points = DENSITY * (200.0 + REACH) * (200.0 + REACH);
-        assert!(near(many.comparisons(all, 1.0), 3000.0 * points));
+        assert!(near(many.comparisons(all, 3.0), 3000.0 * points));
         let both = circle.without([square]);
         assert!(near(both.outline(all), 23.0));
     }

@@ -4,8 +4,7 @@ use proptest::prelude::*;
 use rayon::prelude::*;
 use strew_core::{
     ErrorKind, Exact, F32, F64, LATTICE_LIMIT, Offsets, Pattern, Placement, Points, Polygon,
-    Spacing, Warp,
-    server::{self, Stop},
+    Spacing, Warp, server::Stop,
 };
 
 pub use crate::subject::plane::*;
@@ -225,8 +224,8 @@ fn counting_stops() {
     for set in [set, graded, clear.expect("near")] {
         for side in [1.0, 20.0, 900.0] {
             let region = cube([0.0; 2], side);
-            assert!(server::within(&set, region, &go).is_ok());
-            let error = server::within(&set, region, &stop).expect_err("stopped");
+            assert!(set.within_until(region, go.clone()).is_ok());
+            let error = set.within_until(region, stop.clone()).expect_err("stopped");
             assert_eq!(error.kind(), ErrorKind::Stopped);
         }
     }

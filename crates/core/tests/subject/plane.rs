@@ -4,10 +4,7 @@ pub use strew_core::{
     Area, Blocks, Circle as Round, Cursor, Format, Neighbor, Plan, Point, PointId, PointSet as Set,
     Region,
 };
-use strew_core::{
-    Error, F32, Points,
-    server::{self, Stop},
-};
+use strew_core::{Error, F32, Points, server::Stop};
 pub use ways::*;
 
 #[path = "ways.rs"]
@@ -53,14 +50,14 @@ pub fn agree_otherwise(plan: &Plan, points: &[Point], parts: Parts) {
     if let Some(cursor) = blocks.cursor() {
         let stop = Stop::new();
         stop.raise();
-        let stopped = server::stopped_by(plan.from_cursor(cursor), stop);
+        let stopped = plan.from_cursor(cursor).stopped_by(stop);
         let _ = stopped.window(3, None).next_cursor();
     }
 }
 
 /// A plan of an exact number of points, down to a spacing.
 pub fn exactly(set: &Set, count: u128, area: &Area, least: f64) -> Result<Plan, Error> {
-    server::exactly(set, count, area, least, &Stop::default())
+    set.exactly_until(count, area.clone(), least, &Stop::default())
 }
 
 /// Checks searches around a place against a box.

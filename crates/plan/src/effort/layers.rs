@@ -1,6 +1,6 @@
 //! The price of keeping points clear of other layers, and of looking at fields.
 
-use strew_core::{Area, Region, Spacing, server};
+use strew_core::{Area, Region, Spacing};
 use strew_query::Set;
 
 /// A search for points near a place, in nanoseconds.
@@ -113,6 +113,6 @@ pub(super) fn look<'a>(
     fields: impl IntoIterator<Item = &'a strew_core::field::FieldSpec>,
     within: Region,
 ) -> f64 {
-    let looks = fields.into_iter().map(|field| server::look(field, within));
+    let looks = fields.into_iter().map(|field| field.nanoseconds(within));
     looks.sum()
 }

@@ -1,6 +1,6 @@
 //! The price of making the points of a plan, by its blocks.
 
-use strew_core::{Area, Warp, server};
+use strew_core::{Area, Warp};
 use strew_query::Set;
 
 use super::{ROW, UNITS, point::POINT, volume};
@@ -91,7 +91,7 @@ pub fn splitting(planned: &Planned, parts: u32) -> f64 {
         let is_box = matches!(area, Area::Region(_));
         match area.bounds() {
             Some(bounds) if !is_box || placement.warp != Warp::OFF => {
-                let along = server::outline(&area, bounds) + bounds.sides()[1];
+                let along = area.outline(bounds) + bounds.sides()[1];
                 found + along * units * (1.0 + 0.5 * parts.log2())
             }
             _ => found,

@@ -11,7 +11,7 @@ mod volume;
 
 use strew_core::{
     Area, Placement, PointSet, Region, Spacing, Warp,
-    server::{self, Stop},
+    server::Stop,
     space::{SpaceSet, Volume},
 };
 
@@ -246,7 +246,8 @@ pub(super) fn candidates(selection: &Selection) -> u128 {
     // Bounds take longer than a look. Planning reports regions that are too far out.
     let pieces = (ESTIMATE / (BOUNDS + 4.0 * selection.look)) as usize;
     let area = selection.area.clone();
-    server::candidates(&selection.set, area, pieces.max(LEAST_PIECES)).unwrap_or_default()
+    let pieces = pieces.max(LEAST_PIECES);
+    selection.set.candidates(area, pieces).unwrap_or_default()
 }
 
 /// The number of rows that are counted one by one, or points tested, which takes as long: none for a
@@ -267,7 +268,7 @@ fn rows(selection: &Selection) -> f64 {
     }
     let spacing = placement.spacing.get();
     let [width, height] = bounds.sides();
-    let along = server::outline(area, bounds) * UNITS / spacing;
+    let along = area.outline(bounds) * UNITS / spacing;
     let across = if is_box {
         0.0
     } else {
@@ -289,12 +290,12 @@ fn settled(selection: &Selection, bounds: Region, candidates: f64) -> f64 {
     const STEP: f64 = 4000.0;
     let set = &selection.set;
     let Placement { spacing, keep, .. } = set.placement();
-    let steps = server::settling(set);
+    let steps = set.settling();
     if steps == 0.0 {
         return 0.0;
     }
-    let share = server::greatest_share(set, &bounds).min(keep.get());
-    let outline = server::outline(&selection.area, bounds) / spacing.get();
+    let share = set.greatest_share(&bounds).min(keep.get());
+    let outline = selection.area.outline(bounds) / spacing.get();
     let near = outline * share.sqrt();
     let is_in_field = candidates > 0.0 || selection.look > 0.0;
     let places = if is_in_field {
@@ -313,7 +314,7 @@ fn edges(selection: &Selection, rows: f64, most: f64) -> f64 {
     match area.bounds() {
         Some(bounds) if rows > 0.0 && rows + sorted <= most && !is_box => {
             let spacing = selection.set.placement().spacing;
-            sorted + server::comparisons(area, bounds, spacing) * COMPARISON
+            sorted + area.comparisons(bounds, spacing.get()) * COMPARISON
         }
         _ => sorted,
     }

@@ -6,7 +6,7 @@ use serde::Serialize;
 use strew_core::{
     Alpha, ErrorKind,
     map::{Clusters, Shape},
-    server::{self, Stop},
+    server::Stop,
 };
 use strew_error::{Error, Together as _};
 use strew_plan::Lane;
@@ -96,7 +96,7 @@ impl ClustersQuery {
 
     /// Searches, unless the flag is raised.
     pub fn search(&self, stop: &Stop) -> Result<Clusters, Error> {
-        let found = server::clusters(self.alpha, self.distance, self.most, stop);
+        let found = Clusters::until(self.alpha, self.distance, self.most, stop);
         found.map_err(|error| match error.kind() {
             ErrorKind::Clusters => {
                 let allowed = format!("{}, or a smaller distance", error.allowed());
