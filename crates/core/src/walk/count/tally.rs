@@ -174,17 +174,21 @@ mod tests {
 
         #[test]
         fn products_count_what_is_kept_of_a_kind_or_of_all(
-            radius in 3u32..30, seed: u64, kind in proptest::option::of(0u8..3), in_split: bool,
+            radius in 0u32..30, seed: u64, kind in proptest::option::of(0u8..3), in_split: bool,
             part in prop_oneof![1e-6..1.0f64, 1e-6..1e-2f64],
             x in -3000i64..3000, y in -(1i64 << 50)..1 << 50, width in 0i64..300, height in 0i64..60,
         ) {
             let table = Table::undisplaced("(5-sqrt(3))/2".parse().expect("valid"), radius, "test");
-            let table = table.expect("small");
-            let mix = Mix::scattered(table.map(), "3:4:5".parse().expect("valid")).expect("near");
-            let ranks = Ranks::new((0..mix.labels().len() as u32).rev().collect()).expect("an order");
-            let table = table.with_mix(mix.clone(), ranks).expect("fits");
-            // The block that is partly kept may be one that is split.
-            let split = table.block_ranks(mix.splits()[0].block as usize);
+            let mut table = table.expect("small");
+            // The block that is partly kept may be one that is split. The smallest maps have too few for kinds.
+            let (mut split, kind) = (0, kind.filter(|_| radius > 2));
+            if kind.is_some() {
+                let mix = Mix::scattered(table.map(), "3:4:5".parse().expect("valid")).expect("near");
+                split = mix.splits()[0].block as usize;
+                let ranks = (0..mix.labels().len() as u32).rev().collect();
+                table = table.with_mix(mix, Ranks::new(ranks).expect("an order")).expect("fits");
+            }
+            let split = table.block_ranks(split);
             let share = if in_split { split.start + (split.end - split.start) * part } else { part };
             let share = share.max(1e-6);
             let placement = Placement::new(Spacing::new(1.0).expect("valid"), Seed(seed))
