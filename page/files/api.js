@@ -46,11 +46,8 @@ export function wordsOf(error) {
 
 const KEY = "strew-key";
 
-/**
- * Keeps a key for as long as this tab is open.
- * @param {string} key
- */
-export function useKey(key) {
+/** Keeps a key for as long as this tab is open. */
+export function useKey(/** @type {string} */ key) {
   sessionStorage.setItem(KEY, key);
 }
 
@@ -75,11 +72,8 @@ export function headersFor(body) {
 const listeners = new Set();
 let isGone = false;
 
-/**
- * Calls a function whenever the server goes or comes back. Returns what ends that.
- * @param {Presence} listener
- */
-export function onPresence(listener) {
+/** Calls a function whenever the server goes or comes back. Returns what ends that. */
+export function onPresence(/** @type {Presence} */ listener) {
   listeners.add(listener);
   return () => listeners.delete(listener);
 }
@@ -121,11 +115,8 @@ export function brokeOff() {
 /** @type {Mend} */
 let remedy = async () => false;
 
-/**
- * Has a function called where the server refuses a request; if it says true, the request is repeated.
- * @param {Mend} mend
- */
-export function onRefused(mend) {
+/** Has a function called where the server refuses a request; if it says true, the request is repeated. */
+export function onRefused(/** @type {Mend} */ mend) {
   remedy = mend;
 }
 

@@ -12,12 +12,8 @@ export class Notice {
   /** @type {Partial<Record<typeof SUBJECTS[number], string | Error | null>>} */
   said = {};
 
-  /**
-   * `retry()` requests again what was refused; `back()` is called when a server that was away is back.
-   * @param {HTMLElement} box
-   * @param {() => void} retry
-   */
-  constructor(box, retry, back = retry) {
+  /** `retry()` requests again what was refused; `back()` is called when a server that was away is back. */
+  constructor(/** @type {HTMLElement} */ box, /** @type {() => void} */ retry, back = retry) {
     this.box = box;
     this.retry = () => {
       this.say("refused", null);

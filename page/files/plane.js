@@ -36,11 +36,7 @@ const REST = 140;
 
 /** A canvas that shows the points of some layers. */
 export class Plane extends Moving {
-  /**
-   * @param {HTMLCanvasElement} canvas
-   * @param {Events} events
-   */
-  constructor(canvas, events) {
+  constructor(/** @type {HTMLCanvasElement} */ canvas, /** @type {Events} */ events) {
     super();
     this.events = events;
     this.painter = new Painter(canvas);
@@ -60,11 +56,8 @@ export class Plane extends Moving {
     this.events.moved();
   }
 
-  /**
-   * Says what is shown: the layers with their spacings, colors and the color of the ground.
-   * @param {Look} look
-   */
-  show(look) {
+  /** Says what is shown: the layers with their spacings, colors and the color of the ground. */
+  show(/** @type {Look} */ look) {
     const isNew = this.look === null;
     const before = this.chunks.identity;
     this.look = { ...look, spacing: Math.min(...look.spacings) };
@@ -80,11 +73,8 @@ export class Plane extends Moving {
     return Math.min(MOST_SPAN * spacing, Math.max(LEAST_SPAN * spacing, span));
   }
 
-  /**
-   * A coordinate, or the last one that has points.
-   * @param {Place} at
-   */
-  within(at) {
+  /** A coordinate, or the last one that has points. */
+  within(/** @type {Place} */ at) {
     if (!this.look) return at;
     const most = farthest(this.look.spacing);
     return Math.abs(toNumber(at)) > most ? place(Math.sign(toNumber(at)) * most) : at;
@@ -119,11 +109,8 @@ export class Plane extends Moving {
     if (this.sheets.front.isFull && !isZooming && this.sheets.front.unit === this.view.unit) this.events.settled();
   }
 
-  /**
-   * Whether a place is too far out for numbers to tell points apart.
-   * @param {{ x: Place, y: Place }} at
-   */
-  isTooFar(at) {
+  /** Whether a place is too far out for numbers to tell points apart. */
+  isTooFar(/** @type {{ x: Place, y: Place }} */ at) {
     return this.look !== null && isTooFar(at, this.look.spacing);
   }
 
@@ -168,12 +155,8 @@ export class Plane extends Moving {
     }
   }
 
-  /**
-   * The point nearest to a place on the canvas, if it is within a distance in CSS pixels.
-   * @param {[number, number]} at
-   * @param {number} within
-   */
-  pointAt([px, py], within) {
+  /** The point nearest to a place on the canvas, if it is within a distance in CSS pixels. */
+  pointAt(/** @type {[number, number]} */ [px, py], /** @type {number} */ within) {
     const { view, sheets } = this;
     const [x, y] = [(px - view.width / 2) * view.unit, (view.height / 2 - py) * view.unit];
     const reach = within * view.unit;
@@ -194,12 +177,8 @@ export class Plane extends Moving {
     return best && this.pointOf(best.chunk, best.k);
   }
 
-  /**
-   * A point of a chunk: its layer and where it is.
-   * @param {Chunk} chunk
-   * @param {number} k
-   */
-  pointOf(chunk, k) {
+  /** A point of a chunk: its layer and where it is. */
+  pointOf(/** @type {Chunk} */ chunk, /** @type {number} */ k) {
     const { data, stride } = chunk;
     const layer = chunk.columns[0] === "layer" ? data[k * stride + 2] : 0;
     const at = (/** @type {number} */ index, /** @type {number} */ offset) => moved(place(index * chunk.size, 0), offset);

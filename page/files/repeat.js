@@ -38,13 +38,8 @@ export class Repeat {
     return `/v1/points?${joined([["periodic", size || "1"], ["spacing", "1"], ...pairs])}`;
   }
 
-  /**
-   * Offers the sizes that there are, and draws copies of the one that is chosen; returns its number of points.
-   * @param {string} what
-   * @param {import("./state.js").Layer} layer
-   * @param {AbortSignal} signal
-   */
-  async show(what, layer, signal) {
+  /** Offers the sizes that there are, and draws copies of the one that is chosen; returns its number of points. */
+  async show(/** @type {string} */ what, /** @type {import("./state.js").Layer} */ layer, /** @type {AbortSignal} */ signal) {
     const { profiles } = await askJson("/v1/profiles", { signal });
     const { alpha, maps } = choicesOf(profiles, { ...layer, map: "" });
     this.map = layer.map || maps[0];

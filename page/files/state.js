@@ -116,11 +116,8 @@ export function initial() {
   };
 }
 
-/**
- * Reads the hash of an address; what it does not say stays at its default.
- * @param {string} hash
- */
-export function fromHash(hash) {
+/** Reads the hash of an address; what it does not say stays at its default. */
+export function fromHash(/** @type {string} */ hash) {
   const given = givenIn(hash);
   const state = initial();
   const [x, y] = given.at();
@@ -161,11 +158,8 @@ function named(key, i) {
   return i === 0 ? key : `${i + 1}.${key}`;
 }
 
-/**
- * Writes the hash of an address.
- * @param {State} state
- */
-export function toHash(state) {
+/** Writes the hash of an address. */
+export function toHash(/** @type {State} */ state) {
   const decimals = decimalsFor(state.span) + 5;
   const said = [
     ["at", `${formatPlace(state.x, decimals)},${formatPlace(state.y, decimals)}`],

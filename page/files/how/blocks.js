@@ -64,11 +64,8 @@ export class Blocks {
     this.tell();
   }
 
-  /**
-   * The point whose index is nearest to a place in the gate.
-   * @param {number[]} place
-   */
-  near([u, v]) {
+  /** The point whose index is nearest to a place in the gate. */
+  near(/** @type {number[]} */ [u, v]) {
     const far = (point) => indexOf(this.pattern, point).reduce((sum, w, i) => sum + (w - [u, v][i]) ** 2, 0);
     return this.points.reduce((best, point) => (far(point) < far(best) ? point : best));
   }

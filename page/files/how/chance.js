@@ -80,11 +80,8 @@ export class Chance {
     this.place([x + right * 0.5, y + up * 0.5]);
   }
 
-  /**
-   * Puts the ring somewhere, all of it in the square, and counts.
-   * @param {number[]} at
-   */
-  place(at) {
+  /** Puts the ring somewhere, all of it in the square, and counts. */
+  place(/** @type {number[]} */ at) {
     const ring = at.map((v) => Math.min(SIDE - RING, Math.max(RING, v)));
     this.ring = ring;
     if (this.strew.length === 0) return;

@@ -14,12 +14,8 @@ const LAST = 20;
 /** Places that are walked in a second, at first and at last. */
 const RATES = [3, 120];
 
-/**
- * The index of a place, in turns.
- * @param {Pattern} pattern
- * @param {number[]} place
- */
-export function indexOf(pattern, [x, y]) {
+/** The index of a place, in turns. */
+export function indexOf(/** @type {Pattern} */ pattern, /** @type {number[]} */ [x, y]) {
   return pattern.index(x, y).map(turns);
 }
 

@@ -182,19 +182,13 @@ export class Panel {
     this.scale = width / (x1 - x0);
   }
 
-  /**
-   * The pixels of a place.
-   * @param {number[]} place
-   */
-  to([x, y]) {
+  /** The pixels of a place. */
+  to(/** @type {number[]} */ [x, y]) {
     return [this.left + (x - this.x0) * this.scale, this.top + this.height - ((y - this.y0) * this.height) / (this.y1 - this.y0)];
   }
 
-  /**
-   * The place of a pixel.
-   * @param {number[]} pixel
-   */
-  from([x, y]) {
+  /** The place of a pixel. */
+  from(/** @type {number[]} */ [x, y]) {
     return [this.x0 + (x - this.left) / this.scale, this.y0 + ((this.top + this.height - y) * (this.y1 - this.y0)) / this.height];
   }
 

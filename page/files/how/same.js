@@ -14,22 +14,13 @@ const RADIUS = 6;
 const MOST = 40;
 const EACH = 0.42;
 
-/**
- * The block of a point on a map, as text.
- * @param {Pattern} pattern
- * @param {bigint[]} starts
- * @param {number[]} point
- */
-export function blockOf(pattern, starts, [x, y]) {
+/** The block of a point on a map, as text. */
+export function blockOf(/** @type {Pattern} */ pattern, /** @type {bigint[]} */ starts, /** @type {number[]} */ [x, y]) {
   return pattern.index(x, y).map((index) => intervalOf(starts, index)).join();
 }
 
-/**
- * The nearest of some points to a place.
- * @param {number[][]} points
- * @param {number[]} place
- */
-export function nearest(points, [x, y]) {
+/** The nearest of some points to a place. */
+export function nearest(/** @type {number[][]} */ points, /** @type {number[]} */ [x, y]) {
   const far = (/** @type {number[]} */ [u, v]) => (u - x) ** 2 + (v - y) ** 2;
   return points.reduce((best, point) => (far(point) < far(best) ? point : best));
 }

@@ -21,11 +21,7 @@ const lessMotion = matchMedia("(prefers-reduced-motion: reduce)");
  * `moved([right, up])` of arrow keys.
  */
 export class Stage {
-  /**
-   * @param {string} id
-   * @param {any} figure
-   */
-  constructor(id, figure) {
+  constructor(/** @type {string} */ id, /** @type {any} */ figure) {
     this.id = id;
     this.figure = figure;
     this.isSeen = false;
@@ -170,11 +166,8 @@ export class Stage {
     }
   }
 
-  /**
-   * What the canvas shows, for those who do not see it.
-   * @param {string} text
-   */
-  name(text) {
+  /** What the canvas shows, for those who do not see it. */
+  name(/** @type {string} */ text) {
     if (this.canvas.getAttribute("aria-label") !== text) this.canvas.setAttribute("aria-label", text);
   }
 

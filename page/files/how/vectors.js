@@ -73,11 +73,8 @@ export class Vectors {
     this.stage.draw();
   }
 
-  /**
-   * Vectors are what separates a point of seed 0, without warp, from its place on the grid.
-   * @param {number[]} middle
-   */
-  async request([x, y]) {
+  /** Vectors are what separates a point of seed 0, without warp, from its place on the grid. */
+  async request(/** @type {number[]} */ [x, y]) {
     const box = [x - AROUND, y - AROUND, x + AROUND, y + AROUND].join();
     if (this.asked?.has(box)) return;
     const answer = await this.stage.fetch(`/v1/points?bbox=${box}&spacing=${1 / this.pattern.t}&seed=0&warp=off`);

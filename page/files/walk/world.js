@@ -199,12 +199,8 @@ export class World {
   /**
    * The point whose picture is at a place of the window (from −1 to 1), or nearest to it within `miss`: its kind, its
    * coordinates and its size. `null` if there is none.
-   * @param {any} look
-   * @param {number[]} at
-   * @param {number} aspect
-   * @param {number} miss
    */
-  pick(look, [x, y], aspect, miss) {
+  pick(/** @type {any} */ look, /** @type {number[]} */ [x, y], /** @type {number} */ aspect, /** @type {number} */ miss) {
     /** @type {any} */
     let best = null;
     for (const { leaf, clip, runs, floats, set } of look.things) {
