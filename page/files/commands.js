@@ -1,6 +1,6 @@
 // Texts to paste elsewhere that return the points in view: the address, curl, Python.
 
-import { Digits, json } from "./digits.js";
+import { Digits, json } from "./api.js";
 import { documentOf } from "./sent.js";
 import { bodyOf, joined, memberOf, setOf, worldIn, worldPairs } from "./query.js";
 

@@ -5,8 +5,7 @@ import { encoded } from "./address.js";
 import { ask, wordsOf } from "./api.js";
 import { lineChart, pointPicture, spectrumPicture, topOf } from "./charts.js";
 import { byId, make, spoken } from "./dom.js";
-import { measure } from "./measure.js";
-import { Part } from "./part.js";
+import { measure } from "./worker.js";
 import { PROFILE_WORDS, profileNames } from "./profiles.js";
 import { LAYER } from "./state.js";
 import { figureOf, recordedOf } from "./understand.js";
@@ -24,9 +23,8 @@ const MEANING = [
   ["Curve", ": the same, averaged over all directions, as measured on the table. 1 is pure chance."],
 ];
 
-export class Gallery extends Part {
+export class Gallery {
   constructor(session, profiles) {
-    super();
     this.session = session;
     this.names = profileNames(profiles);
     // The one to begin with first, the bare pattern last.

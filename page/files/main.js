@@ -33,8 +33,15 @@ const root = document.documentElement;
 const isFirst = location.hash.length < 2;
 const session = new Session();
 
-/** @type {import("./part.js").Part[]} */
+/**
+ * The parts of the page. Each hears of what it has a method for: `moved()` by hand or by a choice; `rested()`, all in view is
+ * painted; `shown(layers, understood)`, which the server has understood; `themed()`; `opened(tab)`; and where the plane
+ * was `tapped(at)` or is `hovered(at)`, in CSS pixels from the corner at the top left, `null` where the mouse has left.
+ * @type {any[]}
+ */
 const parts = [];
+const tell = (/** @type {string} */ event, /** @type {any[]} */ ...given) => parts.forEach((part) => part[event]?.(...given));
+
 const plane = new Plane(byId("plane"), {
   moved: () => {
     // Before the server has said what a spacing is, nothing is looked at.
@@ -43,7 +50,7 @@ const plane = new Plane(byId("plane"), {
     loading();
     status.moved();
     if (plane.chunks.refused && isUnderstood) again();
-    for (const part of parts) part.moved();
+    tell("moved");
   },
   progress: (share) => {
     const bar = byId("progress");
@@ -121,7 +128,7 @@ function arrived() {
 const status = new Status(session, plane);
 const pour = new Pour(plane);
 const rested = settled(250, () => {
-  for (const part of parts) part.rested();
+  tell("rested");
   if (session.state.layers.length > 1) controls?.counted(countsInView());
 });
 
@@ -259,7 +266,7 @@ function show(layers, understood, isChosen) {
   const { x, y, span } = session.state;
   plane.lookAt(x, y, span);
   plane.chunks.retry();
-  for (const part of parts) part.shown(layers, understood);
+  tell("shown", layers, understood);
 }
 
 /** From where there are no points to the place that was looked at before, or to the origin. */
@@ -313,7 +320,7 @@ function buttons() {
   };
   tools(plane, home, () => {
     if (plane.look) plane.show({ ...plane.look, ...palette(plane.look.layers) });
-    for (const part of parts) part.themed();
+    tell("themed");
   });
 }
 
@@ -356,12 +363,10 @@ parts.push(pour, start, card, understand, take, shade, paint);
 buttons();
 skipLinks();
 takeDrops(byId("stage"), stipple);
-const tabs = new Tabs(session, fold, (tab) => {
-  for (const part of parts) part.opened(tab);
-});
+const tabs = new Tabs(session, fold, (tab) => tell("opened", tab));
 moveBy(byId("plane"), plane, {
-  tapped: (at) => parts.forEach((part) => part.tapped(at)),
-  hovered: (at) => parts.forEach((part) => part.hovered(at)),
+  tapped: (at) => tell("tapped", at),
+  hovered: (at) => tell("hovered", at),
 });
 session.on((changed) => {
   if (changed.has("layers")) settle(tables);

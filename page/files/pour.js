@@ -3,7 +3,6 @@
 
 import { byId, contextOf } from "./dom.js";
 import { sizesOf } from "./marks.js";
-import { Part } from "./part.js";
 import { cssOf } from "./theme.js";
 import { sized } from "./view.js";
 
@@ -33,9 +32,8 @@ function chance(chunk, k, salt) {
 const eased = (t) => t * t * (3 - 2 * t);
 
 /** One pouring of the points of a plane: it begins with `begin` and ends by itself, or by `end`. */
-export class Pour extends Part {
+export class Pour {
   constructor(plane) {
-    super();
     this.plane = plane;
     this.canvas = byId("pour");
     this.caption = byId("caption");

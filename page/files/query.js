@@ -1,6 +1,6 @@
 // From the choices on the page to a request: parameters of an address for one layer, a body for several.
 
-import { Digits, json } from "./digits.js";
+import { Digits, json } from "./api.js";
 import { encoded } from "./address.js";
 import { decimalsFor, formatPlace, moved } from "./place.js";
 import { documentOf } from "./sent.js";

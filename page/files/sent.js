@@ -1,7 +1,6 @@
 // Fields that this page sends: the server holds them while it has room, and the page sends them again when it has not.
 
-import { Problem, askJson, onRefused } from "./api.js";
-import { json } from "./digits.js";
+import { Problem, askJson, json, onRefused } from "./api.js";
 
 /** The fields that were sent or described by an address, by their digests. */
 const held = new Map();

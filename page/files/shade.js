@@ -4,7 +4,6 @@
 import { ask } from "./api.js";
 import { byId, contextOf } from "./dom.js";
 import { chunksOf, cornerFrom } from "./grid.js";
-import { Part } from "./part.js";
 import { GRAY } from "./sheets.js";
 import { themeColor } from "./theme.js";
 import { sized } from "./view.js";
@@ -20,9 +19,8 @@ const STATIC = 0.5;
 /** Pictures whose variance is below this, in squares of their 255 steps, are plain. */
 const PLAIN = 2;
 
-export class Shade extends Part {
+export class Shade {
   constructor(plane) {
-    super();
     this.plane = plane;
     this.canvas = byId("shade");
     this.field = "";

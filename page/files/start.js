@@ -5,7 +5,6 @@ import { ask } from "./api.js";
 import { pointPicture } from "./charts.js";
 import { byId } from "./dom.js";
 import { streamOf } from "./hash.js";
-import { Part } from "./part.js";
 import { initial } from "./state.js";
 
 /** The points of each kind, and how many of them lie along a side. */
@@ -37,10 +36,9 @@ async function strewn(seed) {
 /** @type {[string, (seed: number) => any][]} */
 const KINDS = [["white", whiteNoise], ["jitter", jitteredGrid], ["strew", strewn]];
 
-export class Start extends Part {
+export class Start {
   /** `opened()` is called when the plane alone is to be seen. */
   constructor(session, opened) {
-    super();
     this.session = session;
     this.seed = 1;
     this.isFilled = false;

@@ -1,9 +1,8 @@
 // The line at the bottom: how many points are in view, where, and how long a stretch of it is.
 
-import { Problem, askJson, isAborted } from "./api.js";
+import { Digits, Problem, askJson, isAborted, json } from "./api.js";
 import { byId, counted, settled, spoken } from "./dom.js";
 import { decimalsFor, formatPlace } from "./place.js";
-import { Digits, json } from "./digits.js";
 import { bodyOf, boxOf, joined, setOf, worldIn, worldPairs } from "./query.js";
 
 /** The exact number of points in a box of four decimals; `keep` thins it. */

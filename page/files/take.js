@@ -5,7 +5,6 @@ import { FORMATS, curl, looksOf, python, requestOf } from "./commands.js";
 import { byId, bytes, copy, counted, make, settled } from "./dom.js";
 import { MOST_HELD, save, sizeOf } from "./download.js";
 import { select, setOptions } from "./form.js";
-import { Part } from "./part.js";
 import { boxOf, joined } from "./query.js";
 import { Repeat } from "./repeat.js";
 import { countIn } from "./status.js";
@@ -14,9 +13,8 @@ import { countIn } from "./status.js";
 const WHAT = [["", "The points in view"], ["tile", "A tile that repeats without a seam"], ["mask", "A mask for dithering, which repeats"]];
 const WAYS = { curl: "curl", python: "Python", url: "URL" };
 
-export class Take extends Part {
+export class Take {
   constructor(session, plane) {
-    super();
     this.session = session;
     this.plane = plane;
     /** @type {keyof typeof WAYS} */

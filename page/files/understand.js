@@ -3,8 +3,7 @@
 import { ask, askJson, wordsOf } from "./api.js";
 import { lineChart, spectrumPicture, topOf } from "./charts.js";
 import { byId, make, settled, spoken } from "./dom.js";
-import { measure } from "./measure.js";
-import { Part } from "./part.js";
+import { measure } from "./worker.js";
 import { joined } from "./query.js";
 
 /** The most points that are measured, from the middle of the view, and no fewer than this. */
@@ -59,9 +58,8 @@ export function figureOf(recorded, name) {
   return from?.values[name];
 }
 
-export class Understand extends Part {
+export class Understand {
   constructor(session, plane) {
-    super();
     this.session = session;
     this.plane = plane;
     this.layer = 0;

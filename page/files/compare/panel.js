@@ -3,16 +3,14 @@
 import { lineChart, spectrumPicture } from "../charts.js";
 import { make } from "../dom.js";
 import { cornerFrom } from "../grid.js";
-import { MOST_NU } from "../spectrum.js";
-import { measure } from "../measure.js";
+import { measure } from "../worker.js";
 import { Painter } from "../painter.js";
 import { distance } from "../place.js";
 import { Sheets } from "../sheets.js";
 import { LAYER } from "../state.js";
 import { themeColor, themeNumbers } from "../theme.js";
 import { sized } from "../view.js";
-import { MEASURED } from "./methods.js";
-import { large, priceOf } from "./price.js";
+import { MEASURED, large, priceOf } from "./methods.js";
 import { Source, windowAround } from "./sources.js";
 
 export class Panel {
@@ -172,7 +170,7 @@ export class Panel {
     spectrumPicture(this.spectrum, image, cells);
     const beside = reference && reference !== radial ? [{ values: reference, color: "soft", dash: true }] : [];
     lineChart(this.radial, {
-      series: [...beside, { values: radial, color: "accent" }], x: [0, MOST_NU], y: [0, top], name: "ν", aspect: 0.55,
+      series: [...beside, { values: radial, color: "accent" }], x: [0, 3], y: [0, top], name: "ν", aspect: 0.55,
     });
   }
 }

@@ -2,7 +2,6 @@
 
 import { wordsOf } from "../api.js";
 import { byId, icon, make } from "../dom.js";
-import { Part } from "../part.js";
 import { describe, documentOf, isSent, send } from "../sent.js";
 import { MOST_PAINT } from "../state.js";
 import { Brush } from "./brush.js";
@@ -23,7 +22,7 @@ function strokes({ strokes: { length } }) {
   return `${length} ${length === 1 ? "stroke" : "strokes"}`;
 }
 
-export class Paint extends Part {
+export class Paint {
   /** @type {HTMLButtonElement} */
   toggle;
   /** @type {HTMLButtonElement[]} */
@@ -45,7 +44,6 @@ export class Paint extends Part {
 
   /** `picked()` is the index of the layer that is painted on; `say(words)` shows what went wrong. */
   constructor(session, plane, { picked, say }) {
-    super();
     this.session = session;
     this.plane = plane;
     this.picked = picked;
