@@ -3,11 +3,10 @@
 import { byId, icon } from "./dom.js";
 import { watchTheme } from "./theme.js";
 
-export const ICONS = {
+const ICONS = {
   closer: "M12 5v14M5 12h14",
   farther: "M5 12h14",
   home: "M3 11.5 12 4l9 7.5M6 10v10h12V10",
-  theme: "M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z",
 };
 const STEP = 1.5;
 

@@ -1,7 +1,7 @@
 // The API as a page: shows /openapi.json, an operation at a time. Everything is put in as text, never as markup.
 
 import { Gone, askJson } from "../api.js";
-import { byId, counted, icon, make, skipLinks } from "../dom.js";
+import { byId, counted, make, skipLinks } from "../dom.js";
 import { Notice } from "../notice.js";
 import { watchTheme } from "../theme.js";
 import { operationView } from "./operation.js";
@@ -153,7 +153,6 @@ async function begin() {
 
 new Notice(byId("banner"), () => api || begin());
 
-byId("theme").append(icon("M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z"));
 watchTheme(byId("theme"), () => {});
 byId("list").addEventListener("click", () => {
   const isOpen = byId("side").classList.toggle("open");

@@ -1,7 +1,6 @@
 // The essay: its figures, each on a stage of its own.
 
-import { ICONS } from "../bar.js";
-import { byId, copy, icon, skipLinks } from "../dom.js";
+import { byId, copy, skipLinks } from "../dom.js";
 import { watchTheme } from "../theme.js";
 import { Blocks } from "./blocks.js";
 import { Chance } from "./chance.js";
@@ -85,7 +84,6 @@ const near = new IntersectionObserver((entries) => {
 }, { rootMargin: "60% 0px" });
 for (const id of Object.keys(loads)) near.observe(byId(id));
 
-byId("theme").append(icon(ICONS.theme));
 watchTheme(byId("theme"), () => stages.forEach((stage) => stage.themed()));
 skipLinks();
 

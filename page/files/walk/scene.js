@@ -33,7 +33,7 @@ export function sceneOn(canvas) {
 }
 
 class Scene {
-  isMap = false;
+  isBlind = false;
 
   constructor(/** @type {WebGL2RenderingContext} */ gl, /** @type {HTMLCanvasElement} */ canvas) {
     this.gl = gl;

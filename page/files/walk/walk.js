@@ -2,14 +2,14 @@
 
 import { givenIn, hashOf, isSeed } from "../address.js";
 import { askJson } from "../api.js";
-import { byId, bytes, icon, make } from "../dom.js";
+import { byId, bytes, make } from "../dom.js";
 import { Notice } from "../notice.js";
 import { formatPlace, place } from "../place.js";
 import { joined, setOf } from "../query.js";
 import { LAYER, toHash } from "../state.js";
 import { watchTheme } from "../theme.js";
 import { cameraOf } from "./camera.js";
-import { mapOn, smallMapOn } from "./map.js";
+import { Plan } from "./map.js";
 import { STEEPEST, Walker } from "./move.js";
 import { sceneOn } from "./scene.js";
 import { stick } from "./stick.js";
@@ -65,10 +65,12 @@ const notice = new Notice(byId("banner"), () => {
 }, () => {});
 
 let given = fromHash(location.hash);
+/** What takes the place of the scene where there is no WebGL2, and where an address wants the map alone: nothing is drawn. */
+const BLIND = { isSlow: true, isBlind: true, mode: "day", buffer: () => null, free: () => {}, resize: () => {}, draw: () => 0 };
 const wantsMap = location.hash.includes("map=1");
-const scene = (!wantsMap && sceneOn(canvas)) || mapOn(canvas);
-root.dataset.renderer = scene.isMap ? "map" : "webgl2";
-if (scene.isMap) notice.say("blind", "This browser cannot draw in three dimensions (WebGL2 is missing), so here is the map. Keys and sticks walk as usual.");
+const scene = (!wantsMap && sceneOn(canvas)) || BLIND;
+root.toggleAttribute("data-blind", scene.isBlind);
+if (scene.isBlind) notice.say("blind", "This browser cannot draw in three dimensions (WebGL2 is missing), so here is the map. Keys and sticks walk as usual.");
 
 function failed(error) {
   root.dataset.state = "failed";
@@ -99,7 +101,7 @@ function adapt(took) {
 let pictured = "";
 let drawn = 0;
 /** The small map, the state that it shows, and since when. */
-const chart = smallMapOn(byId("map"));
+const chart = new Plan(byId("map"));
 let charted = "";
 let chartedAt = 0;
 
@@ -238,7 +240,6 @@ function toggleMap(isShown) {
   charted = "";
 }
 
-byId("theme").append(icon("M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z"));
 stick(byId("stick-walk"), (push) => {
   walker.walks = push;
   walker.take();
@@ -249,8 +250,7 @@ stick(byId("stick-look"), (push) => {
 });
 byId("jump").addEventListener("click", jump);
 byId("chart").addEventListener("click", () => toggleMap(byId("map").hidden));
-byId("chart").hidden = scene.isMap;
-toggleMap(!scene.isMap && matchMedia("(min-width: 46.01rem) and (min-height: 30.01rem)").matches);
+toggleMap(scene.isBlind || matchMedia("(min-width: 46.01rem) and (min-height: 30.01rem)").matches);
 byId("fly").addEventListener("click", () => {
   if (walker.isAloft && !walker.target) walker.descend();
   else walker.rise();
