@@ -66,22 +66,7 @@ export class Understand {
     /** @type {any} */
     this.drawn = null;
     this.again = settled(200, () => this.measure());
-    this.note = make("p", { class: "note", role: "status", id: "measured-note" });
-    this.picker = make("div", { class: "choices", role: "group", "aria-label": "Layer" });
-    this.list = make("dl", { class: "figures" });
-    const chart = (id, label) => make("canvas", { id, role: "img", "aria-label": label });
-    const keys = () => make("span", { class: "keys" }, make("span", {}, make("i", { class: "key-here" }), "here"), make("span", {}, make("i", { class: "key-table" }), "table"));
-    this.radial = chart("radial", "Radial power of the points in view beside the table's");
-    this.rdf = chart("rdf", "Radial distribution of the points in view beside the table's");
-    this.spectrum = chart("spectrum", "Spectrum of the points in view");
-    this.charts = make("div", { class: "group" },
-      make("figure", {}, make("figcaption", {}, make("b", {}, "Radial power"), keys()), this.radial,
-        make("p", { class: "note" }, "How much of each frequency ν there is; 1 is pure chance. Low at the left: even. High peaks: regular.")),
-      make("figure", {}, make("figcaption", {}, make("b", {}, "Radial distribution"), keys()), this.rdf,
-        make("p", { class: "note" }, "How often a distance occurs, in mean spacings; 1 is pure chance.")),
-      make("figure", {}, make("figcaption", {}, make("b", {}, "Spectrum")), this.spectrum,
-        make("p", { class: "note" }, "The same frequencies by direction, ν up to 2.5. Round: no direction is special.")));
-    byId("understand").append(this.picker, this.list, this.note, this.charts);
+    this.picker = byId("measured-layer");
   }
 
   get isOpen() {
@@ -130,8 +115,8 @@ export class Understand {
     const area = this.plane.view.width * this.plane.view.height * this.plane.view.unit ** 2;
     if (points.length / 2 < LEAST) {
       this.say(`${points.length / 2} points are too few to measure: zoom out until there are ${LEAST}.`);
-      this.list.replaceChildren();
-      this.charts.hidden = true;
+      byId("measures").replaceChildren();
+      byId("charts").hidden = true;
       document.documentElement.dataset.measured = "too-few";
       return;
     }
@@ -147,15 +132,15 @@ export class Understand {
   }
 
   say(words) {
-    this.note.textContent = words;
+    byId("measured-note").textContent = words;
   }
 
   draw() {
     const { measured, recorded, reference, isWarped, count, density, thinned } = this.drawn;
     const { figures, radial, rdf, image, cells } = measured;
-    this.charts.hidden = false;
+    byId("charts").hidden = false;
     const entry = (words, value, table) => make("div", {}, make("dt", {}, words), make("dd", {}, value, table === undefined ? "" : make("small", { class: "soft" }, ` ${isWarped ? "table, warped" : "table"} ${spoken(table, 3)}`)));
-    this.list.replaceChildren(
+    byId("measures").replaceChildren(
       entry("Points measured", figures.count.toLocaleString("en")),
       entry(thinned ? "Density of those drawn" : "Density", spoken(density, 4)),
       entry("δ min", spoken(figures.deltaMin, 3), reference.deltaMin),
@@ -165,15 +150,15 @@ export class Understand {
     const note = thinned ? "What is in view is thinned, so it is not what the table was made for. " : "";
     this.say(`${part}${note}δ is the distance to the nearest neighbor; 1 is that of the densest packing.`);
     const table = recorded.measured.radial.values.map(([nu, power]) => [nu, power]);
-    lineChart(this.radial, {
+    lineChart(byId("radial"), {
       series: [{ values: table, color: "soft", dash: true }, { values: radial, color: "accent" }],
       x: [0, 3], y: [0, topOf(table, radial)], name: "ν",
     });
     const recordedRdf = recorded.measured.rdf.values;
-    lineChart(this.rdf, {
+    lineChart(byId("rdf"), {
       series: [{ values: recordedRdf, color: "soft", dash: true }, { values: rdf, color: "accent" }],
       x: [0, 5], y: [0, topOf(recordedRdf, rdf)], name: "r",
     });
-    spectrumPicture(this.spectrum, image, cells);
+    spectrumPicture(byId("spectrum"), image, cells);
   }
 }
