@@ -45,7 +45,7 @@ byId("row-place").addEventListener("change", () => {
 row.told = (place) => {
   if (document.activeElement !== byId("row-place")) byId("row-place").value = String(place);
 };
-blocks.slider = stageOf("blocks").slider("blocks-radius", (value) => `${value} step${value === 1 ? "" : "s"}`, (value) => blocks.look(value));
+blocks.slider = stageOf("blocks").slider("blocks-radius", (value) => `${value} step${value === 1 ? "" : "s"}`, (value) => blocks.see(value));
 vectors.slider = stageOf("vectors").slider("vectors-share", (value) => `${value} %`, (value) => vectors.set(value / 100));
 // Where no motion is wanted the figures are over already.
 blocks.slider.set(blocks.radius);

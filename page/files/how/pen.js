@@ -26,6 +26,9 @@ export function isDark() {
   return /^rgba?\(\d?\d\D/.test(palette().ground);
 }
 
+/** A share of a way that begins and ends gently. */
+export const eased = (/** @type {number} */ share) => share * share * (3 - 2 * share);
+
 /** The radius of a dot of the grid where a step is so many pixels long. */
 export function dotOf(scale) {
   return Math.max(1.7, scale * 0.4);

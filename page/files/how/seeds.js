@@ -1,7 +1,8 @@
 // What is left to choose: how dense, which seed, how much warp. All points are the server's; they move by their addresses.
 
 import { settled } from "../dom.js";
-import { Panel, disk, palette } from "./pen.js";
+import { Panel, disk, eased, palette } from "./pen.js";
+import { Figure } from "./stage.js";
 
 /** The window in units of the plane, and what is requested around it. */
 const WIDE = 12;
@@ -27,11 +28,7 @@ const TOUR = [
   { density: 9, seed: 7, warp: 1 },
 ];
 
-const eased = (share) => share * share * (3 - 2 * share);
-
-export class Seeds {
-  /** @type {import("./stage.js").Stage} */
-  stage;
+export class Seeds extends Figure {
   /** @type {((chosen: Chosen) => void) | undefined} */
   follow;
   /** @type {Chosen} */
@@ -41,6 +38,7 @@ export class Seeds {
   share = 0;
 
   constructor() {
+    super();
     this.known = new Map();
     this.from = new Map();
     this.to = new Map();

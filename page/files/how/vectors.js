@@ -1,9 +1,9 @@
 // From the pattern to the points: a point and its twin far away, in the same block, on their way along the same vector.
 
-import { Pattern } from "./pattern.js";
+import { Pattern, blockOf, nearest } from "./pattern.js";
 import { colorOf, indexOf } from "./indices.js";
-import { arrow, disk, dotOf, lines, pair, palette } from "./pen.js";
-import { blockOf, nearest, nextOf } from "./same.js";
+import { arrow, disk, dotOf, eased, lines, pair, palette } from "./pen.js";
+import { Figure } from "./stage.js";
 
 /** Half the sides of the windows and of what is requested, in grid units; and of where twins are looked for. */
 const REACH = 11;
@@ -16,27 +16,20 @@ const WAY = 2.4;
 const STAY = 1;
 const ROUNDS = 2;
 
-const eased = (share) => share * share * (3 - 2 * share);
 const signed = (v) => v.toFixed(2).replace("-", "−");
 const whole = (v) => String(v).replace("-", "−");
 
-export class Vectors {
-  /** @type {import("./stage.js").Stage} */
-  stage;
-  /** @type {{ set: (value: number) => void } | undefined} */
-  slider;
-  /** @type {import("./pen.js").Panel[]} */
-  panels;
-  /** @type {Map<string, number[]>} */
-  twins;
-  /** @type {number[][]} */
-  points;
+export class Vectors extends Figure {
   /** @type {number[]} */
   point;
-  seconds = 0;
+  /** @type {{ set: (value: number) => void } | undefined} */
+  slider;
+  /** @type {Map<string, number[]>} */
+  twins;
   share = 0;
 
   constructor() {
+    super();
     this.pattern = new Pattern();
     /** The vectors by the address of the point. */
     this.vectors = new Map();
@@ -112,10 +105,6 @@ export class Vectors {
 
   touched(at) {
     if (this.points && this.panels[0].holds(at)) this.look(nearest(this.points, this.panels[0].from(at)));
-  }
-
-  moved(step) {
-    if (this.points) this.look(nextOf(this.points, this.point, step));
   }
 
   tell() {
