@@ -6,6 +6,7 @@ import { Card } from "./card.js";
 import { Controls } from "./controls.js";
 import { byId, icon, make, settled, skipLinks, spoken } from "./dom.js";
 import { faultsOf, faultsBefore } from "./faults.js";
+import { openFlight } from "./flight.js";
 import { keyForm } from "./form.js";
 import { Gallery } from "./gallery.js";
 import { moveBy } from "./gestures.js";
@@ -30,7 +31,7 @@ import { worldNames } from "./worlds.js";
 
 const root = document.documentElement;
 /** Whether the visitor comes without a link to a view. */
-const isFirst = location.hash.length < 2;
+const isFirst = "first" in root.dataset;
 const session = new Session();
 
 /**
@@ -122,7 +123,7 @@ function shownFirst() {
 /** Points have come: on a first visit they pour into place. */
 function arrived() {
   shownFirst();
-  if (isFirst && !("pour" in root.dataset)) pour.begin(matchMedia("(prefers-reduced-motion: reduce)").matches);
+  if (isFirst && !("first" in root.dataset || "pour" in root.dataset)) pour.begin(matchMedia("(prefers-reduced-motion: reduce)").matches);
 }
 
 const status = new Status(session, plane);
@@ -148,7 +149,7 @@ function banner(words, buttons = []) {
 
 onPresence((gone) => {
   root.dataset.presence = gone ? "gone" : "here";
-  if (gone) banner("The server does not answer. This page tries again by itself; what is drawn stays.");
+  if (gone) banner("The server does not answer. This page tries again by itself.");
   else {
     banner(null);
     if (controls) refresh();
@@ -160,7 +161,7 @@ let latest = 0;
 /** Whether the server has resolved the layers; before, they are shown as the page understands them. */
 let isUnderstood = false;
 /** The message to show with the plane, if it does not show what was requested: the reason. */
-let notice = /** @type {string | null} */ (null);
+let notice = session.state.wrong;
 
 /** The server's resolved values of each layer, or its faults. */
 async function notesOf(layers) {
@@ -333,9 +334,17 @@ async function share() {
   } catch {
     words = "The link is in the address bar of your browser: the browser does not let this page copy it.";
   }
+  mention(words);
+}
+
+const forget = settled(6000, () => (byId("caption").hidden = true));
+
+/** Says something at the bottom of the plane for a while. */
+function mention(words) {
   byId("said").textContent = words;
-  byId("share").title = words;
-  banner(words, [["Close", () => banner(null)]]);
+  byId("caption").textContent = words;
+  byId("caption").hidden = false;
+  forget();
 }
 
 function fold(isFolded) {
@@ -358,7 +367,7 @@ const paint = new Paint(session, plane, {
 const start = new Start(session, () => {
   fold(matchMedia("(max-width: 46rem)").matches);
   byId("plane").focus();
-});
+}, mention);
 parts.push(pour, start, card, understand, take, shade, paint);
 buttons();
 skipLinks();
@@ -408,6 +417,7 @@ function settle(profiles) {
 /** A server that wants keys is given one. */
 function askForKey() {
   if (byId("key")) return;
+  byId("flight").close();
   banner("This server needs a key. It is kept in this tab only.");
   byId("banner").lastElementChild?.replaceWith(keyForm(() => {
     banner(null);
@@ -458,6 +468,7 @@ async function begin() {
   }
 }
 
+if (isFirst) openFlight(() => plane.look && arrived());
 // For the curious, and for tests.
 globalThis.strew = { plane, pour, start, card, shade, stipple, session, status, understand, take, paint };
 begin();

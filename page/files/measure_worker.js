@@ -224,9 +224,6 @@ function neighborsOf(points, side) {
   return { least, mean: inner > 0 ? sum / inner : NaN, rdf };
 }
 
-/** Nearest-neighbor distances are in units of that of the densest packing. */
-const HEXAGONAL = Math.sqrt(2 / Math.sqrt(3));
-
 // `points` are x, y within a square of `side` world units.
 addEventListener("message", ({ data: { id, points, side } }) => {
   const count = points.length / 2;
@@ -235,6 +232,6 @@ addEventListener("message", ({ data: { id, points, side } }) => {
   const across = Math.sqrt(count);
   const { least, mean, rdf } = neighborsOf(scaled, across);
   const { image, cells, radial } = spectrumOf(scaled, across);
-  const figures = { count, spacing, least, mean, deltaMin: least / HEXAGONAL, deltaAvg: mean / HEXAGONAL };
+  const figures = { count, spacing, least, mean };
   postMessage({ id, figures, rdf, radial, image, cells }, { transfer: [image.buffer] });
 });

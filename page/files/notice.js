@@ -4,7 +4,7 @@ import { Gone, Problem, hasKey, onPresence } from "./api.js";
 import { byId, make } from "./dom.js";
 import { keyForm } from "./form.js";
 
-const AWAY = "The server does not answer. This page tries again by itself; what is drawn stays.";
+const AWAY = "The server does not answer. This page tries again by itself.";
 /** What can be said, the most pressing first. */
 const SUBJECTS = /** @type {const} */ (["away", "busy", "refused", "wrong", "blind"]);
 

@@ -96,6 +96,7 @@ export const MOST_LAYERS = 6;
  * @property {Layer[]} layers
  * @property {string} tab
  * @property {string} take What is taken away: nothing for the view, or what repeats, `tile` or `mask`.
+ * @property {string | null} [wrong] What is said of an address that was not understood in full.
  */
 
 /**
@@ -122,8 +123,7 @@ export function fromHash(/** @type {string} */ hash) {
   const state = initial();
   const [x, y] = given.at();
   if (x && y) Object.assign(state, { x, y });
-  const span = given.number("span", 0);
-  if (span > 0) state.span = span;
+  state.span = given.number("span", state.span, [Number.MIN_VALUE, Infinity]);
   if (given.size > 0) state.tab = "choose";
   state.tab = given.matching("tab", /^(start|choose|understand|take|gallery)$/, state.tab);
   state.take = given.matching("take", /^(tile|mask)$/);
@@ -131,6 +131,7 @@ export function fromHash(/** @type {string} */ hash) {
   state.worldSeed = given.matching("world.seed", /^\d{1,20}$/);
   const layers = Math.trunc(given.number("layers", 1, [1, MOST_LAYERS]));
   state.layers = Array.from({ length: layers }, (_, i) => layerFrom(given, i));
+  state.wrong = given.wrong();
   return state;
 }
 

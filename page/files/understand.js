@@ -25,7 +25,7 @@ function middleOf(plane, layer, count) {
   return { points: Float64Array.from(found), side };
 }
 
-/** The measures of a window with the layer's table and warp, as a reference: `{ deltaMin, deltaAvg }`. */
+/** The measures of a window with the layer's table and warp, as a reference: `{ least, mean }`. */
 const references = new Map();
 function referenceOf(layer) {
   const pairs = [["alpha", layer.alpha], ["map", layer.map]].filter(([, value]) => value);
@@ -50,6 +50,9 @@ export function recordedOf(layer) {
   const pairs = [["alpha", layer.alpha], ["map", layer.map]].filter(([, value]) => value);
   return askJson(`/v1/profiles/${encodeURIComponent(layer.profile)}${pairs.length ? "?" : ""}${joined(pairs)}`);
 }
+
+/** The least distance of densest packing, in mean spacings: reports of tables have distances as shares of it. */
+export const HEXAGONAL = Math.sqrt(2 / Math.sqrt(3));
 
 /** The figure of a name, of the first window that the table was measured on. */
 export function figureOf(recorded, name) {
@@ -143,12 +146,12 @@ export class Understand {
     byId("measures").replaceChildren(
       entry("Points measured", figures.count.toLocaleString("en")),
       entry(thinned ? "Density of those drawn" : "Density", spoken(density, 4)),
-      entry("δ min", spoken(figures.deltaMin, 3), reference.deltaMin),
-      entry("δ average", spoken(figures.deltaAvg, 3), reference.deltaAvg),
+      entry("Least distance", spoken(figures.least, 3), reference.least),
+      entry("Mean distance", spoken(figures.mean, 3), reference.mean),
     );
     const part = figures.count < count ? "Measured in the middle of the view. " : "";
     const note = thinned ? "What is in view is thinned, so it is not what the table was made for. " : "";
-    this.say(`${part}${note}δ is the distance to the nearest neighbor; 1 is that of the densest packing.`);
+    this.say(`${part}${note}Distances are those to the nearest neighbor, in mean spacings; a honeycomb has 1.07.`);
     const table = recorded.measured.radial.values.map(([nu, power]) => [nu, power]);
     lineChart(byId("radial"), {
       series: [{ values: table, color: "soft", dash: true }, { values: radial, color: "accent" }],

@@ -7,13 +7,11 @@ import { byId, make, settled, skipLinks } from "../dom.js";
 import { moveBy } from "../gestures.js";
 import { Notice } from "../notice.js";
 import { parsePlace, place } from "../place.js";
-import { FARTHEST, Joint, fromHash, toHash } from "./joint.js";
+import { FAR, FARTHEST, Joint, fromHash, toHash } from "./joint.js";
 import { METHODS } from "./methods.js";
 import { Panel } from "./panel.js";
 import { windowAround } from "./sources.js";
 
-/** Where the button leads: a billion units to the right and up. */
-const FAR = 1e9;
 /** Units along the shorter side where a window is shown alone: the regions of the methods that have one fit. */
 const ALONE = 290;
 
@@ -49,7 +47,7 @@ function showAlone(isAlone) {
   draw();
 }
 
-const TRY = "What does a method have to make before it can show this window?";
+const TRY = "What does a method have to make before it can show this window? The price of Strew: its points come as near as 0.63 mean spacings, those of Poisson disk 0.79.";
 
 function draw() {
   write();
@@ -195,6 +193,7 @@ async function begin() {
   show();
 }
 
+say(state.wrong);
 // For tests.
 globalThis.strew = { joint, panels };
 build();

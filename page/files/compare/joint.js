@@ -11,6 +11,8 @@ const SPAN = 32;
 const NARROW_SPAN = 20;
 /** Farther out, doubles do not tell places within a spacing apart. */
 export const FARTHEST = 1e12;
+/** Where the page begins, and where its button leads: a billion units to the right and up. */
+export const FAR = 1e9;
 
 const bounded = (span) => Math.min(MOST_SPAN, Math.max(LEAST_SPAN, span));
 const isNear = (at) => Math.abs(toNumber(at)) <= FARTHEST;
@@ -19,13 +21,14 @@ const isNear = (at) => Math.abs(toNumber(at)) <= FARTHEST;
 export function fromHash(hash, isNarrow) {
   const given = givenIn(hash);
   const [x, y] = given.at();
-  const span = given.number("span", 0);
+  const span = given.number("span", isNarrow ? NARROW_SPAN : SPAN, [Number.MIN_VALUE, Infinity]);
   const isPlace = x && y && isNear(x) && isNear(y);
   return {
-    ...(isPlace ? { x, y } : { x: place(0), y: place(0) }),
-    span: span > 0 ? bounded(span) : isNarrow ? NARROW_SPAN : SPAN,
+    ...(isPlace ? { x, y } : { x: place(FAR), y: place(FAR) }),
+    span: bounded(span),
     seed: Number(given.matching("seed", /^\d{1,9}$/, "1")),
     profile: given.matching("profile", /^[\w.-]{1,64}$/, "blue"),
+    wrong: given.wrong(),
   };
 }
 

@@ -51,14 +51,14 @@ export function large(value) {
 }
 
 /** A time in the largest unit that it has one of. */
-function lasting(seconds) {
+export function lasting(seconds) {
   const [unit, size] = Object.entries(SECONDS).find(([, one]) => seconds >= 2 * one) ?? ["seconds", 1];
   const count = seconds / size;
   return `${large(Number(count.toPrecision(count >= 1 ? 2 : 1)))} ${unit}`;
 }
 
 /** The points of a square around the origin, with one point a unit area, that holds all of a window. */
-function upTo({ x, y, width, height }) {
+export function upTo({ x, y, width, height }) {
   const reach = Math.max(...[[x, width], [y, height]].flatMap(([at, side]) => [Math.abs(toNumber(at)), Math.abs(toNumber(at) + side)]));
   return (2 * reach) ** 2;
 }

@@ -85,6 +85,7 @@ function nothing() {
 function overview() {
   return [
     make("h2", { tabindex: "-1" }, "The API"),
+    location.hash.length > 1 && make("p", { class: "bad" }, `This API has no operation “${named(location.hash.slice(1))}”.`),
     make("p", { class: "about" }, api.info.description),
     make("p", {}, "Choose an operation, or search: the search covers parameters, too. Each operation can be tried here and has its own link."),
     make("p", {}, "The same calls are served over gRPC on this port, with reflection: ", make("code", {}, "strew.v1.PointService"), ". This page shows ",
@@ -94,7 +95,7 @@ function overview() {
       return members.length > 0 && make("li", {}, make("a", { href: `#${members[0].id}` },
         make("b", {}, name), make("span", {}, description), make("small", {}, counted(members.length, "operation"))));
     })),
-  ];
+  ].filter((one) => one !== false);
 }
 
 /** The text of an escaped address; the address itself if its escapes are wrong. */

@@ -20,8 +20,6 @@ const signed = (v) => v.toFixed(2).replace("-", "−");
 const whole = (v) => String(v).replace("-", "−");
 
 export class Vectors extends Figure {
-  /** @type {number[]} */
-  point;
   /** @type {{ set: (value: number) => void } | undefined} */
   slider;
   /** @type {Map<string, number[]>} */
@@ -55,7 +53,7 @@ export class Vectors extends Figure {
   /** Shows a point and its twin. */
   async look(point) {
     if (!point || String(point) === String(this.point)) return;
-    this.point = point;
+    super.look(point);
     const twin = this.twins.get(String(point)) ?? point;
     for (const middle of [[0, 0], twin]) {
       await this.request(middle);

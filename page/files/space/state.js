@@ -73,7 +73,7 @@ export function fromHash(hash) {
     seed: text("seed", isSeed, "The seed in the address is not a whole number below 2⁶⁴, so it is 7."),
     profile: text("profile", (value) => PROFILES.includes(value), "The profile in the address is not for space, so it is blue."),
     isPlain: !given.has("at"),
-    wrong,
+    wrong: [...wrong, given.wrong() ?? []].flat(),
   };
 }
 

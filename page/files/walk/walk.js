@@ -1,6 +1,6 @@
 // The walk: puts its parts together and draws, as finely as the machine can.
 
-import { givenIn, hashOf, isSeed } from "../address.js";
+import { givenIn, hashOf } from "../address.js";
 import { askJson } from "../api.js";
 import { byId, bytes, make } from "../dom.js";
 import { Notice } from "../notice.js";
@@ -44,16 +44,21 @@ function fromHash(hash) {
   const isNear = x && y && Math.max(Math.abs(x.i), Math.abs(y.i)) <= 1e14;
   const radians = (name, otherwise) => ((given.number(name, otherwise) % 360) * Math.PI) / 180;
   const quality = given.matching("quality", /^[0-3]$/);
-  if (x && y && !isNear) notice.say("wrong", "This walk ends at 1e14 in every direction, so it starts at its beginning instead.");
-  return {
+  const read = {
     x: isNear ? x : place(START.x), y: isNear ? y : place(START.y),
     yaw: radians("yaw", START.yaw), pitch: Math.max(-STEEPEST, Math.min(STEEPEST, radians("pitch", -5))),
-    seed: isSeed(given.text("seed")) ? given.text("seed") : "7",
+    seed: given.seed("7"),
     quality: quality ? Number(quality) : null,
     isFlying: given.text("fly") !== "0" && !given.has("at"),
     isAloft: given.text("fly") === "1",
     isAnywhere: !isNear,
+    isMap: given.text("map") === "1",
+    /** Whether it is the flight of the first page: always at dusk, with nothing to use. */
+    isScenery: given.text("scenery") === "1",
   };
+  const isOut = x && y && !isNear;
+  notice.say("wrong", isOut ? "This walk ends at 1e14 in every direction, so it starts at its beginning instead." : given.wrong());
+  return read;
 }
 
 /** Where a walk begins: above the trail, or in a clearing nearby. */
@@ -67,7 +72,8 @@ const notice = new Notice(byId("banner"), () => {
 let given = fromHash(location.hash);
 /** What takes the place of the scene where there is no WebGL2, and where an address wants the map alone: nothing is drawn. */
 const BLIND = { isSlow: true, isBlind: true, mode: "day", buffer: () => null, free: () => {}, resize: () => {}, draw: () => 0 };
-const wantsMap = location.hash.includes("map=1");
+const { isMap: wantsMap, isScenery } = given;
+root.toggleAttribute("data-scenery", isScenery);
 const scene = (!wantsMap && sceneOn(canvas)) || BLIND;
 root.toggleAttribute("data-blind", scene.isBlind);
 if (scene.isBlind) notice.say("blind", "This browser cannot draw in three dimensions (WebGL2 is missing), so here is the map. Keys and sticks walk as usual.");
@@ -165,7 +171,7 @@ function remember() {
   const at = [walker.x, walker.y].map((v) => formatPlace(v, 2)).join(",");
   const rest = { fly: walker.isAloft && 1, seed: given.seed !== "7" && given.seed, quality: given.quality ?? false, map: wantsMap && 1 };
   const address = hashOf([["at", at], ["yaw", turned(walker.yaw)], ["pitch", turned(walker.pitch)], ...Object.entries(rest).filter(([, value]) => value !== false)]);
-  if (address === location.hash) return;
+  if (address === location.hash || isScenery) return;
   history.replaceState(null, "", address);
   byId("plane").href = `/${planeHash()}`;
 }
@@ -259,7 +265,7 @@ addEventListener("keydown", (event) => event.key === "Escape" && close());
 canvas.addEventListener("webglcontextlost", () => location.reload());
 watchTheme(byId("theme"), () => {
   const isDark = getComputedStyle(document.body).colorScheme.includes("dark") && byId("theme").getAttribute("aria-pressed") === "true";
-  scene.mode = isDark ? "dusk" : "day";
+  scene.mode = isDark || isScenery ? "dusk" : "day";
 });
 addEventListener("hashchange", ({ newURL }) => {
   // The place may have been written into the address since.

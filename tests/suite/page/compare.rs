@@ -73,7 +73,7 @@ fn methods_are_what_they_say() {
     let Some((daemon, browser)) = looking(1440, 900) else {
         return;
     };
-    open(&browser, &daemon, "");
+    open(&browser, &daemon, "#at=0,0");
     assert_eq!(browser.value(FAULTS), Value::from(Vec::<String>::new()));
     // Distances and counts as they are known of each kind, in mean spacings.
     for (id, least, mean) in [
@@ -229,6 +229,7 @@ fn far_away_on_a_phone_bounded_methods_say_that_they_end() {
     assert!(browser.text("#banner").contains("not a place here"));
     // A meaningless hash leaves the defaults.
     open(&browser, &daemon, "#at=1e18,0&span=-3&seed=x&profile=%22");
-    assert_eq!(browser.value("strew.joint.view.x.i"), 0);
+    assert_eq!(browser.value("strew.joint.view.x.i"), 1_000_000_000);
+    assert!(browser.text("#banner").contains("“seed=x”"));
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
