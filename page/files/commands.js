@@ -1,8 +1,7 @@
 // Texts to paste elsewhere that return the points in view: the address, curl, Python.
 
-import { Digits, json } from "./api.js";
 import { documentOf } from "./sent.js";
-import { bodyOf, joined, memberOf, setOf, worldIn, worldPairs } from "./query.js";
+import { askedOf } from "./query.js";
 
 /** The formats of answers: name, ending of a file, what it is for. A test holds them against the server. */
 export const FORMATS = [
@@ -30,23 +29,8 @@ export function looksOf(format) {
 
 /** The request for the points in a box of four decimals: `{ path }`, with a `body` for layers. */
 export function requestOf(layers, box, keep, format) {
-  const looks = looksOf(format);
-  const world = worldIn(layers);
-  if (world) {
-    const pairs = [["bbox", box.join(",")], ...worldPairs(world, keep), ["format", format], ...looks];
-    return { path: `/v1/points?${joined(pairs)}` };
-  }
-  const isWhole = isShort(layers);
-  if (layers.length === 1 && !isWhole) {
-    const pairs = [["bbox", box.join(",")], ...setOf(layers[0], keep), ["format", format], ...looks];
-    return { path: `/v1/points?${joined(pairs)}` };
-  }
-  const region = { bbox: box.map((side) => new Digits(side)) };
-  const form = { format, ...Object.fromEntries(looks.map(([name, value]) => [name, Number(value)])) };
-  const set = layers.length === 1
-    ? { region, ...memberOf(layers[0], keep, isWhole), ...form }
-    : bodyOf(layers, region, keep, form, isWhole);
-  return { path: "/v1/points:query", body: json(set, 2) };
+  const { query, body } = askedOf(layers, box, keep, [["format", format], ...looksOf(format)], isShort(layers));
+  return body ? { path: "/v1/points:query", body } : { path: `/v1/points${query}` };
 }
 
 /** Whether the page has sent a field of these layers that a line can hold in full. */

@@ -118,6 +118,21 @@ export function chunkRequest(layers, { size, cx, cy }, keep) {
   return { path: "/v1/points:query", body: json(bodyOf(layers, region, keep, { format: "f32" })) };
 }
 
+/**
+ * What asks for the points in a box of four decimals, or for their count: the parameters of an address; or a body for several
+ * layers, and with `isWhole` for fields that are described in full. `looks` are more parameters, as pairs.
+ */
+export function askedOf(layers, box, keep, looks = [], isWhole = false) {
+  const world = worldIn(layers);
+  if (world || (layers.length === 1 && !isWhole)) {
+    const pairs = world ? worldPairs(world, keep) : setOf(layers[0], keep);
+    return { query: `?${joined([["bbox", box.join(",")], ...pairs, ...looks])}` };
+  }
+  const region = { bbox: box.map((side) => new Digits(side)) };
+  const form = Object.fromEntries(looks.map(([name, value]) => [name, numberOr(value)]));
+  return { query: "", body: json(layers.length > 1 ? bodyOf(layers, region, keep, form, isWhole) : { region, ...memberOf(layers[0], keep, isWhole), ...form }, 2) };
+}
+
 /** The columns of packed answers besides x and y, as the server joins those of several layers. */
 export function columnsOf(layers) {
   if (worldIn(layers)) return layers[0].columns;

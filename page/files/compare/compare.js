@@ -10,10 +10,7 @@ import { parsePlace, place } from "../place.js";
 import { FAR, FARTHEST, Joint, fromHash, toHash } from "./joint.js";
 import { METHODS } from "./methods.js";
 import { Panel } from "./panel.js";
-import { windowAround } from "./sources.js";
 
-/** Units along the shorter side where a window is shown alone: the regions of the methods that have one fit. */
-const ALONE = 290;
 
 const root = document.documentElement;
 const narrow = matchMedia("(max-width: 46rem)");
@@ -28,36 +25,13 @@ const notice = new Notice(byId("banner"), () => {
 const say = (words) => notice.say("wrong", words);
 
 let isWaiting = false;
-/**
- * The window that is shown alone, with the scale it is shown at and the view it was taken from; `null` if none is.
- * @type {{ window: ReturnType<typeof windowAround>, unit: number, key: string } | null}
- */
-let alone = null;
-const keyOf = ({ x, y, unit, width, height }) => [x.i, x.f, y.i, y.f, unit, width, height].join();
-
-/** Shows what has to be made for the window alone, and nothing else; or all points again. */
-function showAlone(isAlone) {
-  const { view } = joint;
-  const unit = Math.max(ALONE, 1.5 * state.span) / Math.min(view.width, view.height);
-  alone = isAlone ? { window: windowAround(view, view.width * view.unit, view.height * view.unit), unit, key: keyOf(view) } : null;
-  byId("alone").setAttribute("aria-pressed", String(isAlone));
-  byId("said").textContent = isAlone
-    ? "The frame is the window, from farther away. Only what has to be made to show it is drawn."
-    : TRY;
-  draw();
-}
-
-const TRY = "What does a method have to make before it can show this window? The price of Strew: its points come as near as 0.63 mean spacings, those of Poisson disk 0.79.";
-
 function draw() {
   write();
   if (isWaiting) return;
   isWaiting = true;
   requestAnimationFrame(() => {
     isWaiting = false;
-    // Who moves the view wants to see all points.
-    if (alone && alone.key !== keyOf(joint.view)) showAlone(false);
-    for (const panel of panels) panel.draw(joint.view, alone);
+    for (const panel of panels) panel.draw(joint.view);
     const { x, y } = joint.view;
     const isFar = Math.abs(x.i) > FAR / 2;
     byId("far").textContent = isFar ? "Back to the origin" : "A billion units away";
@@ -147,7 +121,6 @@ function listen() {
     draw();
   });
   byId("jump").addEventListener("submit", jump);
-  byId("alone").addEventListener("click", () => showAlone(!alone));
   byId("far").addEventListener("click", () => {
     const isFar = Math.abs(joint.view.x.i) > FAR / 2;
     if (isFar) home();
@@ -197,7 +170,6 @@ say(state.wrong);
 // For tests.
 globalThis.strew = { joint, panels };
 build();
-byId("said").textContent = TRY;
 listen();
 skipLinks();
 begin();

@@ -34,6 +34,7 @@ export class Seeds extends Figure {
   /** @type {Chosen} */
   chosen;
   stop = 0;
+  isTaken = false;
   seconds = 0;
   share = 0;
 
@@ -47,7 +48,7 @@ export class Seeds extends Figure {
   }
 
   restart() {
-    Object.assign(this, { stop: 0, seconds: 0, share: 1, chosen: { ...TOUR[0] } });
+    Object.assign(this, { stop: 0, seconds: 0, share: 1, isTaken: false, chosen: { ...TOUR[0] } });
     if (this.stage) this.go();
   }
 
@@ -68,27 +69,14 @@ export class Seeds extends Figure {
     this.share = this.from.size === 0 || this.isStill ? 1 : 0;
     this.tell();
     this.stage.draw();
-    if (this.share < 1 && this.stage.isOver) this.slide();
-  }
-
-  /** Has points move after the visitor's choice. */
-  slide() {
-    if (this.isSliding) return;
-    this.isSliding = true;
-    let before = performance.now();
-    const frame = (now) => {
-      this.share = Math.min(1, this.share + (now - before) / 1000 / WAY);
-      before = now;
-      this.stage.draw();
-      this.isSliding = this.share < 1;
-      if (this.isSliding) requestAnimationFrame(frame);
-    };
-    requestAnimationFrame(frame);
+    if (this.share < 1 && this.stage.isOver) this.stage.goOn();
   }
 
   step(seconds) {
     if (this.to.size === 0) return true;
     this.share = Math.min(1, this.share + seconds / WAY);
+    // After a choice of the visitor points go there, and no further.
+    if (this.isTaken) return this.share < 1;
     this.seconds += seconds;
     if (this.seconds < WAY + STAY) return true;
     this.seconds = 0;
@@ -102,6 +90,7 @@ export class Seeds extends Figure {
   /** The tour ends where it is; a visitor who wants no motion sees its last stop. */
   finish() {
     this.share = 1;
+    this.isTaken = true;
     if (!matchMedia("(prefers-reduced-motion: reduce)").matches) return;
     this.isStill = true;
     this.chosen = { ...TOUR[TOUR.length - 1] };

@@ -96,6 +96,12 @@ export class Stage {
     else this.frame = requestAnimationFrame((next) => this.step(next));
   }
 
+  /** Moves again, after the visitor has taken over. */
+  goOn() {
+    this.isOver = false;
+    this.go();
+  }
+
   finish() {
     this.figure.finish?.();
     this.isOver = true;

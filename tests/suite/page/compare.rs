@@ -114,26 +114,9 @@ fn what_each_method_has_to_make_is_counted() {
     assert!(why.ends_with(&browser.text("#made-strew")), "{why}");
     // All of its square, for any part of it.
     assert!((figure(&browser, "made-poisson") - 65_536.0).abs() < 1000.0);
-    // Alone: what has to be made, drawn beside nothing else; a move ends that.
-    browser.click("#alone");
-    browser.until("strew.panels[1].alone[0]?.count > 60000");
-    browser.until("strew.panels[0].alone[0]?.count > 0");
-    let drawn = browser.value("strew.panels[0].alone[0].count");
-    assert!(
-        (drawn.as_f64().expect("a count") - count).abs() <= 1.0,
-        "{drawn}"
-    );
-    assert_eq!(
-        browser.value("document.querySelector('#alone').ariaPressed"),
-        "true"
-    );
     // A billion units away Strew makes as many as here, and everything up to there comes first for the other.
     browser.click("#far");
     browser.until("document.documentElement.dataset.measured.startsWith('1000000000,')");
-    assert_eq!(
-        browser.value("document.querySelector('#alone').ariaPressed"),
-        "false"
-    );
     browser.until("document.querySelector('#made-poisson').textContent === '4 × 10¹⁸'");
     assert!(browser.text("#why-poisson").contains(" in this browser"));
     assert!((figure(&browser, "made-strew") - count).abs() < 60.0);
