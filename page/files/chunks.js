@@ -10,14 +10,9 @@ const PARALLEL = 5;
 const ROOM = (navigator.deviceMemory ?? 8) >= 4 ? 256e6 : 96e6;
 
 /**
- * Where a chunk is: its side and the indices of its square, or cube.
- * @typedef {object} Address
- * @property {number} size
- * @property {number} cx
- * @property {number} cy
- * @property {number} [cz]
- * @property {number} [away] Its distance, for the order of requests.
- * @property {number} [keep] The share of its points, where it has its own.
+ * Where a chunk is: its side and the indices of its square, or cube; its distance, for the order of requests; and the share of
+ * its points, where it has its own.
+ * @typedef {{ size: number, cx: number, cy: number, cz?: number, away?: number, keep?: number }} Address
  */
 
 /**

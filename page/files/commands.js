@@ -44,13 +44,8 @@ export function quoted(text) {
   return `'${text.replace(/'/g, "'\\''")}'`;
 }
 
-/**
- * The line for curl.
- * @param {string} origin
- * @param {{ path: string, body?: string }} request
- * @param {string} file
- */
-export function curl(origin, { path, body }, file) {
+/** The line for curl. */
+export function curl(/** @type {string} */ origin, /** @type {{ path: string, body?: string }} */ { path, body }, /** @type {string} */ file) {
   const data = body ? ` \\\n  -d ${quoted(body)}` : "";
   return `curl -f ${quoted(origin + path)} -o ${file}${data}`;
 }

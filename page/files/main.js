@@ -4,15 +4,15 @@ import { Gone, Problem, askJson, onPresence, wordsOf } from "./api.js";
 import { tools } from "./bar.js";
 import { Card } from "./card.js";
 import { Controls } from "./controls.js";
-import { byId, icon, make, settled, skipLinks, spoken } from "./dom.js";
+import { byId, icon, settled, skipLinks, spoken } from "./dom.js";
 import { faultsOf, faultsBefore } from "./faults.js";
 import { openFlight } from "./flight.js";
-import { keyForm } from "./form.js";
 import { Gallery } from "./gallery.js";
 import { moveBy } from "./gestures.js";
 import { farthest, isTooFar } from "./grid.js";
 import { parsePlace, place, toNumber } from "./place.js";
 import { sendPicture, takeDrops } from "./picture.js";
+import { Notice } from "./notice.js";
 import { Plane } from "./plane.js";
 import { Pour } from "./pour.js";
 import { PROFILE_WORDS, profileNames } from "./profiles.js";
@@ -140,28 +140,18 @@ function countsInView() {
   return counts;
 }
 
-/** Says something above the plane, with buttons; `null` takes it away. */
-function banner(words, buttons = []) {
-  const element = byId("banner");
-  element.hidden = words === null;
-  element.replaceChildren(words ?? "", make("div", {}, buttons.map(([name, onclick]) => make("button", { type: "button", onclick }, name))));
-}
-
-onPresence((gone) => {
-  root.dataset.presence = gone ? "gone" : "here";
-  if (gone) banner("The server does not answer. This page tries again by itself.");
-  else {
-    banner(null);
-    if (controls) refresh();
-    status.moved();
-  }
+const notice = new Notice(byId("banner"), () => (controls ? refresh() : begin()), () => {
+  controls ? refresh() : begin();
+  status.moved();
 });
+const say = (/** @type {string | null} */ words) => notice.say("wrong", words);
+onPresence((gone) => (root.dataset.presence = gone ? "gone" : "here"));
 
 let latest = 0;
 /** Whether the server has resolved the layers; before, they are shown as the page understands them. */
 let isUnderstood = false;
 /** The message to show with the plane, if it does not show what was requested: the reason. */
-let notice = session.state.wrong;
+let news = session.state.wrong;
 
 /** The server's resolved values of each layer, or its faults. */
 async function notesOf(layers) {
@@ -201,7 +191,7 @@ async function refresh(isChosen = false) {
   const errors = notes.map((note) => note.error).filter(Boolean);
   if (errors.some((error) => error instanceof Gone)) return;
   const locked = errors.find((error) => error.isLocked);
-  if (locked) return askForKey();
+  if (locked) return refused(locked);
   if (notes.some((note) => note.faults)) {
     isUnderstood = false;
     root.dataset.state = "failed";
@@ -224,7 +214,7 @@ function sayFaults(notes, isChosen) {
   const words = other ?? Object.values(notes[wrong].faults)[0];
   const named = notes.length > 1 ? `Layer ${wrong + 1}: ${words}` : words;
   if (isChosen && isSeen && !other) return;
-  if (isChosen) return banner(named, other ? [["Try again", () => refresh()]] : [["Show it", () => pointOut(wrong)]]);
+  if (isChosen) return notice.say("wrong", named, other ? [["Try again", () => refresh()]] : [["Show it", () => pointOut(wrong)]]);
   /** @type {import("./trouble.js").Buttons} */
   const buttons = [["Begin afresh", afresh]];
   if (!other) buttons.unshift(["Show the field", () => pointOut(wrong)]);
@@ -244,7 +234,7 @@ function afresh() {
 
 /** Shows the fields of a layer that something is wrong with. */
 function pointOut(layer) {
-  banner(null);
+  say(null);
   controls?.pick(layer);
   if (!isChoosing()) session.choose((state) => (state.tab = "choose"), "tab");
   byId("choose").querySelector('[aria-invalid="true"]')?.focus();
@@ -256,8 +246,8 @@ function show(layers, understood, isChosen) {
   const nearest = Math.min(...spacings);
   const before = plane.look?.spacing ?? nearest;
   if (isTooFar(session.state, nearest)) goBack(nearest);
-  banner(notice, notice ? [["Close", () => banner(null)]] : []);
-  notice = null;
+  say(news);
+  news = null;
   loading();
   shownFirst();
   plane.show({ layers, spacings, ...palette(layers) });
@@ -277,7 +267,7 @@ function goBack(spacing) {
   const isOnPlane = plane.span && !isTooFar(plane.view, spacing);
   const [to, name] = isOnPlane ? [plane.view, "the place before"] : [{ x: place(0), y: place(0) }, "the origin"];
   session.correct((state) => Object.assign(state, { x: to.x, y: to.y }));
-  notice = `${words} is too far out: at this spacing, coordinates tell points apart only up to ${spoken(farthest(spacing), 3)} from the origin. Here is ${name} instead.`;
+  news = `${words} is too far out: at this spacing, coordinates tell points apart only up to ${spoken(farthest(spacing), 3)} from the origin. Here is ${name} instead.`;
 }
 
 function jump(event) {
@@ -286,16 +276,16 @@ function jump(event) {
   const [x, y] = field.value.split(/[,;]|\s+/).filter(Boolean).map(parsePlace);
   field.setAttribute("aria-invalid", String(!x || !y));
   if (!x || !y) {
-    banner(`“${field.value}” is not a place. Type two numbers, such as 1e12, -3.5.`, [["Close", () => banner(null)]]);
+    say(`“${field.value}” is not a place. Type two numbers, such as 1e12, -3.5.`);
     return;
   }
   if (plane.isTooFar({ x, y })) {
     field.setAttribute("aria-invalid", "true");
     const most = spoken(farthest(plane.look?.spacing ?? 1), 3);
-    banner(`“${field.value}” is too far out: at this spacing, coordinates tell points apart only up to ${most} from the origin.`, [["Close", () => banner(null)]]);
+    say(`“${field.value}” is too far out: at this spacing, coordinates tell points apart only up to ${most} from the origin.`);
     return;
   }
-  banner(null);
+  say(null);
   session.choose((state) => Object.assign(state, { x, y }), "view");
   byId("plane").focus();
 }
@@ -362,7 +352,7 @@ const shade = new Shade(plane);
 const card = new Card(session, plane);
 const paint = new Paint(session, plane, {
   picked: () => controls?.picked ?? 0,
-  say: (words) => banner(words, [["Close", () => banner(null)]]),
+  say,
 });
 const start = new Start(session, () => {
   fold(matchMedia("(max-width: 46rem)").matches);
@@ -388,13 +378,13 @@ session.on((changed) => {
 async function stipple(file) {
   if (!controls) return;
   try {
-    banner(`Sending “${file.name}” …`);
+    notice.say("wrong", `Sending “${file.name}” …`, []);
     const members = await sendPicture(file, plane.view);
-    banner(null);
+    say(null);
     session.leaveWorld();
     controls.change(members);
   } catch (error) {
-    banner(wordsOf(error), [["Close", () => banner(null)]]);
+    say(wordsOf(error));
   }
 }
 
@@ -406,25 +396,12 @@ function settle(profiles) {
   const missing = [...new Set(session.state.layers.map((layer) => layer.profile).filter((name) => !names.includes(name)))];
   if (missing.length === 0) return;
   const wasChosen = missing.some((name) => name !== LAYER.profile);
-  if (wasChosen) notice = `This server has no profile “${missing.join("”, “")}”. Here is “${standard}” instead.`;
+  if (wasChosen) news = `This server has no profile “${missing.join("”, “")}”. Here is “${standard}” instead.`;
   session.correct((state) => {
     for (const layer of state.layers) {
       if (missing.includes(layer.profile)) Object.assign(layer, { profile: standard, alpha: "", map: "" });
     }
   });
-}
-
-/** A server that wants keys is given one. */
-function askForKey() {
-  if (byId("key")) return;
-  byId("flight").close();
-  banner("This server needs a key. It is kept in this tab only.");
-  byId("banner").lastElementChild?.replaceWith(keyForm(() => {
-    banner(null);
-    if (controls) refresh();
-    else begin();
-  }));
-  byId("key").focus();
 }
 
 /** Shows the layers before the server has said anything, where their spacings need no server. */
@@ -445,6 +422,12 @@ function spacingOf({ by, amount }) {
   return by === "spacing" ? Number(amount) : by === "density" ? Number(amount) ** -0.5 : NaN;
 }
 
+/** Says what the server refused, which may want a key: nothing is flown over then. */
+function refused(error) {
+  if (error instanceof Problem) byId("flight").close();
+  notice.refused(error);
+}
+
 /** Begins: first with points, then with what the server has to choose from. */
 async function begin() {
   try {
@@ -461,10 +444,8 @@ async function begin() {
     gallery.opened(session.state.tab);
     await refresh();
   } catch (error) {
-    if (error instanceof Problem && error.isLocked) return askForKey();
     if (error instanceof Problem && error.isPassing) return later(error, begin);
-    if (!(error instanceof Gone)) return banner(wordsOf(error), [["Try again", begin]]);
-    onPresence((gone) => gone || controls || begin());
+    refused(error);
   }
 }
 

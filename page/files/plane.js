@@ -134,11 +134,8 @@ export class Plane extends Moving {
     return chunkSize(this.view, this.look?.spacing ?? 1);
   }
 
-  /**
-   * Calls `visit(layer, x, y, chunk, k)` for the points in view and up to `margin` around it, x and y from its middle.
-   * @param {(layer: number, x: number, y: number, chunk: Chunk, k: number) => void} visit
-   */
-  each(visit, margin = 0) {
+  /** Calls `visit(layer, x, y, chunk, k)` for the points in view and up to `margin` around it, x and y from its middle. */
+  each(/** @type {(layer: number, x: number, y: number, chunk: Chunk, k: number) => void} */ visit, margin = 0) {
     const { width, height, unit } = this.view;
     this.around([0, 0], [(width * unit) / 2 + margin, (height * unit) / 2 + margin], visit);
   }

@@ -26,11 +26,8 @@ export function bufferOf(/** @type {WebGL2RenderingContext} */ gl, /** @type {Al
 /**
  * A program of the sources of its two shaders: `{ program, uniforms }`, the uniforms by their names. `slots` names the
  * attributes that have slots, in their order; shaders that say their own need none.
- * @param {WebGL2RenderingContext} gl
- * @param {string[]} sources
- * @param {string[]} slots
  */
-export function programOf(gl, [vertex, fragment], slots = []) {
+export function programOf(/** @type {WebGL2RenderingContext} */ gl, /** @type {string[]} */ [vertex, fragment], /** @type {string[]} */ slots = []) {
   const program = gl.createProgram();
   for (const [type, source] of /** @type {const} */ ([[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]])) {
     const shader = /** @type {WebGLShader} */ (gl.createShader(type));

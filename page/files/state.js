@@ -66,35 +66,26 @@ export const MOST_LAYERS = 6;
 
 /** @typedef {import("./place.js").Place} Place */
 
-/**
- * What the address holds.
- * @typedef {object} State
- * @property {Place} x The middle of the view.
- * @property {Place} y
- * @property {number} span The length of the shorter side of the view.
- * @property {string} [world] The name of the server's world that is shown, or nothing.
- * @property {string} [worldSeed] Another seed than the world's own, or nothing.
- * @property {Layer[]} layers
- * @property {string} tab
- * @property {string} take What is taken away: nothing for the view, or what repeats, `tile` or `mask`.
- * @property {string | null} [wrong] What is said of an address that was not understood in full.
- */
+/** @typedef {ReturnType<typeof initial>} State What the address holds. */
 
-/**
- * The view of a visitor who comes without a link: some 900 points, more in a large window.
- * @returns {State}
- */
+/** The view of a visitor who comes without a link: some 900 points, more in a large window. */
 export function initial() {
   const enlarged = Math.max(1, Math.min(globalThis.innerWidth, globalThis.innerHeight) / 900);
   return {
     x: place(0),
     y: place(0),
+    /** The length of the shorter side of the view. */
     span: Math.round(30 * enlarged),
+    /** The name of the server's world that is shown, or nothing; and another seed than its own. */
     world: "",
     worldSeed: "",
+    /** @type {Layer[]} */
     layers: [{ ...LAYER }],
     tab: "start",
+    /** What is taken away: nothing for the view, or what repeats, `tile` or `mask`. */
     take: "",
+    /** What is said of an address that was not understood in full. */
+    wrong: /** @type {string | null} */ (null),
   };
 }
 

@@ -97,13 +97,8 @@ export function white(seed, { x, y, width, height }) {
   return Float64Array.from(found);
 }
 
-/**
- * Of points in a box, those in a window; `isWhole` says whether the box holds all of the window.
- * @param {Float64Array} points
- * @param {number[]} box
- * @param {any} window
- */
-function cut(points, [left, low, right, top], { x, y, width, height }) {
+/** Of points in a box, those in a window; `isWhole` says whether the box holds all of the window. */
+function cut(/** @type {Float64Array} */ points, /** @type {number[]} */ [left, low, right, top], /** @type {any} */ { x, y, width, height }) {
   const [fromX, fromY] = [x.i + x.f, y.i + y.f];
   const found = [];
   for (let p = 0; p < points.length; p += 2) {

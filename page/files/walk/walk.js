@@ -6,7 +6,7 @@ import { byId, bytes, make } from "../dom.js";
 import { Notice } from "../notice.js";
 import { formatPlace, place } from "../place.js";
 import { joined, setOf } from "../query.js";
-import { LAYER, toHash } from "../state.js";
+import { LAYER, initial, toHash } from "../state.js";
 import { watchTheme } from "../theme.js";
 import { cameraOf } from "./camera.js";
 import { Plan } from "./map.js";
@@ -179,7 +179,7 @@ function remember() {
 /** The plane with the same points around the walker. */
 function planeHash() {
   const { rank, ...layer } = layersOf(given.seed)[0];
-  return toHash({ ...walker, span: 80, tab: "choose", take: "", layers: [{ ...LAYER, ...layer, color: 3 }] });
+  return toHash({ ...initial(), x: walker.x, y: walker.y, span: 80, tab: "choose", layers: [{ ...LAYER, ...layer, color: 3 }] });
 }
 
 let asked = 0;
