@@ -1,7 +1,5 @@
 //! The first screen: what it shows, and what it leads to.
 
-use serde_json::json;
-
 use crate::support::{
     browser::{Browser, looking},
     daemon::Daemon,
