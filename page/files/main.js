@@ -1,17 +1,16 @@
 // The page: puts its parts together.
 
 import { Gone, Problem, askJson, onPresence, wordsOf } from "./api.js";
-import { tools } from "./bar.js";
 import { Card } from "./card.js";
 import { Controls } from "./controls.js";
 import { byId, icon, settled, skipLinks, spoken } from "./dom.js";
 import { faultsOf, faultsBefore } from "./faults.js";
 import { openFlight } from "./flight.js";
 import { Gallery } from "./gallery.js";
-import { moveBy } from "./gestures.js";
+import { moveBy, tools } from "./gestures.js";
 import { farthest, isTooFar } from "./grid.js";
 import { parsePlace, place, toNumber } from "./place.js";
-import { sendPicture, takeDrops } from "./picture.js";
+import { sendPicture, takeDrops } from "./sent.js";
 import { Notice } from "./notice.js";
 import { Plane } from "./plane.js";
 import { Pour } from "./pour.js";

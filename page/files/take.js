@@ -1,9 +1,8 @@
 // The tab Take: the points in view, or what repeats, as a file and as a request to paste.
 
 import { hasKey, isAborted, wordsOf } from "./api.js";
-import { FORMATS, curl, looksOf, python, requestOf } from "./commands.js";
+import { FORMATS, MOST_HELD, curl, looksOf, python, requestOf, save, sizeOf } from "./commands.js";
 import { byId, bytes, copy, counted, settled } from "./dom.js";
-import { MOST_HELD, save, sizeOf } from "./download.js";
 import { setOptions } from "./form.js";
 import { boxOf, joined } from "./query.js";
 import { Repeat } from "./repeat.js";

@@ -10,9 +10,8 @@ import { LAYER, initial, toHash } from "../state.js";
 import { watchTheme } from "../theme.js";
 import { cameraOf } from "./camera.js";
 import { Plan } from "./map.js";
-import { STEEPEST, Walker } from "./move.js";
+import { STEEPEST, Walker, stick } from "./move.js";
 import { sceneOn } from "./scene.js";
-import { stick } from "./stick.js";
 import { World, layersOf } from "./world.js";
 
 /**
