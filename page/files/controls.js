@@ -120,6 +120,8 @@ export class Controls {
     this.slider();
     this.world();
     byId("fields").hidden = false;
+    // The fields that came moved it down.
+    if (byId("understand").open) byId("understand").scrollIntoView();
   }
 
   /** The choice of a world of the server, and its seed. */
