@@ -54,7 +54,7 @@ export function joined(pairs) {
  * 2⁵³ keeps its digits through `raw`, as JSON allows and JavaScript does not. With `isWhole`, a field that
  * this page has sent is described in full, so that no server has to hold it.
  */
-export function memberOf(layer, keep = 1, isWhole = false) {
+function memberOf(layer, keep = 1, isWhole = false) {
   const members = {};
   for (const [name, value] of setOf(layer, keep)) {
     if (["spacing", "density", "min_distance", "settle", "lod"].includes(name)) members[name] = numberOr(value);
@@ -84,7 +84,7 @@ export function togetherBody(layers) {
 }
 
 /** Several layers over a region, as the body of `POST /v1/points:query`. */
-export function bodyOf(layers, region, keep = 1, looks = {}, isWhole = false) {
+function bodyOf(layers, region, keep = 1, looks = {}, isWhole = false) {
   const list = layers.map((layer, i) => {
     /** @type {Record<string, any>} */
     const members = { name: layerName(i), ...memberOf(layer, keep, isWhole) };

@@ -145,7 +145,7 @@ function levelsOf(picture) {
   const side = picture.width;
   const canvas = document.createElement("canvas");
   Object.assign(canvas, { width: side, height: side });
-  const context = contextOf(canvas);
+  const context = contextOf(canvas, { willReadFrequently: true });
   context.drawImage(picture, 0, 0);
   const image = context.getImageData(0, 0, side, side);
   for (let i = 0; i < image.data.length; i += 4) image.data[i + 3] = image.data[i];
@@ -170,7 +170,7 @@ function halved(picture) {
   const half = picture.width / 2;
   const canvas = document.createElement("canvas");
   Object.assign(canvas, { width: half, height: half });
-  contextOf(canvas).drawImage(picture, 0, 0, half, half);
+  contextOf(canvas, { willReadFrequently: true }).drawImage(picture, 0, 0, half, half);
   return canvas;
 }
 
