@@ -7,13 +7,8 @@
 
 /** A refusal of the server, in its words. */
 export class Problem extends Error {
-  /**
-   * @param {number} status
-   * @param {string} words
-   * @param {number} retryAfter In seconds.
-   * @param {Fault[]} faults
-   */
-  constructor(status, words, retryAfter = 0, faults = []) {
+  /** `retryAfter` is in seconds. */
+  constructor(/** @type {number} */ status, /** @type {string} */ words, retryAfter = 0, /** @type {Fault[]} */ faults = []) {
     super(words);
     this.status = status;
     this.retryAfter = retryAfter;
@@ -56,11 +51,8 @@ export function hasKey() {
   return Boolean(sessionStorage.getItem(KEY));
 }
 
-/**
- * The headers of a request: its key, and the type of a body of JSON.
- * @param {BodyInit} [body]
- */
-export function headersFor(body) {
+/** The headers of a request: its key, and the type of a body of JSON. */
+export function headersFor(/** @type {BodyInit=} */ body) {
   /** @type {Record<string, string>} */
   const headers = body === undefined ? {} : { "content-type": "application/json" };
   if (hasKey()) headers.authorization = `Bearer ${sessionStorage.getItem(KEY)}`;
@@ -91,11 +83,8 @@ function presence(gone) {
   if (gone) look(500);
 }
 
-/**
- * Looks whether the server is back, ever more rarely: after ½, 1, 2, 4 and then every 8 seconds.
- * @param {number} wait In milliseconds.
- */
-function look(wait) {
+/** Looks whether the server is back, ever more rarely: after ½, 1, 2, 4 and then every 8 seconds; `wait` is in milliseconds. */
+function look(/** @type {number} */ wait) {
   setTimeout(async () => {
     try {
       const answer = await fetch("/livez", { cache: "no-store" });

@@ -4,6 +4,8 @@ import { ask, brokeOff, hasKey } from "./api.js";
 import { documentOf } from "./sent.js";
 import { askedOf } from "./query.js";
 
+/** @typedef {{ path: string, body?: string }} Request */
+
 /** The formats of answers: name, ending of a file, what it is for. A test holds them against the server. */
 export const FORMATS = [
   ["csv", "csv", "spreadsheets, pandas"],
@@ -51,14 +53,8 @@ export function curl(/** @type {string} */ origin, /** @type {{ path: string, bo
   return `curl -f ${quoted(origin + path)} -o ${file}${data}`;
 }
 
-/**
- * A program in Python that needs nothing installed, but numpy for its own format.
- * @param {string} origin
- * @param {{ path: string, body?: string }} request
- * @param {string} format
- * @param {string} file
- */
-export function python(origin, { path, body }, format, file) {
+/** A program in Python that needs nothing installed, but numpy for its own format. */
+export function python(/** @type {string} */ origin, /** @type {Request} */ { path, body }, /** @type {string} */ format, /** @type {string} */ file) {
   const url = JSON.stringify(origin + path);
   const lines = ["from urllib.request import Request, urlopen", ""];
   if (body) lines.push(`query = r"""${body}"""`, `request = Request(${url}, data=query.encode())`);
@@ -81,15 +77,8 @@ const SAMPLE = 2000;
 /** The most bytes of an answer to a body: it is held in memory until it is whole. */
 export const MOST_HELD = 1e9;
 
-/**
- * The size in bytes of an answer of `count` points, and whether it is exact. `request` gives the
- * request, `limited` the same with a limit.
- * @param {{ path: string, body?: string }} request
- * @param {string} format
- * @param {number} count
- * @param {AbortSignal} [signal]
- */
-export async function sizeOf({ path, body }, format, count, signal) {
+/** The size in bytes of an answer of `count` points, and whether it is exact. */
+export async function sizeOf(/** @type {Request} */ { path, body }, /** @type {string} */ format, /** @type {number} */ count, /** @type {AbortSignal=} */ signal) {
   if (!body) {
     const head = await ask(path, { method: "HEAD", signal }).catch((error) => error);
     if (head instanceof Error && head.name === "AbortError") throw head;
@@ -112,17 +101,11 @@ export async function sizeOf({ path, body }, format, count, signal) {
   return { bytes: Math.round((byteLength * count) / part), isExact };
 }
 
-/**
- * Saves an answer under a name; `progress(bytes)` hears how much has come, where that is known.
- * @param {{ path: string, body?: string }} request
- * @param {string} name
- * @param {(bytes: number) => void} progress
- * @param {AbortSignal} [signal]
- */
-export async function save({ path, body }, name, progress, signal) {
+/** Saves an answer under a name; `progress(bytes)` hears how much has come, where that is known. */
+export async function save(/** @type {Request} */ { path, body }, /** @type {string} */ name, /** @type {(bytes: number) => void} */ progress) {
   // A link cannot carry a key.
   if (!body && !hasKey()) return click(path, name);
-  const answer = await ask(path, { body, signal });
+  const answer = await ask(path, { body });
   const pieces = [];
   let bytes = 0;
   const reader = /** @type {ReadableStream<Uint8Array>} */ (answer.body).getReader();

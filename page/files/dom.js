@@ -30,12 +30,8 @@ export function make(name, attributes = {}, ...children) {
   return element;
 }
 
-/**
- * A drawing within SVG, made of paths: for icons.
- * @param {string} path
- * @param {string} [label]
- */
-export function icon(path, label) {
+/** A drawing within SVG, made of paths: for icons. */
+export function icon(/** @type {string} */ path, label = "") {
   const space = "http://www.w3.org/2000/svg";
   const svg = document.createElementNS(space, "svg");
   svg.setAttribute("viewBox", "0 0 24 24");
@@ -107,11 +103,7 @@ export function bytes(/** @type {number} */ size) {
   return `${size} bytes`;
 }
 
-/**
- * The context that draws on a canvas: every browser that runs modules has one.
- * @param {HTMLCanvasElement} canvas
- * @param {CanvasRenderingContext2DSettings} [options]
- */
-export function contextOf(canvas, options) {
+/** The context that draws on a canvas: every browser that runs modules has one. */
+export function contextOf(/** @type {HTMLCanvasElement} */ canvas, /** @type {CanvasRenderingContext2DSettings} */ options = {}) {
   return /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", options));
 }

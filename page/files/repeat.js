@@ -25,12 +25,8 @@ export class Repeat {
     this.map = "";
   }
 
-  /**
-   * The path of what repeats, without a format.
-   * @param {string} what `tile` or `mask`.
-   * @param {import("./state.js").Layer} layer
-   */
-  path(what, { profile, alpha, seed, warp }) {
+  /** The path of what repeats, `tile` or `mask`, without a format. */
+  path(/** @type {string} */ what, /** @type {import("./state.js").Layer} */ { profile, alpha, seed, warp }) {
     const pairs = [["profile", profile], ["alpha", alpha], ["map", this.map], ["seed", seed.trim()]].filter(([, value]) => value);
     const size = this.sizes.value;
     if (what === "mask") return `/v1/mask.png?${joined([["size", SIDES.includes(size) ? size : STANDARD], ...pairs])}`;
