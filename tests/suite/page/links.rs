@@ -88,7 +88,7 @@ fn malformed_links_show_what_they_can() {
         browser.look(&daemon, hash);
         assert!(browser.ready() > 100, "{}", &hash[..40]);
         let is_said = browser.text("#banner").contains("does not understand");
-        assert_eq!(is_said, !hash.contains("paint"), "{}", &hash[..40]);
+        assert_eq!(is_said, !hash.contains("paint=p"), "{}", &hash[..40]);
     }
     let open = |path: &str, ready: &str| {
         browser.go("about:blank");
