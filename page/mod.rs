@@ -12,62 +12,14 @@ type File = (&'static str, &'static [u8], &'static [u8], &'static [u8]);
 /// in a folder of its own.
 static FILES: &[File] = strew_pages::parts!("page/files");
 
-/// Where a page is, the name of its operation, a summary and a description of it, and its file.
-type Entry = (
-    &'static str,
-    &'static str,
-    &'static str,
-    &'static str,
-    &'static str,
-);
-
-const PAGES: &[Entry] = &[
-    (
-        "/",
-        "getPage",
-        "The page",
-        "For people: a view of the plane, with controls for its points and the requests for them. Loads nothing from \
-         elsewhere.",
-        "index.html",
-    ),
-    (
-        "/docs",
-        "getDocs",
-        "The API as a page",
-        "For people: every operation with its parameters and answers, and a form to try it. Loads nothing from \
-         elsewhere.",
-        "docs/index.html",
-    ),
-    (
-        "/how",
-        "getHow",
-        "An essay on how it works",
-        "For people: from chance to any point of an endless plane, in nine figures that move and can be touched. Loads \
-         nothing from elsewhere.",
-        "how/index.html",
-    ),
-    (
-        "/compare",
-        "getComparePage",
-        "The page that compares ways to scatter points",
-        "For people: Strew, Poisson disk and white noise side by side, with spectra, distances and what each has to make. \
-         Loads nothing from elsewhere.",
-        "compare/index.html",
-    ),
-    (
-        "/walk",
-        "getWalk",
-        "A walk through the plane, in three dimensions",
-        "For people: a forest whose trees are points of the plane, streamed by chunk. Loads nothing from elsewhere.",
-        "walk/index.html",
-    ),
-    (
-        "/space",
-        "getSpacePage",
-        "The page of points in space",
-        "For people: a volume of points to turn and to fly through, streamed by chunk. Loads nothing from elsewhere.",
-        "space/index.html",
-    ),
+/// Where a page is, the name of its operation, and its file.
+const PAGES: [(&str, &str, &str); 6] = [
+    ("/", "getPage", "index.html"),
+    ("/docs", "getDocs", "docs/index.html"),
+    ("/how", "getHow", "how/index.html"),
+    ("/compare", "getComparePage", "compare/index.html"),
+    ("/walk", "getWalk", "walk/index.html"),
+    ("/space", "getSpacePage", "space/index.html"),
 ];
 
 /// All pages, with their parts.
@@ -76,13 +28,20 @@ pub fn all() -> Pages {
         let (_, text, ..) = FILES.iter().find(|(name, ..)| *name == file)?;
         str::from_utf8(text).ok()
     };
-    let page = |&(path, id, summary, about, file): &Entry| Page {
-        path,
-        id,
-        summary,
-        about,
-        // A test finds every file.
-        html: text(file).unwrap_or_default(),
+    // A test finds every file, with a title and a description.
+    let between = |html: &'static str, [before, after]: [&str; 2]| {
+        let (_, rest) = html.split_once(before)?;
+        rest.split_once(after).map(|(words, _)| words)
+    };
+    let page = |&(path, id, file): &_| {
+        let html = text(file).unwrap_or_default();
+        Page {
+            path,
+            id,
+            summary: between(html, ["<title>", " · Strew</title>"]).unwrap_or_default(),
+            about: between(html, ["name=\"description\" content=\"", "\">"]).unwrap_or_default(),
+            html,
+        }
     };
     let parts = FILES.iter().filter(|(name, ..)| !name.ends_with(".html"));
     let part = |&(name, plain, zstd, gzip): &_| Part {
@@ -107,9 +66,9 @@ mod tests {
     #[test]
     fn every_page_is_joined() {
         for page in all().pages {
-            assert_eq!(
-                page.html.matches("/page/joined/").count(),
-                2,
+            let joined = page.html.matches("/page/joined/").count();
+            assert!(
+                joined == 2 && !page.summary.is_empty() && page.about.len() > 40,
                 "{}",
                 page.path
             );

@@ -71,14 +71,16 @@ fn files(folder: &Path, endings: &[&str]) -> Vec<(String, String)> {
     found
 }
 
-/// Folders beside the sources that nobody writes.
-const BUILT: [&str; 7] = [
+/// What is beside the sources and nobody writes.
+const BUILT: [&str; 9] = [
     "target",
     "generated",
     "node_modules",
     "dist",
     "embedded",
     "tables/files",
+    "lib/parameters.js",
+    "lib/parameters.d.ts",
     ".venv",
 ];
 

@@ -1,4 +1,5 @@
-// Builds the two modules of WebAssembly, copies the tables beside them, and writes the package of all other tables.
+// Builds the two modules of WebAssembly, copies the tables beside them, has the names and types of parameters printed, and
+// writes the package of all other tables.
 import { execFileSync } from "node:child_process";
 import { copyFileSync, existsSync, mkdirSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { basename } from "node:path";
@@ -73,3 +74,9 @@ function embedded(module, files) {
 
 embedded("lib/embedded/full.js", ["lib/strew.wasm", `lib/tables/${OWN[0]}`]);
 embedded("lib/embedded/lite.js", ["lib/lite.wasm", `lib/tables/${OWN[1]}`]);
+
+// The program has the table of parameters.
+for (const [form, file] of [["js", "parameters.js"], ["dts", "parameters.d.ts"]]) {
+    const how = ["run", "--locked", "-q", "--manifest-path", here("../../Cargo.toml"), "--bin", "strew", "--", "parameters"];
+    writeFileSync(here(`lib/${file}`), execFileSync("cargo", [...how, "--as", form]));
+}

@@ -10,23 +10,39 @@ export function isSeed(text) {
 /** Reads the hash of an address. */
 export function givenIn(/** @type {string} */ hash) {
   const given = new URLSearchParams(hash.replace(/^#/, ""));
+  /** What nobody has taken yet. */
+  const left = new Map(given);
+  const take = (/** @type {string} */ name, /** @type {(text: string) => boolean} */ isRight) => {
+    const text = given.get(name);
+    if (text === null || !isRight(text)) return null;
+    left.delete(name);
+    return text;
+  };
   return {
     size: given.size,
     has: (/** @type {string} */ name) => given.has(name),
     /** The text of a name, or nothing. */
-    text: (/** @type {string} */ name) => given.get(name) ?? "",
+    text: (/** @type {string} */ name) => take(name, () => true) ?? "",
     /** The text of a name if it has a form. */
-    matching: (/** @type {string} */ name, /** @type {RegExp} */ form, otherwise = "") => {
-      const text = given.get(name);
-      return text !== null && form.test(text) ? text : otherwise;
-    },
+    matching: (/** @type {string} */ name, /** @type {RegExp} */ form, otherwise = "") => take(name, (text) => form.test(text)) ?? otherwise,
+    /** A seed. */
+    seed: (/** @type {string} */ otherwise) => take("seed", isSeed) ?? otherwise,
     /** A number within bounds. */
     number: (/** @type {string} */ name, /** @type {number} */ otherwise, /** @type {number[]} */ [least, most] = [-Infinity, Infinity]) => {
-      const value = given.has(name) ? Number(given.get(name)) : NaN;
-      return Number.isFinite(value) ? Math.max(least, Math.min(most, value)) : otherwise;
+      const text = take(name, (one) => one.trim() !== "" && Number.isFinite(Number(one)) && Number(one) >= least && Number(one) <= most);
+      return text === null ? otherwise : Number(text);
     },
     /** The coordinates of a place; those that are none are `null`. */
-    at: () => (given.get("at") ?? "").split(",").map(parsePlace),
+    at: () => {
+      const places = (given.get("at") ?? "").split(",").map(parsePlace);
+      if (places.every(Boolean)) left.delete("at");
+      return places;
+    },
+    /** What is said of an address that was not understood in full, after all that is known was read. */
+    wrong: () => {
+      const said = [...left].slice(0, 3).map(([name, text]) => `“${name}${text && "="}${text.slice(0, 40)}”`);
+      return said.length > 0 ? `This page does not understand ${said.join(", ")} in the address.` : null;
+    },
   };
 }
 

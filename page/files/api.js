@@ -7,13 +7,8 @@
 
 /** A refusal of the server, in its words. */
 export class Problem extends Error {
-  /**
-   * @param {number} status
-   * @param {string} words
-   * @param {number} retryAfter In seconds.
-   * @param {Fault[]} faults
-   */
-  constructor(status, words, retryAfter = 0, faults = []) {
+  /** `retryAfter` is in seconds. */
+  constructor(/** @type {number} */ status, /** @type {string} */ words, retryAfter = 0, /** @type {Fault[]} */ faults = []) {
     super(words);
     this.status = status;
     this.retryAfter = retryAfter;
@@ -46,11 +41,8 @@ export function wordsOf(error) {
 
 const KEY = "strew-key";
 
-/**
- * Keeps a key for as long as this tab is open.
- * @param {string} key
- */
-export function useKey(key) {
+/** Keeps a key for as long as this tab is open. */
+export function useKey(/** @type {string} */ key) {
   sessionStorage.setItem(KEY, key);
 }
 
@@ -59,11 +51,8 @@ export function hasKey() {
   return Boolean(sessionStorage.getItem(KEY));
 }
 
-/**
- * The headers of a request: its key, and the type of a body of JSON.
- * @param {BodyInit} [body]
- */
-export function headersFor(body) {
+/** The headers of a request: its key, and the type of a body of JSON. */
+export function headersFor(/** @type {BodyInit=} */ body) {
   /** @type {Record<string, string>} */
   const headers = body === undefined ? {} : { "content-type": "application/json" };
   if (hasKey()) headers.authorization = `Bearer ${sessionStorage.getItem(KEY)}`;
@@ -75,11 +64,8 @@ export function headersFor(body) {
 const listeners = new Set();
 let isGone = false;
 
-/**
- * Calls a function whenever the server goes or comes back. Returns what ends that.
- * @param {Presence} listener
- */
-export function onPresence(listener) {
+/** Calls a function whenever the server goes or comes back. Returns what ends that. */
+export function onPresence(/** @type {Presence} */ listener) {
   listeners.add(listener);
   return () => listeners.delete(listener);
 }
@@ -97,11 +83,8 @@ function presence(gone) {
   if (gone) look(500);
 }
 
-/**
- * Looks whether the server is back, ever more rarely: after ½, 1, 2, 4 and then every 8 seconds.
- * @param {number} wait In milliseconds.
- */
-function look(wait) {
+/** Looks whether the server is back, ever more rarely: after ½, 1, 2, 4 and then every 8 seconds; `wait` is in milliseconds. */
+function look(/** @type {number} */ wait) {
   setTimeout(async () => {
     try {
       const answer = await fetch("/livez", { cache: "no-store" });
@@ -121,11 +104,8 @@ export function brokeOff() {
 /** @type {Mend} */
 let remedy = async () => false;
 
-/**
- * Has a function called where the server refuses a request; if it says true, the request is repeated.
- * @param {Mend} mend
- */
-export function onRefused(mend) {
+/** Has a function called where the server refuses a request; if it says true, the request is repeated. */
+export function onRefused(/** @type {Mend} */ mend) {
   remedy = mend;
 }
 
@@ -177,4 +157,23 @@ export async function askJson(path, options) {
     if (isAborted(error)) throw error;
     throw brokeOff();
   }
+}
+
+/** A number that is written as it was typed. */
+export class Digits {
+  constructor(text) {
+    const isNumber = /^-?\d+(\.\d+)?(e[+-]?\d+)?$/i.test(text);
+    this.text = isNumber ? text.replace(/^(-?)0+(?=\d)/, "$1") : JSON.stringify(text);
+  }
+}
+
+/** Writes JSON, with `Digits` as they are; `indent` as of `JSON.stringify`. */
+export function json(value, indent = 0) {
+  const marks = [];
+  const text = JSON.stringify(value, (_, member) => {
+    if (!(member instanceof Digits)) return member;
+    marks.push(member.text);
+    return `\u0000${marks.length - 1}\u0000`;
+  }, indent);
+  return text.replace(/"\\u0000(\d+)\\u0000"/g, (_, i) => marks[Number(i)]);
 }

@@ -2,7 +2,6 @@
 
 import { askJson, isAborted, wordsOf } from "./api.js";
 import { byId, contextOf, make, settled, spoken } from "./dom.js";
-import { Part } from "./part.js";
 import { decimalsFor, distance, formatPlace, moved, parsePlace, toNumber } from "./place.js";
 import { attributesOf, joined, setOf, worldPairs } from "./query.js";
 import { themeColor } from "./theme.js";
@@ -19,9 +18,8 @@ const RING = 14;
 
 /** @typedef {import("./place.js").Place} Place */
 
-export class Card extends Part {
+export class Card {
   constructor(session, plane) {
-    super();
     this.session = session;
     this.plane = plane;
     this.element = byId("card");

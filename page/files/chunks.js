@@ -10,14 +10,9 @@ const PARALLEL = 5;
 const ROOM = (navigator.deviceMemory ?? 8) >= 4 ? 256e6 : 96e6;
 
 /**
- * Where a chunk is: its side and the indices of its square, or cube.
- * @typedef {object} Address
- * @property {number} size
- * @property {number} cx
- * @property {number} cy
- * @property {number} [cz]
- * @property {number} [away] Its distance, for the order of requests.
- * @property {number} [keep] The share of its points, where it has its own.
+ * Where a chunk is: its side and the indices of its square, or cube; its distance, for the order of requests; and the share of
+ * its points, where it has its own.
+ * @typedef {{ size: number, cx: number, cy: number, cz?: number, away?: number, keep?: number }} Address
  */
 
 /**
@@ -90,11 +85,8 @@ export class Chunks {
     this.unsubscribe = onPresence((gone) => gone || this.pump());
   }
 
-  /**
-   * Says what the points are; requests for other points are aborted.
-   * @param {any[]} layers
-   */
-  show(layers) {
+  /** Says what the points are; requests for other points are aborted. */
+  show(/** @type {any[]} */ layers) {
     const identity = this.identityOf(layers);
     if (identity === this.identity) return;
     this.identity = identity;
@@ -104,11 +96,8 @@ export class Chunks {
     this.want([], 1);
   }
 
-  /**
-   * Text that differs whenever the points or their columns do.
-   * @param {any[]} layers
-   */
-  identityOf(layers) {
+  /** Text that differs whenever the points or their columns do. */
+  identityOf(/** @type {any[]} */ layers) {
     const { path, body } = this.kind.requestOf(layers, { size: 1, cx: 0, cy: 0, cz: 0 }, 1);
     return body ?? path;
   }
@@ -127,11 +116,7 @@ export class Chunks {
     this.pump();
   }
 
-  /**
-   * @param {Address} address
-   * @param {number} keep
-   */
-  key(address, keep) {
+  key(/** @type {Address} */ address, /** @type {number} */ keep) {
     return `${this.identity} ${keep} ${this.kind.nameOf(address)}`;
   }
 
@@ -218,12 +203,8 @@ export class Chunks {
     this.pump();
   }
 
-  /**
-   * Takes points in as they arrive.
-   * @param {Chunk} chunk
-   * @param {Response} answer
-   */
-  async receive(chunk, answer) {
+  /** Takes points in as they arrive. */
+  async receive(/** @type {Chunk} */ chunk, /** @type {Response} */ answer) {
     chunk.total = Number(answer.headers.get("strew-count"));
     chunk.count = 0;
     const record = 4 * chunk.stride;
@@ -245,12 +226,8 @@ export class Chunks {
     if (filled !== bytes.length) throw brokeOff();
   }
 
-  /**
-   * A chunk that did not come is requested again, unless it was aborted or refused for good.
-   * @param {Chunk} chunk
-   * @param {Error} error
-   */
-  lost(chunk, error) {
+  /** A chunk that did not come is requested again, unless it was aborted or refused for good. */
+  lost(/** @type {Chunk} */ chunk, /** @type {Error} */ error) {
     chunk.state = "waiting";
     chunk.count = 0;
     chunk.dropped?.();
@@ -275,11 +252,8 @@ export class Chunks {
   }
 }
 
-/**
- * The runs of a chunk's points by layer, as far as they have arrived: `[{ layer, first, count }]`.
- * @param {Chunk} chunk
- */
-export function runsOf(chunk) {
+/** The runs of a chunk's points by layer, as far as they have arrived: `[{ layer, first, count }]`. */
+export function runsOf(/** @type {Chunk} */ chunk) {
   if (chunk.columns[0] !== "layer") return [{ layer: 0, first: 0, count: chunk.count }];
   // Points come one layer after another, so where each begins can be bisected for.
   const { data, stride, count } = chunk;

@@ -1,8 +1,10 @@
-// Texts to paste elsewhere that return the points in view: the address, curl, Python.
+// What returns the points in view: texts to paste elsewhere (the address, curl, Python), and downloads, with their sizes first.
 
-import { Digits, json } from "./digits.js";
+import { ask, brokeOff, hasKey } from "./api.js";
 import { documentOf } from "./sent.js";
-import { bodyOf, joined, memberOf, setOf, worldIn, worldPairs } from "./query.js";
+import { askedOf } from "./query.js";
+
+/** @typedef {{ path: string, body?: string }} Request */
 
 /** The formats of answers: name, ending of a file, what it is for. A test holds them against the server. */
 export const FORMATS = [
@@ -30,23 +32,8 @@ export function looksOf(format) {
 
 /** The request for the points in a box of four decimals: `{ path }`, with a `body` for layers. */
 export function requestOf(layers, box, keep, format) {
-  const looks = looksOf(format);
-  const world = worldIn(layers);
-  if (world) {
-    const pairs = [["bbox", box.join(",")], ...worldPairs(world, keep), ["format", format], ...looks];
-    return { path: `/v1/points?${joined(pairs)}` };
-  }
-  const isWhole = isShort(layers);
-  if (layers.length === 1 && !isWhole) {
-    const pairs = [["bbox", box.join(",")], ...setOf(layers[0], keep), ["format", format], ...looks];
-    return { path: `/v1/points?${joined(pairs)}` };
-  }
-  const region = { bbox: box.map((side) => new Digits(side)) };
-  const form = { format, ...Object.fromEntries(looks.map(([name, value]) => [name, Number(value)])) };
-  const set = layers.length === 1
-    ? { region, ...memberOf(layers[0], keep, isWhole), ...form }
-    : bodyOf(layers, region, keep, form, isWhole);
-  return { path: "/v1/points:query", body: json(set, 2) };
+  const { query, body } = askedOf(layers, box, keep, [["format", format], ...looksOf(format)], isShort(layers));
+  return body ? { path: "/v1/points:query", body } : { path: `/v1/points${query}` };
 }
 
 /** Whether the page has sent a field of these layers that a line can hold in full. */
@@ -60,25 +47,14 @@ export function quoted(text) {
   return `'${text.replace(/'/g, "'\\''")}'`;
 }
 
-/**
- * The line for curl.
- * @param {string} origin
- * @param {{ path: string, body?: string }} request
- * @param {string} file
- */
-export function curl(origin, { path, body }, file) {
+/** The line for curl. */
+export function curl(/** @type {string} */ origin, /** @type {{ path: string, body?: string }} */ { path, body }, /** @type {string} */ file) {
   const data = body ? ` \\\n  -d ${quoted(body)}` : "";
   return `curl -f ${quoted(origin + path)} -o ${file}${data}`;
 }
 
-/**
- * A program in Python that needs nothing installed, but numpy for its own format.
- * @param {string} origin
- * @param {{ path: string, body?: string }} request
- * @param {string} format
- * @param {string} file
- */
-export function python(origin, { path, body }, format, file) {
+/** A program in Python that needs nothing installed, but numpy for its own format. */
+export function python(/** @type {string} */ origin, /** @type {Request} */ { path, body }, /** @type {string} */ format, /** @type {string} */ file) {
   const url = JSON.stringify(origin + path);
   const lines = ["from urllib.request import Request, urlopen", ""];
   if (body) lines.push(`query = r"""${body}"""`, `request = Request(${url}, data=query.encode())`);
@@ -94,4 +70,64 @@ export function python(origin, { path, body }, format, file) {
   lines.push("with urlopen(request) as answer:");
   lines.push(...(read ? read[1] : [`    with open("${file}", "wb") as file:`, "        shutil.copyfileobj(answer, file)"]));
   return lines.join("\n");
+}
+
+/** The number of points that are fetched to estimate the size of text. */
+const SAMPLE = 2000;
+/** The most bytes of an answer to a body: it is held in memory until it is whole. */
+export const MOST_HELD = 1e9;
+
+/** The size in bytes of an answer of `count` points, and whether it is exact. */
+export async function sizeOf(/** @type {Request} */ { path, body }, /** @type {string} */ format, /** @type {number} */ count, /** @type {AbortSignal=} */ signal) {
+  if (!body) {
+    const head = await ask(path, { method: "HEAD", signal }).catch((error) => error);
+    if (head instanceof Error && head.name === "AbortError") throw head;
+    // A refusal has words only where there is a body.
+    if (head instanceof Error) {
+      const answer = await ask(path, { signal });
+      await answer.body?.cancel();
+    } else if (head.headers.has("content-length") && !head.headers.has("content-encoding")) {
+      return { bytes: Number(head.headers.get("content-length")), isExact: true };
+    }
+  }
+  const part = Math.min(SAMPLE, count);
+  if (part === 0 || format === "png") return { bytes: NaN, isExact: false };
+  const sample = body
+    // As text: JSON.parse would round long seeds.
+    ? await ask(path, { body: body.replace("{", `{"limit":${part},`), signal })
+    : await ask(`${path}&limit=${part}`, { signal });
+  const { byteLength } = await sample.arrayBuffer();
+  const isExact = part === count || ["f32", "f64"].includes(format);
+  return { bytes: Math.round((byteLength * count) / part), isExact };
+}
+
+/** Saves an answer under a name; `progress(bytes)` hears how much has come, where that is known. */
+export async function save(/** @type {Request} */ { path, body }, /** @type {string} */ name, /** @type {(bytes: number) => void} */ progress) {
+  // A link cannot carry a key.
+  if (!body && !hasKey()) return click(path, name);
+  const answer = await ask(path, { body });
+  const pieces = [];
+  let bytes = 0;
+  const reader = /** @type {ReadableStream<Uint8Array>} */ (answer.body).getReader();
+  for (;;) {
+    const piece = await reader.read().catch((error) => {
+      throw error.name === "AbortError" ? error : brokeOff();
+    });
+    if (piece.done) break;
+    pieces.push(piece.value);
+    bytes += piece.value.length;
+    progress(bytes);
+  }
+  const url = URL.createObjectURL(new Blob(pieces));
+  click(url, name);
+  // The browser has taken it by then; keeping it would keep the memory.
+  setTimeout(() => URL.revokeObjectURL(url), 60_000);
+}
+
+function click(url, name) {
+  const link = document.createElement("a");
+  Object.assign(link, { href: url, download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
 }

@@ -30,12 +30,8 @@ export function make(name, attributes = {}, ...children) {
   return element;
 }
 
-/**
- * A drawing within SVG, made of paths: for icons.
- * @param {string} path
- * @param {string} [label]
- */
-export function icon(path, label) {
+/** A drawing within SVG, made of paths: for icons. */
+export function icon(/** @type {string} */ path, label = "") {
   const space = "http://www.w3.org/2000/svg";
   const svg = document.createElementNS(space, "svg");
   svg.setAttribute("viewBox", "0 0 24 24");
@@ -58,12 +54,8 @@ export function skipLinks() {
   }
 }
 
-/**
- * Copies the text of an element; the button says how that went.
- * @param {HTMLElement} element
- * @param {HTMLElement} button
- */
-export async function copy(element, button) {
+/** Copies the text of an element; the button says how that went. */
+export async function copy(/** @type {HTMLElement} */ element, /** @type {HTMLElement} */ button) {
   try {
     await navigator.clipboard.writeText(element.textContent);
     button.textContent = "Copied";
@@ -90,41 +82,28 @@ export function settled(wait, call) {
   return later;
 }
 
-/**
- * A number with at most `digits` significant digits, groups of three set apart.
- * @param {number} value
- */
-export function spoken(value, digits = 4) {
+/** A number with at most `digits` significant digits, groups of three set apart. */
+export function spoken(/** @type {number} */ value, digits = 4) {
   if (!Number.isFinite(value)) return "–";
   const size = Math.abs(value);
   if (size !== 0 && (size >= 1e15 || size < 1e-4)) return value.toExponential(Math.max(0, digits - 2)).replace(/\.?0*e\+?/, "e");
   return value.toLocaleString("en", { maximumSignificantDigits: Math.max(digits, size >= 1 ? Math.ceil(Math.log10(size + 1)) : 0) });
 }
 
-/**
- * A count in full.
- * @param {number | bigint} count
- */
-export function counted(count, one = "point", more = `${one}s`) {
+/** A count in full. */
+export function counted(/** @type {number | bigint} */ count, one = "point", more = `${one}s`) {
   return `${count.toLocaleString("en")} ${count === 1 ? one : more}`;
 }
 
-/**
- * A size in bytes, as people say it.
- * @param {number} size
- */
-export function bytes(size) {
+/** A size in bytes, as people say it. */
+export function bytes(/** @type {number} */ size) {
   for (const [unit, name] of /** @type {const} */ ([[1e9, "GB"], [1e6, "MB"], [1e3, "kB"]])) {
     if (size >= unit) return `${(size / unit).toPrecision(3)} ${name}`;
   }
   return `${size} bytes`;
 }
 
-/**
- * The context that draws on a canvas: every browser that runs modules has one.
- * @param {HTMLCanvasElement} canvas
- * @param {CanvasRenderingContext2DSettings} [options]
- */
-export function contextOf(canvas, options) {
+/** The context that draws on a canvas: every browser that runs modules has one. */
+export function contextOf(/** @type {HTMLCanvasElement} */ canvas, /** @type {CanvasRenderingContext2DSettings} */ options = {}) {
   return /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", options));
 }

@@ -1,22 +1,8 @@
 // The server's faults of a query, in the words of the page and at its fields.
 
-/** The field of the page for each parameter. */
-const PLACES = {
-  spacing: "amount",
-  density: "amount",
-  min_distance: "amount",
-  seed: "seed",
-  warp: "warp",
-  settle: "settle",
-  alpha: "alpha",
-  map: "map",
-  profile: "profile",
-  field: "field",
-  scale_range: "range",
-  variants: "variants",
-  spread: "spread",
-  clear_of: "clear",
-};
+/** The fields of the page for parameters that have another name there, and those that have the same. */
+const PLACES = { spacing: "amount", density: "amount", min_distance: "amount", scale_range: "range", clear_of: "clear" };
+const SAME = ["seed", "warp", "settle", "alpha", "map", "profile", "field", "variants", "spread"];
 
 /** The values that each field takes, as a message. */
 const TAKES = {
@@ -36,7 +22,7 @@ export function faultsOf(error) {
   const found = {};
   for (const fault of error.faults ?? []) {
     const name = fault.field.replace(/^layers\[\d+\]\./, "").replace(/[.[].*$/, "");
-    found[PLACES[name] ?? ""] = wordsFor(name, fault);
+    found[SAME.includes(name) ? name : PLACES[name] ?? ""] = wordsFor(name, fault);
   }
   if (Object.keys(found).length === 0) found[""] = error.message;
   return found;

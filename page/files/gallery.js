@@ -5,11 +5,10 @@ import { encoded } from "./address.js";
 import { ask, wordsOf } from "./api.js";
 import { lineChart, pointPicture, spectrumPicture, topOf } from "./charts.js";
 import { byId, make, spoken } from "./dom.js";
-import { measure } from "./measure.js";
-import { Part } from "./part.js";
+import { measure } from "./worker.js";
 import { PROFILE_WORDS, profileNames } from "./profiles.js";
 import { LAYER } from "./state.js";
-import { figureOf, recordedOf } from "./understand.js";
+import { HEXAGONAL, figureOf, recordedOf } from "./understand.js";
 
 /** The side of what is measured and of what is drawn of it, in mean spacings. */
 const MEASURED = 64;
@@ -24,9 +23,8 @@ const MEANING = [
   ["Curve", ": the same, averaged over all directions, as measured on the table. 1 is pure chance."],
 ];
 
-export class Gallery extends Part {
+export class Gallery {
   constructor(session, profiles) {
-    super();
     this.session = session;
     this.names = profileNames(profiles);
     // The one to begin with first, the bare pattern last.
@@ -83,7 +81,7 @@ export class Gallery extends Part {
       const [answer, recorded] = await Promise.all([ask(`/v1/points?${set}`), recordedOf({ profile: name })]);
       const packed = new Float32Array(await answer.arrayBuffer());
       const table = recorded.measured.radial.values.map(([nu, power]) => [nu, power]);
-      figures.textContent = `δ min ${spoken(figureOf(recorded, "delta_min") ?? NaN, 3)} · low power ${spoken(figureOf(recorded, "low_power") ?? NaN, 3)}`;
+      figures.textContent = `least distance ${spoken((figureOf(recorded, "delta_min") ?? NaN) * HEXAGONAL, 3)} · low power ${spoken(figureOf(recorded, "low_power") ?? NaN, 3)}`;
       card.draw = () => {
         pointPicture(points, packed, DRAWN);
         if (card.measured) spectrumPicture(spectrum, card.measured.image, card.measured.cells);

@@ -1,6 +1,8 @@
-// Mouse, pen, fingers and keys that move the plane.
+// What moves a view: mouse, pen, fingers and keys; and the buttons on top of a page, nearer, farther, home, light or dark.
 
+import { byId, icon } from "./dom.js";
 import { followPointers, followWheel, placeOf } from "./hands.js";
+import { watchTheme } from "./theme.js";
 
 /** How far a key moves the view, as a share of its shorter side; with Shift a whole one. */
 const STEP = 0.15;
@@ -39,4 +41,20 @@ export function moveBy(canvas, plane, { tapped, hovered }) {
     else return;
     event.preventDefault();
   });
+}
+
+const ICONS = {
+  closer: "M12 5v14M5 12h14",
+  farther: "M5 12h14",
+  home: "M3 11.5 12 4l9 7.5M6 10v10h12V10",
+};
+const NEARER = 1.5;
+
+/** Makes the tools work on a view; `home()` leads back to where it begins, `themed()` hears of other colors. */
+export function tools(view, home, themed) {
+  for (const [id, path] of Object.entries(ICONS)) byId(id).append(icon(path));
+  byId("closer").addEventListener("click", () => view.zoom(NEARER));
+  byId("farther").addEventListener("click", () => view.zoom(1 / NEARER));
+  byId("home").addEventListener("click", home);
+  watchTheme(byId("theme"), themed);
 }

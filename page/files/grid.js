@@ -20,22 +20,14 @@ const REACH = 1.4e15;
 /** @typedef {import("./place.js").Place} Place */
 /** @typedef {Pick<import("./view.js").View, "x" | "y" | "unit" | "width" | "height">} View */
 
-/**
- * The side of chunks for a view, a power of two, so that corners are exact.
- * @param {View} view
- * @param {number} spacing
- */
-export function chunkSize(view, spacing) {
+/** The side of chunks for a view, a power of two, so that corners are exact. */
+export function chunkSize(/** @type {View} */ view, /** @type {number} */ spacing) {
   const side = Math.sqrt((view.width * view.height) / CHUNKS) * view.unit;
   return 2 ** Math.round(Math.log2(Math.max(side, LEAST_SPACINGS * spacing)));
 }
 
-/**
- * The share of points to ask for: a power of two, so that what is there serves for long.
- * @param {View} view
- * @param {number[]} spacings
- */
-export function shareFor(view, spacings) {
+/** The share of points to ask for: a power of two, so that what is there serves for long. */
+export function shareFor(/** @type {View} */ view, /** @type {number[]} */ spacings) {
   const points = pointsIn(view, spacings);
   if (!(points > MOST_POINTS)) return 1;
   return Math.max(LEAST_SHARE, 2 ** -Math.ceil(Math.log2(points / MOST_POINTS)));
@@ -52,32 +44,19 @@ function pointsIn(view, spacings) {
   return spacings.reduce((sum, spacing) => sum + area / spacing ** 2, 0);
 }
 
-/**
- * The index of the chunk that a coordinate is in.
- * @param {Place} at
- * @param {number} size
- */
-export function indexOf(at, size) {
+/** The index of the chunk that a coordinate is in. */
+export function indexOf(/** @type {Place} */ at, /** @type {number} */ size) {
   return size >= 1 ? Math.floor(at.i / size) : at.i / size + Math.floor(at.f / size);
 }
 
-/**
- * How far the corner of a chunk is from a coordinate: exact, as both are near each other.
- * @param {number} index
- * @param {number} size
- * @param {Place} at
- */
-export function cornerFrom(index, size, at) {
+/** How far the corner of a chunk is from a coordinate: exact, as both are near each other. */
+export function cornerFrom(/** @type {number} */ index, /** @type {number} */ size, /** @type {Place} */ at) {
   // The side is a power of two, so the product is exact.
   return distance(place(index * size), at);
 }
 
-/**
- * The chunks of a view, nearest to its middle first.
- * @param {View} view
- * @param {number} size
- */
-export function chunksOf(view, size) {
+/** The chunks of a view, nearest to its middle first. */
+export function chunksOf(/** @type {View} */ view, /** @type {number} */ size) {
   const half = { x: (view.width * view.unit) / 2, y: (view.height * view.unit) / 2 };
   const axis = (/** @type {Place} */ at, /** @type {number} */ reach) => {
     const first = indexOf(at, size);
@@ -101,19 +80,12 @@ export function chunksOf(view, size) {
   return chunks.sort((a, b) => a.away - b.away);
 }
 
-/**
- * Whether a place is so far out that no doubles tell its points apart.
- * @param {{ x: Place, y: Place }} at
- * @param {number} spacing
- */
-export function isTooFar({ x, y }, spacing) {
+/** Whether a place is so far out that no doubles tell its points apart. */
+export function isTooFar(/** @type {{ x: Place, y: Place }} */ { x, y }, /** @type {number} */ spacing) {
   return Math.max(Math.abs(toNumber(x)), Math.abs(toNumber(y))) > farthest(spacing);
 }
 
-/**
- * The largest coordinate that a view can have in its middle.
- * @param {number} spacing
- */
-export function farthest(spacing) {
+/** The largest coordinate that a view can have in its middle. */
+export function farthest(/** @type {number} */ spacing) {
   return REACH * spacing;
 }

@@ -1,17 +1,17 @@
 // The page: puts its parts together.
 
 import { Gone, Problem, askJson, onPresence, wordsOf } from "./api.js";
-import { tools } from "./bar.js";
 import { Card } from "./card.js";
 import { Controls } from "./controls.js";
-import { byId, icon, make, settled, skipLinks, spoken } from "./dom.js";
+import { byId, icon, settled, skipLinks, spoken } from "./dom.js";
 import { faultsOf, faultsBefore } from "./faults.js";
-import { keyForm } from "./form.js";
+import { openFlight } from "./flight.js";
 import { Gallery } from "./gallery.js";
-import { moveBy } from "./gestures.js";
+import { moveBy, tools } from "./gestures.js";
 import { farthest, isTooFar } from "./grid.js";
 import { parsePlace, place, toNumber } from "./place.js";
-import { sendPicture, takeDrops } from "./picture.js";
+import { sendPicture, takeDrops } from "./sent.js";
+import { Notice } from "./notice.js";
 import { Plane } from "./plane.js";
 import { Pour } from "./pour.js";
 import { PROFILE_WORDS, profileNames } from "./profiles.js";
@@ -30,11 +30,18 @@ import { worldNames } from "./worlds.js";
 
 const root = document.documentElement;
 /** Whether the visitor comes without a link to a view. */
-const isFirst = location.hash.length < 2;
+const isFirst = "first" in root.dataset;
 const session = new Session();
 
-/** @type {import("./part.js").Part[]} */
+/**
+ * The parts of the page. Each hears of what it has a method for: `moved()` by hand or by a choice; `rested()`, all in view is
+ * painted; `shown(layers, understood)`, which the server has understood; `themed()`; `opened(tab)`; and where the plane
+ * was `tapped(at)` or is `hovered(at)`, in CSS pixels from the corner at the top left, `null` where the mouse has left.
+ * @type {any[]}
+ */
 const parts = [];
+const tell = (/** @type {string} */ event, /** @type {any[]} */ ...given) => parts.forEach((part) => part[event]?.(...given));
+
 const plane = new Plane(byId("plane"), {
   moved: () => {
     // Before the server has said what a spacing is, nothing is looked at.
@@ -43,7 +50,7 @@ const plane = new Plane(byId("plane"), {
     loading();
     status.moved();
     if (plane.chunks.refused && isUnderstood) again();
-    for (const part of parts) part.moved();
+    tell("moved");
   },
   progress: (share) => {
     const bar = byId("progress");
@@ -115,13 +122,13 @@ function shownFirst() {
 /** Points have come: on a first visit they pour into place. */
 function arrived() {
   shownFirst();
-  if (isFirst && !("pour" in root.dataset)) pour.begin(matchMedia("(prefers-reduced-motion: reduce)").matches);
+  if (isFirst && !("first" in root.dataset || "pour" in root.dataset)) pour.begin(matchMedia("(prefers-reduced-motion: reduce)").matches);
 }
 
 const status = new Status(session, plane);
 const pour = new Pour(plane);
 const rested = settled(250, () => {
-  for (const part of parts) part.rested();
+  tell("rested");
   if (session.state.layers.length > 1) controls?.counted(countsInView());
 });
 
@@ -132,28 +139,18 @@ function countsInView() {
   return counts;
 }
 
-/** Says something above the plane, with buttons; `null` takes it away. */
-function banner(words, buttons = []) {
-  const element = byId("banner");
-  element.hidden = words === null;
-  element.replaceChildren(words ?? "", make("div", {}, buttons.map(([name, onclick]) => make("button", { type: "button", onclick }, name))));
-}
-
-onPresence((gone) => {
-  root.dataset.presence = gone ? "gone" : "here";
-  if (gone) banner("The server does not answer. This page tries again by itself; what is drawn stays.");
-  else {
-    banner(null);
-    if (controls) refresh();
-    status.moved();
-  }
+const notice = new Notice(byId("banner"), () => (controls ? refresh() : begin()), () => {
+  controls ? refresh() : begin();
+  status.moved();
 });
+const say = (/** @type {string | null} */ words) => notice.say("wrong", words);
+onPresence((gone) => (root.dataset.presence = gone ? "gone" : "here"));
 
 let latest = 0;
 /** Whether the server has resolved the layers; before, they are shown as the page understands them. */
 let isUnderstood = false;
 /** The message to show with the plane, if it does not show what was requested: the reason. */
-let notice = /** @type {string | null} */ (null);
+let news = session.state.wrong;
 
 /** The server's resolved values of each layer, or its faults. */
 async function notesOf(layers) {
@@ -193,7 +190,7 @@ async function refresh(isChosen = false) {
   const errors = notes.map((note) => note.error).filter(Boolean);
   if (errors.some((error) => error instanceof Gone)) return;
   const locked = errors.find((error) => error.isLocked);
-  if (locked) return askForKey();
+  if (locked) return refused(locked);
   if (notes.some((note) => note.faults)) {
     isUnderstood = false;
     root.dataset.state = "failed";
@@ -216,7 +213,7 @@ function sayFaults(notes, isChosen) {
   const words = other ?? Object.values(notes[wrong].faults)[0];
   const named = notes.length > 1 ? `Layer ${wrong + 1}: ${words}` : words;
   if (isChosen && isSeen && !other) return;
-  if (isChosen) return banner(named, other ? [["Try again", () => refresh()]] : [["Show it", () => pointOut(wrong)]]);
+  if (isChosen) return notice.say("wrong", named, other ? [["Try again", () => refresh()]] : [["Show it", () => pointOut(wrong)]]);
   /** @type {import("./trouble.js").Buttons} */
   const buttons = [["Begin afresh", afresh]];
   if (!other) buttons.unshift(["Show the field", () => pointOut(wrong)]);
@@ -236,7 +233,7 @@ function afresh() {
 
 /** Shows the fields of a layer that something is wrong with. */
 function pointOut(layer) {
-  banner(null);
+  say(null);
   controls?.pick(layer);
   if (!isChoosing()) session.choose((state) => (state.tab = "choose"), "tab");
   byId("choose").querySelector('[aria-invalid="true"]')?.focus();
@@ -248,8 +245,8 @@ function show(layers, understood, isChosen) {
   const nearest = Math.min(...spacings);
   const before = plane.look?.spacing ?? nearest;
   if (isTooFar(session.state, nearest)) goBack(nearest);
-  banner(notice, notice ? [["Close", () => banner(null)]] : []);
-  notice = null;
+  say(news);
+  news = null;
   loading();
   shownFirst();
   plane.show({ layers, spacings, ...palette(layers) });
@@ -259,7 +256,7 @@ function show(layers, understood, isChosen) {
   const { x, y, span } = session.state;
   plane.lookAt(x, y, span);
   plane.chunks.retry();
-  for (const part of parts) part.shown(layers, understood);
+  tell("shown", layers, understood);
 }
 
 /** From where there are no points to the place that was looked at before, or to the origin. */
@@ -269,7 +266,7 @@ function goBack(spacing) {
   const isOnPlane = plane.span && !isTooFar(plane.view, spacing);
   const [to, name] = isOnPlane ? [plane.view, "the place before"] : [{ x: place(0), y: place(0) }, "the origin"];
   session.correct((state) => Object.assign(state, { x: to.x, y: to.y }));
-  notice = `${words} is too far out: at this spacing, coordinates tell points apart only up to ${spoken(farthest(spacing), 3)} from the origin. Here is ${name} instead.`;
+  news = `${words} is too far out: at this spacing, coordinates tell points apart only up to ${spoken(farthest(spacing), 3)} from the origin. Here is ${name} instead.`;
 }
 
 function jump(event) {
@@ -278,16 +275,16 @@ function jump(event) {
   const [x, y] = field.value.split(/[,;]|\s+/).filter(Boolean).map(parsePlace);
   field.setAttribute("aria-invalid", String(!x || !y));
   if (!x || !y) {
-    banner(`“${field.value}” is not a place. Type two numbers, such as 1e12, -3.5.`, [["Close", () => banner(null)]]);
+    say(`“${field.value}” is not a place. Type two numbers, such as 1e12, -3.5.`);
     return;
   }
   if (plane.isTooFar({ x, y })) {
     field.setAttribute("aria-invalid", "true");
     const most = spoken(farthest(plane.look?.spacing ?? 1), 3);
-    banner(`“${field.value}” is too far out: at this spacing, coordinates tell points apart only up to ${most} from the origin.`, [["Close", () => banner(null)]]);
+    say(`“${field.value}” is too far out: at this spacing, coordinates tell points apart only up to ${most} from the origin.`);
     return;
   }
-  banner(null);
+  say(null);
   session.choose((state) => Object.assign(state, { x, y }), "view");
   byId("plane").focus();
 }
@@ -313,7 +310,7 @@ function buttons() {
   };
   tools(plane, home, () => {
     if (plane.look) plane.show({ ...plane.look, ...palette(plane.look.layers) });
-    for (const part of parts) part.themed();
+    tell("themed");
   });
 }
 
@@ -326,9 +323,17 @@ async function share() {
   } catch {
     words = "The link is in the address bar of your browser: the browser does not let this page copy it.";
   }
+  mention(words);
+}
+
+const forget = settled(6000, () => (byId("caption").hidden = true));
+
+/** Says something at the bottom of the plane for a while. */
+function mention(words) {
   byId("said").textContent = words;
-  byId("share").title = words;
-  banner(words, [["Close", () => banner(null)]]);
+  byId("caption").textContent = words;
+  byId("caption").hidden = false;
+  forget();
 }
 
 function fold(isFolded) {
@@ -346,22 +351,20 @@ const shade = new Shade(plane);
 const card = new Card(session, plane);
 const paint = new Paint(session, plane, {
   picked: () => controls?.picked ?? 0,
-  say: (words) => banner(words, [["Close", () => banner(null)]]),
+  say,
 });
 const start = new Start(session, () => {
   fold(matchMedia("(max-width: 46rem)").matches);
   byId("plane").focus();
-});
+}, mention);
 parts.push(pour, start, card, understand, take, shade, paint);
 buttons();
 skipLinks();
 takeDrops(byId("stage"), stipple);
-const tabs = new Tabs(session, fold, (tab) => {
-  for (const part of parts) part.opened(tab);
-});
+const tabs = new Tabs(session, fold, (tab) => tell("opened", tab));
 moveBy(byId("plane"), plane, {
-  tapped: (at) => parts.forEach((part) => part.tapped(at)),
-  hovered: (at) => parts.forEach((part) => part.hovered(at)),
+  tapped: (at) => tell("tapped", at),
+  hovered: (at) => tell("hovered", at),
 });
 session.on((changed) => {
   if (changed.has("layers")) settle(tables);
@@ -374,13 +377,13 @@ session.on((changed) => {
 async function stipple(file) {
   if (!controls) return;
   try {
-    banner(`Sending “${file.name}” …`);
+    notice.say("wrong", `Sending “${file.name}” …`, []);
     const members = await sendPicture(file, plane.view);
-    banner(null);
+    say(null);
     session.leaveWorld();
     controls.change(members);
   } catch (error) {
-    banner(wordsOf(error), [["Close", () => banner(null)]]);
+    say(wordsOf(error));
   }
 }
 
@@ -392,24 +395,12 @@ function settle(profiles) {
   const missing = [...new Set(session.state.layers.map((layer) => layer.profile).filter((name) => !names.includes(name)))];
   if (missing.length === 0) return;
   const wasChosen = missing.some((name) => name !== LAYER.profile);
-  if (wasChosen) notice = `This server has no profile “${missing.join("”, “")}”. Here is “${standard}” instead.`;
+  if (wasChosen) news = `This server has no profile “${missing.join("”, “")}”. Here is “${standard}” instead.`;
   session.correct((state) => {
     for (const layer of state.layers) {
       if (missing.includes(layer.profile)) Object.assign(layer, { profile: standard, alpha: "", map: "" });
     }
   });
-}
-
-/** A server that wants keys is given one. */
-function askForKey() {
-  if (byId("key")) return;
-  banner("This server needs a key. It is kept in this tab only.");
-  byId("banner").lastElementChild?.replaceWith(keyForm(() => {
-    banner(null);
-    if (controls) refresh();
-    else begin();
-  }));
-  byId("key").focus();
 }
 
 /** Shows the layers before the server has said anything, where their spacings need no server. */
@@ -430,6 +421,12 @@ function spacingOf({ by, amount }) {
   return by === "spacing" ? Number(amount) : by === "density" ? Number(amount) ** -0.5 : NaN;
 }
 
+/** Says what the server refused, which may want a key: nothing is flown over then. */
+function refused(error) {
+  if (error instanceof Problem) byId("flight").close();
+  notice.refused(error);
+}
+
 /** Begins: first with points, then with what the server has to choose from. */
 async function begin() {
   try {
@@ -446,13 +443,12 @@ async function begin() {
     gallery.opened(session.state.tab);
     await refresh();
   } catch (error) {
-    if (error instanceof Problem && error.isLocked) return askForKey();
     if (error instanceof Problem && error.isPassing) return later(error, begin);
-    if (!(error instanceof Gone)) return banner(wordsOf(error), [["Try again", begin]]);
-    onPresence((gone) => gone || controls || begin());
+    refused(error);
   }
 }
 
+if (isFirst) openFlight(() => plane.look && arrived());
 // For the curious, and for tests.
 globalThis.strew = { plane, pour, start, card, shade, stipple, session, status, understand, take, paint };
 begin();

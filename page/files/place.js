@@ -19,41 +19,27 @@ export function place(i, f = 0) {
   return { i: whole + carry, f: sum - carry };
 }
 
-/**
- * A coordinate moved by a distance.
- * @param {Place} at
- * @param {number} by
- */
-export function moved(at, by) {
+/** A coordinate moved by a distance. */
+export function moved(/** @type {Place} */ at, /** @type {number} */ by) {
   const sum = at.f + by;
   const carry = Math.floor(sum);
   return { i: at.i + carry, f: sum - carry };
 }
 
-/**
- * How far `a` is from `b`: exact if they are near each other.
- * @param {Place} a
- * @param {Place} b
- */
-export function distance(a, b) {
+/** How far `a` is from `b`: exact if they are near each other. */
+export function distance(/** @type {Place} */ a, /** @type {Place} */ b) {
   return (a.i - b.i) + (a.f - b.f);
 }
 
-/**
- * The nearest double.
- * @param {Place} at
- */
-export function toNumber(at) {
+/** The nearest double. */
+export function toNumber(/** @type {Place} */ at) {
   return at.i + at.f;
 }
 
 const DECIMAL = /^([+-]?)(\d*)(?:\.(\d*))?(?:e([+-]?\d{1,3}))?$/i;
 
-/**
- * Reads a decimal number, such as `-12.5` or `1e12`; `null` if it is none.
- * @param {string} text
- */
-export function parsePlace(text) {
+/** Reads a decimal number, such as `-12.5` or `1e12`; `null` if it is none. */
+export function parsePlace(/** @type {string} */ text) {
   const parts = DECIMAL.exec(text.trim().replace(/[\s_']/g, "").replace("−", "-"));
   if (!parts || !(parts[2] || parts[3])) return null;
   const [, sign, before = "", after = "", exponent = "0"] = parts;
@@ -67,11 +53,8 @@ export function parsePlace(text) {
   return sign === "-" ? place(-i, -f) : place(i, f);
 }
 
-/**
- * Writes a coordinate with at most `decimals` decimals, without a loss before the point.
- * @param {Place} at
- */
-export function formatPlace(at, decimals = 12) {
+/** Writes a coordinate with at most `decimals` decimals, without a loss before the point. */
+export function formatPlace(/** @type {Place} */ at, decimals = 12) {
   if (Math.abs(at.i) > Number.MAX_SAFE_INTEGER) return String(toNumber(at));
   const isNegative = at.i < 0;
   let whole = isNegative ? -at.i : at.i;
@@ -90,10 +73,7 @@ export function formatPlace(at, decimals = 12) {
   return `${isNegative && !isZero ? "-" : ""}${BigInt(whole)}${tail}`;
 }
 
-/**
- * Decimals that tell steps of a size apart.
- * @param {number} step
- */
-export function decimalsFor(step) {
+/** Decimals that tell steps of a size apart. */
+export function decimalsFor(/** @type {number} */ step) {
   return Math.max(0, Math.min(100, Math.ceil(-Math.log10(step))));
 }

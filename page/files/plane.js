@@ -36,11 +36,7 @@ const REST = 140;
 
 /** A canvas that shows the points of some layers. */
 export class Plane extends Moving {
-  /**
-   * @param {HTMLCanvasElement} canvas
-   * @param {Events} events
-   */
-  constructor(canvas, events) {
+  constructor(/** @type {HTMLCanvasElement} */ canvas, /** @type {Events} */ events) {
     super();
     this.events = events;
     this.painter = new Painter(canvas);
@@ -60,11 +56,8 @@ export class Plane extends Moving {
     this.events.moved();
   }
 
-  /**
-   * Says what is shown: the layers with their spacings, colors and the color of the ground.
-   * @param {Look} look
-   */
-  show(look) {
+  /** Says what is shown: the layers with their spacings, colors and the color of the ground. */
+  show(/** @type {Look} */ look) {
     const isNew = this.look === null;
     const before = this.chunks.identity;
     this.look = { ...look, spacing: Math.min(...look.spacings) };
@@ -80,11 +73,8 @@ export class Plane extends Moving {
     return Math.min(MOST_SPAN * spacing, Math.max(LEAST_SPAN * spacing, span));
   }
 
-  /**
-   * A coordinate, or the last one that has points.
-   * @param {Place} at
-   */
-  within(at) {
+  /** A coordinate, or the last one that has points. */
+  within(/** @type {Place} */ at) {
     if (!this.look) return at;
     const most = farthest(this.look.spacing);
     return Math.abs(toNumber(at)) > most ? place(Math.sign(toNumber(at)) * most) : at;
@@ -119,11 +109,8 @@ export class Plane extends Moving {
     if (this.sheets.front.isFull && !isZooming && this.sheets.front.unit === this.view.unit) this.events.settled();
   }
 
-  /**
-   * Whether a place is too far out for numbers to tell points apart.
-   * @param {{ x: Place, y: Place }} at
-   */
-  isTooFar(at) {
+  /** Whether a place is too far out for numbers to tell points apart. */
+  isTooFar(/** @type {{ x: Place, y: Place }} */ at) {
     return this.look !== null && isTooFar(at, this.look.spacing);
   }
 
@@ -147,59 +134,44 @@ export class Plane extends Moving {
     return chunkSize(this.view, this.look?.spacing ?? 1);
   }
 
-  /**
-   * Calls `visit(layer, x, y, chunk, k)` for the points in view and up to `margin` around it, x and y from its middle.
-   * @param {(layer: number, x: number, y: number, chunk: Chunk, k: number) => void} visit
-   * @param {number} [margin] In units of the world.
-   */
-  each(visit, margin = 0) {
+  /** Calls `visit(layer, x, y, chunk, k)` for the points in view and up to `margin` around it, x and y from its middle. */
+  each(/** @type {(layer: number, x: number, y: number, chunk: Chunk, k: number) => void} */ visit, margin = 0) {
+    const { width, height, unit } = this.view;
+    this.around([0, 0], [(width * unit) / 2 + margin, (height * unit) / 2 + margin], visit);
+  }
+
+  /** As `each`, for the points of a box around a place. */
+  around(/** @type {number[]} */ [middleX, middleY], /** @type {number[]} */ [halfX, halfY], /** @type {Parameters<Plane["each"]>[0]} */ visit) {
     const { view, sheets } = this;
-    const [halfX, halfY] = [(view.width * view.unit) / 2 + margin, (view.height * view.unit) / 2 + margin];
     for (const { chunk } of sheets.front?.parts ?? []) {
       const [left, low] = [cornerFrom(chunk.cx, chunk.size, view.x), cornerFrom(chunk.cy, chunk.size, view.y)];
-      if (left > halfX || low > halfY || left + chunk.size < -halfX || low + chunk.size < -halfY) continue;
+      const [toX, toY] = [left - middleX, low - middleY];
+      if (toX > halfX || toY > halfY || toX + chunk.size < -halfX || toY + chunk.size < -halfY) continue;
       for (const { layer, first, count } of runsOf(chunk)) {
         for (let k = first; k < first + count; k += 1) {
           const x = left + chunk.data[k * chunk.stride];
           const y = low + chunk.data[k * chunk.stride + 1];
-          if (x >= -halfX && x < halfX && y >= -halfY && y < halfY) visit(layer, x, y, chunk, k);
+          if (x - middleX >= -halfX && x - middleX < halfX && y - middleY >= -halfY && y - middleY < halfY) visit(layer, x, y, chunk, k);
         }
       }
     }
   }
 
-  /**
-   * The point nearest to a place on the canvas, if it is within a distance in CSS pixels.
-   * @param {[number, number]} at
-   * @param {number} within
-   */
-  pointAt([px, py], within) {
-    const { view, sheets } = this;
-    const [x, y] = [(px - view.width / 2) * view.unit, (view.height / 2 - py) * view.unit];
+  /** The point nearest to a place on the canvas, if it is within a distance in CSS pixels. */
+  pointAt(/** @type {[number, number]} */ [px, py], /** @type {number} */ within) {
+    const { view } = this;
+    const at = [(px - view.width / 2) * view.unit, (view.height / 2 - py) * view.unit];
     const reach = within * view.unit;
-    /** @type {{ chunk: Chunk, k: number } | null} */
-    let best = null;
-    let nearest = reach ** 2;
-    for (const { chunk } of sheets.front?.parts ?? []) {
-      const [left, low] = [cornerFrom(chunk.cx, chunk.size, view.x), cornerFrom(chunk.cy, chunk.size, view.y)];
-      if (x < left - reach || y < low - reach || x > left + chunk.size + reach || y > low + chunk.size + reach) continue;
-      const { data, stride, count } = chunk;
-      for (let k = 0; k < count; k += 1) {
-        const away = (left + data[k * stride] - x) ** 2 + (low + data[k * stride + 1] - y) ** 2;
-        if (away > nearest) continue;
-        nearest = away;
-        best = { chunk, k };
-      }
-    }
+    let [best, nearest] = [/** @type {{ chunk: Chunk, k: number } | null} */ (null), reach];
+    this.around(at, [reach, reach], (_, x, y, chunk, k) => {
+      const away = Math.hypot(x - at[0], y - at[1]);
+      if (away <= nearest) [best, nearest] = [{ chunk, k }, away];
+    });
     return best && this.pointOf(best.chunk, best.k);
   }
 
-  /**
-   * A point of a chunk: its layer and where it is.
-   * @param {Chunk} chunk
-   * @param {number} k
-   */
-  pointOf(chunk, k) {
+  /** A point of a chunk: its layer and where it is. */
+  pointOf(/** @type {Chunk} */ chunk, /** @type {number} */ k) {
     const { data, stride } = chunk;
     const layer = chunk.columns[0] === "layer" ? data[k * stride + 2] : 0;
     const at = (/** @type {number} */ index, /** @type {number} */ offset) => moved(place(index * chunk.size, 0), offset);

@@ -2,8 +2,8 @@
 // Where less motion is wanted only the words are shown, over the plane as it is.
 
 import { byId, contextOf } from "./dom.js";
+import { UNIT, mix, stirred } from "./hash.js";
 import { sizesOf } from "./marks.js";
-import { Part } from "./part.js";
 import { cssOf } from "./theme.js";
 import { sized } from "./view.js";
 
@@ -20,22 +20,16 @@ const SHARE = 0.6;
 const KINDS = ["pointerdown", "wheel", "keydown"];
 
 const CHANCE = "Random points clump and leave holes.";
-const EVEN = "These do not, on a plane without an edge. Drag it.";
+const EVEN = "These points keep a distance, on a plane without an edge. Drag it.";
 
 /** Numbers from 0 to 1 that depend on the address of a chunk and the number of a point in it alone. */
-function chance(chunk, k, salt) {
-  let h = Math.imul(chunk.cx ^ Math.imul(chunk.cy, 0x9e3779b1) ^ Math.imul(k, 0x85ebca6b), 0xc2b2ae35) ^ Math.imul(salt, 0x27d4eb2f);
-  h = Math.imul(h ^ (h >>> 15), 0x2c1b3c6d);
-  h = Math.imul(h ^ (h >>> 13), 0x297a2d39);
-  return ((h ^ (h >>> 16)) >>> 0) / 2 ** 32;
-}
+const chance = (chunk, k, salt) => stirred(stirred(mix(salt), chunk.cx) ^ k, chunk.cy) * UNIT;
 
 const eased = (t) => t * t * (3 - 2 * t);
 
 /** One pouring of the points of a plane: it begins with `begin` and ends by itself, or by `end`. */
-export class Pour extends Part {
+export class Pour {
   constructor(plane) {
-    super();
     this.plane = plane;
     this.canvas = byId("pour");
     this.caption = byId("caption");

@@ -1,6 +1,6 @@
 // From the choices on the page to a request: parameters of an address for one layer, a body for several.
 
-import { Digits, json } from "./digits.js";
+import { Digits, json } from "./api.js";
 import { encoded } from "./address.js";
 import { decimalsFor, formatPlace, moved } from "./place.js";
 import { documentOf } from "./sent.js";
@@ -54,7 +54,7 @@ export function joined(pairs) {
  * 2⁵³ keeps its digits through `raw`, as JSON allows and JavaScript does not. With `isWhole`, a field that
  * this page has sent is described in full, so that no server has to hold it.
  */
-export function memberOf(layer, keep = 1, isWhole = false) {
+function memberOf(layer, keep = 1, isWhole = false) {
   const members = {};
   for (const [name, value] of setOf(layer, keep)) {
     if (["spacing", "density", "min_distance", "settle", "lod"].includes(name)) members[name] = numberOr(value);
@@ -84,7 +84,7 @@ export function togetherBody(layers) {
 }
 
 /** Several layers over a region, as the body of `POST /v1/points:query`. */
-export function bodyOf(layers, region, keep = 1, looks = {}, isWhole = false) {
+function bodyOf(layers, region, keep = 1, looks = {}, isWhole = false) {
   const list = layers.map((layer, i) => {
     /** @type {Record<string, any>} */
     const members = { name: layerName(i), ...memberOf(layer, keep, isWhole) };
@@ -116,6 +116,21 @@ export function chunkRequest(layers, { size, cx, cy }, keep) {
   }
   const region = { chunk: { size, x: cx, y: cy } };
   return { path: "/v1/points:query", body: json(bodyOf(layers, region, keep, { format: "f32" })) };
+}
+
+/**
+ * What asks for the points in a box of four decimals, or for their count: the parameters of an address; or a body for several
+ * layers, and with `isWhole` for fields that are described in full. `looks` are more parameters, as pairs.
+ */
+export function askedOf(layers, box, keep, looks = [], isWhole = false) {
+  const world = worldIn(layers);
+  if (world || (layers.length === 1 && !isWhole)) {
+    const pairs = world ? worldPairs(world, keep) : setOf(layers[0], keep);
+    return { query: `?${joined([["bbox", box.join(",")], ...pairs, ...looks])}` };
+  }
+  const region = { bbox: box.map((side) => new Digits(side)) };
+  const form = Object.fromEntries(looks.map(([name, value]) => [name, numberOr(value)]));
+  return { query: "", body: json(layers.length > 1 ? bodyOf(layers, region, keep, form, isWhole) : { region, ...memberOf(layers[0], keep, isWhole), ...form }, 2) };
 }
 
 /** The columns of packed answers besides x and y, as the server joins those of several layers. */

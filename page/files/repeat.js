@@ -25,12 +25,8 @@ export class Repeat {
     this.map = "";
   }
 
-  /**
-   * The path of what repeats, without a format.
-   * @param {string} what `tile` or `mask`.
-   * @param {import("./state.js").Layer} layer
-   */
-  path(what, { profile, alpha, seed, warp }) {
+  /** The path of what repeats, `tile` or `mask`, without a format. */
+  path(/** @type {string} */ what, /** @type {import("./state.js").Layer} */ { profile, alpha, seed, warp }) {
     const pairs = [["profile", profile], ["alpha", alpha], ["map", this.map], ["seed", seed.trim()]].filter(([, value]) => value);
     const size = this.sizes.value;
     if (what === "mask") return `/v1/mask.png?${joined([["size", SIDES.includes(size) ? size : STANDARD], ...pairs])}`;
@@ -38,13 +34,8 @@ export class Repeat {
     return `/v1/points?${joined([["periodic", size || "1"], ["spacing", "1"], ...pairs])}`;
   }
 
-  /**
-   * Offers the sizes that there are, and draws copies of the one that is chosen; returns its number of points.
-   * @param {string} what
-   * @param {import("./state.js").Layer} layer
-   * @param {AbortSignal} signal
-   */
-  async show(what, layer, signal) {
+  /** Offers the sizes that there are, and draws copies of the one that is chosen; returns its number of points. */
+  async show(/** @type {string} */ what, /** @type {import("./state.js").Layer} */ layer, /** @type {AbortSignal} */ signal) {
     const { profiles } = await askJson("/v1/profiles", { signal });
     const { alpha, maps } = choicesOf(profiles, { ...layer, map: "" });
     this.map = layer.map || maps[0];

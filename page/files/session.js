@@ -58,12 +58,8 @@ export class Session {
     this.put("replaceState");
   }
 
-  /**
-   * A choice that Back undoes.
-   * @param {(state: State) => void} change
-   * @param {Changed[]} changed
-   */
-  choose(change, ...changed) {
+  /** A choice that Back undoes. */
+  choose(/** @type {(state: State) => void} */ change, /** @type {Changed[]} */ ...changed) {
     this.write.cancel();
     this.isHeld = false;
     // Moves since the last change belong to the entry before.
@@ -73,12 +69,8 @@ export class Session {
     this.tell(...changed);
   }
 
-  /**
-   * A choice that changes while a slider is held: one step for Back, which `choose` or `release` ends.
-   * @param {(state: State) => void} change
-   * @param {Changed[]} changed
-   */
-  hold(change, ...changed) {
+  /** A choice that changes while a slider is held: one step for Back, which `choose` or `release` ends. */
+  hold(/** @type {(state: State) => void} */ change, /** @type {Changed[]} */ ...changed) {
     if (!this.isHeld) this.choose(change, ...changed);
     else {
       change(this.state);
@@ -92,31 +84,21 @@ export class Session {
     this.isHeld = false;
   }
 
-  /**
-   * A correction of what cannot be shown: no step of its own.
-   * @param {(state: State) => void} change
-   */
-  correct(change) {
+  /** A correction of what cannot be shown: no step of its own. */
+  correct(/** @type {(state: State) => void} */ change) {
     this.write.cancel();
     change(this.state);
     this.put("replaceState");
   }
 
-  /**
-   * A move of the view: it is in the address, but no step of its own.
-   * @param {{ x: Place, y: Place }} view
-   * @param {number} span
-   */
-  viewed(view, span) {
+  /** A move of the view: it is in the address, but no step of its own. */
+  viewed(/** @type {{ x: Place, y: Place }} */ view, /** @type {number} */ span) {
     Object.assign(this.state, { x: view.x, y: view.y, span });
     this.write();
   }
 
-  /**
-   * The fault of layers together: `{ layer, error }`, or nothing.
-   * @param {Layer[]} layers
-   */
-  async understandTogether(layers) {
+  /** The fault of layers together: `{ layer, error }`, or nothing. */
+  async understandTogether(/** @type {Layer[]} */ layers) {
     if (layers.length === 1 || worldIn(layers) || layers.every((layer) => !layer.clear.trim())) return null;
     try {
       await askJson("/v1/count", { body: togetherBody(layers) });

@@ -4,9 +4,8 @@
 import { ask } from "./api.js";
 import { byId, contextOf } from "./dom.js";
 import { chunksOf, cornerFrom } from "./grid.js";
-import { Part } from "./part.js";
 import { GRAY } from "./sheets.js";
-import { themeColor } from "./theme.js";
+import { cssOf, themeColor } from "./theme.js";
 import { sized } from "./view.js";
 
 /** The width of a tile in CSS pixels, about. */
@@ -20,9 +19,8 @@ const STATIC = 0.5;
 /** Pictures whose variance is below this, in squares of their 255 steps, are plain. */
 const PLAIN = 2;
 
-export class Shade extends Part {
+export class Shade {
   constructor(plane) {
-    super();
     this.plane = plane;
     this.canvas = byId("shade");
     this.field = "";
@@ -86,40 +84,34 @@ export class Shade extends Part {
     context.clearRect(0, 0, width, height);
     const size = 2 ** Math.round(Math.log2(SIDE * view.unit));
     const pixel = view.unit / view.ratio;
-    const side = size / pixel;
-    const wanted = chunksOf(view, size).map(({ cx, cy }) => ({
-      left: width / 2 + cornerFrom(cx, size, view.x) / pixel,
-      top: height / 2 - cornerFrom(cy, size, view.y) / pixel - side,
-      tile: this.tile(size, cx, cy),
-    }));
-    const there = wanted.filter(({ tile }) => tile.levels);
-    // All tiles are as coarse as the one that needs it most: no edges between them.
-    const level = Math.max(0, ...there.map(({ tile }) => tile.levels.length - 1));
-    for (const [color, strength] of this.inks()) {
-      context.globalAlpha = strength;
-      if (level === 0) for (const { left, top, tile } of there) context.drawImage(tinted(tile, 0, color), left, top, side, side);
-      else this.paintCoarse(context, there, { level, color, side });
-    }
+    const wanted = chunksOf(view, size).map(({ cx, cy }) => ({ cx, cy, tile: this.tile(size, cx, cy) }));
     this.canvas.dataset.missing = String(wanted.filter(({ tile }) => !tile.levels && !tile.isGone).length);
+    const there = wanted.filter(({ tile }) => tile.levels);
+    if (there.length === 0) return;
+    // All tiles are as coarse as the one that needs it most, and beside each other on one picture: no edges between them.
+    const level = Math.max(...there.map(({ tile }) => tile.levels.length - 1));
+    const [left, top] = [Math.min(...there.map(({ cx }) => cx)), Math.max(...there.map(({ cy }) => cy))];
+    const side = pictureOf(there[0].tile, level).width;
+    const count = [Math.max(...there.map(({ cx }) => cx)) - left + 1, top - Math.min(...there.map(({ cy }) => cy)) + 1];
+    Object.assign(this.mosaic, { width: side * count[0], height: side * count[1] });
+    const ink = contextOf(this.mosaic);
+    for (const { cx, cy, tile } of there) ink.drawImage(pictureOf(tile, level), (cx - left) * side, (top - cy) * side);
+    ink.globalCompositeOperation = "source-in";
+    const corner = [width / 2 + cornerFrom(left, size, view.x) / pixel, height / 2 - (cornerFrom(top, size, view.y) + size) / pixel];
+    for (const [color, strength] of this.inks()) {
+      ink.fillStyle = color;
+      ink.fillRect(0, 0, this.mosaic.width, this.mosaic.height);
+      context.globalAlpha = strength;
+      context.drawImage(this.mosaic, corner[0], corner[1], (count[0] * size) / pixel, (count[1] * size) / pixel);
+    }
   }
 
   /** What the field is drawn in: the accent under points, the color of its layer beyond them. */
   inks() {
     const { gray, look } = this.plane;
-    const color = (look?.colors[this.color] ?? [0, 0, 0]).map((v) => Math.round(v * 255)).join(" ");
+    const color = cssOf(look?.colors[this.color] ?? [0, 0, 0]);
     return /** @type {[string, number][]} */ ([[this.accent, this.isUnder ? STRENGTH * (1 - gray) : 0], [color, GRAY * gray]])
       .filter(([, strength]) => strength > 0);
-  }
-
-  /** Draws tiles with few pixels each, smoothly over their edges. */
-  paintCoarse(context, tiles, { level, color, side }) {
-    const [left, top] = ["left", "top"].map((edge) => Math.min(...tiles.map((one) => one[edge])));
-    const pixels = pictureOf(tiles[0].tile, level).side;
-    const places = tiles.map((one) => [one.left - left, one.top - top].map((v) => Math.round(v / side) * pixels));
-    const [width, height] = [0, 1].map((axis) => pixels + Math.max(...places.map((place) => place[axis])));
-    Object.assign(this.mosaic, { width, height });
-    tiles.forEach((one, i) => contextOf(this.mosaic).drawImage(tinted(one.tile, level, color), places[i][0], places[i][1]));
-    context.drawImage(this.mosaic, left, top, (width / pixels) * side, (height / pixels) * side);
   }
 
   tile(size, cx, cy) {
@@ -127,7 +119,7 @@ export class Shade extends Part {
     let tile = this.tiles.get(key);
     if (tile) return tile;
     if (this.tiles.size >= MOST) this.tiles.delete(this.tiles.keys().next().value);
-    tile = { tinted: new Map() };
+    tile = {};
     this.tiles.set(key, tile);
     this.load(tile, `/v1/fields/${encodeURIComponent(this.field)}/chunks/${key}`);
     return tile;
@@ -147,57 +139,43 @@ export class Shade extends Part {
 
 /**
  * A picture, halved as often as its pixels are static: samples of a field that is finer than they are. Their means are how
- * dense points are there.
+ * dense points are there. Each is clear where the field is 0.
  */
 function levelsOf(picture) {
   const side = picture.width;
   const canvas = document.createElement("canvas");
   Object.assign(canvas, { width: side, height: side });
-  const context = contextOf(canvas);
+  const context = contextOf(canvas, { willReadFrequently: true });
   context.drawImage(picture, 0, 0);
-  const { data } = context.getImageData(0, 0, side, side);
-  let last = { side, shares: Float32Array.from({ length: side * side }, (_, i) => data[4 * i]) };
-  const levels = [last];
-  while (last.side > 1 && isStatic(last)) levels.push(last = halved(last));
+  const image = context.getImageData(0, 0, side, side);
+  for (let i = 0; i < image.data.length; i += 4) image.data[i + 3] = image.data[i];
+  context.putImageData(image, 0, 0);
+  const levels = [canvas];
+  for (let last = canvas; last.width > 1 && isStatic(last); last = levels[levels.length - 1]) levels.push(halved(last));
   return levels;
 }
 
 /** Whether the pixels of a picture say nothing of their neighbors. */
-function isStatic({ side, shares }) {
+function isStatic(picture) {
+  const side = picture.width;
+  const shares = contextOf(picture).getImageData(0, 0, side, side).data.filter((_, i) => i % 4 === 3);
   const mean = shares.reduce((sum, v) => sum + v, 0) / shares.length;
   const variance = shares.reduce((sum, v) => sum + (v - mean) ** 2, 0) / shares.length;
   const between = shares.reduce((sum, v, i) => sum + (i % side === 0 ? 0 : (v - shares[i - 1]) ** 2), 0) / (side * (side - 1));
   return variance > PLAIN && between > STATIC * 2 * variance;
 }
 
-/** A picture with half as many pixels along each side. */
-function halved({ side, shares }) {
-  const half = side / 2;
-  const at = (i) => 2 * Math.floor(i / half) * side + 2 * (i % half);
-  const mean = (k) => (shares[k] + shares[k + 1] + shares[k + side] + shares[k + side + 1]) / 4;
-  return { side: half, shares: Float32Array.from({ length: half * half }, (_, i) => mean(at(i))) };
+/** A picture with half as many pixels along each side: each is the mean of four. */
+function halved(picture) {
+  const half = picture.width / 2;
+  const canvas = document.createElement("canvas");
+  Object.assign(canvas, { width: half, height: half });
+  contextOf(canvas, { willReadFrequently: true }).drawImage(picture, 0, 0, half, half);
+  return canvas;
 }
 
 /** The picture of a tile, halved so often. */
 function pictureOf({ levels }, level) {
   while (levels.length <= level) levels.push(halved(levels.at(-1)));
   return levels[level];
-}
-
-/** The picture of a tile in a color: clear where it is black. */
-function tinted(tile, level, color) {
-  const key = `${level} ${color}`;
-  if (tile.tinted.has(key)) return tile.tinted.get(key);
-  const { side, shares } = pictureOf(tile, level);
-  const canvas = document.createElement("canvas");
-  Object.assign(canvas, { width: side, height: side });
-  const image = new ImageData(side, side);
-  const rgb = (color.match(/[\d.]+/g) ?? []).map(Number);
-  for (let i = 0; i < shares.length; i += 1) {
-    for (let c = 0; c < 3; c += 1) image.data[4 * i + c] = rgb[c];
-    image.data[4 * i + 3] = shares[i];
-  }
-  contextOf(canvas).putImageData(image, 0, 0);
-  tile.tinted.set(key, canvas);
-  return canvas;
 }

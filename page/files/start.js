@@ -1,66 +1,35 @@
-// The tab Start: links to views, with pictures that were made once (`just pictures`), and three kinds of points side by side,
-// drawn when the plane is at rest.
+// The tab Start: links to views, with pictures that were made once (`just pictures`), and the argument for Strew, which is drawn
+// when the plane is at rest.
 
-import { ask } from "./api.js";
-import { pointPicture } from "./charts.js";
+import { Argument } from "./argument.js";
 import { byId } from "./dom.js";
-import { streamOf } from "./hash.js";
-import { Part } from "./part.js";
 import { initial } from "./state.js";
 
-/** The points of each kind, and how many of them lie along a side. */
-const ACROSS = 14;
-const COUNT = ACROSS ** 2;
-
-function whiteNoise(seed) {
-  return Float64Array.from({ length: 2 * COUNT }, streamOf(seed));
-}
-
-function jitteredGrid(seed) {
-  const next = streamOf(seed);
-  return Float64Array.from({ length: 2 * COUNT }, (_, i) => {
-    const cell = i >> 1;
-    return ((i % 2 === 0 ? cell % ACROSS : Math.floor(cell / ACROSS)) + next()) / ACROSS;
-  });
-}
-
-/** As many points of the server: the lowest of a box a little higher than needed. */
-async function strewn(seed) {
-  const answer = await ask(`/v1/points?bbox=0,0,${ACROSS},${ACROSS + 3}&spacing=1&seed=${seed}&format=f32`);
-  const packed = new Float32Array(await answer.arrayBuffer());
-  const points = Array.from({ length: packed.length / 2 }, (_, k) => [packed[2 * k], packed[2 * k + 1]]);
-  points.sort((a, b) => a[1] - b[1]);
-  const height = points[COUNT][1];
-  return Float64Array.from(points.slice(0, COUNT).flatMap(([x, y]) => [x / ACROSS, y / height]));
-}
-
-/** @type {[string, (seed: number) => any][]} */
-const KINDS = [["white", whiteNoise], ["jitter", jitteredGrid], ["strew", strewn]];
-
-export class Start extends Part {
-  /** `opened()` is called when the plane alone is to be seen. */
-  constructor(session, opened) {
-    super();
+export class Start {
+  /** `opened()` is called when the plane alone is to be seen, `say(words)` with what a view is, once it was chosen. */
+  constructor(session, opened, say) {
     this.session = session;
-    this.seed = 1;
+    this.argument = new Argument();
     this.isFilled = false;
-    this.trio = KINDS.map(([id, make]) => ({ canvas: byId(`kind-${id}`), make, points: new Float64Array(0) }));
-    byId("kinds-again").addEventListener("click", () => {
-      this.seed += 1;
-      this.compare();
-    });
     byId("view-plane").addEventListener("click", (event) => {
       event.preventDefault();
       session.choose((state) => Object.assign(state, { ...initial(), tab: "choose" }), "layers", "view", "tab");
       opened();
     });
+    for (const view of document.querySelectorAll(".view")) {
+      const [name, about] = ["b", "small"].map((tag) => view.querySelector(tag)?.textContent);
+      view.addEventListener("click", () => say(`${name}. ${about}`));
+    }
   }
 
-  /** When the plane has its points, there is time for pictures. */
+  get isOpen() {
+    return this.session.state.tab === "start";
+  }
+
   rested() {
-    if (this.session.state.tab !== "start" || this.isFilled) return;
+    if (!this.isOpen || this.isFilled) return;
     this.isFilled = true;
-    this.compare();
+    this.argument.load().then(() => (document.documentElement.dataset.start = "ready"));
   }
 
   opened() {
@@ -69,18 +38,6 @@ export class Start extends Part {
   }
 
   themed() {
-    if (this.session.state.tab !== "start") return;
-    for (const { canvas, points } of this.trio) if (points.length > 0) pointPicture(canvas, points, 1, 1.4);
-  }
-
-  async compare() {
-    const { seed } = this;
-    await Promise.all(this.trio.map(async (one) => {
-      const points = await Promise.resolve(one.make(seed)).catch(() => null);
-      if (!points || seed !== this.seed) return;
-      one.points = points;
-      this.themed();
-    }));
-    document.documentElement.dataset.start = "ready";
+    if (this.isOpen) this.argument.themed();
   }
 }

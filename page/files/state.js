@@ -16,66 +16,47 @@ export const COLOR_NAMES = ["ink", "blue", "vermilion", "green", "orange", "sky"
 /** The number of colors that kinds go through from the first on; those of woods go to the end. */
 export const KIND_COLORS = 8;
 
-/**
- * What is chosen for a layer: texts as in requests, and how its points look.
- * @typedef {object} Layer
- * @property {string} profile
- * @property {string} alpha
- * @property {string} map
- * @property {string} by One of `AMOUNTS`.
- * @property {string} amount
- * @property {string} seed
- * @property {string} warp
- * @property {string} settle
- * @property {string} field
- * @property {string} paint What is painted, as text.
- * @property {string} lod The share of the points that is shown, those of lowest rank; nothing for all.
- * @property {boolean} shade Whether the field is shown.
- * @property {boolean} paper Whether it is a picture, dark on light in both themes.
- * @property {number} color An index of `COLOR_NAMES`.
- * @property {number} dot The size of dots: 1 is the usual one.
- * @property {boolean} angle Whether angles are shown.
- * @property {boolean} scale
- * @property {string} range
- * @property {boolean} variant
- * @property {string} variants
- * @property {string} spread One of `SPREADS`: how kinds are spread.
- * @property {string} clear The distance to the layers before.
- * @property {{ name: string, seed: string }} [world] The world that it is of; then it also has:
- * @property {string} [name] Its name there.
- * @property {string[]} [columns] The columns of points of that world.
- * @property {number[]} [clears] The distances to the layers before, one by one.
- * @property {any} [understood] What the server says of it.
- */
-
-/**
- * A layer before anything is chosen.
- * @type {Readonly<Layer>}
- */
-export const LAYER = Object.freeze({
+/** A layer before anything is chosen: texts as in requests, and how its points look. */
+export const LAYER = {
   profile: "blue",
   alpha: "",
   map: "",
+  /** One of `AMOUNTS`. */
   by: "spacing",
   amount: "1",
   seed: "1",
   warp: "",
   settle: "",
   field: "",
+  /** What is painted, as text. */
   paint: "",
+  /** The share of the points that is shown, those of lowest rank; nothing for all. */
   lod: "",
+  /** Whether the field is shown. */
   shade: false,
+  /** Whether it is a picture, dark on light in both themes. */
   paper: false,
+  /** An index of `COLOR_NAMES`. */
   color: 0,
+  /** The size of dots: 1 is the usual one. */
   dot: 1,
+  /** Whether angles are shown, and so on. */
   angle: false,
   scale: false,
   range: "0.5,1.5",
   variant: false,
   variants: "oak:3,birch:1,pine:2",
+  /** One of `SPREADS`. */
   spread: "",
+  /** The distance to the layers before. */
   clear: "",
-});
+};
+
+/**
+ * A layer. One of a world has its name there, the columns of its points, the distances to the layers before one by one, and
+ * what the server says of it.
+ * @typedef {typeof LAYER & { world?: { name: string, seed: string }, name?: string, columns?: string[], clears?: number[], understood?: any }} Layer
+ */
 
 /** The most characters of a painting in the address; a longer one is in the requests of Take alone. */
 export const MOST_PAINT = 16_000;
@@ -85,48 +66,36 @@ export const MOST_LAYERS = 6;
 
 /** @typedef {import("./place.js").Place} Place */
 
-/**
- * What the address holds.
- * @typedef {object} State
- * @property {Place} x The middle of the view.
- * @property {Place} y
- * @property {number} span The length of the shorter side of the view.
- * @property {string} [world] The name of the server's world that is shown, or nothing.
- * @property {string} [worldSeed] Another seed than the world's own, or nothing.
- * @property {Layer[]} layers
- * @property {string} tab
- * @property {string} take What is taken away: nothing for the view, or what repeats, `tile` or `mask`.
- */
+/** @typedef {ReturnType<typeof initial>} State What the address holds. */
 
-/**
- * The view of a visitor who comes without a link: some 900 points, more in a large window.
- * @returns {State}
- */
+/** The view of a visitor who comes without a link: some 900 points, more in a large window. */
 export function initial() {
   const enlarged = Math.max(1, Math.min(globalThis.innerWidth, globalThis.innerHeight) / 900);
   return {
     x: place(0),
     y: place(0),
+    /** The length of the shorter side of the view. */
     span: Math.round(30 * enlarged),
+    /** The name of the server's world that is shown, or nothing; and another seed than its own. */
     world: "",
     worldSeed: "",
+    /** @type {Layer[]} */
     layers: [{ ...LAYER }],
     tab: "start",
+    /** What is taken away: nothing for the view, or what repeats, `tile` or `mask`. */
     take: "",
+    /** What is said of an address that was not understood in full. */
+    wrong: /** @type {string | null} */ (null),
   };
 }
 
-/**
- * Reads the hash of an address; what it does not say stays at its default.
- * @param {string} hash
- */
-export function fromHash(hash) {
+/** Reads the hash of an address; what it does not say stays at its default. */
+export function fromHash(/** @type {string} */ hash) {
   const given = givenIn(hash);
   const state = initial();
   const [x, y] = given.at();
   if (x && y) Object.assign(state, { x, y });
-  const span = given.number("span", 0);
-  if (span > 0) state.span = span;
+  state.span = given.number("span", state.span, [Number.MIN_VALUE, Infinity]);
   if (given.size > 0) state.tab = "choose";
   state.tab = given.matching("tab", /^(start|choose|understand|take|gallery)$/, state.tab);
   state.take = given.matching("take", /^(tile|mask)$/);
@@ -134,6 +103,7 @@ export function fromHash(hash) {
   state.worldSeed = given.matching("world.seed", /^\d{1,20}$/);
   const layers = Math.trunc(given.number("layers", 1, [1, MOST_LAYERS]));
   state.layers = Array.from({ length: layers }, (_, i) => layerFrom(given, i));
+  state.wrong = given.wrong();
   return state;
 }
 
@@ -161,11 +131,8 @@ function named(key, i) {
   return i === 0 ? key : `${i + 1}.${key}`;
 }
 
-/**
- * Writes the hash of an address.
- * @param {State} state
- */
-export function toHash(state) {
+/** Writes the hash of an address. */
+export function toHash(/** @type {State} */ state) {
   const decimals = decimalsFor(state.span) + 5;
   const said = [
     ["at", `${formatPlace(state.x, decimals)},${formatPlace(state.y, decimals)}`],

@@ -3,22 +3,12 @@
 import { Problem, askJson, isAborted } from "./api.js";
 import { byId, counted, settled, spoken } from "./dom.js";
 import { decimalsFor, formatPlace } from "./place.js";
-import { Digits, json } from "./digits.js";
-import { bodyOf, boxOf, joined, setOf, worldIn, worldPairs } from "./query.js";
+import { askedOf, boxOf } from "./query.js";
 
 /** The exact number of points in a box of four decimals; `keep` thins it. */
 export async function countIn(layers, box, keep, signal) {
-  const world = worldIn(layers);
-  if (world) {
-    const query = joined([["bbox", box.join(",")], ...worldPairs(world, keep)]);
-    return Number((await askJson(`/v1/count?${query}`, { signal })).count);
-  }
-  if (layers.length === 1) {
-    const query = joined([["bbox", box.join(",")], ...setOf(layers[0], keep)]);
-    return Number((await askJson(`/v1/count?${query}`, { signal })).count);
-  }
-  const region = { bbox: box.map((side) => new Digits(side)) };
-  return Number((await askJson("/v1/count", { body: json(bodyOf(layers, region, keep)), signal })).count);
+  const { query, body } = askedOf(layers, box, keep);
+  return Number((await askJson(`/v1/count${query}`, { body, signal })).count);
 }
 
 export class Status {

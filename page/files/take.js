@@ -1,67 +1,51 @@
 // The tab Take: the points in view, or what repeats, as a file and as a request to paste.
 
 import { hasKey, isAborted, wordsOf } from "./api.js";
-import { FORMATS, curl, looksOf, python, requestOf } from "./commands.js";
-import { byId, bytes, copy, counted, make, settled } from "./dom.js";
-import { MOST_HELD, save, sizeOf } from "./download.js";
-import { select, setOptions } from "./form.js";
-import { Part } from "./part.js";
+import { FORMATS, MOST_HELD, curl, looksOf, python, requestOf, save, sizeOf } from "./commands.js";
+import { byId, bytes, copy, counted, settled } from "./dom.js";
+import { setOptions } from "./form.js";
 import { boxOf, joined } from "./query.js";
 import { Repeat } from "./repeat.js";
 import { countIn } from "./status.js";
 
 /** What can be taken away, as the address has it. */
 const WHAT = [["", "The points in view"], ["tile", "A tile that repeats without a seam"], ["mask", "A mask for dithering, which repeats"]];
-const WAYS = { curl: "curl", python: "Python", url: "URL" };
+/** How a request is written. */
+const WAYS = ["curl", "python", "url"];
 
-export class Take extends Part {
+export class Take {
   constructor(session, plane) {
-    super();
     this.session = session;
     this.plane = plane;
-    /** @type {keyof typeof WAYS} */
     this.way = "curl";
+    this.size = byId("take-size");
+    this.button = byId("download");
+    this.bar = byId("take-bar");
     this.format = "csv";
     this.isThinned = true;
     /** @type {{ bytes: number, isExact: boolean } | null} */
     this.weight = null;
     this.again = settled(250, () => this.weigh());
-    this.what = select("take-what", (take) => session.choose((state) => Object.assign(state, { take }), "tab"));
+    byId("take-what").addEventListener("change", () => session.choose((state) => (state.take = byId("take-what").value), "tab"));
     this.repeat = new Repeat(() => this.again());
-    this.help = make("p", { class: "note" });
-    this.thin = make("input", { type: "checkbox", id: "take-thinned", checked: true, onchange: (event) => {
-      this.isThinned = event.target.checked;
-      this.render();
-      this.again();
-    } });
-    this.thinLine = make("label", { class: "check" }, this.thin, "Only the points that are drawn");
-    this.formats = make("select", { id: "format", onchange: (event) => {
-      this.format = event.target.value;
-      this.render();
-      this.again();
-    } }, FORMATS.map(([name, , use]) => make("option", { value: name }, `${name} — ${use}`)));
-    this.formatLine = make("div", { class: "field" }, make("label", { for: "format" }, "Format"), this.formats);
-    this.ways = make("div", { class: "choices", role: "group", "aria-label": "How to ask" }, Object.entries(WAYS).map(([id, words]) => make("button", {
-      type: "button", id: `way-${id}`, onclick: () => {
-        this.way = /** @type {keyof typeof WAYS} */ (id);
+    byId("take-repeat").replaceWith(this.repeat.element);
+    byId("take-thinned").addEventListener("change", () => {
+      this.isThinned = byId("take-thinned").checked;
+      this.rested();
+    });
+    setOptions(byId("format"), FORMATS.map(([name, , use]) => [name, `${name} — ${use}`]), this.format);
+    byId("format").addEventListener("change", () => {
+      this.format = byId("format").value;
+      this.rested();
+    });
+    for (const way of WAYS) {
+      byId(`way-${way}`).addEventListener("click", () => {
+        this.way = way;
         this.render();
-      },
-    }, words)));
-    this.text = make("code", { id: "command" });
-    this.copyButton = make("button", { type: "button", id: "copy", class: "main", onclick: () => copy(this.text, this.copyButton) }, "Copy");
-    this.amount = make("p", { class: "big", id: "take-count", role: "status" });
-    this.size = make("p", { class: "note", id: "take-size", role: "status" });
-    this.button = make("button", { type: "button", id: "download", class: "main", onclick: () => this.download() }, "Download");
-    this.bar = make("progress", { hidden: true, "aria-label": "Download" });
-    byId("take").append(
-      make("div", { class: "field" }, make("label", { for: "take-what" }, "What"), this.what),
-      this.repeat.element,
-      make("div", { class: "field" }, this.amount, this.size, this.thinLine),
-      this.formatLine,
-      this.button, this.bar,
-      make("div", { class: "group" }, make("span", { class: "label" }, "Or request exactly these points yourself"),
-        this.ways, make("pre", { tabindex: "0", "aria-label": "The request" }, this.text), this.copyButton, this.help),
-    );
+      });
+    }
+    byId("copy").addEventListener("click", () => copy(byId("command"), byId("copy")));
+    byId("download").addEventListener("click", () => this.download());
   }
 
   get isOpen() {
@@ -118,25 +102,25 @@ export class Take extends Part {
   render() {
     const { layers } = this.session.state;
     const { repeats } = this;
-    setOptions(this.what, layers[0].world ? WHAT.slice(0, 1) : WHAT, repeats);
+    setOptions(byId("take-what"), layers[0].world ? WHAT.slice(0, 1) : WHAT, repeats);
     this.repeat.element.hidden = !repeats;
-    this.thinLine.hidden = Boolean(repeats) || this.plane.keep >= 1;
-    this.formatLine.hidden = repeats === "mask";
+    byId("take-thin").hidden = Boolean(repeats) || this.plane.keep >= 1;
+    byId("take-format").hidden = repeats === "mask";
     const { request } = this;
     const texts = {
       curl: () => curl(location.origin, request, this.file),
       python: () => python(location.origin, request, this.form, this.file),
       url: () => (request.body ? `POST ${location.origin}${request.path}\n\n${request.body}` : location.origin + request.path),
     };
-    this.text.textContent = texts[this.way]();
-    for (const id of Object.keys(WAYS)) byId(`way-${id}`).setAttribute("aria-pressed", String(id === this.way));
-    this.help.textContent = {
+    byId("command").textContent = texts[this.way]();
+    for (const id of WAYS) byId(`way-${id}`).setAttribute("aria-pressed", String(id === this.way));
+    byId("take-help").textContent = {
       curl: "For a shell.",
       python: this.form === "npy" ? "For Python 3 with numpy." : "For Python 3, with nothing installed.",
       url: request.body ? "Several layers, and fields that were sent, need a body, which an address cannot hold." : "For a browser, or anything else that reads addresses.",
     }[this.way];
-    if (hasKey()) this.help.textContent += " Add your key, as the header “Authorization: Bearer …”.";
-    this.copyButton.textContent = "Copy";
+    if (hasKey()) byId("take-help").textContent += " Add your key, as the header “Authorization: Bearer …”.";
+    byId("copy").textContent = "Copy";
   }
 
   /** Says how many points and bytes the view is. */
@@ -155,7 +139,7 @@ export class Take extends Part {
       // The sizes that repeat are known now.
       this.render();
       const { request } = this;
-      this.amount.textContent = repeats === "mask" ? "" : counted(this.count);
+      byId("take-count").textContent = repeats === "mask" ? "" : counted(this.count);
       this.size.textContent = "weighing …";
       this.weight = await sizeOf(request, form, this.count, signal);
       const { bytes: size, isExact } = this.weight;

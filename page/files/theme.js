@@ -1,10 +1,12 @@
 // Light, dark, or as the system has it; and the colors that the painters need as numbers.
 
+import { icon } from "./dom.js";
 import { COLOR_NAMES } from "./state.js";
 
 const KEY = "strew-theme";
+const MOON = "M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z";
 
-/** Begins with what was chosen before; `changed` hears of every change, the system's too. */
+/** A button for it, which begins with what was chosen before; `changed` hears of every change, the system's too. */
 export function watchTheme(button, changed) {
   const root = document.documentElement;
   const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -12,6 +14,7 @@ export function watchTheme(button, changed) {
     if (theme) root.dataset.theme = theme;
     else delete root.dataset.theme;
   };
+  button.append(icon(MOON));
   set(remembered());
   const tell = () => {
     button.setAttribute("aria-pressed", String(isDark()));

@@ -3,8 +3,7 @@
 import { ask, askJson, wordsOf } from "./api.js";
 import { lineChart, spectrumPicture, topOf } from "./charts.js";
 import { byId, make, settled, spoken } from "./dom.js";
-import { measure } from "./measure.js";
-import { Part } from "./part.js";
+import { measure } from "./worker.js";
 import { joined } from "./query.js";
 
 /** The most points that are measured, from the middle of the view, and no fewer than this. */
@@ -26,7 +25,7 @@ function middleOf(plane, layer, count) {
   return { points: Float64Array.from(found), side };
 }
 
-/** The measures of a window with the layer's table and warp, as a reference: `{ deltaMin, deltaAvg }`. */
+/** The measures of a window with the layer's table and warp, as a reference: `{ least, mean }`. */
 const references = new Map();
 function referenceOf(layer) {
   const pairs = [["alpha", layer.alpha], ["map", layer.map]].filter(([, value]) => value);
@@ -52,6 +51,9 @@ export function recordedOf(layer) {
   return askJson(`/v1/profiles/${encodeURIComponent(layer.profile)}${pairs.length ? "?" : ""}${joined(pairs)}`);
 }
 
+/** The least distance of densest packing, in mean spacings: reports of tables have distances as shares of it. */
+export const HEXAGONAL = Math.sqrt(2 / Math.sqrt(3));
+
 /** The figure of a name, of the first window that the table was measured on. */
 export function figureOf(recorded, name) {
   const { figures } = recorded.table.provenance;
@@ -59,31 +61,15 @@ export function figureOf(recorded, name) {
   return from?.values[name];
 }
 
-export class Understand extends Part {
+export class Understand {
   constructor(session, plane) {
-    super();
     this.session = session;
     this.plane = plane;
     this.layer = 0;
     /** @type {any} */
     this.drawn = null;
     this.again = settled(200, () => this.measure());
-    this.note = make("p", { class: "note", role: "status", id: "measured-note" });
-    this.picker = make("div", { class: "choices", role: "group", "aria-label": "Layer" });
-    this.list = make("dl", { class: "figures" });
-    const chart = (id, label) => make("canvas", { id, role: "img", "aria-label": label });
-    const keys = () => make("span", { class: "keys" }, make("span", {}, make("i", { class: "key-here" }), "here"), make("span", {}, make("i", { class: "key-table" }), "table"));
-    this.radial = chart("radial", "Radial power of the points in view beside the table's");
-    this.rdf = chart("rdf", "Radial distribution of the points in view beside the table's");
-    this.spectrum = chart("spectrum", "Spectrum of the points in view");
-    this.charts = make("div", { class: "group" },
-      make("figure", {}, make("figcaption", {}, make("b", {}, "Radial power"), keys()), this.radial,
-        make("p", { class: "note" }, "How much of each frequency ν there is; 1 is pure chance. Low at the left: even. High peaks: regular.")),
-      make("figure", {}, make("figcaption", {}, make("b", {}, "Radial distribution"), keys()), this.rdf,
-        make("p", { class: "note" }, "How often a distance occurs, in mean spacings; 1 is pure chance.")),
-      make("figure", {}, make("figcaption", {}, make("b", {}, "Spectrum")), this.spectrum,
-        make("p", { class: "note" }, "The same frequencies by direction, ν up to 2.5. Round: no direction is special.")));
-    byId("understand").append(this.picker, this.list, this.note, this.charts);
+    this.picker = byId("measured-layer");
   }
 
   get isOpen() {
@@ -132,8 +118,8 @@ export class Understand extends Part {
     const area = this.plane.view.width * this.plane.view.height * this.plane.view.unit ** 2;
     if (points.length / 2 < LEAST) {
       this.say(`${points.length / 2} points are too few to measure: zoom out until there are ${LEAST}.`);
-      this.list.replaceChildren();
-      this.charts.hidden = true;
+      byId("measures").replaceChildren();
+      byId("charts").hidden = true;
       document.documentElement.dataset.measured = "too-few";
       return;
     }
@@ -149,33 +135,33 @@ export class Understand extends Part {
   }
 
   say(words) {
-    this.note.textContent = words;
+    byId("measured-note").textContent = words;
   }
 
   draw() {
     const { measured, recorded, reference, isWarped, count, density, thinned } = this.drawn;
     const { figures, radial, rdf, image, cells } = measured;
-    this.charts.hidden = false;
+    byId("charts").hidden = false;
     const entry = (words, value, table) => make("div", {}, make("dt", {}, words), make("dd", {}, value, table === undefined ? "" : make("small", { class: "soft" }, ` ${isWarped ? "table, warped" : "table"} ${spoken(table, 3)}`)));
-    this.list.replaceChildren(
+    byId("measures").replaceChildren(
       entry("Points measured", figures.count.toLocaleString("en")),
       entry(thinned ? "Density of those drawn" : "Density", spoken(density, 4)),
-      entry("δ min", spoken(figures.deltaMin, 3), reference.deltaMin),
-      entry("δ average", spoken(figures.deltaAvg, 3), reference.deltaAvg),
+      entry("Least distance", spoken(figures.least, 3), reference.least),
+      entry("Mean distance", spoken(figures.mean, 3), reference.mean),
     );
     const part = figures.count < count ? "Measured in the middle of the view. " : "";
     const note = thinned ? "What is in view is thinned, so it is not what the table was made for. " : "";
-    this.say(`${part}${note}δ is the distance to the nearest neighbor; 1 is that of the densest packing.`);
+    this.say(`${part}${note}Distances are those to the nearest neighbor, in mean spacings; a honeycomb has 1.07.`);
     const table = recorded.measured.radial.values.map(([nu, power]) => [nu, power]);
-    lineChart(this.radial, {
+    lineChart(byId("radial"), {
       series: [{ values: table, color: "soft", dash: true }, { values: radial, color: "accent" }],
       x: [0, 3], y: [0, topOf(table, radial)], name: "ν",
     });
     const recordedRdf = recorded.measured.rdf.values;
-    lineChart(this.rdf, {
+    lineChart(byId("rdf"), {
       series: [{ values: recordedRdf, color: "soft", dash: true }, { values: rdf, color: "accent" }],
       x: [0, 5], y: [0, topOf(recordedRdf, rdf)], name: "r",
     });
-    spectrumPicture(this.spectrum, image, cells);
+    spectrumPicture(byId("spectrum"), image, cells);
   }
 }

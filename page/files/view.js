@@ -21,12 +21,8 @@ export function fineness() {
   return Math.min(2, globalThis.devicePixelRatio || 1);
 }
 
-/**
- * Gives a canvas a number of pixels, which empties it, unless it has that number already.
- * @param {HTMLCanvasElement} canvas
- * @param {number[]} pixels
- */
-export function sized(canvas, [width, height]) {
+/** Gives a canvas a number of pixels, which empties it, unless it has that number already. */
+export function sized(/** @type {HTMLCanvasElement} */ canvas, /** @type {number[]} */ [width, height]) {
   if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
 }
 
@@ -58,12 +54,8 @@ export class Moving {
     this.changed();
   }
 
-  /**
-   * Looks at a place; `span` is how much of the world the shorter side shows.
-   * @param {Place} x
-   * @param {Place} y
-   */
-  lookAt(x, y, span = this.span) {
+  /** Looks at a place; `span` is how much of the world the shorter side shows. */
+  lookAt(/** @type {Place} */ x, /** @type {Place} */ y, span = this.span) {
     const { view } = this;
     this.span = this.bounded(span);
     Object.assign(view, { x: this.within(x), y: this.within(y), unit: this.span / Math.min(view.width, view.height) });

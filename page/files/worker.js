@@ -1,4 +1,4 @@
-// A worker as a function: each message is answered by one with the same `id`.
+// Workers as functions: each message is answered by one with the same `id`.
 
 /**
  * Calls of the worker at a path. It starts with the first call.
@@ -33,4 +33,11 @@ export function callsOf(path) {
       at.postMessage({ ...message, id }, transferred);
     });
   };
+}
+
+const measures = callsOf("/page/measure_worker.js");
+
+/** Measures points (x, y in turns, within a square of `side` world units). */
+export function measure(/** @type {Float64Array<ArrayBuffer>} */ points, /** @type {number} */ side) {
+  return measures({ points, side }, [points.buffer]);
 }

@@ -1,8 +1,8 @@
 //! `strew parameters`: the table of parameters as types of the bindings (parameters.d.ts and parameters.js for JavaScript,
 //! _parameters.py for Python) and as documentation.
 //!
-//! The repository keeps the output in files, so a parameter is written once. A test compares them;
-//! `UPDATE_GOLDEN=1 cargo test -p strew --lib cli::parameters` writes them.
+//! A parameter is written once. The npm package has the output printed when it is built; the repository keeps that for Python and
+//! the documentation, where a test compares it: `UPDATE_GOLDEN=1 cargo test -p strew --lib cli::parameters` writes it.
 
 mod python;
 mod sections;
@@ -161,8 +161,6 @@ export const KINDS = {{
 mod tests {
     use std::{fs, path::Path};
 
-    use clap::ValueEnum as _;
-
     use super::{
         sections::{of_query, within},
         *,
@@ -170,14 +168,10 @@ mod tests {
     use crate::recipe::ADDED;
     use strew_query::parameters::FORMAT;
 
-    fn file(form: Form) -> &'static str {
-        match form {
-            Form::Dts => "bindings/js/lib/parameters.d.ts",
-            Form::Js => "bindings/js/lib/parameters.js",
-            Form::Py => "bindings/python/strew/_parameters.py",
-            Form::Md => "docs/api.md",
-        }
-    }
+    const COMMITTED: [(Form, &str); 2] = [
+        (Form::Py, "bindings/python/strew/_parameters.py"),
+        (Form::Md, "docs/api.md"),
+    ];
 
     /// The content of a file with a new text in place of the generated one.
     fn renewed(form: Form, content: &str) -> String {
@@ -195,8 +189,8 @@ mod tests {
 
     #[test]
     fn the_generated_files_are_the_committed_ones() {
-        for &form in Form::value_variants() {
-            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file(form));
+        for (form, file) in COMMITTED {
+            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
             let content = fs::read_to_string(&path).unwrap_or_default();
             let renewed = renewed(form, &content);
             if std::env::var_os("UPDATE_GOLDEN").is_some() {
@@ -204,9 +198,8 @@ mod tests {
             } else {
                 assert!(
                     content == renewed,
-                    "{} differs from the table of parameters. To accept the change: \
-                     UPDATE_GOLDEN=1 cargo test -p strew --lib cli::parameters",
-                    file(form)
+                    "{file} differs from the table of parameters. To accept the change: \
+                     UPDATE_GOLDEN=1 cargo test -p strew --lib cli::parameters"
                 );
             }
         }

@@ -21,7 +21,7 @@ use super::{
 /// The policy of pages: they may load their own parts and the answers of the daemon, and nothing inline.
 const POLICY: &str = "default-src 'none'; style-src 'self'; script-src 'self'; worker-src 'self'; \
                       connect-src 'self'; img-src 'self'; base-uri 'none'; form-action 'none'; \
-                      frame-ancestors 'none'";
+                      frame-src 'self'; frame-ancestors 'self'";
 
 #[derive(Clone, Debug, Default)]
 pub struct Pages {

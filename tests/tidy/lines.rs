@@ -8,7 +8,7 @@ use super::files;
 
 /// A part, the endings of its files, and the most lines that it may have.
 const CEILINGS: &[(&str, &[&str], usize)] = &[
-    ("src", &["rs"], 21_596),
+    ("src", &["rs"], 21_589),
     ("crates/catalog", &["rs"], 5040),
     ("crates/config", &["rs"], 1560),
     ("crates/core", &["rs"], 48_488),
@@ -22,15 +22,15 @@ const CEILINGS: &[(&str, &[&str], usize)] = &[
     ("crates/raster", &["rs"], 2976),
     ("crates/service", &["rs"], 5975),
     ("crates/testkit", &["rs"], 1197),
-    ("tests", &["rs", "py"], 29_493),
+    ("tests", &["rs", "py"], 29_483),
     ("engines", &["rs", "py", "gd", "cs", "c"], 3894),
     ("fuzz", &["rs"], 747),
     ("benches", &["rs", "py"], 2949),
-    ("page", &["js", "css", "html", "rs", "glsl"], 13_859),
+    ("page", &["js", "css", "html", "rs", "glsl"], 13_360),
     (
         "bindings",
         &["py", "pyi", "js", "mjs", "ts", "rs", "c", "h", "hpp", "cpp"],
-        14_484,
+        14_174,
     ),
 ];
 

@@ -1,21 +1,75 @@
 // The page Compare: one view for all methods, and what each measures there.
 
+import { givenIn, hashOf } from "../address.js";
 import { askJson } from "../api.js";
-import { tools } from "../bar.js";
 import { topOf } from "../charts.js";
 import { byId, make, settled, skipLinks } from "../dom.js";
-import { moveBy } from "../gestures.js";
+import { moveBy, tools } from "../gestures.js";
 import { Notice } from "../notice.js";
-import { parsePlace, place } from "../place.js";
-import { FARTHEST, Joint, fromHash, toHash } from "./joint.js";
+import { decimalsFor, formatPlace, parsePlace, place, toNumber } from "../place.js";
+import { Moving } from "../view.js";
 import { METHODS } from "./methods.js";
 import { Panel } from "./panel.js";
-import { windowAround } from "./sources.js";
 
-/** Where the button leads: a billion units to the right and up. */
+
+/** The fewest and the most mean spacings along the shorter side of a panel. */
+const LEAST_SPAN = 4;
+const MOST_SPAN = 150;
+const SPAN = 32;
+const NARROW_SPAN = 20;
+/** Farther out, doubles do not tell places within a spacing apart. */
+const FARTHEST = 1e12;
+/** Where the page begins, and where its button leads: a billion units to the right and up. */
 const FAR = 1e9;
-/** Units along the shorter side where a window is shown alone: the regions of the methods that have one fit. */
-const ALONE = 290;
+
+const bounded = (span) => Math.min(MOST_SPAN, Math.max(LEAST_SPAN, span));
+const isNear = (at) => Math.abs(toNumber(at)) <= FARTHEST;
+
+/** Reads the hash; what it does not say, or says wrongly, stays at its default: `isNarrow` on phones. */
+function fromHash(hash, isNarrow) {
+  const given = givenIn(hash);
+  const [x, y] = given.at();
+  const span = given.number("span", isNarrow ? NARROW_SPAN : SPAN, [Number.MIN_VALUE, Infinity]);
+  const isPlace = x && y && isNear(x) && isNear(y);
+  return {
+    ...(isPlace ? { x, y } : { x: place(FAR), y: place(FAR) }),
+    span: bounded(span),
+    seed: Number(given.matching("seed", /^\d{1,9}$/, "1")),
+    profile: given.matching("profile", /^[\w.-]{1,64}$/, "blue"),
+    wrong: given.wrong(),
+  };
+}
+
+/** Writes the hash. */
+function toHash({ x, y, span, seed, profile }) {
+  const at = [x, y].map((v) => formatPlace(v, decimalsFor(span) + 3)).join(",");
+  return hashOf([["at", at], ["span", Number(span.toPrecision(5))], ["seed", seed], ...(profile === "blue" ? [] : [["profile", profile]])]);
+}
+
+/** One view for all panels; `moved()` hears of every move. */
+class Joint extends Moving {
+  constructor(state, moved) {
+    super();
+    this.state = state;
+    this.moved = moved;
+    Object.assign(this.view, { x: state.x, y: state.y });
+    this.span = state.span;
+  }
+
+  bounded(span) {
+    return bounded(span);
+  }
+
+  within(at) {
+    return isNear(at) ? at : place(Math.sign(toNumber(at)) * FARTHEST);
+  }
+
+  changed() {
+    const { view: { x, y }, span } = this;
+    Object.assign(this.state, { x, y, span });
+    this.moved();
+  }
+}
 
 const root = document.documentElement;
 const narrow = matchMedia("(max-width: 46rem)");
@@ -30,36 +84,13 @@ const notice = new Notice(byId("banner"), () => {
 const say = (words) => notice.say("wrong", words);
 
 let isWaiting = false;
-/**
- * The window that is shown alone, with the scale it is shown at and the view it was taken from; `null` if none is.
- * @type {{ window: ReturnType<typeof windowAround>, unit: number, key: string } | null}
- */
-let alone = null;
-const keyOf = ({ x, y, unit, width, height }) => [x.i, x.f, y.i, y.f, unit, width, height].join();
-
-/** Shows what has to be made for the window alone, and nothing else; or all points again. */
-function showAlone(isAlone) {
-  const { view } = joint;
-  const unit = Math.max(ALONE, 1.5 * state.span) / Math.min(view.width, view.height);
-  alone = isAlone ? { window: windowAround(view, view.width * view.unit, view.height * view.unit), unit, key: keyOf(view) } : null;
-  byId("alone").setAttribute("aria-pressed", String(isAlone));
-  byId("said").textContent = isAlone
-    ? "The frame is the window, from farther away. Only what has to be made to show it is drawn."
-    : TRY;
-  draw();
-}
-
-const TRY = "What does a method have to make before it can show this window?";
-
 function draw() {
   write();
   if (isWaiting) return;
   isWaiting = true;
   requestAnimationFrame(() => {
     isWaiting = false;
-    // Who moves the view wants to see all points.
-    if (alone && alone.key !== keyOf(joint.view)) showAlone(false);
-    for (const panel of panels) panel.draw(joint.view, alone);
+    for (const panel of panels) panel.draw(joint.view);
     const { x, y } = joint.view;
     const isFar = Math.abs(x.i) > FAR / 2;
     byId("far").textContent = isFar ? "Back to the origin" : "A billion units away";
@@ -149,7 +180,6 @@ function listen() {
     draw();
   });
   byId("jump").addEventListener("submit", jump);
-  byId("alone").addEventListener("click", () => showAlone(!alone));
   byId("far").addEventListener("click", () => {
     const isFar = Math.abs(joint.view.x.i) > FAR / 2;
     if (isFar) home();
@@ -195,10 +225,10 @@ async function begin() {
   show();
 }
 
+say(state.wrong);
 // For tests.
 globalThis.strew = { joint, panels };
 build();
-byId("said").textContent = TRY;
 listen();
 skipLinks();
 begin();

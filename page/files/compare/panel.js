@@ -3,27 +3,21 @@
 import { lineChart, spectrumPicture } from "../charts.js";
 import { make } from "../dom.js";
 import { cornerFrom } from "../grid.js";
-import { MOST_NU } from "../spectrum.js";
-import { measure } from "../measure.js";
+import { measure } from "../worker.js";
 import { Painter } from "../painter.js";
 import { distance } from "../place.js";
 import { Sheets } from "../sheets.js";
 import { LAYER } from "../state.js";
 import { themeColor, themeNumbers } from "../theme.js";
 import { sized } from "../view.js";
-import { MEASURED } from "./methods.js";
-import { large, priceOf } from "./price.js";
+import { MEASURED, large, priceOf } from "./methods.js";
 import { Source, windowAround } from "./sources.js";
 
 export class Panel {
   constructor(method, { changed, failed }) {
     this.method = method;
     this.changed = changed;
-    this.failed = failed;
     this.isOutside = false;
-    /** The window whose points are drawn alone, and these. */
-    this.aloneKey = "";
-    this.alone = [];
     const { id, name, words, source } = method;
     this.source = new Source(id, changed, failed);
     const canvas = (label, attributes = {}) => make("canvas", { role: "img", "aria-label": `${label} of ${name}`, ...attributes });
@@ -32,7 +26,6 @@ export class Panel {
     });
     this.painter = new Painter(this.plane);
     this.sheets = new Sheets(this.painter, this.source.chunks);
-    this.sheetsAlone = new Sheets(this.painter, { want: () => this.alone });
     this.outside = make("p", { class: "outside", hidden: true }, "No points here: the window is outside of its region.");
     this.spectrum = canvas("Spectrum", { class: "spectrum" });
     this.radial = canvas("Radial power", { class: "radial" });
@@ -61,48 +54,20 @@ export class Panel {
   themed() {
     this.look = { layers: [{ ...LAYER, dot: 1.25 }], spacings: [1], spacing: 1, colors: [themeNumbers("ink")], ground: themeNumbers("sunken") };
     this.sheets.renew(false);
-    this.sheetsAlone.renew(false);
   }
 
-  /** Draws the points around a view; with a window, only what has to be made for it, from farther away. */
-  draw(view, alone) {
+  /** Draws the points around a view. */
+  draw(view) {
     if (!this.isReady) return;
     const { box } = this.method;
-    const seen = alone ? { ...view, unit: alone.unit } : view;
     sized(this.plane, view.pixels);
-    if (alone) this.prepare(alone.window);
-    if ((alone ? this.sheetsAlone : this.sheets).frame(seen, this.look, false)) this.changed();
-    if (box) this.edge(box, seen);
-    if (alone) return this.frame(seen, alone.window);
+    if (this.sheets.frame(view, this.look, false)) this.changed();
+    if (box) this.edge(box, view);
     const half = [view.width * view.unit / 2, view.height * view.unit / 2];
     const from = box?.map((v, i) => distance({ i: v, f: 0 }, [view.x, view.y][i % 2]));
     this.isOutside = Boolean(from) && !(from[0] < half[0] && from[1] < half[1] && from[2] > -half[0] && from[3] > -half[1]);
     this.outside.hidden = !this.isOutside;
     this.say(view);
-  }
-
-  /** Has what a window needs made, unless it is that of before. */
-  prepare(window) {
-    const key = [window.x.i, window.x.f, window.y.i, window.y.f, window.width, window.height, this.source.seed].join();
-    if (this.aloneKey === key) return;
-    const show = (chunks) => {
-      if (this.aloneKey !== key) return;
-      this.alone = chunks;
-      this.sheetsAlone.renew(false);
-      this.changed();
-    };
-    this.aloneKey = key;
-    show([]);
-    this.source.alone(window).then((chunk) => show([chunk]), (error) => this.failed(error));
-  }
-
-  /** Draws a frame around the window that is wanted. */
-  frame({ unit, ratio }, window) {
-    const { context, canvas } = this.painter;
-    const [width, height] = [window.width, window.height].map((side) => (side / unit) * ratio);
-    context.strokeStyle = themeColor("accent");
-    context.lineWidth = 2 * ratio;
-    context.strokeRect((canvas.width - width) / 2, (canvas.height - height) / 2, width, height);
   }
 
   /** Shades what lies outside of the region, and draws its edge. */
@@ -172,7 +137,7 @@ export class Panel {
     spectrumPicture(this.spectrum, image, cells);
     const beside = reference && reference !== radial ? [{ values: reference, color: "soft", dash: true }] : [];
     lineChart(this.radial, {
-      series: [...beside, { values: radial, color: "accent" }], x: [0, MOST_NU], y: [0, top], name: "ν", aspect: 0.55,
+      series: [...beside, { values: radial, color: "accent" }], x: [0, 3], y: [0, top], name: "ν", aspect: 0.55,
     });
   }
 }

@@ -6,7 +6,7 @@ import { decimalsFor, formatPlace, moved, place } from "../place.js";
 import { joined, setOf } from "../query.js";
 import { LAYER } from "../state.js";
 import { callsOf } from "../worker.js";
-import { MEASURED, boxOf } from "./methods.js";
+import { MEASURED } from "./methods.js";
 
 const make = callsOf("/page/compare/worker.js");
 
@@ -52,28 +52,15 @@ export class Source {
     return made;
   }
 
-  /** The points of a window, and whether the method's region holds all of it. */
-  async window({ x, y, width, height }) {
-    if (!this.isServed) return this.made({ x, y, width, height });
-    const box = [x, y, moved(x, width), moved(y, height)].map((v) => formatPlace(v, decimalsFor(1e-9)));
-    const answer = await ask(`/v1/points?bbox=${box.join(",")}&${joined([...setOf(this.layer), ["format", "f32"]])}`);
-    return { points: new Float32Array(await answer.arrayBuffer()), isWhole: true };
-  }
-
   /** The points of the measured square around a place, `null` if it is not all in the method's region. */
   async square(at) {
-    const { points, isWhole } = await this.window(windowAround(at, MEASURED, MEASURED));
-    return isWhole ? Float64Array.from(points) : null;
-  }
-
-  /** What has to be made for a window, as one chunk: its points, or all of its region for a method that has one. */
-  async alone(window) {
-    const box = boxOf(this.method);
-    const all = box ? { x: place(box[0]), y: place(box[1]), width: box[2] - box[0], height: box[3] - box[1] } : window;
-    const { points } = await this.window(all);
-    const [x, y] = [all.x, all.y];
-    const data = Float32Array.from(points, (v, i) => v + [x, y][i % 2].f);
-    const count = data.length / 2;
-    return { cx: x.i, cy: y.i, size: 1, data, stride: 2, count, total: count, columns: [], layers: [this.layer], state: "done" };
+    const { x, y } = windowAround(at, MEASURED, MEASURED);
+    if (!this.isServed) {
+      const { points, isWhole } = await this.made({ x, y, width: MEASURED, height: MEASURED });
+      return isWhole ? points : null;
+    }
+    const box = [x, y, moved(x, MEASURED), moved(y, MEASURED)].map((v) => formatPlace(v, decimalsFor(1e-9)));
+    const answer = await ask(`/v1/points?bbox=${box.join(",")}&${joined([...setOf(this.layer), ["format", "f32"]])}`);
+    return Float64Array.from(new Float32Array(await answer.arrayBuffer()));
   }
 }

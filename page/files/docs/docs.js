@@ -1,7 +1,7 @@
 // The API as a page: shows /openapi.json, an operation at a time. Everything is put in as text, never as markup.
 
 import { Gone, askJson } from "../api.js";
-import { byId, counted, icon, make, skipLinks } from "../dom.js";
+import { byId, counted, make, skipLinks } from "../dom.js";
 import { Notice } from "../notice.js";
 import { watchTheme } from "../theme.js";
 import { operationView } from "./operation.js";
@@ -85,6 +85,7 @@ function nothing() {
 function overview() {
   return [
     make("h2", { tabindex: "-1" }, "The API"),
+    location.hash.length > 1 && make("p", { class: "bad" }, `This API has no operation “${named(location.hash.slice(1))}”.`),
     make("p", { class: "about" }, api.info.description),
     make("p", {}, "Choose an operation, or search: the search covers parameters, too. Each operation can be tried here and has its own link."),
     make("p", {}, "The same calls are served over gRPC on this port, with reflection: ", make("code", {}, "strew.v1.PointService"), ". This page shows ",
@@ -94,7 +95,7 @@ function overview() {
       return members.length > 0 && make("li", {}, make("a", { href: `#${members[0].id}` },
         make("b", {}, name), make("span", {}, description), make("small", {}, counted(members.length, "operation"))));
     })),
-  ];
+  ].filter((one) => one !== false);
 }
 
 /** The text of an escaped address; the address itself if its escapes are wrong. */
@@ -153,7 +154,6 @@ async function begin() {
 
 new Notice(byId("banner"), () => api || begin());
 
-byId("theme").append(icon("M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z"));
 watchTheme(byId("theme"), () => {});
 byId("list").addEventListener("click", () => {
   const isOpen = byId("side").classList.toggle("open");

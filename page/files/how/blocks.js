@@ -1,30 +1,25 @@
 // The gate cut into blocks by how far points look, and the points of one block in the pattern.
 
-import { Pattern, intervalOf, turns } from "./pattern.js";
+import { Pattern, blockOf, intervalOf, nearest, turns } from "./pattern.js";
 import { colorOf, indexOf } from "./indices.js";
 import { disk, dotOf, line, pair, palette } from "./pen.js";
-import { REACH, blockOf, nearest, nextOf, sociable } from "./same.js";
+import { REACH, sociable } from "./same.js";
+import { Figure } from "./stage.js";
 
 /** How far points look at first, at last, and the seconds in between. */
 const FIRST = 1;
 const LAST = 20;
 const GROWS = 9;
 
-export class Blocks {
-  /** @type {import("./stage.js").Stage} */
-  stage;
-  /** @type {import("./pen.js").Panel[]} */
-  panels;
+export class Blocks extends Figure {
   /** @type {{ set: (value: number) => void } | undefined} */
   slider;
-  /** @type {number[]} */
-  point;
   /** @type {bigint[]} */
   starts;
   radius = 0;
-  seconds = 0;
 
   constructor() {
+    super();
     this.pattern = new Pattern();
     this.points = this.pattern.points(REACH);
     this.point = sociable(this.pattern, this.points, this.pattern.starts(7));
@@ -33,10 +28,10 @@ export class Blocks {
 
   restart() {
     this.seconds = 0;
-    this.look(FIRST);
+    this.see(FIRST);
   }
 
-  look(radius) {
+  see(radius) {
     this.radius = radius;
     this.starts = this.pattern.starts(radius);
     this.tell();
@@ -46,35 +41,31 @@ export class Blocks {
     this.seconds += seconds;
     const radius = Math.min(LAST, FIRST + Math.floor(((LAST - FIRST + 1) * this.seconds) / GROWS));
     if (radius !== this.radius) {
-      this.look(radius);
+      this.see(radius);
       this.slider?.set(radius);
     }
     return this.seconds < GROWS;
   }
 
   finish() {
-    this.look(LAST);
+    this.see(LAST);
     this.slider?.set(LAST);
   }
 
   touched(at) {
     const [gate, plane] = this.panels;
-    if (plane.holds(at)) this.point = nearest(this.points, plane.from(at));
-    else if (gate.holds(at)) this.point = this.near(gate.from(at));
-    this.tell();
+    if (plane.holds(at)) this.look(nearest(this.points, plane.from(at)));
+    else if (gate.holds(at)) this.look(this.near(gate.from(at)));
   }
 
-  /**
-   * The point whose index is nearest to a place in the gate.
-   * @param {number[]} place
-   */
-  near([u, v]) {
+  /** The point whose index is nearest to a place in the gate. */
+  near(/** @type {number[]} */ [u, v]) {
     const far = (point) => indexOf(this.pattern, point).reduce((sum, w, i) => sum + (w - [u, v][i]) ** 2, 0);
     return this.points.reduce((best, point) => (far(point) < far(best) ? point : best));
   }
 
-  moved(step) {
-    this.point = nextOf(this.points, this.point, step) ?? this.point;
+  look(point) {
+    this.point = point;
     this.tell();
   }
 

@@ -2,6 +2,7 @@
 
 import { streamOf } from "../hash.js";
 import { disk, disks, line, pair, palette, words } from "./pen.js";
+import { Figure } from "./stage.js";
 
 /** The side of the square in mean spacings, the points in it, and the cells along a side. */
 const SIDE = 10;
@@ -15,21 +16,17 @@ const RATE = 22;
 
 const inside = (/** @type {number[][]} */ points, /** @type {number[]} */ [x, y]) => points.filter(([u, v]) => Math.hypot(u - x, v - y) < RING).length;
 
-export class Chance {
-  /** @type {import("./stage.js").Stage} */
-  stage;
-  /** @type {import("./pen.js").Panel[]} */
-  panels;
+export class Chance extends Figure {
   /** @type {number[][]} */
   chance;
   fallen = 0;
-  seconds = 0;
   /** @type {number[] | null} */
   ring;
   /** @type {number[][] | null} */
   seen;
 
   constructor() {
+    super();
     this.seed = 6;
     this.strew = [];
     this.restart();
@@ -80,11 +77,8 @@ export class Chance {
     this.place([x + right * 0.5, y + up * 0.5]);
   }
 
-  /**
-   * Puts the ring somewhere, all of it in the square, and counts.
-   * @param {number[]} at
-   */
-  place(at) {
+  /** Puts the ring somewhere, all of it in the square, and counts. */
+  place(/** @type {number[]} */ at) {
     const ring = at.map((v) => Math.min(SIDE - RING, Math.max(RING, v)));
     this.ring = ring;
     if (this.strew.length === 0) return;

@@ -1,7 +1,8 @@
 // A row of places and one hand that turns by α a place: where it stands in the gate, there is a point.
 
 import { Pattern, turns } from "./pattern.js";
-import { Panel, dial, disk, line, palette, words } from "./pen.js";
+import { Panel, dial, disk, eased, line, palette, words } from "./pen.js";
+import { Figure } from "./stage.js";
 
 /** The places that are shown. */
 const SHOWN = 24;
@@ -10,20 +11,17 @@ const TURNS = 0.36;
 const STAYS = 0.16;
 
 export const degrees = (turn, digits = 1) => `${(turn * 360).toFixed(digits)}°`;
-const eased = (share) => share * share * (3 - 2 * share);
 
-export class Row {
-  /** @type {import("./stage.js").Stage} */
-  stage;
+export class Row extends Figure {
   /** @type {import("./pen.js").Panel} */
   chart;
   /** @type {((at: number) => void) | undefined} */
   told;
   at = 0;
-  seconds = 0;
   visited = 0;
 
   constructor() {
+    super();
     this.pattern = new Pattern();
     this.first = 0;
     this.restart();

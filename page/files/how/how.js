@@ -1,11 +1,12 @@
 // The essay: its figures, each on a stage of its own.
 
-import { ICONS } from "../bar.js";
-import { byId, copy, icon, skipLinks } from "../dom.js";
+import { Argument } from "../argument.js";
+import { byId, copy, skipLinks } from "../dom.js";
 import { watchTheme } from "../theme.js";
 import { Blocks } from "./blocks.js";
 import { Chance } from "./chance.js";
 import { Row, degrees } from "./dials.js";
+import { Found } from "./found.js";
 import { Indices } from "./indices.js";
 import { Race } from "./race.js";
 import { Same } from "./same.js";
@@ -20,7 +21,7 @@ const MOST_PLACE = 1e9;
 const root = document.documentElement;
 const figures = {
   chance: new Chance(), race: new Race(), row: new Row(), indices: new Indices(), same: new Same(),
-  blocks: new Blocks(), vectors: new Vectors(), seeds: new Seeds(), served: new Served(),
+  blocks: new Blocks(), vectors: new Vectors(), found: new Found(), seeds: new Seeds(), served: new Served(),
 };
 const stages = Object.entries(figures).map(([id, figure]) => new Stage(id, figure));
 const stageOf = (/** @type {string} */ id) => /** @type {Stage} */ (stages.find((stage) => stage.id === id));
@@ -46,7 +47,7 @@ byId("row-place").addEventListener("change", () => {
 row.told = (place) => {
   if (document.activeElement !== byId("row-place")) byId("row-place").value = String(place);
 };
-blocks.slider = stageOf("blocks").slider("blocks-radius", (value) => `${value} step${value === 1 ? "" : "s"}`, (value) => blocks.look(value));
+blocks.slider = stageOf("blocks").slider("blocks-radius", (value) => `${value} step${value === 1 ? "" : "s"}`, (value) => blocks.see(value));
 vectors.slider = stageOf("vectors").slider("vectors-share", (value) => `${value} %`, (value) => vectors.set(value / 100));
 // Where no motion is wanted the figures are over already.
 blocks.slider.set(blocks.radius);
@@ -75,7 +76,8 @@ function replay(stage) {
 }
 
 /** Has the server's points requested when a figure comes near. */
-const loads = { chance: figures.chance, vectors, served, seeds: { load: () => seeds.go() } };
+const argument = new Argument();
+const loads = { argument, chance: figures.chance, vectors, served, seeds: { load: () => seeds.go() } };
 const near = new IntersectionObserver((entries) => {
   for (const { isIntersecting, target } of entries) {
     if (!isIntersecting) continue;
@@ -85,8 +87,7 @@ const near = new IntersectionObserver((entries) => {
 }, { rootMargin: "60% 0px" });
 for (const id of Object.keys(loads)) near.observe(byId(id));
 
-byId("theme").append(icon(ICONS.theme));
-watchTheme(byId("theme"), () => stages.forEach((stage) => stage.themed()));
+watchTheme(byId("theme"), () => [argument, ...stages].forEach((one) => one.themed()));
 skipLinks();
 
 // On paper figures are over and light.

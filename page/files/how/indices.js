@@ -3,6 +3,7 @@
 import { Pattern, turns } from "./pattern.js";
 import { degrees } from "./dials.js";
 import { Panel, dial, disk, disks, isDark, line, palette } from "./pen.js";
+import { Figure } from "./stage.js";
 
 /** The colors at the corners of the set region: (0, 0), (t, 0), (0, t), (t, t). */
 const CORNERS = [[42, 98, 190], [219, 68, 92], [28, 158, 108], [232, 172, 40]];
@@ -14,12 +15,8 @@ const LAST = 20;
 /** Places that are walked in a second, at first and at last. */
 const RATES = [3, 120];
 
-/**
- * The index of a place, in turns.
- * @param {Pattern} pattern
- * @param {number[]} place
- */
-export function indexOf(pattern, [x, y]) {
+/** The index of a place, in turns. */
+export function indexOf(/** @type {Pattern} */ pattern, /** @type {number[]} */ [x, y]) {
   return pattern.index(x, y).map(turns);
 }
 
@@ -32,17 +29,15 @@ export function colorOf(pattern, index) {
   return `rgb(${mixed.map((value) => Math.round(value + lift * (255 - value))).join(" ")})`;
 }
 
-export class Indices {
-  /** @type {import("./stage.js").Stage} */
-  stage;
+export class Indices extends Figure {
   /** @type {import("./pen.js").Panel} */
   grid;
   /** @type {import("./pen.js").Panel} */
   square;
   walked = 0;
-  seconds = 0;
 
   constructor() {
+    super();
     this.pattern = new Pattern();
     this.places = Array.from({ length: (LAST + 1) ** 2 }, (_, i) => [i % (LAST + 1), Math.floor(i / (LAST + 1))]);
     this.indices = this.places.map((place) => indexOf(this.pattern, place));

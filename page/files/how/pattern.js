@@ -86,3 +86,29 @@ export function intervalOf(starts, index) {
   }
   return low;
 }
+
+/** The block of a point on a map, as text. */
+export function blockOf(/** @type {Pattern} */ pattern, /** @type {bigint[]} */ starts, /** @type {number[]} */ [x, y]) {
+  return pattern.index(x, y).map((index) => intervalOf(starts, index)).join();
+}
+
+/** The nearest of some points to a place. */
+export function nearest(/** @type {number[][]} */ points, /** @type {number[]} */ [x, y]) {
+  const far = (/** @type {number[]} */ [u, v]) => (u - x) ** 2 + (v - y) ** 2;
+  return points.reduce((best, point) => (far(point) < far(best) ? point : best));
+}
+
+/**
+ * The next of some points in a direction.
+ * @param {number[][]} points
+ * @param {number[]} place
+ * @param {number[]} direction
+ * @returns {number[] | null}
+ */
+export function nextOf(points, [x, y], [right, up]) {
+  const along = (/** @type {number[]} */ [u, v]) => (u - x) * right + (v - y) * up;
+  const aside = (/** @type {number[]} */ [u, v]) => Math.abs((u - x) * up) + Math.abs((v - y) * right);
+  const ahead = points.filter((point) => along(point) > 0 && aside(point) <= along(point));
+  const cost = (point) => along(point) + 2 * aside(point);
+  return ahead.sort((a, b) => cost(a) - cost(b))[0] ?? null;
+}

@@ -4,6 +4,8 @@ import { themeColor } from "../theme.js";
 
 const NAMES = ["ink", "soft", "line", "edge", "ground", "clash", "gate", "index", "block", "vector"];
 
+/** @typedef {CanvasRenderingContext2D} Context */
+
 /** @type {Record<string, string> | null} */
 let known = null;
 
@@ -26,6 +28,9 @@ export function isDark() {
   return /^rgba?\(\d?\d\D/.test(palette().ground);
 }
 
+/** A share of a way that begins and ends gently. */
+export const eased = (/** @type {number} */ share) => share * share * (3 - 2 * share);
+
 /** The radius of a dot of the grid where a step is so many pixels long. */
 export function dotOf(scale) {
   return Math.max(1.7, scale * 0.4);
@@ -33,7 +38,7 @@ export function dotOf(scale) {
 
 /**
  * A circle, filled or, with a thickness, in outline.
- * @param {CanvasRenderingContext2D} context
+ * @param {Context} context
  * @param {number[]} middle
  * @param {number} radius
  * @param {string} color
@@ -63,7 +68,7 @@ export function disks(context, places, radius, color) {
 }
 
 /**
- * @param {CanvasRenderingContext2D} context
+ * @param {Context} context
  * @param {number[]} from
  * @param {number[]} to
  * @param {string} color
@@ -77,13 +82,8 @@ export function line(context, [x, y], [u, v], color, thickness = 1) {
   context.stroke();
 }
 
-/**
- * Many lines of one color, each `[from, to]`.
- * @param {CanvasRenderingContext2D} context
- * @param {number[][][]} pairs
- * @param {string} color
- */
-export function lines(context, pairs, color, thickness = 1) {
+/** Many lines of one color, each `[from, to]`. */
+export function lines(/** @type {Context} */ context, /** @type {number[][][]} */ pairs, /** @type {string} */ color, thickness = 1) {
   context.strokeStyle = color;
   context.lineWidth = thickness;
   context.beginPath();
@@ -96,7 +96,7 @@ export function lines(context, pairs, color, thickness = 1) {
 
 /**
  * A line with a head at its end; what is too short has none.
- * @param {CanvasRenderingContext2D} context
+ * @param {Context} context
  * @param {number[]} from
  * @param {number[]} to
  * @param {string} color
@@ -117,7 +117,7 @@ export function arrow(context, from, to, color, thickness = 1.5) {
 
 /**
  * Words on a canvas; `align` is that of canvases, the place is their middle in height.
- * @param {CanvasRenderingContext2D} context
+ * @param {Context} context
  * @param {string} text
  * @param {number[]} place
  * @param {string} color
@@ -134,7 +134,7 @@ export function words(context, text, [x, y], color, size = 12, align = "center")
 
 /**
  * A dial: a gate of a number of turns from the right side on, and a hand at a turn; turns go against the clock.
- * @param {CanvasRenderingContext2D} context
+ * @param {Context} context
  * @param {number[]} middle
  * @param {number} radius
  * @param {number} gate
@@ -182,19 +182,13 @@ export class Panel {
     this.scale = width / (x1 - x0);
   }
 
-  /**
-   * The pixels of a place.
-   * @param {number[]} place
-   */
-  to([x, y]) {
+  /** The pixels of a place. */
+  to(/** @type {number[]} */ [x, y]) {
     return [this.left + (x - this.x0) * this.scale, this.top + this.height - ((y - this.y0) * this.height) / (this.y1 - this.y0)];
   }
 
-  /**
-   * The place of a pixel.
-   * @param {number[]} pixel
-   */
-  from([x, y]) {
+  /** The place of a pixel. */
+  from(/** @type {number[]} */ [x, y]) {
     return [this.x0 + (x - this.left) / this.scale, this.y0 + ((this.top + this.height - y) * (this.y1 - this.y0)) / this.height];
   }
 
@@ -213,13 +207,7 @@ export class Panel {
     context.restore();
   }
 
-  /**
-   * @param {CanvasRenderingContext2D} context
-   * @param {number[]} corner
-   * @param {number[]} size
-   * @param {string} color
-   */
-  fill(context, [x, y], [width, height], color) {
+  fill(/** @type {Context} */ context, /** @type {number[]} */ [x, y], /** @type {number[]} */ [width, height], /** @type {string} */ color) {
     const [left, bottom] = this.to([x, y]);
     const [right, top] = this.to([x + width, y + height]);
     context.fillStyle = color;
@@ -227,7 +215,7 @@ export class Panel {
   }
 
   /**
-   * @param {CanvasRenderingContext2D} context
+   * @param {Context} context
    * @param {number[]} corner
    * @param {number[]} size
    * @param {string} color
@@ -245,14 +233,8 @@ export class Panel {
   }
 }
 
-/**
- * Two square panels side by side with a gap in between, each with the range of its coordinates.
- * @param {number} width
- * @param {number} height
- * @param {number[][]} first
- * @param {number[][]} second
- */
-export function pair(width, height, first, second) {
+/** Two square panels side by side with a gap in between, each with the range of its coordinates. */
+export function pair(/** @type {number} */ width, /** @type {number} */ height, /** @type {number[][]} */ first, /** @type {number[][]} */ second) {
   const side = Math.min(height - 2, width * 0.485);
   const top = (height - side) / 2;
   return [new Panel(1, top, side, side, first[0], first[1]), new Panel(width - side - 1, top, side, side, second[0], second[1])];

@@ -2,6 +2,7 @@
 
 import { streamOf } from "../hash.js";
 import { Panel, disk, disks, line, palette, words } from "./pen.js";
+import { Figure } from "./stage.js";
 
 /** The sides of a piece, in widths of a piece, and the least distance. */
 const HEIGHT = 1.02;
@@ -15,9 +16,7 @@ const SPEEDS_UP = 5;
 
 const near = (/** @type {number[]} */ [x, y], /** @type {number[]} */ [u, v]) => Math.hypot(x - u, y - v) < LEAST;
 
-export class Race {
-  /** @type {import("./stage.js").Stage} */
-  stage;
+export class Race extends Figure {
   /** @type {() => number} */
   next;
   /** @type {number[][][]} */
@@ -26,10 +25,10 @@ export class Race {
   misses;
   /** @type {number[][]} */
   missed;
-  seconds = 0;
   due = 0;
 
   constructor() {
+    super();
     this.seed = 11;
     this.isTogether = true;
     this.restart();

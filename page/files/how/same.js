@@ -1,8 +1,9 @@
 // Points of one block, that is of nearly the same index, and their surroundings laid over each other: they agree.
 
-import { Pattern, intervalOf } from "./pattern.js";
+import { Pattern, blockOf, nearest } from "./pattern.js";
 import { colorOf, indexOf } from "./indices.js";
 import { disk, dotOf, pair, palette } from "./pen.js";
+import { Figure } from "./stage.js";
 
 /** Half the sides of the windows: of the pattern that is shown, of the surroundings, and of where alike points are looked for. */
 export const REACH = 16;
@@ -13,41 +14,6 @@ const RADIUS = 6;
 /** The most surroundings that are laid over each other, and the seconds for each. */
 const MOST = 40;
 const EACH = 0.42;
-
-/**
- * The block of a point on a map, as text.
- * @param {Pattern} pattern
- * @param {bigint[]} starts
- * @param {number[]} point
- */
-export function blockOf(pattern, starts, [x, y]) {
-  return pattern.index(x, y).map((index) => intervalOf(starts, index)).join();
-}
-
-/**
- * The nearest of some points to a place.
- * @param {number[][]} points
- * @param {number[]} place
- */
-export function nearest(points, [x, y]) {
-  const far = (/** @type {number[]} */ [u, v]) => (u - x) ** 2 + (v - y) ** 2;
-  return points.reduce((best, point) => (far(point) < far(best) ? point : best));
-}
-
-/**
- * The next of some points in a direction.
- * @param {number[][]} points
- * @param {number[]} place
- * @param {number[]} direction
- * @returns {number[] | null}
- */
-export function nextOf(points, [x, y], [right, up]) {
-  const along = (/** @type {number[]} */ [u, v]) => (u - x) * right + (v - y) * up;
-  const aside = (/** @type {number[]} */ [u, v]) => Math.abs((u - x) * up) + Math.abs((v - y) * right);
-  const ahead = points.filter((point) => along(point) > 0 && aside(point) <= along(point));
-  const cost = (point) => along(point) + 2 * aside(point);
-  return ahead.sort((a, b) => cost(a) - cost(b))[0] ?? null;
-}
 
 /** The point near the middle that has most points of its block in the window. */
 export function sociable(pattern, points, starts) {
@@ -61,21 +27,15 @@ export function sociable(pattern, points, starts) {
   return middle.reduce((best, point) => (fellows(point) > fellows(best) ? point : best));
 }
 
-export class Same {
-  /** @type {import("./stage.js").Stage} */
-  stage;
-  /** @type {import("./pen.js").Panel[]} */
-  panels;
-  /** @type {number[]} */
-  point;
+export class Same extends Figure {
   /** @type {number[][]} */
   alike;
   laid = 0;
-  seconds = 0;
   /** @type {{ key: string, counts: Map<string, number> } | undefined} */
   counted;
 
   constructor() {
+    super();
     this.pattern = new Pattern();
     this.points = this.pattern.points(REACH);
     this.starts = this.pattern.starts(RADIUS);
@@ -121,10 +81,6 @@ export class Same {
   touched(at) {
     if (!this.panels[0].holds(at)) return;
     this.look(nearest(this.points, this.panels[0].from(at)));
-  }
-
-  moved(step) {
-    this.look(nextOf(this.points, this.point, step) ?? this.point);
   }
 
   look(point) {

@@ -1,7 +1,8 @@
 // What is left to choose: how dense, which seed, how much warp. All points are the server's; they move by their addresses.
 
 import { settled } from "../dom.js";
-import { Panel, disk, palette } from "./pen.js";
+import { Panel, disk, eased, palette } from "./pen.js";
+import { Figure } from "./stage.js";
 
 /** The window in units of the plane, and what is requested around it. */
 const WIDE = 12;
@@ -27,20 +28,18 @@ const TOUR = [
   { density: 9, seed: 7, warp: 1 },
 ];
 
-const eased = (share) => share * share * (3 - 2 * share);
-
-export class Seeds {
-  /** @type {import("./stage.js").Stage} */
-  stage;
+export class Seeds extends Figure {
   /** @type {((chosen: Chosen) => void) | undefined} */
   follow;
   /** @type {Chosen} */
   chosen;
   stop = 0;
+  isTaken = false;
   seconds = 0;
   share = 0;
 
   constructor() {
+    super();
     this.known = new Map();
     this.from = new Map();
     this.to = new Map();
@@ -49,7 +48,7 @@ export class Seeds {
   }
 
   restart() {
-    Object.assign(this, { stop: 0, seconds: 0, share: 1, chosen: { ...TOUR[0] } });
+    Object.assign(this, { stop: 0, seconds: 0, share: 1, isTaken: false, chosen: { ...TOUR[0] } });
     if (this.stage) this.go();
   }
 
@@ -70,27 +69,14 @@ export class Seeds {
     this.share = this.from.size === 0 || this.isStill ? 1 : 0;
     this.tell();
     this.stage.draw();
-    if (this.share < 1 && this.stage.isOver) this.slide();
-  }
-
-  /** Has points move after the visitor's choice. */
-  slide() {
-    if (this.isSliding) return;
-    this.isSliding = true;
-    let before = performance.now();
-    const frame = (now) => {
-      this.share = Math.min(1, this.share + (now - before) / 1000 / WAY);
-      before = now;
-      this.stage.draw();
-      this.isSliding = this.share < 1;
-      if (this.isSliding) requestAnimationFrame(frame);
-    };
-    requestAnimationFrame(frame);
+    if (this.share < 1 && this.stage.isOver) this.stage.goOn();
   }
 
   step(seconds) {
     if (this.to.size === 0) return true;
     this.share = Math.min(1, this.share + seconds / WAY);
+    // After a choice of the visitor points go there, and no further.
+    if (this.isTaken) return this.share < 1;
     this.seconds += seconds;
     if (this.seconds < WAY + STAY) return true;
     this.seconds = 0;
@@ -104,6 +90,7 @@ export class Seeds {
   /** The tour ends where it is; a visitor who wants no motion sees its last stop. */
   finish() {
     this.share = 1;
+    this.isTaken = true;
     if (!matchMedia("(prefers-reduced-motion: reduce)").matches) return;
     this.isStill = true;
     this.chosen = { ...TOUR[TOUR.length - 1] };

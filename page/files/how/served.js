@@ -1,10 +1,10 @@
 // One point, from its address to the server's answer: hands, block, vector, warp, and the line for curl.
 
 import { byId, make } from "../dom.js";
-import { Pattern, intervalOf, turns } from "./pattern.js";
+import { Pattern, intervalOf, nearest, turns } from "./pattern.js";
 import { degrees } from "./dials.js";
 import { Panel, arrow, disk, palette } from "./pen.js";
-import { nearest, nextOf } from "./same.js";
+import { Figure } from "./stage.js";
 
 /** The window in mean spacings, with a spacing of 1. */
 const WIDE = 10;
@@ -38,19 +38,16 @@ function computed(pattern, starts, address) {
 const grouped = (v) => v.toLocaleString("en").replace("-", "−");
 const rounded = (v) => v.toFixed(2).replace("-", "−");
 
-export class Served {
-  /** @type {import("./stage.js").Stage} */
-  stage;
+export class Served extends Figure {
   /** @type {import("./pen.js").Panel} */
   panel;
-  /** @type {number[] | undefined} */
-  point;
   /** @type {string | undefined} */
   id;
   /** @type {number[][] | null} */
   path;
 
   constructor() {
+    super();
     this.pattern = new Pattern();
     this.starts = this.pattern.starts(RADIUS);
     this.corner = [0, 0];
@@ -81,10 +78,6 @@ export class Served {
 
   touched(at) {
     if (this.points.length > 0 && this.panel.holds(at)) this.look(nearest(this.points, this.panel.from(at)));
-  }
-
-  moved(step) {
-    if (this.point) this.look(nextOf(this.points, this.point, step) ?? this.point);
   }
 
   /** Requests a point by its id, with the warp and without. */

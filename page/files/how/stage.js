@@ -3,7 +3,9 @@
 
 import { Gone, Problem, ask, onPresence, wordsOf } from "../api.js";
 import { byId, contextOf } from "../dom.js";
+import { placeOf } from "../hands.js";
 import { fineness, sized } from "../view.js";
+import { nextOf } from "./pattern.js";
 import { forget } from "./pen.js";
 
 /** The least time between two frames, in seconds: figures are calm, and processors may be slow. */
@@ -12,20 +14,39 @@ const FRAME = 1 / 32;
 const LONGEST = 0.1;
 /** The share of a figure that has to be in view. */
 const SHARE = 0.4;
+/** The pixels of a drag over all values of a number. */
+const SWEEP = 320;
 
 const lessMotion = matchMedia("(prefers-reduced-motion: reduce)");
 
 /**
  * A figure has `draw(context, width, height)`, and where it moves `step(seconds)`, which returns whether it goes on,
  * `finish()`, which leads to its last frame, and `restart()`. `touched([x, y])` hears of pointers in pixels,
- * `moved([right, up])` of arrow keys.
+ * `moved([right, up])` of arrow keys: those of points take the next one.
  */
+export class Figure {
+  /** @type {Stage} */
+  stage;
+  /** @type {import("./pen.js").Panel[]} */
+  panels;
+  /** @type {number[][]} */
+  points;
+  /** @type {number[]} */
+  point;
+  seconds = 0;
+
+  moved(step) {
+    if (this.point) this.look(nextOf(this.points, this.point, step) ?? this.point);
+  }
+
+  /** Looks at a point that was chosen. */
+  look(point) {
+    this.point = point;
+  }
+}
+
 export class Stage {
-  /**
-   * @param {string} id
-   * @param {any} figure
-   */
-  constructor(id, figure) {
+  constructor(/** @type {string} */ id, /** @type {any} */ figure) {
     this.id = id;
     this.figure = figure;
     this.isSeen = false;
@@ -75,6 +96,12 @@ export class Stage {
     else this.frame = requestAnimationFrame((next) => this.step(next));
   }
 
+  /** Moves again, after the visitor has taken over. */
+  goOn() {
+    this.isOver = false;
+    this.go();
+  }
+
   finish() {
     this.figure.finish?.();
     this.isOver = true;
@@ -108,28 +135,19 @@ export class Stage {
 
   listen() {
     const { canvas, figure } = this;
-    const at = (event) => {
-      const box = canvas.getBoundingClientRect();
-      return [event.clientX - box.left, event.clientY - box.top];
-    };
     const touch = (event) => {
       this.take();
-      figure.touched(at(event));
+      figure.touched(placeOf(event, canvas));
       this.draw();
     };
     canvas.addEventListener("pointerdown", touch);
-    canvas.addEventListener("pointermove", (event) => {
-      const isOn = event.pointerType === "mouse" ? figure.hovers || event.buttons > 0 : true;
-      if (isOn) touch(event);
-    });
+    canvas.addEventListener("pointermove", (event) => (event.pointerType !== "mouse" || event.buttons > 0) && touch(event));
     canvas.addEventListener("keydown", (event) => {
       const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
-      const isChosen = event.key === "Enter" || event.key === " ";
-      if (!(step && figure.moved) && !(isChosen && figure.chosen)) return;
+      if (!step) return;
       event.preventDefault();
       this.take();
-      if (step) figure.moved(step);
-      else figure.chosen();
+      figure.moved(step);
       this.draw();
     });
   }
@@ -138,10 +156,12 @@ export class Stage {
   slider(id, words, changed) {
     const input = /** @type {HTMLInputElement} */ (byId(id));
     const shown = /** @type {HTMLElement} */ (this.element.querySelector(`output[for="${id}"]`));
+    const numbers = /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll(`[data-drag="${id}"]`));
     const follow = () => {
-      shown.textContent = words(Number(input.value));
+      for (const one of [shown, ...numbers]) one.textContent = words(Number(input.value));
       input.setAttribute("aria-valuetext", shown.textContent);
     };
+    for (const number of numbers) draggable(number, input);
     input.addEventListener("input", () => {
       this.take();
       follow();
@@ -170,11 +190,8 @@ export class Stage {
     }
   }
 
-  /**
-   * What the canvas shows, for those who do not see it.
-   * @param {string} text
-   */
-  name(text) {
+  /** What the canvas shows, for those who do not see it. */
+  name(/** @type {string} */ text) {
     if (this.canvas.getAttribute("aria-label") !== text) this.canvas.setAttribute("aria-label", text);
   }
 
@@ -225,6 +242,22 @@ export class Stage {
       }
     }
   }
+}
+
+/** Has a number in the text move its slider when it is dragged: from end to end in as many pixels as a finger goes. */
+function draggable(number, input) {
+  let at = 0;
+  number.addEventListener("pointerdown", (event) => {
+    event.preventDefault();
+    number.setPointerCapture(event.pointerId);
+    at = Number(input.value);
+  });
+  number.addEventListener("pointermove", (event) => {
+    if (event.buttons === 0) return;
+    at += (event.movementX * (input.max - input.min)) / SWEEP;
+    input.value = String(at);
+    input.dispatchEvent(new Event("input"));
+  });
 }
 
 /** Waits until the server is back. */

@@ -1,9 +1,9 @@
 // From the pattern to the points: a point and its twin far away, in the same block, on their way along the same vector.
 
-import { Pattern } from "./pattern.js";
+import { Pattern, blockOf, nearest } from "./pattern.js";
 import { colorOf, indexOf } from "./indices.js";
-import { arrow, disk, dotOf, lines, pair, palette } from "./pen.js";
-import { blockOf, nearest, nextOf } from "./same.js";
+import { arrow, disk, dotOf, eased, lines, pair, palette } from "./pen.js";
+import { Figure } from "./stage.js";
 
 /** Half the sides of the windows and of what is requested, in grid units; and of where twins are looked for. */
 const REACH = 11;
@@ -16,27 +16,18 @@ const WAY = 2.4;
 const STAY = 1;
 const ROUNDS = 2;
 
-const eased = (share) => share * share * (3 - 2 * share);
 const signed = (v) => v.toFixed(2).replace("-", "−");
 const whole = (v) => String(v).replace("-", "−");
 
-export class Vectors {
-  /** @type {import("./stage.js").Stage} */
-  stage;
+export class Vectors extends Figure {
   /** @type {{ set: (value: number) => void } | undefined} */
   slider;
-  /** @type {import("./pen.js").Panel[]} */
-  panels;
   /** @type {Map<string, number[]>} */
   twins;
-  /** @type {number[][]} */
-  points;
-  /** @type {number[]} */
-  point;
-  seconds = 0;
   share = 0;
 
   constructor() {
+    super();
     this.pattern = new Pattern();
     /** The vectors by the address of the point. */
     this.vectors = new Map();
@@ -62,7 +53,7 @@ export class Vectors {
   /** Shows a point and its twin. */
   async look(point) {
     if (!point || String(point) === String(this.point)) return;
-    this.point = point;
+    super.look(point);
     const twin = this.twins.get(String(point)) ?? point;
     for (const middle of [[0, 0], twin]) {
       await this.request(middle);
@@ -73,11 +64,8 @@ export class Vectors {
     this.stage.draw();
   }
 
-  /**
-   * Vectors are what separates a point of seed 0, without warp, from its place on the grid.
-   * @param {number[]} middle
-   */
-  async request([x, y]) {
+  /** Vectors are what separates a point of seed 0, without warp, from its place on the grid. */
+  async request(/** @type {number[]} */ [x, y]) {
     const box = [x - AROUND, y - AROUND, x + AROUND, y + AROUND].join();
     if (this.asked?.has(box)) return;
     const answer = await this.stage.fetch(`/v1/points?bbox=${box}&spacing=${1 / this.pattern.t}&seed=0&warp=off`);
@@ -115,10 +103,6 @@ export class Vectors {
 
   touched(at) {
     if (this.points && this.panels[0].holds(at)) this.look(nearest(this.points, this.panels[0].from(at)));
-  }
-
-  moved(step) {
-    if (this.points) this.look(nextOf(this.points, this.point, step));
   }
 
   tell() {

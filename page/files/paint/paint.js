@@ -1,16 +1,13 @@
 // Fields by hand: a bar of tools on the plane, what was painted with them, and the field that it is.
 
 import { wordsOf } from "../api.js";
-import { byId, icon, make } from "../dom.js";
-import { Part } from "../part.js";
+import { byId, icon } from "../dom.js";
 import { describe, documentOf, isSent, send } from "../sent.js";
 import { MOST_PAINT } from "../state.js";
 import { Brush } from "./brush.js";
 import { blank, excess, fieldOf, read, simplified, written } from "./strokes.js";
 
-const TOOLS = [["paint", "Brush", "More points"], ["road", "Road", "A line that keeps points away"], ["erase", "Erase", "Fewer points"]];
-/** Shares of the points outside of what is painted. */
-const GROUNDS = [[1, "all"], [0.1, "a tenth"], [0, "none"]];
+const TOOLS = ["paint", "road", "erase"];
 /** A line is kept to this part of the brush's size. */
 const FINENESS = 1 / 24;
 const BRUSH = "M14 6l4 4M4 20c3 0 5-1 5-4a3 3 0 0 0-3-3c-2 0-2 2-2 3s0 3-2 4c1 0 1 0 2 0zM9 14l8.5-9.5a2 2 0 0 1 3 3L11 16";
@@ -23,29 +20,9 @@ function strokes({ strokes: { length } }) {
   return `${length} ${length === 1 ? "stroke" : "strokes"}`;
 }
 
-export class Paint extends Part {
-  /** @type {HTMLButtonElement} */
-  toggle;
-  /** @type {HTMLButtonElement[]} */
-  tools;
-  /** @type {HTMLElement} */
-  strong;
-  /** @type {HTMLSelectElement} */
-  elsewhere;
-  /** @type {HTMLButtonElement} */
-  undoButton;
-  /** @type {HTMLButtonElement} */
-  clearButton;
-  /** @type {HTMLElement} */
-  said;
-  /** @type {HTMLElement} */
-  bar;
-  /** @type {HTMLCanvasElement} */
-  canvas;
-
+export class Paint {
   /** `picked()` is the index of the layer that is painted on; `say(words)` shows what went wrong. */
   constructor(session, plane, { picked, say }) {
-    super();
     this.session = session;
     this.plane = plane;
     this.picked = picked;
@@ -66,6 +43,10 @@ export class Paint extends Part {
     this.owner = null;
     /** Texts of what was painted by the fields that they are, for those that the address does not hold. */
     this.texts = new Map();
+    this.toggle = byId("paint-open");
+    this.canvas = byId("brush");
+    this.bar = byId("paint");
+    this.elsewhere = byId("paint-ground");
     this.build();
     this.brush = new Brush(this.canvas, plane, {
       drawn: (line) => this.drawn(line),
@@ -76,38 +57,18 @@ export class Paint extends Part {
     this.read();
   }
 
+  /** Has the bar of tools, which the markup has, do what it says. */
   build() {
-    const button = (id, words, onclick, attributes = {}) => make("button", { type: "button", id: `paint-${id}`, onclick, ...attributes }, words);
-    const slide = (id, words, value, changed) => make("label", {}, words, make("input", {
-      type: "range", id: `paint-${id}`, min: "0", max: "1", step: "0.01", value: String(value),
-      oninput: (event) => changed(Number(event.target.value)),
-    }));
-    // It is in the page from the start, so that nothing beside it moves.
-    this.toggle = byId("paint-open");
+    const clicks = { open: () => this.use(this.tool ? null : "paint"), undo: () => this.undo(), done: () => this.use(null), clear: () => this.clear() };
+    for (const [id, call] of Object.entries(clicks)) byId(`paint-${id}`).addEventListener("click", call);
+    for (const tool of TOOLS) byId(`paint-tool-${tool}`).addEventListener("click", () => this.use(tool));
     this.toggle.prepend(icon(BRUSH));
-    this.toggle.addEventListener("click", () => this.use(this.tool ? null : "paint"));
-    this.tools = TOOLS.map(([tool, words, title]) => button(`tool-${tool}`, words, () => this.use(tool), { title, "aria-pressed": "false" }));
-    this.size = slide("size", "Size", Math.sqrt(this.width), (value) => {
-      this.width = Math.max(0.004, value ** 2);
+    byId("paint-size").addEventListener("input", () => {
+      this.width = Math.max(0.004, Number(byId("paint-size").value) ** 2);
       this.fit();
     });
-    this.strong = slide("strength", "Strength", this.strength, (value) => (this.strength = Math.max(0.05, value)));
-    this.elsewhere = make("select", { id: "paint-ground", onchange: (event) => this.change({ ground: Number(event.target.value) }) },
-      GROUNDS.map(([share, words]) => make("option", { value: String(share) }, words)));
-    this.undoButton = button("undo", "Undo", () => this.undo());
-    this.clearButton = button("clear", "Clear", () => this.clear());
-    this.said = make("span", { id: "paint-said", role: "status" });
-    const rows = [
-      [...this.tools, this.undoButton, button("done", "Done", () => this.use(null), { class: "main" })],
-      [this.size, this.strong],
-      [make("label", {}, "Elsewhere", this.elsewhere), this.clearButton],
-    ];
-    this.bar = make("div", { id: "paint", role: "group", "aria-label": "Paint", hidden: true }, ...rows.map((row) => make("div", {}, row)), this.said);
-    this.canvas = make("canvas", {
-      id: "brush", tabindex: "0", role: "application", hidden: true,
-      "aria-label": "Paint on the plane. Arrow keys move the brush, Space puts the pen down and lifts it, plus and minus zoom, Escape leaves.",
-    });
-    byId("stage").append(this.canvas, this.bar);
+    byId("paint-strength").addEventListener("input", () => (this.strength = Math.max(0.05, Number(byId("paint-strength").value))));
+    this.elsewhere.addEventListener("change", () => this.change({ ground: Number(this.elsewhere.value) }));
     addEventListener("keydown", (event) => {
       if (!this.tool) return;
       if (event.key === "z" && (event.ctrlKey || event.metaKey) && !/** @type {Element} */ (event.target).matches("input:not([type=range]), textarea")) {
@@ -137,11 +98,11 @@ export class Paint extends Part {
     const { tool } = this;
     this.bar.hidden = this.canvas.hidden = !tool;
     this.toggle.setAttribute("aria-expanded", String(Boolean(tool)));
-    this.tools.forEach((button, i) => button.setAttribute("aria-pressed", String(TOOLS[i][0] === tool)));
-    this.strong.hidden = tool === "road";
+    for (const one of TOOLS) byId(`paint-tool-${one}`).setAttribute("aria-pressed", String(one === tool));
+    byId("paint-strong").hidden = tool === "road";
     const { activeElement } = document;
-    this.clearButton.disabled = this.work.strokes.length === 0;
-    this.undoButton.disabled = this.clearButton.disabled && !this.hasCleared;
+    byId("paint-clear").disabled = this.work.strokes.length === 0;
+    byId("paint-undo").disabled = this.work.strokes.length === 0 && !this.hasCleared;
     // A button that can do no more leaves the focus to what it worked on.
     if (tool && activeElement?.hasAttribute("disabled") && this.bar.contains(activeElement)) this.canvas.focus({ preventScroll: true });
     this.elsewhere.value = String(this.work.ground);
@@ -167,7 +128,7 @@ export class Paint extends Part {
   }
 
   say(words) {
-    this.said.textContent = words;
+    byId("paint-said").textContent = words;
   }
 
   get layer() {

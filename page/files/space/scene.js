@@ -60,11 +60,8 @@ const EDGES = [0, 1, 2].flatMap((axis) => [[0, 0], [0, 1], [1, 0], [1, 1]].flatM
   [0, 1].map((end) => [...rest.slice(0, axis), end, ...rest.slice(axis)])
 )));
 
-/**
- * A scene on a canvas, or `null` where there is no WebGL2.
- * @param {HTMLCanvasElement} canvas
- */
-export function sceneOn(canvas) {
+/** A scene on a canvas, or `null` where there is no WebGL2. */
+export function sceneOn(/** @type {HTMLCanvasElement} */ canvas) {
   const gl = glOn(canvas, { antialias: true, depth: true });
   return gl && new Scene(gl, canvas);
 }
@@ -75,11 +72,7 @@ export function sceneOn(canvas) {
  */
 
 class Scene {
-  /**
-   * @param {WebGL2RenderingContext} gl
-   * @param {HTMLCanvasElement} canvas
-   */
-  constructor(gl, canvas) {
+  constructor(/** @type {WebGL2RenderingContext} */ gl, /** @type {HTMLCanvasElement} */ canvas) {
     this.gl = gl;
     this.canvas = canvas;
     this.dots = programOf(gl, DOTS, ["place"]);

@@ -2,9 +2,9 @@
 
 import { isSeed } from "../address.js";
 import { isAway } from "../api.js";
-import { tools } from "../bar.js";
 import { byId, bytes, copy, counted, icon, make, settled, skipLinks } from "../dom.js";
 import { fault, field, select, setOptions } from "../form.js";
+import { tools } from "../gestures.js";
 import { Notice } from "../notice.js";
 import { formatPlace, place } from "../place.js";
 import { themeNumbers } from "../theme.js";

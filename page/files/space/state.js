@@ -19,20 +19,7 @@ const BEGINNING = { yaw: 30, pitch: -18, away: 30, reach: 16, spacing: "1", seed
 
 /** @typedef {import("../place.js").Place} Place */
 
-/**
- * What the address holds.
- * @typedef {object} State
- * @property {Place[]} at The place that is looked at.
- * @property {number} yaw In radians, as `pitch`.
- * @property {number} pitch
- * @property {number} away How far the eye is, in mean spacings.
- * @property {number} reach How far points are drawn, in mean spacings.
- * @property {string} spacing
- * @property {string} seed
- * @property {string} profile
- * @property {boolean} isPlain Whether the address says nothing of the view.
- * @property {string[]} wrong What was not understood, in words.
- */
+/** @typedef {ReturnType<typeof fromHash>} State What the address holds. */
 
 /** Whether a text is a spacing that this page shows. */
 export function isSpacing(text) {
@@ -44,11 +31,7 @@ export function isInReach(at, spacing) {
   return at.every((one) => one && Math.abs(toNumber(one)) <= FARTHEST * Number(spacing));
 }
 
-/**
- * The state of an address, with what in it was not understood, as words for each.
- * @param {string} hash
- * @returns {State}
- */
+/** The state of an address, with what in it was not understood, as words for each. */
 export function fromHash(hash) {
   const given = givenIn(hash);
   const wrong = [];
@@ -64,16 +47,19 @@ export function fromHash(hash) {
   if (!isNear) wrong.push("The place in the address is out of reach. Here is the beginning instead.");
   const turn = Math.PI / 180;
   return {
+    /** The place that is looked at. */
     at: isNear ? /** @type {Place[]} */ (at) : MIDDLE(),
     yaw: number("yaw", [-360, 360]) * turn,
     pitch: Math.max(-STEEPEST, Math.min(STEEPEST, number("pitch", [-90, 90]) * turn)),
+    /** How far the eye is, and how far points are drawn, in mean spacings. */
     away: number("away", [0, 4 * REACH[1]]),
     reach: Math.round(number("reach", REACH)),
     spacing,
     seed: text("seed", isSeed, "The seed in the address is not a whole number below 2⁶⁴, so it is 7."),
     profile: text("profile", (value) => PROFILES.includes(value), "The profile in the address is not for space, so it is blue."),
+    /** Whether the address says nothing of the view. */
     isPlain: !given.has("at"),
-    wrong,
+    wrong: [...wrong, given.wrong() ?? []].flat(),
   };
 }
 

@@ -22,12 +22,8 @@ const KEYS = {
 const ZOOMS = { "+": 1.25, "=": 1.25, "-": 0.8, _: 0.8 };
 
 export class Viewer {
-  /**
-   * @param {HTMLCanvasElement} canvas
-   * @param {import("./state.js").State} state
-   * @param {() => void} changed Hears of whatever the visitor does.
-   */
-  constructor(canvas, state, changed) {
+  /** `changed()` hears of whatever the visitor does. */
+  constructor(/** @type {HTMLCanvasElement} */ canvas, /** @type {import("./state.js").State} */ state, /** @type {() => void} */ changed) {
     this.canvas = canvas;
     this.state = state;
     this.changed = changed;

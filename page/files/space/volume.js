@@ -39,12 +39,8 @@ export function chunkAt(at, size) {
   return { size, cx, cy, cz };
 }
 
-/**
- * The corner of a chunk as seen from a place.
- * @param {import("../chunks.js").Address} address
- * @param {import("../place.js").Place[]} at
- */
-export function cornerOf({ size, cx, cy, cz }, at) {
+/** The corner of a chunk as seen from a place. */
+export function cornerOf(/** @type {import("../chunks.js").Address} */ { size, cx, cy, cz }, /** @type {import("../place.js").Place[]} */ at) {
   return [cx, cy, cz ?? 0].map((index, axis) => (index * size - at[axis].i) - at[axis].f);
 }
 

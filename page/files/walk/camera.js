@@ -32,12 +32,8 @@ export function sees({ right, ahead, wide, tall }, [x, y], size, lift) {
   return forth > -radius && aside < Math.max(forth, 0) * wide + radius * Math.hypot(1, wide);
 }
 
-/**
- * Where a place beside the eye is in the picture, from −1 to 1, and how far ahead; `null` behind the eye.
- * @param {ReturnType<typeof cameraOf>} camera
- * @param {number[]} at
- */
-export function projected({ right, ahead, up, wide, tall }, [x, y, z]) {
+/** Where a place beside the eye is in the picture, from −1 to 1, and how far ahead; `null` behind the eye. */
+export function projected(/** @type {ReturnType<typeof cameraOf>} */ { right, ahead, up, wide, tall }, /** @type {number[]} */ [x, y, z]) {
   const depth = x * ahead[0] + y * ahead[1] + z * ahead[2];
   if (depth < NEAREST) return null;
   const across = (x * right[0] + y * right[1] + z * right[2]) / (depth * wide);

@@ -1,4 +1,4 @@
-// How the walker moves: keys, mouse, fingers, sticks; and a slow flight above the crowns, along the trail, until the
+// How the walker moves: keys, mouse, fingers, sticks under thumbs; and a slow flight above the crowns, along the trail, until the
 // visitor takes over.
 
 import { Held, followPointers } from "../hands.js";
@@ -195,4 +195,45 @@ export class Walker {
     this.turn(by * Math.min(1, 0.5 * seconds), (-0.14 - this.pitch) * Math.min(1, 0.6 * seconds));
     this.go(0, 9 * seconds);
   }
+}
+
+/** Pushes below this share of the radius are none, so that a resting thumb does nothing. */
+const RESTING = 0.12;
+/** How far the knob moves, in hundredths of its own size. */
+const TRAVEL = 62;
+
+/** Calls `pushed([right, up])`, each from −1 to 1, while a pointer is on an element; [0, 0] when it leaves. */
+export function stick(element, pushed) {
+  const knob = element.querySelector("i");
+  let finger = null;
+  const set = (x, y) => {
+    knob.style.translate = `${x * TRAVEL}% ${-y * TRAVEL}%`;
+    const long = Math.hypot(x, y);
+    // A gentle push is slow: speed grows with the square.
+    const speed = long < RESTING ? 0 : ((long - RESTING) / (1 - RESTING)) ** 2 / long;
+    pushed([x * speed, y * speed]);
+  };
+  const follow = ({ clientX, clientY }) => {
+    const { left, top, width, height } = element.getBoundingClientRect();
+    const [x, y] = [(2 * (clientX - left)) / width - 1, 1 - (2 * (clientY - top)) / height];
+    const far = Math.max(1, Math.hypot(x, y));
+    set(x / far, y / far);
+  };
+  element.addEventListener("pointerdown", (event) => {
+    event.preventDefault();
+    if (finger !== null) return;
+    finger = event.pointerId;
+    element.setPointerCapture(finger);
+    element.dataset.held = "";
+    follow(event);
+  });
+  element.addEventListener("pointermove", (event) => event.pointerId === finger && follow(event));
+  const free = (event) => {
+    if (event.pointerId !== finger) return;
+    finger = null;
+    delete element.dataset.held;
+    set(0, 0);
+  };
+  for (const name of ["pointerup", "pointercancel", "lostpointercapture"]) element.addEventListener(name, free);
+  element.addEventListener("contextmenu", (event) => event.preventDefault());
 }

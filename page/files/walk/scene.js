@@ -33,13 +33,9 @@ export function sceneOn(canvas) {
 }
 
 class Scene {
-  isMap = false;
+  isBlind = false;
 
-  /**
-   * @param {WebGL2RenderingContext} gl
-   * @param {HTMLCanvasElement} canvas
-   */
-  constructor(gl, canvas) {
+  constructor(/** @type {WebGL2RenderingContext} */ gl, /** @type {HTMLCanvasElement} */ canvas) {
     this.gl = gl;
     this.canvas = canvas;
     this.isSlow = isSoftware(gl);

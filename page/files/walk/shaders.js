@@ -96,28 +96,31 @@ void main() {
   result = shown(hazed(lit(color * color * 2.2, normal, 1.0), from));
 }`];
 
+/** How large a thing is of what it will be: what is about to leave the share that is drawn is small, what is outside of the square gone. */
+const GROWN = `
+uniform mat4 view;
+uniform vec3 corner, clip;
+uniform vec2 near;
+float grownAt(vec2 foot, float rank) {
+  // The share that is drawn falls with the square of the distance.
+  float share = min(near.x * near.x / dot(foot, foot), near.y);
+  vec2 inside = foot - clip.xy;
+  if (clip.z > 0.0 && (any(lessThan(inside, vec2(0.0))) || any(greaterThanEqual(inside, vec2(clip.z))))) return 0.0;
+  return share >= 1.0 ? 1.0 : clamp(5.0 * (share - rank) / share, 0.0, 1.0);
+}`;
+
 export const THINGS = [`#version 300 es
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 color;
 layout(location = 3) in vec4 stand;
 layout(location = 4) in vec4 traits;
-uniform mat4 view;
-uniform vec3 corner;
-uniform vec3 clip;
-uniform vec2 near;
-uniform float time, sway;
-uniform float kind;
+uniform float time, sway, kind;
 out vec3 from, facing, tone;
+${GROWN}
 void main() {
   vec3 foot = corner + stand.xyz;
-  float away = length(foot.xy);
-  // The share that is drawn falls with the square of the distance; what is about to leave is small.
-  float share = min(near.x * near.x / (away * away), near.y);
-  float grown = clamp(5.0 * (share - traits.w) / share, 0.0, 1.0);
-  if (near.y >= 1.0 && share >= 1.0) grown = 1.0;
-  vec2 inside = foot.xy - clip.xy;
-  if (clip.z > 0.0 && (any(lessThan(inside, vec2(0.0))) || any(greaterThanEqual(inside, vec2(clip.z))))) grown = 0.0;
+  float grown = grownAt(foot.xy, traits.w);
   float size = stand.w * grown;
   float slender = 0.85 + 0.35 * fract(traits.z * 7.31);
   mat2 turn = mat2(traits.x, traits.y, -traits.y, traits.x);
@@ -149,21 +152,16 @@ layout(location = 3) in vec4 stand;
 layout(location = 4) in vec4 traits;
 layout(location = 5) in vec2 slope;
 const vec2 CORNERS[4] = vec2[4](vec2(-1.0, -1.0), vec2(1.0, -1.0), vec2(-1.0, 1.0), vec2(1.0, 1.0));
-uniform mat4 view;
-uniform vec3 corner, sun;
-uniform vec3 clip;
-uniform vec2 near;
+uniform vec3 sun;
 uniform float wide, tall;
 out vec2 at;
 out float away;
+${GROWN}
 void main() {
   at = CORNERS[gl_VertexID];
   vec3 foot = corner + stand.xyz;
   away = length(foot.xy);
-  float share = min(near.x * near.x / (away * away), near.y);
-  float grown = share >= 1.0 ? 1.0 : clamp(5.0 * (share - traits.w) / share, 0.0, 1.0);
-  vec2 inside = foot.xy - clip.xy;
-  if (clip.z > 0.0 && (any(lessThan(inside, vec2(0.0))) || any(greaterThanEqual(inside, vec2(clip.z))))) grown = 0.0;
+  float grown = grownAt(foot.xy, traits.w);
   vec2 along = -normalize(sun.xy);
   float size = stand.w * grown;
   float length_of = size * min(tall / max(sun.z, 0.25), 1.5);

@@ -1,19 +1,12 @@
 // Trees, rocks and plants as triangles, by code. Each is one unit high and stands on the origin; a vertex is a place,
 // a normal and a color.
 
+import { streamOf } from "../hash.js";
+
 const TAU = 2 * Math.PI;
 
 /** Floats of a vertex. */
 export const VERTEX_FLOATS = 9;
-
-/** Numbers from 0 to 1 that look random and are always the same. */
-function numbers(seed) {
-  let state = seed;
-  return () => {
-    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
-    return state / 2 ** 32;
-  };
-}
 
 const minus = (a, b) => a.map((v, i) => v - b[i]);
 const unit = (a) => a.map((v) => v / (Math.hypot(...a) || 1));
@@ -52,7 +45,7 @@ class Shape {
 
   /** A ball with dents, stretched to its radii. */
   ball(center, radii, color, { splits = 0, dent = 0.12, round = 0.6, seed = 1, faces = ICOSAHEDRON } = {}) {
-    const random = numbers(seed);
+    const random = streamOf(seed);
     const dents = new Map();
     const place = (corner) => {
       const key = corner.map((v) => v.toFixed(3)).join();

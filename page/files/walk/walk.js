@@ -1,18 +1,17 @@
 // The walk: puts its parts together and draws, as finely as the machine can.
 
-import { givenIn, hashOf, isSeed } from "../address.js";
+import { givenIn, hashOf } from "../address.js";
 import { askJson } from "../api.js";
-import { byId, bytes, icon, make } from "../dom.js";
+import { byId, bytes, make } from "../dom.js";
 import { Notice } from "../notice.js";
 import { formatPlace, place } from "../place.js";
 import { joined, setOf } from "../query.js";
-import { LAYER, toHash } from "../state.js";
+import { LAYER, initial, toHash } from "../state.js";
 import { watchTheme } from "../theme.js";
 import { cameraOf } from "./camera.js";
-import { mapOn, smallMapOn } from "./map.js";
-import { STEEPEST, Walker } from "./move.js";
+import { Plan } from "./map.js";
+import { STEEPEST, Walker, stick } from "./move.js";
 import { sceneOn } from "./scene.js";
-import { stick } from "./stick.js";
 import { World, layersOf } from "./world.js";
 
 /**
@@ -44,16 +43,21 @@ function fromHash(hash) {
   const isNear = x && y && Math.max(Math.abs(x.i), Math.abs(y.i)) <= 1e14;
   const radians = (name, otherwise) => ((given.number(name, otherwise) % 360) * Math.PI) / 180;
   const quality = given.matching("quality", /^[0-3]$/);
-  if (x && y && !isNear) notice.say("wrong", "This walk ends at 1e14 in every direction, so it starts at its beginning instead.");
-  return {
+  const read = {
     x: isNear ? x : place(START.x), y: isNear ? y : place(START.y),
     yaw: radians("yaw", START.yaw), pitch: Math.max(-STEEPEST, Math.min(STEEPEST, radians("pitch", -5))),
-    seed: isSeed(given.text("seed")) ? given.text("seed") : "7",
+    seed: given.seed("7"),
     quality: quality ? Number(quality) : null,
     isFlying: given.text("fly") !== "0" && !given.has("at"),
     isAloft: given.text("fly") === "1",
     isAnywhere: !isNear,
+    isMap: given.text("map") === "1",
+    /** Whether it is the flight of the first page: always at dusk, with nothing to use. */
+    isScenery: given.text("scenery") === "1",
   };
+  const isOut = x && y && !isNear;
+  notice.say("wrong", isOut ? "This walk ends at 1e14 in every direction, so it starts at its beginning instead." : given.wrong());
+  return read;
 }
 
 /** Where a walk begins: above the trail, or in a clearing nearby. */
@@ -65,10 +69,13 @@ const notice = new Notice(byId("banner"), () => {
 }, () => {});
 
 let given = fromHash(location.hash);
-const wantsMap = location.hash.includes("map=1");
-const scene = (!wantsMap && sceneOn(canvas)) || mapOn(canvas);
-root.dataset.renderer = scene.isMap ? "map" : "webgl2";
-if (scene.isMap) notice.say("blind", "This browser cannot draw in three dimensions (WebGL2 is missing), so here is the map. Keys and sticks walk as usual.");
+/** What takes the place of the scene where there is no WebGL2, and where an address wants the map alone: nothing is drawn. */
+const BLIND = { isSlow: true, isBlind: true, mode: "day", buffer: () => null, free: () => {}, resize: () => {}, draw: () => 0 };
+const { isMap: wantsMap, isScenery } = given;
+root.toggleAttribute("data-scenery", isScenery);
+const scene = (!wantsMap && sceneOn(canvas)) || BLIND;
+root.toggleAttribute("data-blind", scene.isBlind);
+if (scene.isBlind) notice.say("blind", "This browser cannot draw in three dimensions (WebGL2 is missing), so here is the map. Keys and sticks walk as usual.");
 
 function failed(error) {
   root.dataset.state = "failed";
@@ -99,7 +106,7 @@ function adapt(took) {
 let pictured = "";
 let drawn = 0;
 /** The small map, the state that it shows, and since when. */
-const chart = smallMapOn(byId("map"));
+const chart = new Plan(byId("map"));
 let charted = "";
 let chartedAt = 0;
 
@@ -163,7 +170,7 @@ function remember() {
   const at = [walker.x, walker.y].map((v) => formatPlace(v, 2)).join(",");
   const rest = { fly: walker.isAloft && 1, seed: given.seed !== "7" && given.seed, quality: given.quality ?? false, map: wantsMap && 1 };
   const address = hashOf([["at", at], ["yaw", turned(walker.yaw)], ["pitch", turned(walker.pitch)], ...Object.entries(rest).filter(([, value]) => value !== false)]);
-  if (address === location.hash) return;
+  if (address === location.hash || isScenery) return;
   history.replaceState(null, "", address);
   byId("plane").href = `/${planeHash()}`;
 }
@@ -171,7 +178,7 @@ function remember() {
 /** The plane with the same points around the walker. */
 function planeHash() {
   const { rank, ...layer } = layersOf(given.seed)[0];
-  return toHash({ ...walker, span: 80, tab: "choose", take: "", layers: [{ ...LAYER, ...layer, color: 3 }] });
+  return toHash({ ...initial(), x: walker.x, y: walker.y, span: 80, tab: "choose", layers: [{ ...LAYER, ...layer, color: 3 }] });
 }
 
 let asked = 0;
@@ -238,7 +245,6 @@ function toggleMap(isShown) {
   charted = "";
 }
 
-byId("theme").append(icon("M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z"));
 stick(byId("stick-walk"), (push) => {
   walker.walks = push;
   walker.take();
@@ -249,8 +255,7 @@ stick(byId("stick-look"), (push) => {
 });
 byId("jump").addEventListener("click", jump);
 byId("chart").addEventListener("click", () => toggleMap(byId("map").hidden));
-byId("chart").hidden = scene.isMap;
-toggleMap(!scene.isMap && matchMedia("(min-width: 46.01rem) and (min-height: 30.01rem)").matches);
+toggleMap(scene.isBlind || matchMedia("(min-width: 46.01rem) and (min-height: 30.01rem)").matches);
 byId("fly").addEventListener("click", () => {
   if (walker.isAloft && !walker.target) walker.descend();
   else walker.rise();
@@ -259,7 +264,7 @@ addEventListener("keydown", (event) => event.key === "Escape" && close());
 canvas.addEventListener("webglcontextlost", () => location.reload());
 watchTheme(byId("theme"), () => {
   const isDark = getComputedStyle(document.body).colorScheme.includes("dark") && byId("theme").getAttribute("aria-pressed") === "true";
-  scene.mode = isDark ? "dusk" : "day";
+  scene.mode = isDark || isScenery ? "dusk" : "day";
 });
 addEventListener("hashchange", ({ newURL }) => {
   // The place may have been written into the address since.

@@ -7,7 +7,11 @@ use std::{
     process::{Child, Command, Stdio},
 };
 
-use crate::support::{browser::looking, clients, daemon::Daemon};
+use crate::support::{
+    browser::looking,
+    clients,
+    daemon::{Daemon, strew},
+};
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
@@ -104,6 +108,13 @@ fn a_forest_of_three_js_grows_around_the_camera() {
             std::fs::copy(file.path(), installed.join(file.file_name())).expect("copied");
         }
     }
+    // As the package has it printed when it is built.
+    let printed = strew().args(["parameters", "--as", "js"]).output();
+    std::fs::write(
+        installed.join("parameters.js"),
+        printed.expect("it runs").stdout,
+    )
+    .expect("writable");
     let (Some(files), Some((daemon, browser))) = (Folder::serve(folder.path()), looking(300, 200))
     else {
         return;

@@ -123,14 +123,14 @@ fn the_panel_measures_the_view_next_to_the_table() {
         const low = m.radial.filter(([nu]) => nu < 0.4).map(([, p]) => p); \
         const high = m.radial.filter(([nu]) => nu > 2.5).map(([, p]) => p); \
         const mean = (list) => list.reduce((a, b) => a + b) / list.length; \
-        return [count, density, m.figures.deltaMin, mean(low), mean(high), \
+        return [count, density, m.figures.least, mean(low), mean(high), \
             recorded.measured.radial.values.length]; })()";
     let drawn = browser.value(drawn);
     let number = |i: usize| drawn[i].as_f64().expect("a number");
     assert_eq!(number(0) as u64, browser.ready());
     assert!((number(1) - 1.0).abs() < 0.01, "density {drawn}");
-    // The table's own δ_min is 0.666; the warp takes a few hundredths at most.
-    assert!((0.6..0.68).contains(&number(2)), "δ_min {drawn}");
+    // The table's own least distance is 0.716; the warp takes a few hundredths at most.
+    assert!((0.64..0.73).contains(&number(2)), "least distance {drawn}");
     // Blue noise: next to no power at low frequencies, that of white noise at high ones.
     assert!(number(3) < 1e-3, "low power {drawn}");
     assert!((number(4) - 1.0).abs() < 0.15, "high power {drawn}");

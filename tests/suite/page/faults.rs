@@ -155,7 +155,7 @@ fn figures_are_compared_with_their_own_kind() {
         );
         browser.until("Number(document.documentElement.dataset.measured) > 0");
         let pair =
-            browser.value("[strew.understand.drawn.measured.figures.deltaMin, strew.understand.drawn.reference.deltaMin]");
+            browser.value("[strew.understand.drawn.measured.figures.least, strew.understand.drawn.reference.least]");
         let [here, table] = [0, 1].map(|i| pair[i].as_f64().expect("a number"));
         assert!((here - table).abs() < 0.02, "{warp}: {here} {table}");
         let list = browser.text("#understand dl");

@@ -19,11 +19,18 @@ fn points_pour_into_place_on_a_first_visit() {
     let Some((daemon, browser)) = looking(1280, 800) else {
         return;
     };
-    let open = |hash: &str| {
-        browser.go("about:blank");
-        browser.go(&daemon.url(&format!("/{hash}")));
-    };
-    open("");
+    browser.go(&daemon.url("/"));
+    // First there is the flight, over all of the window, and ways on.
+    browser.until("document.querySelector('#flight img').naturalWidth === 1200");
+    assert_eq!(browser.value(SEEN), json!([false, false]));
+    for way in [
+        "#flight-points",
+        "#flight a[href*=walk]",
+        "#flight a[href*=how]",
+    ] {
+        assert_in_sight(&browser, way);
+    }
+    browser.keys(&[ESCAPE]);
     browser.until(&format!("{POUR} === 'done'"));
     assert_eq!(browser.value(SEEN), json!([false, true]));
     assert!(browser.text("#caption").contains("without an edge"));
@@ -97,22 +104,6 @@ fn assert_in_sight(browser: &Browser, selector: &str) {
          return b.left >= 0 && b.right <= innerWidth && b.bottom <= innerHeight && e.contains(over); }})()"
     ));
     assert_eq!(found, true, "{selector}");
-}
-
-#[test]
-fn the_three_kinds_of_points_are_above_the_fold() {
-    let Some((daemon, browser)) = looking(1280, 800) else {
-        return;
-    };
-    browser.look(&daemon, "");
-    for selector in [
-        "#view-walk",
-        "#view-plane",
-        "#kind-white",
-        "#kinds figure:last-child figcaption",
-    ] {
-        assert_in_sight(&browser, selector);
-    }
 }
 
 #[test]

@@ -13,8 +13,8 @@ use crate::support::{
     daemon::Daemon,
 };
 
-const FIGURES: [&str; 9] = [
-    "chance", "race", "row", "indices", "same", "blocks", "vectors", "seeds", "served",
+const FIGURES: [&str; 10] = [
+    "chance", "race", "row", "indices", "same", "blocks", "vectors", "found", "seeds", "served",
 ];
 
 fn open(browser: &Browser, daemon: &Daemon) {
@@ -60,6 +60,7 @@ fn a_figure_moves_while_it_is_in_view() {
         ("same", "same.laid > 1"),
         ("blocks", "blocks.radius > 1"),
         ("vectors", "vectors.share > 0.1"),
+        ("found", "found.round > 3"),
         ("seeds", "seeds.stop > 0"),
     ] {
         scroll_to(&browser, id);
@@ -150,7 +151,17 @@ fn what_the_figures_claim_is_so() {
     assert_eq!(browser.value("strew.figures.same.alike.length > 20"), true);
     browser.click("#same-kind button:last-child");
     assert_ne!(browser.value(different), 1);
-    // The numbers of the text.
+    // Pushes move points apart.
+    let apart = browser
+        .value("strew.figures.found.least")
+        .as_f64()
+        .expect("a distance");
+    assert!(apart > 0.6, "{apart}");
+    // The numbers of the text, one of them dragged.
+    scroll_to(&browser, "blocks");
+    let number = browser.middle("[data-drag='blocks-radius']");
+    browser.drag(number, [60, 0]);
+    assert_ne!(browser.value("strew.figures.blocks.radius"), 20);
     browser.choose("#blocks-radius", "20");
     assert!(
         browser

@@ -87,6 +87,8 @@ fn malformed_links_show_what_they_can() {
     ] {
         browser.look(&daemon, hash);
         assert!(browser.ready() > 100, "{}", &hash[..40]);
+        let is_said = browser.text("#banner").contains("does not understand");
+        assert_eq!(is_said, !hash.contains("paint=p"), "{}", &hash[..40]);
     }
     let open = |path: &str, ready: &str| {
         browser.go("about:blank");
@@ -105,6 +107,7 @@ fn malformed_links_show_what_they_can() {
     for hash in ["#%", "#%E0%A4%A", "#nothing"] {
         open(&format!("/docs{hash}"), ready);
         assert_eq!(browser.text("main h2"), "The API", "{hash}");
+        assert!(browser.text("main .bad").contains("no operation"), "{hash}");
     }
     for hash in [
         "#show=tile&span=0&seed=1e99&at=1e300,0&profile=%2F..%2F",

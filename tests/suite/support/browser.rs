@@ -179,6 +179,9 @@ impl Browser {
         // A change of the hash alone does not load the page again.
         self.go("about:blank");
         self.go(&daemon.url(&format!("/{hash}")));
+        if hash.is_empty() {
+            self.click("#flight-points");
+        }
         self.ready();
     }
 
