@@ -245,9 +245,8 @@ fn counted(query: &Query, set: &Set, ready: &Ready, most: f64, layers: &mut Laye
 pub(super) fn candidates(selection: &Selection) -> u128 {
     // Bounds take longer than a look. Planning reports regions that are too far out.
     let pieces = (ESTIMATE / (BOUNDS + 4.0 * selection.look)) as usize;
-    let area = selection.area.clone();
-    let pieces = pieces.max(LEAST_PIECES);
-    selection.set.candidates(area, pieces).unwrap_or_default()
+    let counted = (selection.set).candidates(selection.area.clone(), pieces.max(LEAST_PIECES));
+    counted.unwrap_or_default()
 }
 
 /// The number of rows that are counted one by one, or points tested, which takes as long: none for a
