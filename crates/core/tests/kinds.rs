@@ -5,7 +5,8 @@ use crate::subject;
 use proptest::prelude::*;
 use strew_core::{
     Attribute, Attributes, Circle, ErrorKind, Kinds, Point, PointId, PointSet, Points, Region,
-    ScaleRange, Variants, server::Stop,
+    ScaleRange, Variants, Warp,
+    server::{self, Stop},
 };
 use subject::{
     all, any_area, any_box, any_placement, definition,
@@ -212,7 +213,7 @@ fn kinds_keep_their_distances() {
     for shares in ["1:1", "1:3:10"] {
         let table = mixed(&blue, shares);
         let kinds_of = table.mix().expect("a mix").shares().kinds() as u8;
-        let of = |a, b| table.least_distance_of(a, b).map(|least| least.relative());
+        let of = |a, b| Some(table.least_distance_of(a, b)?.with_warp(Warp::OFF));
         let pairs = (0..kinds_of).flat_map(|a| (0..kinds_of).map(move |b| (a, b)));
         // The nearest of all pairs are of some kinds.
         let least = pairs
@@ -220,7 +221,7 @@ fn kinds_keep_their_distances() {
             .fold(f64::MAX, f64::min);
         assert_eq!(
             (least, of(0, kinds_of)),
-            (table.least_distance().relative(), None)
+            (table.least_distance().with_warp(Warp::OFF), None)
         );
         for (seed, warp) in [(0, 0.0), (7, 1.0)] {
             let set = PointSet::new(table.clone()).seed(seed);

@@ -38,9 +38,12 @@ fn missing_pixels_are_empty_and_their_neighbors_are_means_of_those_that_are_ther
         assert!((found - share).abs() < 1e-12, "{at:?}: {found}");
     }
     assert!(field.is_missing([10.0, 5.0]) && !field.is_missing([5.0, 5.0]));
-    let within = |right| Region::new([0.0; 2], [right, 9.0]).expect("ordered");
+    let three = Pixels::from_bytes(3, vec![0; 3]).expect("rows");
+    let within = |right| Region::new([0.0; 2], [right, 1.0]).expect("ordered");
+    let row = Raster::of(within(3.0), three.without(|at| at == 2)).expect("shares");
+    let row = FieldSpec::raster(row).expect("a field");
     assert_eq!(
-        [9.0, 12.0].map(|right| field.has_missing(&within(right))),
+        [0.4, 3.0].map(|right| row.has_missing(&within(right))),
         [false, true]
     );
     let nearest = partial(Edges::Zero, Filter::Nearest);
