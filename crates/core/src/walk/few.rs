@@ -198,3 +198,17 @@ pub(super) fn find_few(scope: &Scope) -> Option<Few> {
     }
     Some(few)
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{PointSet, Region, Table};
+
+    #[test]
+    fn small_plans_keep_their_points() {
+        let alpha = "(5-sqrt(3))/2".parse().expect("valid");
+        let table = Table::undisplaced(alpha, 20, "pattern").expect("small");
+        let region = Region::new([0.0; 2], [30.0, 31.0]).expect("ordered");
+        let plan = PointSet::new(table).within(region).expect("near");
+        assert!(plan.kept() > 0);
+    }
+}
