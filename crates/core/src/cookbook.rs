@@ -150,21 +150,7 @@
 //! # Ok::<(), strew_core::Error>(())
 //! ```
 //!
-//! As columns, for many points at once:
-//!
-#![cfg_attr(feature = "tables", doc = "```")]
-#![cfg_attr(not(feature = "tables"), doc = "```ignore")]
-//! use strew_core::{Attribute, Attributes, PointId, PointSet};
-//!
-//! let trees = PointSet::blue().spacing(4.0)?.seed(7);
-//! let plan = trees.chunk(64.0, [0, 0])?;
-//! let attributes = Attributes::new(vec![Attribute::Angle, Attribute::scale(0.8, 1.2)?])?;
-//! let ids: Vec<PointId> = plan.iter().map(|tree| tree.id()).collect();
-//! let columns = plan.attributes(&attributes)?.columns(ids);
-//! let angles = columns[0].numbers().expect("angles are numbers");
-//! assert_eq!(angles.len() as u128, plan.count());
-//! # Ok::<(), strew_core::Error>(())
-//! ```
+//! As columns, for many points at once: [`Attributes`](crate::Attributes).
 //!
 //! # Kinds that are evenly spread
 //!

@@ -19,6 +19,8 @@ use core::{
 /// let shared = stop.clone();
 /// std::thread::spawn(move || shared.raise()).join().expect("does not panic");
 /// assert!(stop.is_raised());
+/// Stop::NEVER.raise();
+/// assert!(!Stop::NEVER.is_raised());
 /// ```
 #[derive(Clone, Default)]
 pub struct Stop {
@@ -42,14 +44,6 @@ impl fmt::Debug for Stop {
 
 impl Stop {
     /// A flag that is never raised, as the default one.
-    ///
-    /// ```
-    /// use strew_core::server::Stop;
-    ///
-    /// static NEVER: Stop = Stop::NEVER;
-    /// NEVER.raise();
-    /// assert!(!NEVER.is_raised());
-    /// ```
     pub const NEVER: Self = Self { flag: None };
 
     /// A flag that is not raised and can be.
@@ -62,19 +56,6 @@ impl Stop {
 
     /// A flag that calls a function at each look, before it reads the flag. Work looks often, so this is
     /// where a server lets long work wait while other work takes its turn.
-    ///
-    /// ```
-    /// use std::sync::{Arc, atomic::{AtomicU32, Ordering}};
-    /// use strew_core::server::Stop;
-    ///
-    /// let looks = Arc::new(AtomicU32::new(0));
-    /// let counted = looks.clone();
-    /// let stop = Stop::with_look(move || {
-    ///     counted.fetch_add(1, Ordering::Relaxed);
-    /// });
-    /// assert!(!stop.is_raised() && !stop.clone().is_raised());
-    /// assert_eq!(looks.load(Ordering::Relaxed), 2);
-    /// ```
     #[must_use]
     pub fn with_look(look: impl Fn() + Send + Sync + 'static) -> Self {
         let flag = Flag {

@@ -38,13 +38,6 @@ pub enum Column {
 
 impl Column {
     /// The numbers, unless this is a column of variants.
-    ///
-    /// ```
-    /// use strew_core::Column;
-    ///
-    /// assert_eq!(Column::Numbers(vec![0.5]).numbers(), Some(&[0.5][..]));
-    /// assert_eq!(Column::Variants(vec![1]).numbers(), None);
-    /// ```
     #[must_use]
     pub fn numbers(&self) -> Option<&[f64]> {
         match self {
@@ -54,16 +47,6 @@ impl Column {
     }
 
     /// The indices of variants, unless this is a column of numbers.
-    ///
-    /// ```
-    /// use strew_core::{Column, Variants};
-    ///
-    /// let kinds: Variants = "oak:3,birch:1".parse()?;
-    /// let column = Column::Variants(vec![1, 0]);
-    /// let indices = column.variants().expect("a column of variants");
-    /// assert_eq!(kinds.name(indices[0]), Some("birch"));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn variants(&self) -> Option<&[u32]> {
         match self {
@@ -246,18 +229,6 @@ impl BoundAttributes {
     }
 
     /// One column per attribute, one value per id.
-    ///
-    /// ```
-    /// use strew_core::{Attributes, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).seed(7).chunk(20.0, [0, 0])?;
-    /// let points = plan.to_vec();
-    /// let angle = plan.attributes(&Attributes::new(vec!["angle".parse()?])?)?;
-    /// let columns = angle.columns(points.iter().map(|point| point.id));
-    /// assert_eq!(columns[0].numbers().map(<[f64]>::len), Some(points.len()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn columns<I>(&self, ids: I) -> Vec<Column>
     where
@@ -271,20 +242,6 @@ impl BoundAttributes {
 
     /// Replaces `columns` by one column per attribute, one value per id, reusing their memory. Faster than
     /// [`columns`](Self::columns) for block after block.
-    ///
-    /// ```
-    /// use strew_core::{Attributes, PointId, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let rank = Attributes::new(vec!["rank".parse()?])?;
-    /// let rank = PointSet::new(table).attributes(&rank)?;
-    /// let mut columns = Vec::new();
-    /// for x in 0..3 {
-    ///     rank.write((0..4).map(|y| PointId { x, y }), &mut columns);
-    ///     assert_eq!(columns[0].numbers().map(<[f64]>::len), Some(4));
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn write(&self, ids: impl Iterator<Item = PointId> + Clone, columns: &mut Vec<Column>) {
         columns.resize_with(self.list.len(), || Column::Numbers(Vec::new()));
         if self.list.is_empty() {
@@ -331,19 +288,6 @@ impl BoundAttributes {
     }
 
     /// Replaces `columns` by the values of some points; see [`write`](Self::write).
-    ///
-    /// ```
-    /// use strew_core::{Attributes, Point, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).seed(7).chunk(20.0, [0, 0])?;
-    /// let angle = plan.attributes(&Attributes::new(vec!["angle".parse()?])?)?;
-    /// let (mut block, mut columns) = ([Point::default(); 64], Vec::new());
-    /// let filled = plan.blocks_points().fill(&mut block);
-    /// angle.write_points(&block[..filled], &mut columns);
-    /// assert_eq!(columns[0].numbers().map(<[f64]>::len), Some(64));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn write_points(&self, points: &[Point], columns: &mut Vec<Column>) {
         self.write(points.iter().map(|point| point.id), columns);
     }

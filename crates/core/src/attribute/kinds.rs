@@ -85,14 +85,6 @@ impl Attribute {
     ///
     /// # Errors
     /// As [`ScaleRange::new`].
-    ///
-    /// ```
-    /// use strew_core::Attribute;
-    ///
-    /// assert_eq!(Attribute::scale(0.8, 1.2)?.name(), "scale");
-    /// assert!(Attribute::scale(-1.0, 1.0).is_err());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn scale(min: f64, max: f64) -> Result<Self, Error> {
         ScaleRange::new(min, max).map(Self::Scale)
     }
@@ -106,14 +98,6 @@ impl Attribute {
     }
 
     /// The name: `angle`, `rotation`, `scale`, `variant`, `rank`, `u1` to `u16`.
-    ///
-    /// ```
-    /// use strew_core::Attribute;
-    ///
-    /// assert_eq!(Attribute::Rank.name(), "rank");
-    /// assert_eq!(Attribute::scale(0.8, 1.2)?.to_string(), "scale");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -138,15 +122,6 @@ impl Attribute {
     }
 
     /// The variants, if the attribute is a variant, however these are spread.
-    ///
-    /// ```
-    /// use strew_core::{Attribute, Kinds, Variants};
-    ///
-    /// let trees: Variants = "oak:3,birch".parse()?;
-    /// assert_eq!(Attribute::Kind(Kinds::even(&trees)?).variants(), Some(&trees));
-    /// assert_eq!(Attribute::Angle.variants(), None);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn variants(&self) -> Option<&Variants> {
         match self {

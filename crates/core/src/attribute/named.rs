@@ -61,13 +61,6 @@ impl Kinds {
     ///
     /// # Errors
     /// As [`even`](Self::even).
-    ///
-    /// ```
-    /// use strew_core::Kinds;
-    ///
-    /// assert!(Kinds::joint("oak:10,birch:3,bush:1")?.is_joint());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn joint(variants: impl TryInto<Variants, Error = Error>) -> Result<Self, Error> {
         Self::new(variants.try_into()?, true)
     }
@@ -115,42 +108,18 @@ impl Kinds {
     }
 
     /// The name of a kind, or `None` past the last one.
-    ///
-    /// ```
-    /// use strew_core::Kinds;
-    ///
-    /// let trees = Kinds::even("oak:3,birch")?;
-    /// assert_eq!([0, 1, 2].map(|kind| trees.name(kind)), [Some("birch"), Some("oak"), None]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn name(&self, kind: u8) -> Option<&str> {
         self.variants.name(self.index(kind)?)
     }
 
     /// The index among the [variants](Self::variants) of a kind, or `None` past the last one.
-    ///
-    /// ```
-    /// use strew_core::Kinds;
-    ///
-    /// let trees = Kinds::even("oak:3,birch")?;
-    /// assert_eq!([0, 1, 2].map(|kind| trees.index(kind)), [Some(1), Some(0), None]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn index(&self, kind: u8) -> Option<u32> {
         self.indices.get(usize::from(kind)).copied()
     }
 
     /// The number of the kind of a name.
-    ///
-    /// ```
-    /// use strew_core::Kinds;
-    ///
-    /// let trees = Kinds::even("oak:3,birch")?;
-    /// assert_eq!((trees.number("birch"), trees.number("oak"), trees.number("elm")), (Some(0), Some(1), None));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn number(&self, name: &str) -> Option<u8> {
         let kind = self.names().position(|known| known == name)?;

@@ -95,15 +95,6 @@ impl Variants {
     ///
     /// # Errors
     /// [`ErrorKind::Attribute`] unless there is one range for each.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, ScaleRange, Variants};
-    ///
-    /// let trees: Variants = "oak:3,birch".parse()?;
-    /// let error = trees.scales(vec![ScaleRange::new(0.8, 1.2)?]).unwrap_err();
-    /// assert_eq!((error.kind(), error.allowed()), (ErrorKind::Attribute, "2 ranges, one for each variant"));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn scales(&self, ranges: Vec<ScaleRange>) -> Result<VariantScales, Error> {
         VariantScales::new(Spread::Chance(self.clone()), ranges)
     }
@@ -114,15 +105,6 @@ impl Kinds {
     ///
     /// # Errors
     /// [`ErrorKind::Attribute`] unless there is one range for each.
-    ///
-    /// ```
-    /// use strew_core::{Kinds, ScaleRange};
-    ///
-    /// let trees = Kinds::even("oak:3,birch")?;
-    /// let (tall, short) = (ScaleRange::new(0.9, 1.3)?, ScaleRange::new(0.5, 0.8)?);
-    /// assert_eq!(trees.scales(vec![tall, short])?.ranges(), [tall, short]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn scales(&self, ranges: Vec<ScaleRange>) -> Result<VariantScales, Error> {
         VariantScales::new(Spread::Kinds(self.clone()), ranges)
     }
@@ -155,15 +137,6 @@ impl VariantScales {
     }
 
     /// The variants, in their order.
-    ///
-    /// ```
-    /// use strew_core::{ScaleRange, Variants};
-    ///
-    /// let trees: Variants = "oak:3,birch".parse()?;
-    /// let scales = trees.scales(vec![ScaleRange::new(0.8, 1.2)?; 2])?;
-    /// assert_eq!(scales.variants(), &trees);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn variants(&self) -> &Variants {
         match &self.of {

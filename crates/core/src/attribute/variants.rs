@@ -48,16 +48,6 @@ impl Variants {
     /// [`ErrorKind::Variants`] unless there are 1 to [`MAX`](Self::MAX), with different names of 1 to
     /// [`MAX_NAME`](Self::MAX_NAME) ASCII letters, digits, `_`, `-`, `.`, and weights from
     /// [`MIN_WEIGHT`](Self::MIN_WEIGHT) to [`MAX_WEIGHT`](Self::MAX_WEIGHT).
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, Variants};
-    ///
-    /// // Only the ratios matter: three in four are oaks.
-    /// let trees = Variants::new([("oak", 0.75), ("birch", 0.25)])?;
-    /// assert_eq!(trees.count(), 2);
-    /// assert_eq!(Variants::new([("oak", 0.0)]).unwrap_err().kind(), ErrorKind::Variants);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new<'a>(variants: impl IntoIterator<Item = (&'a str, f64)>) -> Result<Self, Error> {
         let mut entries: Vec<Entry> = Vec::new();
         let mut more = variants.into_iter();
@@ -105,14 +95,6 @@ impl Variants {
     }
 
     /// The name of an index, or `None` past the last.
-    ///
-    /// ```
-    /// use strew_core::Variants;
-    ///
-    /// let trees: Variants = "oak:3,birch".parse()?;
-    /// assert_eq!((trees.name(1), trees.name(2)), (Some("birch"), None));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn name(&self, index: u32) -> Option<&str> {
         let entry = self.entries.get(usize::try_from(index).ok()?)?;

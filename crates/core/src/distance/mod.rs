@@ -64,16 +64,6 @@ impl Table {
     /// The first call visits every pair of blocks that can meet near each other: 0.3 ms for 63
     /// intervals, 5 ms for 255. Later calls, on clones too, return the same answer at once (with the
     /// feature `std`).
-    ///
-    /// ```
-    /// use strew_core::{Table, Warp};
-    ///
-    /// // The nearest points of this pattern are (2, 0) apart, and a grid unit is t mean spacings.
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let least = table.least_distance().with_warp(Warp::OFF);
-    /// assert!((least - 2.0 * table.alpha().set_side_f64()).abs() < 1e-9);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn least_distance(&self) -> LeastDistance {
         let vectors = self.displacements();
@@ -91,22 +81,6 @@ impl Table {
     ///
     /// The first call visits the pairs of blocks that can meet within the distances of the rarest kind: some ten
     /// milliseconds for 129 intervals and common kinds.
-    ///
-    /// ```
-    /// use strew_core::{Table, Warp, table::{Mix, Ranks}};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let mix = Mix::scattered(table.map(), "1:3".parse()?)?;
-    /// let ranks = Ranks::new((0..mix.labels().len() as u32).collect())?;
-    /// let all = table.least_distance();
-    /// let table = table.with_mix(mix, ranks)?;
-    /// let least = |a, b| table.least_distance_of(a, b).map(|least| least.with_warp(Warp::OFF));
-    /// // The nearest of all pairs are of some kinds.
-    /// let pairs = [least(0, 0), least(0, 1), least(1, 1)].map(|least| least.expect("kinds of the table"));
-    /// assert_eq!(pairs.into_iter().reduce(f64::min), Some(all.with_warp(Warp::OFF)));
-    /// assert_eq!((least(1, 0), least(0, 2)), (least(0, 1), None));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn least_distance_of(&self, a: u8, b: u8) -> Option<LeastDistance> {
         let (mix, labels) = (self.mix()?, self.labels()?);
@@ -187,19 +161,6 @@ impl LeastDistance {
     /// the answer is the same, and nearly all of the guaranteed one; far beyond it is 0.
     ///
     /// Coordinates relative to a chunk reach no farther than its size ([`Offsets`](crate::Offsets)).
-    ///
-    /// ```
-    /// use strew_core::{LeastDistance, Spacing, Table, Warp};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let least = table.least_distance();
-    /// let reported = |reach| least.reported(Spacing::ONE, Warp::OFF, reach);
-    /// assert_eq!(reported(0.0), reported(0.7 * LeastDistance::RANGE));
-    /// assert!(reported(0.0) > 0.999_999 * least.with_warp(Warp::OFF));
-    /// // Coordinates are multiples of 1/64 there.
-    /// assert!(reported(1e14) < reported(0.0) - 0.05);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn reported(&self, spacing: Spacing, warp: Warp, reach: f64) -> f64 {
         let exact = self.with_warp(warp) * spacing.get();

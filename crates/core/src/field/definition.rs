@@ -21,26 +21,10 @@ use crate::{shape::Region, table::Digest};
 pub trait Field<const D: usize = 2>: Send + Sync {
     /// The share at a place, in world units. Below 0 and NaN count as 0, above 1 as 1. It must be the same
     /// each time.
-    ///
-    /// ```
-    /// use strew_core::Field;
-    ///
-    /// let disk = |[x, y]: [f64; 2]| if x * x + y * y < 1.0 { 1.0 } else { 0.0 };
-    /// assert_eq!([disk.share([0.5, 0.5]), disk.share([1.0, 1.0])], [1.0, 0.0]);
-    /// ```
     fn share(&self, at: [f64; D]) -> f64;
 
     /// Writes the shares at some places into `shares`, which has their number: the same bits as
     /// [`share`](Self::share), for fields that are faster at many places than at one.
-    ///
-    /// ```
-    /// use strew_core::Field;
-    ///
-    /// let ramp = |[x, _]: [f64; 2]| x / 40.0;
-    /// let mut shares = [0.0; 2];
-    /// ramp.shares(&[[10.0, 3.0], [20.0, 5.0]], &mut shares);
-    /// assert_eq!(shares, [0.25, 0.5]);
-    /// ```
     fn shares(&self, places: &[[f64; D]], shares: &mut [f64]) {
         for (share, at) in shares.iter_mut().zip(places) {
             *share = self.share(*at);
@@ -75,20 +59,6 @@ pub trait Field<const D: usize = 2>: Send + Sync {
 
     /// Bounds of how much the share changes along each axis for each world unit, within a box. Infinity is always
     /// right.
-    ///
-    /// ```
-    /// use strew_core::{Field, Raster, Region};
-    ///
-    /// let region = Region::new([0.0, 0.0], [8.0, 4.0])?;
-    /// let raster = Raster::new(region, 2, vec![0.0, 0.5])?;
-    /// // From the center of one pixel to the center of the other are four units: 1/8 for each, and a little
-    /// // more for what rounding may add.
-    /// let [x, y] = raster.slopes(&region);
-    /// assert!((0.125..0.12501).contains(&x) && y == 0.0);
-    /// let closure = |[x, _]: [f64; 2]| x;
-    /// assert_eq!(closure.slopes(&region), [f64::INFINITY; 2]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     fn slopes(&self, within: &Region<D>) -> [f64; D] {
         let _ = within;
         [f64::INFINITY; D]

@@ -45,18 +45,6 @@ impl FieldSpec {
 impl FieldSpec {
     /// Whether a box may have a place in a missing pixel, where the share is always 0. True
     /// also for a box less than a pixel beside one.
-    ///
-    /// ```
-    /// use strew_core::{Field, Raster, Region, field::{FieldSpec, Pixels}};
-    ///
-    /// let pixels = Pixels::from_bytes(3, vec![0; 3])?.without(|at| at == 2);
-    /// let both = Region::new([0.0, 0.0], [3.0, 1.0])?;
-    /// let field = FieldSpec::raster(Raster::of(both, pixels)?)?.invert()?;
-    /// assert_eq!([0.5, 2.5].map(|x| field.share([x, 0.5])), [1.0, 0.0]);
-    /// let left = Region::new([0.0, 0.0], [0.4, 1.0])?;
-    /// assert_eq!([left, both].map(|within| field.has_missing(&within)), [false, true]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn has_missing(&self, within: &Region) -> bool {
         self.missing(&|grid| grid.missing(within))[0]
@@ -85,13 +73,6 @@ impl FieldSpec {
     }
 
     /// Whether a place is in a missing pixel; see [`has_missing`](Self::has_missing).
-    ///
-    /// ```
-    /// use strew_core::field::FieldSpec;
-    ///
-    /// assert!(!FieldSpec::constant(0.0)?.is_missing([0.0, 0.0]));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn is_missing(&self, at: [f64; 2]) -> bool {
         self.missing(&|grid| [grid.is_missing(at); 2])[0]

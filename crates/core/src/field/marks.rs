@@ -37,12 +37,6 @@ pub enum Marks {
 
 impl Marks {
     /// The number of vertices.
-    ///
-    /// ```
-    /// use strew_core::field::Marks;
-    ///
-    /// assert_eq!(Marks::Lines(vec![vec![[0.0, 0.0], [1.0, 0.0]]; 3]).vertices(), 6);
-    /// ```
     #[must_use]
     pub fn vertices(&self) -> usize {
         match self {

@@ -81,13 +81,6 @@ impl Pixels {
     ///
     /// # Errors
     /// As [`from_bytes`](Self::from_bytes).
-    ///
-    /// ```
-    /// use strew_core::field::Pixels;
-    ///
-    /// assert_eq!(Pixels::from_words(1, vec![0, 65535])?.ends(), [0.0, 1.0]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn from_words(width: usize, pixels: Vec<u16>) -> Result<Self, Error> {
         Self::new(width, Store::Words(pixels))
     }
@@ -96,15 +89,6 @@ impl Pixels {
     ///
     /// # Errors
     /// [`ErrorKind::Field`] unless there are whole rows, at least one, of finite numbers within ±10³⁰.
-    ///
-    /// ```
-    /// use strew_core::field::Pixels;
-    ///
-    /// let heights = Pixels::from_floats(2, vec![120.5, 99.0, -3.25, 0.0])?;
-    /// assert_eq!(heights.ends(), [-3.25, 120.5]);
-    /// assert!(Pixels::from_floats(1, vec![f32::NAN]).is_err());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn from_floats(width: usize, pixels: Vec<f32>) -> Result<Self, Error> {
         if let Some(at) = pixels.iter().position(|v| v.is_nan() || v.abs() > 1e30) {
             let value = format!("{} at {at}", number(f64::from(pixels[at])));
@@ -149,16 +133,6 @@ impl Pixels {
 
     /// These pixels without some, by their places in the rows: where one is missing a field of them is empty, and its
     /// neighbors are interpolated among those that are there.
-    ///
-    /// ```
-    /// use strew_core::{Field, Raster, Region, field::Pixels};
-    ///
-    /// let pixels = Pixels::from_bytes(2, vec![255, 9])?.without(|at| at == 1);
-    /// assert_eq!(pixels.ends(), [1.0, 1.0]);
-    /// let raster = Raster::of(Region::new([0.0, 0.0], [2.0, 1.0])?, pixels)?;
-    /// assert_eq!([0.99, 1.0, 1.5].map(|x| raster.share([x, 0.5])), [1.0, 0.0, 0.0]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn without(self, is_missing: impl Fn(usize) -> bool) -> Self {
         let present: Vec<u8> = (0..self.0.store.len())

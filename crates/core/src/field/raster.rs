@@ -57,16 +57,6 @@ impl Raster {
     ///
     /// # Errors
     /// [`ErrorKind::Field`] unless the pixels are shares from 0 to 1 and the box has an inside.
-    ///
-    /// ```
-    /// use strew_core::{Field, Raster, Region, field::Pixels};
-    ///
-    /// let mask = Pixels::from_bytes(2, vec![0, 255])?;
-    /// let [a, b] = [Region::chunk(64.0, [0, 0])?, Region::chunk(64.0, [1, 0])?]
-    ///     .map(|region| Raster::of(region, mask.clone()));
-    /// assert_eq!((a?.share([64.0, 0.0]), b?.share([64.0, 0.0])), (1.0, 0.0));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn of(region: Region, pixels: Pixels) -> Result<Self, Error> {
         check_shares(&pixels)?;
         let shares = |last: u16| (0..=last).map(move |v| f32::from(v) / f32::from(last));
@@ -83,14 +73,6 @@ impl Raster {
     }
 
     /// Sets the values beyond the box.
-    ///
-    /// ```
-    /// use strew_core::{Field, Raster, Region, field::Edges};
-    ///
-    /// let raster = Raster::new(Region::new([0.0, 0.0], [2.0, 1.0])?, 2, vec![0.5, 1.0])?;
-    /// assert_eq!(raster.edges(Edges::Zero).share([2.0, 0.5]), 0.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn edges(mut self, edges: Edges) -> Self {
         self.grid.edges = edges;
@@ -98,14 +80,6 @@ impl Raster {
     }
 
     /// Sets the values between the centers of pixels.
-    ///
-    /// ```
-    /// use strew_core::{Field, Raster, Region, field::Filter};
-    ///
-    /// let raster = Raster::new(Region::new([0.0, 0.0], [2.0, 1.0])?, 2, vec![0.0, 1.0])?;
-    /// assert_eq!(raster.filter(Filter::Nearest).share([0.99, 0.5]), 0.0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn filter(mut self, filter: Filter) -> Self {
         self.grid.filter = filter;
@@ -180,15 +154,6 @@ impl Raster {
     }
 
     /// The digest of the pixels, the box and the settings.
-    ///
-    /// ```
-    /// use strew_core::{Raster, Region, field::Edges};
-    ///
-    /// let raster = Raster::new(Region::chunk(64.0, [0, 0])?, 2, vec![0.0, 1.0])?;
-    /// assert_eq!(raster.clone().digest(), raster.digest());
-    /// assert_ne!(raster.clone().edges(Edges::Zero).digest(), raster.digest());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn digest(&self) -> Digest {
         let mut canon = Canon::new("raster");
@@ -347,15 +312,6 @@ impl Terrain {
     }
 
     /// Sets the values beyond the box.
-    ///
-    /// ```
-    /// use strew_core::{Region, field::{Edges, Pixels, Terrain}};
-    ///
-    /// let heights = Pixels::from_floats(1, vec![400.0])?;
-    /// let terrain = Terrain::new(Region::chunk(9.0, [0, 0])?, heights)?;
-    /// assert_ne!(terrain.clone().edges(Edges::Mirror).digest(), terrain.digest());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn edges(mut self, edges: Edges) -> Self {
         self.grid.edges = edges;
@@ -363,15 +319,6 @@ impl Terrain {
     }
 
     /// Sets the values between the centers of pixels.
-    ///
-    /// ```
-    /// use strew_core::{Region, field::{Filter, Pixels, Terrain}};
-    ///
-    /// let heights = Pixels::from_floats(1, vec![400.0])?;
-    /// let terrain = Terrain::new(Region::chunk(9.0, [0, 0])?, heights)?;
-    /// assert_ne!(terrain.clone().filter(Filter::Nearest).digest(), terrain.digest());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn filter(mut self, filter: Filter) -> Self {
         self.grid.filter = filter;

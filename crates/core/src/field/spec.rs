@@ -130,14 +130,6 @@ impl FieldSpec {
     ///
     /// # Errors
     /// [`ErrorKind::Field`] unless the share is from 0 to 1.
-    ///
-    /// ```
-    /// use strew_core::{Field, field::FieldSpec};
-    ///
-    /// assert_eq!(FieldSpec::constant(0.25)?.share([4.0, -9.0]), 0.25);
-    /// assert_eq!(FieldSpec::constant(1.5).unwrap_err().field(), "share");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn constant(share: f64) -> Result<Self, Error> {
         check_share("share", share)?;
         let mut canon = Canon::new("constant");
@@ -276,14 +268,6 @@ impl FieldSpec {
     ///
     /// # Errors
     /// None yet.
-    ///
-    /// ```
-    /// use strew_core::{Field, Raster, Region, field::FieldSpec};
-    ///
-    /// let raster = Raster::new(Region::chunk(2.0, [0, 0])?, 2, vec![0.0, 1.0])?;
-    /// assert_eq!(FieldSpec::raster(raster)?.share([1.0, 0.5]), 0.5);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn raster(raster: Raster) -> Result<Self, Error> {
         let mut canon = Canon::new("field of a raster");
         canon.digest(raster.digest());
@@ -294,14 +278,6 @@ impl FieldSpec {
     ///
     /// # Errors
     /// [`ErrorKind::Field`] unless the shares are from 0 to 1 and the heights in ascending order.
-    ///
-    /// ```
-    /// use strew_core::{Field, Region, field::{FieldSpec, Pixels, Terrain}};
-    ///
-    /// let terrain = Terrain::new(Region::chunk(9.0, [0, 0])?, Pixels::from_floats(1, vec![700.0])?)?;
-    /// assert_eq!(FieldSpec::height(terrain, [600.0, 1000.0], [1.0, 0.0])?.share([4.0, 4.0]), 0.75);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn height(terrain: Terrain, heights: [f64; 2], shares: [f64; 2]) -> Result<Self, Error> {
         let slide = Slide::new("heights", heights, shares)?;
         let mut canon = Canon::new("height");
@@ -315,16 +291,6 @@ impl FieldSpec {
     ///
     /// # Errors
     /// [`ErrorKind::Field`] unless the shares are from 0 to 1 and the slopes in ascending order.
-    ///
-    /// ```
-    /// use strew_core::{Field, Region, field::{FieldSpec, Pixels, Terrain}};
-    ///
-    /// let heights = Pixels::from_floats(3, vec![0.0, 5.0, 10.0])?;
-    /// let terrain = Terrain::new(Region::new([0.0, 0.0], [30.0, 10.0])?, heights)?;
-    /// // Rises by 1 in 2.
-    /// assert_eq!(FieldSpec::slope(terrain, [0.0, 1.0], [1.0, 0.0])?.share([15.0, 5.0]), 0.5);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn slope(terrain: Terrain, slopes: [f64; 2], shares: [f64; 2]) -> Result<Self, Error> {
         Self::slope_unless(terrain, [slopes, shares], &Stop::default())
     }
@@ -356,14 +322,6 @@ impl FieldSpec {
     ///
     /// # Errors
     /// As [`multiply`](Self::multiply).
-    ///
-    /// ```
-    /// use strew_core::{Field, field::FieldSpec};
-    ///
-    /// let parts = vec![FieldSpec::constant(0.5)?, FieldSpec::constant(0.75)?];
-    /// assert_eq!(FieldSpec::min(parts)?.share([0.0, 0.0]), 0.5);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn min(parts: Vec<Self>) -> Result<Self, Error> {
         let canon = joined("min", &parts)?;
         Self::new(Shape::Min(parts), canon, 0)
@@ -373,14 +331,6 @@ impl FieldSpec {
     ///
     /// # Errors
     /// As [`multiply`](Self::multiply).
-    ///
-    /// ```
-    /// use strew_core::{Field, field::FieldSpec};
-    ///
-    /// let parts = vec![FieldSpec::constant(0.5)?, FieldSpec::constant(0.75)?];
-    /// assert_eq!(FieldSpec::max(parts)?.share([0.0, 0.0]), 0.75);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn max(parts: Vec<Self>) -> Result<Self, Error> {
         let canon = joined("max", &parts)?;
         Self::new(Shape::Max(parts), canon, 0)
@@ -390,13 +340,6 @@ impl FieldSpec {
     ///
     /// # Errors
     /// As [`multiply`](Self::multiply).
-    ///
-    /// ```
-    /// use strew_core::{Field, field::FieldSpec};
-    ///
-    /// assert_eq!(FieldSpec::constant(0.25)?.invert()?.share([0.0, 0.0]), 0.75);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn invert(self) -> Result<Self, Error> {
         let canon = joined("invert", core::slice::from_ref(&self))?;
         Self::new(Shape::Invert(self), canon, 0)

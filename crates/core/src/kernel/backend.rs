@@ -82,12 +82,6 @@ impl Backend {
     }
 
     /// The fastest backend of this machine.
-    ///
-    /// ```
-    /// use strew_core::Backend;
-    ///
-    /// assert!(Backend::available().any(|backend| backend == Backend::best()));
-    /// ```
     #[must_use]
     pub fn best() -> Self {
         Self::available().next_back().unwrap_or(Self::Scalar)

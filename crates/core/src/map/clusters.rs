@@ -214,18 +214,6 @@ impl Clusters {
 
     /// The position in [`shapes`](Self::shapes) of the shape of the cluster around a point of a block, given
     /// as its intervals of dX and dY; `None` for larger clusters and for blocks that the map does not have.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, map::Clusters};
-    ///
-    /// let clusters = Clusters::new("1.75".parse()?, 1.0, 16)?;
-    /// // The cluster of the point (0, 0).
-    /// let (dx, dy) = Pattern::new(clusters.map().alpha()).index(0, 0);
-    /// let block = [dx, dy].map(|index| clusters.map().interval_of(index));
-    /// assert_eq!(block, [Some(0); 2]);
-    /// assert_eq!(clusters.shape_of([0, 0]), Some(0));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn shape_of(&self, [x, y]: [usize; 2]) -> Option<usize> {
         let n = self.map.intervals();

@@ -70,14 +70,6 @@ impl Shape {
     }
 
     /// The arrangement of the points, with the first as its origin. It also occurs within larger clusters.
-    ///
-    /// ```
-    /// use strew_core::map::Clusters;
-    ///
-    /// let clusters = Clusters::new("(5-sqrt(3))/2".parse()?, 2.3, 16)?;
-    /// assert!(clusters.shapes().iter().all(|shape| shape.arrangement().exists()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn arrangement(&self) -> Arrangement {
         Arrangement::small(Pattern::new(self.alpha), self.points[1..].to_vec())

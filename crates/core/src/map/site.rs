@@ -38,17 +38,6 @@ impl Twin {
 
     /// The points of one period with their blocks, row by row, or `None` if this is not a twin of the
     /// map.
-    ///
-    /// ```
-    /// use strew_core::{Map, map::Twin};
-    ///
-    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
-    /// let twin = Twin::new(183, 112).expect("reduced and between 1 and 2");
-    /// let sites = twin.sites(&map).expect("a twin of the map");
-    /// assert_eq!(sites.len() as u64, twin.points());
-    /// assert!(sites.iter().all(|site| u64::from(site.x) < twin.period()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn sites(self, map: &Map) -> Option<Vec<Site>> {
         if !map.has_twin(self) {

@@ -6,14 +6,6 @@ use crate::error::{Error, ErrorKind, shown};
 
 /// The largest half-width of a map. At 1024 a table has about 1.7 million vectors; the largest shipped
 /// half-width is 200, with 255 intervals at the default α.
-///
-/// ```
-/// use strew_core::{Map, map::MAX_RADIUS};
-///
-/// let alpha = "sqrt(3)".parse()?;
-/// assert!(Map::new(alpha, MAX_RADIUS).is_ok() && Map::new(alpha, MAX_RADIUS + 1).is_err());
-/// # Ok::<(), strew_core::Error>(())
-/// ```
 pub const MAX_RADIUS: u32 = 1024;
 
 /// The forms of the text of a size.

@@ -161,16 +161,6 @@ macro_rules! placing {
             }
 
             /// Sets spacing, seed, warp and share at once.
-            ///
-            /// ```
-            /// use strew_core::{Placement, Seed, Spacing};
-            ///
-            #[doc = concat!("# let set = ", $make, ";")]
-            /// let placement = Placement::new(Spacing::new(4.0)?, Seed(7));
-            /// let (set, same) = (set.clone().placed(placement), set.spacing(4.0)?.seed(7));
-            #[doc = concat!("assert_eq!(set.chunk(64.0, ", $origin, ")?.to_vec(), same.chunk(64.0, ", $origin, ")?.to_vec());")]
-            /// # Ok::<(), strew_core::Error>(())
-            /// ```
             #[must_use]
             pub fn placed(mut self, placement: Placement) -> Self {
                 self.has_own_warp = true;

@@ -44,27 +44,12 @@ macro_rules! windows {
             }
 
             /// The points of the request from one of its [cursors](crate::Cursor) on, found without counting.
-            ///
-            /// ```
-            #[doc = concat!("# let plan = ", $make, ";")]
-            /// let cursor = plan.window(50, None).cursor().expect("not empty");
-            /// assert_eq!(plan.from_cursor(cursor).offset(), 50);
-            /// # Ok::<(), strew_core::Error>(())
-            /// ```
             #[must_use]
             pub fn from_cursor(&self, cursor: $Cursor) -> Self {
                 self.window_at(cursor)
             }
 
             /// The place of the first point, or `None` if there are no points.
-            ///
-            /// ```
-            #[doc = concat!("# let plan = ", $make, ";")]
-            /// let cursor = plan.window(50, None).cursor().expect("not empty");
-            /// assert_eq!(cursor.offset, 50);
-            /// assert_eq!(plan.window(plan.count(), None).cursor(), None);
-            /// # Ok::<(), strew_core::Error>(())
-            /// ```
             #[must_use]
             pub fn cursor(&self) -> Option<$Cursor> {
                 self.first_cursor()
@@ -134,12 +119,6 @@ macro_rules! planned {
             ///
             /// # Panics
             /// If they exceed the address space or the memory, as all vectors do; see [`len`](Self::len).
-            ///
-            /// ```
-            #[doc = concat!("# let plan = ", $make, ";")]
-            /// assert_eq!(plan.to_vec().len() as u128, plan.count());
-            /// # Ok::<(), strew_core::Error>(())
-            /// ```
             #[must_use]
             pub fn to_vec(&self) -> Vec<Point> {
                 let mut points = vec![Point::default(); self.len().unwrap_or(usize::MAX)];

@@ -38,19 +38,6 @@ macro_rules! requested {
             ///
             /// # Errors
             /// As [`within`](Self::within).
-            ///
-            /// ```
-            #[doc = concat!("# let set = ", $make, ".seed(7);")]
-            #[doc = concat!("let plan = set.chunk(16.0, ", $origin, ")?;")]
-            /// let mut page = plan.window(0, Some(100));
-            /// let mut points = page.to_vec();
-            /// while let Some(cursor) = page.next_cursor() {
-            ///     page = set.resume(plan.region(), cursor)?.window(0, Some(100));
-            ///     points.extend(page.to_vec());
-            /// }
-            /// assert_eq!(points, plan.to_vec());
-            /// # Ok::<(), strew_core::Error>(())
-            /// ```
             pub fn resume(&self, area: impl Into<$Area>, cursor: $Cursor) -> Result<Plan, Error> {
                 let (area, stop) = (area.into(), Stop::default());
                 let plan = Plan::new(&self.lattice, &self.mask, area, stop, Some(cursor.total))?;
@@ -155,13 +142,6 @@ macro_rules! requested {
             /// # Errors
             /// As [`nearest`](Self::nearest), and [`ErrorKind::Radius`](crate::ErrorKind::Radius) unless the radius is a
             /// finite number from 0 on.
-            ///
-            /// ```
-            #[doc = concat!("# let set = ", $make, ".seed(3);")]
-            #[doc = concat!("let near = set.nearest_within(", $at, ", 100, 2.0)?;")]
-            /// assert!(near.iter().all(|neighbor| neighbor.distance <= 2.0));
-            /// # Ok::<(), strew_core::Error>(())
-            /// ```
             pub fn nearest_within(
                 &self,
                 at: [f64; $dimensions],

@@ -103,16 +103,6 @@ impl AxisSet {
     /// The coordinates v ≡ `parity` (mod 2) with (A·v + `zero`) mod 1 in `interval`. `zero` is the
     /// index of coordinate 0: the origin, plus one half if the other coordinate is odd. `zero` and
     /// `interval` are in units of 2⁻⁶⁴.
-    ///
-    /// ```
-    /// use strew_core::{Alpha, Pattern, pattern::{Axis, AxisSet, Class}};
-    ///
-    /// let alpha: Alpha = "sqrt(3)".parse()?;
-    /// // The even columns of the pattern that have points in odd rows.
-    /// let columns = AxisSet::new(alpha, 1 << 63, 0, 0..alpha.set_side());
-    /// assert_eq!(columns, Pattern::new(alpha).axis_set(Axis::X, Class { x: 0, y: 1 }));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn new(alpha: Alpha, zero: u64, parity: u8, interval: Range<u64>) -> Self {
         Self {
@@ -152,15 +142,6 @@ impl AxisSet {
     }
 
     /// Whether `v` belongs to the set.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::{Axis, Class}};
-    ///
-    /// let even = Class { x: 0, y: 0 };
-    /// let columns = Pattern::new("sqrt(3)".parse()?).axis_set(Axis::X, even);
-    /// assert!(columns.contains(0) && !columns.contains(1));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn contains(&self, v: i64) -> bool {
         (v & 1) as u8 == self.parity && self.index(v) < self.width
@@ -179,16 +160,6 @@ impl AxisSet {
     }
 
     /// The first member ≥ `from`, or `None` if there is none within `i64`. O(log).
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::{Axis, Class}};
-    ///
-    /// let columns = Pattern::new("sqrt(3)".parse()?).axis_set(Axis::X, Class { x: 0, y: 0 });
-    /// let first = columns.first(1_000_000_007).expect("far from the end");
-    /// assert!(columns.contains(first));
-    /// assert_eq!(columns.count(1_000_000_007..first), 0);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn first(&self, from: i64) -> Option<i64> {
         let first = self.align(from)?;

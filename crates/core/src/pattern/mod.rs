@@ -5,16 +5,6 @@
 //! 4). The torus is held as `u64`, one unit = 2⁻⁶⁴, so {·} is wrapping arithmetic: exact, and the
 //! same bits on every machine, at every coordinate an `i64` holds.
 //!
-//! ```
-//! use strew_core::Pattern;
-//!
-//! let pattern = Pattern::new("sqrt(3)".parse()?);
-//! let (t, far) = (pattern.alpha().set_side(), 1 << 60);
-//! let (dx, dy) = pattern.index(far, far + 1);
-//! assert_eq!(pattern.contains(far, far + 1), dx < t && dy < t);
-//! # Ok::<(), strew_core::Error>(())
-//! ```
-//!
 //! `alpha` is the number α (`quadratic` reads it exactly), `index` membership, `axis` the sets of
 //! columns and rows whose products make up the pattern. `rotation` counts and finds members of
 //! such a set in O(log), and counts for all intervals of a map at once. `arrangement` (with `occurrences`, its places in

@@ -46,16 +46,6 @@ impl Arrangement {
 
     /// The [occurrences](Self::occurrences) of a box from a place of the grid on, in the same order. The place
     /// need not be one of them.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::Arrangement};
-    ///
-    /// let pair = Arrangement::new(Pattern::new("1.75".parse()?), &[(2, 0)])?;
-    /// let all: Vec<_> = pair.occurrences(-70..50, 0..90).collect();
-    /// let rest: Vec<_> = pair.occurrences_from(-70..50, 0..90, all[17]).collect();
-    /// assert_eq!(rest, all[17..]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn occurrences_from(
         &self,
         x: Range<i64>,
@@ -75,15 +65,6 @@ impl Arrangement {
     }
 
     /// The number of [occurrences](Self::occurrences) of a box that come before a place of the grid, exactly.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::Arrangement};
-    ///
-    /// let pair = Arrangement::new(Pattern::new("1.75".parse()?), &[(2, 0)])?;
-    /// let all: Vec<_> = pair.occurrences(-70..50, 0..90).collect();
-    /// assert_eq!(pair.count_before(-70..50, 0..90, all[17]), 17);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn count_before(&self, x: Range<i64>, y: Range<i64>, place: (i64, i64)) -> u128 {
         let band = band(place.0, &x);

@@ -34,18 +34,7 @@ use crate::{
 /// ```
 ///
 /// A seed turns the table, moves the pattern, and warps it by shears whose knots wrap. Attributes and ranks
-/// are functions of seed and id, as in other sets, and a field that has the same period stays seamless:
-///
-/// ```
-/// use strew_core::{PeriodicSet, Table};
-///
-/// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-/// let tile = PeriodicSet::new(table, 5000)?.side(1.0)?.seed(7);
-/// let waves = |x: f64| 0.5 + 0.5 * (std::f64::consts::TAU * x).sin();
-/// let kept = tile.iter().filter(|p| tile.rank(p.id()).is_some_and(|rank| rank < waves(p.at()[0])));
-/// assert!((2200..2800).contains(&kept.count()));
-/// # Ok::<(), strew_core::Error>(())
-/// ```
+/// are functions of seed and id, as in other sets, and a field that has the same period stays seamless.
 #[derive(Clone, Debug)]
 pub struct PeriodicSet {
     table: Table,
@@ -108,15 +97,6 @@ impl PeriodicSet {
 
     /// The periods of a map with at most [`MAX_POINTS`](Self::MAX_POINTS) points, smallest first: its twins in
     /// which every block has points in proportion to its area.
-    ///
-    /// ```
-    /// use strew_core::{Map, PeriodicSet};
-    ///
-    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
-    /// let sizes: Vec<u64> = PeriodicSet::periods(&map).map(|twin| twin.points()).take(4).collect();
-    /// assert_eq!(sizes, [5041, 9409, 15129, 22201]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn periods(map: &Map) -> impl Iterator<Item = Twin> + use<> {
         Self::periods_from(map, 0)
     }
@@ -163,17 +143,6 @@ impl PeriodicSet {
     ///
     /// # Errors
     /// As [`Warp::new`].
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?.warp(0.0)?.seed(7);
-    /// // Without displacements and warp, points stand on the grid of 224 × 224 places.
-    /// let steps = tile.iter().map(|p| p.at()[0] * 224.0 / 71.0);
-    /// assert!(steps.into_iter().all(|x| (x - x.round()).abs() < 1e-9));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn warp(mut self, strength: f64) -> Result<Self, Error> {
         self.own_warp = Some(Warp::new(strength)?);
         Ok(self.remade())
@@ -224,16 +193,6 @@ impl PeriodicSet {
     }
 
     /// The block of a point, as its intervals of dX and dY, or `None` if no point has the id.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?;
-    /// let blocks: std::collections::BTreeSet<_> = tile.iter().map(|p| tile.block(p.id())).collect();
-    /// assert_eq!(blocks.len(), 63 * 63);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn block(&self, id: PointId) -> Option<[usize; 2]> {
         let (_, index) = self.indices(id)?;

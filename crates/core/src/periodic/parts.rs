@@ -64,19 +64,6 @@ impl PeriodicSet {
     ///
     /// # Errors
     /// [`ErrorKind::Kinds`](crate::ErrorKind::Kinds) if the table has no such kind.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table, table::{Mix, Ranks}};
-    ///
-    /// let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let mix = Mix::scattered(table.map(), "1:3".parse()?)?;
-    /// let ranks = Ranks::new((0..mix.labels().len() as u32).collect())?;
-    /// let tile = PeriodicSet::new(table.with_mix(mix, ranks)?, 5000)?.seed(7);
-    /// let rare = tile.clone().only(0)?;
-    /// assert!(rare.iter().all(|p| tile.kind_of(p.id()) == Some(0)));
-    /// assert!((rare.count() as f64 / tile.len() as f64 - 0.25).abs() < 0.01);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn only(mut self, kind: u8) -> Result<Self, Error> {
         check_kind(kind, self.kinds())?;
         self.parts.kind = Some(kind);
@@ -92,18 +79,6 @@ impl PeriodicSet {
     /// The set in a field, as in [`PointSet::in_field`](crate::PointSet::in_field): the share of the points at
     /// each place of [0, L)². The field is not evaluated elsewhere. If it has the period L, or vanishes at the seam,
     /// copies of the set continue one another.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?.side(1.0)?.seed(7);
-    /// let disk = |[x, y]: [f64; 2]| f64::from((x - 0.5).hypot(y - 0.5) < 0.3);
-    /// let island = tile.in_field(disk);
-    /// let share = island.count() as f64 / tile.len() as f64;
-    /// assert!((share - 0.2827).abs() < 0.01);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[cfg(feature = "fields")]
     #[must_use]
     pub fn in_field(&self, field: impl Field + 'static) -> Self {
@@ -114,15 +89,6 @@ impl PeriodicSet {
 
     /// The kind of a point of the period, kept or not. `None` for a table without kinds and for an id without a
     /// point.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, PointId, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?;
-    /// assert_eq!(tile.kind_of(PointId { x: 0, y: 0 }), None);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn kind_of(&self, id: PointId) -> Option<u8> {
         let (_, index) = self.indices(id)?;
@@ -189,14 +155,6 @@ impl PeriodicSet {
 
     /// The least distance between a point of one kind and one of another, or between two of the same kind, as
     /// [`PointSet::least_distance_of`](crate::PointSet::least_distance_of). `None` if the table has no such kinds.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// assert_eq!(PeriodicSet::new(table, 5000)?.least_distance_of(0, 1), None);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn least_distance_of(&self, a: u8, b: u8) -> Option<f64> {
         Some(self.reported(self.table.least_distance_of(a, b)?))
@@ -224,17 +182,6 @@ impl PeriodicSet {
     ///
     /// # Errors
     /// As [`PointSet::attributes`](crate::PointSet::attributes).
-    ///
-    /// ```
-    /// use strew_core::{Attributes, PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?.seed(7);
-    /// let rank = tile.attributes(&Attributes::new(vec!["rank".parse()?])?)?;
-    /// let first = tile.iter().next().expect("points").id();
-    /// assert_eq!(rank.value(0, first), tile.rank(first));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
         BoundAttributes::of(attributes, (&self.table, self.seed), Arc::new(self.clone()))
     }

@@ -52,16 +52,6 @@ impl PeriodicSet {
 
     /// The points with a row of the lattice in a range, for work in parallel. Rows from the
     /// [period](crate::Twin::period) on have none.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?;
-    /// let [low, high] = [0..100, 100..224].map(|rows| tile.rows(rows).count() as u64);
-    /// assert_eq!(low + high, tile.len());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn rows(&self, rows: Range<u64>) -> impl Iterator<Item = Member> + use<> {
         let set = self.clone();
         let mut walk = Walk::of_rows(&set, rows);
@@ -69,16 +59,6 @@ impl PeriodicSet {
     }
 
     /// The point with an id, or `None` if there is none in the period.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, PointId, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?.seed(7);
-    /// assert!(tile.iter().all(|p| tile.point(p.id()) == Some(p)));
-    /// assert_eq!(tile.point(PointId { x: -1, y: 0 }), None);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn point(&self, id: PointId) -> Option<Member> {
         let (at, index) = self.indices(id)?;
@@ -90,15 +70,6 @@ impl PeriodicSet {
     }
 
     /// The period, counted. A set that has [parts](Self::keep) of the period only is counted point by point.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let half = PeriodicSet::new(table, 5000)?.keep(0.5)?;
-    /// assert_eq!(half.plan().count(), half.count().into());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn plan(&self) -> PeriodicPlan {
         let before = self.before(&Stop::default()).unwrap_or_default();
@@ -126,17 +97,6 @@ impl PeriodicSet {
     }
 
     /// The points of a period from a [cursor](Cursor) on, without counting.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?.seed(7).keep(0.3)?;
-    /// let cursor = tile.plan().window(0, Some(100)).next_cursor().expect("there are more");
-    /// let rest = tile.resume(cursor);
-    /// assert_eq!(rest.count() + 100, tile.count().into());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn resume(&self, cursor: Cursor) -> PeriodicPlan {
         let total = cursor.total.min(self.len().into());
@@ -232,15 +192,6 @@ impl PeriodicPlan {
     ///
     /// # Errors
     /// As [`PeriodicSet::attributes`].
-    ///
-    /// ```
-    /// use strew_core::{Attributes, PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let plan = PeriodicSet::new(table, 5000)?.plan();
-    /// assert!(plan.attributes(&Attributes::new(vec!["angle".parse()?])?).is_ok());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
         self.set.attributes(attributes)
     }
@@ -290,17 +241,6 @@ impl PeriodicBlocks {
     }
 
     /// The place after the points so far, if there are more in the period.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Point, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?;
-    /// let mut blocks = tile.plan().blocks();
-    /// blocks.fill(&mut [Point::default(); 41]);
-    /// assert_eq!(tile.resume(blocks.cursor().expect("there are more")).count(), 5000);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn cursor(&self) -> Option<Cursor> {
         (self.offset < self.total).then(|| Cursor {

@@ -62,17 +62,6 @@ impl Member {
     }
 
     /// The attribute `angle`: a rotation in radians, uniform in [0, 2π).
-    ///
-    /// ```
-    /// use std::f64::consts::PI;
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let trees = PointSet::new(table).seed(7).chunk(100.0, [0, 0])?;
-    /// let first_half = trees.iter().filter(|tree| tree.angle() < PI).count();
-    /// assert!((0.48..0.52).contains(&(first_half as f64 / trees.count() as f64)));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn angle(&self) -> f64 {
         angle(self.hash(Attribute::ANGLE))
@@ -95,18 +84,6 @@ impl Member {
 
     /// The attribute `u1`, `u2`, …: a number uniform in [0, 1), independent of those of other `n`. In
     /// output formats `n` is 1 to 16.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).seed(7);
-    /// let trees = set.chunk(100.0, [0, 0])?;
-    /// // One tree in ten bears a nest, whatever its other values.
-    /// let nests = trees.iter().filter(|tree| tree.uniform(1) < 0.1).count();
-    /// assert!((0.09..0.11).contains(&(nests as f64 / trees.count() as f64)));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn uniform(&self, n: u8) -> f64 {
         unit(self.hash(Attribute::uniform_code(n)))

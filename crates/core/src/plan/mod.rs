@@ -87,18 +87,6 @@ impl Plan {
 
     /// The points in one of the formats [`F32`], [`F64`], [`Offsets`](crate::Offsets) and [`Points`], block by block:
     /// the fastest way to make many.
-    ///
-    /// ```
-    /// use strew_core::{Point, PointSet, Points, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).chunk(8.0, [0, 0])?;
-    /// let (mut blocks, mut block) = (plan.blocks::<Points>(), [Point::default(); 10]);
-    /// // Blocks have any size. What does not fit comes with the next.
-    /// assert_eq!(blocks.fill(&mut block), 10);
-    /// assert_eq!(block, plan.to_vec()[..10]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn blocks<F: Format>(&self) -> Blocks<F> {
         match &self.counted.kept {
@@ -108,17 +96,6 @@ impl Plan {
     }
 
     /// Exact places of points of this plan, in another format.
-    ///
-    /// ```
-    /// use strew_core::{Exact, Place, PointSet, Points, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).chunk(8.0, [3, -2])?;
-    /// let mut places = vec![Place::default(); plan.len().expect("small")];
-    /// plan.blocks::<Exact>().fill(&mut places);
-    /// assert!(plan.converted::<Points>(&places).eq(plan.to_vec()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn converted<F: Format>(&self, places: &[Place]) -> impl Iterator<Item = F::Item> {
         let format: F = format_of(&self.scope);
         places.iter().map(move |place| place.item(&format))
@@ -126,42 +103,12 @@ impl Plan {
 
     /// The whole request cut into tiles of at most `max_points` points each, or one lattice row of a band
     /// if that has more. The points of the tiles, one tile after another, come in order. Tiles can be
-    /// filled independently: [`tile_blocks`](Self::tile_blocks).
-    ///
-    /// ```
-    /// use rayon::prelude::*;
-    /// use strew_core::{F64, PointSet, Region, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).within(Region::new([0.0, 0.0], [200.0, 200.0])?)?;
-    /// let tiles: Vec<_> = plan.tiles(10_000).collect();
-    /// let fill = |tile| {
-    ///     let mut points = vec![[0.0; 2]; 10_000];
-    ///     let filled = plan.tile_blocks::<F64>(tile).fill(&mut points);
-    ///     points.truncate(filled);
-    ///     points
-    /// };
-    /// let points: Vec<Vec<[f64; 2]>> = tiles.par_iter().map(fill).collect();
-    /// assert_eq!(points.concat().len() as u128, plan.count());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
+    /// filled [independently](crate::cookbook#parallel-filling): [`tile_blocks`](Self::tile_blocks).
     pub fn tiles(&self, max_points: usize) -> impl Iterator<Item = Tile> + use<> {
         tiles(&self.scope, max_points)
     }
 
     /// The points of a tile of this plan, block by block.
-    ///
-    /// ```
-    /// use strew_core::{Point, PointSet, Points, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).chunk(64.0, [0, 0])?;
-    /// let tile = plan.tiles(1000).next().expect("not empty");
-    /// let mut block = vec![Point::default(); 1000];
-    /// let filled = plan.tile_blocks::<Points>(&tile).fill(&mut block);
-    /// assert_eq!(block[..filled], plan.to_vec()[..filled]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn tile_blocks<F: Format>(&self, tile: &Tile) -> Blocks<F> {
         Blocks::of_tile(self.scope.clone(), tile)
@@ -171,18 +118,6 @@ impl Plan {
     ///
     /// # Errors
     /// As [`PointSet::attributes`](crate::PointSet::attributes).
-    ///
-    /// ```
-    /// use strew_core::{Attribute, Attributes, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).seed(7).chunk(8.0, [0, 0])?;
-    /// let scale = plan.attributes(&Attributes::new(vec![Attribute::scale(0.8, 1.2)?])?)?;
-    /// for tree in &plan {
-    ///     assert_eq!(scale.value(0, tree.id()), Some(tree.scale(0.8..=1.2)));
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
         BoundAttributes::new(attributes, &self.scope.lattice)
     }

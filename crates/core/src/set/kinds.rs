@@ -52,25 +52,6 @@ impl PointSet {
     ///
     /// # Errors
     /// [`ErrorKind::Kinds`] if the table has kinds of another ratio, or has none and nothing of this ratio is built in.
-    ///
-    /// ```
-    /// use strew_core::{Kinds, PointSet, Table, table::{Mix, Ranks}};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// # let mix = Mix::scattered(table.map(), "1:3".parse()?)?;
-    /// # let ranks = Ranks::new((0..mix.labels().len() as u32).collect())?;
-    /// # let table = table.with_mix(mix, ranks)?;
-    /// // A table with kinds in the ratio 1:3, from a file.
-    /// let forest = PointSet::new(table).seed(7).kinds(Kinds::even("birch:1,oak:3")?)?;
-    /// let birches = forest.clone().only("birch")?;
-    /// assert_eq!(birches.kind_counts(strew_core::Region::chunk(20.0, [0, 0])?)?[1], 0);
-    /// for tree in birches.chunk(20.0, [0, 0])? {
-    ///     assert_eq!(forest.kind_name(tree.id()), Some("birch"));
-    /// }
-    /// let error = forest.kinds(Kinds::even("birch:1,oak:4")?).unwrap_err();
-    /// assert_eq!(error.to_string(), "the ratio of the table's kinds is 1:3; it must be 1:4, that of the named kinds");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn kinds(self, kinds: Kinds) -> Result<Self, Error> {
         let lattice = match self.lattice.kind_parts() {
             Some(shares) => {
@@ -98,20 +79,6 @@ impl PointSet {
 
     /// The name of the kind of a point, kept or not. `None` for a set whose kinds have no names and for an id without a
     /// point. It takes about as long as [`point`](Self::point).
-    ///
-    /// ```
-    /// use strew_core::{Kinds, PointId, PointSet, Table, table::{Mix, Ranks}};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// # let mix = Mix::scattered(table.map(), "1:3".parse()?)?;
-    /// # let ranks = Ranks::new((0..mix.labels().len() as u32).collect())?;
-    /// # let table = table.with_mix(mix, ranks)?;
-    /// let forest = PointSet::new(table).seed(7).kinds(Kinds::even("oak:3,birch:1")?)?;
-    /// let tree = forest.nearest([10.0, 3.0], 1)?[0].member.id();
-    /// assert!(matches!(forest.kind_name(tree), Some("oak" | "birch")));
-    /// assert_eq!(forest.kind_name(PointId { x: tree.x + 1, ..tree }), None);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn kind_name(&self, id: PointId) -> Option<&str> {
         self.named.as_ref()?.name(self.kind_of(id)?)
@@ -122,22 +89,6 @@ impl PointSet {
     ///
     /// # Errors
     /// [`ErrorKind::Kinds`] if the second order is of another map.
-    ///
-    /// ```
-    /// use std::sync::Arc;
-    /// use strew_core::{PointSet, Table, VaryingKinds};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let right = |[x, _]: [f64; 2]| if x < 0.0 { 0.0 } else { 1.0 };
-    /// let kinds = VaryingKinds::new(&table, "1:1".parse()?, vec![Some(Arc::new(right)), None])?;
-    /// let set = PointSet::new(table).with_varying_kinds(kinds.clone())?;
-    /// // To the left all points are of the other kind.
-    /// assert_eq!(set.clone().only(0)?.chunk(20.0, [-1, 0])?.count(), 0);
-    /// assert_eq!(set.clone().only(1)?.chunk(20.0, [-1, 0])?.count(), set.chunk(20.0, [-1, 0])?.count());
-    /// let other = Table::undisplaced("sqrt(3)".parse()?, 15, "pattern")?;
-    /// assert!(PointSet::new(other).with_varying_kinds(kinds).is_err());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn with_varying_kinds(self, kinds: VaryingKinds) -> Result<Self, Error> {
         if kinds.order().map() != self.table().map() {
             let field = "the second order";
@@ -213,21 +164,6 @@ impl PointSet {
     }
 
     /// The kind of a point, kept or not. `None` for a table without kinds and for an id without a point.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table, table::{Mix, Ranks}};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let mix = Mix::scattered(table.map(), "1:3".parse()?)?;
-    /// let ranks = Ranks::new((0..mix.labels().len() as u32).collect())?;
-    /// let set = PointSet::new(table.with_mix(mix, ranks)?).seed(7);
-    /// let rare = set.clone().only(0)?;
-    /// for point in set.chunk(20.0, [0, 0])? {
-    ///     let id = point.id();
-    ///     assert_eq!(rare.point(id), (set.kind_of(id) == Some(0)).then_some(point));
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn kind_of(&self, id: PointId) -> Option<u8> {
         self.lattice.kind_of(id)
@@ -238,19 +174,6 @@ impl PointSet {
     ///
     /// # Errors
     /// As [`within`](Self::within).
-    ///
-    /// ```
-    /// use strew_core::{Circle, PointSet, Table, table::{Mix, Ranks}};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let mix = Mix::scattered(table.map(), "1:3".parse()?)?;
-    /// let ranks = Ranks::new((0..mix.labels().len() as u32).collect())?;
-    /// let set = PointSet::new(table.with_mix(mix, ranks)?).seed(7);
-    /// let lake = Circle::new([0.0, 0.0], 100.0)?;
-    /// let counts = set.kind_counts(lake.clone())?;
-    /// assert_eq!(counts[0] + counts[1], set.count(lake)?);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn kind_counts(&self, area: impl Into<Area>) -> Result<Vec<u128>, Error> {
         self.kind_counts_until(&area.into(), &Stop::default())
     }
@@ -295,19 +218,6 @@ impl PointSet {
     /// The least distance between a point of one kind and one of another, or between two of the same kind, in
     /// world units: a guarantee, as [`least_distance`](Self::least_distance) is. `None` if the table has no such
     /// kinds. Where shares vary it is that of any two points.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table, table::{Mix, Ranks}};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let mix = Mix::scattered(table.map(), "1:3".parse()?)?;
-    /// let ranks = Ranks::new((0..mix.labels().len() as u32).collect())?;
-    /// let set = PointSet::new(table.with_mix(mix, ranks)?).seed(7);
-    /// let apart = set.least_distance_of(0, 1).expect("kinds of the table");
-    /// assert!(apart >= set.least_distance());
-    /// assert_eq!(set.least_distance_of(0, 0), Some(set.only(0)?.least_distance()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn least_distance_of<'k>(
         &self,

@@ -52,19 +52,6 @@ requested!(
 
 impl PointSet {
     /// The point of an id, or `None` if the set has none there.
-    ///
-    /// ```
-    /// use strew_core::{PointId, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let trees = PointSet::new(table).spacing(4.0)?.seed(7);
-    /// let tree = trees.nearest([10.0, 3.0], 1)?[0].member;
-    /// let saved = tree.id().to_string();
-    /// assert_eq!(trees.point(saved.parse()?), Some(tree));
-    /// // Neighbors on the lattice are never both in the pattern.
-    /// assert_eq!(trees.point(PointId { x: tree.id().x + 1, ..tree.id() }), None);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn point(&self, id: PointId) -> Option<Member> {
         let point = match Settler::new(&self.lattice) {
@@ -84,19 +71,6 @@ impl PointSet {
     /// [`Map::intervals`](crate::Map::intervals), or `None` if the lattice has no point there. The points
     /// of a block have the same displacement and, as far as the map reaches, the same neighbors in the
     /// pattern.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table);
-    /// let id = set.nearest([10.0, 3.0], 1)?[0].member.id();
-    /// let [column, row] = set.block(id).expect("a point of the set");
-    /// let n = set.table().map().intervals();
-    /// assert!(column < n && row < n);
-    /// assert_eq!(set.table().displacements()[row * n + column], [0, 0]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn block(&self, id: PointId) -> Option<[usize; 2]> {
         self.lattice.block(id)
@@ -129,17 +103,6 @@ impl PointSet {
     /// [`ErrorKind::Radius`](crate::ErrorKind::Radius) unless the radius is a finite number from 0 on,
     /// [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) if more than `limit` points lie within it (at most
     /// [`MAX_CANDIDATES`](Self::MAX_CANDIDATES)), and as [`nearest`](Self::nearest).
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).seed(7);
-    /// let near = set.around([1000.5, -3.25], 2.0, 100)?;
-    /// assert!(near.iter().all(|neighbor| neighbor.distance <= 2.0));
-    /// assert_eq!(set.nearest([1000.5, -3.25], near.len())?, near);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn around(&self, at: [f64; 2], radius: f64, limit: usize) -> Result<Vec<Neighbor>, Error> {
         self.around_visiting(at, radius, limit, &Visits::any())
     }
@@ -185,15 +148,6 @@ impl PointSet {
     /// [`ErrorKind::Radius`](crate::ErrorKind::Radius) or [`ErrorKind::TooMany`](crate::ErrorKind::TooMany)
     /// unless the distance is a finite number from 0 on within which at most
     /// [`Clearance::MAX_CANDIDATES`] points lie on average.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let mut clearance = PointSet::new(table).spacing(3.0)?.clearance(6.0)?;
-    /// assert!(clearance.is_any_near([10.0, 10.0], |_| true));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn clearance(&self, distance: f64) -> Result<Clearance, Error> {
         Clearance::new(self.lattice.clone(), &self.mask, distance)
     }
@@ -210,17 +164,6 @@ impl PointSet {
 
     /// The least distance between any two points whose `f64` coordinates are within ±`reach`, in world
     /// units; see [`LeastDistance::reported`](crate::LeastDistance::reported).
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).seed(7);
-    /// assert_eq!(set.least_distance_within(1e6), set.least_distance());
-    /// // World coordinates are coarse there. Offsets in a chunk are not.
-    /// assert!(set.least_distance_within(1e14) < set.least_distance_within(64.0));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn least_distance_within(&self, reach: f64) -> f64 {
         if self.lattice.is_in_field() && self.lattice.settle().is_some() {
@@ -295,20 +238,6 @@ impl PointSet {
     /// # Errors
     /// [`ErrorKind::Kinds`](crate::ErrorKind::Kinds) for kinds of other shares than those of the table's
     /// [mix](crate::Table::mix).
-    ///
-    /// ```
-    /// use strew_core::{Attributes, PointId, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let angle = Attributes::new(vec!["angle".parse()?])?;
-    /// let id = PointId { x: 4, y: 9 };
-    /// let value = |set: &PointSet| set.attributes(&angle).map(|bound| bound.value(0, id));
-    /// let set = PointSet::new(table).seed(7);
-    /// // The seed changes the values, spacing and warp do not.
-    /// assert_ne!(value(&set)?, value(&set.clone().seed(8))?);
-    /// assert_eq!(value(&set)?, value(&set.clone().spacing(3.0)?.warp(0.0)?)?);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
         BoundAttributes::new(attributes, &self.lattice)
     }

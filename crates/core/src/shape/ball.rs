@@ -25,14 +25,6 @@ pub struct Ball<const D: usize> {
 }
 
 /// A disk without its rim.
-///
-/// ```
-/// use strew_core::Circle;
-///
-/// let circle = Circle::new([10.0, 0.0], 5.0)?;
-/// assert!(circle.contains([14.9, 0.0]) && !circle.contains([15.0, 0.0]));
-/// # Ok::<(), strew_core::Error>(())
-/// ```
 pub type Circle = Ball<2>;
 
 impl<const D: usize> Ball<D> {

@@ -17,16 +17,6 @@ use crate::{
 
 /// The largest absolute lattice coordinate of a region. Positions fit 64 bits, and `f64` coordinates keep neighbors a
 /// ten-thousandth of a spacing apart there.
-///
-/// ```
-/// use strew_core::{ErrorKind, space::{LATTICE_LIMIT, Region, SpaceSet, Table}};
-///
-/// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-/// let far = LATTICE_LIMIT as f64;
-/// let region = Region::new([far, 0.0, 0.0], [far + 8.0, 8.0, 8.0])?;
-/// assert_eq!(set.within(region).unwrap_err().kind(), ErrorKind::TooFar);
-/// # Ok::<(), strew_core::Error>(())
-/// ```
 pub const LATTICE_LIMIT: i64 = 1 << 40;
 
 /// The points of a table at a placement.

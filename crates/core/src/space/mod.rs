@@ -4,15 +4,6 @@
 //! one-dimensional sets, a small table has a vector for each of n³ blocks, and a seed chooses an origin, one of the 48
 //! symmetries of the cube and a warp. [`SpaceSet`] has the words of [`PointSet`](crate::PointSet).
 //!
-//! ```
-//! use strew_core::space::{Ball, SpaceSet, Table};
-//!
-//! let set = SpaceSet::new(Table::undisplaced("(5-sqrt(3))/2".parse()?, 5, "pattern")?).spacing(2.0)?.seed(7);
-//! let plan = set.within(Ball::new([0.0; 3], 20.0)?)?;
-//! assert_eq!(plan.iter().count() as u128, plan.count());
-//! # Ok::<(), strew_core::Error>(())
-//! ```
-//!
 //! `pattern` has the pattern, `table` the vectors, `warp` the shears, `lattice` which addresses have
 //! points and where; `scope` what of a lattice is requested.
 //! `walk` makes points row by row or batch by batch from `columns` of planes, `cells` and `template`s, `settled` those that

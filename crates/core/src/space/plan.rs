@@ -77,15 +77,6 @@ impl Plan {
     }
 
     /// The points in a format, block by block.
-    ///
-    /// ```
-    /// use strew_core::{F64, space::{SpaceSet, Table}};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [0, 0, 0])?;
-    /// let mut block = [[0.0; 3]; 10];
-    /// assert_eq!(plan.blocks::<F64>().fill(&mut block), 10);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn blocks<F: Format>(&self) -> Blocks<F> {
         let Window {
@@ -258,17 +249,6 @@ impl<F: Format> Blocks<F> {
     }
 
     /// Sets the backend; see [`Backend`]. The points are the same.
-    ///
-    /// ```
-    /// use strew_core::{Backend, space::{SpaceSet, Table}};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(4.0, [0, 0, 0])?;
-    /// let [mut a, mut b] = [[[0.0; 3]; 10]; 2];
-    /// plan.blocks_f64().fill(&mut a);
-    /// plan.blocks_f64().with_backend(Backend::Scalar).fill(&mut b);
-    /// assert_eq!(a, b);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn with_backend(mut self, backend: Backend) -> Self {
         match &mut self.source {
@@ -350,17 +330,6 @@ impl<F: Format> Blocks<F> {
 
 impl Blocks<Points> {
     /// The place of the next point, if there is one and some were taken.
-    ///
-    /// ```
-    /// use strew_core::space::{Point, SpaceSet, Table};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(8.0, [0, 0, 0])?;
-    /// let mut blocks = plan.blocks_points();
-    /// blocks.fill(&mut [Point::default(); 100]);
-    /// let cursor = blocks.cursor().expect("there are more");
-    /// assert_eq!(plan.from_cursor(cursor).to_vec(), plan.to_vec()[100..]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn cursor(&self) -> Option<Cursor> {
         if self.left == 0 {

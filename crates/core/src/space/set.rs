@@ -66,15 +66,6 @@ impl SpaceSet {
     }
 
     /// The blue-noise set of the table built into the crate (feature `tables`).
-    ///
-    /// ```
-    /// use strew_core::space::SpaceSet;
-    ///
-    /// let set = SpaceSet::blue();
-    /// assert_eq!(set.table().profile(), "blue");
-    /// // No two points are nearer than this many mean spacings.
-    /// assert!(set.least_distance() > 0.74);
-    /// ```
     #[cfg(feature = "tables")]
     #[must_use]
     pub fn blue() -> Self {
@@ -85,14 +76,6 @@ impl SpaceSet {
     ///
     /// # Errors
     /// As [`Table::from_bytes`].
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let file = Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?.to_bytes();
-    /// assert_eq!(SpaceSet::from_table(&file)?.table().profile(), "pattern");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn from_table(bytes: &[u8]) -> Result<Self, Error> {
         Table::from_bytes(bytes).map(Self::new)
     }
@@ -155,15 +138,6 @@ impl SpaceSet {
     /// # Errors
     /// [`ErrorKind::TooFar`](crate::ErrorKind::TooFar) if the volume reaches beyond [`LATTICE_LIMIT`](super::LATTICE_LIMIT) at this spacing,
     /// [`ErrorKind::Unbounded`](crate::ErrorKind::Unbounded) if it is not bounded.
-    ///
-    /// ```
-    /// use strew_core::space::{Ball, SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).seed(7);
-    /// let ball = Ball::new([100.0, 40.0, 0.0], 9.0)?;
-    /// assert!(set.within(ball)?.iter().all(|point| ball.contains(point.at())));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn within(&self, volume: impl Into<Volume>) -> Result<Plan, Error> {
         self.within_until(volume, Stop::default())
     }
@@ -172,17 +146,6 @@ impl SpaceSet {
     ///
     /// # Errors
     /// As [`within`](Self::within), and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, server::Stop, space::{Region, SpaceSet, Table}};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// let stop = Stop::new();
-    /// stop.raise();
-    /// let error = set.within_until(Region::chunk(9.0, [0, 0, 0])?, stop).unwrap_err();
-    /// assert_eq!(error.kind(), ErrorKind::Stopped);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn within_until(&self, volume: impl Into<Volume>, stop: Stop) -> Result<Plan, Error> {
         Plan::new(&self.lattice, &self.mask, volume.into(), stop, None)
     }
@@ -228,14 +191,6 @@ impl SpaceSet {
     }
 
     /// The number of steps by which points settle.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// assert_eq!((set.steps(), set.keep(0.5)?.steps()), (0, 2));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn steps(&self) -> u32 {
         let settling = self.lattice.settling();
@@ -276,30 +231,12 @@ placing!(
 
 impl SpaceSet {
     /// The point of an id, or `None` if the set has none there.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).seed(7);
-    /// let point = set.nearest([10.0, 3.0, 5.0], 1)?[0].point;
-    /// assert_eq!(set.point(point.id.to_string().parse()?), Some(point));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn point(&self, id: PointId) -> Option<Point> {
         clearance::point(&self.lattice, &self.mask, id)
     }
 
     /// The intervals of the three indices of a point, or `None` if the lattice has no point there.
-    ///
-    /// ```
-    /// use strew_core::space::{PointId, SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// assert_eq!(set.block(PointId { x: 0, y: 0, z: 0 }), Some([0; 3]));
-    /// assert_eq!(set.block(PointId { x: 1, y: 0, z: 0 }), None);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn block(&self, id: PointId) -> Option<[usize; 3]> {
         self.lattice.block(id)
@@ -310,16 +247,6 @@ impl SpaceSet {
     ///
     /// # Errors
     /// As these, and [`Stopped`](crate::ErrorKind::Stopped).
-    ///
-    /// ```
-    /// use strew_core::{server::{Stop, Visits}, space::{SpaceSet, Table}};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// let visits = Visits::new(usize::MAX, Stop::new());
-    /// assert_eq!(set.nearest_visiting([1.0; 3], 5, None, &visits)?.len(), 5);
-    /// assert!(visits.made() >= 5);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn nearest_visiting(
         &self,
         at: [f64; 3],

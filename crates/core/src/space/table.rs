@@ -73,18 +73,6 @@ impl Table {
     /// # Errors
     /// [`ErrorKind::Table`](crate::ErrorKind::Table) for a wrong number of vectors or ranks, a component of −2¹⁵, a
     /// profile name that is not 1 to 32 of `a-z 0-9 -`, or a history beyond the format's limits.
-    ///
-    /// ```
-    /// use strew_core::{Map, space::Table, table::Provenance};
-    ///
-    /// let map = Map::new("sqrt(3)".parse()?, 5)?;
-    /// let blocks = map.intervals().pow(3);
-    /// // Every point moves by half a grid unit along x.
-    /// let vectors = vec![[1 << 11, 0, 0]; blocks];
-    /// let table = Table::new(map, "moved", vectors, Provenance::default(), None)?;
-    /// assert_eq!(table.profile(), "moved");
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(
         map: Map,
         profile: &str,

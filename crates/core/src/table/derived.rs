@@ -15,19 +15,6 @@ impl Table {
     /// # Errors
     /// [`ErrorKind::Table`](crate::ErrorKind::Table) for a mix of another map, or unless there is a position for
     /// each block.
-    ///
-    /// ```
-    /// use strew_core::{Table, table::{Mix, Ranks}};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let blocks = table.displacements().len() as u32;
-    /// let mix = Mix::scattered(table.map(), "1:3".parse()?)?;
-    /// let mixed = table.with_mix(mix.clone(), Ranks::new((0..blocks).collect())?)?;
-    /// assert_eq!(mixed.mix(), Some(&mix));
-    /// assert_eq!(mixed.displacements(), table.displacements());
-    /// assert_ne!(mixed.digest(), table.digest());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn with_mix(&self, mix: Mix, ranks: Ranks) -> Result<Self, Error> {
         let mut parts = self.parts().clone();
         (parts.mix, parts.ranks) = (Some(mix), Some(ranks));
@@ -59,18 +46,6 @@ impl Table {
     }
 
     /// A file of kinds and ranks for this table, without its vectors: about three bytes for each block instead of eleven.
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, Table, table::{Mix, Ranks}};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let mix = Mix::scattered(table.map(), "1:3".parse()?)?;
-    /// let ranks = Ranks::new((0..mix.labels().len() as u32).collect())?;
-    /// let labels = table.labels_of(&mix, &ranks);
-    /// // It is no table by itself.
-    /// assert_eq!(Table::from_bytes(&labels).unwrap_err().kind(), ErrorKind::Table);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn labels_of(&self, mix: &Mix, ranks: &Ranks) -> Vec<u8> {
         write_labels(self, mix, ranks)

@@ -24,12 +24,6 @@ impl Digest {
     }
 
     /// The digest with these bytes.
-    ///
-    /// ```
-    /// use strew_core::table::Digest;
-    ///
-    /// assert_eq!(Digest::from_bytes([0xab; 32]).to_string(), "ab".repeat(32));
-    /// ```
     #[must_use]
     pub const fn from_bytes(bytes: [u8; 32]) -> Self {
         Self(bytes)

@@ -64,18 +64,6 @@ impl Table {
     /// [`ErrorKind::Table`](crate::ErrorKind::Table) for a wrong number of vectors, a component of
     /// [`MAX_DISPLACEMENT`](super::MAX_DISPLACEMENT) or more, a profile name that is not 1 to 32 of
     /// `a-z 0-9 -`, or a history beyond the format's limits.
-    ///
-    /// ```
-    /// use strew_core::{Map, Table, table::{Provenance, from_grid_units}};
-    ///
-    /// let map = Map::new("sqrt(3)".parse()?, 20)?;
-    /// let n = map.intervals();
-    /// // Every point moves by (0.5, −0.25) grid units.
-    /// let vector = [0.5, -0.25].map(|v| from_grid_units(v).expect("short"));
-    /// let table = Table::new(map, "moved", vec![vector; n * n], Provenance::default())?;
-    /// assert_eq!(table.displacements().len(), n * n);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn new(
         map: Map,
         profile: &str,
@@ -135,15 +123,6 @@ impl Table {
 
     /// About the memory that the table may come to hold, in bytes: seeds turn it, and each of the eight
     /// ways has a copy of the vectors and their order once it is used.
-    ///
-    /// ```
-    /// use strew_core::Table;
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// // Mostly the vectors, of 8 bytes each.
-    /// assert!(table.memory_bytes() > 8 * table.displacements().len());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
         self.memory_with(Held::COPIES)

@@ -17,6 +17,7 @@ use crate::{error::Error, map::Map, once::Once, pattern::Alpha};
 ///
 /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
 /// assert_eq!(table.displacements().len(), table.map().intervals().pow(2));
+/// assert!(table.memory_bytes() > 8 * table.displacements().len());
 /// assert_eq!(Table::from_bytes(&table.to_bytes())?, table);
 ///
 /// let table = space::Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?;
@@ -103,17 +104,6 @@ impl<V: Vector> TableOf<V> {
     ///
     /// # Errors
     /// [`ErrorKind::Table`](crate::ErrorKind::Table) unless there is a position for each block.
-    ///
-    /// ```
-    /// use strew_core::{Table, table::Ranks};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let blocks = table.displacements().len() as u32;
-    /// let ranked = table.with_ranks(Ranks::new((0..blocks).rev().collect())?)?;
-    /// assert_eq!(ranked.displacements(), table.displacements());
-    /// assert_ne!(ranked.digest(), table.digest());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn with_ranks(&self, ranks: Ranks) -> Result<Self, Error> {
         let mut parts = self.parts().clone();
         parts.ranks = Some(ranks);

@@ -15,16 +15,6 @@ impl Table {
     ///
     /// # Errors
     /// Those of `out`.
-    ///
-    /// ```
-    /// use strew_core::Table;
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 0, "pattern")?;
-    /// let mut text = String::new();
-    /// table.write_text(&mut text).expect("strings take all");
-    /// assert!(text.lines().all(|line| line == "0 0"));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn write_text(&self, out: &mut impl fmt::Write) -> fmt::Result {
         self.displacements()
             .iter()

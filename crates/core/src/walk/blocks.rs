@@ -157,17 +157,6 @@ impl<F: Format> Blocks<F> {
     }
 
     /// Fills rows by a backend other than the machine's best. The points have the same bits.
-    ///
-    /// ```
-    /// use strew_core::{Backend, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).chunk(10.0, [0, 0])?;
-    /// let mut block = [[0.0; 2]; 50];
-    /// plan.blocks_f64().with_backend(Backend::Scalar).fill(&mut block);
-    /// assert_eq!(block[49], plan.to_vec()[49].at());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn with_backend(mut self, backend: Backend) -> Self {
         // Points that were kept were found by the best one.
@@ -208,18 +197,6 @@ impl<F: Format> Blocks<F> {
     ///
     /// Its lattice address lies after that of the last point written, and may lie before that of the
     /// next.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Region, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let (set, region) = (PointSet::new(table), Region::chunk(10.0, [0, 0])?);
-    /// let (mut blocks, mut block) = (set.within(region)?.blocks_f64(), [[0.0; 2]; 40]);
-    /// blocks.fill(&mut block);
-    /// let cursor = blocks.cursor().expect("not a tile");
-    /// assert_eq!(set.resume(region, cursor)?.offset(), 40);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn cursor(&self) -> Option<Cursor> {
         let window = self.window.filter(|window| window.count > 0)?;

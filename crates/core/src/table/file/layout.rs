@@ -13,14 +13,6 @@ use crate::{
 };
 
 /// The version of the file format that this release writes and reads.
-///
-/// ```
-/// use strew_core::{Table, table::FORMAT_VERSION};
-///
-/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-/// assert_eq!(table.to_bytes()[8..12], FORMAT_VERSION.to_le_bytes());
-/// # Ok::<(), strew_core::Error>(())
-/// ```
 pub const FORMAT_VERSION: u32 = 1;
 
 /// The size of the largest table file, in bytes: more than the largest map needs.
