@@ -128,31 +128,3 @@ pub(crate) fn kind(turned: &TurnedTable, pattern: &Pattern, id: PointId) -> Opti
     let labels = turned.labels()?;
     Some(labels.kind(map.intervals(), block, index_x))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn text_round_trips_and_is_unique() {
-        for (x, y) in [(0, 0), (-31, 52), (i64::MIN, i64::MAX)] {
-            let id = PointId { x, y };
-            assert_eq!(alloc::format!("{id}").parse(), Ok(id));
-        }
-        for bad in [
-            "",
-            ":",
-            "1",
-            "1:",
-            "1:2:3",
-            "+1:2",
-            "01:2",
-            "-0:2",
-            " 1:2",
-            "1:99999999999999999999",
-        ] {
-            let error = bad.parse::<PointId>().expect_err(bad);
-            assert_eq!(error.kind(), ErrorKind::PointId);
-        }
-    }
-}

@@ -438,12 +438,6 @@ impl Lattice {
         const LIMIT: f64 = fixed(LATTICE_LIMIT) as f64;
         LIMIT * self.step
     }
-
-    /// The least fixed-point coordinate whose world coordinate is at or above a bound.
-    #[cfg(test)]
-    pub(crate) fn first_at_or_above(&self, bound: f64) -> i128 {
-        crate::lattice::bounds::first_at_or_above(self.step, bound)
-    }
 }
 
 /// A column or row that holds points: its coordinate, and its interval of dX or dY.

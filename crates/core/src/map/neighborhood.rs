@@ -136,16 +136,6 @@ impl Map {
     }
 
     /// Interval number `i`, in units of 2⁻⁶⁴, or an empty range past the last.
-    ///
-    /// ```
-    /// use strew_core::Map;
-    ///
-    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
-    /// assert_eq!(map.interval(0), 0..map.thresholds()[0]);
-    /// assert_eq!(map.interval(62).end, map.alpha().set_side());
-    /// assert!(map.interval(63).is_empty());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn interval(&self, i: usize) -> Range<u64> {
         match self.bounds.get(i..i + 2) {
@@ -160,18 +150,6 @@ impl Map {
     }
 
     /// The interval that holds an index, or `None` outside the set region [0, t).
-    ///
-    /// ```
-    /// use strew_core::{Map, Pattern};
-    ///
-    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
-    /// let pattern = Pattern::new(map.alpha());
-    /// // The block of the point (0, 0); (1, 0) is no point.
-    /// let ((dx, dy), (beside, _)) = (pattern.index(0, 0), pattern.index(1, 0));
-    /// assert_eq!([map.interval_of(dx), map.interval_of(dy)], [Some(0), Some(0)]);
-    /// assert_eq!(map.interval_of(beside), None);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn interval_of(&self, index: u64) -> Option<usize> {
         (index < self.alpha.set_side()).then(|| self.locate(index))
@@ -207,17 +185,6 @@ impl Map {
     ///
     /// The order of the thresholds holds on an open interval of α whose ends are ratios of small
     /// integers. The twins are the fractions inside it.
-    ///
-    /// ```
-    /// use strew_core::Map;
-    ///
-    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
-    /// let twin = map.twins().find(|twin| twin.t() == 71 && twin.r() == 41).expect("a twin");
-    /// assert_eq!((twin.to_string().as_str(), twin.points()), ("183/112", 5041));
-    /// // Its thresholds have the order of the map's own.
-    /// assert!(map.has_twin(twin));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn twins(&self) -> impl Iterator<Item = Twin> + use<> {
         self.twins_within(1..MAX_Q)
     }
@@ -232,15 +199,6 @@ impl Map {
     }
 
     /// Whether p/q is a periodic twin of this map (see [`twins`](Self::twins)).
-    ///
-    /// ```
-    /// use strew_core::{Map, map::Twin};
-    ///
-    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
-    /// let [near, far] = [Twin::new(683, 418), Twin::new(7, 4)].map(|twin| twin.expect("reduced"));
-    /// assert!(map.has_twin(near) && !map.has_twin(far));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn has_twin(&self, twin: Twin) -> bool {
         Cell::new(self.alpha, self.radius).contains(twin.p(), twin.q())
@@ -301,29 +259,12 @@ impl Map {
 
 #[cfg(test)]
 mod tests {
-    use alloc::collections::{BTreeMap, BTreeSet};
-
     use proptest::prelude::*;
 
     use super::*;
-    use crate::{
-        map::MAX_RADIUS,
-        pattern::{IndexOrigin, Pattern},
-    };
 
     fn map(alpha: &str, radius: u32) -> Map {
         Map::new(alpha.parse().expect("valid"), radius).expect("small")
-    }
-
-    #[test]
-    fn interval_counts_are_the_known_ones() {
-        for (radius, n) in [(20, 27), (49, 63), (100, 129), (200, 255)] {
-            assert_eq!(map("(5-sqrt(3))/2", radius).intervals(), n, "R = {radius}");
-        }
-        assert_eq!(map("sqrt(3)", 49).intervals(), 73);
-        assert_eq!(map("(1+sqrt(5))/2", 49).intervals(), 61);
-        assert_eq!(map("sqrt(2)", 49).intervals(), 41);
-        assert!(Map::new("3/2".parse().expect("valid"), MAX_RADIUS + 1).is_err());
     }
 
     #[test]
@@ -338,45 +279,6 @@ mod tests {
         for (found, expected) in map.thresholds().iter().zip(published) {
             assert!((*found as f64 * scale - expected).abs() < 1e-3);
         }
-    }
-
-    #[test]
-    fn equal_blocks_see_equal_neighborhoods_and_other_blocks_others() {
-        let radius = 9;
-        let map = map("(5-sqrt(3))/2", radius);
-        let pattern = Pattern::with_origin(
-            map.alpha(),
-            IndexOrigin {
-                x: 12345,
-                y: 1 << 60,
-            },
-        );
-        let r = i64::from(radius);
-        let mut seen: BTreeMap<(usize, usize), BTreeSet<(i64, i64)>> = BTreeMap::new();
-        for y in -150..150 {
-            for x in -150..150 {
-                if !pattern.contains(x, y) {
-                    continue;
-                }
-                let (dx, dy) = pattern.index(x, y);
-                let block = (
-                    map.interval_of(dx).expect("inside"),
-                    map.interval_of(dy).expect("inside"),
-                );
-                let around: BTreeSet<_> = (-r..=r)
-                    .flat_map(|j| (-r..=r).map(move |i| (i, j)))
-                    .filter(|&(i, j)| pattern.contains(x + i, y + j))
-                    .collect();
-                assert_eq!(*seen.entry(block).or_insert_with(|| around.clone()), around);
-            }
-        }
-        assert_eq!(
-            seen.len(),
-            map.intervals() * map.intervals(),
-            "every block occurs"
-        );
-        let different: BTreeSet<_> = seen.values().collect();
-        assert_eq!(different.len(), seen.len(), "no two blocks look alike");
     }
 
     proptest! {

@@ -120,12 +120,6 @@ mod tests {
     }
 
     #[test]
-    fn an_alpha_on_the_edge_of_two_maps_has_no_twins() {
-        let edge = Map::new("3/2".parse().expect("valid"), 49).expect("small");
-        assert_eq!(edge.twins().next(), None);
-    }
-
-    #[test]
     fn a_twin_orders_its_thresholds_as_the_map_and_no_other_fraction_does() {
         for alpha in ["(5-sqrt(3))/2", "sqrt(3)", "(1+sqrt(5))/2"] {
             let map = map(alpha);

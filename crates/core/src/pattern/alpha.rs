@@ -66,14 +66,6 @@ impl Alpha {
     ///
     /// # Errors
     /// [`ErrorKind::Alpha`] unless 1 < p/q < 2 and both are at most 10¹⁸.
-    ///
-    /// ```
-    /// use strew_core::Alpha;
-    ///
-    /// assert_eq!(Alpha::from_fraction(366, 224)?.to_string(), "183/112");
-    /// assert!(Alpha::from_fraction(5, 2).is_err());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn from_fraction(p: u64, q: u64) -> Result<Self, Error> {
         alloc::format!("{p}/{q}").parse()
     }
@@ -140,6 +132,7 @@ mod tests {
             assert_eq!(a.to_string(), canonical, "{text}");
             assert_eq!(alpha(canonical), a, "{text}");
         }
+        assert_eq!(Alpha::from_fraction(366, 224), Ok(alpha("183/112")));
     }
 
     #[test]
@@ -182,5 +175,6 @@ mod tests {
         ] {
             assert!(text.parse::<Alpha>().is_err(), "{text}");
         }
+        assert!(Alpha::from_fraction(5, 2).is_err());
     }
 }

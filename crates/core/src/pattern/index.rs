@@ -31,13 +31,6 @@ pub struct IndexOrigin {
 
 impl IndexOrigin {
     /// dX for [`Axis::X`], dY for [`Axis::Y`], in units of 2⁻⁶⁴.
-    ///
-    /// ```
-    /// use strew_core::pattern::{Axis, IndexOrigin};
-    ///
-    /// let origin = IndexOrigin { x: 3, y: 4 };
-    /// assert_eq!([Axis::X, Axis::Y].map(|axis| origin.along(axis)), [3, 4]);
-    /// ```
     #[must_use]
     pub const fn along(self, axis: Axis) -> u64 {
         match axis {
@@ -55,9 +48,10 @@ impl IndexOrigin {
 /// let pattern = Pattern::new("(5-sqrt(3))/2".parse()?);
 /// assert!(pattern.contains(0, 0) && !pattern.contains(1, 0));
 /// // Counting takes no longer for a larger box.
-/// let count = pattern.count(-1_000_000_000..1_000_000_000, -1_000_000_000..1_000_000_000);
+/// let side = -1_000_000_000_000..1_000_000_000_000;
+/// let count = pattern.count(side.clone(), side);
 /// let t = pattern.alpha().set_side_f64();
-/// assert!((count as f64 / 4e18 - t * t).abs() < 1e-9);
+/// assert!((count as f64 / 4e24 - t * t).abs() < 1e-11);
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -74,16 +68,6 @@ impl Pattern {
     }
 
     /// The pattern whose lattice origin has the index `origin`.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, Seed};
-    ///
-    /// let alpha = "sqrt(3)".parse()?;
-    /// // The piece of the pattern that a seed chooses.
-    /// let pattern = Pattern::with_origin(alpha, Seed(7).origin());
-    /// assert_ne!(pattern.index(0, 0), Pattern::new(alpha).index(0, 0));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn with_origin(alpha: Alpha, origin: IndexOrigin) -> Self {
         Self { alpha, origin }
@@ -97,16 +81,6 @@ impl Pattern {
 
     /// The index of a coordinate along an axis, given the parity of the other coordinate:
     /// {origin + (α·v + parity)/2}, in units of 2⁻⁶⁴.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::Axis};
-    ///
-    /// let pattern = Pattern::new("1.5".parse()?);
-    /// // {1.5·1/2} = 3/4, and {(1.5·1 + 1)/2} = 1/4.
-    /// assert_eq!(pattern.axis_index(Axis::X, 1, 0), 3 << 62);
-    /// assert_eq!(pattern.axis_index(Axis::X, 1, 1), 1 << 62);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub const fn axis_index(&self, axis: Axis, v: i64, other_parity: u8) -> u64 {
         self.alpha
@@ -145,39 +119,12 @@ impl Pattern {
 
     /// The columns (`Axis::X`) or rows (`Axis::Y`) of one class: the pattern is the union, over the
     /// four classes, of columns × rows.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::{Axis, Class}};
-    ///
-    /// let pattern = Pattern::new("sqrt(3)".parse()?);
-    /// let points: u64 = Class::ALL
-    ///     .map(|class| {
-    ///         let [columns, rows] = [Axis::X, Axis::Y].map(|axis| pattern.axis_set(axis, class));
-    ///         columns.count(0..1000) * rows.count(0..500)
-    ///     })
-    ///     .into_iter()
-    ///     .sum();
-    /// assert_eq!(u128::from(points), pattern.count(0..1000, 0..500));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn axis_set(&self, axis: Axis, class: Class) -> AxisSet {
         self.axis_subset(axis, class, 0..self.alpha.set_side())
     }
 
     /// The part of [`axis_set`](Self::axis_set) whose index lies in `interval`, in units of 2⁻⁶⁴.
-    ///
-    /// ```
-    /// use strew_core::{Map, Pattern, pattern::{Axis, Class}};
-    ///
-    /// let map = Map::new("sqrt(3)".parse()?, 20)?;
-    /// let (pattern, class) = (Pattern::new(map.alpha()), Class { x: 0, y: 0 });
-    /// // The columns of each interval of a map are a set of their own.
-    /// let parts = (0..map.intervals()).map(|i| pattern.axis_subset(Axis::X, class, map.interval(i)));
-    /// let counts: u64 = parts.map(|part| part.count(0..10_000)).sum();
-    /// assert_eq!(counts, pattern.axis_set(Axis::X, class).count(0..10_000));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn axis_subset(&self, axis: Axis, class: Class, interval: Range<u64>) -> AxisSet {
         let (own, other) = match axis {
@@ -237,15 +184,6 @@ impl Pattern {
 
 /// M(x, y) = ⌊½ [α −1; 1 α] (x, y)⌋ (Ahmed, Huang, Deussen 2015, Eq. 1), or `None` where the result
 /// leaves `i64`.
-///
-/// ```
-/// use strew_core::pattern::forward_map;
-///
-/// // At α = √3, M rotates by 30° and rounds down.
-/// assert_eq!(forward_map("sqrt(3)".parse()?, 10, 0), Some((8, 5)));
-/// assert_eq!(forward_map("sqrt(3)".parse()?, i64::MAX, i64::MIN), None);
-/// # Ok::<(), strew_core::Error>(())
-/// ```
 #[must_use]
 pub fn forward_map(alpha: Alpha, x: i64, y: i64) -> Option<(i64, i64)> {
     let half = i128::from(alpha.half());
@@ -348,15 +286,6 @@ mod tests {
     }
 
     #[test]
-    fn density_is_the_area_of_the_set_region() {
-        let pattern = Pattern::new(alpha("(5-sqrt(3))/2"));
-        let side = 1i64 << 40;
-        let count = pattern.count(-side..side, -side..side) as f64;
-        let t = pattern.alpha().set_side_f64();
-        assert!((count / (4.0 * (side as f64).powi(2)) - t * t).abs() < 1e-11);
-    }
-
-    #[test]
     fn vacant_pixels_are_the_image_of_the_pattern() {
         for text in ["sqrt(3)", "(5-sqrt(3))/2", "(1+sqrt(5))/2", "13/10", "1.93"] {
             let alpha: Alpha = text.parse().expect("valid");
@@ -396,6 +325,8 @@ mod tests {
     #[test]
     fn the_map_works_to_the_ends_of_the_lattice() {
         let alpha: Alpha = "sqrt(3)".parse().expect("valid");
+        // M turns by 30° and rounds down.
+        assert_eq!(forward_map(alpha, 10, 0), Some((8, 5)));
         assert!(forward_map(alpha, i64::MAX, i64::MIN).is_none());
         assert!(forward_map(alpha, i64::MAX / 2, i64::MIN / 2).is_some());
     }

@@ -80,15 +80,6 @@ impl PointSet {
 
     /// The blue-noise set of the table built into the crate (feature `tables`): evenly spread points
     /// without visible structure.
-    ///
-    /// ```
-    /// use strew_core::PointSet;
-    ///
-    /// let set = PointSet::blue();
-    /// assert_eq!(set.table().profile(), "blue");
-    /// // No two points are nearer than this many mean spacings.
-    /// assert!(set.least_distance() > 0.7);
-    /// ```
     #[cfg(feature = "tables")]
     #[must_use]
     pub fn blue() -> Self {
@@ -103,21 +94,6 @@ impl PointSet {
     ///
     /// Counting visits the points one by one, in time proportional to the points at full density where bounds of
     /// the field leave any. Where the field is constant in all of an area, counting costs as much as without a field.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Region, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).seed(7).in_field(|[x, _]: [f64; 2]| x / 40.0);
-    /// let region = Region::new([0.0, 0.0], [40.0, 40.0])?;
-    /// // Half of 1600 on average.
-    /// assert!((700..900).contains(&set.count(region)?));
-    /// // A point is a function of the set, the field and its id.
-    /// for member in set.within(region)? {
-    ///     assert_eq!(set.point(member.id()), Some(member));
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[cfg(feature = "fields")]
     #[must_use]
     pub fn in_field(&self, field: impl Field + 'static) -> Self {
@@ -171,15 +147,6 @@ impl PointSet {
     /// # Errors
     /// [`ErrorKind::Count`](crate::ErrorKind::Count) if the count is 0 or no spacing places it, and as
     /// [`within`](Self::within).
-    ///
-    /// ```
-    /// use strew_core::{Circle, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let plan = PointSet::new(table).exactly(1000, Circle::new([5.0, 5.0], 1.0)?)?;
-    /// assert_eq!(plan.to_vec().len(), 1000);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn exactly(&self, count: u128, area: impl Into<Area>) -> Result<Plan, Error> {
         self.exactly_until(count, &area.into(), 0.0, &Stop::default())
     }
@@ -245,28 +212,5 @@ impl PointSet {
             let trial = self.lattice.replaced(placement);
             Plan::new(&trial, &self.mask, area.clone(), stop.clone(), None)
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::plan::Plan;
-
-    const fn is_shared<T: Clone + Send + Sync>() {}
-
-    const _: () = is_shared::<PointSet>();
-    const _: () = is_shared::<Plan>();
-    const _: () = is_shared::<Table>();
-
-    #[test]
-    fn a_chosen_warp_stays() {
-        let table = Table::undisplaced("sqrt(3)".parse().expect("valid"), 3, "pattern");
-        let set = PointSet::new(table.expect("small"));
-        assert_eq!(set.placement().warp, Warp::OFF);
-        assert_eq!(set.clone().seed(3).placement().warp, Warp::ON);
-        assert_eq!(set.clone().seed(3).seed(0).placement().warp, Warp::OFF);
-        let own = set.warp(0.5).expect("in range");
-        assert_eq!(own.seed(3).placement().warp.strength(), 0.5);
     }
 }

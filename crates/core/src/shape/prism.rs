@@ -92,16 +92,6 @@ impl Prism {
 }
 
 /// A part of space: boxes, balls and prisms, combined.
-///
-/// ```
-/// use strew_core::space::{Ball, Region, Volume};
-///
-/// let rock = Volume::from(Region::new([0.0; 3], [10.0; 3])?);
-/// let cave = rock.without([Ball::new([5.0; 3], 3.0)?.into()]);
-/// assert!(cave.contains([1.0; 3]) && !cave.contains([5.0; 3]));
-/// assert_eq!(cave.bounds(), Region::new([0.0; 3], [10.0; 3]).ok());
-/// # Ok::<(), strew_core::Error>(())
-/// ```
 pub type Volume = Shape<3, Prism>;
 
 impl From<Prism> for Volume {
@@ -133,51 +123,19 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::shape::Ball;
-
-    fn coordinate() -> impl Strategy<Value = f64> {
-        prop_oneof![(-4i8..=4).prop_map(f64::from), -4.0..4.0f64]
-    }
-
-    fn place() -> impl Strategy<Value = [f64; 3]> {
-        [coordinate(), coordinate(), coordinate()]
-    }
-
-    fn corners() -> impl Strategy<Value = Region<3>> {
-        (place(), place()).prop_map(|(a, b)| {
-            let pick = |f: fn(f64, f64) -> f64| [0, 1, 2].map(|i| f(a[i], b[i]));
-            Region::new(pick(f64::min), pick(f64::max)).expect("ordered")
-        })
-    }
+    use crate::shape::shape::tests::{any_box, any_polygon, any_shape};
 
     fn any_volume() -> impl Strategy<Value = Volume> {
-        let ball = (place(), 0.1..4.0f64)
-            .prop_map(|(center, radius)| Volume::from(Ball::new(center, radius).expect("valid")));
-        let prism = prop::collection::vec([coordinate(), coordinate()], 3..7).prop_filter_map(
-            "different",
-            |ring| {
-                let prism = Prism::new(Polygon::new(&[ring]).ok()?, [-2.0, 1.5]).expect("ordered");
-                Some(Volume::from(prism))
-            },
-        );
-        prop_oneof![corners().prop_map(Volume::from), ball, prism].prop_recursive(
-            3,
-            8,
-            3,
-            |inner| {
-                prop_oneof![
-                    prop::collection::vec(inner.clone(), 1..3).prop_map(Volume::any_of),
-                    (inner.clone(), inner.clone()).prop_map(|(a, b)| a.and(b)),
-                    (inner.clone(), inner).prop_map(|(a, b)| a.without([b])),
-                ]
-            },
-        )
+        any_shape(any_polygon().prop_map(|polygon| {
+            let prism = Prism::new(polygon, [-2.0, 1.5]);
+            Volume::from(prism.expect("ordered"))
+        }))
     }
 
     proptest! {
         #[test]
         fn focus_and_bounds_never_contradict_membership(
-            volume in any_volume(), within in corners(),
+            volume in any_volume(), within in any_box(),
             parts in prop::collection::vec(prop::array::uniform3(0.0..=1.0f64), 40),
         ) {
             let near = volume.focus(&within);

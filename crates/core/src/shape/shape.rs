@@ -36,15 +36,6 @@ pub enum Shape<const D: usize, P> {
 }
 
 /// A part of the plane: boxes, circles and polygons, combined.
-///
-/// ```
-/// use strew_core::{Area, Circle, Region};
-///
-/// let view = Area::from(Region::new([0.0, 0.0], [10.0, 10.0])?);
-/// let lit = view.and(Circle::new([0.0, 0.0], 5.0)?.into());
-/// assert!(lit.contains([1.0, 1.0]) && !lit.contains([-1.0, 1.0]));
-/// # Ok::<(), strew_core::Error>(())
-/// ```
 pub type Area = Shape<2, Polygon>;
 
 /// A shape with an outline of polygons: a [`Polygon`] in the plane, a [`Prism`](crate::space::Prism) in space.
@@ -98,17 +89,6 @@ impl From<Polygon> for Area {
 
 impl<const D: usize, P: Outlined<D>> Shape<D, P> {
     /// The union of shapes: a single one itself, and nothing if there are none.
-    ///
-    /// ```
-    /// use strew_core::{Area, Circle, PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table);
-    /// let [a, b] = [Circle::new([0.0, 0.0], 4.0)?, Circle::new([30.0, 5.0], 4.0)?];
-    /// let both = Area::any_of([a.into(), b.into()]);
-    /// assert_eq!(set.count(both)?, set.count(a)? + set.count(b)?);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn any_of(shapes: impl IntoIterator<Item = Self>) -> Self {
         Self::only_or(shapes.into_iter().collect(), Self::AnyOf)
@@ -193,15 +173,6 @@ impl<const D: usize, P: Outlined<D>> Shape<D, P> {
     }
 
     /// The number of vertices of all polygons in the shape.
-    ///
-    /// ```
-    /// use strew_core::{Area, Circle, Polygon};
-    ///
-    /// let field = Area::from(Polygon::new(&[[[0.0, 0.0], [9.0, 0.0], [0.0, 9.0]]])?);
-    /// let pond = Area::from(Circle::new([2.0, 2.0], 1.0)?);
-    /// assert_eq!(field.without([pond]).vertices(), 3);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn vertices(&self) -> usize {
         match self {
@@ -339,38 +310,41 @@ fn joined(
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use alloc::vec;
 
     use proptest::prelude::*;
 
     use super::*;
-    use crate::shape::Circle;
-
     fn coordinate() -> impl Strategy<Value = f64> {
         prop_oneof![(-4i8..=4).prop_map(f64::from), -4.0..4.0f64]
     }
 
-    fn point() -> impl Strategy<Value = [f64; 2]> {
-        [coordinate(), coordinate()]
+    pub fn place<const D: usize>() -> impl Strategy<Value = [f64; D]> {
+        proptest::array::UniformArrayStrategy::new(coordinate())
     }
 
-    fn any_area() -> impl Strategy<Value = Area> {
-        let region = (point(), point()).prop_map(|(a, b)| {
-            let pick = |f: fn(f64, f64) -> f64| [f(a[0], b[0]), f(a[1], b[1])];
-            Area::from(Region::new(pick(f64::min), pick(f64::max)).expect("ordered"))
-        });
-        let circle = (point(), 0.1..4.0f64)
-            .prop_map(|(center, radius)| Area::from(Circle::new(center, radius).expect("valid")));
-        let ring = || {
-            prop::collection::vec(point(), 3..7)
-                .prop_filter("different", |ring| Polygon::new(&[ring]).is_ok())
-        };
-        let polygon = prop::collection::vec(ring(), 1..3)
-            .prop_map(|rings| Area::from(Polygon::new(&rings).expect("valid")));
-        prop_oneof![region, circle, polygon].prop_recursive(3, 8, 3, |inner| {
+    pub fn any_box<const D: usize>() -> impl Strategy<Value = Region<D>> {
+        (place(), place()).prop_map(|(a, b): ([f64; D], [f64; D])| {
+            let pick = |f: fn(f64, f64) -> f64| core::array::from_fn(|i| f(a[i], b[i]));
+            Region::new(pick(f64::min), pick(f64::max)).expect("ordered")
+        })
+    }
+
+    pub fn any_polygon() -> impl Strategy<Value = Polygon> {
+        let rings = prop::collection::vec(prop::collection::vec(place(), 3..7), 1..3);
+        rings.prop_filter_map("different", |rings| Polygon::new(&rings).ok())
+    }
+
+    /// Boxes, balls, other shapes, and their combinations.
+    pub fn any_shape<const D: usize, P: Clone + core::fmt::Debug + Outlined<D> + 'static>(
+        other: impl Strategy<Value = Shape<D, P>> + 'static,
+    ) -> impl Strategy<Value = Shape<D, P>> {
+        let ball = (place(), 0.1..4.0f64)
+            .prop_map(|(center, radius)| Ball::new(center, radius).expect("valid").into());
+        prop_oneof![any_box().prop_map(Shape::from), ball, other].prop_recursive(3, 8, 3, |inner| {
             prop_oneof![
-                prop::collection::vec(inner.clone(), 1..3).prop_map(Area::any_of),
+                prop::collection::vec(inner.clone(), 1..3).prop_map(Shape::any_of),
                 (inner.clone(), inner.clone()).prop_map(|(a, b)| a.and(b)),
                 (inner.clone(), inner).prop_map(|(a, b)| a.without([b])),
             ]
@@ -380,7 +354,7 @@ mod tests {
     proptest! {
         #[test]
         fn steps_and_focus_never_contradict_membership(
-            area in any_area(), y0 in coordinate(), height in 0.0..2.0f64,
+            area in any_shape(any_polygon().prop_map(Area::from)), y0 in coordinate(), height in 0.0..2.0f64,
             ends in (coordinate(), coordinate()),
             probes in prop::collection::vec((-5.0..5.0f64, 0.0..=1.0f64), 40),
             exact in prop::collection::vec((coordinate(), 0.0..=1.0f64), 20),
@@ -425,6 +399,8 @@ mod tests {
         assert_eq!(nothing.bounds().map(|b| b.is_empty()), Some(true));
         let square = Area::from(Region::new([0.0; 2], [1.0; 2]).expect("valid"));
         assert_eq!(square.clone().without(vec![]), square);
-        assert_eq!(Area::Outside(Box::new(square)).bounds(), None);
+        assert_eq!(Area::Outside(Box::new(square.clone())).bounds(), None);
+        let triangle = Polygon::new(&[[[0.0, 0.0], [9.0, 0.0], [0.0, 9.0]]]).expect("valid");
+        assert_eq!(Area::from(triangle).without([square]).vertices(), 3);
     }
 }

@@ -71,18 +71,6 @@ impl BoundAttributes {
     }
 
     /// The columns of some points; see [`columns`](Self::columns).
-    ///
-    /// ```
-    /// use strew_core::{Attributes, space::{SpaceSet, Table}};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// let points = set.chunk(8.0, [0, 0, 0])?.to_vec();
-    /// let u1 = set.attributes(&Attributes::new(vec!["u1".parse()?])?)?;
-    /// let mut columns = vec![];
-    /// u1.write_points(&points, &mut columns);
-    /// assert_eq!(columns[0].numbers().map(<[f64]>::len), Some(points.len()));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn write_points(&self, points: &[Point], columns: &mut Vec<Column>) {
         *columns = self.columns(points.iter().map(|point| point.id));
     }
@@ -157,15 +145,6 @@ impl SpaceSet {
     ///
     /// # Errors
     /// [`ErrorKind::Attribute`] for `angle` and evenly spread variants, which points in space do not have.
-    ///
-    /// ```
-    /// use strew_core::{Attribute, Attributes, space::{SpaceSet, Table}};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?);
-    /// assert!(set.attributes(&Attributes::new(vec![Attribute::scale(0.5, 2.0)?])?).is_ok());
-    /// assert!(set.attributes(&Attributes::new(vec![Attribute::Angle])?).is_err());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
         BoundAttributes::new(attributes, &self.lattice)
     }
@@ -176,14 +155,6 @@ impl Plan {
     ///
     /// # Errors
     /// As [`SpaceSet::attributes`].
-    ///
-    /// ```
-    /// use strew_core::{Attributes, space::{SpaceSet, Table}};
-    ///
-    /// let plan = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).chunk(8.0, [0, 0, 0])?;
-    /// assert!(plan.attributes(&Attributes::new(vec!["u1".parse()?])?).is_ok());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
         BoundAttributes::new(attributes, &self.scope.lattice)
     }
@@ -225,18 +196,5 @@ mod tests {
                 assert!(mean(&|i| part[i] * other[i]).abs() < close);
             }
         }
-    }
-
-    #[test]
-    fn levels_have_values_of_their_own() {
-        let list = Attributes::new(vec!["u1".parse().expect("known")]).expect("one");
-        let bound = set().attributes(&list).expect("known");
-        let ids = (-50..50).map(|z| PointId { x: 3, y: -8, z });
-        let columns = bound.columns(ids);
-        let numbers = columns[0].numbers().expect("numbers");
-        let mut sorted = numbers.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        sorted.dedup();
-        assert_eq!(sorted.len(), numbers.len());
     }
 }

@@ -20,10 +20,10 @@ use crate::{
 /// let pattern = Pattern::new("(5-sqrt(3))/2".parse()?, [0; 3]);
 /// assert!(pattern.contains([0, 0, 0]) && !pattern.contains([1, 0, 0]));
 /// // Counting takes no longer for a larger box.
-/// let side = -1_000_000..1_000_000;
+/// let side = -10_000_000_000..10_000_000_000;
 /// let count = pattern.count([side.clone(), side.clone(), side]);
 /// let t = pattern.alpha().set_side_f64();
-/// assert!((count as f64 / 8e18 - t * t * t).abs() < 1e-6);
+/// assert!((count as f64 / 8e30 - t * t * t).abs() < 1e-9);
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,13 +51,6 @@ impl Pattern {
     }
 
     /// The index of the lattice origin that a seed chooses.
-    ///
-    /// ```
-    /// use strew_core::{Seed, space::Pattern};
-    ///
-    /// assert_eq!(Pattern::origin(Seed(0)), [0; 3]);
-    /// assert_eq!(Pattern::origin(Seed(7))[0], Seed(7).origin().x);
-    /// ```
     #[must_use]
     pub fn origin(seed: Seed) -> [u64; 3] {
         let planar = seed.origin();
@@ -192,14 +185,5 @@ mod tests {
             });
             prop_assert_eq!(pattern.contains(at), (0..3).all(fits));
         }
-    }
-
-    #[test]
-    fn density_is_the_volume_of_the_set_region() {
-        let pattern = Pattern::new("(5-sqrt(3))/2".parse().expect("valid"), [0; 3]);
-        let side = 1i64 << 36;
-        let count = pattern.count([-side..side, -side..side, -side..side]) as f64;
-        let t = pattern.alpha().set_side_f64();
-        assert!((count / (8.0 * (side as f64).powi(3)) - t * t * t).abs() < 1e-9);
     }
 }

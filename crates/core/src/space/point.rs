@@ -85,33 +85,3 @@ impl FromStr for PointId {
         lattice_of(text, ALLOWED).map(Self::of)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::ErrorKind;
-
-    #[test]
-    fn text_round_trips_and_is_unique() {
-        for lattice in [[0, 0, 0], [-31, 52, 7], [i64::MIN, i64::MAX, -1]] {
-            let id = PointId::of(lattice);
-            assert_eq!(alloc::format!("{id}").parse(), Ok(id));
-        }
-        for bad in [
-            "",
-            "::",
-            "1",
-            "1:2",
-            "1:2:",
-            "1:2:3:4",
-            "+1:2:3",
-            "01:2:3",
-            "-0:2:3",
-            " 1:2:3",
-            "1:2:99999999999999999999",
-        ] {
-            let error = bad.parse::<PointId>().expect_err(bad);
-            assert_eq!(error.kind(), ErrorKind::PointId);
-        }
-    }
-}

@@ -342,6 +342,10 @@ mod tests {
                 let n = map.intervals();
                 let mix = Mix::scattered(&map, shares.clone()).expect("near");
                 assert!(mix.splits().len() < shares.kinds());
+                for (i, split) in mix.splits().iter().enumerate() {
+                    let mut others = mix.splits()[..i].iter();
+                    assert!(others.all(|other| other.block != split.block));
+                }
                 for number in 0..8 {
                     let source = |block| Symmetry::<2>::numbered(number).source(n, block);
                     let turned = Labels::new(&map, &mix, source);
@@ -354,21 +358,6 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn splits_are_of_different_blocks() {
-        let (map, shares) = (map(20), "1:1:1:1:2".parse::<Shares>().expect("valid"));
-        let mix = Mix::scattered(&map, shares.clone()).expect("near");
-        for (i, split) in mix.splits().iter().enumerate() {
-            assert!(
-                mix.splits()[..i]
-                    .iter()
-                    .all(|other| other.block != split.block)
-            );
-        }
-        // The same labels have the same splits.
-        assert_eq!(Mix::new(&map, shares, mix.labels().to_vec()), Ok(mix));
     }
 
     #[test]

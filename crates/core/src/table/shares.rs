@@ -98,14 +98,6 @@ impl Shares {
     }
 
     /// The share of a kind, from 0 to 1; 0 past the last.
-    ///
-    /// ```
-    /// use strew_core::table::Shares;
-    ///
-    /// let shares: Shares = "1:3".parse()?;
-    /// assert_eq!([0, 1, 2].map(|kind| shares.of(kind)), [0.25, 0.75, 0.0]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
     #[must_use]
     pub fn of(&self, kind: u8) -> f64 {
         let part = self.parts.get(usize::from(kind));
@@ -197,6 +189,8 @@ mod tests {
             assert_eq!(reversed, Ok(shares.clone()));
             assert_eq!(shares.to_string().parse(), Ok(shares));
         }
+        let shares = Shares::new([3.0, 1.0]).expect("valid");
+        assert_eq!([0, 1, 2].map(|kind| shares.of(kind)), [0.25, 0.75, 0.0]);
     }
 
     #[test]
