@@ -6,25 +6,9 @@ use std::collections::HashMap;
 
 use proptest::prelude::*;
 use strew_core::{
-    Alpha, ErrorKind, LeastDistance, Map, Placement, PointSet, Seed, Spacing, Table, Warp,
-    table::{FRACTION_BITS, Provenance},
+    ErrorKind, LeastDistance, Placement, PointSet, Seed, Spacing, Table, Warp, table::FRACTION_BITS,
 };
-use subject::{plane::cube, set, shipped};
-
-/// Vectors of up to ± `most` grid units.
-fn wild(alpha: &str, radius: u32, most: i32) -> Table {
-    let map = Map::new(alpha.parse::<Alpha>().expect("valid"), radius).expect("small");
-    let mut state = 99u64;
-    let mut next = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        ((state >> 33) % (2 * most as u64 + 1)) as i32 - most
-    };
-    let blocks = map.intervals() * map.intervals();
-    let vectors = (0..blocks).map(|_| [next(), next()]).collect();
-    Table::new(map, "wild", vectors, Provenance::default()).expect("valid")
-}
+use subject::{plane::cube, set, shipped, table_of};
 
 fn points(table: &Table, placement: Placement, corner: [f64; 2], side: f64) -> Vec<[f64; 2]> {
     let plan = set(table, placement).within(cube(corner, side));
@@ -68,8 +52,8 @@ fn without_warp_the_guarantee_is_attained() {
         "step-5-sqrt3-over-2-s",
     ];
     let wild = [
-        wild("sqrt(3)", 9, 1 << (FRACTION_BITS - 2)),
-        wild("(1+sqrt(5))/2", 6, 5 << FRACTION_BITS),
+        table_of("sqrt(3)", 9, 1 << (FRACTION_BITS - 2)),
+        table_of("(1+sqrt(5))/2", 6, 5 << FRACTION_BITS),
     ];
     let tables = wild.into_iter().chain(names.map(shipped));
     for table in tables {
@@ -110,7 +94,7 @@ proptest! {
                 shipped("blue-5-sqrt3-over-2-s"),
                 shipped("spaced-sqrt3-s"),
                 shipped("lloyd-5-sqrt3-over-2-s"),
-                wild("sqrt(3)", 20, 1 << (FRACTION_BITS - 1)),
+                table_of("sqrt(3)", 20, 1 << (FRACTION_BITS - 1)),
             ]
         });
         let table = &tables[which];
@@ -182,6 +166,10 @@ proptest! {
 fn far_beyond_the_limit_distances_are_not_kept() {
     let table = shipped("spaced-5-sqrt3-over-2-s");
     let distance = table.least_distance().with_warp(Warp::OFF);
+    let near = set(&table, unit(0, 0.0));
+    assert_eq!(near.least_distance_within(1e6), near.least_distance());
+    // Coordinates are multiples of 1/64 there.
+    assert!(near.least_distance_within(1e14) < near.least_distance() - 0.01);
     let least = (0..3).map(|seed| least_far_out(&set(&table, unit(seed, 0.0)), 1e14));
     let least = least.fold(f64::INFINITY, f64::min);
     assert!(least < 0.99 * distance, "{least}: the limit has no reason");

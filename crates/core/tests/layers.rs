@@ -3,10 +3,7 @@
 use crate::subject;
 
 use proptest::prelude::*;
-use strew_core::{
-    Area, Circle, Keep, Placement, PointSet, Points, Region, Spacing, Table,
-    server::{self, Stop},
-};
+use strew_core::{Area, Circle, Keep, Placement, PointSet, Points, Region, Spacing, Table};
 use subject::{
     all, any_seed, any_table, mixed,
     plane::{agree, any_parts, one_by_one},
@@ -149,41 +146,4 @@ fn large_plans_are_made_piece_by_piece() {
             assert_eq!(points, one_by_one(&whole, &clear, region));
         }
     }
-}
-
-#[test]
-fn counting_stops() {
-    let table = &subject::tables()[0];
-    let [own, other] = [3, 4].map(|seed| set(table, unit(seed)));
-    let clear = own.clear_of(&other, 0.4).expect("near");
-    let stop = Stop::new();
-    for side in [20.0, 2000.0] {
-        let region = Region::new([0.0; 2], [side; 2]).expect("ordered");
-        assert!(server::within(&clear, region, &Stop::new()).is_ok());
-    }
-    stop.raise();
-    for side in [20.0, 20_000.0] {
-        let region = Region::new([0.0; 2], [side; 2]).expect("ordered");
-        assert!(server::within(&clear, region, &stop).is_err());
-    }
-}
-
-#[test]
-fn others_keep_clear_of_the_points_of_all_levels() {
-    let placed =
-        |seed| Placement::new(Spacing::new(1.0).expect("in range"), strew_core::Seed(seed));
-    let table = mixed::tables()[0].clone();
-    let trees = set(
-        &table,
-        placed(1).with_keep(Keep::new(0.3).expect("a share")),
-    );
-    let region = Region::new([0.0; 2], [60.0, 40.0]).expect("valid");
-    let left = |trees: &PointSet| {
-        let flowers = set(&table, placed(2))
-            .clear_of(trees, 1.0)
-            .expect("near enough");
-        flowers.within(region).expect("near").to_vec()
-    };
-    let level = trees.clone().lod(0.1).expect("a part");
-    assert_eq!(left(&level), left(&trees));
 }

@@ -5,13 +5,12 @@ use crate::subject;
 
 use proptest::prelude::*;
 use strew_core::{
-    Attribute, Attributes, Map, Variants,
+    Attribute, Attributes, Variants,
     space::{PointId, SpaceSet, Table},
-    table::{Provenance, Ranks},
 };
 use subject::{
     definition::{KNOT, control, mix, shift},
-    space::between,
+    space::{between, table},
 };
 
 /// The sizes of the shears' slopes: along axes, and along diagonals.
@@ -161,19 +160,6 @@ impl Definition<'_> {
     }
 }
 
-fn table() -> Table {
-    let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), 5).expect("small");
-    let blocks = map.intervals().pow(3);
-    let vector = |i: usize| [7919, 104_729, 1_299_709].map(|f| ((i * f) % 65_535) as u16 as i16);
-    let vectors = (0..blocks)
-        .map(vector)
-        .map(|v| v.map(|v| v.max(-32_767)))
-        .collect();
-    let order = (0..blocks as u32).map(|i| i * 11 % blocks as u32).collect();
-    let ranks = Ranks::new(order).expect("an order");
-    Table::new(map, "test", vectors, Provenance::default(), Some(ranks)).expect("valid")
-}
-
 /// The addresses of a cube that the definition has points at, in the library's order.
 fn addresses(corner: [i64; 3], side: i64) -> Vec<[i64; 3]> {
     let [x, y, z] = corner;
@@ -195,7 +181,7 @@ proptest! {
         seed in prop_oneof![Just(0), any::<u64>()], spacing in 0.1..9.0f64, strength in prop_oneof![Just(0.0), Just(1.0), 0.1..2.0f64],
         corner in prop::array::uniform3(prop_oneof![-3000i64..3000, -1i64 << 39..1 << 39]),
     ) {
-        let table = table();
+        let table = table(32_767);
         let strength = (strength * 256.0).round() / 256.0;
         let set = SpaceSet::new(table.clone()).seed(seed).warp(strength).expect("in range");
         let set = set.spacing(spacing).expect("in range");
@@ -247,7 +233,7 @@ proptest! {
     fn the_library_has_the_attributes_of_the_definition(
         seed: u64, at in prop::array::uniform3(-1i64 << 40..1 << 40),
     ) {
-        let set = SpaceSet::new(table()).seed(seed);
+        let set = SpaceSet::new(table(32_767)).seed(seed);
         let variants: Variants = "ice:1,rock:3".parse().expect("valid");
         let list = Attributes::new(vec![
             "rotation".parse().expect("known"),
@@ -269,4 +255,26 @@ proptest! {
         let variant = u32::from(hash(seed, 3, at) >= 1 << 62);
         prop_assert_eq!(columns[5].variants(), Some(&[variant][..]));
     }
+}
+
+#[test]
+fn sets_are_those_of_their_files_and_of_their_parameters() {
+    let file = table(4096).to_bytes();
+    let set = SpaceSet::from_table(&file).expect("valid").seed(7);
+    assert_eq!(set.table(), &table(4096));
+    let id = |x| PointId { x, y: 0, z: 0 };
+    let unturned = set.clone().seed(0);
+    assert_eq!([0, 1].map(|x| unturned.block(id(x))), [Some([0; 3]), None]);
+    let plan = set.chunk(8.0, [0, 0, 0]).expect("near");
+    let list = |attribute| Attributes::new(vec![attribute]).expect("one");
+    let scale = list(Attribute::scale(0.5, 2.0).expect("in range"));
+    let bound = plan.attributes(&scale).expect("of space");
+    let mut columns = vec![];
+    bound.write_points(&plan.to_vec(), &mut columns);
+    assert_eq!(columns, bound.columns(plan.iter().map(|point| point.id)));
+    assert!(set.attributes(&list(Attribute::Angle)).is_err());
+    assert_eq!(
+        (set.steps(), set.keep(0.5).expect("a share").steps()),
+        (0, 2)
+    );
 }

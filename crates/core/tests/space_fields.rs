@@ -1,11 +1,15 @@
 //! Sets in space whose density varies, their levels of detail, and exact numbers of their points: by brute force.
 
+use crate::{
+    field_specs::{joined, simple},
+    subject::space::{agree_in_number, exactly},
+};
+
 use proptest::prelude::*;
 use strew_core::{
-    Backend, ErrorKind, Field,
-    field::{FieldSpec, Noise},
-    server::Stop,
-    space::{Ball, Point, PointId, Region, SpaceSet, Table, Volume},
+    Backend, Field,
+    field::FieldSpec,
+    space::{Ball, PointId, Region, SpaceSet, Table, Volume},
 };
 
 /// A set whose points stay: `space_settle.rs` tests the rest.
@@ -15,48 +19,15 @@ fn set(seed: u64) -> SpaceSet {
     set.settle(0).expect("0")
 }
 
+/// Fields of the plane and of space, and what is joined from them.
 fn any_field() -> impl Strategy<Value = FieldSpec> {
     let at = || prop::array::uniform3(-9.0f64..9.0);
     let shares = || prop::array::uniform2(0.0f64..=1.0);
-    let noise = (any::<u64>(), 0.5f64..30.0, 1u32..5, shares());
-    let leaf = prop_oneof![
-        shares().prop_map(|[share, _]| FieldSpec::constant(share)),
-        (at(), at(), shares()).prop_map(|(from, to, shares)| FieldSpec::ramp(from, to, shares)),
-        (at(), at(), shares()).prop_map(|([x, y, _], [u, v, _], shares)| FieldSpec::ramp(
-            [x, y],
-            [u, v],
-            shares
-        )),
-        (at(), 0.0f64..6.0, shares()).prop_map(|(at, r, shares)| FieldSpec::radial(
-            at,
-            [r, r + 5.0],
-            shares
-        )),
-        (at(), 0.0f64..6.0, shares()).prop_map(|([x, y, _], r, shares)| FieldSpec::radial(
-            [x, y],
-            [r, r + 5.0],
-            shares
-        )),
-        noise.prop_map(
-            |(seed, wavelength, octaves, range)| FieldSpec::noise(Noise {
-                seed,
-                wavelength,
-                octaves,
-                range,
-            })
-        ),
-    ];
-    let leaf = leaf.prop_map(|field| field.expect("valid"));
-    leaf.prop_recursive(2, 6, 3, |part| {
-        let parts = || prop::collection::vec(part.clone(), 1..4);
-        prop_oneof![
-            parts().prop_map(FieldSpec::multiply),
-            parts().prop_map(FieldSpec::min),
-            parts().prop_map(FieldSpec::max),
-            part.clone().prop_map(FieldSpec::invert),
-        ]
-        .prop_map(|field| field.expect("valid"))
-    })
+    let ramp = (at(), at(), shares())
+        .prop_map(|(from, to, shares)| FieldSpec::ramp(from, to, shares).expect("apart"));
+    let radial = (at(), 0.0f64..6.0, shares())
+        .prop_map(|(at, r, shares)| FieldSpec::radial(at, [r, r + 5.0], shares).expect("valid"));
+    joined(prop_oneof![2 => ramp, 2 => radial, 3 => simple()])
 }
 
 fn any_volume() -> impl Strategy<Value = Volume> {
@@ -132,57 +103,7 @@ proptest! {
     }
 }
 
-#[test]
-fn large_plans_in_fields_are_those_of_their_parts() {
-    let noise = Noise {
-        seed: 3,
-        wavelength: 20.0,
-        octaves: 2,
-        range: [0.0, 0.4],
-    };
-    let glow = FieldSpec::radial([40.0; 3], [10.0, 40.0], [1.0, 0.0]).expect("valid");
-    let parts = vec![glow, FieldSpec::noise(noise).expect("valid")];
-    let field = FieldSpec::multiply(parts).expect("valid");
-    for seed in [0, 5] {
-        let graded = set(seed).in_field(field.clone());
-        let some = set(seed).chunk(30.0, [1, 1, 1]).expect("near");
-        let some: Vec<_> = some.iter().map(|point| point.id).step_by(7).collect();
-        let whole = set(seed).chunk(70.0, [0, 0, 0]).expect("near");
-        let left = set(seed)
-            .without(some.clone())
-            .chunk(70.0, [0, 0, 0])
-            .expect("near");
-        assert_eq!(left.count() + some.len() as u128, whole.count());
-        let rest = |point: &Point| !some.contains(&point.id);
-        assert!(whole.iter().filter(rest).eq(left.iter()));
-        let whole = graded.chunk(80.0, [0, 0, 0]).expect("near");
-        let mut points = whole.to_vec();
-        assert!(points.len() > 10_000);
-        assert_eq!(points.len() as u128, whole.count());
-        let parts = (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2]);
-        let parts = parts.flat_map(|at| graded.chunk(40.0, at).expect("near").to_vec());
-        let mut parts: Vec<_> = parts.collect();
-        let middle = whole.window(whole.count() / 2, Some(1)).to_vec()[0];
-        assert_eq!(points[points.len() / 2], middle);
-        points.sort_by_key(|point| point.id);
-        parts.sort_by_key(|point| point.id);
-        assert_eq!(points, parts);
-        let at = [37.0, 41.0, 44.0];
-        let square = |id: PointId| {
-            let point = graded.point(id).expect("there");
-            let [x, y, z] = [0, 1, 2].map(|axis| point.at()[axis] - at[axis]);
-            x * x + y * y + z * z
-        };
-        let nearest = points
-            .iter()
-            .map(|point| square(point.id))
-            .fold(f64::MAX, f64::min);
-        let found = graded.nearest(at, 1).expect("near")[0].point.id;
-        assert_eq!(square(found), nearest);
-    }
-}
-
-/// Layers keep clear of the points that a field leaves, and of all of them at any level of detail.
+/// Layers keep clear of the points that a field leaves.
 #[test]
 fn sets_keep_clear_of_what_a_field_leaves() {
     let half = FieldSpec::ramp([9.9, 0.0, 0.0], [10.1, 0.0, 0.0], [1.0, 0.0]).expect("valid");
@@ -197,52 +118,20 @@ fn sets_keep_clear_of_what_a_field_leaves() {
         .filter(|point| is_clear(point.at()))
         .collect();
     assert_eq!(kept, expected);
-    assert_eq!(points(&clear(&stars.lod(0.1).expect("a part"))), expected);
 }
 
 #[test]
 fn an_exact_number_of_points_has_a_spacing() {
-    let ball = Volume::from(Ball::new([100.0, -40.0, 7.0], 9.0).expect("a ball"));
-    let shell = ball
-        .clone()
-        .without([Ball::new([100.0, -40.0, 7.0], 8.0).expect("a ball").into()]);
-    let glow = FieldSpec::radial([100.0, -40.0, 7.0], [0.0, 9.0], [1.0, 0.0]).expect("valid");
-    let sets = [
-        set(0),
-        set(7),
-        set(7).keep(0.1).expect("a share"),
-        set(7).in_field(glow),
-    ];
-    for (set, volume) in sets.iter().flat_map(|set| [(set, &ball), (set, &shell)]) {
-        for count in [1, 2, 77, 4000] {
-            let plan = set
-                .exactly(count, volume.clone(), 0.0, &Stop::default())
-                .expect("a spacing");
-            assert_eq!((plan.count(), plan.to_vec().len() as u128), (count, count));
-            let spacing = plan.placement().spacing.get();
-            let same = set
-                .clone()
-                .spacing(spacing)
-                .expect("in range")
-                .within(volume.clone());
-            assert_eq!(
-                same.expect("near").to_vec()[..count as usize],
-                plan.to_vec()
-            );
+    let center = [100.0, -40.0, 7.0];
+    let ball = |radius| Volume::from(Ball::new(center, radius).expect("a ball"));
+    let glow = FieldSpec::radial(center, [0.0, 9.0], [1.0, 0.0]).expect("valid");
+    let thinned = set(7).keep(0.1).expect("a share");
+    for set in [set(0), thinned, set(7).in_field(glow)] {
+        for volume in [ball(9.0), ball(9.0).without([ball(8.0)])] {
+            for count in [1, 2, 77, 4000] {
+                assert!(exactly(&set, count, &volume, 0.02).is_ok());
+                agree_in_number(&set, &volume, count);
+            }
         }
     }
-    let refused = |count, least, volume: Volume| {
-        let error = sets[0]
-            .exactly(count, volume, least, &Stop::default())
-            .expect_err("refused");
-        error.kind()
-    };
-    assert_eq!(refused(0, 0.0, ball.clone()), ErrorKind::Count);
-    assert_eq!(refused(1000, 3.0, ball), ErrorKind::TooDense);
-    let flat = Region::new([0.0; 3], [1.0, 1.0, 0.0]).expect("a box");
-    assert_eq!(refused(1, 0.0, flat.into()), ErrorKind::Count);
-    assert_eq!(
-        refused(1, 0.0, Volume::Outside(shell.into())),
-        ErrorKind::Unbounded
-    );
 }

@@ -83,6 +83,16 @@ proptest! {
     }
 
     #[test]
+    fn a_count_is_met_exactly((set, area) in any_area(), count in 1u128..2000, is_box: bool) {
+        let area = if is_box { area.bounds().expect("bounded").into() } else { area };
+        // Areas without extent hold nothing at any spacing.
+        let fine = set.clone().spacing(0.2).expect("valid");
+        prop_assume!(fine.count(area.clone()).expect("near") > 200);
+        prop_assert!(exactly(&set, count, &area, 0.0).is_ok_and(|plan| plan.count() == count));
+        agree_in_number(&set, &area, count);
+    }
+
+    #[test]
     fn a_share_keeps_the_points_of_lesser_rank(
         (set, area) in any_area(), share in prop_oneof![0.0001..1.0f64, Just(1.0)], parts in any_parts(),
     ) {
@@ -104,7 +114,7 @@ proptest! {
     #[test]
     fn chunks_lose_nothing_and_share_nothing(
         (whole, other, distance, _) in any_layers(), is_clear: bool,
-        at in prop::array::uniform::<_, D>(-40i64..40),
+        at in prop::array::uniform::<_, D>(prop_oneof![3 => -40i64..40, 1 => -(1i64 << 30)..1 << 30]),
         (size, number) in prop_oneof![(8.0..20.0f64, Just(2i64)), (2i64..5).prop_map(|n| (24.0 / n as f64, n))],
         parts in any_parts(),
     ) {
@@ -149,6 +159,91 @@ proptest! {
     }
 }
 
+const fn is_shared<T: Clone + Send + Sync>() {}
+
+const _: () = is_shared::<Set>();
+const _: () = is_shared::<Plan>();
+
+#[test]
+fn a_chosen_warp_stays() {
+    let set = Set::new(unit_set().table().clone());
+    let strength = |set: Set| set.placement().warp.strength();
+    assert_eq!(strength(set.clone()), 0.0);
+    assert_eq!(strength(set.clone().seed(3)), 1.0);
+    assert_eq!(strength(set.clone().seed(3).seed(0)), 0.0);
+    assert_eq!(strength(set.warp(0.5).expect("in range").seed(3)), 0.5);
+}
+
+#[test]
+fn ids_read_back_and_have_one_text() {
+    let ends = [i64::MIN, i64::MAX, -31, 0];
+    for first in 0..ends.len() {
+        let id = id(std::array::from_fn(|i| ends[(first + i) % 4]));
+        assert_eq!(id.to_string().parse(), Ok(id));
+    }
+    let rest = ":2".repeat(D - 1);
+    let few = ["1"; D - 1].join(":");
+    let starts = [
+        "",
+        ":",
+        "1:",
+        "1:2",
+        "+1",
+        "01",
+        "-0",
+        " 1",
+        "99999999999999999999",
+    ];
+    for bad in starts
+        .map(|start| format!("{start}{rest}"))
+        .into_iter()
+        .chain([few])
+    {
+        let error = bad.parse::<PointId>().expect_err(&bad);
+        assert_eq!(error.kind(), ErrorKind::PointId);
+    }
+}
+
+#[test]
+fn others_keep_clear_of_the_points_of_all_levels() {
+    let set = Set::new(unit_set().table().clone());
+    let trees = set.clone().seed(1).keep(0.3).expect("a share");
+    let left = |trees: &Set| {
+        let flowers = set.clone().seed(2).clear_of(trees, 1.0);
+        within(&flowers.expect("near"), cube([0.0; D], 20.0))
+    };
+    let level = trees.clone().lod(0.1).expect("a part");
+    assert_eq!(left(&level), left(&trees));
+}
+
+#[test]
+fn far_windows_and_many_parts_are_found_without_walking_all() {
+    let set = Set::new(unit_set().table().clone());
+    let plan = set.within(cube([-0.5 * WIDE; D], WIDE)).expect("near");
+    assert!(plan.count() > 50_000_000_000_000_000);
+    for offset in [1, 999, plan.count() / 2, plan.count() - 100] {
+        let points = plan.window(offset, Some(100)).to_vec();
+        let earlier = plan.window(offset - 1, Some(50)).to_vec();
+        assert_eq!(points.len(), 100);
+        assert_eq!(&points[..49], &earlier[1..], "{offset}");
+    }
+    let numbers: Vec<u128> = (1..40).map(|i| plan.count() / 40 * i).collect();
+    for (cursor, &k) in plan.cursors(&numbers).into_iter().zip(&numbers) {
+        assert_eq!(plan.window(k, None).cursor(), cursor);
+        let up_to = plan.from_cursor(cursor.expect("inside"));
+        assert_eq!((up_to.offset(), up_to.cursor()), (k, cursor));
+    }
+    let parts: Vec<Plan> = plan.split(100).collect();
+    assert_eq!(parts.iter().map(Plan::count).sum::<u128>(), plan.count());
+    for pair in parts.windows(2) {
+        assert_eq!(pair[0].next_cursor(), pair[1].cursor());
+    }
+    let ball = Round::new([5.0; D], 70.0).expect("valid");
+    let ball = set.seed(7).within(ball).expect("near");
+    let parts = ball.split(97).flat_map(|part| part.to_vec());
+    assert!(parts.eq(ball.to_vec()));
+}
+
 #[test]
 fn bad_input_is_refused() {
     let set = unit_set();
@@ -189,6 +284,18 @@ fn bad_input_is_refused() {
     // A limit bounds it.
     let limited = set.clone().limited_to(cube([-1.0; D], 2.0));
     assert!(limited.within(everywhere).is_ok());
+    let round = Area::from(Round::new([0.0; D], 50.0).expect("valid"));
+    let (unit, mut flat) = (cube([0.0; D], 1.0), [1.0; D]);
+    flat[D - 1] = 0.0;
+    for (count, area, least, kind) in [
+        (0, unit.into(), 0.0, ErrorKind::Count),
+        (1, between([0.0; D], flat).into(), 0.0, ErrorKind::Count),
+        (1_000_000, round.clone(), 1.0, ErrorKind::TooDense),
+        (1, Area::Outside(Box::new(round)), 0.0, ErrorKind::Unbounded),
+    ] {
+        let error = exactly(&set, count, &area, least).expect_err("refused");
+        assert_eq!(error.kind(), kind);
+    }
     for (size, at, problem) in [
         (0.0, 0, "size"),
         (-1.0, 0, "size"),
@@ -223,8 +330,18 @@ fn bad_input_is_refused() {
         );
         assert!(error.allowed().contains("at most 32"), "{error}");
     }
+    let error = set.clone().clear_of(&other, 32.1).expect_err("far");
+    assert_eq!(error.limit(), Some(32.0));
     assert!(set.clone().clear_of(&other, 32.0).is_ok());
-    for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
+    for bad in [
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        0.0,
+        -1.0,
+        1e300,
+        1e-300,
+    ] {
         let kind = |result: Result<Set, strew_core::Error>| result.expect_err("refused").kind();
         assert_eq!(kind(set.clone().spacing(bad)), ErrorKind::Spacing);
         assert_eq!(kind(set.clone().density(bad)), ErrorKind::Density);

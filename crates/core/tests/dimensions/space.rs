@@ -2,12 +2,13 @@
 
 use proptest::prelude::*;
 use strew_core::{
-    ErrorKind, Map, Offsets, Polygon,
+    ErrorKind, Offsets, Polygon,
+    field::FieldSpec,
     server::{Stop, Visits},
-    space::{Prism, Table},
-    table::{Provenance, Ranks},
+    space::Prism,
 };
 
+use crate::subject::noise;
 pub use crate::subject::space::*;
 
 #[path = "both.rs"]
@@ -18,6 +19,9 @@ const fn reach(_: &Set) -> i64 {
     24
 }
 
+/// The side of a cube that holds more than 5·10¹⁶ points.
+const WIDE: f64 = 4e5;
+
 /// Brute force takes long.
 fn cases(number: u32) -> u32 {
     (number / 100).max(12)
@@ -25,14 +29,7 @@ fn cases(number: u32) -> u32 {
 
 /// A set of a small map with vectors of up to 4 grid units along each axis.
 fn set(spacing: f64, seed: u64) -> Set {
-    let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), 5).expect("small");
-    let blocks = map.intervals().pow(3);
-    let vector = |i: usize| [7919, 104_729, 1_299_709].map(|f| ((i * f) % 32_768) as i16 - 16_384);
-    let vectors = (0..blocks).map(vector).collect();
-    let order = (0..blocks as u32).map(|i| i * 11 % blocks as u32).collect();
-    let ranks = Ranks::new(order).expect("an order");
-    let table = Table::new(map, "test", vectors, Provenance::default(), Some(ranks));
-    let set = Set::new(table.expect("valid")).seed(seed);
+    let set = Set::new(table(16_384)).seed(seed);
     set.spacing(spacing).expect("in range")
 }
 
@@ -136,7 +133,7 @@ proptest! {
                 let about = (point.at()[axis] / step).round() as i64;
                 let mut positions = about - (about.abs() >> 50) - 2..about + (about.abs() >> 50) + 3;
                 let is_it = |p: i64| {
-                    let exact = exactly(step, p, size, at[axis]);
+                    let exact = rounded_once(step, p, size, at[axis]);
                     offset[axis] == exact.clamp(0.0, size.next_down())
                 };
                 prop_assert!(positions.any(is_it), "{} {:?}", offset[axis], point);
@@ -147,7 +144,7 @@ proptest! {
 }
 
 /// p · step − size · column, rounded once.
-fn exactly(step: f64, p: i64, size: f64, column: i64) -> f64 {
+fn rounded_once(step: f64, p: i64, size: f64, column: i64) -> f64 {
     let parts = |v: f64| {
         let bits = v.to_bits();
         (
@@ -162,46 +159,38 @@ fn exactly(step: f64, p: i64, size: f64, column: i64) -> f64 {
 }
 
 #[test]
-fn far_windows_and_many_parts_are_found_without_walking_all() {
-    let wide = cube([-2e5; 3], 4e5);
-    let plan = set(1.0, 0).within(wide).expect("near");
-    let numbers: Vec<u128> = (1..40).map(|i| plan.count() / 40 * i).collect();
-    for (cursor, &k) in plan.cursors(&numbers).iter().zip(&numbers) {
-        let cursor = cursor.expect("inside");
-        let up_to = plan.from_cursor(cursor);
-        assert_eq!((up_to.offset(), up_to.cursor()), (k, Some(cursor)));
-    }
-    // One alone is the same.
-    assert_eq!(
-        plan.window(numbers[7], None).cursor(),
-        plan.cursors(&numbers)[7]
-    );
-    let ball = set(1.0, 7)
-        .within(Round::new([5.0; 3], 70.0).expect("a ball"))
-        .expect("near");
-    let parts: Vec<Plan> = ball.split(97).collect();
-    let ids = parts.iter().flat_map(Plan::iter).map(|point| point.id);
-    assert!(ids.eq(ball.iter().map(|point| point.id)));
-}
-
-#[test]
-fn a_raised_flag_ends_a_search_for_neighbors() {
+fn a_raised_flag_ends_searches_and_counting() {
+    let set = set(1.0, 7);
+    let visits = Visits::new(usize::MAX, Stop::new());
+    let near = set.nearest_visiting([0.0; 3], 9, None, &visits);
+    assert!(near.expect("near").len() == 9 && visits.made() >= 9);
     let stop = Stop::new();
     stop.raise();
-    let error = set(1.0, 7).nearest_visiting([0.0; 3], 9, None, &Visits::new(usize::MAX, stop));
-    assert_eq!(error.expect_err("stopped").kind(), ErrorKind::Stopped);
+    let stopped = set.within_until(cube([0.0; 3], 9.0), stop.clone());
+    assert_eq!(stopped.expect_err("stopped").kind(), ErrorKind::Stopped);
+    let near = set.nearest_visiting([0.0; 3], 9, None, &Visits::new(usize::MAX, stop));
+    assert_eq!(near.expect_err("stopped").kind(), ErrorKind::Stopped);
 }
 
 #[test]
 fn large_requests_are_those_of_their_parts() {
-    for (seed, share) in [(0, 1.0), (0, 0.3), (7, 1.0), (7, 0.3)] {
-        let set = thinned(&set(1.0, seed), share);
+    let glow = FieldSpec::radial([320.0, 10.0, -40.0], [20.0, 50.0], [1.0, 0.3]).expect("valid");
+    let parts = vec![glow, noise(3, 20.0, 2, [0.1, 1.0]).expect("valid")];
+    let field = FieldSpec::multiply(parts).expect("valid");
+    let sets = [(0, 1.0), (0, 0.3), (7, 1.0), (7, 0.3)];
+    let sets = sets.map(|(seed, share)| thinned(&set(1.0, seed), share));
+    let graded = [0, 5].map(|seed| thinned(&set(0.8, seed), 1.0).in_field(field.clone()));
+    let whole = within(&sets[2], cube([300.0, -10.0, -60.0], 30.0));
+    let felled: Vec<PointId> = whole.iter().map(|point| point.id).step_by(7).collect();
+    let left = sets[2].clone().without(felled);
+    for set in sets.into_iter().chain(graded).chain([left]) {
         let ball = Round::new([310.0, 5.0, -40.0], 30.0).expect("valid");
         let region = between([290.0, -20.0, -70.0], [350.0, 40.0, -10.5]);
         let without = Area::from(region).without([ball.into()]);
         for volume in [region.into(), ball.into(), without] {
             let all = within(&set, volume.clone());
             assert!(all.len() > 10_000);
+            assert_eq!(set.count(volume.clone()), Ok(all.len() as u128));
             let part = |i: i32| {
                 let at = [280 + i % 5 * 15, -25 + i / 5 % 5 * 15, -70 + i / 25 * 15];
                 let cube = cube(at.map(f64::from), 15.0);
@@ -233,12 +222,6 @@ fn long_and_large_boxes_agree() {
         let points = within(&set, region);
         assert!(points.iter().all(|point| region.contains(point.at())));
         agree(&set, region, &points, parts);
-        // Windows begin where counting finds them.
-        let plan = set.within(region).expect("near");
-        for k in [1, 77, 5000, points.len() / 2, points.len() - 1] {
-            let window = plan.window(k as u128, Some(3)).to_vec();
-            assert_eq!(window, points[k..points.len().min(k + 3)], "{k}");
-        }
     }
 }
 

@@ -17,16 +17,22 @@ use std::path::Path;
 pub use plane::{all, all_by};
 use proptest::prelude::*;
 use strew_core::{
-    Alpha, Area, Circle, Keep, Map, Placement, PointSet, Polygon, Region, Seed, Spacing, Table,
-    Warp,
+    Alpha, Area, Circle, Error, Keep, Map, Placement, PointSet, Polygon, Region, Seed, Spacing,
+    Table, Warp,
+    field::{FieldSpec, Noise},
     table::{FRACTION_BITS, Provenance},
 };
 
 const ALPHAS: [&str; 3] = ["(5-sqrt(3))/2", "sqrt(3)", "(1+sqrt(5))/2"];
 
-/// A table with arbitrary vectors up to about ±13 grid units, as long as those of published tables. That of the
-/// golden ratio has the profile `pink`, and with it the long waves of the warp.
+/// A table with arbitrary vectors up to about ±13 grid units, as long as those of published tables.
 pub fn table(alpha: &str, radius: u32) -> Table {
+    table_of(alpha, radius, 13 << FRACTION_BITS)
+}
+
+/// A table with arbitrary vectors of up to `most`. That of the golden ratio has the profile `pink`, and with it the long
+/// waves of the warp.
+pub fn table_of(alpha: &str, radius: u32, most: i32) -> Table {
     let map = Map::new(alpha.parse::<Alpha>().expect("valid"), radius).expect("small");
     let blocks = map.intervals() * map.intervals();
     let mut state = 0x1234_5678_9abc_def0u64;
@@ -34,7 +40,7 @@ pub fn table(alpha: &str, radius: u32) -> Table {
         state ^= state << 13;
         state ^= state >> 7;
         state ^= state << 17;
-        (state % (26 << FRACTION_BITS)) as i32 - (13 << FRACTION_BITS)
+        (state % (2 * most as u64)) as i32 - most
     };
     let vectors = (0..blocks).map(|_| [next(), next()]).collect();
     let profile = if alpha.contains("sqrt(5)") {
@@ -153,6 +159,21 @@ pub fn any_area() -> impl Strategy<Value = Area> {
         (any_box(), circle())
             .prop_map(|(region, circle)| { Area::from(region).without([circle.into()]) }),
     ]
+}
+
+/// Noise of a seed, a wavelength, a number of octaves and a range.
+pub fn noise(
+    seed: u64,
+    wavelength: f64,
+    octaves: u32,
+    range: [f64; 2],
+) -> Result<FieldSpec, Error> {
+    FieldSpec::noise(Noise {
+        seed,
+        wavelength,
+        octaves,
+        range,
+    })
 }
 
 /// A field with places of share 0 and of share 1.

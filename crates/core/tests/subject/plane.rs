@@ -5,7 +5,7 @@ pub use strew_core::{
     Region,
 };
 use strew_core::{
-    F32, Points,
+    Error, F32, Points,
     server::{self, Stop},
 };
 pub use ways::*;
@@ -45,6 +45,10 @@ pub fn agree_otherwise(plan: &Plan, points: &[Point], parts: Parts) {
         let next = plan.from_cursor(cursor).window(0, Some(70)).to_vec();
         assert_eq!(next, points[filled..points.len().min(filled + 70)]);
     }
+    let mut members = plan.iter();
+    for left in (0..points.len()).rev().take(100) {
+        assert_eq!((members.next().is_some(), members.len()), (true, left));
+    }
     // No claim but that it ends.
     if let Some(cursor) = blocks.cursor() {
         let stop = Stop::new();
@@ -52,6 +56,11 @@ pub fn agree_otherwise(plan: &Plan, points: &[Point], parts: Parts) {
         let stopped = server::stopped_by(plan.from_cursor(cursor), stop);
         let _ = stopped.window(3, None).next_cursor();
     }
+}
+
+/// A plan of an exact number of points, down to a spacing.
+pub fn exactly(set: &Set, count: u128, area: &Area, least: f64) -> Result<Plan, Error> {
+    server::exactly(set, count, area, least, &Stop::default())
 }
 
 /// Checks searches around a place against a box.

@@ -216,6 +216,23 @@ fn agree_in_windows(set: &Set, area: &Area, plan: &Plan, points: &[Point], parts
     assert_eq!(pages, points);
 }
 
+/// An exact number of points is found, if the area holds it, and its points are the first of the set at its spacing.
+pub fn agree_in_number(set: &Set, area: &Area, count: u128) {
+    let found = || exactly(set, count, area, 0.02);
+    let Ok(plan) = found() else {
+        return;
+    };
+    assert_eq!((plan.count(), plan.to_vec().len() as u128), (count, count));
+    assert_eq!(found().map(|again| again.placement()), Ok(plan.placement()));
+    let same = set.clone().placed(plan.placement());
+    let points = within(&same, area.clone());
+    // Rarely one more enters at this spacing; without warp those of a column, or of a side in space.
+    let is_off = plan.placement().warp.is_off();
+    let more = if is_off { 60usize.pow(D as u32 - 1) } else { 1 };
+    assert!(points.len() - count as usize <= more, "{}", points.len());
+    assert_eq!(points[..count as usize], plan.to_vec());
+}
+
 /// The nearest points of a place are those of boxes around it, in the order of distances and ids.
 pub fn agree_near(set: &Set, at: [f64; D], k: usize, part: f64) {
     let pairs = |near: Vec<Neighbor>| -> Vec<(Point, f64)> {
