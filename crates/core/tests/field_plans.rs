@@ -7,12 +7,14 @@ use std::sync::{Arc, OnceLock};
 use proptest::prelude::*;
 use strew_core::{
     Area, Circle, ErrorKind, F32, Field, Offsets, Point, PointSet, Points, Raster, Region, Table,
-    field::{Edges, FieldSpec, Filter, Marks, Noise, Pixels},
+    field::{Edges, FieldSpec, Filter, Marks, Pixels},
     server::{self, Stop},
 };
 use subject::{
     all, any_area, any_box, any_placement, definition,
-    plane::{Parts, agree, agree_around, any_parts, brute_force, within},
+    plane::{
+        Parts, agree, agree_around, agree_in_number, any_parts, between, brute_force, cube, within,
+    },
     set, shipped,
 };
 
@@ -25,6 +27,29 @@ fn tables() -> &'static [Table; 2] {
             subject::table("sqrt(3)", 20),
         ]
     })
+}
+
+/// Square pixels over a square of 128 around the origin.
+fn square(
+    width: usize,
+    pixel: impl Fn(usize) -> f64,
+    is_missing: impl Fn(usize) -> bool,
+) -> Raster {
+    let pixels = (0..width * width).map(|i| pixel(i) as f32).collect();
+    let pixels = Pixels::from_floats(width, pixels).expect("numbers");
+    Raster::of(cube([-64.0; 2], 128.0), pixels.without(is_missing)).expect("shares")
+}
+
+/// Pixels of four spacings, about as steep as a field may be that counts as constant: less so in some places.
+fn dunes() -> Raster {
+    let wave = |x: f64, y: f64| 0.7 + 0.05 * (x * 0.2).sin() + 0.03 * (y * 0.3).cos();
+    square(32, |i| wave((i % 32) as f64, (i / 32) as f64), |_| false)
+}
+
+/// Pixels of four units of which every third is missing, and all of a corner.
+fn holes() -> Raster {
+    let is_missing = |i: usize| i.is_multiple_of(3) || i % 32 < 12 && i < 12 * 32;
+    square(32, |i| 0.2 + (i % 7) as f64 * 0.1, is_missing)
 }
 
 /// Pixels over a box of 128 by 96 around the origin, 1 a unit.
@@ -48,12 +73,7 @@ fn fields() -> &'static [Arc<dyn Field>] {
         let spec = || -> Result<Vec<FieldSpec>, strew_core::Error> {
             let road = Marks::Lines(vec![vec![[-90.0, -5.0], [0.0, 4.0], [80.0, 60.0]]]);
             let road = FieldSpec::distance(road, [2.0, 9.0], [0.0, 1.0])?;
-            let noise = FieldSpec::noise(Noise {
-                seed: 4,
-                wavelength: 17.0,
-                octaves: 3,
-                range: [0.0, 1.0],
-            })?;
+            let noise = subject::noise(4, 17.0, 3, [0.0, 1.0])?;
             Ok(vec![
                 of(raster(hills))?,
                 of(raster(mask).edges(Edges::Zero).filter(Filter::Nearest))?,
@@ -64,6 +84,13 @@ fn fields() -> &'static [Arc<dyn Field>] {
                 FieldSpec::ramp([-40.0, 0.0], [40.0, 9.0], [1.0, 0.01])?,
                 FieldSpec::radial([0.0, 0.0], [5.0, 30.0], [0.25, 0.75])?,
                 FieldSpec::multiply(vec![road, noise])?,
+                of(dunes())?,
+                of(holes())?,
+                of(holes())?.invert()?,
+                FieldSpec::multiply(vec![
+                    of(dunes())?,
+                    FieldSpec::ramp([0.0; 2], [500.0, 90.0], [0.9, 1.0])?,
+                ])?,
             ])
         };
         let closure = Arc::new(move |[x, y]: [f64; 2]| hills(x, y));
@@ -106,7 +133,7 @@ fn any_set() -> impl Strategy<Value = (PointSet, Shared)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
     #[test]
     fn a_box_holds_what_the_definition_has(
@@ -114,9 +141,11 @@ proptest! {
     ) {
         let place = |id| definition::place_in(&set, &field, id);
         let expected = brute_force(&set, &region.into(), 160, place);
+        let ranks: Vec<_> = expected.iter().map(|point| definition::rank(&set, point.id)).collect();
         let set = set.in_field(field).settle(0).expect("0");
         agree(&set, region, &expected, parts);
-        for point in &expected {
+        for (point, rank) in expected.iter().zip(ranks) {
+            prop_assert_eq!(Some(set.rank(point.id)), rank);
             prop_assert_eq!(set.point(point.id).map(Point::from), Some(*point));
             prop_assert!(set.share(point.id).is_some_and(|share| set.rank(point.id) < share));
         }
@@ -178,21 +207,38 @@ proptest! {
     fn a_number_of_points_is_found(
         (set, field) in any_set(), area in any_area(), count in 1u128..3000,
     ) {
-        let set = set.in_field(field);
-        let stop = Stop::default();
-        let Ok(plan) = server::exactly(&set, count, &area, 0.02, &stop) else {
-            return Ok(());
-        };
-        prop_assert_eq!(plan.count(), count);
-        prop_assert_eq!(plan.to_vec().len() as u128, count);
-        let again = server::exactly(&set, count, &area, 0.02, &stop).expect("as before");
-        prop_assert_eq!(again.placement(), plan.placement());
-        // The set at that spacing has these points, and rarely one more; without warp those of a column.
-        let same = set.placed(plan.placement()).within(area).expect("near");
-        let more = if plan.placement().warp.is_off() { 60 } else { 1 };
-        prop_assert!(same.count() - count <= more, "{}", same.count());
-        prop_assert_eq!(&same.to_vec()[..count as usize], plan.to_vec());
+        agree_in_number(&set.in_field(field), &area, count);
     }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+    #[test]
+    fn parts_of_thinned_sets_count_what_they_hold(
+        (set, _) in any_set(), corner in prop::array::uniform2(-2000.0..2000.0f64), side in 1.0..900.0f64,
+        narrow in 0.02..1.0f64, radius in 0.1..0.8f64,
+    ) {
+        let kept = set.settle(0).expect("0");
+        let region = between(corner, [corner[0] + side, corner[1] + side * narrow]);
+        let circle = Circle::new(corner, radius * side).expect("round");
+        for area in [Area::from(region), Area::from(circle), Area::from(region).and(circle.into())] {
+            let plan = kept.within(area).expect("near");
+            prop_assert_eq!(plan.count(), plan.iter().count() as u128);
+        }
+    }
+}
+
+#[test]
+fn shares_outside_the_range_and_nan_are_none_or_all() {
+    let set = PointSet::new(tables()[0].clone()).seed(1);
+    let count = |share: f64| {
+        let graded = set.in_field(move |_: [f64; 2]| share);
+        graded.count(cube([0.0; 2], 20.0)).expect("near")
+    };
+    let all = set.count(cube([0.0; 2], 20.0)).expect("near");
+    assert_eq!([1.0, 7.0, f64::INFINITY].map(count), [all; 3]);
+    assert_eq!([0.0, -1.0, f64::NAN].map(count), [0; 3]);
 }
 
 #[test]
@@ -248,16 +294,6 @@ fn far_chunks_have_exact_offsets() {
             assert_eq!(plan.origin(), kept.origin());
         }
     }
-}
-
-#[test]
-fn a_stopped_count_is_an_error() {
-    let stop = Stop::new();
-    stop.raise();
-    let set = PointSet::new(tables()[0].clone()).in_field(|[x, _]: [f64; 2]| x);
-    let region = Region::chunk(50.0, [0, 0]).expect("small");
-    let error = server::within(&set, region, &stop).expect_err("stopped");
-    assert_eq!(error.kind(), strew_core::ErrorKind::Stopped);
 }
 
 #[test]

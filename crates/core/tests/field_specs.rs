@@ -1,11 +1,13 @@
 //! Described fields: bounds hold, shares are shares, digests tell descriptions apart, bad ones are refused.
 
+use crate::subject::noise;
+
 use std::collections::HashSet;
 
 use proptest::prelude::*;
 use strew_core::{
     ErrorKind, Field, Raster, Region,
-    field::{Edges, FieldSpec, Filter, Marks, Noise, Pixels, Terrain},
+    field::{Edges, FieldSpec, Filter, Marks, Pixels, Terrain},
 };
 
 fn place() -> impl Strategy<Value = [f64; 2]> {
@@ -98,21 +100,6 @@ fn marks() -> impl Strategy<Value = Marks> {
     ]
 }
 
-/// Noise of a seed, a wavelength, a number of octaves and a range.
-fn noise(
-    seed: u64,
-    wavelength: f64,
-    octaves: u32,
-    range: [f64; 2],
-) -> Result<FieldSpec, strew_core::Error> {
-    FieldSpec::noise(Noise {
-        seed,
-        wavelength,
-        octaves,
-        range,
-    })
-}
-
 fn raster() -> impl Strategy<Value = FieldSpec> {
     (region(), holes(), edges(), filter(), shares(), 0.2..4.0f64).prop_map(
         |(region, pixels, edges, filter, [low, high], gamma)| {
@@ -145,7 +132,7 @@ fn terrain() -> impl Strategy<Value = FieldSpec> {
         })
 }
 
-fn simple() -> impl Strategy<Value = FieldSpec> {
+pub fn simple() -> impl Strategy<Value = FieldSpec> {
     let settings = (any::<u64>(), 0.5..100.0f64, 1..=8u32, shares());
     prop_oneof![
         share().prop_map(|share| FieldSpec::constant(share).expect("a share")),
@@ -165,7 +152,14 @@ fn simple() -> impl Strategy<Value = FieldSpec> {
 }
 
 fn spec() -> impl Strategy<Value = FieldSpec> {
-    simple().prop_recursive(3, 12, 3, |inner| {
+    joined(simple())
+}
+
+/// Fields that are joined from others.
+pub fn joined(
+    simple: impl Strategy<Value = FieldSpec> + 'static,
+) -> impl Strategy<Value = FieldSpec> {
+    simple.prop_recursive(3, 12, 3, |inner| {
         let parts = || prop::collection::vec(inner.clone(), 1..4);
         let curve = prop::collection::vec((1..100u32, share()), 2..6);
         prop_oneof![
@@ -272,6 +266,17 @@ proptest! {
         let expected = if is_inside { -nearest } else { nearest };
         prop_assert_eq!(field.share(at), (expected + 200.0) / 400.0);
     }
+}
+
+#[test]
+fn slopes_are_close() {
+    let region = Region::new([0.0, 0.0], [8.0, 4.0]).expect("ordered");
+    let raster = Raster::new(region, 2, vec![0.0, 0.5]).expect("shares");
+    // From the center of one pixel to the center of the other are four units. Rounding may add a little.
+    let [x, y] = raster.slopes(&region);
+    assert!((0.125..0.12501).contains(&x) && y == 0.0);
+    let closure = |[x, _]: [f64; 2]| x;
+    assert_eq!(closure.slopes(&region), [f64::INFINITY; 2]);
 }
 
 #[test]
@@ -383,6 +388,16 @@ fn bad_descriptions_are_refused_by_name() {
         ("region", raster),
         ("heights", heights),
     ];
+    for (width, pixels) in [
+        (0, vec![0.5]),
+        (3, vec![0.5; 4]),
+        (1, vec![-0.1]),
+        (1, vec![f32::NAN]),
+    ] {
+        let unit = Region::chunk(1.0, [0, 0]).expect("small");
+        assert!(Raster::new(unit, width, pixels).is_err());
+    }
+    assert!(Pixels::from_floats(1, vec![f32::NAN]).is_err());
     for (name, result) in cases {
         let error = result.expect_err(name);
         assert_eq!((error.field(), error.kind()), (name, ErrorKind::Field));

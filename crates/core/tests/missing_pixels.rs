@@ -37,11 +37,22 @@ fn missing_pixels_are_empty_and_their_neighbors_are_means_of_those_that_are_ther
         let found = field.share(at);
         assert!((found - share).abs() < 1e-12, "{at:?}: {found}");
     }
+    assert!(field.is_missing([10.0, 5.0]) && !field.is_missing([5.0, 5.0]));
+    let three = Pixels::from_bytes(3, vec![0; 3]).expect("rows");
+    let within = |right| Region::new([0.0; 2], [right, 1.0]).expect("ordered");
+    let row = Raster::of(within(3.0), three.without(|at| at == 2)).expect("shares");
+    let row = FieldSpec::raster(row).expect("a field");
+    assert_eq!(
+        [0.4, 3.0].map(|right| row.has_missing(&within(right))),
+        [false, true]
+    );
     let nearest = partial(Edges::Zero, Filter::Nearest);
     assert_eq!(
         along(&nearest, [9.9, 10.0, 20.0, 30.0]),
         [1.0, 0.0, 0.5, 0.0]
     );
+    let words = Pixels::from_words(1, vec![0, 65535]).expect("rows");
+    assert_eq!(words.ends(), [0.0, 1.0]);
     let whole = Pixels::from_bytes(2, vec![1, 2]).expect("rows");
     assert_eq!(whole.clone().without(|_| false).digest(), whole.digest());
     assert_ne!(whole.clone().without(|at| at == 0).digest(), whole.digest());

@@ -7,7 +7,6 @@ mod distance;
 mod documentation;
 mod field_plans;
 mod field_specs;
-mod fields;
 mod kinds;
 mod layers;
 mod missing_pixels;
