@@ -5,13 +5,13 @@ use crate::subject;
 use proptest::prelude::*;
 use strew_core::{
     Attribute, Attributes, Circle, ErrorKind, Kinds, Point, PointId, PointSet, Points, Region,
-    ScaleRange, Variants,
+    ScaleRange, Variants, Warp,
     server::{self, Stop},
 };
 use subject::{
     all, any_area, any_box, any_placement, definition,
     mixed::{mixed, tables},
-    plane::{agree, agree_around, any_parts, brute_force, within},
+    plane::{agree, agree_around, agree_in_number, any_parts, brute_force, within},
     set, waves,
 };
 
@@ -67,24 +67,21 @@ fn agree_by_kind(set: &PointSet, region: Region, expected: &[(Point, u8)]) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
 
     #[test]
-    fn a_box_holds_what_the_definition_has(set in any_set(), region in any_box()) {
-        let set = set.settle(0).expect("0");
-        let expected = defined(&set, &region, |id| definition::place(&set, id));
-        agree_by_kind(&set, region, &expected);
-    }
-
-    #[test]
-    fn a_field_leaves_what_the_definition_has(set in any_set(), region in any_box()) {
-        let set = set.settle(0).expect("0");
-        let field = |[x, y]: [f64; 2]| 0.5 + 0.6 * (x * 0.11).sin() * (y * 0.07).cos();
-        let expected = defined(&set, &region, |id| definition::place_in(&set, &field, id));
-        agree_by_kind(&set.in_field(field), region, &expected);
+    fn a_box_holds_what_the_definition_has(set in any_set(), region in any_box(), in_field: bool) {
+        let plain = set.settle(0).expect("0");
+        if !in_field {
+            let expected = defined(&plain, &region, |id| definition::place(&plain, id));
+            agree_by_kind(&plain, region, &expected);
+            return Ok(());
+        }
+        let expected = defined(&plain, &region, |id| definition::place_in(&plain, &waves, id));
+        agree_by_kind(&plain.in_field(waves), region, &expected);
         // The kind may also be chosen first.
-        let own = only(&set, 0).in_field(field).within(region).expect("near");
-        prop_assert_eq!(own.to_vec(), of_kind(&expected, 0));
+        let own = only(&plain, 0).in_field(waves);
+        prop_assert_eq!(within(&own, region), of_kind(&expected, 0));
     }
 }
 
@@ -100,28 +97,6 @@ fn every_symmetry_agrees_with_the_definition() {
             agree_by_kind(&set, region, &expected);
         }
     }
-}
-
-#[test]
-fn split_blocks_have_points_of_both_kinds() {
-    let set = PointSet::new(tables()[4].clone()).seed(7);
-    let mix = set.table().mix().expect("a mix");
-    let split = mix.splits()[0];
-    let n = set.table().map().intervals();
-    let mut seen = [0; 2];
-    for point in set.chunk(200.0, [0, 0]).expect("near") {
-        let kind = set.kind_of(point.id()).expect("a kind");
-        let [x, y] = set.block(point.id()).expect("a point");
-        let has_both = seen.iter().all(|&number| number > 0);
-        // The block of the whole map that is split is turned with the seed.
-        let ends = [[x, y], [n - 1 - x, n - 1 - y]];
-        let turned = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[i, j]| [ends[i][0], ends[j][1]]);
-        let mut places = turned.into_iter().flat_map(|[x, y]| [y * n + x, x * n + y]);
-        if places.any(|place| place as u32 == split.block) && !has_both {
-            seen[usize::from(kind)] += 1;
-        }
-    }
-    assert!(seen.iter().all(|&number| number > 0), "{seen:?}");
 }
 
 proptest! {
@@ -191,31 +166,7 @@ proptest! {
 
     #[test]
     fn a_number_of_points_is_found(set in any_set(), area in any_area(), count in 1u128..1000, kind: u8) {
-        let own = only(&set, kind % kinds(&set));
-        let Ok(plan) = server::exactly(&own, count, &area, 0.02, &Stop::default()) else {
-            return Ok(());
-        };
-        prop_assert_eq!(plan.to_vec().len() as u128, count);
-        let same = own.placed(plan.placement()).within(area).expect("near");
-        prop_assert_eq!(&same.to_vec()[..count as usize], plan.to_vec());
-    }
-}
-
-#[test]
-fn shares_are_exact() {
-    let region = Region::new([-3e8, 1e7], [5e8, 9e8]).expect("ordered");
-    for table in tables() {
-        for seed in [0, 5, 12] {
-            let set = PointSet::new(table.clone()).seed(seed);
-            let set = set.warp(0.0).expect("in range");
-            let all = set.count(region).expect("near") as f64;
-            let shares = table.mix().expect("a mix").shares();
-            let counts = set.kind_counts(region).expect("near");
-            for (kind, count) in (0..).zip(counts) {
-                // A box has no more than a margin too many or too few.
-                assert!((count as f64 / all - shares.of(kind)).abs() < 1e-8);
-            }
-        }
+        agree_in_number(&only(&set, kind % kinds(&set)), &area, count);
     }
 }
 
@@ -261,6 +212,17 @@ fn kinds_keep_their_distances() {
     let region = Region::new([0.0, 0.0], [160.0, 160.0]).expect("ordered");
     for shares in ["1:1", "1:3:10"] {
         let table = mixed(&blue, shares);
+        let kinds_of = table.mix().expect("a mix").shares().kinds() as u8;
+        let of = |a, b| Some(table.least_distance_of(a, b)?.with_warp(Warp::OFF));
+        let pairs = (0..kinds_of).flat_map(|a| (0..kinds_of).map(move |b| (a, b)));
+        // The nearest of all pairs are of some kinds.
+        let least = pairs
+            .map(|(a, b)| of(a, b).expect("kinds"))
+            .fold(f64::MAX, f64::min);
+        assert_eq!(
+            (least, of(0, kinds_of)),
+            (table.least_distance().with_warp(Warp::OFF), None)
+        );
         for (seed, warp) in [(0, 0.0), (7, 1.0)] {
             let set = PointSet::new(table.clone()).seed(seed);
             let set = set.warp(warp).expect("in range");
@@ -286,51 +248,66 @@ fn kinds_keep_their_distances() {
                 let part = if warp == 0.0 { 0.98 } else { 0.85 };
                 assert!(part * seen <= least, "{shares} {a} {b}: {seen} > {least}");
             }
+            let least = Some(only(&set, 0).least_distance());
+            assert_eq!(set.least_distance_of(0, 0), least);
             let own = only(&set, 0).min_distance(2.0).expect("useful");
             assert!(own.least_distance() >= 2.0);
         }
     }
 }
 
-#[test]
-fn named_kinds_are_the_kinds() {
-    let set = PointSet::new(tables()[1].clone()).seed(11);
-    let points = set.chunk(50.0, [0, 0]).expect("near").to_vec();
-    let ids = || points.iter().map(|point| point.id);
+/// The kinds of a set whose shares are 1:3:10, as attributes.
+pub fn agree_as_attributes(set: &PointSet) {
+    let plan = set.chunk(50.0, [0, 0]).expect("near");
+    let ids = || plan.iter().map(|point| point.id());
+    let list = |attributes| Attributes::new(attributes).expect("different");
     for text in ["oak:10,birch:1,elm:3", "elm:0.3,oak:1,birch:0.1"] {
         let chance: Variants = text.parse().expect("valid");
         let even = Kinds::even(&chance).expect("shares");
-        let list = vec![Attribute::Kind(even.clone()), Attribute::Angle];
-        let bound = set.attributes(&Attributes::new(list).expect("different"));
-        let bound = bound.expect("the table's shares");
-        let columns = bound.columns(ids());
-        let indices = columns[0].variants().expect("variants");
-        for (id, &index) in ids().zip(indices) {
-            assert_eq!(bound.value(0, id), Some(index.into()));
-            let kind = set.kind_of(id).expect("a kind");
-            assert_eq!(even.index(kind), Some(index));
-            let name = even.variants().name(index).expect("a name");
-            assert_eq!(even.number(name), Some(kind));
-            assert_eq!(name, ["birch", "elm", "oak"][usize::from(kind)]);
-        }
         // Scales that depend on the kind.
         let range = |i: i32| ScaleRange::new(f64::from(i), f64::from(i) + 0.5).expect("ordered");
         let scales = even.scales((0..3).map(range).collect());
-        let list = vec![Attribute::VariantScale(scales.expect("one for each"))];
-        let bound = set.attributes(&Attributes::new(list).expect("different"));
-        let scales = bound.expect("the table's shares").columns(ids());
-        for (scale, &index) in scales[0].numbers().expect("numbers").iter().zip(indices) {
+        let scales = scales.expect("one for each");
+        assert_eq!(scales.variants(), even.variants());
+        let error = even.scales(vec![range(1)]).expect_err("one for three");
+        assert_eq!(error.allowed(), "3 ranges, one for each variant");
+        let kind = Attribute::Kind(even.clone());
+        assert_eq!(
+            (kind.variants(), Attribute::Angle.variants()),
+            (Some(even.variants()), None)
+        );
+        let attributes = list(vec![kind, Attribute::VariantScale(scales), Attribute::Rank]);
+        let bound = plan.attributes(&attributes).expect("the same shares");
+        let columns = bound.columns(ids());
+        let indices = columns[0].variants().expect("variants");
+        let scales = columns[1].numbers().expect("numbers");
+        for ((id, &index), &scale) in ids().zip(indices).zip(scales) {
+            assert_eq!(bound.value(0, id), Some(index.into()));
+            assert_eq!(bound.value(2, id), Some(set.rank(id)));
             assert_eq!(scale.floor(), f64::from(index));
+            let kind = set.kind_of(id).expect("a kind");
+            assert_eq!(even.index(kind), Some(index));
+            let name = even.variants().name(index).expect("a name");
+            assert_eq!(
+                (even.name(kind), even.number(name)),
+                (Some(name), Some(kind))
+            );
+            assert_eq!(name, ["birch", "elm", "oak"][usize::from(kind)]);
         }
-        // Other shares are another table's.
-        let list = vec![Attribute::Kind(Kinds::even("a:1,b:2").expect("shares"))];
-        let list = Attributes::new(list).expect("different");
-        let error = set.attributes(&list).expect_err("other shares");
-        assert_eq!(error.kind(), ErrorKind::Kinds);
-        let says =
-            "the ratio of the table's kinds is 1:3:10; it must be 1:2, that of the named kinds";
-        assert_eq!(error.to_string(), says);
-        let plain = PointSet::new(subject::tables()[0].clone());
-        assert!(plain.attributes(&list).is_err());
     }
+    // Other shares are other kinds.
+    let other = list(vec![Attribute::Kind(
+        Kinds::even("a:1,b:2").expect("shares"),
+    )]);
+    let error = set.attributes(&other).expect_err("other shares");
+    assert_eq!(error.kind(), ErrorKind::Kinds);
+    let says = "the ratio of the table's kinds is 1:3:10; it must be 1:2, that of the named kinds";
+    assert_eq!(error.to_string(), says);
+    let plain = PointSet::new(subject::tables()[0].clone());
+    assert!(plain.attributes(&other).is_err());
+}
+
+#[test]
+fn named_kinds_are_the_kinds() {
+    agree_as_attributes(&PointSet::new(tables()[1].clone()).seed(11));
 }

@@ -1,13 +1,12 @@
 //! Kinds whose shares vary: every way to their points agrees with the definition, point by point and bit for bit.
 
-use crate::subject;
+use crate::{kinds::agree_as_attributes, subject};
 
 use std::sync::Arc;
 
 use proptest::prelude::*;
 use strew_core::{
-    Attribute, Attributes, ErrorKind, Field, Kinds, Point, PointId, PointSet, Table, VariantScales,
-    VaryingKinds,
+    ErrorKind, Field, Point, PointId, PointSet, Table, VaryingKinds,
     server::{self, Stop},
     table::Ranks,
 };
@@ -75,14 +74,14 @@ impl std::fmt::Debug for Subject {
 }
 
 impl Subject {
-    fn varied(&self) -> PointSet {
+    fn varying(&self) -> VaryingKinds {
         let (shares, fields) = self.weights.clone();
-        let kinds = VaryingKinds::new(&self.order, shares.parse().expect("valid"), fields);
-        let kinds = kinds.expect("fields");
-        self.plain
-            .clone()
-            .with_varying_kinds(kinds)
-            .expect("the same map")
+        VaryingKinds::new(&self.order, shares.parse().expect("valid"), fields).expect("fields")
+    }
+
+    fn varied(&self) -> PointSet {
+        let set = self.plain.clone().with_varying_kinds(self.varying());
+        set.expect("the same map")
     }
 
     fn kinds(&self) -> u8 {
@@ -163,24 +162,6 @@ proptest! {
 }
 
 #[test]
-fn thinning_changes_no_kind() {
-    let plain = PointSet::new(subject::mixed::tables()[3].clone()).seed(5);
-    let order = order(plain.table());
-    let subject = Subject {
-        plain,
-        order,
-        weights: weights(1),
-    };
-    let whole = subject.varied();
-    let half = whole.clone().keep(0.5).expect("a share");
-    let points = half.chunk(60.0, [0, 0]).expect("near").to_vec();
-    assert!(points.len() > 1000);
-    for point in points {
-        assert_eq!(half.kind_of(point.id), whole.kind_of(point.id));
-    }
-}
-
-#[test]
 fn variants_and_their_scales_are_the_kinds() {
     let plain = PointSet::new(subject::tables()[0].clone()).seed(11);
     let order = order(plain.table());
@@ -190,46 +171,13 @@ fn variants_and_their_scales_are_the_kinds() {
         weights: weights(1),
     };
     let set = subject.varied();
-    let even = Kinds::even("oak:10,birch:1,elm:3").expect("shares");
-    let range =
-        |kind: u32| strew_core::ScaleRange::new(f64::from(kind), f64::from(kind)).expect("ordered");
-    let scales: VariantScales = even
-        .scales((0..3).map(range).collect())
-        .expect("one for each");
-    let list = vec![
-        Attribute::Kind(even.clone()),
-        Attribute::VariantScale(scales),
-        Attribute::Rank,
-    ];
-    let plan = set.chunk(40.0, [0, 0]).expect("near");
-    let bound = plan
-        .attributes(&Attributes::new(list).expect("different"))
-        .expect("the same shares");
-    let points = plan.to_vec();
-    let columns = bound.columns(points.iter().map(|point| point.id));
-    let indices = columns[0].variants().expect("variants");
-    let scales = columns[1].numbers().expect("numbers");
-    for ((point, &index), &scale) in points.iter().zip(indices).zip(scales) {
-        assert_eq!(
-            even.index(set.kind_of(point.id).expect("a kind")),
-            Some(index)
-        );
-        assert_eq!(
-            (f64::from(index), bound.value(2, point.id)),
-            (scale, Some(set.rank(point.id)))
-        );
-    }
-    // Other shares are other kinds.
-    let other = Kinds::even("a:1,b:2").expect("shares");
-    let list = Attributes::new(vec![Attribute::Kind(other)]).expect("different");
-    assert_eq!(
-        set.attributes(&list).expect_err("other shares").kind(),
-        ErrorKind::Kinds
-    );
+    agree_as_attributes(&set);
     assert_eq!(
         set.clone().only(3).expect_err("three kinds").kind(),
         ErrorKind::Kinds
     );
     assert_eq!(set.least_distance_of(0, 2), Some(set.least_distance()));
     assert_eq!(set.least_distance_of(0, 3), None);
+    let other = PointSet::new(subject::tables()[1].clone());
+    assert!(other.with_varying_kinds(subject.varying()).is_err());
 }
