@@ -7,10 +7,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use strew_core::{
     Alpha, Attribute, Attributes, Cursor, ErrorKind, Kinds, Map, Member, PeriodicPlan, PeriodicSet,
-    Point, PointId, PointSet, Region, Table,
-    table::{Mix, Ranks, from_grid_units},
+    Point, PointId, PointSet, Region, Table, table::from_grid_units,
 };
-use subject::shipped;
+use subject::{mixed::mixed, shipped};
 
 /// A table with arbitrary vectors of up to `most` grid units, to make wrong blocks show.
 fn table_of(alpha: &str, most: f64) -> Table {
@@ -35,11 +34,7 @@ fn table(alpha: &str) -> Table {
 
 /// A table with small vectors and kinds.
 fn with_kinds(shares: &str) -> Table {
-    let table = table_of("(5-sqrt(3))/2", 1.0);
-    let mix = Mix::scattered(table.map(), shares.parse().expect("valid")).expect("near");
-    let blocks = table.displacements().len() as u32;
-    let ranks = Ranks::new((0..blocks).rev().collect()).expect("a permutation");
-    table.with_mix(mix, ranks).expect("of the map")
+    mixed(&table_of("(5-sqrt(3))/2", 1.0), shares)
 }
 
 /// From one place to another on a torus of side `side`.
@@ -160,65 +155,22 @@ fn a_period_has_each_point_once_and_stays_inside() {
             assert!((0..period).contains(&p.id().x) && (0..period).contains(&p.id().y));
             assert_eq!(tile.point(p.id()), Some(*p));
         }
+        if seed == 0 {
+            // Ranks follow the order of blocks, which is that of the plane.
+            for p in &members {
+                let [x, y] = tile.block(p.id()).expect("a point");
+                let ranks = table.block_ranks(y * table.map().intervals() + x);
+                assert!(ranks.contains(&tile.rank(p.id()).expect("a point")));
+            }
+        }
+        let rows = [0..30, 30..2 * period as u64].map(|rows| tile.rows(rows));
+        assert!(rows.into_iter().flatten().eq(members.iter().copied()));
         let blocks: BTreeSet<_> = members.iter().map(|p| tile.block(p.id())).collect();
         assert_eq!(
             blocks.len(),
             table.displacements().len(),
             "every block occurs"
         );
-    }
-}
-
-/// The least distance between two points on a torus with a side of 1, times √N.
-fn least_distance(tile: &PeriodicSet) -> f64 {
-    let all = places(tile.clone().side(1.0).expect("in range").iter());
-    let least = pairs(&all, 1).map(|[a, b]| apart(a, b, 1.0));
-    least.fold(f64::INFINITY, f64::min) * (all.len() as f64).sqrt()
-}
-
-#[test]
-fn seeds_and_warps_keep_distances_across_the_seam() {
-    let table = Table::undisplaced("(5-sqrt(3))/2".parse().expect("valid"), 49, "pattern");
-    let tile = PeriodicSet::new(table.expect("small"), 3000).expect("a period");
-    let plain = least_distance(&tile);
-    for seed in [1, 2, 3] {
-        let seeded = tile.clone().seed(seed);
-        assert!(least_distance(&seeded) > plain / 1.143, "seed {seed}");
-        let unwarped = seeded.warp(0.0).expect("in range");
-        assert!(
-            (least_distance(&unwarped) - plain).abs() < 1e-9,
-            "seed {seed}"
-        );
-    }
-}
-
-#[test]
-fn thinned_periods_are_those_of_their_ranks() {
-    let table = table("(1+sqrt(5))/2");
-    let tile = PeriodicSet::new(table.clone(), 20_000)
-        .expect("a period")
-        .seed(5);
-    let plane = PointSet::new(table);
-    // Ranks follow the order of blocks, which is that of the plane.
-    let ranks = |block: [usize; 2]| {
-        plane
-            .table()
-            .block_ranks(block[1] * plane.table().map().intervals() + block[0])
-    };
-    for p in tile.iter() {
-        assert!((0.0..1.0).contains(&tile.rank(p.id()).expect("a point")));
-    }
-    let unturned = tile.clone().seed(0);
-    for p in unturned.iter() {
-        let rank = unturned.rank(p.id()).expect("a point");
-        assert!(ranks(unturned.block(p.id()).expect("a point")).contains(&rank));
-    }
-    for share in [0.1, 0.5, 0.9] {
-        let kept = tile
-            .iter()
-            .filter(|p| tile.rank(p.id()) < Some(share))
-            .count();
-        assert!((kept as f64 / tile.len() as f64 - share).abs() < 0.02);
     }
 }
 
@@ -278,6 +230,8 @@ fn listed(plan: &PeriodicPlan, most: usize) -> Vec<Point> {
 fn parts(tile: &PeriodicSet) -> Vec<PeriodicSet> {
     let side = tile.length();
     let waves = move |[x, y]: [f64; 2]| {
+        // The field is looked at modulo L.
+        assert!([x, y].iter().all(|v| (0.0..side).contains(v)), "{x} {y}");
         let turn = std::f64::consts::TAU / side;
         0.5 + 0.3 * (turn * x).sin() + 0.2 * (turn * y).cos()
     };
@@ -400,38 +354,6 @@ fn windows_cursors_and_ids_agree_with_the_whole() {
 }
 
 #[test]
-fn a_field_with_the_period_is_followed_without_a_seam() {
-    // The same points, whatever part of the plane the period is: the field is looked at modulo L.
-    let table = shipped("blue-5-sqrt3-over-2-m");
-    let tile = PeriodicSet::new(table, 5000).expect("a period");
-    let side = tile.length();
-    let wave = move |shift: f64| {
-        move |[x, y]: [f64; 2]| {
-            assert!(
-                (0.0..side).contains(&x) && (0.0..side).contains(&y),
-                "{x} {y}"
-            );
-            let turn = std::f64::consts::TAU / side;
-            0.4 + 0.35 * (turn * (x + shift)).cos() * (turn * (y + 2.0 * shift)).cos()
-        }
-    };
-    // Where the field is least and where it is greatest, points are as far apart at the seam as inside.
-    for shift in [0.0, side / 2.0, side / 3.0] {
-        let graded = tile.in_field(wave(shift));
-        let all = places(graded.iter());
-        let mut least = [f64::INFINITY; 2];
-        for [a, b] in pairs(&all, 7) {
-            let is_across = (0..2).any(|i| (a[i] - b[i]).abs() > side / 2.0);
-            let least = &mut least[usize::from(is_across)];
-            *least = least.min(apart(a, b, side));
-        }
-        assert!(least[0] > 0.2 && least[1] > 0.2, "{shift}: {least:?}");
-        let share = all.len() as f64 / tile.len() as f64;
-        assert!((share - 0.4).abs() < 0.01, "{shift}: {share}");
-    }
-}
-
-#[test]
 fn attributes_are_those_of_the_points() {
     let tile = tile();
     let even = Kinds::even("oak:10,birch:3,fir:1").expect("kinds");
@@ -448,24 +370,40 @@ fn attributes_are_those_of_the_points() {
         let kind = tile.kind_of(p.id()).expect("kinds");
         assert_eq!(bound.value(2, p.id()), even.index(kind).map(f64::from));
     }
+    assert!(tile.plan().attributes(&list).is_ok());
+    assert_eq!(tile.least_distance_of(0, 3), None);
+    assert!(tile.least_distance_of(0, 0) >= Some(tile.least_distance()));
     let other = PeriodicSet::new(with_kinds("1:1"), 500).expect("a period");
     assert!(other.attributes(&list).is_err());
+    let plain = PeriodicSet::new(table("sqrt(3)"), 500).expect("a period");
+    let first = plain.iter().next().expect("points").id();
+    assert_eq!(
+        (plain.kind_of(first), plain.least_distance_of(0, 0)),
+        (None, None)
+    );
 }
 
 #[test]
 fn guaranteed_distances_hold_across_the_seam() {
     let table = shipped("blue-5-sqrt3-over-2-s");
-    for seed in [0, 4] {
-        let tile = PeriodicSet::new(table.clone(), 5000).expect("a period");
-        let tile = tile.side(3.0).expect("in range").seed(seed);
-        let guaranteed = tile.least_distance();
+    let tile = PeriodicSet::new(table, 5000).expect("a period");
+    let tile = tile.side(3.0).expect("in range");
+    let least = |tile: &PeriodicSet, step| {
         let all = places(tile.iter());
-        let least = pairs(&all, 5).map(|[a, b]| apart(a, b, 3.0));
-        let least = least.fold(f64::INFINITY, f64::min);
+        let apart = pairs(&all, step).map(|[a, b]| apart(a, b, 3.0));
+        apart.fold(f64::INFINITY, f64::min)
+    };
+    let plain = least(&tile, 1);
+    assert!(plain < 1.5 * tile.least_distance());
+    for seed in [0, 1, 4] {
+        let seeded = tile.clone().seed(seed);
+        let guaranteed = seeded.least_distance();
         assert!(
-            guaranteed > 0.0 && least >= guaranteed,
-            "{seed}: {least} {guaranteed}"
+            guaranteed > 0.0 && least(&seeded, 5) >= guaranteed,
+            "{seed}"
         );
-        assert!(seed > 0 || least < 1.5 * guaranteed);
+        // A seed alone shows other places of the same pattern, turned.
+        let unwarped = seeded.warp(0.0).expect("in range");
+        assert!((least(&unwarped, 1) - plain).abs() < 1e-9, "{seed}");
     }
 }

@@ -46,13 +46,7 @@ fn hills([x, y]: [f64; 2]) -> f64 {
 }
 
 fn noise() -> FieldSpec {
-    let noise = strew_core::field::Noise {
-        seed: 5,
-        wavelength: 40.0,
-        octaves: 2,
-        range: [0.05, 1.0],
-    };
-    FieldSpec::noise(noise).expect("valid")
+    subject::noise(5, 40.0, 2, [0.05, 1.0]).expect("valid")
 }
 
 fn region(min: [f64; 2], sides: [f64; 2]) -> Region {
@@ -112,6 +106,9 @@ fn thinned_points_are_those_of_the_definition() {
         ("1:7", 2, 0.3),
         ("1:1", 4, 0.97),
         ("1:3:10", 2, 0.009),
+        // Kinds too rare to push each other.
+        ("1:99", 3, 0.3),
+        ("1:31", 3, 0.3),
     ] {
         let local = 1.0 / f64::sqrt(keep);
         // Points that push those of their kind see farther.
@@ -193,19 +190,6 @@ fn kinds_in_fields_are_those_of_the_definition() {
 fn other_spacings_and_tables_are_those_of_the_definition() {
     let set = dense("").keep(0.2).expect("a share");
     check(&set, &|_| 1.0, region([1000.0, -900.0], [6.0, 7.0]), 11.0);
-}
-
-#[test]
-fn rare_kinds_settle_with_the_others_alone() {
-    for shares in ["1:99", "1:31"] {
-        let kinds = kept(shares, 7, 3, 0.3);
-        let area = region([-20.0, -20.0], [40.0, 40.0]);
-        check(&kinds, &|_| 1.0, area, 20.0);
-        for point in within(&kinds.clone().only(0).expect("a kind"), area) {
-            let found = kinds.point(point.id).map(Point::from);
-            assert_eq!(found, Some(point));
-        }
-    }
 }
 
 /// A tile's points, settled by the definition, among those of all copies within some room around [0, L)².
@@ -346,20 +330,6 @@ fn parts_agree_with_the_whole() {
     agrees(&field, region([300.0, -170.0], [110.0, 150.0]));
 }
 
-#[test]
-fn settling_leaves_kinds_as_they_are() {
-    let set = set("1:1:2", 5, 2).in_field(noise());
-    let area = region([0.0, 0.0], [40.0, 40.0]);
-    let counts = set.kind_counts(area).expect("near");
-    for (kind, count) in (0..3).zip(counts) {
-        let mut expected = within(&set, area);
-        expected.retain(|point| set.kind_of(point.id) == Some(kind));
-        assert_eq!(count, expected.len() as u128);
-        let own = set.clone().only(kind).expect("a kind");
-        assert_eq!(within(&own, area), expected);
-    }
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
@@ -395,13 +365,6 @@ fn full_density_does_not_move() {
     assert_eq!(of(&most), of(&set("", 3, 1)));
     assert_eq!(in_one(&full), of(&full));
     assert_eq!(of(&set("", 3, 0)), of(&full));
-}
-
-#[test]
-fn constant_fields_and_shares_are_one_thing() {
-    let field = set("", 3, 2).in_field(FieldSpec::constant(0.31).expect("a share"));
-    let area = region([500.0, 20.0], [60.0, 60.0]);
-    assert_eq!(within(&kept("", 3, 2, 0.31), area), within(&field, area));
 }
 
 #[test]

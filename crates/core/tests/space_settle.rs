@@ -4,12 +4,15 @@ use std::collections::HashMap;
 
 use crate::{
     definition::{By, reference_of},
-    subject::space::{agree, any_parts, around, between, order, within},
+    subject::{
+        noise,
+        space::{agree, any_parts, around, between, order, within},
+    },
 };
 use proptest::prelude::*;
 use strew_core::{
     Field,
-    field::{FieldSpec, Noise},
+    field::FieldSpec,
     space::{Ball, Point, PointId, Region, SpaceSet, Table},
 };
 
@@ -24,13 +27,7 @@ fn set(table: &str, seed: u64, steps: u32) -> SpaceSet {
 }
 
 fn cloud() -> FieldSpec {
-    let noise = Noise {
-        seed: 5,
-        wavelength: 12.0,
-        octaves: 2,
-        range: [0.15, 1.0],
-    };
-    FieldSpec::noise(noise).expect("valid")
+    noise(5, 12.0, 2, [0.15, 1.0]).expect("valid")
 }
 
 /// Compares the points of a box with those of the reference in a wider one.
