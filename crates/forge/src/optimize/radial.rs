@@ -16,7 +16,7 @@ use strew_core::Map;
 use super::{
     Objective,
     ground::Pair,
-    neighbors::{CHUNK, LANES, Neighbors},
+    pairs::{CHUNK, LANES, Neighbors},
     rings::{BINS_PER_SPACING, RINGS_PER_NU, RadialWeights, Rings},
 };
 use crate::curve::Target;
@@ -45,7 +45,6 @@ impl Radial {
     /// The error against `target`, averaged over the patterns of `maps` by their shares, which sum
     /// to 1. The maps are one map for slightly different α; lengths are in mean
     /// spacings of the first.
-    #[must_use]
     pub fn new(maps: &[(Map, f64)], target: &Target, weights: &RadialWeights) -> Self {
         let scale = maps[0].0.alpha().set_side_f64();
         let pattern = |(map, share): &(Map, f64)| WeightedPattern {
