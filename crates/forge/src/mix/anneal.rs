@@ -274,7 +274,7 @@ const RAREST: f64 = 1.0 / 24.0;
 const ALIKE: f64 = 1.12;
 
 /// The mix of a table for some shares, or `None` if the meter's watch stopped the work. It takes
-/// [`anneal::STEPS`](super::anneal::STEPS) steps.
+/// [`STEPS`] steps.
 pub(super) fn annealed(
     table: &Table,
     shares: &Shares,

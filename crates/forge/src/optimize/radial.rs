@@ -1,7 +1,7 @@
 //! A radial power curve as an energy in table space.
 //!
 //! The radial power follows from the histogram of distances (see [`Rings`]). Exact pair frequencies
-//! (see [`neighbors`](super::neighbors)) yield the histogram of the unbounded pattern, without a
+//! (see [`Neighbors`]) yield the histogram of the unbounded pattern, without a
 //! sample of points. One evaluation is a pass over the pairs for the histogram, a product with a
 //! table of J₀, and a second pass with the resulting force, which depends on the distance alone.
 //!
