@@ -33,7 +33,6 @@ pub struct Checkpoint {
     pub(crate) steps: u32,
     /// Steps of all phases.
     pub(crate) of: u32,
-    /// The state of the current phase.
     pub(crate) state: Kept,
 }
 
@@ -58,13 +57,11 @@ impl Kept {
 
 impl Checkpoint {
     /// The number of optimizer steps done.
-    #[must_use]
     pub const fn steps(&self) -> u32 {
         self.steps
     }
 
     /// Whether the optimizer is done, so that only measuring is left.
-    #[must_use]
     pub const fn is_optimized(&self) -> bool {
         self.steps >= self.of
     }
@@ -84,7 +81,6 @@ impl Checkpoint {
     }
 
     /// The content of a checkpoint file.
-    #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let Kept {
             steps,
@@ -107,9 +103,6 @@ impl Checkpoint {
     }
 
     /// Parses the content of a checkpoint file.
-    ///
-    /// # Errors
-    /// [`ForgeError::Field`] if it is not a checkpoint of this version, or damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ForgeError> {
         if !bytes.starts_with(MAGIC) {
             return Err(wrong("of an unknown format"));
@@ -146,18 +139,11 @@ impl Checkpoint {
     }
 
     /// Writes a file, whole or not at all; see [`write_table`](crate::write_table).
-    ///
-    /// # Errors
-    /// [`ForgeError::File`] if a step fails; a file that was at `path` is then unchanged.
     pub fn write(&self, path: &Path) -> Result<(), ForgeError> {
         file::write_whole(path, &self.to_bytes())
     }
 
     /// Reads a file. Returns `None` if it does not exist.
-    ///
-    /// # Errors
-    /// [`ForgeError::File`] if it cannot be read, [`ForgeError::NotACheckpoint`] if it is larger
-    /// than any checkpoint or [`from_bytes`](Self::from_bytes) refuses it.
     pub fn read_file(path: &Path) -> Result<Option<Self>, ForgeError> {
         let failed = |action| ForgeError::file(action, path);
         let not = |error: ForgeError| ForgeError::NotACheckpoint {

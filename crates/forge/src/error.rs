@@ -8,22 +8,11 @@ use std::{
 use strew_core::table::MAX_FILE_BYTES;
 
 /// A setting of a figure or a mask is out of range.
-///
-/// ```
-/// use strew_forge::figure;
-///
-/// let error = figure::index("sqrt(3)".parse()?, 5000).unwrap_err();
-/// assert_eq!(error.to_string(), "window is 5000; it must be an integer from 8 to 200 grid units");
-/// # Ok::<(), strew_core::Error>(())
-/// ```
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{field} is {value}; it must be {allowed}")]
 pub struct SettingError {
-    /// The name of the setting.
     pub field: String,
-    /// Its value.
     pub value: String,
-    /// The allowed values.
     pub allowed: String,
 }
 
@@ -54,11 +43,8 @@ pub enum ForgeError {
     /// A part of a job, a curve or a checkpoint has a value that is not allowed.
     #[error("{field} is {value}; allowed: {allowed}")]
     Field {
-        /// The name of the part.
         field: &'static str,
-        /// The value of the part.
         value: String,
-        /// The allowed values.
         allowed: String,
     },
     /// The parts of a job do not make a table.
@@ -67,21 +53,15 @@ pub enum ForgeError {
     /// A file is not a table.
     #[error("{}: {source}", path.display())]
     NotATable {
-        /// The file.
         path: PathBuf,
-        /// The problem with it.
         source: strew_core::Error,
     },
     /// A file is a table of points in space, where one of the plane is wanted.
     #[error("{}: a table of points in space; allowed here: a table of the plane", path.display())]
-    InSpace {
-        /// The file.
-        path: PathBuf,
-    },
+    InSpace { path: PathBuf },
     /// A file is larger than any table.
     #[error("{}: {bytes} bytes; a table file has at most {MAX_FILE_BYTES}", path.display())]
     TooLarge {
-        /// The file.
         path: PathBuf,
         /// The size of the file, or of the part that was read.
         bytes: u64,
@@ -89,19 +69,14 @@ pub enum ForgeError {
     /// A file is not a checkpoint.
     #[error("{}: {error}", path.display())]
     NotACheckpoint {
-        /// The file.
         path: PathBuf,
-        /// The problem with it.
         error: Box<ForgeError>,
     },
     /// An operation on a file or folder failed.
     #[error("cannot {action} {}: {source}", path.display())]
     File {
-        /// The operation, as a verb.
         action: &'static str,
-        /// The file or folder.
         path: PathBuf,
-        /// The cause.
         source: io::Error,
     },
 }

@@ -6,7 +6,7 @@ use crate::{
     ForgeError,
     curve::LeastCorrelation,
     forge::{Task, Work as _},
-    phase::State as _,
+    watch::State as _,
 };
 
 /// The size and the run time of a job.
@@ -16,7 +16,6 @@ pub struct Estimate {
     pub blocks: u64,
     /// The largest number of pairs of blocks that a step visits; 0 if its energy is no pair energy.
     pub pairs: u64,
-    /// Steps of the optimizer.
     pub steps: u32,
     /// About the total number of points that the table will be judged on.
     pub measured_points: u64,
@@ -31,9 +30,6 @@ pub struct Estimate {
 const LISTS: u32 = 6;
 
 /// Estimates the cost of a job from a few steps, which take a few percent of its time.
-///
-/// # Errors
-/// [`ForgeError::Field`] or [`ForgeError::Table`] for a part of the job that is not allowed.
 pub fn estimate(job: &impl Task) -> Result<Estimate, ForgeError> {
     let plan = job.plan()?;
     let phases = plan.phases();

@@ -30,7 +30,6 @@ pub const EXTENSION: &str = "strew";
 /// assert_eq!(name, "blue-sqrt3-m.strew");
 /// # Ok::<(), strew_core::Error>(())
 /// ```
-#[must_use]
 pub fn file_name(profile: &str, alpha: Alpha, radius: u32) -> String {
     let alpha = alpha
         .to_string()
@@ -64,23 +63,12 @@ pub fn read_table(path: &Path) -> Result<Table, ForgeError> {
 }
 
 /// Returns the usual name of the file of a table of points in space: that of a table of the plane with `space-` before it.
-///
-/// ```
-/// let name = strew_forge::space::table_file_name("blue", "sqrt(3)".parse()?, 16);
-/// assert_eq!(name, "space-blue-sqrt3-r16.strew");
-/// # Ok::<(), strew_core::Error>(())
-/// ```
-#[must_use]
 pub fn space_file_name(profile: &str, alpha: Alpha, radius: u32) -> String {
     format!("space-{}", file_name(profile, alpha, radius))
 }
 
 /// Reads and checks a table file of points in space. Returns `None` for a table of the plane, and for a file whose head is
 /// that of no table.
-///
-/// # Errors
-/// [`ForgeError::File`] if it cannot be read, [`ForgeError::TooLarge`] if it has more than [`MAX_FILE_BYTES`],
-/// [`ForgeError::NotATable`] if its content is damaged beyond the head.
 pub fn read_space_table(path: &Path) -> Result<Option<space::Table>, ForgeError> {
     let content = read_bytes(path)?;
     let table = is_space(&content).then(|| space::Table::from_bytes(&content));
@@ -136,9 +124,6 @@ pub fn write_table(path: &Path, table: &Table) -> Result<(), ForgeError> {
 }
 
 /// Writes a table file of points in space as [`write_table`] does.
-///
-/// # Errors
-/// As [`write_table`].
 pub fn write_space_table(path: &Path, table: &space::Table) -> Result<(), ForgeError> {
     write_whole(path, &table.to_bytes())
 }

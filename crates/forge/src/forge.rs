@@ -10,8 +10,8 @@ use crate::{
     checkpoint::wrong,
     curve::LeastCorrelation,
     judge::{Complaint, Nearness},
-    phase::{Phase, State, work_off},
     watch::{Meter, Stage, Watch},
+    watch::{Phase, State, work_off},
 };
 
 /// A table to make: of the plane, a [`Job`](crate::Job), or of points in space, a [`SpaceJob`](crate::space::SpaceJob).
@@ -20,9 +20,6 @@ pub trait Task {
     type Plan: Work;
 
     /// Checks every part of the job, which takes a few milliseconds for usual maps.
-    ///
-    /// # Errors
-    /// [`ForgeError::Field`] or [`ForgeError::Table`] for a part that is not allowed.
     fn plan(&self) -> Result<Self::Plan, ForgeError>;
 }
 
@@ -88,17 +85,6 @@ pub struct Outcome<T = Table> {
 ///
 /// # Errors
 /// [`ForgeError::Field`] or [`ForgeError::Table`] for a part of the job that is not allowed.
-///
-/// ```
-/// use strew_forge::{forge, space::{SpaceJob, SpaceProfile}};
-///
-/// let job = SpaceJob { radius: 3, steps: Some(6), ..SpaceJob::new(SpaceProfile::Blue) };
-/// let outcome = forge(&job, &())?;
-/// assert_eq!((outcome.table.profile(), outcome.table.map().intervals()), ("blue", 5));
-/// // So few steps and blocks do not make a good table.
-/// assert!(!outcome.accepted);
-/// # Ok::<(), strew_forge::ForgeError>(())
-/// ```
 pub fn forge<J: Task>(job: &J, watch: &dyn Watch) -> Result<Outcome<TableOf<J>>, ForgeError> {
     run(&job.plan()?, None, watch)
 }
@@ -107,38 +93,6 @@ pub fn forge<J: Task>(job: &J, watch: &dyn Watch) -> Result<Outcome<TableOf<J>>,
 ///
 /// # Errors
 /// As [`forge()`], and [`ForgeError::Field`] for a checkpoint of another job.
-///
-/// ```
-/// use std::sync::Mutex;
-/// use strew_forge::{Checkpoint, Job, Progress, Watch, forge, resume};
-///
-/// /// Stops after five steps and keeps the checkpoint.
-/// #[derive(Default)]
-/// struct Stopper(Mutex<(u32, Option<Checkpoint>)>);
-///
-/// impl Watch for Stopper {
-///     fn progress(&self, progress: &Progress) {
-///         self.0.lock().unwrap().0 = progress.step;
-///     }
-///
-///     fn stop(&self) -> bool {
-///         self.0.lock().unwrap().0 == 5
-///     }
-///
-///     fn checkpoint(&self, checkpoint: &Checkpoint) {
-///         self.0.lock().unwrap().1 = Some(checkpoint.clone());
-///     }
-/// }
-///
-/// let mut job = Job::new("sqrt(3)".parse()?);
-/// (job.radius, job.steps) = (12, Some(20)); // tiny, for the example
-/// let stopper = Stopper::default();
-/// assert!(forge(&job, &stopper)?.interrupted);
-/// let (steps, checkpoint) = stopper.0.into_inner()?;
-/// let resumed = resume(&job, checkpoint.expect("kept when it stopped"), &())?;
-/// assert_eq!((steps, resumed), (5, forge(&job, &())?));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn resume<J: Task>(
     job: &J,
     from: Checkpoint,
@@ -149,10 +103,6 @@ pub fn resume<J: Task>(
 
 impl Checkpoint {
     /// Checks that the checkpoint belongs to `job`.
-    ///
-    /// # Errors
-    /// [`ForgeError::Field`] with the first difference if it does not, [`ForgeError::Field`] or
-    /// [`ForgeError::Table`] for a part of the job that is not allowed.
     pub fn is_of(&self, job: &impl Task) -> Result<(), ForgeError> {
         let plan = job.plan()?;
         self.check(&identity(&plan, &plan.phases()))

@@ -34,6 +34,8 @@
 //! a checkpoint. For an existing table, [`with_ranks`] makes the order in which its points leave, and [`labels`] and
 //! [`mix()`] make kinds of points. Apart from jobs, a [`Report`] measures any point set, and [`figure::report`] draws it.
 
+#![allow(missing_docs, reason = "internal: names say what items are")]
+
 mod cell_list;
 mod checkpoint;
 pub mod curve;
@@ -51,14 +53,9 @@ mod mix;
 pub mod numeric;
 pub mod optimize;
 mod order;
-mod phase;
-mod plan;
 pub mod profile;
-mod prospect;
-mod ranks;
 mod report;
 pub mod space;
-mod thinned;
 mod twins;
 mod watch;
 
@@ -68,12 +65,11 @@ pub use error::{ForgeError, SettingError};
 pub use estimate::{Estimate, estimate};
 pub use file::{EXTENSION, file_name, read_table, write_table};
 pub use forge::{Outcome, TableOf, Task, forge, resume};
-pub use job::{DEFAULT_SEED, Job, MAX_RADIUS, MAX_STEPS};
+pub use job::{DEFAULT_SEED, FEW_INTERVALS, Job, MAX_RADIUS, MAX_STEPS, Prospect};
 pub use judge::{Complaint, Figure, gravest};
+pub use measure::ThinnedTwin;
 pub use mix::{MixJob, MixOutcome, labels, mix, mix_file_name, second_order};
+pub use order::with_ranks;
 pub use profile::{Aim, Profile};
-pub use prospect::{FEW_INTERVALS, Prospect};
-pub use ranks::with_ranks;
 pub use report::{Report, Resolution};
-pub use thinned::ThinnedTwin;
 pub use watch::{Meter, Progress, Stage, Watch};

@@ -28,18 +28,6 @@ impl Default for Resolution {
 }
 
 /// A point set at unit density with all its figures and curves.
-///
-/// ```
-/// use strew_core::Table;
-/// use strew_forge::{Report, Resolution, measure::window_set};
-///
-/// // The AA pattern itself, in a window of about 2,000 points.
-/// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-/// let window = window_set(&table, 2000, 1);
-/// let report = Report::of("pattern".into(), false, &window, Resolution::default());
-/// assert!(report.figures.value("delta_min").is_some_and(|delta| delta > 0.6));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct Report {
     /// The named figures, rounded to four significant digits.
@@ -58,7 +46,6 @@ pub struct Report {
 
 impl Report {
     /// Measures a set. `subject` is its name in the figures, `seen` says whether its table was optimized on it.
-    #[must_use]
     pub fn of(subject: String, seen: bool, set: &Sample, at: Resolution) -> Self {
         let spectrum = Spectrum::of(set, at.nu_max);
         Self {
@@ -72,7 +59,6 @@ impl Report {
     }
 
     /// Returns this report with the figures of a curve that the radial power should follow.
-    #[must_use]
     pub fn compared(mut self, target: &Target) -> Self {
         let more = curve_figures(&self.spectrum, target);
         self.figures.values.extend(more);

@@ -1,11 +1,16 @@
-//! The twins a table is optimized and judged on: those next to α.
+//! The twins a table is optimized and judged on: those next to α, and their points, whole or thinned.
 //!
 //! The twins of a map lie on the interval of α on which its thresholds keep their order. For small
 //! maps this interval is wide, and a twin far from α has another density and other frequencies. So
 //! of the twins with the same side t only the two fractions around α are considered. Maps of useful
 //! size have no other twins of moderate size.
 
-use strew_core::{Alpha, Map, Twin};
+use strew_core::{
+    Alpha, Map, Table, Twin,
+    table::{Displacement, to_grid_units},
+};
+
+use crate::measure::Sample;
 
 /// The largest side t of a twin that is considered: 17 million points.
 const MAX_SIDE: u64 = 4096;
@@ -134,6 +139,86 @@ impl Domain {
     }
 }
 
+/// Returns one period of a twin, displaced, or `None` if it is no twin of the table's map.
+pub fn twin_set(table: &Table, twin: Twin) -> Option<Sample> {
+    Some(ThinnedTwin::new(table, twin)?.at(1.0, None))
+}
+
+/// The place of a point, by its lattice address and its vector.
+fn displaced(address: [u32; 2], by: Displacement) -> [f64; 2] {
+    [0, 1].map(|axis| f64::from(address[axis]) + to_grid_units(by[axis]))
+}
+
+/// One period of a twin, to be thinned again and again.
+pub struct ThinnedTwin {
+    /// Grid units.
+    period: f64,
+    points: Vec<Candidate>,
+}
+
+/// A point of the full set.
+struct Candidate {
+    /// Grid units.
+    at: [f64; 2],
+    rank: f64,
+    kind: u8,
+}
+
+impl ThinnedTwin {
+    /// The period of a twin of the table's map, or `None` if it is none.
+    pub fn new(table: &Table, twin: Twin) -> Option<Self> {
+        let n = table.map().intervals();
+        let (p, q) = (twin.p(), twin.q());
+        let index = |site: &strew_core::map::Site| {
+            (p * u64::from(site.x) + q * u64::from(site.y & 1)) % (2 * q)
+        };
+        let sites = twin.sites(table.map())?;
+        // The first and the last index of each interval.
+        let mut ends = vec![[u64::MAX, 0]; n];
+        for site in &sites {
+            let ends = &mut ends[site.block_x as usize];
+            *ends = [ends[0].min(index(site)), ends[1].max(index(site))];
+        }
+        let points = sites.iter().map(|site| {
+            let block = site.block_y as usize * n + site.block_x as usize;
+            let [first, last] = ends[site.block_x as usize];
+            let within = ((index(site) - first) as f64 + 0.5) / (last - first + 1) as f64;
+            let ranks = table.block_ranks(block);
+            let interval = table.map().interval(site.block_x as usize);
+            let offset = within * (interval.end - interval.start) as f64;
+            Candidate {
+                at: displaced([site.x, site.y], table.displacements()[block]),
+                rank: ranks.start + within * (ranks.end - ranks.start),
+                kind: kind(table, block, offset),
+            }
+        });
+        Some(Self {
+            period: twin.period() as f64,
+            points: points.collect(),
+        })
+    }
+
+    /// The points that are left at a share, of a kind or all, at unit density. Tables without a mix have points of kind 0
+    /// only.
+    pub fn at(&self, share: f64, kind: Option<u8>) -> Sample {
+        let is_of_kind = |point: &Candidate| kind.is_none_or(|kind| point.kind == kind);
+        let left = self.points.iter();
+        let left = left.filter(|point| point.rank < share && is_of_kind(point));
+        let points = left.map(|point| point.at);
+        Sample::torus(self.period, points.collect())
+    }
+}
+
+/// The kind of a point of a block, given how far its dX lies beyond the start of the block's interval.
+fn kind(table: &Table, block: usize, offset: f64) -> u8 {
+    table.mix().map_or(0, |mix| {
+        let splits = mix.splits().iter();
+        let mut here = splits.filter(|split| split.block as usize == block);
+        let split = here.find(|split| split.offset as f64 <= offset);
+        split.map_or(mix.labels()[block], |split| split.kind)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -167,5 +252,16 @@ mod tests {
         }
         let tied = Map::new("3/2".parse().expect("valid"), 4).expect("small");
         assert_eq!(next_to_alpha(&tied).filter(|t| t.points() > 1).count(), 0);
+    }
+
+    #[test]
+    fn a_twin_has_its_points_at_unit_density() {
+        let table = Table::undisplaced("(5-sqrt(3))/2".parse().expect("valid"), 20, "pattern");
+        let table = table.expect("small");
+        let twin = table.map().twins().next().expect("endless");
+        let set = twin_set(&table, twin).expect("a twin");
+        assert_eq!(set.points().len() as u64, twin.points());
+        assert_eq!(set.side(), twin.t() as f64);
+        assert!(twin_set(&table, Twin::new(3, 2).expect("coprime")).is_none());
     }
 }

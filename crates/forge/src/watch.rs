@@ -1,9 +1,10 @@
-//! The way for a caller to follow the work and stop it.
+//! The phases of a job, in the plane and in space: steps that change a state, which checkpoints keep. A caller follows the work
+//! and stops it.
 //!
 //! The caller implements [`Watch`]. The optimizer and the judge count their steps with a [`Meter`],
 //! which reports [`Progress`] to it. None of them reads a clock, which WebAssembly lacks.
 
-use crate::Checkpoint;
+use crate::{Checkpoint, ForgeError, checkpoint::Kept};
 
 /// A stage of the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,7 +18,6 @@ pub enum Stage {
 /// The progress of the work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// The current stage.
     pub stage: Stage,
     /// The number of steps done in this stage.
     pub step: u32,
@@ -68,13 +68,11 @@ pub struct Meter<'a> {
 
 impl<'a> Meter<'a> {
     /// Begins a stage of `steps` steps.
-    #[must_use]
     pub fn new(watch: &'a dyn Watch, stage: Stage, steps: u32) -> Self {
         Self::from(watch, stage, steps, 0)
     }
 
     /// Resumes a stage of `steps` steps, of which `first` are done.
-    #[must_use]
     pub fn from(watch: &'a dyn Watch, stage: Stage, steps: u32, first: u32) -> Self {
         let meter = Self {
             watch,
@@ -87,13 +85,11 @@ impl<'a> Meter<'a> {
     }
 
     /// Whether the watch stops the work.
-    #[must_use]
     pub fn stop(&self) -> bool {
         self.watch.stop()
     }
 
     /// Whether the watch wants a checkpoint.
-    #[must_use]
     pub fn wants_checkpoint(&self) -> bool {
         self.watch.wants_checkpoint()
     }
@@ -112,4 +108,71 @@ impl<'a> Meter<'a> {
             energy,
         });
     }
+}
+
+/// All that decides the next step of a phase.
+pub trait State: Sized {
+    /// The steps done in the phase.
+    fn steps(&self) -> u32;
+
+    /// The number of vectors.
+    fn blocks(&self) -> usize;
+
+    /// The state for a checkpoint.
+    fn keep(&self) -> Kept;
+
+    /// The state of a checkpoint, or `None` if it is another one.
+    fn resume(kept: Kept) -> Option<Self>;
+}
+
+/// A phase of a job.
+pub trait Phase<S> {
+    /// The number of steps.
+    fn steps(&self) -> u32;
+
+    /// The steps in words, among all that decides the result of a job.
+    fn describe(&self) -> String;
+
+    /// Prepares to go on from a state: the first one of the phase, or that of a checkpoint.
+    fn begin(&mut self, state: &S);
+
+    /// Takes a step. Returns the energy before it, per point, or another value that progress shows.
+    fn step(&mut self, state: &mut S) -> f64;
+
+    /// Completes a state for a checkpoint.
+    fn complete(&self, state: &mut S) {
+        let _ = state;
+    }
+
+    /// The first state of the next phase.
+    fn end(&self, state: S) -> Result<S, ForgeError>;
+
+    /// The largest number of pairs that a step has visited; 0 if its energy is no pair energy.
+    fn pairs(&self) -> usize {
+        0
+    }
+}
+
+/// Takes the steps of a phase that are left, or fewer if the watch stops the work. Calls `keep` with the state between two
+/// steps when the watch wants a checkpoint and when it stops the work. Returns whether all steps are done.
+pub(crate) fn work_off<S: State>(
+    phase: &mut (impl Phase<S> + ?Sized),
+    state: &mut S,
+    meter: &mut Meter<'_>,
+    keep: &mut dyn FnMut(&S),
+) -> bool {
+    phase.begin(state);
+    while state.steps() < phase.steps() {
+        let stop = meter.stop();
+        if stop || meter.wants_checkpoint() {
+            phase.complete(state);
+            keep(state);
+        }
+        if stop {
+            return false;
+        }
+        let value = phase.step(state);
+        meter.advance(Some(value));
+    }
+    true
 }

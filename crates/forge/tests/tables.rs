@@ -3,68 +3,71 @@
 
 mod shipped;
 
-use strew_core::{Table, Twin, table::Figures};
+use rayon::prelude::*;
+use strew_core::{Alpha, PointSet, Table, Twin, table::Figures};
 use strew_forge::{
-    Figure, Job,
+    Figure, Job, Profile, Target,
     energy::{Cell, Lloyd},
     forge,
-    judge::{Bound, RING_WIDTH, complaints, figures},
-    measure::{Sample, Spectrum, twin_set, window_set},
+    judge::{Bound, RING_WIDTH, complaints, curve_figures, figures},
+    measure::{Sample, Spectrum, square_set, twin_set, window_set},
 };
 
 const DEFAULT: &str = "(5-sqrt(3))/2";
 
-/// Figures, up to ν = 1.5, on up to `most` twins and on windows that neither the optimizer nor the
-/// judge of the table saw.
-fn unseen(table: &Table, most: usize) -> Vec<Figures> {
-    let judged = table.provenance().figures.iter().map(|f| f.subject.clone());
-    let judged: Vec<String> = judged.collect();
-    let twins = large_twins(table, 200_000);
-    let unseen = twins.filter(|twin| !judged.contains(&format!("twin {twin}")));
-    let mut all = on_twins(table, unseen.take(most));
-    assert!(all.len() >= most.min(6), "{}", table.alpha());
-    all.extend(on_windows(table));
+/// The figures of a set up to ν = 1.5; beside a curve up to ν = 4, with the mean power for ν from 0.1 to 0.2.
+fn measured(subject: String, set: &Sample, target: Option<&Target>) -> Figures {
+    let spectrum = Spectrum::of(set, target.map_or(1.5, |_| 4.0));
+    let mut all = figures(subject, false, set, &spectrum, RING_WIDTH);
+    if let Some(target) = target {
+        all.values.extend(curve_figures(&spectrum, target));
+        let long = spectrum.rings(0.1)[1].power;
+        all.values.push(("long_waves".into(), long));
+    }
     all
+}
+
+fn on_twins(table: &Table, twins: Vec<Twin>, target: Option<&Target>) -> Vec<Figures> {
+    let measure = |twin: Twin| {
+        let set = twin_set(table, twin).expect("a twin");
+        measured(format!("twin {twin}"), &set, target)
+    };
+    twins.into_par_iter().map(measure).collect()
+}
+
+/// Windows of the unbounded pattern that neither the optimizer nor the judge of the table saw.
+fn on_windows(table: &Table, target: Option<&Target>) -> Vec<Figures> {
+    let measure = |seed| {
+        let set = window_set(table, 75_000, seed);
+        measured(format!("window {seed}"), &set, target)
+    };
+    (100..103).map(measure).collect()
 }
 
 /// Twins of 50,000 to `most` points that the table was not optimized on.
 fn large_twins(table: &Table, most: u64) -> impl Iterator<Item = Twin> {
     let seen = &table.provenance().twins;
-    let twins = table
-        .map()
-        .twins()
-        .take_while(move |twin| twin.points() < most);
+    let twins = table.map().twins();
+    let twins = twins.take_while(move |twin| twin.points() < most);
     twins.filter(|twin| twin.points() >= 50_000 && !seen.contains(twin))
 }
 
-fn measured(subject: String, set: &Sample) -> Figures {
-    figures(subject, false, set, &Spectrum::of(set, 1.5), RING_WIDTH)
-}
-
-fn on_twins(table: &Table, twins: impl Iterator<Item = Twin>) -> Vec<Figures> {
-    let measure = |twin: Twin| {
-        let set = twin_set(table, twin).expect("a twin");
-        measured(twin.to_string(), &set)
-    };
-    twins.map(measure).collect()
-}
-
-fn on_windows(table: &Table) -> Vec<Figures> {
-    let measure = |seed| {
-        let set = window_set(table, 70_000, seed);
-        measured(format!("window {seed}"), &set)
-    };
-    (100..103).map(measure).collect()
+/// Figures on up to `most` twins that the judge did not see either, and on windows.
+fn unseen(table: &Table, most: usize) -> Vec<Figures> {
+    let judged = table.provenance().figures.iter().map(|f| f.subject.clone());
+    let judged: Vec<String> = judged.collect();
+    let twins = large_twins(table, 200_000);
+    let unseen = twins.filter(|twin| !judged.contains(&format!("twin {twin}")));
+    let mut all = on_twins(table, unseen.take(most).collect(), None);
+    assert!(all.len() >= most.min(6), "{}", table.alpha());
+    all.extend(on_windows(table, None));
+    all
 }
 
 fn hold(table: &Table, figures: &[Figures], bounds: &[Bound]) {
-    let complaints = complaints(bounds, figures);
-    assert!(
-        complaints.is_empty(),
-        "{} {}: {complaints:?}",
-        table.profile(),
-        table.alpha()
-    );
+    let wrong = complaints(bounds, figures);
+    let (profile, alpha) = (table.profile(), table.alpha());
+    assert!(wrong.is_empty(), "{profile} {alpha}: {wrong:#?}");
 }
 
 const BLUE: [Bound; 4] = [
@@ -109,22 +112,81 @@ fn larger_maps_are_as_good_on_windows_and_unseen_twins() {
         for radius in [100, 200] {
             let table = shipped::table(profile, DEFAULT, radius);
             // Large maps have few twins, and the judge saw the smaller ones.
-            let twins = large_twins(&table, 500_000).take(1);
-            let mut all = on_twins(&table, twins);
+            let twins = large_twins(&table, 500_000).take(1).collect();
+            let mut all = on_twins(&table, twins, None);
             assert_eq!(all.len(), 1);
-            all.extend(on_windows(&table));
+            all.extend(on_windows(&table, None));
             hold(&table, &all, bounds);
         }
     }
 }
 
+/// Eight of the twins of 65,000 to 200,000 points, which spread over the interval of α that the map
+/// serves: the two next to each of its ends, where curves are missed first, and four in between.
+fn far_and_near(table: &Table) -> Vec<Twin> {
+    let large = table.map().twins().take_while(|t| t.points() <= 200_000);
+    let mut large: Vec<Twin> = large.filter(|t| t.points() >= 65_000).collect();
+    assert!(large.len() > 30);
+    let ratio = |t: &Twin| t.p() as f64 / t.q() as f64;
+    large.sort_by(|a, b| ratio(a).total_cmp(&ratio(b)));
+    let last = large.len() - 1;
+    let between = (1..5).map(|part| part * last / 5);
+    let places = [0, 1].into_iter().chain(between).chain([last - 1, last]);
+    places.map(|at| large[at]).collect()
+}
+
+#[test]
+fn tables_follow_their_curves_on_far_twins_and_windows_and_as_they_are_served() {
+    let curves = Profile::ALL.iter().filter_map(|p| Some((p, p.target()?)));
+    for (profile, target) in curves {
+        let (table, target) = (shipped::table(profile.name, DEFAULT, 49), Some(&target));
+        let mut all = on_twins(&table, far_and_near(&table), target);
+        all.extend(on_windows(&table, target));
+        // 300² mean spacings with the warp on, away from the origin.
+        all.extend([3, 4].map(|seed| {
+            let set = PointSet::new(table.clone()).seed(seed);
+            let set = square_set(&set, [1000.0 * seed as f64; 2], 300.0, 1.0);
+            measured(format!("seed {seed}"), &set.expect("near"), target)
+        }));
+        hold(&table, &all, profile.bounds);
+        let long = |figures: &Figures| figures.value("long_waves").expect("measured");
+        assert!(profile.name != "pink" || all.iter().all(|figures| long(figures) >= 4.0));
+    }
+}
+
+#[test]
+fn an_impossible_curve_is_refused_with_its_error() {
+    // No power up to ν = 1.2: no set has so few close pairs.
+    let target: Target = "0 0\n1.2 0\n1.2 1".parse().expect("valid");
+    let alpha: Alpha = DEFAULT.parse().expect("valid");
+    let job = |profile: &str| Job {
+        radius: 15,
+        profile: profile.into(),
+        target: Some(target.clone()),
+        steps: Some(30),
+        ..Job::new(alpha)
+    };
+    let outcome = forge(&job("mine"), &()).expect("a good job");
+    assert!(!outcome.accepted);
+    let complaints = outcome.complaints.iter().map(|c| format!("{c}; "));
+    let complaints: String = complaints.collect();
+    for name in ["target_rms", "target_worst"] {
+        assert!(complaints.contains(name), "{complaints}");
+    }
+    let history = outcome.table.provenance();
+    let drawn = ("target".to_owned(), "0 0; 1.2 0; 1.2 1".to_owned());
+    assert!(history.parameters.contains(&drawn));
+    assert_eq!(outcome.table.profile(), "mine");
+    // The name of a known profile is taken.
+    let refused = forge(&job("step"), &()).expect_err("refused").to_string();
+    assert!(refused.contains("step"), "{refused}");
+}
+
 #[test]
 fn the_lloyd_table_is_at_rest_on_unseen_twins() {
     let table = shipped::table("lloyd", DEFAULT, 49);
-    let seen = &table.provenance().twins;
-    let large = |t: &Twin| t.points() > 70_000 && !seen.contains(t);
-    let twin = table.map().twins().find(large).expect("endless");
-    let set = twin_set(&table, twin).expect("a twin");
+    let twin = large_twins(&table, u64::MAX).find(|twin| twin.points() > 70_000);
+    let set = twin_set(&table, twin.expect("endless")).expect("a twin");
     // Points are about as near to the centroids of their cells as a table of this size allows.
     let cells = Lloyd::cells(&set);
     let away = |c: &Cell| (c.first[0] * c.first[0] + c.first[1] * c.first[1]).sqrt() / c.area;

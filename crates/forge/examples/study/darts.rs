@@ -44,7 +44,7 @@ pub fn study(mut arguments: Arguments) -> Outcome {
             let own = darts.cells.iter().flatten();
             let own = own.filter(|(_, own)| kind.is_none_or(|kind| *own == kind));
             let set = Sample::torus(1.0, own.map(|(at, _)| *at).collect());
-            figures::torus(subject, &set, more);
+            figures::measured(subject, &set, more);
         };
         for kind in 0..parts.len() {
             print(format!("{shares}, kind {kind}"), Some(kind), &[]);

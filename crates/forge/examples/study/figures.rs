@@ -2,7 +2,6 @@
 
 use std::fmt::Display;
 
-use strew_core::table::Figures;
 use strew_forge::{Report, Resolution, measure::Sample};
 
 /// The figures of measured sets, in columns. `strew measure` has the same names.
@@ -17,11 +16,6 @@ pub fn head(columns: &str) {
 
 /// Prints a row: the subject, which may be several columns, and numbers.
 pub fn row(subject: impl Display, numbers: &[f64]) {
-    println!("{}", cells(subject, numbers));
-}
-
-/// A row as text.
-pub fn cells(subject: impl Display, numbers: &[f64]) -> String {
     let cells = numbers.iter().map(|&v| match v.abs() {
         _ if v.is_nan() => " |".into(),
         _ if v.fract() == 0.0 => format!(" {v:.0} |"),
@@ -29,7 +23,7 @@ pub fn cells(subject: impl Display, numbers: &[f64]) -> String {
         size if size < 10.0 => format!(" {v:.4} |"),
         _ => format!(" {v:.2} |"),
     });
-    format!("| {subject} |{}", cells.collect::<String>())
+    println!("| {subject} |{}", cells.collect::<String>());
 }
 
 /// Prints the head of a table of measured sets, with more columns.
@@ -37,21 +31,11 @@ pub fn head_of_sets(more: &str) {
     head(&format!("set | points | {NAMES}{more}"));
 }
 
-/// Prints the row of a measured set, with more numbers.
-pub fn set(figures: &Figures, more: &[f64]) {
-    let known = NAMES.split(" | ").map(|name| value(figures, name));
+/// Measures a set and prints its row, with more numbers.
+pub fn measured(subject: String, set: &Sample, more: &[f64]) {
+    let figures = Report::of(subject, false, set, Resolution::default()).figures;
+    let known = { NAMES.split(" | ") }.map(|name| figures.value(name).unwrap_or(f64::NAN));
     let numbers = [figures.points as f64].into_iter().chain(known);
     let numbers = numbers.chain(more.iter().copied());
     row(&figures.subject, &numbers.collect::<Vec<_>>());
-}
-
-/// A figure; NaN if it was not measured.
-pub fn value(figures: &Figures, name: &str) -> f64 {
-    figures.value(name).unwrap_or(f64::NAN)
-}
-
-/// Measures a periodic set and prints its row.
-pub fn torus(subject: String, set: &Sample, more: &[f64]) {
-    let report = Report::of(subject, false, set, Resolution::default());
-    self::set(&report.figures, more);
 }

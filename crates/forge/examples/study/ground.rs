@@ -8,9 +8,6 @@ use strew_core::{
 
 use crate::Outcome;
 
-/// The corner of squares that are drawn, away from the origin.
-pub const CORNER: [f64; 2] = [12_345.0, -6_789.0];
-
 /// The neighbor distance of the hexagonal lattice, in mean spacings.
 pub const HEXAGONAL: f64 = 1.074_569_931_823_542;
 

@@ -3,19 +3,18 @@
 //! `cargo run --release -p strew-forge --example study -- SUBCOMMAND …`. Without a subcommand it prints them all, with
 //! their arguments. Figures are printed as tables in Markdown. Lists have commas: `--seeds 11,29`.
 
-mod alphas;
 mod cases;
+mod comparison;
 mod darts;
 mod figures;
 mod ground;
-mod kinds;
 mod local;
 mod masks;
-mod measured;
 mod paint;
 mod pictures;
 mod settled;
 mod stipple;
+mod varying;
 
 use std::{env, error::Error, path::Path, str::FromStr};
 
@@ -26,32 +25,22 @@ use strew_forge::read_table;
 type Outcome<T = ()> = Result<T, Box<dyn Error>>;
 
 const USAGE: &str = "\
-alphas FOLDER [ALPHA…]
 comparison
-kinds TABLE SHARES… [--joint] [--time] [--draw OUT.png [--side 26] [--pixels 12]]
 masks TABLE [PICTURE.png]
-periodic TABLE [--points 5000] [--seeds 4]
-seeds TABLE [--warp 1] [--settle 0] [--seeds 4] [--side 362]
 settled TABLE [--sets NAME | --share SHARE] [--steps 0,1,2,3,4] [--seeds 11,29,58] [--points 50000]
-    [--at 7300000,-5100000] [--mix SHARES] [--draw forest|shares|NAME OUT.png]
+    [--at 7300000,-5100000] [--mix SHARES]
 stipple [--steps 0,2,3,4] [--points 5000] [--seeds 1,2,3,4,5] [--draw FOLDER]
-thinned TABLE [--ranks] [--twin 683/418] [--per 1] [--octaves 6] [--phase 0] [--nu 2.5] [--quiet]
 varying TABLE
 wei [--points 7000] [SHARES…]";
 
 fn main() -> Outcome {
     let mut arguments = Arguments(env::args().skip(1).collect());
     let study = match arguments.next("SUBCOMMAND").unwrap_or_default().as_str() {
-        "alphas" => alphas::scan,
-        "comparison" => measured::comparison,
-        "kinds" => kinds::fixed,
+        "comparison" => comparison::study,
         "masks" => masks::study,
-        "periodic" => measured::periodic,
-        "seeds" => measured::seeds,
         "settled" => settled::study,
         "stipple" => stipple::study,
-        "thinned" => measured::thinned,
-        "varying" => kinds::varying,
+        "varying" => varying::study,
         "wei" => darts::study,
         _ => {
             println!("{USAGE}");
@@ -70,12 +59,6 @@ impl<T: FromStr<Err: Error + 'static>> Readable for T {}
 pub struct Arguments(Vec<String>);
 
 impl Arguments {
-    /// Takes a flag without a value; whether it was there.
-    pub fn has(&mut self, flag: &str) -> bool {
-        let at = self.0.iter().position(|word| word == flag);
-        at.map(|at| self.0.remove(at)).is_some()
-    }
-
     /// Takes a flag and its value.
     pub fn after(&mut self, flag: &str) -> Option<String> {
         let at = self.0.iter().position(|word| word == flag)?;

@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-use strew_forge::figure::{Color, Drawing};
+use strew_forge::figure::Drawing;
 
 use crate::Outcome;
 
@@ -11,23 +11,19 @@ const GAP: f64 = 12.0;
 /// The longest side of a picture, in pixels.
 const LONGEST: f64 = 4096.0;
 
-/// Dots of a panel: their places in pixels from the upper left corner, their diameter and color.
-pub type Dots = (Vec<[f64; 2]>, f64, Color);
+/// Black dots of a panel: their places in pixels from the upper left corner, and their diameter.
+pub type Dots = (Vec<[f64; 2]>, f64);
 
-/// Draws panels of one size, in rows of `across`.
-pub fn write(out: &Path, panels: &[Vec<Dots>], size: [f64; 2], across: usize) -> Outcome {
-    let sheet = [across.min(panels.len()), panels.len().div_ceil(across)];
+/// Draws panels of one size, in rows of two.
+pub fn write(out: &Path, panels: &[Dots], size: [f64; 2]) -> Outcome {
+    let sheet = [2, panels.len().div_ceil(2)];
     let sheet = [0, 1].map(|i| sheet[i] as f64 * (size[i] + GAP) - GAP);
     let mut drawing = Drawing::new(sheet[0], sheet[1]);
-    for (number, panel) in panels.iter().enumerate() {
-        let at = [number % across, number / across];
+    for (number, (places, diameter)) in panels.iter().enumerate() {
+        let at = [number % 2, number / 2];
         let corner = [0, 1].map(|i| at[i] as f64 * (size[i] + GAP));
-        for (places, diameter, color) in panel {
-            let is_inside = |p: &&[f64; 2]| (0..2).all(|i| (0.0..size[i]).contains(&p[i]));
-            let inside = places.iter().filter(is_inside);
-            let inside = inside.map(|p| [0, 1].map(|i| corner[i] + p[i]));
-            drawing.dots(inside, *diameter, *color);
-        }
+        let places = places.iter().map(|p| [0, 1].map(|i| corner[i] + p[i]));
+        drawing.dots(places, *diameter, [0; 3]);
     }
     save(out, &drawing, sheet)
 }

@@ -11,25 +11,19 @@
 //! Where a table has kinds, or gets some by `--mix 1:1:2`, rows have the mean low power of each, in windows of 24
 //! spacings of its own, the rarest first. `--share 0.21` measures that share alone. Stripes have more rows: the density
 //! over the share by half local spacings from the edge, outside first.
-//!
-//! `--draw` draws a forest, shares or a set instead, after each number of steps.
 
-use std::path::Path;
-
-use strew_core::{
-    Point, PointSet,
-    field::{FieldSpec, Marks},
+use strew_core::{Point, PointSet};
+use strew_forge::{
+    labels,
+    measure::{Sample, Spectrum},
 };
-use strew_forge::measure::{Sample, Spectrum};
 
 use crate::{
     Arguments, Outcome,
     cases::{Case, Kind, Profile},
     figures,
-    ground::{CORNER, Ground, Near, noise, places, square},
-    kinds::made,
+    ground::{Ground, Near, places, square},
     local::{Octave, Windows, boxes, count},
-    paint::{self, Dots},
 };
 
 /// The width of a ring.
@@ -48,17 +42,12 @@ pub fn study(mut arguments: Arguments) -> Outcome {
         Some(share) => vec![Case::constant(share.parse()?)],
         None => Case::all(),
     };
-    let [shares, drawn] = ["--mix", "--draw"].map(|flag| arguments.after(flag));
+    let shares = arguments.after("--mix");
     let mut table = arguments.table()?;
     if let Some(shares) = shares {
-        table = made(&table, &shares.parse()?, false)?.table;
+        table = labels(&table, &shares.parse()?, &())?.ok_or("stopped")?;
     }
     let all = PointSet::new(table);
-    if let Some(what) = drawn {
-        let panels = panels(&all.seed(seeds[0]), &what, &steps)?;
-        let out = arguments.next("OUT.png")?;
-        return paint::write(Path::new(&out), &panels.1, [panels.0; 2], panels.1.len());
-    }
     let columns = "set | steps | low | median | δ_min | of 1 % | mean δ | near | of D | var";
     figures::head(&format!("{columns} | bias | ± | whole | tall"));
     for case in cases.iter().filter(|case| case.name.starts_with(&wanted)) {
@@ -216,46 +205,4 @@ fn tallest(spectrum: &Spectrum, side: f64) -> f64 {
     let over = rings.iter().filter(|ring| ring.0 > 0.0);
     let over = over.map(|(count, sum, most)| most * count / sum);
     over.fold(0.0, f64::max)
-}
-
-/// Panels of a forest or a set for each number of steps, or of shares, and their side.
-fn panels(all: &PointSet, what: &str, steps: &[u32]) -> Outcome<(f64, Vec<Vec<Dots>>)> {
-    let (set, side, width) = match what {
-        "shares" => {
-            let shares = [0.25, 0.0625, 0.04, 0.005f64].into_iter();
-            let panel = |share: f64| panel(&all.clone().keep(share)?, 32.0 / share.sqrt(), 400.0);
-            return Ok((400.0, shares.map(panel).collect::<Outcome<_>>()?));
-        }
-        "forest" => (all.in_field(forest()?), 110.0, 700.0),
-        name => {
-            let mut cases = Case::all().into_iter();
-            let case = cases.find(|case| case.name.starts_with(name));
-            let case = case.ok_or("no such set")?;
-            (case.set(all, CORNER[0])?.0, case.side(3000.0), 900.0)
-        }
-    };
-    let settled = |&steps: &u32| panel(&set.clone().settle(steps)?, side, width);
-    Ok((width, steps.iter().map(settled).collect::<Outcome<_>>()?))
-}
-
-/// A square of a set.
-fn panel(set: &PointSet, side: f64, width: f64) -> Outcome<Vec<Dots>> {
-    let scale = width / side;
-    // Points of all pictures cover about a tenth of the plane where it is densest.
-    let radius = 0.2 * scale / set.placement().keep.get().sqrt();
-    let points = square(set, CORNER, side)?;
-    let places = points.iter().map(|p| [p.x * scale, (side - p.y) * scale]);
-    Ok(vec![(places.collect(), 2.0 * radius.max(0.9), [0; 3])])
-}
-
-/// Natural patches, a bare road through them, and a straight edge of a field at their right.
-fn forest() -> Outcome<FieldSpec> {
-    let at = |[x, y]: [f64; 2]| [CORNER[0] + x, CORNER[1] + y];
-    let patches = noise(3, 60.0, 3)?;
-    let patches = patches.curve(vec![[0.3, 0.08], [0.7, 1.0]])?;
-    let way = [[-5.0, 20.0], [35.0, 34.0], [60.0, 60.0], [75.0, 120.0]];
-    let way = Marks::Lines(vec![way.map(at).to_vec()]);
-    let road = FieldSpec::distance(way, [2.0, 2.001], [0.0, 1.0])?;
-    let edge = FieldSpec::ramp(at([112.0, 0.0]), at([112.004, 0.001]), [1.0, 0.0])?;
-    Ok(FieldSpec::multiply(vec![patches, road, edge])?)
 }

@@ -83,7 +83,7 @@ pub fn study(mut arguments: Arguments) -> Outcome {
         }
         if let Some(folder) = &folder {
             let out = Path::new(folder).join(format!("{}.png", picture.name));
-            paint::write(&out, &drawn, sizes(&picture).0, 2)?;
+            paint::write(&out, &drawn, sizes(&picture).0)?;
         }
     }
     for (way, verdicts) in ways.iter().zip(&of_ways) {
@@ -123,11 +123,11 @@ fn sizes(picture: &Picture) -> ([f64; 2], f64) {
 }
 
 /// A stipple as a panel.
-fn panel(picture: &Picture, points: &[[f64; 2]]) -> Vec<Dots> {
+fn panel(picture: &Picture, points: &[[f64; 2]]) -> Dots {
     let ([width, height], scale) = sizes(picture);
     let diameter = 2.0 * (width * height * COVERED / points.len() as f64 / PI).sqrt();
     let place = |[x, y]: &[f64; 2]| [x * scale, height - y * scale];
-    vec![(points.iter().map(place).collect(), diameter, [0; 3])]
+    (points.iter().map(place).collect(), diameter)
 }
 
 /// The seconds for which this thread has had a processor, where Linux counts them; else those of the clock, which are

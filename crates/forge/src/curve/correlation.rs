@@ -24,7 +24,6 @@ const STEPS_PER_NU: f64 = 2000.0;
 /// The least value of the pair correlation g(r) that belongs to a power curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeastCorrelation {
-    /// The least value of g.
     pub g: f64,
     /// The distance r of the least value, in mean spacings.
     pub r: f64,
@@ -32,7 +31,6 @@ pub struct LeastCorrelation {
 
 impl LeastCorrelation {
     /// Finds the least value for the power curve `target`, up to r = 20.
-    #[must_use]
     pub fn of(target: &Target) -> Self {
         let bessel = BesselJ0::up_to(2.0 * std::f64::consts::PI * (target.end() + 1.0) * MAX_R);
         let at = |step: u32| {
@@ -48,7 +46,6 @@ impl LeastCorrelation {
     }
 
     /// Whether no point set can have the curve, because g would be negative.
-    #[must_use]
     pub fn is_impossible(&self) -> bool {
         self.g < -TOLERANCE
     }

@@ -36,7 +36,6 @@ const CHUNK: usize = 256;
 
 impl Lloyd {
     /// Returns the Voronoi cells of a periodic set of at least 100 points, in order of the points.
-    #[must_use]
     pub fn cells(set: &Sample) -> Vec<Cell> {
         let list = CellList::of(set, 1.0);
         let found: Vec<Vec<(u32, Cell)>> = list

@@ -20,9 +20,6 @@ const LEGEND: usize = 12;
 /// Draws the clusters of points that are at most `distance` grid units from a neighbor, up to `most` points, in
 /// a window of `window` × `window` grid places of AA(α), 8 to 200; and the set region, where each shape has
 /// its blocks. Shapes that are symmetric to each other share a color.
-///
-/// # Errors
-/// [`FigureError`] if the window is out of range, or the others are as [`Clusters::new`] refuses them.
 pub fn clusters(
     alpha: Alpha,
     distance: f64,
@@ -34,9 +31,6 @@ pub fn clusters(
 }
 
 /// [`clusters`] that were searched already, with the same `distance`.
-///
-/// # Errors
-/// [`FigureError`] if the window is out of range.
 pub fn found_clusters(
     found: &Clusters,
     distance: f64,

@@ -26,11 +26,8 @@ pub type Color = [u8; 3];
 /// The part of a text that its place names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// The first letter.
     Start,
-    /// The middle.
     Middle,
-    /// The last letter.
     End,
 }
 
@@ -45,12 +42,8 @@ pub type Rectangle = [[f64; 2]; 2];
 pub(super) enum Mark {
     /// A filled rectangle: its upper left corner, its size, its color and opacity.
     Fill([f64; 2], [f64; 2], Color, f64),
-    /// The outline of a rectangle, dashed if the last number is above 0.
-    Outline([f64; 2], [f64; 2], Pen, f64),
     /// Lines with round ends. One between equal places is a disk.
     Lines(Vec<[[f64; 2]; 2]>, Pen),
-    /// A circle without filling: its center and radius.
-    Ring([f64; 2], f64, Pen),
     /// The area that an odd number of rectangles covers: stripes in both directions make a checkered field.
     Checkers(Vec<Rectangle>, Color),
     /// A rectangle of gray cells: its upper left corner, its size, the number of columns, and the cells by rows from the top.
@@ -80,7 +73,6 @@ fn hex([r, g, b]: Color) -> String {
 
 impl Drawing {
     /// The drawing as an SVG document.
-    #[must_use]
     pub fn to_svg(&self) -> String {
         let (width, height) = (self.width, self.height);
         let mut svg = format!(
@@ -96,7 +88,6 @@ impl Drawing {
     }
 
     /// A white page.
-    #[must_use]
     pub const fn new(width: f64, height: f64) -> Self {
         Self {
             width,
@@ -111,8 +102,8 @@ impl Drawing {
     }
 
     /// The outline of a rectangle, dashed if `dash` is above 0.
-    pub(super) fn outline(&mut self, [at, size]: Rectangle, pen: Pen, dash: f64) {
-        self.marks.push(Mark::Outline(at, size, pen, dash));
+    pub(super) fn outline(&mut self, rectangle: Rectangle, pen: Pen, dash: f64) {
+        self.lines(sides(rectangle, dash), pen);
     }
 
     /// Lines between pairs of places, as one path.
@@ -164,18 +155,6 @@ impl fmt::Display for Mark {
                  fill-opacity=\"{opacity}\" shape-rendering=\"crispEdges\"/>",
                 hex(*color)
             ),
-            Self::Outline([x, y], [w, h], (color, width), dash) => {
-                write!(
-                    f,
-                    "<rect x=\"{x:.2}\" y=\"{y:.2}\" width=\"{w:.2}\" height=\"{h:.2}\" fill=\"none\" \
-                     stroke=\"{}\" stroke-width=\"{width}\"",
-                    hex(*color)
-                )?;
-                if *dash > 0.0 {
-                    write!(f, " stroke-dasharray=\"{dash}\"")?;
-                }
-                f.write_str("/>")
-            }
             Self::Lines(lines, (color, width)) => {
                 f.write_str("<path d=\"")?;
                 let mut end = None;
@@ -195,12 +174,6 @@ impl fmt::Display for Mark {
                     hex(*color)
                 )
             }
-            Self::Ring([x, y], radius, (color, width)) => write!(
-                f,
-                "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius}\" fill=\"none\" stroke=\"{}\" \
-                 stroke-width=\"{width}\"/>",
-                hex(*color)
-            ),
             Self::Checkers(rectangles, color) => {
                 f.write_str("<path d=\"")?;
                 for [[x, y], [w, h]] in rectangles {
@@ -209,13 +182,20 @@ impl fmt::Display for Mark {
                 write!(f, "\" fill=\"{}\" fill-rule=\"evenodd\"/>", hex(*color))
             }
             // As an image: an element for each cell would take a hundred times as much.
-            Self::Cells([x, y], [w, h], columns, cells) => write!(
-                f,
-                "<image x=\"{x:.2}\" y=\"{y:.2}\" width=\"{w:.2}\" height=\"{h:.2}\" \
+            Self::Cells([x, y], [w, h], columns, cells) => {
+                let size = [*columns, cells.len() / columns.max(&1)].map(|v| v as u32);
+                let gray = (png::ColorType::Grayscale, png::BitDepth::Eight);
+                // This level has a single implementation, whichever features of the compressor other parts of a
+                // program enable. So the same picture has the same bytes.
+                let file = png_file(size, gray, png::Compression::Fast, cells);
+                write!(
+                    f,
+                    "<image x=\"{x:.2}\" y=\"{y:.2}\" width=\"{w:.2}\" height=\"{h:.2}\" \
                  preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" \
                  href=\"data:image/png;base64,{}\"/>",
-                BASE64_STANDARD.encode(gray(*columns, cells).map_err(|_| fmt::Error)?)
-            ),
+                    BASE64_STANDARD.encode(file.map_err(|_| fmt::Error)?)
+                )
+            }
             Self::Text([x, y], size, anchor, text) => {
                 let anchor = match anchor {
                     Anchor::Start => "start",
@@ -237,18 +217,49 @@ impl fmt::Display for Mark {
     }
 }
 
-/// Rows of gray cells as a PNG file.
-fn gray(columns: usize, cells: &[u8]) -> Result<Vec<u8>, png::EncodingError> {
-    let mut bytes = Vec::new();
-    let rows = cells.len() / columns.max(1);
-    let mut encoder = png::Encoder::new(&mut bytes, columns as u32, rows as u32);
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder.set_depth(png::BitDepth::Eight);
-    // This level has a single implementation, whichever features of the compressor other parts of a
-    // program enable. So the same picture has the same bytes.
-    encoder.set_compression(png::Compression::Fast);
-    encoder.write_header()?.write_image_data(cells)?;
-    Ok(bytes)
+/// Pixels of some kind, row by row from the top, as a PNG file.
+pub(crate) fn png_file(
+    [width, height]: [u32; 2],
+    (color, depth): (png::ColorType, png::BitDepth),
+    compression: png::Compression,
+    bytes: &[u8],
+) -> Result<Vec<u8>, png::EncodingError> {
+    let mut file = vec![];
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    encoder.set_compression(compression);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(bytes)?;
+    writer.finish()?;
+    Ok(file)
+}
+
+/// The sides of a rectangle, in dashes if their length is above 0.
+pub(super) fn sides([[x, y], [w, h]]: Rectangle, dash: f64) -> Vec<[[f64; 2]; 2]> {
+    let corners = [[x, y], [x + w, y], [x + w, y + h], [x, y + h]];
+    let sides = (0..4).map(|i| [corners[i], corners[(i + 1) % 4]]);
+    if dash <= 0.0 {
+        return sides.collect();
+    }
+    let mut all = vec![];
+    for [a, b] in sides {
+        let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+        let at = |v: f64| {
+            let part = if length > 0.0 {
+                v.min(length) / length
+            } else {
+                0.0
+            };
+            [a[0] + (b[0] - a[0]) * part, a[1] + (b[1] - a[1]) * part]
+        };
+        let dashes = (length / (2.0 * dash)).ceil() as usize;
+        all.extend((0..dashes).map(|i| {
+            let start = 2.0 * dash * i as f64;
+            [at(start), at(start + dash)]
+        }));
+    }
+    all
 }
 
 #[cfg(test)]

@@ -9,22 +9,17 @@
 //! `drawing` is a list of marks that becomes SVG, or that `paint` makes a picture of, with the `letters` of a line
 //! font; `panel` a square plot with its own coordinates.
 
-mod arrangement;
 mod clusters;
 mod drawing;
-mod index;
 mod letters;
-mod map;
-mod mask;
 mod paint;
 mod panel;
+mod pattern;
 mod report;
 
 pub use crate::SettingError as FigureError;
-pub use arrangement::arrangement;
 pub use clusters::{clusters, found_clusters};
+pub(crate) use drawing::png_file;
 pub use drawing::{Anchor, Color, Drawing, Pen, Rectangle};
-pub use index::index;
-pub use map::map;
-pub use mask::mask_spectrum;
-pub use report::report;
+pub use pattern::{arrangement, index, map};
+pub use report::{mask_spectrum, report};

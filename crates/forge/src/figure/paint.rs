@@ -5,7 +5,7 @@
 
 use super::{
     Drawing, FigureError,
-    drawing::{Anchor, Color, INK, Mark, Pen},
+    drawing::{Anchor, Color, INK, Mark, Pen, png_file},
     letters,
 };
 
@@ -15,18 +15,6 @@ const SIZES: std::ops::RangeInclusive<u32> = 64..=4096;
 impl Drawing {
     /// The drawing as a PNG file, `size` pixels on its longer side, 64 to 4096. Texts have a plain line font of the
     /// crate's own.
-    ///
-    /// # Errors
-    /// [`FigureError`] if the size is out of range.
-    ///
-    /// ```
-    /// use strew_forge::figure;
-    ///
-    /// let drawing = figure::index("1.6".parse()?, 24)?;
-    /// assert!(drawing.to_png(200)?.starts_with(b"\x89PNG"));
-    /// assert!(drawing.to_png(20).is_err());
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn to_png(&self, size: u32) -> Result<Vec<u8>, FigureError> {
         let wrong = |allowed: String| FigureError::new("size", size, allowed);
         if !SIZES.contains(&size) {
@@ -52,14 +40,9 @@ fn png(size: [f64; 2], scale: f64, marks: &[Mark]) -> Result<Vec<u8>, png::Encod
     }
     let bytes = canvas.pixels.iter().flatten();
     let bytes: Vec<u8> = bytes.map(|&v| (v + 0.5) as u8).collect();
-    let mut file = vec![];
-    let mut encoder = png::Encoder::new(&mut file, width as u32, height as u32);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(&bytes)?;
-    writer.finish()?;
-    Ok(file)
+    let size = [width, height].map(|v| v as u32);
+    let kind = (png::ColorType::Rgb, png::BitDepth::Eight);
+    png_file(size, kind, png::Compression::default(), &bytes)
 }
 
 struct Canvas {
@@ -76,9 +59,7 @@ impl Canvas {
     fn mark(&mut self, mark: &Mark) {
         match mark {
             Mark::Fill(at, size, color, opacity) => self.fill(*at, *size, *color, *opacity),
-            Mark::Outline(at, size, pen, dash) => self.lines(&sides(*at, *size, *dash), *pen),
             Mark::Lines(lines, pen) => self.lines(lines, *pen),
-            Mark::Ring(at, radius, pen) => self.ring(*at, *radius, *pen),
             Mark::Checkers(rectangles, color) => self.checkers(rectangles, *color),
             Mark::Cells([x, y], [w, h], columns, cells) => {
                 let [w, h] = [
@@ -178,17 +159,6 @@ impl Canvas {
         });
     }
 
-    fn ring(&mut self, at: [f64; 2], radius: f64, (color, width): Pen) {
-        let (low, high) = (at.map(|v| v - radius), at.map(|v| v + radius));
-        let width = width * self.scale;
-        let (center, radius) = (at.map(|v| v * self.scale), radius * self.scale);
-        let pixels = self.pixels(low, high, width / 2.0 + 1.0);
-        self.cover(pixels, color, |x, y| {
-            let away = (x as f64 + 0.5 - center[0]).hypot(y as f64 + 0.5 - center[1]);
-            covered((away - radius).abs(), width)
-        });
-    }
-
     fn checkers(&mut self, rectangles: &[[[f64; 2]; 2]], color: Color) {
         /// Samples of a pixel along an axis.
         const SAMPLES: usize = 4;
@@ -241,36 +211,10 @@ fn distance(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     (from[0] - part * along[0]).hypot(from[1] - part * along[1])
 }
 
-/// The sides of a rectangle, in dashes if their length is above 0.
-fn sides([x, y]: [f64; 2], [w, h]: [f64; 2], dash: f64) -> Vec<[[f64; 2]; 2]> {
-    let corners = [[x, y], [x + w, y], [x + w, y + h], [x, y + h]];
-    let sides = (0..4).map(|i| [corners[i], corners[(i + 1) % 4]]);
-    if dash <= 0.0 {
-        return sides.collect();
-    }
-    let mut all = vec![];
-    for [a, b] in sides {
-        let length = (b[0] - a[0]).hypot(b[1] - a[1]);
-        let at = |v: f64| {
-            let part = if length > 0.0 {
-                v.min(length) / length
-            } else {
-                0.0
-            };
-            [a[0] + (b[0] - a[0]) * part, a[1] + (b[1] - a[1]) * part]
-        };
-        let dashes = (length / (2.0 * dash)).ceil() as usize;
-        all.extend((0..dashes).map(|i| {
-            let start = 2.0 * dash * i as f64;
-            [at(start), at(start + dash)]
-        }));
-    }
-    all
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure::drawing::sides;
 
     fn painted(mark: Mark) -> Canvas {
         let mut canvas = Canvas {
@@ -311,14 +255,13 @@ mod tests {
             Mark::Lines(vec![[[2.0, 2.0], [8.0, 2.0]]], (black, 0.2)),
             6.5 * 0.2,
         );
-        near(Mark::Ring([5.0, 5.0], 3.0, (black, 1.0)), 18.85);
         let stripes = vec![[[1.0, 1.0], [4.0, 8.0]], [[3.0, 1.0], [4.0, 8.0]]];
         near(Mark::Checkers(stripes, black), 32.0);
         near(
             Mark::Cells([1.0, 1.0], [6.0, 4.0], 3, vec![0, 255, 0, 0, 255, 255]),
             12.0,
         );
-        let dashed = Mark::Outline([1.0, 1.0], [8.0, 8.0], (black, 0.1), 1.0);
+        let dashed = Mark::Lines(sides([[1.0; 2], [8.0; 2]], 1.0), (black, 0.1));
         // Sixteen dashes, half a pixel longer at both ends.
         near(dashed, 16.0 * 1.5 * 0.1);
     }
@@ -328,7 +271,6 @@ mod tests {
         for mark in [
             Mark::Lines(vec![[[-50.0, 3.0]; 2], [[500.0, 5.0]; 2]], ([0; 3], 3.0)),
             Mark::Fill([11.0, -9.0], [40.0, 4.0], [0; 3], 1.0),
-            Mark::Ring([5.0, 90.0], 3.0, ([0; 3], 1.0)),
         ] {
             assert_eq!(area(mark), 0.0);
         }

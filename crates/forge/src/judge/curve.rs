@@ -31,7 +31,6 @@ const FINE_RING: f64 = 0.005;
 /// [`Figure::TargetRms`], [`Figure::TargetRelative`], [`Figure::TargetWorst`],
 /// [`Figure::TargetWorstNu`], [`Figure::TailWorst`], and [`Figure::QuietPower`] if the target
 /// begins with a band of power 0.
-#[must_use]
 pub fn curve_figures(spectrum: &Spectrum, target: &Target) -> Vec<(String, f64)> {
     let rings = spectrum.rings(TARGET_RING);
     let errors = rings.iter().map(|ring| RingError::of(ring, target));
@@ -140,7 +139,6 @@ const QUIET_POWER: f64 = 0.01;
 /// Returns the bounds on a table that should follow `target`: on [`Figure::TargetRms`], on
 /// [`Figure::TargetWorst`], and on [`Figure::QuietPower`] if the curve begins with a band of power
 /// 0.
-#[must_use]
 pub fn bounds_of_curve(target: &Target) -> Vec<Bound> {
     let rings = (NU_MAX / TARGET_RING).round() as u32;
     let departures = (0..rings).map(|ring| {
@@ -166,7 +164,6 @@ pub fn bounds_of_curve(target: &Target) -> Vec<Bound> {
 pub struct Nearness {
     /// Root mean square over rings of the radial power's error.
     pub rms: f64,
-    /// The largest error of a ring.
     pub worst: f64,
     /// The frequency of the ring with the largest error.
     pub worst_nu: f64,
@@ -174,7 +171,6 @@ pub struct Nearness {
 
 impl Nearness {
     /// Returns the largest unseen errors in `figures`, or `None` if none are compared with a curve.
-    #[must_use]
     pub fn of(figures: &[Figures]) -> Option<Self> {
         let unseen = figures.iter().filter(|figures| !figures.seen);
         let each = unseen.filter_map(|figures| {

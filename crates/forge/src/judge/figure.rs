@@ -1,4 +1,6 @@
-//! Named figures of point sets.
+//! Named figures of point sets, bounds on them, and the complaints about figures that miss them.
+
+use std::fmt;
 
 use strew_core::table::Figures;
 
@@ -24,7 +26,6 @@ macro_rules! figures {
 
         impl Figure {
             /// The name in table files and messages.
-            #[must_use]
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$figure => $name,)*
@@ -79,7 +80,6 @@ pub(crate) fn named(values: impl IntoIterator<Item = (Figure, f64)>) -> Vec<(Str
 ///
 /// They are rounded to four significant digits: far more than they mean, and few enough to hide
 /// another order of a sum inside an FFT.
-#[must_use]
 pub fn figures(
     subject: String,
     seen: bool,
@@ -113,6 +113,128 @@ pub fn figures(
     }
 }
 
+/// A limit on a figure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound {
+    pub figure: Figure,
+    /// The side of the limit on which the figure must stay.
+    pub side: Side,
+    /// The limit, which is itself allowed.
+    pub limit: f64,
+}
+
+/// A side of a limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    AtMost,
+    AtLeast,
+}
+
+impl Bound {
+    /// The bound `figure` ≤ `limit`.
+    pub const fn at_most(figure: Figure, limit: f64) -> Self {
+        Self {
+            figure,
+            side: Side::AtMost,
+            limit,
+        }
+    }
+
+    /// The bound `figure` ≥ `limit`.
+    pub const fn at_least(figure: Figure, limit: f64) -> Self {
+        Self {
+            figure,
+            side: Side::AtLeast,
+            limit,
+        }
+    }
+
+    /// Returns a complaint if these figures miss the bound or lack the figure.
+    pub fn check(&self, figures: &Figures) -> Option<Complaint> {
+        let value = figures.value(self.figure.name()).unwrap_or(f64::NAN);
+        let holds = match self.side {
+            Side::AtMost => value <= self.limit,
+            Side::AtLeast => value >= self.limit,
+        };
+        (!holds).then(|| Complaint {
+            subject: figures.subject.clone(),
+            bound: *self,
+            value,
+        })
+    }
+}
+
+/// A figure that missed its bound.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Complaint {
+    pub subject: String,
+    pub bound: Bound,
+    /// The measured value; NaN if the figure is missing.
+    pub value: f64,
+}
+
+impl fmt::Display for Side {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::AtMost => "at most",
+            Self::AtLeast => "at least",
+        })
+    }
+}
+
+impl fmt::Display for Complaint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Bound {
+            figure,
+            side,
+            limit,
+        } = self.bound;
+        let (name, subject, value) = (figure.name(), &self.subject, self.value);
+        write!(
+            f,
+            "{name} on {subject} is {value}; it must be {side} {limit}"
+        )
+    }
+}
+
+/// Returns the complaints about a table, given its figures. Only figures of unseen point sets
+/// count; without any, every bound is missed.
+pub fn complaints(bounds: &[Bound], figures: &[Figures]) -> Vec<Complaint> {
+    let nothing = Figures {
+        subject: "no unseen subject".into(),
+        ..Figures::default()
+    };
+    let mut judged: Vec<&Figures> = figures.iter().filter(|f| !f.seen).collect();
+    if judged.is_empty() {
+        judged.push(&nothing);
+    }
+    let all = |figures| bounds.iter().filter_map(move |bound| bound.check(figures));
+    judged.into_iter().flat_map(all).collect()
+}
+
+/// The gravest complaint about each figure, in words.
+pub fn gravest(complaints: &[Complaint]) -> Vec<String> {
+    let excess = |c: &Complaint| (c.value - c.bound.limit).abs();
+    let mut said: Vec<(&Complaint, usize)> = Vec::new();
+    for complaint in complaints {
+        let same = |(known, _): &&mut (&Complaint, usize)| known.bound == complaint.bound;
+        match said.iter_mut().find(same) {
+            None => said.push((complaint, 1)),
+            Some((known, count)) => {
+                *count += 1;
+                if excess(complaint) > excess(known) || complaint.value.is_nan() {
+                    *known = complaint;
+                }
+            }
+        }
+    }
+    let words = |(complaint, count): (&Complaint, usize)| match count {
+        1 => complaint.to_string(),
+        _ => format!("{complaint} (missed on {count} point sets)"),
+    };
+    said.into_iter().map(words).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -123,5 +245,40 @@ mod tests {
         assert_eq!(round(5.555_55e-6), 5.556e-6);
         assert_eq!(round(0.0), 0.0);
         assert_eq!(round(-12.345_6), -12.35);
+    }
+
+    #[test]
+    fn a_complaint_names_figure_subject_value_and_limit() {
+        let figures = Figures {
+            subject: "twin 683/418".into(),
+            seen: false,
+            points: 70_225,
+            values: vec![("low_power".into(), 3e-5), ("delta_min".into(), 0.62)],
+        };
+        let said = |bound: Bound| bound.check(&figures).map(|complaint| complaint.to_string());
+        assert_eq!(said(Bound::at_least(Figure::DeltaMin, 0.62)), None);
+        assert_eq!(said(Bound::at_most(Figure::LowPower, 3e-5)), None);
+        let low = said(Bound::at_most(Figure::LowPower, 2e-5));
+        let expected = "low_power on twin 683/418 is 0.00003; it must be at most 0.00002";
+        assert_eq!(low.as_deref(), Some(expected));
+        // A missing figure misses its bound.
+        assert!(said(Bound::at_most(Figure::PeakPower, 9.0)).is_some());
+    }
+
+    #[test]
+    fn without_unseen_figures_every_bound_is_missed() {
+        let bounds = [Bound::at_most(Figure::LowPower, 1.0)];
+        assert_eq!(complaints(&bounds, &[]).len(), 1);
+        let seen = Figures {
+            seen: true,
+            values: vec![("low_power".into(), 0.0)],
+            ..Figures::default()
+        };
+        assert_eq!(complaints(&bounds, std::slice::from_ref(&seen)).len(), 1);
+        let unseen = Figures {
+            seen: false,
+            ..seen
+        };
+        assert!(complaints(&bounds, &[unseen]).is_empty());
     }
 }

@@ -9,14 +9,12 @@
 //! accepted if there are no [`complaints`]. The bounds of custom curves, and how near a table came
 //! to its curve, are computed in `curve`.
 
-mod bound;
 mod curve;
 mod figure;
 mod panel;
 
-pub use bound::{Bound, Complaint, Side, complaints, gravest};
 pub use curve::{Nearness, TARGET_RING, bounds_of_curve, curve_figures};
 pub(crate) use figure::named;
-pub use figure::{Figure, RING_WIDTH, figures};
+pub use figure::{Bound, Complaint, Figure, RING_WIDTH, Side, complaints, figures, gravest};
 pub(crate) use panel::measured;
 pub use panel::{JUDGED_POINTS, Panel};

@@ -37,7 +37,6 @@ impl Panel {
     /// The panel for a table of `map` that was optimized on the twins `seen`: the smallest of these
     /// for comparison, the first unseen twins of at least 50,000, 100,000 and 200,000 points, and
     /// two windows.
-    #[must_use]
     pub fn new(map: &Map, seen: &[Twin]) -> Self {
         let mut unseen: Vec<Twin> = Vec::new();
         for factor in [1, 2, 4] {
@@ -58,7 +57,6 @@ impl Panel {
     /// Returns this panel with a curve to compare the radial power with. Unseen twins too small for
     /// the comparison are dropped, and those twins of `map` farthest from its α are added, where a
     /// curve is missed first.
-    #[must_use]
     pub fn with_target(mut self, target: Target, map: &Map) -> Self {
         self.target = Some(target);
         self.unseen.retain(|twin| twin.points() >= LARGE_TWIN);
@@ -81,13 +79,11 @@ impl Panel {
     }
 
     /// The number of point sets.
-    #[must_use]
     pub fn subjects(&self) -> u32 {
         (self.seen.iter().count() + self.unseen.len() + WINDOW_SEEDS.len()) as u32
     }
 
     /// The approximate number of points in all sets.
-    #[must_use]
     pub fn points(&self) -> u64 {
         let twins = self.seen.iter().chain(&self.unseen);
         let points: u64 = twins.map(|twin| twin.points()).sum();

@@ -8,15 +8,19 @@
 //! different ways, and a mask that kept them would show where they end. All energies are integers, so a mask is the
 //! same on every machine.
 
-mod few;
-mod spectrum;
-mod voids;
-
+use rustfft::{FftPlanner, num_complex::Complex};
 use strew_core::{PeriodicSet, Table};
 
+use crate::{
+    figure::png_file,
+    measure::{Summary, ring_sums},
+};
+
+mod voids;
+
+use self::voids::{Choice, Voids, few_ordered};
+
 pub use crate::SettingError as MaskError;
-pub use spectrum::LevelSpectrum;
-use voids::{Choice, Voids};
 
 /// A square of pixels that tiles, with the order in which they turn on.
 ///
@@ -45,9 +49,6 @@ impl Mask {
     pub const MOST_SIZE: u32 = 1024;
 
     /// The mask of a table and a seed, `size` pixels wide and high.
-    ///
-    /// # Errors
-    /// [`MaskError`] if the size is out of range or the table has no periods.
     pub fn new(table: &Table, size: u32, seed: u64) -> Result<Self, MaskError> {
         let Some(mask) = Self::new_while(table, size, seed, || true)? else {
             unreachable!("nothing stops it");
@@ -56,9 +57,6 @@ impl Mask {
     }
 
     /// As [`Mask::new`], while `goes_on` returns true: it is called every thousand pixels. `None` if it was stopped.
-    ///
-    /// # Errors
-    /// As [`Mask::new`].
     pub fn new_while(
         table: &Table,
         size: u32,
@@ -87,7 +85,7 @@ impl Mask {
             }
             voids.flip();
         }
-        for (rank, pixel) in few::ordered(size as usize, &voids.those(true))
+        for (rank, pixel) in few_ordered(size as usize, &voids.those(true))
             .into_iter()
             .enumerate()
         {
@@ -100,7 +98,7 @@ impl Mask {
             }
             ranks[voids.flip()] = rank as u32;
         }
-        let last = few::ordered(size as usize, &voids.those(false));
+        let last = few_ordered(size as usize, &voids.those(false));
         for (rank, pixel) in (0..pixels).rev().zip(last) {
             ranks[pixel] = rank as u32;
         }
@@ -109,7 +107,6 @@ impl Mask {
 
     /// A mask whose pixels turn on by ascending keys of their columns and rows, equal ones row by row: to compare other
     /// masks with.
-    #[must_use]
     pub fn by_key<K: Ord>(size: u32, key: impl Fn(u32, u32) -> K) -> Self {
         let mut order: Vec<u32> = (0..size * size).collect();
         order.sort_by_key(|&i| key(i % size, i / size));
@@ -121,13 +118,11 @@ impl Mask {
     }
 
     /// The side in pixels.
-    #[must_use]
     pub const fn size(&self) -> u32 {
         self.size
     }
 
     /// The rank of each pixel, row by row: each number below size² once.
-    #[must_use]
     pub fn ranks(&self) -> &[u32] {
         &self.ranks
     }
@@ -142,9 +137,6 @@ impl Mask {
     }
 
     /// The mask as a file of NumPy's: an array of `u1` or `u2`, rows from the top.
-    ///
-    /// # Errors
-    /// [`MaskError`] for a number of bits besides 8 and 16.
     pub fn to_npy(&self, bits: u8) -> Result<Vec<u8>, MaskError> {
         let thresholds = self.thresholds(bits);
         let (kind, bytes): (_, Vec<u8>) = match bits {
@@ -165,9 +157,6 @@ impl Mask {
     }
 
     /// The mask as a gray PNG file of 8 or 16 bits.
-    ///
-    /// # Errors
-    /// [`MaskError`] for another number of bits.
     pub fn to_png(&self, bits: u8) -> Result<Vec<u8>, MaskError> {
         let thresholds = self.thresholds(bits);
         let (depth, bytes): (_, Vec<u8>) = match bits {
@@ -178,17 +167,9 @@ impl Mask {
             ),
             _ => return Err(MaskError::new("bits", bits, "8 or 16")),
         };
-        let write = || {
-            let mut file = vec![];
-            let mut encoder = png::Encoder::new(&mut file, self.size, self.size);
-            encoder.set_color(png::ColorType::Grayscale);
-            encoder.set_depth(depth);
-            let mut writer = encoder.write_header()?;
-            writer.write_image_data(&bytes)?;
-            writer.finish()?;
-            Ok::<_, png::EncodingError>(file)
-        };
-        write().map_err(|error| MaskError::new("bits", bits, error.to_string()))
+        let gray = (png::ColorType::Grayscale, depth);
+        let file = png_file([self.size; 2], gray, png::Compression::default(), &bytes);
+        file.map_err(|error| MaskError::new("bits", bits, error.to_string()))
     }
 }
 
@@ -211,4 +192,99 @@ fn first(table: &Table, size: u32, seed: u64) -> Result<Vec<usize>, MaskError> {
     pixels.retain(|&pixel| !std::mem::replace(&mut is_taken[pixel], true));
     pixels.truncate(wanted as usize);
     Ok(pixels)
+}
+
+/// The spectrum of the pixels of a mask that are on at a level.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LevelSpectrum {
+    /// The share of pixels that are on.
+    pub level: f64,
+    /// The mean power over 0 < ν < 0.5, ν in units of √N of the N pixels that are on, or off if those are fewer.
+    /// Pixels in a random order have 1.
+    pub low_power: f64,
+    /// The tallest single peak.
+    pub peak: f64,
+    /// The mean power over rings of width 0.05 of ν from 0 up to 2, or to the corner of the spectrum.
+    pub rings: Vec<f64>,
+}
+
+impl LevelSpectrum {
+    /// The width of a ring.
+    pub const RING: f64 = 0.05;
+    /// The number of rings.
+    const RINGS: usize = 40;
+}
+
+impl Mask {
+    /// The spectrum of the pixels whose rank is below a share of all, from 0 to 1: the mean over frequencies of
+    /// |Σ (on − share) exp(−2πi k·x)|² ÷ (size²·share·(1 − share)).
+    pub fn spectrum(&self, level: f64) -> LevelSpectrum {
+        let size = self.size as usize;
+        let pixels = size * size;
+        let on = ((level.clamp(0.0, 1.0) * pixels as f64).round() as usize).clamp(1, pixels - 1);
+        let share = on as f64 / pixels as f64;
+        let values = self.ranks.iter().map(|&rank| {
+            let is_on = f64::from(u8::from((rank as usize) < on));
+            Complex::new(is_on - share, 0.0)
+        });
+        let mut values: Vec<Complex<f64>> = values.collect();
+        let fft = FftPlanner::new().plan_fft_forward(size);
+        // Rows, then columns, which are rows of the transposed square.
+        for _ in 0..2 {
+            fft.process(&mut values);
+            for y in 0..size {
+                for x in 0..y {
+                    values.swap(y * size + x, x * size + y);
+                }
+            }
+        }
+        let unit = (pixels as f64 * share.min(1.0 - share)).sqrt();
+        let scale = pixels as f64 * share * (1.0 - share);
+        let modes = values.iter().enumerate().skip(1);
+        let modes = modes.map(|(i, value)| {
+            let frequency = |k: usize| k.min(size - k) as f64;
+            let nu = frequency(i % size).hypot(frequency(i / size)) / unit;
+            (nu, value.norm_sqr() / scale)
+        });
+        let summary = Summary::of(modes.clone(), &[]);
+        let rings = ring_sums(modes, LevelSpectrum::RING, LevelSpectrum::RINGS);
+        let mean = |[count, _, total, ..]: [f64; 5]| total / count.max(1.0);
+        LevelSpectrum {
+            level: share,
+            low_power: summary.low_power,
+            peak: summary.tallest,
+            rings: rings.into_iter().map(mean).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::SplitMix;
+
+    /// Ranks in an order hashed by SplitMix64.
+    fn white(size: u32) -> Mask {
+        let hashed = |x, y| SplitMix::new(u64::from(y * size + x)).next_u64();
+        Mask::by_key(size, hashed)
+    }
+
+    #[test]
+    fn random_pixels_have_power_one() {
+        for level in [0.125, 0.25, 0.5] {
+            let spectrum = white(128).spectrum(level);
+            assert!((spectrum.low_power - 1.0).abs() < 0.25, "{spectrum:?}");
+            assert!(spectrum.peak < 30.0);
+        }
+    }
+
+    #[test]
+    fn a_lattice_is_nothing_but_peaks() {
+        // Every second pixel of every second row comes first.
+        let mask = Mask::by_key(32, |x, y| x % 2 + 2 * (y % 2));
+        let spectrum = mask.spectrum(0.25);
+        assert!(spectrum.low_power < 1e-20);
+        // Three peaks share all of the variance.
+        assert!((spectrum.peak - 1024.0 / 3.0).abs() < 1e-6);
+    }
 }

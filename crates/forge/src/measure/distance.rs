@@ -10,9 +10,7 @@ use crate::cell_list::CellList;
 /// most 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distances {
-    /// The smallest distance.
     pub delta_min: f64,
-    /// The mean distance.
     pub delta_avg: f64,
 }
 
@@ -29,7 +27,6 @@ const CHUNK: usize = 4096;
 impl Distances {
     /// Measures a set; of a window the distances from points at least 4 mean spacings from its edge, in space 1.4, to all
     /// points. A single point of a periodic set has its own images as neighbors. Both figures are 0 if there are no points.
-    #[must_use]
     pub fn of<const D: usize>(set: &Sample<D>) -> Self {
         let [margin, unit] = match D {
             2 => [MARGINS[0], HEXAGONAL],
@@ -98,7 +95,6 @@ pub struct Rdf {
 
 impl Rdf {
     /// Measures a set; of a window the distances from points at least 5 mean spacings from its edge to all points.
-    #[must_use]
     pub fn of(set: &Sample) -> Self {
         let cells = &CellList::of(set, 1.0);
         let width = REACH / BINS as f64;

@@ -1,8 +1,8 @@
 //! Measuring point sets: spectrum, distances and Voronoi cells of whole periods and of windows.
 //!
 //! A set is a [`Sample`], of the plane or in space: one period of a periodic set, or a window of an unbounded one;
-//! [`twin_set`] and [`window_set`] make them from a table, [`square_set`] from a served set. [`Spectrum`] is computed by `nufft`, in space by `sums` with the
-//! transforms of `fourier`, windows with the weights of `taper`; its [`Ring`]s yield the [`Summary`] and the [`Crispness`].
+//! [`twin_set`] and [`window_set`] make them from a table, [`square_set`] from a served set. [`Spectrum`] is computed by
+//! `sums`, in space with the transforms of `fourier`; its [`Ring`]s yield the [`Summary`] and the [`Crispness`].
 //! [`Distances`] and [`Rdf`] look up neighbors in a cell list, [`Voronoi`] in a triangulation. [`recurrence`] is how
 //! much of a set is found again elsewhere in it, [`Shared`] what two sets have in common.
 //!
@@ -10,26 +10,23 @@
 //! spacing, and white noise has power 1. Of these results only figures rounded to four digits reach
 //! a table, so the platform's own math functions may be used; in space, where sums are of single precision, they are not.
 
-mod crispness;
 mod distance;
 mod fourier;
-mod nufft;
 mod pair;
 mod recurrence;
 mod set;
 mod spectrum;
 mod sums;
-mod taper;
 mod voronoi;
 
-pub use crispness::Crispness;
+pub use crate::twins::{ThinnedTwin, twin_set};
 pub(crate) use distance::HEXAGONAL;
 pub use distance::{Distances, Rdf};
 pub use pair::Shared;
 pub use recurrence::recurrence;
-pub use set::{Sample, square_set, twin_set, window_set};
-pub(crate) use set::{displaced, root, wrap};
-pub use spectrum::{BANDS, Ring, Spectrum, Summary};
+pub use set::{Sample, square_set, window_set};
+pub(crate) use set::{root, wrap};
+pub use spectrum::{BANDS, Crispness, Ring, Spectrum, Summary};
 pub(crate) use spectrum::{ring_sums, rings_of};
 pub(crate) use sums::waves;
 pub use voronoi::Voronoi;

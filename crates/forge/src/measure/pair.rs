@@ -36,7 +36,6 @@ impl Shared {
     ///
     /// # Panics
     /// If the sides differ by more than a millionth.
-    #[must_use]
     pub fn of<const D: usize>(a: &Sample<D>, b: &Sample<D>, nu_max: f64) -> Self {
         assert!((a.side() / b.side() - 1.0).abs() < 1e-6, "equal sides");
         let side = a.side();

@@ -36,18 +36,6 @@ const SELF: f64 = 2.0;
 /// each at its best place in `other`. For a set against itself the place of the patch does not count.
 ///
 /// Returns 0 for windows smaller than two patches.
-///
-/// ```
-/// use strew_core::Table;
-/// use strew_forge::measure::{recurrence, window_set};
-///
-/// // Without displacements the pattern of a small map soon repeats itself.
-/// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-/// let window = window_set(&table, 2500, 1);
-/// assert!(recurrence(&window, None, 4, 1) > 0.9);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[must_use]
 pub fn recurrence(set: &Sample, other: Option<&Sample>, patches: usize, seed: u64) -> f64 {
     let room = set.side() - PATCH;
     if room < PATCH || patches == 0 {

@@ -1,11 +1,11 @@
-//! Point sets to measure, also one period of a twin of a table, or a window of its unbounded pattern.
+//! Point sets to measure, also windows of the unbounded pattern of a table and of served sets.
 
 use std::ops::Range;
 
 use strew_core::{
-    Error, Map, Pattern, PointSet, Region, Table, Twin,
+    Error, Map, Pattern, PointSet, Region, Table,
     pattern::{Axis, Class, IndexOrigin},
-    table::{Displacement, to_grid_units},
+    table::to_grid_units,
 };
 
 use crate::numeric::SplitMix;
@@ -29,7 +29,6 @@ pub(crate) fn root<const D: usize>(volume: f64) -> f64 {
 impl<const D: usize> Sample<D> {
     /// Rescales the points of one period, a torus of side `side`, to unit density: to a side of √N mean spacings, in space
     /// of the cube root. Coordinates may lie outside [0, side); they are taken modulo the side.
-    #[must_use]
     pub fn torus(side: f64, points: Vec<[f64; D]>) -> Self {
         let unit_side = root::<D>(points.len() as f64);
         Self::scaled(unit_side, unit_side / side, points, true)
@@ -37,7 +36,6 @@ impl<const D: usize> Sample<D> {
 
     /// Rescales the points in the box [0, `side`)² or [0, `side`)³ of a set with `density` points per unit area or volume
     /// to unit density. Points outside the box are dropped; none inside may be missing.
-    #[must_use]
     pub fn window(side: f64, density: f64, mut points: Vec<[f64; D]>) -> Self {
         points.retain(|p| p.iter().all(|v| (0.0..side).contains(v)));
         let scale = root::<D>(density);
@@ -56,13 +54,11 @@ impl<const D: usize> Sample<D> {
     }
 
     /// The side of the square or cube, in mean spacings.
-    #[must_use]
     pub const fn side(&self) -> f64 {
         self.side
     }
 
     /// Whether the set repeats outside.
-    #[must_use]
     pub const fn is_periodic(&self) -> bool {
         self.is_periodic
     }
@@ -74,7 +70,6 @@ impl<const D: usize> Sample<D> {
     }
 
     /// The points, in mean spacings.
-    #[must_use]
     pub fn points(&self) -> &[[f64; D]] {
         &self.points
     }
@@ -106,26 +101,8 @@ pub(crate) fn wrap(v: f64, side: f64) -> f64 {
     }
 }
 
-/// Returns one period of a twin, displaced, or `None` if it is no twin of the table's map.
-#[must_use]
-pub fn twin_set(table: &Table, twin: Twin) -> Option<Sample> {
-    let n = table.map().intervals();
-    let sites = twin.sites(table.map())?;
-    let points = sites.iter().map(|site| {
-        let block = site.block_y as usize * n + site.block_x as usize;
-        displaced([site.x, site.y], table.displacements()[block])
-    });
-    Some(Sample::torus(twin.period() as f64, points.collect()))
-}
-
-/// The place of a point, by its lattice address and its vector.
-pub(crate) fn displaced(address: [u32; 2], by: Displacement) -> [f64; 2] {
-    [0, 1].map(|axis| f64::from(address[axis]) + to_grid_units(by[axis]))
-}
-
 /// Returns a window of about `points` points of the unbounded displaced pattern of the table's own
 /// α, at a place chosen by `seed`.
-#[must_use]
 pub fn window_set(table: &Table, points: u64, seed: u64) -> Sample {
     let map = table.map();
     let density = map.alpha().set_side_f64() * map.alpha().set_side_f64();
@@ -159,9 +136,6 @@ pub fn window_set(table: &Table, points: u64, seed: u64) -> Sample {
 }
 
 /// Returns a square of a served set with a number of points per unit area.
-///
-/// # Errors
-/// As [`PointSet::within`].
 pub fn square_set(
     set: &PointSet,
     corner: [f64; 2],
@@ -241,15 +215,5 @@ mod tests {
         assert!((850..950).contains(&expected.len()));
         let found = sorted(window.points(), 1.0);
         assert_eq!(found, sorted(&expected, map.alpha().set_side_f64()));
-    }
-
-    #[test]
-    fn a_twin_has_its_points_at_unit_density() {
-        let table = table();
-        let twin = table.map().twins().next().expect("endless");
-        let set = twin_set(&table, twin).expect("a twin");
-        assert_eq!(set.points().len() as u64, twin.points());
-        assert_eq!(set.side(), twin.t() as f64);
-        assert!(twin_set(&table, Twin::new(3, 2).expect("coprime")).is_none());
     }
 }

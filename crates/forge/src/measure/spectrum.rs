@@ -1,8 +1,15 @@
 //! The power spectrum of a point set, its rings, and a summary.
 //!
 //! Frequencies ν are in units of √N: ν = 1 is one cycle per mean spacing. White noise has power 1.
+//!
+//! The taper of a window is sin⁸(πu) along each axis, a sum of five cosines. So at integer frequencies its transform, and with it
+//! the spectrum of the window's mean density, is 0 except for |k| ≤ 4, where it is known exactly and
+//! subtracted. Between integers it falls as k⁻⁹, so tall peaks of a quasi-periodic set do not leak.
+//!
+//! [`Crispness`] is the effective Nyquist frequency and the oscillation of a spectrum, after Heck, Schlömer, Deussen, "Blue
+//! Noise Sampling with Controlled Aliasing" (2013).
 
-use super::{Sample, nufft::transform, taper};
+use super::{Sample, sums::transform};
 
 /// The power P(k) = |Σ exp(−2πi k·x)|²/N at every integer k up to a largest frequency.
 #[derive(Clone, Debug)]
@@ -18,14 +25,11 @@ pub struct Spectrum {
 /// The power of the modes in a ring of frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ring {
-    /// The mean frequency of the modes.
     pub nu: f64,
-    /// The mean power of the modes.
     pub power: f64,
     /// The anisotropy 10·log10(variance / mean²) of the power of the modes, in dB: 0 for a random
     /// isotropic set, at least −200.
     pub anisotropy_db: f64,
-    /// The largest power of a mode.
     pub tallest: f64,
 }
 
@@ -65,7 +69,6 @@ impl Spectrum {
     /// Of a periodic set it is exact but for an error in amplitude of 10⁻¹⁰·√N. Of a window it is an estimate at
     /// frequencies k/side: the taper blurs it over about ±2 modes; less than 10⁻¹² of a mode's power leaks 10 modes
     /// away.
-    #[must_use]
     pub fn of(set: &Sample, nu_max: f64) -> Self {
         let side = set.side();
         let modes = (nu_max * side).floor().max(0.0) as usize;
@@ -75,34 +78,28 @@ impl Spectrum {
             let power = transform(&turns, None, modes, |_, _, sum| sum.norm_sqr() * unit);
             return Self { side, modes, power };
         }
-        let weights: Vec<f64> = turns
-            .iter()
-            .map(|p| taper::value(p[0]) * taper::value(p[1]))
-            .collect();
+        let weights: Vec<f64> = turns.iter().map(|p| taper(p[0]) * taper(p[1])).collect();
         // At unit density a window has side² points on average.
         let area = side * side;
-        let unit = 1.0 / (area * taper::MEAN_SQUARE * taper::MEAN_SQUARE);
+        let unit = 1.0 / (area * MEAN_SQUARE * MEAN_SQUARE);
         let power = transform(&turns, Some(&weights), modes, |kx, ky, sum| {
-            let mean = area * taper::coefficient(kx) * taper::coefficient(ky);
+            let mean = area * taper_coefficient(kx) * taper_coefficient(ky);
             (sum - mean).norm_sqr() * unit
         });
         Self { side, modes, power }
     }
 
     /// The largest frequency along an axis.
-    #[must_use]
     pub fn nu_max(&self) -> f64 {
         self.modes as f64 / self.side
     }
 
     /// The least width of a ring in ν: one mode.
-    #[must_use]
     pub fn finest_ring(&self) -> f64 {
         1.0 / self.side
     }
 
     /// The power at k = (`kx`, `ky`) cycles per side, or `None` beyond the largest frequency.
-    #[must_use]
     pub fn at(&self, kx: i64, ky: i64) -> Option<f64> {
         // P(−k) = P(k).
         let (kx, ky) = if kx < 0 { (-kx, -ky) } else { (kx, ky) };
@@ -132,7 +129,6 @@ impl Spectrum {
 
     /// Returns the rings of width `width` in ν, or one mode if that is wider, from ν = 0 outwards
     /// up to the last whole one. Rings without modes are left out.
-    #[must_use]
     pub fn rings(&self, width: f64) -> Vec<Ring> {
         rings_of(
             self.half_plane(),
@@ -143,7 +139,6 @@ impl Spectrum {
 
     /// Returns the median anisotropy of the rings of each of the [`BANDS`], in dB, as far as they are
     /// measured. Where a set has hardly any power, it is that of the floor.
-    #[must_use]
     pub fn anisotropy_by_band(&self, width: f64) -> Vec<f64> {
         let rings = self.rings(width);
         let measured = BANDS.iter().filter(|band| band[1] <= self.nu_max());
@@ -153,7 +148,6 @@ impl Spectrum {
     }
 
     /// Returns the summary, with rings of width `width` in ν.
-    #[must_use]
     pub fn summary(&self, width: f64) -> Summary {
         Summary::of(self.half_plane(), &self.rings(width))
     }
@@ -223,6 +217,95 @@ impl Summary {
             anisotropy_db: median_anisotropy(rings, ANISOTROPY_RANGE),
         }
     }
+}
+
+/// The mean of the taper's square: C(16, 8)/2¹⁶.
+pub(super) const MEAN_SQUARE: f64 = 12_870.0 / 65_536.0;
+
+/// The taper at u in [0, 1].
+pub(super) fn taper(u: f64) -> f64 {
+    let sine = (std::f64::consts::PI * u).sin();
+    let fourth = (sine * sine) * (sine * sine);
+    fourth * fourth
+}
+
+/// The Fourier taper_coefficient of the taper at integer k: (−1)ᵏ·C(8, 4 + k)/2⁸.
+pub(super) fn taper_coefficient(k: i64) -> f64 {
+    let binomial = match k.unsigned_abs() {
+        0 => 70.0,
+        1 => -56.0,
+        2 => 28.0,
+        3 => -8.0,
+        4 => 1.0,
+        _ => 0.0,
+    };
+    binomial / 256.0
+}
+
+/// The two figures of Heck et al.: how far a spectrum is empty, and how much it oscillates beyond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crispness {
+    /// The effective Nyquist frequency ν_eff: the radius in ν of the largest disc around 0 whose
+    /// mean power is at most 0.1. The square lattice has about 1. Frequencies up to ν_eff/2 are
+    /// sampled nearly without aliasing.
+    pub nu_eff: f64,
+    /// The oscillation Ω: ten times the root mean square of P − 1, from the frequency where the
+    /// power first reaches 1 over five units of ν, or as far as the rings extend.
+    pub omega: f64,
+}
+
+/// The largest mean power of the disc of ν_eff.
+const MAX_DISC_POWER: f64 = 0.1;
+/// The mean power of a disc at which the search for a larger one ends: the spectrum has risen.
+const RISEN: f64 = 0.5;
+/// The power, about 1, at which the range of Ω begins.
+const ABOUT_ONE: f64 = 0.98;
+/// The length of the range of Ω, in ν.
+const OSCILLATION_RANGE: f64 = 5.0;
+
+impl Crispness {
+    /// Computes the figures from rings of the given width in ν, from 0 outwards. Within a ring the
+    /// power is taken as constant.
+    pub fn of_rings(rings: &[Ring], width: f64) -> Self {
+        Self {
+            nu_eff: effective_nyquist(rings, width),
+            omega: oscillation(rings),
+        }
+    }
+}
+
+fn effective_nyquist(rings: &[Ring], width: f64) -> f64 {
+    // `sum` over the squared radius is the mean power of the disc up to the edge of a ring. From
+    // one edge to the next the disc grows with the power of the ring.
+    let (mut found, mut inner, mut sum) = (0.0, 0.0f64, 0.0);
+    for ring in rings {
+        let outer = ((ring.nu / width).floor() + 1.0) * width;
+        let next = sum + ring.power * (outer * outer - inner * inner);
+        if sum <= MAX_DISC_POWER * inner * inner && next > MAX_DISC_POWER * outer * outer {
+            // sum + P·(x² − inner²) = MAX_DISC_POWER·x²
+            found = ((ring.power * inner * inner - sum) / (ring.power - MAX_DISC_POWER)).sqrt();
+        } else if next <= MAX_DISC_POWER * outer * outer {
+            found = outer;
+        }
+        (inner, sum) = (outer, next);
+        if sum > RISEN * outer * outer {
+            break;
+        }
+    }
+    found
+}
+
+fn oscillation(rings: &[Ring]) -> f64 {
+    let Some(first) = rings.iter().position(|ring| ring.power >= ABOUT_ONE) else {
+        return 0.0;
+    };
+    let end = rings[first].nu + OSCILLATION_RANGE;
+    let (mut sum, mut weight) = (0.0, 0.0);
+    for ring in rings[first..].iter().take_while(|ring| ring.nu <= end) {
+        sum += ring.nu * (ring.power - 1.0) * (ring.power - 1.0);
+        weight += ring.nu;
+    }
+    10.0 * f64::sqrt(sum / f64::max(weight, f64::MIN_POSITIVE))
 }
 
 #[cfg(test)]
@@ -327,5 +410,74 @@ mod tests {
         assert!(rings.is_sorted_by(|a, b| a.nu < b.nu));
         let none = Spectrum::of(&Sample::torus(1.0, vec![]), 1.0);
         assert!(none.rings(0.1).is_empty());
+    }
+
+    #[test]
+    fn coefficients_and_mean_square_are_those_of_the_taper() {
+        let nodes = 64;
+        let mean = |f: &dyn Fn(f64) -> f64| -> f64 {
+            (0..nodes)
+                .map(|i| f(f64::from(i) / f64::from(nodes)))
+                .sum::<f64>()
+                / f64::from(nodes)
+        };
+        for k in 0..7 {
+            let turn = 2.0 * std::f64::consts::PI * k as f64;
+            let found = mean(&|u| taper(u) * (turn * u).cos());
+            assert!((found - taper_coefficient(k)).abs() < 1e-15, "{k}");
+        }
+        assert!((mean(&|u| taper(u) * taper(u)) - MEAN_SQUARE).abs() < 1e-15);
+    }
+
+    /// Rings of a radial power.
+    fn rings(power: impl Fn(f64) -> f64) -> Vec<Ring> {
+        let ring = |at: u32| {
+            let nu = (f64::from(at) + 0.5) / 64.0;
+            Ring {
+                nu,
+                power: power(nu),
+                anisotropy_db: 0.0,
+                tallest: 0.0,
+            }
+        };
+        (0..512).map(ring).collect()
+    }
+
+    #[test]
+    fn a_step_at_half_has_its_known_figures() {
+        // The mean power of the disc, 1 − 0.25/ν², is 0.1 at ν = 0.5/√0.9.
+        let step = rings(|nu| if nu < 0.5 { 0.0 } else { 1.0 });
+        let found = Crispness::of_rings(&step, 1.0 / 64.0);
+        assert!(
+            (found.nu_eff - 0.5 / 0.9f64.sqrt()).abs() < 1e-12,
+            "{found:?}"
+        );
+        assert_eq!(found.omega, 0.0);
+    }
+
+    #[test]
+    fn oscillations_are_measured_from_where_the_power_reaches_one() {
+        let wave = |nu: f64| match nu {
+            nu if nu < 1.0 => 0.0,
+            nu if nu < 3.0 => 1.5,
+            _ => 1.0,
+        };
+        let found = Crispness::of_rings(&rings(wave), 1.0 / 64.0);
+        // (P − 1)² is 0.25 over 1..3 and 0 over 3..6: 10·√(0.25·8/35).
+        let expected = 10.0 * (0.25f64 * 8.0 / 35.0).sqrt();
+        assert!((found.omega - expected).abs() < 0.03, "{found:?}");
+        assert!(found.nu_eff > 1.0 && found.nu_eff < 1.05, "{found:?}");
+    }
+
+    #[test]
+    fn white_noise_has_neither() {
+        let found = Crispness::of_rings(&rings(|_| 1.0), 1.0 / 64.0);
+        assert_eq!(
+            found,
+            Crispness {
+                nu_eff: 0.0,
+                omega: 0.0
+            }
+        );
     }
 }

@@ -31,7 +31,6 @@ impl Voronoi {
     /// Measures a set; of a window its points at least 6 mean spacings from the edge. All figures are 0 for a set too
     /// small to have a triangulation. If points coincide, the deviation and the spread of areas are 1 and the other
     /// figures 0.
-    #[must_use]
     pub fn of(set: &Sample) -> Self {
         if !set.is_periodic() {
             return Self::of_cells(set.points(), |_, p| set.is_inner(BORDER, p));

@@ -125,7 +125,7 @@ mod tests {
     };
 
     use super::*;
-    use crate::{measure::Distances, mix::joint::parts, optimize::moves_of, thinned::ThinnedTwin};
+    use crate::{measure::Distances, measure::ThinnedTwin, mix::joint::parts, optimize::moves_of};
 
     #[test]
     fn cleared_pairs_are_clear_on_a_twin() {

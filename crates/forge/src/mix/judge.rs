@@ -3,11 +3,11 @@
 
 use strew_core::{PointSet, Table, Twin, table::Figures};
 
-use super::each;
+use super::press::each;
 use crate::{
     judge::{Bound, Complaint, Figure, named},
+    measure::ThinnedTwin,
     measure::{Distances, Sample, Spectrum, Summary, square_set},
-    thinned::ThinnedTwin,
     twins::{LARGE_TWIN, nearest, next_to_alpha},
     watch::{Meter, Stage, Watch},
 };

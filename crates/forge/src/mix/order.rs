@@ -14,7 +14,7 @@ use strew_core::{
     table::{Mix, Ranks, Shares},
 };
 
-use super::each;
+use super::press::each;
 use crate::{
     ForgeError,
     numeric::exp,
@@ -192,21 +192,6 @@ const PARTS: &str = "1:1:2";
 
 /// Makes the second order of a table's blocks: the ranks of [`VaryingKinds`](strew_core::VaryingKinds). Takes about
 /// a second on map m. `None` if it was stopped.
-///
-/// # Errors
-/// [`ForgeError`] if the table has too few blocks.
-///
-/// ```
-/// use strew_core::Table;
-/// use strew_forge::second_order;
-///
-/// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-/// let order = second_order(&table, &())?.expect("not stopped");
-/// assert_eq!(order.positions().len(), table.displacements().len());
-/// // It is another order than that in which points leave.
-/// assert_ne!(Some(&order), table.ranks());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn second_order(table: &Table, watch: &dyn Watch) -> Result<Option<Ranks>, ForgeError> {
     let shares: Shares = PARTS.parse()?;
     let sums = shares.parts().iter().scan(0.0, |sum, part| {

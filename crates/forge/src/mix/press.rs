@@ -2,7 +2,7 @@
 //! in any order without a trace.
 
 use rayon::prelude::*;
-use strew_core::Table;
+use strew_core::{Table, table::Shares};
 
 use crate::{
     numeric::exp,
@@ -103,6 +103,12 @@ impl Presses {
         let found = list.binary_search_by_key(&(b as u32), |press| press.to);
         found.map_or(0, |at| list[at].by)
     }
+}
+
+/// The shares of kinds, one by one.
+pub(super) fn each(shares: &Shares) -> Vec<f64> {
+    let kinds = 0..shares.kinds() as u8;
+    kinds.map(|kind| shares.of(kind)).collect()
 }
 
 #[cfg(test)]

@@ -23,7 +23,6 @@ pub struct BesselJ0 {
 
 impl BesselJ0 {
     /// Tabulates J₀ for arguments from 0 to `largest`.
-    #[must_use]
     pub fn up_to(largest: f64) -> Self {
         let count = (largest * NODES) as usize + 3;
         let nodes = (0..count)
@@ -35,7 +34,6 @@ impl BesselJ0 {
 
     /// Returns J₀(x) to within 2·10⁻⁹, for x from 0 to the largest argument of the table. Other
     /// arguments are a mistake of the caller: the result is arbitrary.
-    #[must_use]
     pub fn at(&self, x: f64) -> f64 {
         let scaled = x * NODES;
         let node = (scaled as usize).min(self.nodes.len() - 2);

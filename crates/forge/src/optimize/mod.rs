@@ -3,26 +3,23 @@
 //! An [`Objective`] is an energy as a function of the vectors, which are called *moves* here. Three
 //! objectives exist. [`Pairs`] (a pair energy) and [`Radial`] (the error of a radial power curve)
 //! are sums over pairs of blocks and need no points: `ground` knows which blocks meet and how often, by the overlaps of
-//! intervals, and `neighbors` lists those that are near each other. [`Sets`] evaluates any other energy on twins. For
+//! intervals, and `pairs` lists those that are near each other. [`Sets`] evaluates any other energy on twins. For
 //! [`Radial`], `rings` turns a histogram of distances into radial power. A [`Descent`] lowers an
 //! objective from the random start of [`jitter`]; its [`DescentState`] can be kept and resumed.
 
 mod descent;
 mod ground;
-mod neighbors;
-mod objective;
 mod pairs;
 mod radial;
 mod rings;
 mod sets;
 
-pub use descent::Descent;
-pub(crate) use ground::{Ground, Pair, moves_of, overlaps};
-pub(crate) use neighbors::{CHUNK, fill, longest, sum};
 #[cfg(test)]
-pub(crate) use objective::check_slopes;
-pub use objective::{DescentState, Objective, jitter};
+pub(crate) use descent::check_slopes;
+pub use descent::{Descent, DescentState, Objective, jitter};
+pub(crate) use ground::{Ground, Pair, moves_of, overlaps};
 pub use pairs::Pairs;
+pub(crate) use pairs::{CHUNK, fill, longest, sum};
 pub use radial::Radial;
 pub use rings::RadialWeights;
 pub use sets::Sets;

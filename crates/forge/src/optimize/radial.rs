@@ -1,7 +1,7 @@
 //! A radial power curve as an energy in table space.
 //!
 //! The radial power follows from the histogram of distances (see [`Rings`]). Exact pair frequencies
-//! (see [`neighbors`](super::neighbors)) yield the histogram of the unbounded pattern, without a
+//! (see [`Neighbors`]) yield the histogram of the unbounded pattern, without a
 //! sample of points. One evaluation is a pass over the pairs for the histogram, a product with a
 //! table of J₀, and a second pass with the resulting force, which depends on the distance alone.
 //!
@@ -16,7 +16,7 @@ use strew_core::Map;
 use super::{
     Objective,
     ground::Pair,
-    neighbors::{CHUNK, LANES, Neighbors},
+    pairs::{CHUNK, LANES, Neighbors},
     rings::{BINS_PER_SPACING, RINGS_PER_NU, RadialWeights, Rings},
 };
 use crate::curve::Target;
@@ -45,7 +45,6 @@ impl Radial {
     /// The error against `target`, averaged over the patterns of `maps` by their shares, which sum
     /// to 1. The maps are one map for slightly different α; lengths are in mean
     /// spacings of the first.
-    #[must_use]
     pub fn new(maps: &[(Map, f64)], target: &Target, weights: &RadialWeights) -> Self {
         let scale = maps[0].0.alpha().set_side_f64();
         let pattern = |(map, share): &(Map, f64)| WeightedPattern {

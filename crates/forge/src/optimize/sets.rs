@@ -31,7 +31,6 @@ struct TwinPoints {
 
 impl<E: SetEnergy> Sets<E> {
     /// The energy on `twins`; those that are not twins of `map` are ignored.
-    #[must_use]
     pub fn new(energy: E, map: &Map, twins: &[Twin]) -> Self {
         let n = map.intervals();
         let points = |twin: &Twin| {

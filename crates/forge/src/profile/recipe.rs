@@ -7,8 +7,8 @@ use crate::{
     energy::{Gaussian, Guard, Lloyd},
     judge::Bound,
     optimize::{Descent, DescentState, Objective, Pairs, Radial, RadialWeights, Sets},
-    phase::Phase,
     twins::Domain,
+    watch::Phase,
 };
 
 /// A noise profile: how its tables are optimized, and what they must satisfy.
@@ -16,7 +16,6 @@ use crate::{
 pub struct Profile {
     /// The name, which table files record.
     pub name: &'static str,
-    /// A description in one line.
     pub summary: &'static str,
     /// The way in which the tables are optimized.
     pub recipe: Recipe,
@@ -30,10 +29,9 @@ pub struct Profile {
 
 impl Profile {
     /// The radial power curve that the profile follows, if any.
-    #[must_use]
     pub fn target(&self) -> Option<Target> {
         match self.recipe {
-            Recipe::Radial(following) => Some(Target::fixed(following.curve)),
+            Recipe::Radial(following) => following.curve.replace(';', "\n").parse().ok(),
             _ => None,
         }
     }
@@ -90,14 +88,13 @@ pub struct Repulsion {
 /// The parameters of a descent on the error of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Following {
-    /// The points (ν, power) of the curve; see [`Target`].
-    pub curve: &'static [[f64; 2]],
+    /// The points `ν power` of the curve, separated by semicolons; see [`Target`].
+    pub curve: &'static str,
     /// The weights in the cost of its error.
     pub weights: RadialWeights,
     /// The share of the steps that Gaussian repulsion (σ = 1) takes first. It quickly removes the
     /// power at low frequencies, which suits curves that are 0 over nearly the same range.
     pub warm_share: f64,
-    /// The rate at first.
     pub rate: f64,
 }
 
@@ -129,7 +126,6 @@ const WARM_RATE: f64 = 0.2;
 
 impl Recipe {
     /// The optimizer's name and its parameters (name, value) but the curve, as a table's history records them.
-    #[must_use]
     pub fn describe(&self) -> (&'static str, Vec<(String, String)>) {
         let numbers = |all: &[(&str, f64)]| {
             let text = |(name, value): &(&str, f64)| ((*name).to_owned(), value.to_string());

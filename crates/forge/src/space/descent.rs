@@ -7,7 +7,7 @@ use super::pairs::{Blocks, Gaussian, Pairs};
 use crate::{
     ForgeError,
     checkpoint::Kept,
-    phase::{Phase, State},
+    watch::{Phase, State},
 };
 
 /// The vectors of a table in the making, and what the current phase has beside them: all that decides the next step.

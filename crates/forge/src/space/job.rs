@@ -1,23 +1,33 @@
-//! A job: the table of points in space to make, and the phases of its making.
+//! A job: the table of points in space to make, the phases of its making, and its bounds.
 
-use strew_core::{Alpha, Map};
+use std::time::Duration;
+
+use strew_core::{
+    Alpha, Map,
+    space::Table,
+    table::{Figures, Provenance},
+};
 
 use super::{
-    descent::Rule,
-    pairs::{Gaussian, LONGEST, longest},
+    descent::{Rule, SpacePhase, SpaceState},
+    judge::Judge,
+    pairs::{Gaussian, LONGEST, longest, with_ranks},
 };
-use crate::{ForgeError, MAX_STEPS};
+use crate::{
+    ForgeError, MAX_STEPS, Meter,
+    forge::{Task, Work},
+    judge::{Bound, Complaint, Figure, complaints as missed},
+    optimize::jitter,
+    watch::Phase,
+};
 
 /// The table to make. Equal jobs make the same table, bit for bit, on every machine and with any number of threads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpaceJob {
-    /// The noise profile.
     pub profile: SpaceProfile,
-    /// The α of the pattern.
     pub alpha: Alpha,
     /// The half-width of the map: 16 has 21 intervals at the default α.
     pub radius: u32,
-    /// The seed of the random start.
     pub seed: u64,
     /// The number of steps of all phases together; the profile's own if `None`.
     pub steps: Option<u32>,
@@ -37,7 +47,6 @@ impl SpaceProfile {
     pub const ALL: [Self; 2] = [Self::Blue, Self::Spaced];
 
     /// The name.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Blue => "blue",
@@ -46,7 +55,6 @@ impl SpaceProfile {
     }
 
     /// The profile with a name.
-    #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|profile| profile.name() == name)
     }
@@ -57,7 +65,6 @@ impl SpaceJob {
     ///
     /// # Panics
     /// Never: the text is an α.
-    #[must_use]
     pub fn new(profile: SpaceProfile) -> Self {
         let alpha = "(5-sqrt(3))/2".parse();
         Self {
@@ -112,6 +119,153 @@ pub const MAX_SPACE_RADIUS: u32 = 22;
 const MAX_INTERVALS: usize = 40;
 /// The least reach of vectors, in mean spacings.
 const LEAST_REACH: f64 = 0.8 * LONGEST;
+
+/// The reach of the random start along each axis, in mean spacings.
+const JITTER: f64 = 0.2;
+
+/// A checked job.
+pub struct SpacePlan {
+    job: SpaceJob,
+    /// Those of the first phase, which is coarse, and of all others.
+    maps: [Map; 2],
+}
+
+impl Task for SpaceJob {
+    type Plan = SpacePlan;
+
+    fn plan(&self) -> Result<SpacePlan, ForgeError> {
+        Ok(SpacePlan {
+            maps: self.maps()?,
+            job: self.clone(),
+        })
+    }
+}
+
+impl SpacePlan {
+    fn judge(&self) -> Judge {
+        Judge::of(&self.maps[1])
+    }
+}
+
+impl Work for SpacePlan {
+    type State = SpaceState;
+    type Table = Table;
+
+    fn identity(&self) -> String {
+        let SpaceJob {
+            profile,
+            alpha,
+            radius,
+            seed,
+            ..
+        } = self.job;
+        let (profile, longest) = (profile.name(), longest(alpha));
+        format!(
+            "points = in space\nprofile = {profile}\nalpha = {alpha}\nR = {radius}\nseed = {seed}\n\
+             jitter = {JITTER}\nlongest = {longest}\n"
+        )
+    }
+
+    fn start(&self) -> SpaceState {
+        let blocks = self.maps[0].intervals().pow(3);
+        SpaceState::start(jitter(blocks, JITTER, self.job.seed))
+    }
+
+    fn phases(&self) -> Vec<Box<dyn Phase<SpaceState> + '_>> {
+        let phases = self.job.phases().into_iter().enumerate();
+        let phase = |(number, (rule, steps)): (usize, (Rule, u32))| {
+            let finer = (number == 0).then_some(&self.maps);
+            let map = &self.maps[usize::from(number > 0)];
+            Box::new(SpacePhase::new(rule, steps, map, finer)) as _
+        };
+        phases.map(phase).collect()
+    }
+
+    fn table(
+        &self,
+        state: &SpaceState,
+        [steps, all]: [u32; 2],
+        figures: Vec<Figures>,
+    ) -> Result<Table, ForgeError> {
+        let (job, map) = (&self.job, &self.maps[1]);
+        let mut parameters = vec![
+            ("pairs".into(), "exact".into()),
+            ("longest".into(), longest(job.alpha).to_string()),
+            ("steps".into(), all.to_string()),
+        ];
+        if steps < all {
+            parameters.push(("stopped_after".into(), steps.to_string()));
+        }
+        let provenance = Provenance {
+            optimizer: match job.profile {
+                SpaceProfile::Blue => "gaussian".into(),
+                SpaceProfile::Spaced => "gaussian-push".into(),
+            },
+            parameters,
+            seed: job.seed,
+            twins: Vec::new(),
+            figures,
+        };
+        let units = 4096.0 / map.alpha().set_side_f64();
+        let round = |v: f64| (v * units).round().clamp(-32_767.0, 32_767.0) as i16;
+        let vectors = state.moves.iter().map(|v| v.map(round)).collect();
+        let name = job.profile.name();
+        Ok(Table::new(map.clone(), name, vectors, provenance, None)?)
+    }
+
+    fn judging(&self) -> (u32, u64, Duration) {
+        // On one core.
+        let time = Duration::from_nanos(15_000);
+        (self.judge().subjects(), self.judge().points(), time)
+    }
+
+    fn measure(&self, table: &Table, meter: &mut Meter<'_>) -> Option<Vec<Figures>> {
+        self.judge().figures(table, meter)
+    }
+
+    fn complaints(&self, figures: &[Figures]) -> Vec<Complaint> {
+        complaints(self.job.profile, figures)
+    }
+
+    fn ranked(&self, table: Table) -> Result<Table, ForgeError> {
+        Ok(with_ranks(&table)?)
+    }
+}
+
+/// The bounds that the figures of a table miss.
+fn complaints(profile: SpaceProfile, figures: &[Figures]) -> Vec<Complaint> {
+    let [low, seeded_low, least, seeded_least] = match profile {
+        SpaceProfile::Blue => [6e-5, 8e-5, 0.66, 0.58],
+        SpaceProfile::Spaced => [5e-3, 5e-3, 0.80, 0.72],
+    };
+    let plain = vec![
+        Bound::at_most(Figure::LowPower, low),
+        Bound::at_most(Figure::PeakPower, 2.5),
+        Bound::at_least(Figure::DeltaMin, least),
+        Bound::at_least(Figure::MeanDistance, 0.83),
+    ];
+    let seeded = vec![
+        Bound::at_most(Figure::LowPower, seeded_low),
+        Bound::at_most(Figure::PeakPower, 2.3),
+        Bound::at_least(Figure::DeltaMin, seeded_least),
+    ];
+    let local = [
+        Bound::at_most(Figure::LocalDeviation, 0.27),
+        Bound::at_most(Figure::LocalLargest, 5.0),
+    ];
+    let of = |figures: &Figures| {
+        let is_window = figures.subject.starts_with("window");
+        let is_seeded = is_window && figures.subject != "window seed 0";
+        let mut bounds = if is_seeded {
+            seeded.clone()
+        } else {
+            plain.clone()
+        };
+        bounds.extend(local.iter().filter(|_| is_window));
+        missed(&bounds, std::slice::from_ref(figures))
+    };
+    figures.iter().flat_map(of).collect()
+}
 
 #[cfg(test)]
 mod tests {

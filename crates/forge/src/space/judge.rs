@@ -6,14 +6,10 @@ use strew_core::{
     table::Figures,
 };
 
-use super::{
-    job::SpaceProfile,
-    local::{LocalPower, SpacePower},
-    points::{is_uniform_in_space, twin_set, window_set},
-};
+use super::measure::{LocalPower, SpacePower, is_uniform_in_space, twin_set, window_set};
 use crate::{
     Figure, Meter,
-    judge::{Bound, Complaint, complaints as missed, measured, named},
+    judge::{measured, named},
     measure::{Distances, Ring, Sample},
     twins::{nearest, next_to_alpha},
 };
@@ -40,7 +36,6 @@ pub struct SpaceReport {
 
 impl SpaceReport {
     /// Measures points, and local power if there is any.
-    #[must_use]
     pub fn of(subject: String, points: &Sample<3>, local: Option<LocalPower>) -> Self {
         let SpacePower { summary, rings } = SpacePower::of(points);
         let distances = Distances::of(points);
@@ -70,9 +65,6 @@ impl SpaceReport {
     }
 
     /// Measures a cube of a set and local power, from a corner on, in mean spacings.
-    ///
-    /// # Errors
-    /// As [`SpaceSet::within`].
     pub fn of_window(
         set: &SpaceSet,
         at: [f64; 3],
@@ -145,39 +137,4 @@ impl Judge {
         all.extend(measured(SEEDS, meter, window)?);
         Some(all)
     }
-}
-
-/// The bounds that the figures of a table miss.
-pub(super) fn complaints(profile: SpaceProfile, figures: &[Figures]) -> Vec<Complaint> {
-    let [low, seeded_low, least, seeded_least] = match profile {
-        SpaceProfile::Blue => [6e-5, 8e-5, 0.66, 0.58],
-        SpaceProfile::Spaced => [5e-3, 5e-3, 0.80, 0.72],
-    };
-    let plain = vec![
-        Bound::at_most(Figure::LowPower, low),
-        Bound::at_most(Figure::PeakPower, 2.5),
-        Bound::at_least(Figure::DeltaMin, least),
-        Bound::at_least(Figure::MeanDistance, 0.83),
-    ];
-    let seeded = vec![
-        Bound::at_most(Figure::LowPower, seeded_low),
-        Bound::at_most(Figure::PeakPower, 2.3),
-        Bound::at_least(Figure::DeltaMin, seeded_least),
-    ];
-    let local = [
-        Bound::at_most(Figure::LocalDeviation, 0.27),
-        Bound::at_most(Figure::LocalLargest, 5.0),
-    ];
-    let of = |figures: &Figures| {
-        let is_window = figures.subject.starts_with("window");
-        let is_seeded = is_window && figures.subject != "window seed 0";
-        let mut bounds = if is_seeded {
-            seeded.clone()
-        } else {
-            plain.clone()
-        };
-        bounds.extend(local.iter().filter(|_| is_window));
-        missed(&bounds, std::slice::from_ref(figures))
-    };
-    figures.iter().flat_map(of).collect()
 }
