@@ -5,8 +5,7 @@ use crate::subject;
 use proptest::prelude::*;
 use strew_core::{
     Attribute, Attributes, Circle, ErrorKind, Kinds, Point, PointId, PointSet, Points, Region,
-    ScaleRange, Variants, Warp,
-    server::{self, Stop},
+    ScaleRange, Variants, Warp, server::Stop,
 };
 use subject::{
     all, any_area, any_box, any_placement, definition,
