@@ -81,7 +81,7 @@ fn the_first_key_leads_past_what_repeats() {
         return;
     };
     for (path, target) in [
-        ("/", "panel-body"),
+        ("/#tab=start", "panel-body"),
         ("/how", "essay"),
         ("/compare", "methods"),
         ("/space#at=4,4,4", "choices"),

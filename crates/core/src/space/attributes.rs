@@ -92,7 +92,8 @@ impl SpaceSet {
     /// The attributes of the points of this set: `rotation`, `scale`, `variant` by chance, `rank` and `u1` to `u16`.
     ///
     /// # Errors
-    /// [`ErrorKind::Attribute`](crate::ErrorKind::Attribute) for `angle` and evenly spread variants, which points in space do not have.
+    /// [`ErrorKind::Attribute`](crate::ErrorKind::Attribute) for `angle` and evenly spread variants, which are of the
+    /// plane.
     pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
         bound(attributes, &self.lattice)
     }
