@@ -39,7 +39,7 @@ const MODULES: &[(&str, &str)] = &[
     (
         "crates/core/src",
         "attribute 1346 distance 486 field 3666 kernel 3771 lattice 2537 map 1646 near 1506 pattern 1904 \
-         periodic 1240 plan 1020 set 780 settle 3321 shape 1808 space 5197 table 3411 walk 3682 warp 1462",
+         periodic 1240 plan 1020 set 780 settle 3321 shape 1808 space 5198 table 3411 walk 3682 warp 1462",
     ),
     (
         "crates/forge/src",
