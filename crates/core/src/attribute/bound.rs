@@ -238,7 +238,8 @@ impl<Id: Hashed> BoundAttributes<Id> {
             columns = more;
             match own {
                 [column] => self.write_one(bound, &ids, column),
-                parts => self.write_rotations(&ids, parts),
+                parts if Id::TURNS => self.write_rotations(&ids, parts),
+                _ => {}
             }
         }
     }

@@ -22,6 +22,8 @@ pub(crate) fn key(seed: Seed, code: u64) -> u64 {
 pub trait Hashed: Copy {
     /// The points that have such ids.
     type Point;
+    /// Whether they have rotations.
+    const TURNS: bool;
     /// The id of a point.
     fn of(point: &Self::Point) -> Self;
     /// Whether both are of one row.
@@ -34,6 +36,7 @@ pub trait Hashed: Copy {
 
 impl Hashed for PointId {
     type Point = Point;
+    const TURNS: bool = false;
 
     fn of(point: &Point) -> Self {
         point.id

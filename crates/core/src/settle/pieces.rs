@@ -43,6 +43,7 @@ use super::{
 use crate::{
     lattice::bounds::common_box,
     near::clear::{Clear, ClearOf, OtherSet},
+    parts::CLEARANCE,
     shape::{Outlined, Region, Shape},
     stop::Stop,
 };
@@ -111,7 +112,8 @@ pub(crate) struct Inside<R: Request<D>, const D: usize> {
     /// The box in which points lie in the end, and the one in which these were placed.
     pub(crate) bounds: [Range<i128>; D],
     pub(crate) around: [Range<i128>; D],
-    clear: RefCell<Clear<R::Other, D>>,
+    /// The sets to keep clear of, if there are some.
+    clear: Option<RefCell<Clear<R::Other, D>>>,
 }
 
 /// A shape of a request.
@@ -130,12 +132,14 @@ impl<R: Request<D>, const D: usize> Pieces<R, D> {
     /// The points of a request that settle; `None` if they stay.
     pub(crate) fn new(request: &Arc<R>) -> Option<Self> {
         let (settler, bounds) = (request.settler()?, request.bounds());
-        let (region, stop) = (Some(request.region()), request.stop().clone());
         let inside = Inside {
             around: settler.moves.around(&bounds),
             moves: settler.moves.clone(),
             bounds,
-            clear: RefCell::new(Clear::new(request.others(), region, stop)),
+            clear: (CLEARANCE && !request.others().is_empty()).then(|| {
+                let (region, stop) = (Some(request.region()), request.stop().clone());
+                RefCell::new(Clear::new(request.others(), region, stop))
+            }),
             request: request.clone(),
         };
         Some(Self { settler, inside })
@@ -284,7 +288,7 @@ impl<R: Request<D>, const D: usize> Inside<R, D> {
     }
 
     fn is_guarded(&self) -> bool {
-        !self.clear.borrow().is_empty()
+        self.clear.is_some()
     }
 
     /// Whether a point has one of some addresses, and is one of those that are requested, wherever it ends.
@@ -319,7 +323,9 @@ impl<R: Request<D>, const D: usize> Inside<R, D> {
         let in_tile = tiles.map(|(tiles, shapes)| &shapes[tiles.of(place)]);
         let at = self.request.at(place);
         let is_in = |shape: &ShapeOf<R, D>| shape.contains(at);
-        in_tile.or(outline.shape.as_ref()).is_none_or(is_in) && self.clear.borrow_mut().permits(at)
+        let is_in = in_tile.or(outline.shape.as_ref()).is_none_or(is_in);
+        let clear = self.clear.as_ref().filter(|_| CLEARANCE && is_in);
+        clear.map_or(is_in, |clear| clear.borrow_mut().permits(at))
     }
 }
 

@@ -39,6 +39,7 @@ pub type BoundAttributes = crate::BoundAttributes<PointId>;
 /// Its hash is that of the plane, under a key that z is hashed into.
 impl Hashed for PointId {
     type Point = Point;
+    const TURNS: bool = true;
 
     fn of(point: &Point) -> Self {
         point.id
