@@ -71,7 +71,7 @@ fn files(folder: &Path, endings: &[&str]) -> Vec<(String, String)> {
     found
 }
 
-/// What is beside the sources and nobody writes.
+/// Folders that builds and tools fill.
 const BUILT: [&str; 9] = [
     "target",
     "generated",

@@ -38,8 +38,8 @@ const CEILINGS: &[(&str, &[&str], usize)] = &[
 const MODULES: &[(&str, &str)] = &[
     (
         "crates/core/src",
-        "attribute 1350 distance 486 field 3666 kernel 3771 lattice 2537 map 1646 near 1506 pattern 1904 \
-         periodic 1240 plan 1020 set 780 settle 3327 shape 1808 space 5199 table 3411 walk 3682 warp 1462",
+        "attribute 1350 distance 486 field 3664 kernel 3771 lattice 2537 map 1646 near 1506 pattern 1904 \
+         periodic 1240 plan 1020 set 780 settle 3304 shape 1808 space 5196 table 3411 walk 3680 warp 1462",
     ),
     (
         "crates/forge/src",

@@ -3,7 +3,9 @@
 use crate::subject;
 
 use proptest::prelude::*;
-use strew_core::{Area, Circle, Keep, Placement, PointSet, Points, Region, Spacing, Table};
+use strew_core::{
+    Area, Circle, Keep, Placement, Point, PointSet, Points, Region, Spacing, Table, server::Stop,
+};
 use subject::{
     all, any_seed, any_table, mixed,
     plane::{agree, any_parts, one_by_one},
@@ -145,5 +147,33 @@ fn large_plans_are_made_piece_by_piece() {
             assert_eq!(points.len() as u128, plan.count());
             assert_eq!(points, one_by_one(&whole, &clear, region));
         }
+    }
+}
+
+/// Once a flag is raised there may be fewer points, but no others.
+#[test]
+fn a_raised_flag_leaves_no_point_too_near() {
+    let [a, b, _] = subject::tables();
+    let rocks = PointSet::new(b.clone())
+        .seed(3)
+        .spacing(9.0)
+        .expect("valid");
+    let region = Region::new([-90.0, -70.0], [1500.0, 1110.0]).expect("ordered");
+    for share in [1.0, 0.5] {
+        let set = PointSet::new(a.clone())
+            .seed(8)
+            .keep(share)
+            .expect("a share");
+        let (set, stop) = (set.clear_of(&rocks, 3.0).expect("near"), Stop::new());
+        let plan = set.within_until(region, stop.clone()).expect("in range");
+        let points = all::<Points>(&plan, 5000);
+        let mut blocks = plan.blocks::<Points>();
+        let mut early = vec![Point::default(); points.len()];
+        let (first, rest) = early.split_at_mut(5000);
+        assert_eq!(blocks.fill(first), 5000);
+        stop.raise();
+        let more = blocks.fill(rest);
+        assert!(more < rest.len());
+        assert_eq!(early[..5000 + more], points[..5000 + more]);
     }
 }

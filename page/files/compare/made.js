@@ -1,4 +1,4 @@
-// The points of a window by each method that no server is asked for.
+// The points of a window by each method but Strew.
 
 import { UNIT, mix, stirred, streamOf } from "../hash.js";
 import { boxOf } from "./methods.js";

@@ -73,8 +73,12 @@ impl Noise {
     pub(super) fn share<const D: usize>(&self, at: [f64; D]) -> f64 {
         let mut place = at.map(|v| v / self.wavelength);
         let (mut sum, mut weight, mut weights) = (0.0, 1.0, 0.0);
+        let floor = |v: f64| {
+            let whole = libm::floor(v);
+            (whole, whole as i64)
+        };
         for octave in 0..self.octaves {
-            sum += weight * octave_at(self.key(octave), place, whole);
+            sum += weight * octave_at(self.key(octave), place, floor);
             weights += weight;
             weight *= 0.5;
             place = next(place);
@@ -192,12 +196,6 @@ fn floor(v: f64) -> (f64, i64) {
     let whole = if rounded > v { rounded - 1.0 } else { rounded };
     let bits = (whole + ROUNDER).to_bits().wrapping_sub(ROUNDER.to_bits());
     (whole, bits as i64)
-}
-
-/// The largest integer up to a number, twice.
-fn whole(v: f64) -> (f64, i64) {
-    let whole = libm::floor(v);
-    (whole, whole as i64)
 }
 
 impl<const D: usize> PlainLoop for Batch<'_, D> {

@@ -169,8 +169,8 @@ impl Plan {
         }
     }
 
-    /// The plan with another flag. Its windows and cursors may have to count, and stop once that flag is raised. Their
-    /// results are then meaningless.
+    /// The plan with another flag. Once that is raised, blocks end early, and windows and cursors, which may have to
+    /// count, are meaningless.
     #[must_use]
     pub fn stopped_by(self, stop: Stop) -> Self {
         let mut scope = Arc::unwrap_or_clone(self.scope);

@@ -7,9 +7,8 @@
 //!
 //! # Filling
 //!
-//! The points of a piece are placed by their ranks, together with those around it; the [`Settler`] moves them; and those
-//! that end inside the region are given in the order of their addresses, that of all walks. Pieces decide only the cost: a
-//! point goes to the same place in every piece.
+//! The points of a piece and those around it are placed by their ranks; the [`Settler`] moves them; and those that end
+//! inside come in the order of their addresses. A point goes to the same place in every piece.
 //!
 //! # Counting
 //!
@@ -22,15 +21,13 @@
 //!                              the outline
 //! ```
 //!
-//! - Pieces all of whose points stay inside are counted in closed form, as a thinned set, where shares are the same
-//!   everywhere.
+//! - Where shares are the same everywhere, pieces that stay inside are counted in closed form, as thinned sets.
 //! - Else the points of a piece are listed, which takes no steps, and decided by the box, and by tiles that lie inside
 //!   or outside of the shape as a whole.
 //! - Only the others settle, in boxes that join those of neighboring tiles, because each box needs the points around
 //!   it, too. Where the set keeps clear of others, that is all points but those far outside.
 //!
-//! No point that is decided before it settles can cross the outline, and the others meet the same conditions as in
-//! filling. So the count is the number of points that filling writes.
+//! No point that is decided before it settles can cross the outline, so the count is the number that filling writes.
 
 use alloc::{sync::Arc, vec, vec::Vec};
 use core::{array::from_fn, cell::RefCell, fmt::Debug, ops::Range};
@@ -42,25 +39,19 @@ use super::{
 };
 use crate::{
     lattice::bounds::common_box,
-    near::clear::{Clear, ClearOf, OtherSet},
+    near::clear::{Clear, OtherSet},
     parts::CLEARANCE,
-    shape::{Outlined, Region, Shape},
+    shape::{Outlined, Shape},
     stop::Stop,
 };
 
 /// About how far around a box points matter to those in it, in greatest moves, in sets without kinds.
 const MARGIN: i128 = 16;
 
-/// The sides of the tiles that are compared with an outline as a whole, in bits of fixed-point units: 128 grid units in the
-/// plane, 16 in space.
-const fn tile_bits<const D: usize>() -> u32 {
-    if D == 2 { 27 } else { 24 }
-}
-
 /// A shape of more parts is reduced to tiles before points are compared with it.
 const MANY: usize = 64;
 
-/// What is requested of a set whose points settle, in the plane or in space.
+/// A request for points that settle, in the plane or in space.
 pub(crate) trait Request<const D: usize>: Clone + Debug {
     type Set: Settling<D>;
     type Outline: Outlined<D>;
@@ -72,14 +63,11 @@ pub(crate) trait Request<const D: usize>: Clone + Debug {
     /// The box in which points lie in the end.
     fn bounds(&self) -> [Range<i128>; D];
 
-    /// The box around them, in world units.
-    fn region(&self) -> &Region<D>;
-
     /// The shape in which they lie, if not in all of the box.
     fn shape(&self) -> Option<&Shape<D, Self::Outline>>;
 
-    /// The sets that they keep clear of.
-    fn others(&self) -> &[ClearOf<Self::Other>];
+    /// The sets that they keep clear of, if there are some.
+    fn clear(&self) -> Option<Clear<Self::Other, D>>;
 
     /// Ends counting early.
     fn stop(&self) -> &Stop;
@@ -93,7 +81,7 @@ pub(crate) trait Request<const D: usize>: Clone + Debug {
     /// The world coordinates of a place.
     fn at(&self, place: [i128; D]) -> [f64; D];
 
-    /// The number of points of some addresses, if it is known without listing them.
+    /// The number of points of some addresses, wherever they end, if it is known without listing them.
     fn count_all(&self, addresses: &[Range<i64>; D]) -> Option<u128>;
 }
 
@@ -104,7 +92,7 @@ pub(crate) struct Pieces<R: Request<D>, const D: usize> {
     pub(crate) inside: Inside<R, D>,
 }
 
-/// What settled points must meet.
+/// The conditions on settled points.
 #[derive(Clone, Debug)]
 pub(crate) struct Inside<R: Request<D>, const D: usize> {
     pub(crate) request: Arc<R>,
@@ -112,7 +100,6 @@ pub(crate) struct Inside<R: Request<D>, const D: usize> {
     /// The box in which points lie in the end, and the one in which these were placed.
     pub(crate) bounds: [Range<i128>; D],
     pub(crate) around: [Range<i128>; D],
-    /// The sets to keep clear of, if there are some.
     clear: Option<RefCell<Clear<R::Other, D>>>,
 }
 
@@ -136,10 +123,7 @@ impl<R: Request<D>, const D: usize> Pieces<R, D> {
             around: settler.moves.around(&bounds),
             moves: settler.moves.clone(),
             bounds,
-            clear: (CLEARANCE && !request.others().is_empty()).then(|| {
-                let (region, stop) = (Some(request.region()), request.stop().clone());
-                RefCell::new(Clear::new(request.others(), region, stop))
-            }),
+            clear: request.clear().map(RefCell::new),
             request: request.clone(),
         };
         Some(Self { settler, inside })
@@ -197,8 +181,7 @@ impl<R: Request<D>, const D: usize> Pieces<R, D> {
         let tiles = Tiles::new(within);
         let focused = |part: &[Range<i128>; D]| {
             let ends = common_box(&piece.ends, &inside.ends(part));
-            let shape = piece.shape.as_ref();
-            let shape = shape.map(|shape| inside.focus(shape, &ends));
+            let shape = (piece.shape.as_ref()).map(|shape| inside.focus(shape, &ends));
             (ends, shape)
         };
         // By tile: whether the shape has all or nothing of it and around.
@@ -207,12 +190,11 @@ impl<R: Request<D>, const D: usize> Pieces<R, D> {
             (_, None) => Some(true),
         };
         let states: Vec<Option<bool>> = tiles.boxes().map(state).collect();
-        let is_guarded = inside.is_guarded();
         let decide = |placed: &Placed<D>| {
             let state = states[tiles.of(placed.place)];
             match (placed.side(bounds), state) {
                 (Some(false), _) | (_, Some(false)) => Some(false),
-                (Some(true), Some(true)) if !is_guarded => Some(true),
+                (Some(true), Some(true)) if inside.clear.is_none() => Some(true),
                 _ => None,
             }
         };
@@ -280,15 +262,11 @@ impl<R: Request<D>, const D: usize> Inside<R, D> {
         let state = shape.as_ref().map_or(Some(true), Shape::is_all_or_nothing);
         let is_deep = common_box(&ends, &self.bounds) == ends;
         (state != Some(false)).then(|| Piece {
-            is_inside: state == Some(true) && is_deep && !self.is_guarded(),
+            is_inside: state == Some(true) && is_deep && self.clear.is_none(),
             within,
             ends,
             shape,
         })
-    }
-
-    fn is_guarded(&self) -> bool {
-        self.clear.is_some()
     }
 
     /// Whether a point has one of some addresses, and is one of those that are requested, wherever it ends.
@@ -305,8 +283,7 @@ impl<R: Request<D>, const D: usize> Inside<R, D> {
         let many = shape.as_ref().filter(|shape| shape.parts() > MANY);
         let tiles = many.map(|shape| {
             let tiles = Tiles::new(ends);
-            let reduced = tiles.boxes().map(|tile| self.focus(shape, &tile));
-            let reduced = reduced.collect();
+            let reduced = (tiles.boxes().map(|tile| self.focus(shape, &tile))).collect();
             (tiles, reduced)
         });
         Outline { shape, tiles }
@@ -349,13 +326,14 @@ struct Tiles<const D: usize> {
 }
 
 impl<const D: usize> Tiles<D> {
+    /// The sides of tiles in bits of fixed-point units: 128 grid units in the plane, 16 in space.
+    const BITS: u32 = if D == 2 { 27 } else { 24 };
+
     /// The tiles of a box that is not empty.
     fn new(within: &[Range<i128>; D]) -> Self {
-        let corner: [i128; D] = from_fn(|i| within[i].start >> tile_bits::<D>());
+        let corner: [i128; D] = from_fn(|i| within[i].start >> Self::BITS);
         Self {
-            across: from_fn(|i| {
-                (((within[i].end - 1) >> tile_bits::<D>()) - corner[i] + 1) as usize
-            }),
+            across: from_fn(|i| (((within[i].end - 1) >> Self::BITS) - corner[i] + 1) as usize),
             within: within.clone(),
             corner,
         }
@@ -365,10 +343,9 @@ impl<const D: usize> Tiles<D> {
     fn boxes(&self) -> impl Iterator<Item = [Range<i128>; D]> + '_ {
         (0..self.across.iter().product()).map(|mut rest: usize| {
             let tile = from_fn(|axis| {
-                let start =
-                    (self.corner[axis] + (rest % self.across[axis]) as i128) << tile_bits::<D>();
+                let start = (self.corner[axis] + (rest % self.across[axis]) as i128) << Self::BITS;
                 rest /= self.across[axis];
-                start..start + (1 << tile_bits::<D>())
+                start..start + (1 << Self::BITS)
             });
             common_box(&tile, &self.within)
         })
@@ -376,7 +353,7 @@ impl<const D: usize> Tiles<D> {
 
     /// The number of the tile of a place in the box.
     fn of(&self, place: [i128; D]) -> usize {
-        let along = |axis: usize| ((place[axis] >> tile_bits::<D>()) - self.corner[axis]) as usize;
+        let along = |axis: usize| ((place[axis] >> Self::BITS) - self.corner[axis]) as usize;
         let add = |number: usize, axis: usize| number * self.across[axis] + along(axis);
         (0..D).rev().fold(0, add)
     }

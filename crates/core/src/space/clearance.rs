@@ -110,11 +110,6 @@ pub(super) fn sift(scope: &Scope, clear: &mut Clear<Other, 3>, batch: &mut Batch
     });
 }
 
-/// The sets that the points of a scope keep clear of.
-pub(super) fn clear_of(scope: &Scope) -> Clear<Other, 3> {
-    Clear::new(&scope.clear, Some(&scope.region), scope.stop.clone())
-}
-
 /// A walk over the points of a scope, whether they settle or stay.
 #[derive(Clone, Debug)]
 pub(super) enum AnyWalk {
@@ -133,7 +128,7 @@ impl AnyWalk {
         match SettledWalk::new(&scope, ranges, start) {
             Some(walk) => Self::Settled(Box::new(walk)),
             None => {
-                let clear = Box::new(clear_of(&scope));
+                let clear = Box::new(scope.clearance());
                 Self::Still(Box::new(Walk::new(scope, ranges, start, wants_ids)), clear)
             }
         }
@@ -146,19 +141,20 @@ impl AnyWalk {
         }
     }
 
-    /// Fills a batch with the next points, at least one. Returns false if there are none.
+    /// Fills a batch with the next points, at least one. Returns false if there are none, and once the scope's flag is
+    /// raised: what points keep clear of is not known then.
     pub(super) fn next(&mut self, out: &mut Batch) -> bool {
         match self {
             Self::Still(walk, clear) => {
                 while walk.next(out) {
                     sift(walk.scope(), clear, out);
                     if !out.is_empty() {
-                        return true;
+                        return !walk.scope().stop.is_raised();
                     }
                 }
                 false
             }
-            Self::Settled(walk) => walk.next(out),
+            Self::Settled(walk) => walk.next(out) && !walk.pieces.inside.request.stop.is_raised(),
         }
     }
 }

@@ -5,7 +5,7 @@ use core::ops::Range;
 
 use super::{
     Batch, Volume,
-    clearance::{AnyWalk, clear_of, sift},
+    clearance::{AnyWalk, sift},
     closed,
     columns::{COLUMN_BITS, columns},
     mask::Other,
@@ -25,7 +25,7 @@ pub(super) fn count(scope: &Arc<Scope>, ranges: &[Range<i64>; 3]) -> u128 {
     }
     let mut leaves = match Pieces::new(scope) {
         Some(pieces) => Leaves::Settled(Box::new(pieces)),
-        None => Leaves::Still(clear_of(scope)),
+        None => Leaves::Still(scope.clearance()),
     };
     divide(scope, &mut leaves, ranges, scope.volume.as_ref())
 }

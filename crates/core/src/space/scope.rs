@@ -13,7 +13,7 @@ pub(super) use crate::lattice::bounds::common;
 use crate::{
     error::{Error, ErrorKind},
     lattice::bounds::{Corner, bounds, check_limit, common_box},
-    near::clear::ClearOf,
+    near::clear::{Clear, ClearOf},
     settle::{LEAST_IN_SPACE, Moves},
     stop::Stop,
     table::FRACTION_BITS,
@@ -244,6 +244,11 @@ impl Scope {
         missing.sort_unstable();
         missing.dedup();
         missing.into()
+    }
+
+    /// The sets that points keep clear of.
+    pub(super) fn clearance(&self) -> Clear<Other, 3> {
+        Clear::new(&self.clear, Some(&self.region), self.stop.clone())
     }
 
     fn between(&self, places: [[i64; 2]; 3]) -> Region {

@@ -8,7 +8,7 @@ use alloc::{sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
 use super::{
-    Batch, Region, Volume, closed,
+    Batch, Volume, closed,
     columns::{COLUMN_BITS, columns, coordinates},
     lattice::{Lattice, fixed},
     mask::Other,
@@ -19,7 +19,7 @@ use super::{
 use crate::{
     kernel::Backend,
     lattice::{Grade, Keep, Settle},
-    near::clear::ClearOf,
+    near::clear::Clear,
     settle::{LEAST_IN_SPACE, List, Listed, Moves, Pieces, Placed, Request, Settler, Settling},
     shape::Prism,
     stop::Stop,
@@ -148,16 +148,12 @@ impl Request<3> for Scope {
         (self.bounds.clone()).map(|range| range.start.into()..range.end.into())
     }
 
-    fn region(&self) -> &Region {
-        &self.region
-    }
-
     fn shape(&self) -> Option<&Volume> {
         self.volume.as_ref()
     }
 
-    fn others(&self) -> &[ClearOf<Other>] {
-        &self.clear
+    fn clear(&self) -> Option<Clear<Other, 3>> {
+        (!self.clear.is_empty()).then(|| self.clearance())
     }
 
     fn stop(&self) -> &Stop {

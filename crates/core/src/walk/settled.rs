@@ -18,10 +18,10 @@ use super::{
 use crate::{
     kernel::{Backend, Format},
     lattice::{BAND_WIDTH, Found, PATCH_HEIGHT, PointId, clip_to_band, places_of},
-    near::{Other, clear::ClearOf},
+    near::{Other, clear::Clear},
     parts::CLEARANCE,
     settle::{self, Lister, Request, Settled, Settler},
-    shape::{Area, Polygon, Region},
+    shape::{Area, Polygon},
     stop::Stop,
     table::fixed,
 };
@@ -43,19 +43,15 @@ impl Request<2> for Scope {
         [self.x.bounds.clone(), self.y.bounds.clone()]
     }
 
-    fn region(&self) -> &Region {
-        &self.region
-    }
-
     fn shape(&self) -> Option<&Area> {
         self.sieve.as_ref().and_then(Sieve::area)
     }
 
-    fn others(&self) -> &[ClearOf<Other>] {
-        match &self.sieve {
-            Some(sieve) if CLEARANCE => &sieve.mask().clear,
-            _ => &[],
-        }
+    fn clear(&self) -> Option<Clear<Other, 2>> {
+        let sieve = self.sieve.as_ref();
+        let sieve = sieve.filter(|sieve| CLEARANCE && sieve.is_guarded())?;
+        let (clear, stop) = (&sieve.mask().clear, self.stop.clone());
+        Some(Clear::new(clear, Some(&self.region), stop))
     }
 
     fn stop(&self) -> &Stop {
@@ -121,11 +117,6 @@ impl Pieces {
         });
         self.near = near.cloned();
     }
-
-    /// Calls `visit` for the settled points of some columns and rows of the band that lie inside, in their order.
-    fn settle(&mut self, piece: &[Range<i64>; 2], visit: &mut dyn FnMut(Settled)) {
-        self.all.settle(piece, self.near.as_ref(), visit);
-    }
 }
 
 /// A walk over points that settle.
@@ -181,7 +172,8 @@ impl SettledWalk {
         self.pieces.all.settler.set_backend(backend);
     }
 
-    /// Finds the points of the next piece. `false` after the last one.
+    /// Finds the points of the next piece. `false` after the last one, and once the flag is raised: what points keep
+    /// clear of is not known then.
     fn next_piece(&mut self) -> bool {
         self.found.clear();
         self.taken = 0;
@@ -195,7 +187,8 @@ impl SettledWalk {
         let columns = clip_to_band(band, &self.pieces.scope().x.all);
         let (found, origin) = (&mut self.found, self.origin);
         let from = self.from.take();
-        self.pieces.settle(&[columns, rows], &mut |settled| {
+        let Pieces { all, near, .. } = &mut self.pieces;
+        all.settle(&[columns, rows], near.as_ref(), &mut |settled| {
             let is_before = from.is_some_and(|at| {
                 let [x, y] = settled.address;
                 y == at.y && x < at.x
@@ -204,6 +197,10 @@ impl SettledWalk {
                 found.push(found_at(origin, &settled));
             }
         });
+        if self.pieces.scope().stop.is_raised() {
+            self.found.clear();
+            return false;
+        }
         true
     }
 
@@ -320,7 +317,8 @@ pub(super) fn find_few_settled(pieces: &mut Pieces) -> Option<Few> {
         return None;
     }
     let mut settled = Vec::new();
-    pieces.settle(&[columns, rows], &mut |point| settled.push(point));
+    let (all, near) = (&mut pieces.all, pieces.near.as_ref());
+    all.settle(&[columns, rows], near, &mut |point| settled.push(point));
     settled.sort_unstable_by_key(|point: &Settled| {
         let [x, y] = point.address;
         (x.div_euclid(BAND_WIDTH), y, x)

@@ -249,8 +249,8 @@ pub struct Crispness {
     /// mean power is at most 0.1. The square lattice has about 1. Frequencies up to ν_eff/2 are
     /// sampled nearly without aliasing.
     pub nu_eff: f64,
-    /// The oscillation Ω: ten times the root mean square of P − 1, from the frequency where the
-    /// power first reaches 1 over five units of ν, or as far as the rings extend.
+    /// The oscillation Ω: ten times the root mean square of P − 1, of five units of ν from the
+    /// frequency where the power first reaches 1, or fewer where the rings end.
     pub omega: f64,
 }
 
