@@ -93,9 +93,6 @@ fn shortened(printed: &[String], shown: &[String]) -> Vec<String> {
         }
         _ => printed.clone(),
     };
-    if shown.is_empty() {
-        return printed.to_vec();
-    }
     let Some(gap) = shown.iter().position(|line| line == MORE) else {
         let more = printed.iter().skip(shown.len()).cloned();
         return printed.iter().zip(shown).map(line).chain(more).collect();
@@ -170,8 +167,10 @@ fn dialogue(lines: &[String], block: &Block) -> Vec<Example> {
     let mut is_command = false;
     for (i, line) in lines.iter().enumerate().take(block.end).skip(block.first) {
         if let Some(command) = line.strip_prefix("$ ") {
+            let own = command.strip_prefix("cargo run --release -- ");
             examples.push(Example {
-                script: command.into(),
+                // What it says of a file is no output.
+                script: own.map_or(command.into(), |own| format!("strew {own} 2>&1")),
                 shown: i + 1..i + 1,
             });
             is_command = true;
