@@ -12,10 +12,11 @@ use strew_query::{Amount, Query, Resolved, ResolvedSet, Set, Token, other_kinds}
 use crate::{
     attributes::PointAttributes,
     planned_set::PlannedSet,
-    planner::Planner,
+    planner::{self, Planner},
     resolve,
     store::{self, Anew},
     terrain::{Ground, OnTerrain},
+    volume,
 };
 
 /// A query with its tables and plans: the exact count is known, no point is made yet.
@@ -59,7 +60,7 @@ impl Placed {
         let resolve::Resolved::Known(spacing, density) = resolve::in_space(&set, table)? else {
             return Err(Error::Internal("a single point of a count"));
         };
-        let points = set.points_in_space(table, spacing)?;
+        let points = volume::lacking(&set, set.points_in_space(table, spacing)?)?;
         let least = resolve::least_distance_in_space(&set, &points, 0.0);
         Ok(Self {
             resolved: set.resolved(&[], density, spacing, least, (&[], &[])),
@@ -90,7 +91,10 @@ impl Placed {
                 set.periodic(&ready.table, period)
                     .map_err(resolve::no_period)?,
             ),
-            None => PlacedPoints::Plane(Box::new(set.points(&ready, spacing)?)),
+            None => {
+                let points = planner::lacking(&set, &ready, set.points(&ready, spacing)?)?;
+                PlacedPoints::Plane(Box::new(points))
+            }
         };
         Ok(Self {
             resolved: set.resolved(&[], density, spacing, least, (&[], &distances)),

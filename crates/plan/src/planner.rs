@@ -2,14 +2,10 @@
 
 use std::sync::Arc;
 
-use strew_catalog::{
-    Ready,
-    except::{Id, MOST_HOLES},
-};
+use strew_catalog::{Ready, except::Id};
 use strew_config::Limits;
 use strew_core::{
-    Area, Cursor, ErrorKind, Placement, Plan, PointId, PointSet, Spacing, server::Stop,
-    space::SpaceSet,
+    Cursor, ErrorKind, Placement, Plan, PointId, PointSet, Spacing, server::Stop, space::SpaceSet,
 };
 use strew_error::Error;
 use strew_query::{Amount, Kinds, Period, Query, Set, Token, Window, parameters};
@@ -30,8 +26,6 @@ pub(super) struct Planner<'a> {
     pub(super) volumes: Vec<SpaceSet>,
     pub(super) chains: effort::Chains,
     prices: Layers,
-    /// The number of points that all sets together may still leave out.
-    room: usize,
     /// The bytes that counting has kept for all sets.
     kept: usize,
 }
@@ -51,7 +45,6 @@ impl<'a> Planner<'a> {
             volumes: vec![],
             chains: effort::Chains::default(),
             prices: Layers::default(),
-            room: MOST_HOLES,
             kept: 0,
         }
     }
@@ -87,12 +80,10 @@ impl<'a> Planner<'a> {
             Resolved::Count(count) => here.and_then(|token| token.spacing).ok_or(count),
         };
         let points = set.points(ready, known.unwrap_or(Spacing::ONE))?;
-        let area = self.left(set, ready, &points, is_over)?;
-        let points = self.keeping_clear(set, points)?;
-        // Exceptions leave out a few places of a box.
-        let places = known
-            .ok()
-            .and_then(|spacing| Everywhere::of(set, spacing, &set.area(region)));
+        let area = set.area(region);
+        let layer = self.keeping_clear(set, points)?;
+        let points = lacking(set, ready, layer.clone())?;
+        let places = (known.ok()).and_then(|spacing| Everywhere::of(set, spacing, &area));
         let test = self.prices.test(set, places);
         let mut selection = Selection::new(set, points, area, test);
         let plan = match (known, here) {
@@ -147,7 +138,7 @@ impl<'a> Planner<'a> {
         // Only later layers look back.
         if i + 1 < self.query.sets.len() {
             self.prices.push(set, Some(spacing), region.bounds);
-            let layer = selection.set.placed(plan.placement());
+            let layer = layer.placed(plan.placement());
             self.layers.push(match &set.region {
                 Some(own) => layer.limited_to(own.area.clone()),
                 None => layer,
@@ -165,32 +156,6 @@ impl<'a> Planner<'a> {
         )
         .priced(set, made, region.bounds)
         .with_kinds(kinds, kind_distances(set, ready, spacing, region.reach())))
-    }
-
-    /// The area of a set, without the places of points that are left out; with them if it has no points in the
-    /// answer anyway.
-    fn left(
-        &mut self,
-        set: &Set,
-        ready: &Ready,
-        points: &PointSet,
-        is_over: bool,
-    ) -> Result<Area, Error> {
-        let area = set.area(&self.query.region);
-        let Some(except) = &set.except else {
-            return Ok(area);
-        };
-        let every = set.every_point(ready);
-        let has = |id| matches!(id, Id::Plane(id) if every.block(id).is_some());
-        except.check(&set.name, has)?;
-        if is_over {
-            return Ok(area);
-        }
-        // Positions are multiples of 2^-20 grid units.
-        let unit = points.placement().spacing.get() * ready.table.alpha().set_side_f64();
-        let step = unit * f64::from(1 << 22).recip();
-        let field = format!("{}{}", set.path, parameters::EXCEPT.name);
-        Ok(except.cut(&field, points, area, step, &mut self.room)?)
     }
 
     fn period(
@@ -367,6 +332,18 @@ impl<'a> Planner<'a> {
         }
         Ok(())
     }
+}
+
+/// A set without its exceptions; the layers after it keep clear of these all the same.
+pub(super) fn lacking(set: &Set, ready: &Ready, points: PointSet) -> Result<PointSet, Error> {
+    let Some(except) = &set.except else {
+        return Ok(points);
+    };
+    let every = set.every_point(ready);
+    let has = |id| matches!(id, Id::Plane(id) if every.block(id).is_some());
+    except.check(&set.name, has)?;
+    let parts = except.parts.iter().map(|part| part.in_plane().clone());
+    Ok(parts.fold(points, PointSet::without))
 }
 
 /// The place after the last point.

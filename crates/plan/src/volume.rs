@@ -45,7 +45,7 @@ impl Planner<'_> {
         let points = set.points_in_space(table, spacing.map_err(|_| OUT_OF_RANGE)?)?;
         let test = effort::test_in_space(&self.chains, set, &points, (&volume, region.bounds));
         let layer = self.keeping_clear_in_space(set, points)?;
-        let points = without(set, layer.clone())?;
+        let points = lacking(set, layer.clone())?;
         let spacing = points.placement().spacing;
         let mark = here.map_or(NOTHING, |token| token.mark).in_space();
         let plan = match (known, here) {
@@ -62,7 +62,7 @@ impl Planner<'_> {
             }
             (Ok(spacing), _) => {
                 let rows = effort::rows_of_volume(&points, &volume, test);
-                self.check_rows_in_space(rows + effort::lacking(set) / effort::ROW)?;
+                self.check_rows_in_space(rows + effort::lacking_in_space(set, &points, &volume))?;
                 let plan = points.within_until(volume.clone(), self.stop.clone());
                 plan.map_err(|error| match error.kind() {
                     ErrorKind::Stopped => {
@@ -139,7 +139,7 @@ impl Planner<'_> {
 }
 
 /// A set without its exceptions; the layers after it keep clear of these all the same.
-fn without(set: &Set, points: SpaceSet) -> Result<SpaceSet, Error> {
+pub(super) fn lacking(set: &Set, points: SpaceSet) -> Result<SpaceSet, Error> {
     let Some(except) = &set.except else {
         return Ok(points);
     };

@@ -131,7 +131,9 @@ impl Draft {
         self.check_vertices(most_vertices)?;
         let sets = match (&self.layers, known) {
             (Ok(_), Some(sets)) => Ok(sets),
-            (Ok(layers), None) if layers.is_empty() => self.alone(loaded).map(|set| [*set].into()),
+            (Ok(layers), None) if layers.is_empty() => {
+                Set::alone(&self.values, loaded).map(|set| [*set].into())
+            }
             (Ok(layers), None) => self.layers(layers, loaded).map(Into::into),
             (Err(faults), _) => Err(faults.clone()),
         };
@@ -208,13 +210,6 @@ impl Draft {
             }
             Err(faults) => Err(faults.clone()),
         }
-    }
-
-    fn alone(&self, loaded: &Loaded<'_>) -> Checked<Box<Set>> {
-        let except = except::of_set(&self.values, loaded.catalog);
-        let (mut set, except) = (Set::of(&self.values, loaded), except).together()?;
-        set.except = except;
-        Ok(set)
     }
 
     fn layers(&self, layers: &[LayerDraft], loaded: &Loaded<'_>) -> Checked<Vec<Set>> {

@@ -86,7 +86,9 @@ pub mod groups {
         Amount, Count, Profile, Table, Points, Except, Attributes, Choices,
     ];
     /// A set without a region: single points.
-    pub const SINGLE: &[Group] = &[Period, Amount, Profile, Table, Points, Attributes, Choices];
+    pub const SINGLE: &[Group] = &[
+        Period, Amount, Profile, Table, Points, Except, Attributes, Choices,
+    ];
     /// `GET /v1/points`.
     pub const POINTS: &[Group] = &[
         Region, Period, Amount, Count, World, WorldPin, Profile, Table, Points, Except, Attributes,
@@ -123,7 +125,7 @@ pub mod groups {
     ];
     /// `GET /v1/nearest`.
     pub const NEAREST: &[Group] = &[
-        Nearest, Neighbors, Amount, Profile, Table, Points, Attributes, Choices,
+        Nearest, Neighbors, Amount, Profile, Table, Points, Except, Attributes, Choices,
     ];
     /// `POST /v1/points:split`, beside the body.
     pub const SPLIT: &[Group] = &[Split];
@@ -157,7 +159,15 @@ pub mod groups {
         SpaceAttributes,
         Choices,
     ];
-    pub const SPACE_SINGLE: &[Group] = &[Amount, Profile, Table, Points, SpaceAttributes, Choices];
+    pub const SPACE_SINGLE: &[Group] = &[
+        Amount,
+        Profile,
+        Table,
+        Points,
+        Except,
+        SpaceAttributes,
+        Choices,
+    ];
     /// `GET /v1/space/points`.
     pub const SPACE_POINTS: &[Group] = &[
         Volume,
@@ -207,6 +217,7 @@ pub mod groups {
         Profile,
         Table,
         Points,
+        Except,
         SpaceAttributes,
         Choices,
     ];

@@ -6,7 +6,7 @@ use strew_error::{Checked, Error, Together as _};
 
 use crate::{
     amount::Amount,
-    attributes,
+    attributes, except,
     field::Loaded,
     kinds::Kinds,
     parameters::{
@@ -141,6 +141,14 @@ impl Set {
         values
     }
 
+    /// Checks a set that is no layer, with what it is without.
+    pub(super) fn alone(values: &Values, loaded: &Loaded<'_>) -> Checked<Box<Self>> {
+        let except = except::of_set(values, loaded.catalog);
+        let (mut set, except) = (Self::of(values, loaded), except).together()?;
+        set.except = except;
+        Ok(set)
+    }
+
     /// Checks a set without a region.
     pub fn single(values: &Values, catalog: &Catalog) -> Result<Box<Self>, Error> {
         Self::single_within(values, catalog, Allowance::UNLIMITED)
@@ -153,7 +161,7 @@ impl Set {
         allowance: Allowance<'_>,
     ) -> Result<Box<Self>, Error> {
         let loaded = Loaded::new(catalog, allowance);
-        let set = Self::of(values, &loaded);
+        let set = Self::alone(values, &loaded);
         loaded.had_room()?;
         let ((), set) = (values.read(), set).together()?;
         table::hold(&set.entry, set.pin.as_deref())?;

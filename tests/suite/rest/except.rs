@@ -270,6 +270,33 @@ async fn a_list_is_sent_once_and_named_by_its_digest() {
     let streamed: Vec<&str> = points.iter().filter_map(|p| p["id"].as_str()).collect();
     let expected: Vec<&str> = left.iter().map(|row| id(row, 0)).collect();
     assert_eq!(streamed, expected);
+    // However many lie in a region, and whether one point is requested or the nearest.
+    let all = format!("/v1/points?bbox=0,0,150,150&{set}&format=csv&except={digest}");
+    assert_eq!(rows(&daemon, &all), without(&wide, &ids, 0));
+    let single = |id: &str| {
+        daemon
+            .get(&format!("/v1/points/{id}?{set}&except={digest}"))
+            .status
+    };
+    let felled = &inline[0];
+    let stays = id(&left[0], 0);
+    assert_eq!((single(felled), single(stays)), (404, 200));
+    let place = inside
+        .iter()
+        .find(|row| id(row, 0) == felled)
+        .expect("its row");
+    let at: Vec<&str> = place.split(',').skip(1).take(2).collect();
+    let near = |except: &str| {
+        let path = format!("/v1/nearest?at={}&k=9&{set}{except}", at.join(","));
+        let near = daemon.get(&path).json();
+        let near = near["neighbors"].as_array().expect("neighbors").iter();
+        let ids = near.filter_map(|near| near["id"].as_str().map(ToOwned::to_owned));
+        ids.collect::<Vec<_>>()
+    };
+    let mut expected = near("");
+    expected.retain(|id| !ids.contains(id));
+    let found = near(&format!("&except={digest}"));
+    assert!(!expected.is_empty() && found.starts_with(&expected) && found.len() == 9);
     // The digest pins the content of the list, so caches may keep the answer.
     let table = daemon.get(&named).header("strew-table").to_owned();
     let pinned = daemon.get(&format!("{named}&table={table}"));

@@ -2,14 +2,11 @@
 //!
 //! A query names ids, and lists of the configuration, of a folder or of a client. A point that was taken away keeps its
 //! place: other layers still keep clear of it, and the attributes and ids of others stay. So nothing appears where a
-//! tree was felled. [`Except`] has the points that one set lacks; in the plane planning cuts a hole of one coordinate for
-//! each of its points that lie in the region, and counts, cursors and parts follow from the area that is left. Sets in
-//! space lack points by themselves.
+//! tree was felled. [`Except`] has the points that one set lacks.
 
-mod holes;
 mod list;
 
-use std::{fmt, str::FromStr, sync::Arc};
+use std::{fmt, ops::Range, str::FromStr, sync::Arc};
 
 use strew_core::{PointId, space};
 use strew_error::Fault;
@@ -17,8 +14,6 @@ use strew_error::Fault;
 pub use list::{Lists, NamedList, Section, split};
 
 pub const MOST_GIVEN: usize = 10_000;
-/// The most points that all sets of a query together leave out within its region.
-pub const MOST_HOLES: usize = 10_000;
 
 /// The id of a point of the plane or in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +43,7 @@ impl fmt::Display for Id {
 /// Sorted ids, each once, with their digest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ids {
-    plane: Vec<PointId>,
+    plane: Arc<[PointId]>,
     space: Arc<[space::PointId]>,
     digest: String,
 }
@@ -72,9 +67,8 @@ impl Ids {
                 Id::Space(id) => space.push(id),
             }
         }
-        plane.sort_unstable_by_key(|id: &PointId| (id.x, id.y));
+        plane.sort_unstable();
         plane.dedup();
-        plane.shrink_to_fit();
         space.sort_unstable();
         space.dedup();
         let mut hasher = blake3::Hasher::new();
@@ -92,7 +86,7 @@ impl Ids {
         }
         Self {
             digest: hasher.finalize().to_hex().to_string(),
-            plane,
+            plane: plane.into(),
             space: space.into(),
         }
     }
@@ -108,7 +102,12 @@ impl Ids {
 
     /// The memory that they take, in bytes.
     pub(super) fn size(&self) -> usize {
-        size_of_val(self.plane.as_slice()) + size_of::<space::PointId>() * self.space.len()
+        size_of_val(&*self.plane) + size_of::<space::PointId>() * self.space.len()
+    }
+
+    /// Those of points of the plane, sorted.
+    pub const fn in_plane(&self) -> &Arc<[PointId]> {
+        &self.plane
     }
 
     /// Those of points in space, sorted.
@@ -123,6 +122,19 @@ impl Ids {
 }
 
 impl Except {
+    /// The number of ids in some columns of the lattice.
+    pub fn within(&self, columns: &Range<i64>) -> usize {
+        fn count<T>(ids: &[T], columns: &Range<i64>, x: impl Fn(&T) -> i64) -> usize {
+            let [start, end] =
+                [columns.start, columns.end].map(|first| ids.partition_point(|id| x(id) < first));
+            end.saturating_sub(start)
+        }
+        let of = |part: &Arc<Ids>| {
+            count(&part.plane, columns, |id| id.x) + count(&part.space, columns, |id| id.x)
+        };
+        self.parts.iter().map(of).sum()
+    }
+
     /// The digest of all ids, in hexadecimal.
     pub fn digest(&self) -> String {
         match self.parts.as_slice() {

@@ -24,6 +24,7 @@ mod placement;
 mod point;
 pub(crate) mod seed;
 mod span;
+mod without;
 mod world;
 
 pub(crate) use grade::{Grade, alike};
@@ -36,5 +37,6 @@ pub use placement::{Keep, Placement, Settle, Spacing};
 pub(crate) use point::lattice_of;
 pub use point::{Point, PointId};
 pub(super) use span::{Span, places_of};
+pub(crate) use without::Without;
 pub use world::LATTICE_LIMIT;
 pub(super) use world::{Lattice, Line};

@@ -4,7 +4,7 @@ use alloc::sync::Arc;
 use core::ops::Range;
 
 use super::{
-    Keep, OneKind, Placement, Point, PointId, Settle,
+    Keep, OneKind, Placement, Point, PointId, Settle, Without,
     bounds::world,
     grade::{Grade, alike},
     kinds::{Chosen, KindRow, Varied},
@@ -52,6 +52,8 @@ pub(crate) struct Lattice {
     pub(crate) shears: Option<Shears>,
     /// The bound of what the warp does to distances.
     pub(crate) stretch: Stretch,
+    /// The points that are left out by their ids.
+    pub(crate) without: Without<PointId>,
     /// World units per fixed-point unit.
     pub(crate) step: f64,
 }
@@ -81,6 +83,7 @@ impl Lattice {
             kinds: None,
             varied: None,
             grade: settles.then(|| Grade::constant(keep.get())),
+            without: Without::default(),
             turned,
             stretch: Stretch::of(shears.as_ref()),
             shears,
@@ -121,6 +124,7 @@ impl Lattice {
         let varied = self.varied.as_ref();
         let lattice = Self {
             varied: varied.map(|varied| varied.turned(symmetry)),
+            without: self.without.clone(),
             ..Self::new(self.table.clone(), placement)
         };
         match &self.kinds {
@@ -207,8 +211,13 @@ impl Lattice {
         self.grade.is_some() && self.constant_share().is_none()
     }
 
-    /// Whether a point that settles, of a share, is of the kinds and the level of detail that are wanted.
+    /// Whether a point that settles, of a share, is one of those that are wanted.
     pub(crate) fn shows(&self, id: PointId, share: f64) -> bool {
+        self.is_of_level(id, share) && !self.without.has(id)
+    }
+
+    /// Whether a point that settles, of a share, is of the kinds and the level of detail that are wanted.
+    pub(crate) fn is_of_level(&self, id: PointId, share: f64) -> bool {
         let lod = self.placement.lod;
         (lod == Keep::ALL || self.rank(id) < lod.get() * share)
             && (!self.tells_kinds() || self.block(id).is_some())
@@ -347,7 +356,7 @@ impl Lattice {
         let is_of_kind = alike(&self.kinds, &other.kinds, |a, b| core::ptr::eq(&**a, &**b));
         let is_varied = self.is_varied() || other.is_varied();
         let is_placed = self.placement == other.placement && self.table == other.table;
-        is_graded && is_of_kind && is_placed && !is_varied
+        is_graded && is_of_kind && is_placed && !is_varied && self.without.is_same(&other.without)
     }
 
     /// The kind of a point of the pattern, if the table has kinds; `None` for other addresses.
@@ -397,6 +406,11 @@ impl Lattice {
 
     /// The fixed-point place of an address, or `None` if it has no point.
     pub(crate) fn place(&self, id: PointId) -> Option<[i128; 2]> {
+        (!self.without.has(id)).then(|| self.place_of_any(id))?
+    }
+
+    /// As [`place`](Self::place), of points that are left out by their ids, too.
+    pub(crate) fn place_of_any(&self, id: PointId) -> Option<[i128; 2]> {
         let [block_x, block_y] = self.block(id)?;
         let vector = self.vectors(block_y)[block_x];
         let place = self.displaced_place(id, vector);

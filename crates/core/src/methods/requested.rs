@@ -94,6 +94,24 @@ macro_rules! requested {
                 Ok(self)
             }
 
+            /// Removes the points of some ids, beside those that are removed already. All others stay where they are. Ids
+            /// without a point do not matter.
+            ///
+            /// ```
+            #[doc = concat!("# let set = ", $make, ".seed(7);")]
+            #[doc = concat!("let all = set.chunk(16.0, ", $origin, ")?.to_vec();")]
+            /// let left = set.clone().without([all[0].id]);
+            #[doc = concat!("assert_eq!(left.chunk(16.0, ", $origin, ")?.to_vec(), all[1..]);")]
+            /// assert!(left.point(all[0].id).is_none());
+            /// assert_ne!(left.nearest(all[0].at(), 1)?, set.nearest(all[0].at(), 1)?);
+            /// # Ok::<(), strew_core::Error>(())
+            /// ```
+            #[must_use]
+            pub fn without(mut self, ids: impl Into<Arc<[PointId]>>) -> Self {
+                self.lattice.without.push(ids.into());
+                self
+            }
+
             /// The rank of a point: a number in [0, 1), uniform over the pattern. [`keep`](Self::keep) keeps the points
             /// whose rank is below the share. An id without a point has the greatest rank, 1 − 2⁻⁵³.
             ///

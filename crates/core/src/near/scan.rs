@@ -101,7 +101,7 @@ pub(super) fn scan(
                     continue;
                 }
             }
-            if lattice.has_kind(id) {
+            if lattice.has_kind(id) && !lattice.without.has(id) {
                 visit(x_offset * x_offset + y_offset * y_offset, point)?;
             }
         }

@@ -1,6 +1,6 @@
 //! Single points of a set: by id and near a place, with the values they have.
 
-use alloc::vec::Vec;
+use alloc::{sync::Arc, vec::Vec};
 
 use super::PointSet;
 use crate::{

@@ -10,7 +10,6 @@ pub use kinds::Kind;
 pub use lookups::Neighbor;
 
 use alloc::sync::Arc;
-use core::ops::Range;
 
 use crate::{
     attribute::Kinds,
@@ -155,16 +154,6 @@ impl PointSet {
     #[must_use]
     pub fn limit(&self) -> f64 {
         self.lattice.limit()
-    }
-
-    /// The columns and rows of the lattice that hold all points of an area, and a few more around it: an id beyond them
-    /// is no point there.
-    ///
-    /// # Errors
-    /// As [`within`](Self::within).
-    pub fn addresses(&self, area: impl Into<Area>) -> Result<[Range<i64>; 2], Error> {
-        let scope = Scope::new(&self.lattice, &self.mask, area.into(), Stop::default())?;
-        Ok([scope.x.all, scope.y.all])
     }
 
     /// Estimates the number of points that counting an area visits one by one in a [field](Self::in_field); making them

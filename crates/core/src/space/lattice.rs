@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     kernel::PICKS,
-    lattice::{Grade, Keep, Placement, Settle, alike},
+    lattice::{Grade, Keep, Placement, Settle, Without, alike},
     table::{Cut, FRACTION_BITS},
 };
 
@@ -33,8 +33,8 @@ pub(super) struct Lattice {
     pub(super) cut: Option<Cut>,
     /// The field that decides which of these there are.
     pub(super) grade: Option<Grade<3>>,
-    /// The ids of points that are left out, each list sorted.
-    pub(super) without: Vec<Arc<[PointId]>>,
+    /// The points that are left out by their ids.
+    pub(super) without: Without<PointId>,
 }
 
 /// A lattice coordinate in fixed-point units.
@@ -56,7 +56,7 @@ impl Lattice {
             step: placement.spacing.get() * alpha.set_side_f64() / units,
             cut,
             grade: None,
-            without: Vec::new(),
+            without: Without::default(),
             turned,
             table,
         }
@@ -88,10 +88,8 @@ impl Lattice {
     /// Whether another lattice has the same points.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         let is_graded = alike(&self.grade, &other.grade, Grade::is_same);
-        let mut lists = self.without.iter().zip(&other.without);
-        let is_without = self.without.len() == other.without.len()
-            && lists.all(|(own, other)| Arc::ptr_eq(own, other));
-        is_graded && is_without && self.placement == other.placement && self.table == other.table
+        let is_placed = self.placement == other.placement && self.table == other.table;
+        is_graded && is_placed && self.without.is_same(&other.without)
     }
 
     /// The blocks along the axes of an address, or `None` if the pattern has no point there.
@@ -180,14 +178,14 @@ impl Lattice {
             let share = grade.share(self.at(place));
             self.rank(id) < part * share
         };
-        let is_there = self.grade.as_ref().is_none_or(has) && !self.lacks(id);
+        let is_there = self.grade.as_ref().is_none_or(has) && !self.without.has(id);
         is_there.then_some(place)
     }
 
     /// Whether a point that settles, of a share, is of the level of detail that is wanted, and not left out by its id.
     pub(super) fn shows(&self, id: PointId, share: f64) -> bool {
         let lod = self.placement.lod;
-        (lod == Keep::ALL || self.rank(id) < lod.get() * share) && !self.lacks(id)
+        (lod == Keep::ALL || self.rank(id) < lod.get() * share) && !self.without.has(id)
     }
 
     /// How points settle, and their shares before that; `None` if they stay. Full sets in space stay.
@@ -202,13 +200,6 @@ impl Lattice {
                 Some((settle, Grade::constant(keep.get())))
             }
         }
-    }
-
-    /// Whether a point is left out by its id.
-    fn lacks(&self, id: PointId) -> bool {
-        self.without
-            .iter()
-            .any(|ids| ids.binary_search(&id).is_ok())
     }
 
     /// Whether points are looked at one by one: those of a field, or some by their ids.
@@ -230,7 +221,7 @@ impl Lattice {
         let stays = |(id, &share): (&[i32; 3], &f64)| {
             let id = PointId::of([0, 1, 2].map(|axis| origin[axis] + i64::from(id[axis])));
             let is_left = self.grade.is_none() || (share > 0.0 && self.rank(id) < share);
-            is_left && !self.lacks(id)
+            is_left && !self.without.has(id)
         };
         let stays: Vec<bool> = batch.ids.iter().zip(&shares).map(stays).collect();
         let mut stays = stays.into_iter();

@@ -12,7 +12,10 @@ use super::{
 pub(super) use crate::lattice::bounds::common;
 use crate::{
     error::{Error, ErrorKind},
-    lattice::bounds::{Corner, bounds, check_limit, common_box},
+    lattice::{
+        Without,
+        bounds::{Corner, bounds, check_limit, common_box},
+    },
     near::clear::{Clear, ClearOf},
     settle::{LEAST_IN_SPACE, Moves},
     stop::Stop,
@@ -219,7 +222,7 @@ impl Scope {
             return Arc::default();
         }
         let whole = Lattice {
-            without: Vec::new(),
+            without: Without::default(),
             ..lattice.clone()
         };
         let holds = |place: [i64; 3]| {
@@ -232,14 +235,10 @@ impl Scope {
             let place = whole.place(id)?;
             (self.room > 0 || holds(place)).then(|| id.lattice())
         };
-        let mut missing: Vec<[i64; 3]> = Vec::new();
-        for ids in &lattice.without {
-            let start = ids.partition_point(|id| id.x < all[0].start);
-            let end = ids.partition_point(|id| id.x < all[0].end);
-            let near = ids[start..end.max(start)].iter();
-            let near = near.filter(|id| all[1].contains(&id.y) && all[2].contains(&id.z));
-            missing.extend(near.filter_map(|id| is_inside(*id)));
-        }
+        let [first, end] = [all[0].start, all[0].end].map(|x| PointId::of([x, i64::MIN, i64::MIN]));
+        let near = lattice.without.within(first..end);
+        let near = near.filter(|id| all[1].contains(&id.y) && all[2].contains(&id.z));
+        let mut missing: Vec<[i64; 3]> = near.filter_map(is_inside).collect();
         // Several lists may have the same.
         missing.sort_unstable();
         missing.dedup();

@@ -80,31 +80,6 @@ impl SpaceSet {
         Table::from_bytes(bytes).map(Self::new)
     }
 
-    /// Removes the points of some ids, beside those that are removed already. All others stay where they are. Ids without
-    /// a point do not matter.
-    ///
-    /// ```
-    /// use strew_core::space::{SpaceSet, Table};
-    ///
-    /// let set = SpaceSet::new(Table::undisplaced("sqrt(3)".parse()?, 5, "pattern")?).seed(7);
-    /// let mined = set.nearest([5.0; 3], 1)?[0].point;
-    /// let left = set.clone().without([mined.id]);
-    /// assert_eq!((left.point(mined.id), left.nearest([5.0; 3], 1)?[0]), (None, set.nearest([5.0; 3], 2)?[1]));
-    /// assert_eq!(left.chunk(16.0, [0, 0, 0])?.count() + 1, set.chunk(16.0, [0, 0, 0])?.count());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn without(mut self, ids: impl Into<Arc<[PointId]>>) -> Self {
-        let mut ids = ids.into();
-        if !ids.is_sorted() {
-            let mut sorted = ids.to_vec();
-            sorted.sort_unstable();
-            ids = sorted.into();
-        }
-        self.lattice.without.push(ids);
-        self
-    }
-
     /// The set in a field: the share of its points varies from place to place. The field replaces an earlier one, and
     /// [`keep`](Self::keep) multiplies its shares. A point belongs to the set if its rank is below the share at its place;
     /// counting visits them one by one where bounds of the field leave any.

@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{
     kernel::Backend,
-    lattice::{Grade, Keep, Settle},
+    lattice::{Grade, Keep, Settle, Without},
     near::clear::Clear,
     settle::{LEAST_IN_SPACE, List, Listed, Moves, Pieces, Placed, Request, Settler, Settling},
     shape::Prism,
@@ -55,7 +55,7 @@ fn settler(lattice: &Lattice) -> Option<Settler<Lister, 3>> {
     let (settle, grade) = lattice.settling()?;
     let placement = lattice.placement.with_settle(Settle::OFF);
     let still = Lattice {
-        without: Vec::new(),
+        without: Without::default(),
         ..lattice.replaced(placement.with_lod(Keep::ALL))
     };
     Some(Settler::of(Lister(still), grade, settle))

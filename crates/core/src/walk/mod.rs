@@ -14,6 +14,7 @@ pub(crate) mod count;
 mod counted;
 mod few;
 mod graded;
+pub(crate) mod missing;
 mod rows;
 pub(crate) mod scope;
 mod settled;

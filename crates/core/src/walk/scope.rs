@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use super::sieve::Sieve;
+use super::{missing::Missing, sieve::Sieve};
 pub(crate) use crate::lattice::bounds::Corner;
 use crate::{
     error::{Error, ErrorKind},
@@ -111,9 +111,10 @@ impl Scope {
             None
         } else {
             let area = area.map(around_chunks);
-            Sieve::new(lattice, (Mask { area, ..mask }, region), [x.reach, y.reach])
+            let mask = Mask { area, ..mask };
+            Some(Sieve::new(lattice, (mask, region), [x.reach, y.reach]))
         };
-        Ok(Self {
+        let mut scope = Self {
             lattice: lattice.clone(),
             x,
             y,
@@ -122,7 +123,13 @@ impl Scope {
             region,
             corner,
             in_field: None,
-        })
+        };
+        let missing = Missing::new(&scope);
+        if !missing.is_empty() {
+            let sieve = scope.sieve.take().unwrap_or_else(|| scope.box_sieve());
+            scope.sieve = Some(sieve.without(missing));
+        }
+        Ok(scope)
     }
 
     /// This scope of a lattice at another share.
@@ -135,6 +142,16 @@ impl Scope {
             y,
             ..self.clone()
         }
+    }
+
+    /// A sieve that leaves all points of the box.
+    fn box_sieve(&self) -> Sieve {
+        let Self { lattice, x, y, .. } = self;
+        let corner =
+            |end: fn(&Range<i128>) -> i128| [x, y].map(|span| lattice.world(end(&span.bounds)));
+        let within = Region::between(corner(|range| range.start), corner(|range| range.end));
+        let mask = Mask::default().and_within(within.into());
+        Sieve::new(lattice, (mask, self.region), [x.reach, y.reach]).of_box()
     }
 
     /// The bands that the scope touches.

@@ -74,7 +74,7 @@ impl Request<2> for Scope {
         let share = self.lattice.constant_share();
         let share = share.filter(|_| !self.lattice.picks())?;
         let mut thinned = self.with_lattice(self.lattice.in_constant(share));
-        thinned.sieve = None;
+        thinned.sieve = thinned.sieve.map(Sieve::of_box);
         Some(count(&thinned, columns, rows))
     }
 }

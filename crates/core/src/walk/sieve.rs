@@ -50,7 +50,7 @@
 //! - A point in no run is outside, and one in a run that passes is inside, in every row of the strip. So walking
 //!   with runs and testing every point find the same set. The width of the room for rounding changes the cost alone.
 //! - Other sets to keep clear of, and kinds that vary from place to place, decide by the single point: with them
-//!   no run passes.
+//!   no run passes. Points that are left out by their ids are runs of their own.
 //!
 //! The cost of a strip is that of its stretches, shared by 8 rows, and in each row one test for every column within the
 //! reach of an edge: in proportion to the outline, not to the area.
@@ -60,6 +60,7 @@
 use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
+use super::missing::Missing;
 use crate::{
     batch::Batch,
     lattice::{Found, Lattice, PointId, Scale},
@@ -76,6 +77,8 @@ pub(crate) struct LocalSieve {
     guard: Guard,
     /// The set, if its points are left out by their kind one by one.
     picked: Option<Arc<Lattice>>,
+    /// The points that are left out by their ids.
+    missing: Missing,
     /// The least and the greatest distance of a point from its lattice address, in lattice units, by
     /// axis.
     reach: [[f64; 2]; 2],
@@ -93,12 +96,12 @@ pub(crate) struct Run {
     /// Whether all of their points pass; otherwise each must be tested.
     pub(crate) passes: bool,
     /// The edges to compare them with, if not with the whole area.
-    near: Option<Near>,
+    pub(super) near: Option<Near>,
 }
 
 impl LocalSieve {
     pub(crate) fn new(
-        (guard, picked): (Guard, Option<Arc<Lattice>>),
+        (guard, picked, missing): (Guard, Option<Arc<Lattice>>, Missing),
         reach: [[f64; 2]; 2],
         unit: f64,
     ) -> Self {
@@ -106,6 +109,7 @@ impl LocalSieve {
             area: None,
             guard,
             picked,
+            missing,
             reach,
             unit,
             per_unit: 1.0 / unit,
@@ -157,10 +161,15 @@ impl LocalSieve {
         inside && self.is_picked(id) && self.guard.is_clear(p)
     }
 
-    /// Whether a point is of the kind that is wanted.
+    /// Whether a point is of the kind that is wanted, and not left out by its id.
     #[inline]
     fn is_picked(&self, id: PointId) -> bool {
-        self.picked.as_ref().is_none_or(|set| set.has_kind(id))
+        self.picked.as_ref().is_none_or(|set| set.has_kind(id)) && !self.missing.has(id)
+    }
+
+    /// Whether a place is far enough from all points of other sets.
+    pub(super) fn is_clear(&self, p: [f64; 2]) -> bool {
+        self.guard.is_clear(p)
     }
 
     /// Whether a point of the piece passes.
@@ -233,6 +242,9 @@ impl LocalSieve {
             (near, unsure) = (None, 0);
         }
         push(next..columns.end, false, near);
+        if !self.missing.is_empty() {
+            self.missing.cut(&rows, columns, runs);
+        }
     }
 
     /// The first column whose points all lie above a world x, however they are displaced.
@@ -273,6 +285,9 @@ pub(crate) struct Sieve {
     region: Region,
     /// The set, if its points are left out by their kind one by one.
     picked: Option<Arc<Lattice>>,
+    /// The points that are left out by their ids, and whether all others of the box are there.
+    pub(super) missing: Missing,
+    pub(super) is_box: bool,
     /// The least and the greatest distance of a point from its lattice address, in lattice units, by
     /// axis.
     reach: [[f64; 2]; 2],
@@ -281,30 +296,49 @@ pub(crate) struct Sieve {
 }
 
 impl Sieve {
-    /// A sieve, or `None` if everything passes. `reach` has the least and the greatest distance of a point
-    /// from its lattice address by axis, in fixed-point units.
+    /// A sieve. `reach` has the least and the greatest distance of a point from its lattice address by axis, in
+    /// fixed-point units.
     pub(crate) fn new(
         lattice: &Lattice,
         (mask, region): (Mask, Region),
         reach: [[i32; 2]; 2],
-    ) -> Option<Self> {
-        let picked = lattice.picks().then(|| Arc::new(lattice.clone()));
-        if mask.area.is_none() && mask.clear.is_empty() && picked.is_none() {
-            return None;
-        }
+    ) -> Self {
         let grid_units = |v: i32| f64::from(v) / f64::from(1u32 << FRACTION_BITS);
-        Some(Self {
+        Self {
             mask,
             region,
-            picked,
+            picked: lattice.picks().then(|| Arc::new(lattice.clone())),
+            missing: Missing::default(),
+            is_box: false,
             reach: reach.map(|reach| reach.map(grid_units)),
             unit: lattice.step * f64::from(1u32 << FRACTION_BITS),
-        })
+        }
     }
 
     /// A sieve to be aimed at one piece of the lattice after another.
     pub(crate) fn local(&self) -> LocalSieve {
-        LocalSieve::new((self.guard(), self.picked.clone()), self.reach, self.unit)
+        self.local_without(self.missing.clone())
+    }
+
+    /// As [`local`](Self::local), with the points that are left out by their ids.
+    pub(crate) fn local_of_all(&self) -> LocalSieve {
+        self.local_without(Missing::default())
+    }
+
+    fn local_without(&self, missing: Missing) -> LocalSieve {
+        let each = (self.guard(), self.picked.clone(), missing);
+        LocalSieve::new(each, self.reach, self.unit)
+    }
+
+    /// This sieve of a scope whose box leaves out no other points than those of some ids.
+    pub(super) fn of_box(self) -> Self {
+        let is_box = true;
+        Self { is_box, ..self }
+    }
+
+    /// This sieve, which leaves out some points by their ids, too.
+    pub(super) fn without(self, missing: Missing) -> Self {
+        Self { missing, ..self }
     }
 
     /// A test of the other sets alone.

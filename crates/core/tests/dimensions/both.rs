@@ -159,6 +159,43 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(cases(60)))]
+
+    #[test]
+    fn points_of_some_ids_are_left_out_and_no_others(
+        (set, area) in any_area(), share in prop_oneof![Just(1.0), 0.05..1.0f64], steps in 0u32..2,
+        is_box: bool, is_in_field: bool, every in 1usize..20, parts in any_parts(),
+    ) {
+        let bounds = area.bounds().expect("bounded");
+        let area = if is_box { bounds.into() } else { area };
+        let set = set.keep(share).expect("a share").settle(steps).expect("few");
+        let noise = crate::subject::noise(3, 30.0, 2, [0.0, 1.0]).expect("valid");
+        let set = if is_in_field { set.in_field(noise) } else { set };
+        let all = within(&set, area.clone());
+        let around = within(&set, around(bounds, 3.0));
+        let felled: Vec<PointId> = all.iter().chain(&around).map(|point| point.id).step_by(every).collect();
+        let (some, others) = felled.split_at(felled.len() / 3);
+        let left = set.clone().without(some).without(others).without([id([0; D]), id([1; D])]);
+        let stays = |point: &Point| ![id([0; D]), id([1; D])].contains(&point.id) && !felled.contains(&point.id);
+        let expected: Vec<Point> = all.iter().copied().filter(stays).collect();
+        agree(&left, area.clone(), &expected, parts);
+        for point in all.iter().take(20) {
+            prop_assert_eq!(left.point(point.id).map(Point::from), stays(point).then_some(*point));
+        }
+        // Whatever keeps clear of a set keeps clear of what is left of it.
+        if let Some(last) = expected.last() {
+            let near = left.nearest(last.at(), 1).expect("near");
+            prop_assert_eq!(found(&near[0]), *last);
+            let others = set.settle(0).expect("few").seed(9).clear_of(&left, 1.0).expect("near");
+            let region = cube(last.at().map(|v| v - 3.0), 6.0);
+            let all = within(&others.clone(), region);
+            let is_near = |point: &Point| left.nearest(point.at(), 1).expect("near")[0].distance < 1.0;
+            prop_assert!(!all.iter().any(is_near));
+        }
+    }
+}
+
 const fn is_shared<T: Clone + Send + Sync>() {}
 
 const _: () = is_shared::<Set>();

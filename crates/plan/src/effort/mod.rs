@@ -10,7 +10,7 @@ mod point;
 mod volume;
 
 use strew_core::{
-    Area, Placement, PointSet, Region, Spacing, Warp,
+    Alpha, Area, Placement, PointSet, Region, Spacing, Warp,
     server::Stop,
     space::{SpaceSet, Volume},
 };
@@ -33,8 +33,8 @@ use strew_catalog::Ready;
 use strew_error::Error;
 use strew_query::{Amount, Query, Set};
 pub(super) use volume::{
-    Chains, candidates as candidates_in_space, guess as guess_in_space, lacking,
-    least as least_in_space, test as test_in_space,
+    Chains, candidates as candidates_in_space, guess as guess_in_space,
+    lacking as lacking_in_space, least as least_in_space, test as test_in_space,
 };
 
 /// The approximate number of lattice units in a mean spacing.
@@ -75,6 +75,8 @@ pub(super) struct Selection {
     by_point: f64,
     /// The time of a look at the field, in nanoseconds.
     look: f64,
+    /// The time to find the points that are left out by their ids, in rows.
+    lacked: f64,
 }
 
 impl Selection {
@@ -91,7 +93,9 @@ impl Selection {
             (false, true) => TESTED,
             (false, false) => 0.0,
         };
+        let unit = unit(points.placement().spacing, points.table().alpha());
         Self {
+            lacked: within.map_or(0.0, |within| lacking(set, unit, &within)),
             set: points,
             area,
             by_point: made + test + varied,
@@ -257,7 +261,7 @@ fn rows(selection: &Selection) -> f64 {
     let is_box = matches!(area, Area::Region(_));
     let is_closed = placement.warp == Warp::OFF && !selection.looks_at_all();
     let candidates = candidates(selection) as f64;
-    let looks = candidates * (LOOKED_AT + selection.look) / ROW;
+    let looks = candidates * (LOOKED_AT + selection.look) / ROW + selection.lacked;
     let Some(bounds) = area.bounds() else {
         return looks;
     };
@@ -280,6 +284,27 @@ fn rows(selection: &Selection) -> f64 {
         0.0
     };
     along + across + cleared + looks
+}
+
+/// The world units of a lattice unit.
+pub(super) fn unit(spacing: Spacing, alpha: Alpha) -> f64 {
+    spacing.get() * alpha.set_side_f64()
+}
+
+/// The rows that finding the points of a box takes that are left out by their ids.
+pub(super) fn lacking<const D: usize>(set: &Set, unit: f64, within: &Region<D>) -> f64 {
+    /// The nanoseconds of looking whether one lies inside.
+    const LACKED: f64 = 200.0;
+    /// The lattice units that points are moved, at most.
+    const MOVED: f64 = 64.0;
+    let Some(except) = &set.except else {
+        return 0.0;
+    };
+    let [start, end] = [
+        within.min()[0] / unit - MOVED,
+        within.max()[0] / unit + MOVED,
+    ];
+    except.within(&(start as i64..end as i64)) as f64 * LACKED / ROW
 }
 
 /// The rows that settling the points near an outline takes: some thirty places for each local spacing of it, but no

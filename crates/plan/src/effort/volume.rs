@@ -11,6 +11,7 @@ use strew_encode::Source;
 use strew_query::{Query, Set};
 
 use super::{
+    ROW,
     layers::look,
     point::{LOOKED_AT, counts},
 };
@@ -36,8 +37,6 @@ const THINNED: f64 = 4.0;
 const MAKING: f64 = 60_000.0;
 const LISTED: f64 = 150.0;
 const TESTED: f64 = 150.0;
-/// Those of looking whether a point that is left out by its id lies inside.
-const LACKED: f64 = 200.0;
 /// Those of a comparison with a point, of which some decide.
 const COMPARED: f64 = 4.0;
 const MANY: f64 = 100.0;
@@ -218,7 +217,8 @@ pub(super) fn counting(query: &Query) -> f64 {
         if let (Some((points, counts)), true) = (&points, query.is_counted(i)) {
             let placement = points.placement();
             let test = test(&chains, set, points, (&volume, query.region.bounds));
-            let counted = counting_set(points, &volume, test) * counts + lacking(set);
+            let counted =
+                counting_set(points, &volume, test) * counts + lacking(set, points, &volume) * ROW;
             let is_sought = window.offset > 0;
             let sought = is_sought.then(|| {
                 seeking(
@@ -275,10 +275,10 @@ pub fn test(
     field + chains.test(points, &set.clear_of, volume)
 }
 
-/// The nanoseconds to find the points inside that are left out by their ids.
-pub fn lacking(set: &Set) -> f64 {
-    let parts = set.except.iter().flat_map(|except| &except.parts);
-    parts.map(|part| part.in_space().len()).sum::<usize>() as f64 * LACKED
+/// The rows that finding the points inside takes that are left out by their ids.
+pub fn lacking(set: &Set, points: &SpaceSet, volume: &Volume) -> f64 {
+    let unit = super::unit(points.placement().spacing, points.table().map().alpha());
+    (volume.bounds()).map_or(0.0, |within| super::lacking(set, unit, &within))
 }
 
 /// The points that counting a set in a field looks at.

@@ -14,7 +14,8 @@ use super::scope::Scope;
 pub(crate) fn count(scope: &Scope, columns: &Range<i64>, rows: &Range<i64>) -> u128 {
     let (lattice, stop) = (&scope.lattice, &scope.stop);
     let (x, y) = (scope.x.within(columns), scope.y.within(rows));
-    if let Some(sieve) = &scope.sieve {
+    let sieve = scope.sieve.as_ref();
+    let all = if let Some(sieve) = sieve.filter(|sieve| !sieve.is_box) {
         sifted::count(lattice, sieve, [&x, &y], stop)
     } else if x.bounds.is_empty() || y.bounds.is_empty() {
         0
@@ -22,5 +23,7 @@ pub(crate) fn count(scope: &Scope, columns: &Range<i64>, rows: &Range<i64>) -> u
         boxes::count_warped(lattice, [&x, &y], stop)
     } else {
         boxes::count(lattice, &x, &y)
-    }
+    };
+    // Counts that were stopped are too low.
+    all.saturating_sub(sieve.map_or(0, |sieve| sieve.missing.count(&x.all, &y.all)))
 }

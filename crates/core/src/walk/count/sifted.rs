@@ -22,12 +22,12 @@ pub(super) fn count(lattice: &Lattice, sieve: &Sieve, [x, y]: [&Span; 2], stop: 
         return 0;
     }
     let mut count = 0;
-    let mut strip = sieve.local();
+    let mut strip = sieve.local_of_all();
     let mut edges = Edges {
         lattice,
         spans: [x, y],
         stop,
-        sieve: sieve.local(),
+        sieve: sieve.local_of_all(),
         bands: vec![Band::default(); BANDS],
         runs: Vec::new(),
     };
