@@ -8,12 +8,12 @@
 //! different ways, and a mask that kept them would show where they end. All energies are integers, so a mask is the
 //! same on every machine.
 
-use rustfft::{FftPlanner, num_complex::Complex};
+use rustfft::num_complex::Complex;
 use strew_core::{PeriodicSet, Table};
 
 use crate::{
     figure::png_file,
-    measure::{Summary, ring_sums},
+    measure::{Summary, of_grid, ring_sums},
 };
 
 mod voids;
@@ -227,17 +227,7 @@ impl Mask {
             let is_on = f64::from(u8::from((rank as usize) < on));
             Complex::new(is_on - share, 0.0)
         });
-        let mut values: Vec<Complex<f64>> = values.collect();
-        let fft = FftPlanner::new().plan_fft_forward(size);
-        // Rows, then columns, which are rows of the transposed square.
-        for _ in 0..2 {
-            fft.process(&mut values);
-            for y in 0..size {
-                for x in 0..y {
-                    values.swap(y * size + x, x * size + y);
-                }
-            }
-        }
+        let values = of_grid(values.collect(), size, 2);
         let unit = (pixels as f64 * share.min(1.0 - share)).sqrt();
         let scale = pixels as f64 * share * (1.0 - share);
         let modes = values.iter().enumerate().skip(1);
