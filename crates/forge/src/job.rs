@@ -10,10 +10,11 @@ use strew_core::{
 
 use crate::{
     ForgeError,
+    checkpoint::State,
     curve::{LeastCorrelation, Target, to_parameters},
     forge::{Task, Work},
     judge::{Bound, Complaint, Panel, bounds_of_curve, complaints},
-    optimize::{DescentState, jitter},
+    optimize::jitter,
     order::with_ranks,
     profile::{Profile, Recipe},
     twins::Domain,
@@ -169,7 +170,7 @@ impl Task for Job {
 }
 
 impl Work for Plan {
-    type State = DescentState;
+    type State = State<2>;
     type Table = Table;
 
     fn identity(&self) -> String {
@@ -192,19 +193,19 @@ impl Work for Plan {
         lines.into_iter().map(line).collect()
     }
 
-    fn start(&self) -> DescentState {
+    fn start(&self) -> State<2> {
         let (blocks, reach) = (self.domain.blocks(), self.profile.jitter);
-        DescentState::start(jitter(blocks, reach, self.job.seed))
+        State::start(jitter(blocks, reach, self.job.seed))
     }
 
-    fn phases(&self) -> Vec<Box<dyn Phase<DescentState> + '_>> {
+    fn phases(&self) -> Vec<Box<dyn Phase<State<2>> + '_>> {
         let recipe = &self.profile.recipe;
         recipe.phases(&self.domain, self.target.as_ref(), self.steps)
     }
 
     fn table(
         &self,
-        state: &DescentState,
+        state: &State<2>,
         [steps, _]: [u32; 2],
         figures: Vec<Figures>,
     ) -> Result<Table, ForgeError> {

@@ -3,7 +3,7 @@
 //! A set is a [`Sample`], of the plane or in space: one period of a periodic set, or a window of an unbounded one;
 //! [`twin_set`] and [`window_set`] make them from a table, [`square_set`] from a served set. [`Spectrum`] is computed by
 //! `fourier`; its [`Ring`]s yield the [`Summary`] and the [`Crispness`].
-//! [`Distances`] and [`Rdf`] look up neighbors in a cell list, [`Voronoi`] in a triangulation. [`recurrence`] is how
+//! [`Distances`], [`Rdf`] and [`Voronoi`] look up neighbors in a cell list. [`recurrence`] is how
 //! much of a set is found again elsewhere in it, [`Shared`] what two sets have in common.
 //!
 //! Everything is at unit density: lengths are in mean spacings, frequencies ν in cycles per mean
@@ -29,3 +29,4 @@ pub(crate) use set::{root, wrap};
 pub use spectrum::{BANDS, Crispness, Ring, Spectrum, Summary};
 pub(crate) use spectrum::{ring_sums, rings_of};
 pub use voronoi::Voronoi;
+pub(crate) use voronoi::{Polygon, cells};

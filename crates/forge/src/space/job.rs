@@ -9,12 +9,13 @@ use strew_core::{
 };
 
 use super::{
-    descent::{Rule, SpacePhase, SpaceState},
+    descent::{Rule, SpacePhase},
     judge::Judge,
     pairs::{Gaussian, LONGEST, longest, with_ranks},
 };
 use crate::{
     ForgeError, MAX_STEPS, Meter,
+    checkpoint::State,
     forge::{Task, Work},
     judge::{Bound, Complaint, Figure, complaints as missed},
     optimize::jitter,
@@ -148,7 +149,7 @@ impl SpacePlan {
 }
 
 impl Work for SpacePlan {
-    type State = SpaceState;
+    type State = State<3>;
     type Table = Table;
 
     fn identity(&self) -> String {
@@ -166,12 +167,12 @@ impl Work for SpacePlan {
         )
     }
 
-    fn start(&self) -> SpaceState {
+    fn start(&self) -> State<3> {
         let blocks = self.maps[0].intervals().pow(3);
-        SpaceState::start(jitter(blocks, JITTER, self.job.seed))
+        State::start(jitter(blocks, JITTER, self.job.seed))
     }
 
-    fn phases(&self) -> Vec<Box<dyn Phase<SpaceState> + '_>> {
+    fn phases(&self) -> Vec<Box<dyn Phase<State<3>> + '_>> {
         let phases = self.job.phases().into_iter().enumerate();
         let phase = |(number, (rule, steps)): (usize, (Rule, u32))| {
             let finer = (number == 0).then_some(&self.maps);
@@ -183,7 +184,7 @@ impl Work for SpacePlan {
 
     fn table(
         &self,
-        state: &SpaceState,
+        state: &State<3>,
         [steps, all]: [u32; 2],
         figures: Vec<Figures>,
     ) -> Result<Table, ForgeError> {
