@@ -225,14 +225,12 @@ pub(crate) fn wrong(value: impl ToString) -> ForgeError {
     )
 }
 
-/// Takes values off the front of a file's content.
+/// The front of a file's content.
 struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {
     fn take(&mut self, bytes: usize) -> Option<&'a [u8]> {
-        let (taken, rest) = self.0.split_at_checked(bytes)?;
-        self.0 = rest;
-        Some(taken)
+        self.0.split_off(..bytes)
     }
 
     fn u32(&mut self) -> Option<u32> {

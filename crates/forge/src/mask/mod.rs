@@ -136,15 +136,20 @@ impl Mask {
         ranks.map(move |&rank| (u64::from(rank) * levels / pixels) as u16)
     }
 
+    /// The thresholds as bytes, those of 16 bits by a function.
+    fn bytes(&self, bits: u8, wide: fn(u16) -> [u8; 2]) -> Result<Vec<u8>, MaskError> {
+        let thresholds = self.thresholds(bits);
+        match bits {
+            8 => Ok(thresholds.map(|v| v as u8).collect()),
+            16 => Ok(thresholds.flat_map(wide).collect()),
+            _ => Err(MaskError::new("bits", bits, "8 or 16")),
+        }
+    }
+
     /// The mask as a file of NumPy's: an array of `u1` or `u2`, rows from the top.
     pub fn to_npy(&self, bits: u8) -> Result<Vec<u8>, MaskError> {
-        let thresholds = self.thresholds(bits);
-        let (kind, bytes): (_, Vec<u8>) = match bits {
-            8 => ("|u1", thresholds.map(|v| v as u8).collect()),
-            16 => ("<u2", thresholds.flat_map(u16::to_le_bytes).collect()),
-            _ => return Err(MaskError::new("bits", bits, "8 or 16")),
-        };
-        let side = self.size;
+        let bytes = self.bytes(bits, u16::to_le_bytes)?;
+        let (side, kind) = (self.size, if bits == 8 { "|u1" } else { "<u2" });
         let text =
             format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({side}, {side}), }}");
         // Magic, version and the length of the text, which fills 128 bytes with them.
@@ -158,14 +163,10 @@ impl Mask {
 
     /// The mask as a gray PNG file of 8 or 16 bits.
     pub fn to_png(&self, bits: u8) -> Result<Vec<u8>, MaskError> {
-        let thresholds = self.thresholds(bits);
-        let (depth, bytes): (_, Vec<u8>) = match bits {
-            8 => (png::BitDepth::Eight, thresholds.map(|v| v as u8).collect()),
-            16 => (
-                png::BitDepth::Sixteen,
-                thresholds.flat_map(u16::to_be_bytes).collect(),
-            ),
-            _ => return Err(MaskError::new("bits", bits, "8 or 16")),
+        let bytes = self.bytes(bits, u16::to_be_bytes)?;
+        let depth = match bits {
+            8 => png::BitDepth::Eight,
+            _ => png::BitDepth::Sixteen,
         };
         let gray = (png::ColorType::Grayscale, depth);
         let file = png_file([self.size; 2], gray, png::Compression::default(), &bytes);

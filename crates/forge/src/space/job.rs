@@ -11,7 +11,7 @@ use strew_core::{
 use super::{
     descent::{Rule, SpacePhase},
     judge::Judge,
-    pairs::{Gaussian, LONGEST, longest, with_ranks},
+    pairs::{COMPONENT, Gaussian, LONGEST, longest, with_ranks},
 };
 use crate::{
     ForgeError, MAX_STEPS, Meter,
@@ -120,6 +120,9 @@ pub const MAX_SPACE_RADIUS: u32 = 22;
 const MAX_INTERVALS: usize = 40;
 /// The least reach of vectors, in mean spacings.
 const LEAST_REACH: f64 = 0.8 * LONGEST;
+
+// Offsets of pairs fit 8 bits.
+const _: () = assert!((5.6 + 2.0 * LONGEST) * COMPONENT / LEAST_REACH < 126.0);
 
 /// The reach of the random start along each axis, in mean spacings.
 const JITTER: f64 = 0.2;
@@ -266,22 +269,4 @@ fn complaints(profile: SpaceProfile, figures: &[Figures]) -> Vec<Complaint> {
         missed(&bounds, std::slice::from_ref(figures))
     };
     figures.iter().flat_map(of).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn offsets_fit_8_bits() {
-        for text in ["1.51", "(5-sqrt(3))/2", "(1+sqrt(5))/2", "1.8"] {
-            let job = SpaceJob {
-                alpha: text.parse().expect("valid"),
-                radius: MAX_SPACE_RADIUS,
-                ..SpaceJob::new(SpaceProfile::Blue)
-            };
-            let [_, map] = job.maps().expect(text);
-            assert!((5.6 + 5.0) / map.alpha().set_side_f64() + 1.0 < 127.0);
-        }
-    }
 }
