@@ -6,8 +6,8 @@
 //! and is refused by every other job.
 //!
 //! The file holds a magic number, counts, the job as lines of text, the state, and a digest of all of
-//! these. A state is numbers and lists of numbers, which only the phase that made them can read: so jobs of the plane and of
-//! space have one format. Numbers are little-endian.
+//! these. A state is numbers and lists of numbers, so jobs of the plane and of space have one format. Numbers are
+//! little-endian.
 
 use std::{fs, io::ErrorKind, path::Path};
 
@@ -16,7 +16,7 @@ use strew_core::table::Digest;
 use crate::{ForgeError, file};
 
 /// The first bytes of a checkpoint file. A change of the layout raises the digit.
-const MAGIC: &[u8; 8] = b"strewck2";
+const MAGIC: &[u8; 8] = b"strewck3";
 /// The largest file that is read. A checkpoint has four vectors a block, at most 15 MB.
 const MAX_BYTES: u64 = 32 << 20;
 /// The length of the digest at the end of the file.
@@ -33,25 +33,80 @@ pub struct Checkpoint {
     pub(crate) steps: u32,
     /// Steps of all phases.
     pub(crate) of: u32,
-    pub(crate) state: Kept,
+    /// The state of the phase, component by component.
+    pub(crate) state: State<1>,
 }
 
-/// The state of a phase: the steps that it has done, numbers, and lists of the components of vectors.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Kept {
-    pub(crate) steps: u32,
-    pub(crate) numbers: Vec<f64>,
-    pub(crate) lists: Vec<Vec<f64>>,
+/// All that decides the next step of a phase.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct State<const D: usize> {
+    /// The steps done in the phase.
+    pub steps: u32,
+    /// A vector for each block, in mean spacings: the best so far, or the last.
+    pub moves: Vec<[f64; D]>,
+    /// What the phase has beside them: numbers, and lists of vectors that are empty or as long.
+    pub(crate) numbers: [f64; 4],
+    pub(crate) lists: [Vec<[f64; D]>; 3],
 }
 
-impl Kept {
-    /// The lists of vectors, or `None` if there is another number of them, or one is neither empty nor as long as the first.
-    pub(crate) fn lists<const D: usize, const N: usize>(self) -> Option<[Vec<[f64; D]>; N]> {
-        let lists = self.lists.iter().map(|list| list.as_chunks().0.to_vec());
-        let lists: [Vec<[f64; D]>; N] = lists.collect::<Vec<_>>().try_into().ok()?;
-        let blocks = lists[0].len();
-        let fits = |list: &Vec<_>| list.is_empty() || list.len() == blocks;
-        lists.iter().all(fits).then_some(lists)
+impl<const D: usize> State<D> {
+    /// The state before any step of a phase.
+    pub fn start(moves: Vec<[f64; D]>) -> Self {
+        Self {
+            moves,
+            ..Self::default()
+        }
+    }
+
+    /// The state with the components of its vectors grouped anew, or `None` if lists have no whole number of vectors or are
+    /// neither empty nor as long as the moves.
+    fn regrouped<const E: usize>(&self) -> Option<State<E>> {
+        let cut = |list: &Vec<[f64; D]>| {
+            let (all, rest) = list.as_flattened().as_chunks::<E>();
+            rest.is_empty().then(|| all.to_vec())
+        };
+        let [a, b, c] = self.lists.each_ref().map(cut);
+        let (moves, lists) = (cut(&self.moves)?, [a?, b?, c?]);
+        let fits = |list: &Vec<_>| list.is_empty() || list.len() == moves.len();
+        lists.iter().all(fits).then_some(State {
+            steps: self.steps,
+            moves,
+            numbers: self.numbers,
+            lists,
+        })
+    }
+}
+
+/// A [`State`] of any dimension.
+pub trait Resumable: Sized {
+    /// The steps done in the phase.
+    fn steps(&self) -> u32;
+
+    /// The number of vectors.
+    fn blocks(&self) -> usize;
+
+    /// The state for a checkpoint.
+    fn keep(&self) -> State<1>;
+
+    /// The state of a checkpoint, or `None` if it is another one.
+    fn resume(kept: &State<1>) -> Option<Self>;
+}
+
+impl<const D: usize> Resumable for State<D> {
+    fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    fn blocks(&self) -> usize {
+        self.moves.len()
+    }
+
+    fn keep(&self) -> State<1> {
+        self.regrouped().unwrap_or_default()
+    }
+
+    fn resume(kept: &State<1>) -> Option<Self> {
+        kept.regrouped()
     }
 }
 
@@ -82,21 +137,21 @@ impl Checkpoint {
 
     /// The content of a checkpoint file.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let Kept {
+        let State {
             steps,
+            moves,
             numbers,
-            lists,
+            lists: [a, b, c],
         } = &self.state;
+        let lists = [moves, a, b, c];
         let mut bytes = MAGIC.to_vec();
-        let counts = [self.phase, self.steps, self.of, *steps];
-        let lengths = [self.job.len(), numbers.len(), lists.len()].map(|n| n as u32);
-        let lengths = lengths
-            .into_iter()
-            .chain(lists.iter().map(|list| list.len() as u32));
-        bytes.extend(counts.into_iter().chain(lengths).flat_map(u32::to_le_bytes));
+        let lengths = lists.map(|list| list.len() as u32);
+        let job = self.job.len() as u32;
+        let counts = [self.phase, self.steps, self.of, *steps, job];
+        bytes.extend(counts.iter().chain(&lengths).flat_map(|n| n.to_le_bytes()));
         bytes.extend(self.job.as_bytes());
-        let all = numbers.iter().chain(lists.iter().flatten());
-        bytes.extend(all.flat_map(|v| v.to_le_bytes()));
+        let lists = lists.into_iter().flatten().flatten();
+        bytes.extend(numbers.iter().chain(lists).flat_map(|v| v.to_le_bytes()));
         let digest = Digest::of(&bytes);
         bytes.extend(digest.as_bytes());
         bytes
@@ -119,21 +174,20 @@ impl Checkpoint {
 
     /// Reads what is between the magic number and the digest.
     fn read(rest: &mut Reader<'_>) -> Option<Self> {
-        let [phase, steps, of, own_steps] = [rest.u32()?, rest.u32()?, rest.u32()?, rest.u32()?];
-        let [job, numbers, lists] = [rest.u32()?, rest.u32()?, rest.u32()?].map(|n| n as usize);
-        let lengths: Option<Vec<u32>> = (0..lists).map(|_| rest.u32()).collect();
-        let job = String::from_utf8(rest.take(job)?.to_vec()).ok()?;
-        let numbers = rest.numbers(numbers)?;
-        let lists = lengths?.into_iter().map(|n| rest.numbers(n as usize));
+        let counts: Option<Vec<u32>> = (0..9).map(|_| rest.u32()).collect();
+        let [phase, steps, of, own_steps, job, moves, a, b, c] = counts?.try_into().ok()?;
+        let job = String::from_utf8(rest.take(job as usize)?.to_vec()).ok()?;
+        let numbers = rest.numbers(4)?.as_flattened().try_into().ok()?;
         Some(Self {
             job,
             phase,
             steps,
             of,
-            state: Kept {
+            state: State {
                 steps: own_steps,
                 numbers,
-                lists: lists.collect::<Option<_>>()?,
+                moves: rest.numbers(moves)?,
+                lists: [rest.numbers(a)?, rest.numbers(b)?, rest.numbers(c)?],
             },
         })
     }
@@ -171,28 +225,22 @@ pub(crate) fn wrong(value: impl ToString) -> ForgeError {
     )
 }
 
-/// Takes values off the front of a file's content.
+/// The front of a file's content.
 struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {
     fn take(&mut self, bytes: usize) -> Option<&'a [u8]> {
-        let (taken, rest) = self.0.split_at_checked(bytes)?;
-        self.0 = rest;
-        Some(taken)
+        self.0.split_off(..bytes)
     }
 
     fn u32(&mut self) -> Option<u32> {
         Some(u32::from_le_bytes(self.take(4)?.try_into().ok()?))
     }
 
-    fn numbers(&mut self, count: usize) -> Option<Vec<f64>> {
-        let (bytes, _) = self.take(count.checked_mul(8)?)?.as_chunks();
-        Some(
-            bytes
-                .iter()
-                .map(|bytes| f64::from_le_bytes(*bytes))
-                .collect(),
-        )
+    fn numbers(&mut self, count: u32) -> Option<Vec<[f64; 1]>> {
+        let (bytes, _) = self.take((count as usize).checked_mul(8)?)?.as_chunks();
+        let number = |bytes: &[u8; 8]| [f64::from_le_bytes(*bytes)];
+        Some(bytes.iter().map(number).collect())
     }
 }
 
@@ -206,10 +254,11 @@ mod tests {
             phase: 1,
             steps: 30,
             of: 40,
-            state: Kept {
+            state: State {
                 steps: 3,
-                numbers: vec![0.5, f64::INFINITY],
-                lists: vec![vec![0.25, -1e-300, f64::MIN_POSITIVE, 3.0], vec![]],
+                moves: [0.25, -1e-300, f64::MIN_POSITIVE, 3.0].map(|v| [v]).into(),
+                numbers: [0.5, f64::INFINITY, 0.0, -1.0],
+                lists: [vec![[1.0]; 4], vec![], vec![]],
             },
         }
     }
@@ -248,11 +297,11 @@ mod tests {
     #[test]
     fn lists_are_of_all_blocks_or_empty() {
         let mut kept = checkpoint().state;
-        assert!(kept.clone().lists::<2, 3>().is_none());
-        let [first, second] = kept.clone().lists::<2, 2>().expect("two");
-        assert!(first[1] == [f64::MIN_POSITIVE, 3.0] && second.is_empty());
-        kept.lists[1].push(1.0);
-        kept.lists[1].push(1.0);
-        assert!(kept.lists::<2, 2>().is_none());
+        let state = State::<2>::resume(&kept).expect("two vectors");
+        assert_eq!(state.moves[1], [f64::MIN_POSITIVE, 3.0]);
+        assert_eq!(state.keep(), kept);
+        assert!(State::<3>::resume(&kept).is_none());
+        kept.lists[2] = vec![[1.0]; 2];
+        assert!(State::<2>::resume(&kept).is_none());
     }
 }

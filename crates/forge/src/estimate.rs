@@ -4,9 +4,9 @@ use std::time::{Duration, Instant};
 
 use crate::{
     ForgeError,
+    checkpoint::Resumable as _,
     curve::LeastCorrelation,
     forge::{Task, Work as _},
-    watch::State as _,
 };
 
 /// The size and the run time of a job.
@@ -44,7 +44,7 @@ pub fn estimate(job: &impl Task) -> Result<Estimate, ForgeError> {
     };
     let mut state = plan.start();
     for mut phase in phases {
-        phase.begin(&state);
+        phase.begin(&mut state);
         let mut step = || {
             let began = Instant::now();
             phase.step(&mut state);

@@ -7,11 +7,10 @@ use strew_core::{Table, table::Figures};
 
 use crate::{
     Checkpoint, ForgeError,
-    checkpoint::wrong,
+    checkpoint::{Resumable, wrong},
     curve::LeastCorrelation,
     judge::{Complaint, Nearness},
-    watch::{Meter, Stage, Watch},
-    watch::{Phase, State, work_off},
+    watch::{Meter, Phase, Stage, Watch, work_off},
 };
 
 /// A table to make: of the plane, a [`Job`](crate::Job), or of points in space, a [`SpaceJob`](crate::space::SpaceJob).
@@ -25,7 +24,7 @@ pub trait Task {
 
 /// A checked job, as the driver works it off.
 pub trait Work {
-    type State: State;
+    type State: Resumable;
     type Table;
 
     /// Everything that decides the result but the phases, as lines of `name = value`. Two jobs with equal lines take the
@@ -128,7 +127,7 @@ fn run<W: Work>(
         None => (0, plan.start()),
         Some(from) => {
             from.check(&job)?;
-            let state = W::State::resume(from.state).ok_or_else(|| wrong("of another state"))?;
+            let state = W::State::resume(&from.state).ok_or_else(|| wrong("of another state"))?;
             (from.phase as usize, state)
         }
     };

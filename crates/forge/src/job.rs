@@ -10,10 +10,11 @@ use strew_core::{
 
 use crate::{
     ForgeError,
+    checkpoint::State,
     curve::{LeastCorrelation, Target, to_parameters},
     forge::{Task, Work},
     judge::{Bound, Complaint, Panel, bounds_of_curve, complaints},
-    optimize::{DescentState, jitter},
+    optimize::jitter,
     order::with_ranks,
     profile::{Profile, Recipe},
     twins::Domain,
@@ -169,7 +170,7 @@ impl Task for Job {
 }
 
 impl Work for Plan {
-    type State = DescentState;
+    type State = State<2>;
     type Table = Table;
 
     fn identity(&self) -> String {
@@ -192,19 +193,19 @@ impl Work for Plan {
         lines.into_iter().map(line).collect()
     }
 
-    fn start(&self) -> DescentState {
+    fn start(&self) -> State<2> {
         let (blocks, reach) = (self.domain.blocks(), self.profile.jitter);
-        DescentState::start(jitter(blocks, reach, self.job.seed))
+        State::start(jitter(blocks, reach, self.job.seed))
     }
 
-    fn phases(&self) -> Vec<Box<dyn Phase<DescentState> + '_>> {
+    fn phases(&self) -> Vec<Box<dyn Phase<State<2>> + '_>> {
         let recipe = &self.profile.recipe;
         recipe.phases(&self.domain, self.target.as_ref(), self.steps)
     }
 
     fn table(
         &self,
-        state: &DescentState,
+        state: &State<2>,
         [steps, _]: [u32; 2],
         figures: Vec<Figures>,
     ) -> Result<Table, ForgeError> {
@@ -328,44 +329,29 @@ impl fmt::Display for Prospect {
 impl Job {
     /// The facts about the table that are known before the work.
     pub fn prospect(&self) -> Prospect {
+        // A period of 49 to 121 points has a few tall peaks, wherever they are moved: the judge refused every table, and of 2601
+        // points it accepted one (`docs/alpha.md`).
+        const FEW: u64 = 16;
         let map = Map::new(self.alpha, self.radius).ok();
-        let why = match &map {
-            _ if self.alpha.set_side_f64() < MIN_SIDE => Some(NEAR_ONE),
-            Some(map) if has_ties(map) && is_small(map) => Some(TIES),
-            _ => None,
-        };
+        let fraction = self.alpha.fraction();
+        // The pattern has that number squared of points in a period, and intervals no more than that, whatever rounding adds.
+        let units = fraction.map(|(p, q)| p - q);
+        let is_small = units.is_some_and(|units| units < FEW);
+        // Where thresholds coincide, their order holds at no other α, and not in a twin.
+        let itself = fraction.and_then(|(p, q)| Twin::new(p, q));
+        let has_ties = |map: &Map| itself.is_some_and(|twin| !map.has_twin(twin));
+        let intervals = map.as_ref().map_or(0, Map::intervals);
         Prospect {
-            intervals: map.map_or(0, |map| intervals(&map)),
-            period: self.alpha.fraction().map(|(_, q)| q.saturating_mul(2)),
-            why,
+            intervals: units.map_or(intervals, |units| (intervals as u64).min(units) as usize),
+            period: fraction.map(|(_, q)| q.saturating_mul(2)),
+            why: match &map {
+                _ if self.alpha.set_side_f64() < MIN_SIDE => Some(NEAR_ONE),
+                Some(map) if is_small && has_ties(map) => Some(TIES),
+                _ => None,
+            },
             displaces: self.target.is_some() || self.profile != "pattern",
         }
     }
-}
-
-/// The units of the set region of a fraction p/q: the pattern has that number squared of points in a period.
-fn units(map: &Map) -> Option<u64> {
-    map.alpha().fraction().map(|(p, q)| p - q)
-}
-
-/// The intervals that points lie in: at a fraction no more than its units, whatever rounding adds.
-fn intervals(map: &Map) -> usize {
-    let units = units(map).and_then(|units| usize::try_from(units).ok());
-    units.map_or(map.intervals(), |units| map.intervals().min(units))
-}
-
-/// Whether a period has so few points that its spectrum is a few tall peaks, wherever they are moved. With 49 to 121
-/// points the judge refused every table, with 2601 it accepted one (`docs/alpha.md`).
-fn is_small(map: &Map) -> bool {
-    const FEW: u64 = 16;
-    units(map).is_some_and(|units| units < FEW)
-}
-
-/// Whether thresholds of a map coincide: then the order of the thresholds holds at no other α, and not in a twin.
-fn has_ties(map: &Map) -> bool {
-    let fraction = map.alpha().fraction();
-    let itself = fraction.and_then(|(p, q)| Twin::new(p, q));
-    itself.is_some_and(|twin| !map.has_twin(twin))
 }
 
 #[cfg(test)]

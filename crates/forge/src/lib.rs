@@ -59,7 +59,7 @@ pub mod space;
 mod twins;
 mod watch;
 
-pub use checkpoint::Checkpoint;
+pub use checkpoint::{Checkpoint, State};
 pub use curve::Target;
 pub use error::{ForgeError, SettingError};
 pub use estimate::{Estimate, estimate};

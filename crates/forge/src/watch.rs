@@ -4,7 +4,7 @@
 //! The caller implements [`Watch`]. The optimizer and the judge count their steps with a [`Meter`],
 //! which reports [`Progress`] to it. None of them reads a clock, which WebAssembly lacks.
 
-use crate::{Checkpoint, ForgeError, checkpoint::Kept};
+use crate::{Checkpoint, ForgeError, checkpoint::Resumable};
 
 /// A stage of the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,21 +110,6 @@ impl<'a> Meter<'a> {
     }
 }
 
-/// All that decides the next step of a phase.
-pub trait State: Sized {
-    /// The steps done in the phase.
-    fn steps(&self) -> u32;
-
-    /// The number of vectors.
-    fn blocks(&self) -> usize;
-
-    /// The state for a checkpoint.
-    fn keep(&self) -> Kept;
-
-    /// The state of a checkpoint, or `None` if it is another one.
-    fn resume(kept: Kept) -> Option<Self>;
-}
-
 /// A phase of a job.
 pub trait Phase<S> {
     /// The number of steps.
@@ -134,7 +119,7 @@ pub trait Phase<S> {
     fn describe(&self) -> String;
 
     /// Prepares to go on from a state: the first one of the phase, or that of a checkpoint.
-    fn begin(&mut self, state: &S);
+    fn begin(&mut self, state: &mut S);
 
     /// Takes a step. Returns the energy before it, per point, or another value that progress shows.
     fn step(&mut self, state: &mut S) -> f64;
@@ -155,7 +140,7 @@ pub trait Phase<S> {
 
 /// Takes the steps of a phase that are left, or fewer if the watch stops the work. Calls `keep` with the state between two
 /// steps when the watch wants a checkpoint and when it stops the work. Returns whether all steps are done.
-pub(crate) fn work_off<S: State>(
+pub(crate) fn work_off<S: Resumable>(
     phase: &mut (impl Phase<S> + ?Sized),
     state: &mut S,
     meter: &mut Meter<'_>,

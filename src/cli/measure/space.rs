@@ -14,7 +14,7 @@ use strew_forge::space::{
 
 use crate::cli::{Failure, refuse};
 
-/// The least and the greatest number of points of a set. The spectrum of the largest takes 400 MB.
+/// The least and the greatest number of points of a set. The spectrum of the largest takes 800 MB.
 const POINTS: [u64; 2] = [1_000, 1_000_000];
 /// The least number of points of the twins that are measured unless some are named, and their number.
 const TWINS: (u64, usize) = (70_225, 2);

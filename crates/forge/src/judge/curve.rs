@@ -32,25 +32,28 @@ const FINE_RING: f64 = 0.005;
 /// [`Figure::TargetWorstNu`], [`Figure::TailWorst`], and [`Figure::QuietPower`] if the target
 /// begins with a band of power 0.
 pub fn curve_figures(spectrum: &Spectrum, target: &Target) -> Vec<(String, f64)> {
+    // The inner edge of each ring, its mean frequency, the power of the target there, and the error.
+    let compared = |ring: &Ring| {
+        let from = (ring.nu / TARGET_RING).floor() * TARGET_RING;
+        let wanted = mean_over_ring(target, from);
+        [from, ring.nu, wanted, ring.power - wanted]
+    };
     let rings = spectrum.rings(TARGET_RING);
-    let errors = rings.iter().map(|ring| RingError::of(ring, target));
-    let errors: Vec<RingError> = errors.collect();
+    let errors: Vec<[f64; 4]> = rings.iter().map(compared).collect();
     let first = target.points().first().map_or(0.0, |p| p[0]);
-    let drawn = errors.iter().filter(|error| {
-        error.from >= first && error.from < target.end() - 1e-9 && error.wanted > 0.0
+    let drawn = errors.iter().filter(|[from, _, wanted, _]| {
+        *from >= first && *from < target.end() - 1e-9 && *wanted > 0.0
     });
-    let by_size = |a: &&RingError, b: &&RingError| a.size().total_cmp(&b.size());
+    let by_size = |a: &&[f64; 4], b: &&[f64; 4]| a[3].abs().total_cmp(&b[3].abs());
     let worst = errors.iter().max_by(by_size);
-    let [worst, worst_nu] = worst.map_or([f64::NAN; 2], |e| [e.size(), e.nu]);
+    let [worst, worst_nu] = worst.map_or([f64::NAN; 2], |e| [e[3].abs(), e[1]]);
     let tail = errors.iter();
-    let tail = tail.filter(|error| error.from >= target.end() + TAIL_GAP - 1e-9);
-    let tail = tail.map(|e| (e.found - 1.0).abs());
+    let tail = tail.filter(|[from, ..]| *from >= target.end() + TAIL_GAP - 1e-9);
+    let tail = tail.map(|[_, _, wanted, error]| (wanted + error - 1.0).abs());
+    let relative = drawn.map(|[_, _, wanted, error]| error / wanted);
     let mut figures = vec![
-        (Figure::TargetRms, rms(errors.iter().map(RingError::error))),
-        (
-            Figure::TargetRelative,
-            rms(drawn.map(|e| e.error() / e.wanted)),
-        ),
+        (Figure::TargetRms, rms(errors.iter().map(|error| error[3]))),
+        (Figure::TargetRelative, rms(relative)),
         (Figure::TargetWorst, worst),
         (Figure::TargetWorstNu, worst_nu),
         (Figure::TailWorst, tail.fold(0.0, f64::max)),
@@ -59,36 +62,6 @@ pub fn curve_figures(spectrum: &Spectrum, target: &Target) -> Vec<(String, f64)>
         figures.push((Figure::QuietPower, power));
     }
     named(figures)
-}
-
-/// The power of a ring beside that of the target.
-struct RingError {
-    /// The inner edge of the ring.
-    from: f64,
-    /// The mean frequency of its modes.
-    nu: f64,
-    found: f64,
-    wanted: f64,
-}
-
-impl RingError {
-    fn of(ring: &Ring, target: &Target) -> Self {
-        let from = (ring.nu / TARGET_RING).floor() * TARGET_RING;
-        Self {
-            from,
-            nu: ring.nu,
-            found: ring.power,
-            wanted: mean_over_ring(target, from),
-        }
-    }
-
-    fn error(&self) -> f64 {
-        self.found - self.wanted
-    }
-
-    fn size(&self) -> f64 {
-        self.error().abs()
-    }
 }
 
 /// The mean of a curve over the area of the ring that begins at `from`.

@@ -8,12 +8,12 @@
 //! different ways, and a mask that kept them would show where they end. All energies are integers, so a mask is the
 //! same on every machine.
 
-use rustfft::{FftPlanner, num_complex::Complex};
+use rustfft::num_complex::Complex;
 use strew_core::{PeriodicSet, Table};
 
 use crate::{
     figure::png_file,
-    measure::{Summary, ring_sums},
+    measure::{Summary, of_grid, ring_sums},
 };
 
 mod voids;
@@ -136,15 +136,20 @@ impl Mask {
         ranks.map(move |&rank| (u64::from(rank) * levels / pixels) as u16)
     }
 
+    /// The thresholds as bytes, those of 16 bits by a function.
+    fn bytes(&self, bits: u8, wide: fn(u16) -> [u8; 2]) -> Result<Vec<u8>, MaskError> {
+        let thresholds = self.thresholds(bits);
+        match bits {
+            8 => Ok(thresholds.map(|v| v as u8).collect()),
+            16 => Ok(thresholds.flat_map(wide).collect()),
+            _ => Err(MaskError::new("bits", bits, "8 or 16")),
+        }
+    }
+
     /// The mask as a file of NumPy's: an array of `u1` or `u2`, rows from the top.
     pub fn to_npy(&self, bits: u8) -> Result<Vec<u8>, MaskError> {
-        let thresholds = self.thresholds(bits);
-        let (kind, bytes): (_, Vec<u8>) = match bits {
-            8 => ("|u1", thresholds.map(|v| v as u8).collect()),
-            16 => ("<u2", thresholds.flat_map(u16::to_le_bytes).collect()),
-            _ => return Err(MaskError::new("bits", bits, "8 or 16")),
-        };
-        let side = self.size;
+        let bytes = self.bytes(bits, u16::to_le_bytes)?;
+        let (side, kind) = (self.size, if bits == 8 { "|u1" } else { "<u2" });
         let text =
             format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({side}, {side}), }}");
         // Magic, version and the length of the text, which fills 128 bytes with them.
@@ -158,14 +163,10 @@ impl Mask {
 
     /// The mask as a gray PNG file of 8 or 16 bits.
     pub fn to_png(&self, bits: u8) -> Result<Vec<u8>, MaskError> {
-        let thresholds = self.thresholds(bits);
-        let (depth, bytes): (_, Vec<u8>) = match bits {
-            8 => (png::BitDepth::Eight, thresholds.map(|v| v as u8).collect()),
-            16 => (
-                png::BitDepth::Sixteen,
-                thresholds.flat_map(u16::to_be_bytes).collect(),
-            ),
-            _ => return Err(MaskError::new("bits", bits, "8 or 16")),
+        let bytes = self.bytes(bits, u16::to_be_bytes)?;
+        let depth = match bits {
+            8 => png::BitDepth::Eight,
+            _ => png::BitDepth::Sixteen,
         };
         let gray = (png::ColorType::Grayscale, depth);
         let file = png_file([self.size; 2], gray, png::Compression::default(), &bytes);
@@ -227,17 +228,7 @@ impl Mask {
             let is_on = f64::from(u8::from((rank as usize) < on));
             Complex::new(is_on - share, 0.0)
         });
-        let mut values: Vec<Complex<f64>> = values.collect();
-        let fft = FftPlanner::new().plan_fft_forward(size);
-        // Rows, then columns, which are rows of the transposed square.
-        for _ in 0..2 {
-            fft.process(&mut values);
-            for y in 0..size {
-                for x in 0..y {
-                    values.swap(y * size + x, x * size + y);
-                }
-            }
-        }
+        let values = of_grid(values.collect(), size, 2);
         let unit = (pixels as f64 * share.min(1.0 - share)).sqrt();
         let scale = pixels as f64 * share * (1.0 - share);
         let modes = values.iter().enumerate().skip(1);

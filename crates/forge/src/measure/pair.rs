@@ -4,10 +4,11 @@
 //! of their powers, mode by mode, and the highest peak of their phase correlation, which finds a part of one set in the other
 //! at any translation. With each comes what two independent sets have.
 
+use rustfft::num_complex::Complex;
+
 use super::{
     Sample,
-    fourier::{Fourier, Plane},
-    sums::waves,
+    fourier::{of_grid, size_from, waves},
 };
 
 /// The structure that two windows have in common.
@@ -29,7 +30,7 @@ const LOW_END: f64 = 0.8;
 const RING: f64 = 4.0;
 
 /// A mode, and the sums of both sets.
-type Mode<const D: usize> = ([i64; D], [[f64; 2]; 2]);
+type Mode<const D: usize> = ([i64; D], [Complex<f64>; 2]);
 
 impl Shared {
     /// Compares two windows of equal side, of the plane or in space, on modes with 0.8 < ν < `nu_max`.
@@ -54,13 +55,17 @@ impl Shared {
         let mut means = vec![[0.0f64; 3]; ring([modes as i64 + 1; D]) + 1];
         for (k, [a, b]) in &all {
             let mean = &mut means[ring(*k)];
-            *mean = [mean[0] + squared(*a), mean[1] + squared(*b), mean[2] + 1.0];
+            *mean = [
+                mean[0] + a.norm_sqr(),
+                mean[1] + b.norm_sqr(),
+                mean[2] + 1.0,
+            ];
         }
         let (mut shared, mut own) = (0.0, [0.0; 2]);
         for (k, [a, b]) in &all {
             let mean = means[ring(*k)];
-            let a = squared(*a) * mean[2] / mean[0] - 1.0;
-            let b = squared(*b) * mean[2] / mean[1] - 1.0;
+            let a = a.norm_sqr() * mean[2] / mean[0] - 1.0;
+            let b = b.norm_sqr() * mean[2] / mean[1] - 1.0;
             shared += a * b;
             own = [own[0] + a * a, own[1] + b * b];
         }
@@ -79,44 +84,24 @@ impl Shared {
     }
 }
 
-fn squared([re, im]: [f64; 2]) -> f64 {
-    re * re + im * im
-}
-
 /// The highest peak of the phase correlation, in deviations, and the number of translations.
 fn phase_peak<const D: usize>(all: &[Mode<D>], modes: usize) -> (f64, f64) {
-    let fourier = Fourier::new(Fourier::size_from(2 * (modes + 1)));
-    let (size, mut other) = (fourier.size, Plane::default());
-    let mut grid = Plane::new(size.pow(D as u32));
+    let size = size_from(2 * (modes + 1));
+    let mut grid = vec![Complex::default(); size.pow(D as u32)];
     let place = |k: [i64; D]| {
         let slots = k.iter().map(|k| k.rem_euclid(size as i64) as usize);
         slots.rev().fold(0, |place, slot| place * size + slot)
     };
     for (k, [a, b]) in all {
-        let cross = [a[0] * b[0] + a[1] * b[1], a[1] * b[0] - a[0] * b[1]];
-        let length = squared(cross).sqrt().max(f64::MIN_POSITIVE);
-        let [re, im] = cross.map(|v| (v / length) as f32);
-        for (at, im) in [(place(*k), im), (place(k.map(|k| -k)), -im)] {
-            (grid.re[at], grid.im[at]) = (re, im);
-        }
+        let cross = a * b.conj();
+        let phase = cross / cross.norm().max(f64::MIN_POSITIVE);
+        grid[place(*k)] = phase;
+        grid[place(k.map(|k| -k))] = phase.conj();
     }
-    // Along the slowest axis, then with the axes in turn, once for each.
-    for _ in 0..D {
-        fourier.columns(&mut grid, &mut other);
-        for (to, from) in [(&mut other.re, &grid.re), (&mut other.im, &grid.im)] {
-            to.resize(from.len(), 0.0);
-            for (z, plane) in from.chunks_exact(from.len() / size).enumerate() {
-                for (i, v) in plane.iter().enumerate() {
-                    to[i * size + z] = *v;
-                }
-            }
-        }
-        std::mem::swap(&mut grid, &mut other);
-    }
-    let values = || grid.re.iter().map(|v| f64::from(*v));
-    let highest = values().fold(0.0, f64::max);
-    let places = grid.re.len() as f64;
-    let deviation = (values().map(|v| v * v).sum::<f64>() / places).sqrt();
+    let grid = of_grid(grid, size, D);
+    let highest = grid.iter().map(|v| v.re).fold(0.0, f64::max);
+    let places = grid.len() as f64;
+    let deviation = (grid.iter().map(|v| v.re * v.re).sum::<f64>() / places).sqrt();
     (highest / deviation.max(f64::MIN_POSITIVE), places)
 }
 

@@ -9,7 +9,7 @@
 //! [`Crispness`] is the effective Nyquist frequency and the oscillation of a spectrum, after Heck, Schlömer, Deussen, "Blue
 //! Noise Sampling with Controlled Aliasing" (2013).
 
-use super::{Sample, sums::transform};
+use super::{Sample, fourier::sums};
 
 /// The power P(k) = |Σ exp(−2πi k·x)|²/N at every integer k up to a largest frequency.
 #[derive(Clone, Debug)]
@@ -72,19 +72,19 @@ impl Spectrum {
     pub fn of(set: &Sample, nu_max: f64) -> Self {
         let side = set.side();
         let modes = (nu_max * side).floor().max(0.0) as usize;
-        let turns = set.turns();
         if set.is_periodic() {
             let unit = 1.0 / set.points().len().max(1) as f64;
-            let power = transform(&turns, None, modes, |_, _, sum| sum.norm_sqr() * unit);
+            let power = sums(set, None, modes, |_, sum| Some(sum.norm_sqr() * unit));
             return Self { side, modes, power };
         }
+        let turns = set.turns();
         let weights: Vec<f64> = turns.iter().map(|p| taper(p[0]) * taper(p[1])).collect();
         // At unit density a window has side² points on average.
         let area = side * side;
         let unit = 1.0 / (area * MEAN_SQUARE * MEAN_SQUARE);
-        let power = transform(&turns, Some(&weights), modes, |kx, ky, sum| {
+        let power = sums(set, Some(&weights), modes, |[kx, ky], sum| {
             let mean = area * taper_coefficient(kx) * taper_coefficient(ky);
-            (sum - mean).norm_sqr() * unit
+            Some((sum - mean).norm_sqr() * unit)
         });
         Self { side, modes, power }
     }

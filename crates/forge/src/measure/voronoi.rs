@@ -1,11 +1,13 @@
-//! Figures from the Delaunay triangulation: Voronoi cells, holes and bonds.
+//! Voronoi cells of a set: their areas, corners and neighbors.
 //!
-//! The triangulation library has no torus, so a periodic set gets a border: copies of the points
-//! near the opposite edge. Of a window only inner points count.
+//! Each cell is cut out of a square by the bisectors to the points around, in the order of a cell list from the inside out.
+//! Plain arithmetic in this fixed order yields the same bits on every machine and with any number of threads. Of a window only
+//! inner points count.
 
-use spade::{DelaunayTriangulation, Point2, Triangulation};
+use rayon::prelude::*;
 
-use super::{Sample, distance::HEXAGONAL, set::wrap};
+use super::{Sample, distance::HEXAGONAL};
+use crate::cell_list::CellList;
 
 /// The figures of a Voronoi diagram.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -14,96 +16,145 @@ pub struct Voronoi {
     pub area_deviation: f64,
     /// The standard deviation of the areas, over the mean area.
     pub area_spread: f64,
-    /// The radius of the largest empty circle (the largest circumradius of a Delaunay triangle),
-    /// over the nearest-neighbor distance of the hexagonal lattice of the same density. The
-    /// hexagonal lattice has 1/√3.
+    /// The radius of the largest empty circle (the largest distance of a cell's corner from its point), over the
+    /// nearest-neighbor distance of the hexagonal lattice of the same density. The hexagonal lattice has 1/√3.
     pub largest_hole: f64,
     /// Bond-orientational order: the mean over points of |mean of exp(6iθ) over the point's bonds|.
     /// It is 1 for a hexagonal lattice, 0 for a square one, about 0.37 for a random set.
     pub q6: f64,
 }
 
-/// The width, in mean spacings, of the border of a torus and of the margin of a window that does
-/// not count. Cells farther inside are whole unless there is a hole of half this radius.
-const BORDER: f64 = 6.0;
+/// The width, in mean spacings, of the margin of a window that does not count. Cells farther inside are whole unless there
+/// is a hole of half this radius.
+const MARGIN: f64 = 6.0;
+/// Half the side of the square that cells are cut from, in mean spacings. No cell is nearly as
+/// large.
+const HALF_SIDE: f64 = 4.0;
+/// Points per parallel task.
+const CHUNK: usize = 256;
 
 impl Voronoi {
-    /// Measures a set; of a window its points at least 6 mean spacings from the edge. All figures are 0 for a set too
-    /// small to have a triangulation. If points coincide, the deviation and the spread of areas are 1 and the other
-    /// figures 0.
+    /// Measures a set; of a window its points at least 6 mean spacings from the edge. All figures are 0 without points. If
+    /// points coincide, the deviation and the spread of areas are 1 and the other figures 0.
     pub fn of(set: &Sample) -> Self {
-        if !set.is_periodic() {
-            return Self::of_cells(set.points(), |_, p| set.is_inner(BORDER, p));
-        }
-        let side = set.side();
-        let border = BORDER.min(side);
-        let home = set.points().iter().map(|p| p.map(|v| wrap(v, side)));
-        let mut points: Vec<[f64; 2]> = home.collect();
-        let counted = points.len();
-        for index in 0..counted {
-            let images = points[index].map(|v| {
-                let (left, right) = (v < border, v >= side - border);
-                [Some(0.0), left.then_some(side), right.then_some(-side)]
-            });
-            for (at, dy) in images[1].iter().enumerate() {
-                for (also, dx) in images[0].iter().enumerate() {
-                    if let (Some(dx), Some(dy), true) = (dx, dy, at + also > 0) {
-                        points.push([points[index][0] + dx, points[index][1] + dy]);
-                    }
-                }
+        let found = cells(set, MARGIN, |cell| {
+            let [mut real, mut imaginary, mut twice_area] = [0.0; 3];
+            for (at, [a, beyond]) in cell.corners.iter().enumerate() {
+                let [b, _] = cell.corners[(at + 1) % cell.corners.len()];
+                twice_area += a[0] * b[1] - a[1] * b[0];
+                let angle = 6.0 * beyond[1].atan2(beyond[0]);
+                (real, imaginary) = (real + angle.cos(), imaginary + angle.sin());
             }
-        }
-        Self::of_cells(&points, |index, _| index < counted)
-    }
-
-    fn of_cells(points: &[[f64; 2]], counts: impl Fn(usize, &[f64; 2]) -> bool) -> Self {
-        let vertices = points.iter().map(|p| Point2::new(p[0], p[1])).collect();
-        let Ok(mesh) = DelaunayTriangulation::<Point2<f64>>::bulk_load_stable(vertices) else {
-            return Self::default();
-        };
-        // Coincident points share a vertex; then vertices and points no longer correspond.
-        if mesh.num_vertices() != points.len() {
-            return Self {
-                area_deviation: 1.0,
-                area_spread: 1.0,
-                ..Self::default()
-            };
-        }
-        let (mut worst, mut spread, mut hole, mut order, mut counted) =
-            (0.0f64, 0.0, 0.0f64, 0.0, 0u64);
-        for vertex in mesh.vertices() {
-            let p = points[vertex.index()];
-            if !counts(vertex.index(), &p) {
-                continue;
-            }
-            let (mut twice_area, mut bonds, mut real, mut imaginary) = (0.0, 0.0, 0.0, 0.0);
-            for edge in vertex.out_edges() {
-                let q = edge.to().position();
-                let angle = 6.0 * (q.y - p[1]).atan2(q.x - p[0]);
-                (real, imaginary, bonds) =
-                    (real + angle.cos(), imaginary + angle.sin(), bonds + 1.0);
-                let corner = |face: spade::handles::FaceHandle<'_, _, _, _, _, _>| {
-                    face.as_inner().map(|face| face.circumcenter())
-                };
-                if let (Some(a), Some(b)) = (corner(edge.rev().face()), corner(edge.face())) {
-                    let (ax, ay, bx, by) = (a.x - p[0], a.y - p[1], b.x - p[0], b.y - p[1]);
-                    twice_area += ax * by - ay * bx;
-                    hole = hole.max(bx * bx + by * by);
-                }
-            }
+            let order = real.hypot(imaginary) / cell.corners.len() as f64;
             let deviation = 0.5 * twice_area - 1.0;
+            (!cell.is_shared).then_some([deviation, cell.reach, order])
+        });
+        let (mut worst, mut spread, mut hole, mut order) = (0.0f64, 0.0, 0.0f64, 0.0);
+        let count = found.len().max(1) as f64;
+        for (_, cell) in found {
+            let Some([deviation, reach, own]) = cell else {
+                return Self {
+                    area_deviation: 1.0,
+                    area_spread: 1.0,
+                    ..Self::default()
+                };
+            };
             worst = worst.max(deviation.abs());
             spread += deviation * deviation;
-            order += (real * real + imaginary * imaginary).sqrt() / f64::max(bonds, 1.0);
-            counted += 1;
+            hole = hole.max(reach);
+            order += own;
         }
-        let count = counted.max(1) as f64;
         Self {
             area_deviation: worst,
             area_spread: (spread / count).sqrt(),
             largest_hole: hole.sqrt() / HEXAGONAL,
             q6: order / count,
         }
+    }
+}
+
+/// What `of` makes of the cell of each point of a set, in a window of those at least `margin` from its edge, with the number
+/// of the point.
+pub(crate) fn cells<T: Send>(
+    set: &Sample,
+    margin: f64,
+    of: impl Fn(&Polygon) -> T + Sync,
+) -> Vec<(u32, T)> {
+    let list = CellList::of(set, 1.0);
+    let of_chunk = |chunk: &[(u32, [f64; 2])]| -> Vec<(u32, T)> {
+        let mut cell = Polygon::default();
+        let counted = chunk.iter().filter(|(_, p)| set.is_inner(margin, p));
+        let cut = counted.map(|&(index, p)| {
+            cell.begin(&list, index, p);
+            (index, of(&cell))
+        });
+        cut.collect()
+    };
+    let all: Vec<Vec<(u32, T)>> = list.members.par_chunks(CHUNK).map(of_chunk).collect();
+    all.into_iter().flatten().collect()
+}
+
+/// The cell of a point, relative to it.
+#[derive(Default)]
+pub(crate) struct Polygon {
+    /// The corners, counterclockwise, each with the point beyond the edge that begins there.
+    pub(crate) corners: Vec<[[f64; 2]; 2]>,
+    /// The corners of the next cut.
+    spare: Vec<[[f64; 2]; 2]>,
+    /// The largest squared distance of a corner from the point.
+    reach: f64,
+    /// Whether another point is at the same place.
+    is_shared: bool,
+}
+
+impl Polygon {
+    /// Cuts the cell of the point `p`, which has the index `own`.
+    fn begin(&mut self, list: &CellList, own: u32, p: [f64; 2]) {
+        let corner = |[x, y]: [f64; 2]| [[x * HALF_SIDE, y * HALF_SIDE], [0.0; 2]];
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        self.corners.clear();
+        self.corners.extend(corners.map(corner));
+        (self.reach, self.is_shared) = (2.0 * HALF_SIDE * HALF_SIDE, false);
+        for ring in 0.. {
+            // Bisectors to points in this ring are at least this far away.
+            let far = 0.5 * f64::from((ring - 1).max(0)) * list.width();
+            if far * far > self.reach {
+                break;
+            }
+            list.ring(p, ring.into(), |index, [dx, dy]| {
+                let squared = dx * dx + dy * dy;
+                if squared == 0.0 {
+                    self.is_shared |= index != own;
+                } else if squared < 4.0 * self.reach {
+                    self.cut([-dx, -dy], 0.5 * squared);
+                }
+            });
+        }
+    }
+
+    /// Keeps the part of the cell where x·n ≤ `limit`.
+    fn cut(&mut self, n: [f64; 2], limit: f64) {
+        let excess = |[c, _]: &[[f64; 2]; 2]| c[0] * n[0] + c[1] * n[1] - limit;
+        if self.corners.iter().all(|c| excess(c) <= 0.0) {
+            return;
+        }
+        self.spare.clear();
+        for (at, corner) in self.corners.iter().enumerate() {
+            let next = &self.corners[(at + 1) % self.corners.len()];
+            let (here, there) = (excess(corner), excess(next));
+            if here <= 0.0 {
+                self.spare.push(*corner);
+            }
+            if (here <= 0.0) != (there <= 0.0) {
+                let part = here / (here - there);
+                let along = |i: usize| corner[0][i] + part * (next[0][i] - corner[0][i]);
+                let beyond = if here <= 0.0 { n } else { corner[1] };
+                self.spare.push([[along(0), along(1)], beyond]);
+            }
+        }
+        std::mem::swap(&mut self.corners, &mut self.spare);
+        let squared = |[c, _]: &[[f64; 2]; 2]| c[0] * c[0] + c[1] * c[1];
+        self.reach = self.corners.iter().map(squared).fold(0.0, f64::max);
     }
 }
 

@@ -12,10 +12,9 @@ use super::{
     press::each,
 };
 use crate::{
+    checkpoint::State,
     energy::{Gaussian, Guard, PairEnergy},
-    optimize::{
-        CHUNK, Descent, DescentState, Ground, Objective, Pair, Pairs, fill, longest, moves_of, sum,
-    },
+    optimize::{CHUNK, Descent, Ground, Objective, Pair, Pairs, fill, longest, moves_of, sum},
     watch::{Meter, work_off},
 };
 
@@ -41,7 +40,7 @@ pub(super) fn moved(
     let kinds = parts(table, mix);
     let energy = Together::new(table, &shares, &kinds);
     let mut descent = Descent::new(energy, steps, RATE);
-    let mut state = DescentState::start(moves_of(table));
+    let mut state = State::start(moves_of(table));
     if !work_off(&mut descent, &mut state, meter, &mut |_| {}) {
         return None;
     }

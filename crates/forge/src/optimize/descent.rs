@@ -1,133 +1,6 @@
-//! Gradient descent with momentum: what it lowers, its random start, and its state between two steps.
+//! Gradient descent with momentum: what it lowers, and its random start.
 
-use crate::{
-    ForgeError,
-    checkpoint::Kept,
-    numeric::SplitMix,
-    watch::{Phase, State},
-};
-
-/// The state of a descent between two steps. A descent resumed from it takes the same steps, bit
-/// for bit, as one that was not stopped.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DescentState {
-    /// The moves with the lowest energy so far.
-    pub moves: Vec<[f64; 2]>,
-    /// The energy of `moves`, per point.
-    pub energy: f64,
-    /// The number of evaluations done.
-    pub steps: u32,
-    /// The energy of the last evaluation; infinite before the first and after a restart.
-    last: f64,
-    /// Steps since the momentum was last dropped.
-    age: f64,
-    /// The current rate over the first one.
-    slowing: f64,
-    /// The moves after the last step, without momentum.
-    at: Vec<[f64; 2]>,
-    /// The moves after the last step, with momentum: where the next evaluation takes place.
-    pub(super) ahead: Vec<[f64; 2]>,
-    /// The moves that the objective built its lists for; see
-    /// [`Objective::prepared_for`].
-    pub(super) prepared_for: Vec<[f64; 2]>,
-}
-
-impl DescentState {
-    /// The state before any step.
-    pub fn start(moves: Vec<[f64; 2]>) -> Self {
-        Self {
-            energy: f64::INFINITY,
-            steps: 0,
-            last: f64::INFINITY,
-            age: 0.0,
-            slowing: 1.0,
-            at: moves.clone(),
-            ahead: moves.clone(),
-            prepared_for: Vec::new(),
-            moves,
-        }
-    }
-
-    /// Takes a step, given the energy and its gradient at `ahead`.
-    pub(super) fn step(
-        &mut self,
-        first_rate: f64,
-        energy: f64,
-        gradient: &[[f64; 2]],
-        masses: &[f64],
-    ) {
-        self.steps += 1;
-        if energy < self.energy {
-            self.energy = energy;
-            self.moves.clone_from(&self.ahead);
-        }
-        // If the energy rises, restart from the best moves. Without momentum to blame, the step was
-        // too long.
-        let rose = energy > self.last || energy.is_nan();
-        self.last = energy;
-        if rose {
-            self.slowing *= if self.age <= 1.0 { 0.5 } else { 1.0 };
-            (self.age, self.last) = (0.0, f64::INFINITY);
-            self.at.clone_from(&self.moves);
-            self.ahead.clone_from(&self.moves);
-            return;
-        }
-        let rate = first_rate * self.slowing;
-        let mut uphill = 0.0;
-        self.age += 1.0;
-        let momentum = self.age / (self.age + 3.0);
-        let places = self.at.iter_mut().zip(&mut self.ahead);
-        for (((at, ahead), slope), mass) in places.zip(gradient).zip(masses) {
-            for axis in 0..2 {
-                let next = ahead[axis] - rate * slope[axis];
-                let by = next - at[axis];
-                uphill += mass * slope[axis] * by;
-                at[axis] = next;
-                ahead[axis] = next + momentum * by;
-            }
-        }
-        if uphill > 0.0 {
-            self.age = 0.0;
-            self.ahead.clone_from(&self.at);
-        }
-    }
-}
-
-impl State for DescentState {
-    fn steps(&self) -> u32 {
-        self.steps
-    }
-
-    fn blocks(&self) -> usize {
-        self.moves.len()
-    }
-
-    fn keep(&self) -> Kept {
-        let lists = [&self.moves, &self.at, &self.ahead, &self.prepared_for];
-        Kept {
-            steps: self.steps,
-            numbers: vec![self.energy, self.last, self.age, self.slowing],
-            lists: lists.map(|list| list.as_flattened().to_vec()).into(),
-        }
-    }
-
-    fn resume(kept: Kept) -> Option<Self> {
-        let (steps, numbers) = (kept.steps, kept.numbers[..].try_into());
-        let [energy, last, age, slowing]: [f64; 4] = numbers.ok()?;
-        let [moves, at, ahead, prepared_for] = kept.lists()?;
-        Some(Self {
-            moves,
-            energy,
-            steps,
-            last,
-            age,
-            slowing,
-            at,
-            ahead,
-            prepared_for,
-        })
-    }
-}
+use crate::{ForgeError, checkpoint::State, numeric::SplitMix, watch::Phase};
 
 /// Returns a vector for each block, uniformly random in a square or cube of half-width `jitter`.
 ///
@@ -219,7 +92,51 @@ impl<O: Objective> Descent<O> {
     }
 }
 
-impl<O: Objective> Phase<DescentState> for Descent<O> {
+/// Takes a step, given the energy and its gradient where it was evaluated.
+fn step(state: &mut State<2>, first_rate: f64, energy: f64, gradient: &[[f64; 2]], masses: &[f64]) {
+    // The energy of the best moves; that of the last evaluation, infinite before the first and after a restart; the steps since
+    // the momentum was last dropped; and the current rate over the first one.
+    let [least, last, age, slowing] = &mut state.numbers;
+    let [at, ahead, _] = &mut state.lists;
+    state.steps += 1;
+    if energy < *least {
+        *least = energy;
+        state.moves.clone_from(ahead);
+    }
+    // If the energy rises, restart from the best moves. Without momentum to blame, the step was
+    // too long.
+    let rose = energy > *last || energy.is_nan();
+    *last = energy;
+    if rose {
+        *slowing *= if *age <= 1.0 { 0.5 } else { 1.0 };
+        (*age, *last) = (0.0, f64::INFINITY);
+        at.clone_from(&state.moves);
+        ahead.clone_from(&state.moves);
+        return;
+    }
+    let rate = first_rate * *slowing;
+    let mut uphill = 0.0;
+    *age += 1.0;
+    let momentum = *age / (*age + 3.0);
+    let places = at.iter_mut().zip(&mut *ahead);
+    for (((at, ahead), slope), mass) in places.zip(gradient).zip(masses) {
+        for axis in 0..2 {
+            let next = ahead[axis] - rate * slope[axis];
+            let by = next - at[axis];
+            uphill += mass * slope[axis] * by;
+            at[axis] = next;
+            ahead[axis] = next + momentum * by;
+        }
+    }
+    if uphill > 0.0 {
+        *age = 0.0;
+        ahead.clone_from(at);
+    }
+}
+
+/// The lists of a state are the moves after the last step, without momentum and with it, where the next evaluation takes
+/// place, and those that the objective built its lists for; see [`Objective::prepared_for`].
+impl<O: Objective> Phase<State<2>> for Descent<O> {
     fn steps(&self) -> u32 {
         self.steps
     }
@@ -228,27 +145,32 @@ impl<O: Objective> Phase<DescentState> for Descent<O> {
         format!("{} steps at rate {}", self.steps, self.rate)
     }
 
-    fn begin(&mut self, state: &DescentState) {
-        if !state.prepared_for.is_empty() {
-            self.objective.prepare_for(&state.prepared_for);
+    fn begin(&mut self, state: &mut State<2>) {
+        let moves = &state.moves;
+        self.gradient = vec![[0.0; 2]; moves.len()];
+        if state.lists[0].is_empty() {
+            state.numbers = [f64::INFINITY, f64::INFINITY, 0.0, 1.0];
+            state.lists = [moves.clone(), moves.clone(), Vec::new()];
         }
-        self.gradient = vec![[0.0; 2]; state.blocks()];
+        if !state.lists[2].is_empty() {
+            self.objective.prepare_for(&state.lists[2]);
+        }
     }
 
-    fn step(&mut self, state: &mut DescentState) -> f64 {
-        let energy = self.objective.evaluate(&state.ahead, &mut self.gradient);
-        state.step(self.rate, energy, &self.gradient, self.objective.masses());
+    fn step(&mut self, state: &mut State<2>) -> f64 {
+        let energy = self.objective.evaluate(&state.lists[1], &mut self.gradient);
+        let masses = self.objective.masses();
+        step(state, self.rate, energy, &self.gradient, masses);
         energy
     }
 
-    fn complete(&self, state: &mut DescentState) {
-        self.objective
-            .prepared_for()
-            .clone_into(&mut state.prepared_for);
+    fn complete(&self, state: &mut State<2>) {
+        let prepared_for = self.objective.prepared_for();
+        prepared_for.clone_into(&mut state.lists[2]);
     }
 
-    fn end(&self, state: DescentState) -> Result<DescentState, ForgeError> {
-        Ok(DescentState::start(state.moves))
+    fn end(&self, state: State<2>) -> Result<State<2>, ForgeError> {
+        Ok(State::start(state.moves))
     }
 
     fn pairs(&self) -> usize {
@@ -281,9 +203,9 @@ mod tests {
         }
     }
 
-    fn run(steps: u32, rate: f64, watch: &dyn Watch) -> DescentState {
+    fn run(steps: u32, rate: f64, watch: &dyn Watch) -> State<2> {
         let mut meter = Meter::new(watch, Stage::Optimizing, steps);
-        let mut state = DescentState::start(vec![[5.0, 5.0]; 2]);
+        let mut state = State::start(vec![[5.0, 5.0]; 2]);
         let mut descent = Descent::new(Valley([0.25, 0.75]), steps, rate);
         work_off(&mut descent, &mut state, &mut meter, &mut |_| {});
         state
@@ -293,7 +215,8 @@ mod tests {
     fn reaches_the_bottom_of_a_narrow_valley_also_with_a_rate_that_is_too_large() {
         for (rate, most) in [(0.9, 1e-6), (50.0, 0.02)] {
             let found = run(600, rate, &());
-            assert!(found.energy < most, "{rate}: {}", found.energy);
+            let [energy, ..] = found.numbers;
+            assert!(energy < most, "{rate}: {energy}");
             assert_eq!(found.steps, 600);
         }
     }

@@ -5,7 +5,7 @@
 //! are sums over pairs of blocks and need no points: `ground` knows which blocks meet and how often, by the overlaps of
 //! intervals, and `pairs` lists those that are near each other. [`Sets`] evaluates any other energy on twins. For
 //! [`Radial`], `rings` turns a histogram of distances into radial power. A [`Descent`] lowers an
-//! objective from the random start of [`jitter`]; its [`DescentState`] can be kept and resumed.
+//! objective from the random start of [`jitter`].
 
 mod descent;
 mod ground;
@@ -16,7 +16,7 @@ mod sets;
 
 #[cfg(test)]
 pub(crate) use descent::check_slopes;
-pub use descent::{Descent, DescentState, Objective, jitter};
+pub use descent::{Descent, Objective, jitter};
 pub(crate) use ground::{Ground, Pair, moves_of, overlaps};
 pub use pairs::Pairs;
 pub(crate) use pairs::{CHUNK, fill, longest, sum};

@@ -108,7 +108,13 @@ pub(super) const LLOYD: Profile = Profile {
     ],
 };
 
-/// The weights that suit most curves.
+/// What suits most curves.
+const FOLLOWING: Following = Following {
+    curve: "",
+    weights: WEIGHTS,
+    warm_share: 0.0,
+    rate: 0.1,
+};
 const WEIGHTS: RadialWeights = RadialWeights {
     reach: 18.0,
     nu_max: 5.0,
@@ -126,17 +132,14 @@ pub(super) const STEP: Profile = Profile {
     summary: "Step blue noise: no power up to nu 0.56, flat beyond",
     recipe: Recipe::Radial(Following {
         curve: "0 0; 0.56 0; 0.56 1",
-        weights: WEIGHTS,
-        warm_share: 0.0,
-        rate: 0.1,
+        ..FOLLOWING
     }),
-    jitter: 0.7,
-    steps: 250,
     bounds: &[
         Bound::at_most(Figure::QuietPower, 5e-4),
         Bound::at_most(Figure::TailWorst, 0.05),
         Bound::at_most(Figure::TargetRms, 0.03),
     ],
+    ..CUSTOM
 };
 
 /// Power rises from 0 to a broad peak at ν = 0.62, in the middle frequencies. Unlike most sets
@@ -150,10 +153,9 @@ pub(super) const GREEN: Profile = Profile {
             quiet: 0.8,
             ..WEIGHTS
         },
-        warm_share: 0.0,
         rate: 0.05,
+        ..FOLLOWING
     }),
-    jitter: 0.7,
     steps: 200,
     bounds: &[
         Bound::at_most(Figure::QuietPower, 0.01),
@@ -162,6 +164,7 @@ pub(super) const GREEN: Profile = Profile {
         Bound::at_most(Figure::PeakNu, 0.75),
         Bound::at_most(Figure::TailWorst, 0.1),
     ],
+    ..CUSTOM
 };
 
 /// Power falls as 1/ν from 5.5 at ν = 0.127 to 1 at ν = 0.7: clusters of all sizes.
@@ -176,15 +179,14 @@ pub(super) const PINK: Profile = Profile {
             leash: 3.0,
             ..WEIGHTS
         },
-        warm_share: 0.0,
         rate: 0.05,
+        ..FOLLOWING
     }),
-    jitter: 0.7,
-    steps: 250,
     bounds: &[
         Bound::at_most(Figure::TargetRelative, 0.1),
         Bound::at_most(Figure::TailWorst, 0.1),
     ],
+    ..CUSTOM
 };
 
 /// No power up to ν = 0.67, one peak, a shallow dip, flat from ν = 1.9 on: quiet farther out than a
@@ -205,25 +207,20 @@ pub(super) const SINGLE_PEAK: Profile = Profile {
         warm_share: 0.3,
         rate: 0.05,
     }),
-    jitter: 0.7,
     steps: 400,
     bounds: &[
         Bound::at_most(Figure::LowPower, 1e-3),
         Bound::at_least(Figure::NuEff, 0.81),
         Bound::at_most(Figure::TargetRms, 0.035),
     ],
+    ..CUSTOM
 };
 
 /// A custom curve, whose [bounds](crate::judge::bounds_of_curve) follow from the curve itself.
 pub(super) const CUSTOM: Profile = Profile {
     name: "custom",
     summary: "A custom radial power curve",
-    recipe: Recipe::Radial(Following {
-        curve: "",
-        weights: WEIGHTS,
-        warm_share: 0.0,
-        rate: 0.1,
-    }),
+    recipe: Recipe::Radial(FOLLOWING),
     jitter: 0.7,
     steps: 250,
     bounds: &[],

@@ -3,10 +3,11 @@
 use std::slice;
 
 use crate::{
+    checkpoint::State,
     curve::Target,
     energy::{Gaussian, Guard, Lloyd},
     judge::Bound,
-    optimize::{Descent, DescentState, Objective, Pairs, Radial, RadialWeights, Sets},
+    optimize::{Descent, Objective, Pairs, Radial, RadialWeights, Sets},
     twins::Domain,
     watch::Phase,
 };
@@ -114,7 +115,7 @@ pub struct Push {
 }
 
 /// A descent.
-type BoxedPhase = Box<dyn Phase<DescentState>>;
+type BoxedPhase = Box<dyn Phase<State<2>>>;
 
 /// The descent of an objective.
 fn phase(objective: impl Objective + 'static, steps: u32, rate: f64) -> BoxedPhase {

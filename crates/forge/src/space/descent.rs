@@ -1,72 +1,10 @@
-//! The phases of a job: the state between their steps, descent with momentum over the vectors of a table, and pushes, in
+//! The phases of a job: descent with momentum over the vectors of a table, and pushes, in
 //! which points that are too near push each other apart until a target distance is kept everywhere.
 
 use strew_core::Map;
 
 use super::pairs::{Blocks, Gaussian, Pairs};
-use crate::{
-    ForgeError,
-    checkpoint::Kept,
-    watch::{Phase, State},
-};
-
-/// The vectors of a table in the making, and what the current phase has beside them: all that decides the next step.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct SpaceState {
-    /// Steps of the current phase.
-    step: u32,
-    /// The vectors, in mean spacings.
-    pub(super) moves: Vec<[f64; 3]>,
-    /// Of a descent; empty in pushes.
-    momentum: Vec<[f64; 3]>,
-    /// The vectors that a descent's pairs were listed for, because the order of sums follows the lists; empty before the
-    /// first step.
-    listed: Vec<[f64; 3]>,
-    /// Of pushes: the greatest least distance so far, and its vectors.
-    least: f64,
-    best: Vec<[f64; 3]>,
-}
-
-impl SpaceState {
-    pub(super) fn start(moves: Vec<[f64; 3]>) -> Self {
-        Self {
-            moves,
-            ..Self::default()
-        }
-    }
-}
-
-impl State for SpaceState {
-    fn steps(&self) -> u32 {
-        self.step
-    }
-
-    fn blocks(&self) -> usize {
-        self.moves.len()
-    }
-
-    fn keep(&self) -> Kept {
-        let lists = [&self.moves, &self.momentum, &self.listed, &self.best];
-        Kept {
-            steps: self.step,
-            numbers: vec![self.least],
-            lists: lists.map(|list| list.as_flattened().to_vec()).into(),
-        }
-    }
-
-    fn resume(kept: Kept) -> Option<Self> {
-        let (step, [least]) = (kept.steps, kept.numbers[..].try_into().ok()?);
-        let [moves, momentum, listed, best] = kept.lists()?;
-        Some(Self {
-            step,
-            moves,
-            momentum,
-            listed,
-            least,
-            best,
-        })
-    }
-}
+use crate::{ForgeError, checkpoint::State, watch::Phase};
 
 /// How the steps of a phase move blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,21 +56,22 @@ impl<'a> SpacePhase<'a> {
     }
 
     /// Takes a step down an energy. Returns the energy before it, per point.
-    fn descend(&mut self, gaussian: Gaussian, state: &mut SpaceState) -> f64 {
+    fn descend(&mut self, gaussian: Gaussian, state: &mut State<3>) -> f64 {
         let moves = single(&state.moves);
-        let is_near = state.listed.len() == moves.len()
-            && moves.iter().zip(single(&state.listed)).all(|(a, b)| {
+        let [momentum, listed, _] = &mut state.lists;
+        let is_near = listed.len() == moves.len()
+            && moves.iter().zip(single(listed)).all(|(a, b)| {
                 let squared: f32 = (0..3).map(|i| (a[i] - b[i]) * (a[i] - b[i])).sum();
                 squared < (0.5 * SKIN * 0.5 * SKIN) as f32
             });
         if !is_near {
             self.pairs = self.blocks.pairs(&moves, gaussian.reach() + SKIN);
-            state.listed.clone_from(&state.moves);
+            listed.clone_from(&state.moves);
         }
         let energy = gaussian.evaluate(&self.blocks, &self.pairs, &moves, &mut self.forces);
-        let rate = self.rate(gaussian, state.step);
-        state.momentum.resize(moves.len(), [0.0; 3]);
-        let all = state.moves.iter_mut().zip(&mut state.momentum);
+        let rate = self.rate(gaussian, state.steps);
+        momentum.resize(moves.len(), [0.0; 3]);
+        let all = state.moves.iter_mut().zip(momentum);
         for ((at, momentum), force) in all.zip(&self.forces) {
             for axis in 0..3 {
                 momentum[axis] = MOMENTUM * momentum[axis] + force[axis];
@@ -161,7 +100,9 @@ impl<'a> SpacePhase<'a> {
     }
 }
 
-impl Phase<SpaceState> for SpacePhase<'_> {
+/// The lists of a state are the momentum of a descent, the vectors that its pairs were listed for, because the order of sums
+/// follows the lists, and of pushes the vectors with the greatest least distance so far, which is a number of the state.
+impl Phase<State<3>> for SpacePhase<'_> {
     fn steps(&self) -> u32 {
         self.steps
     }
@@ -173,28 +114,27 @@ impl Phase<SpaceState> for SpacePhase<'_> {
         }
     }
 
-    fn begin(&mut self, state: &SpaceState) {
-        self.forces = vec![[0.0; 3]; state.blocks()];
-        if let (Rule::Descent(gaussian), false) = (self.rule, state.listed.is_empty()) {
+    fn begin(&mut self, state: &mut State<3>) {
+        self.forces = vec![[0.0; 3]; state.moves.len()];
+        let [_, listed, _] = &state.lists;
+        if let (Rule::Descent(gaussian), false) = (self.rule, listed.is_empty()) {
             let reach = gaussian.reach() + SKIN;
-            self.pairs = self.blocks.pairs(&single(&state.listed), reach);
+            self.pairs = self.blocks.pairs(&single(listed), reach);
         }
     }
 
-    fn step(&mut self, state: &mut SpaceState) -> f64 {
+    fn step(&mut self, state: &mut State<3>) -> f64 {
         let value = match self.rule {
             Rule::Descent(gaussian) => self.descend(gaussian, state),
             Rule::Pushes => push(&self.blocks, state, self.steps),
         };
-        state.step += 1;
+        state.steps += 1;
         value
     }
 
-    fn end(&self, state: SpaceState) -> Result<SpaceState, ForgeError> {
-        let mut moves = match state.best.is_empty() {
-            true => state.moves,
-            false => state.best,
-        };
+    fn end(&self, state: State<3>) -> Result<State<3>, ForgeError> {
+        let [_, _, best] = state.lists;
+        let mut moves = if best.is_empty() { state.moves } else { best };
         if let Some([coarse, fine]) = self.finer {
             // The vectors of the coarse map for the blocks of the finer one.
             let (fine, parents) = coarse.refine(fine.radius())?;
@@ -205,7 +145,7 @@ impl Phase<SpaceState> for SpacePhase<'_> {
             };
             moves = (0..n.pow(3)).map(parent).collect();
         }
-        Ok(SpaceState::start(moves))
+        Ok(State::start(moves))
     }
 
     fn pairs(&self) -> usize {
@@ -240,8 +180,8 @@ fn shorten(v: &mut [f64; 3], longest: f64) {
 const TARGETS: [f64; 2] = [0.853, 0.965];
 
 /// Moves blocks apart, one step of `steps`. Returns the least distance before it, in mean spacings.
-fn push(blocks: &Blocks, state: &mut SpaceState, steps: u32) -> f64 {
-    let part = f64::from(state.step) / f64::from(steps.max(2) - 1);
+fn push(blocks: &Blocks, state: &mut State<3>, steps: u32) -> f64 {
+    let part = f64::from(state.steps) / f64::from(steps.max(2) - 1);
     let target = TARGETS[0] + (TARGETS[1] - TARGETS[0]) * part;
     let places = single(&state.moves);
     let mut sums = vec![([0.0f64; 3], 0.0f64); places.len()];
@@ -264,8 +204,8 @@ fn push(blocks: &Blocks, state: &mut SpaceState, steps: u32) -> f64 {
             *weight += own;
         }
     });
-    if least > state.least {
-        (state.least, state.best) = (least, state.moves.clone());
+    if least > state.numbers[0] {
+        (state.numbers[0], state.lists[2]) = (least, state.moves.clone());
     }
     for (v, (sum, weight)) in state.moves.iter_mut().zip(&sums) {
         if *weight > 0.0 {

@@ -9,12 +9,13 @@ use strew_core::{
 };
 
 use super::{
-    descent::{Rule, SpacePhase, SpaceState},
+    descent::{Rule, SpacePhase},
     judge::Judge,
-    pairs::{Gaussian, LONGEST, longest, with_ranks},
+    pairs::{COMPONENT, Gaussian, LONGEST, longest, with_ranks},
 };
 use crate::{
     ForgeError, MAX_STEPS, Meter,
+    checkpoint::State,
     forge::{Task, Work},
     judge::{Bound, Complaint, Figure, complaints as missed},
     optimize::jitter,
@@ -120,6 +121,9 @@ const MAX_INTERVALS: usize = 40;
 /// The least reach of vectors, in mean spacings.
 const LEAST_REACH: f64 = 0.8 * LONGEST;
 
+// Offsets of pairs fit 8 bits.
+const _: () = assert!((5.6 + 2.0 * LONGEST) * COMPONENT / LEAST_REACH < 126.0);
+
 /// The reach of the random start along each axis, in mean spacings.
 const JITTER: f64 = 0.2;
 
@@ -148,7 +152,7 @@ impl SpacePlan {
 }
 
 impl Work for SpacePlan {
-    type State = SpaceState;
+    type State = State<3>;
     type Table = Table;
 
     fn identity(&self) -> String {
@@ -166,12 +170,12 @@ impl Work for SpacePlan {
         )
     }
 
-    fn start(&self) -> SpaceState {
+    fn start(&self) -> State<3> {
         let blocks = self.maps[0].intervals().pow(3);
-        SpaceState::start(jitter(blocks, JITTER, self.job.seed))
+        State::start(jitter(blocks, JITTER, self.job.seed))
     }
 
-    fn phases(&self) -> Vec<Box<dyn Phase<SpaceState> + '_>> {
+    fn phases(&self) -> Vec<Box<dyn Phase<State<3>> + '_>> {
         let phases = self.job.phases().into_iter().enumerate();
         let phase = |(number, (rule, steps)): (usize, (Rule, u32))| {
             let finer = (number == 0).then_some(&self.maps);
@@ -183,7 +187,7 @@ impl Work for SpacePlan {
 
     fn table(
         &self,
-        state: &SpaceState,
+        state: &State<3>,
         [steps, all]: [u32; 2],
         figures: Vec<Figures>,
     ) -> Result<Table, ForgeError> {
@@ -265,22 +269,4 @@ fn complaints(profile: SpaceProfile, figures: &[Figures]) -> Vec<Complaint> {
         missed(&bounds, std::slice::from_ref(figures))
     };
     figures.iter().flat_map(of).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn offsets_fit_8_bits() {
-        for text in ["1.51", "(5-sqrt(3))/2", "(1+sqrt(5))/2", "1.8"] {
-            let job = SpaceJob {
-                alpha: text.parse().expect("valid"),
-                radius: MAX_SPACE_RADIUS,
-                ..SpaceJob::new(SpaceProfile::Blue)
-            };
-            let [_, map] = job.maps().expect(text);
-            assert!((5.6 + 5.0) / map.alpha().set_side_f64() + 1.0 < 127.0);
-        }
-    }
 }

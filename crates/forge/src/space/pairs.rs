@@ -47,10 +47,11 @@ pub(super) struct Blocks {
     pub(super) longest: f64,
 }
 
+/// The reach of a component of a table, in grid units.
+pub(super) const COMPONENT: f64 = 7.99;
+
 /// The greatest displacement at an α, in mean spacings: [`LONGEST`], or what a component of a table reaches.
 pub(super) fn longest(alpha: Alpha) -> f64 {
-    /// In grid units.
-    const COMPONENT: f64 = 7.99;
     LONGEST.min(COMPONENT * alpha.set_side_f64())
 }
 
