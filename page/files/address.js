@@ -23,10 +23,8 @@ export function givenIn(/** @type {string} */ hash) {
     has: (/** @type {string} */ name) => given.has(name),
     /** The text of a name, or nothing. */
     text: (/** @type {string} */ name) => take(name, () => true) ?? "",
-    /** The text of a name if it has a form. */
-    matching: (/** @type {string} */ name, /** @type {RegExp} */ form, otherwise = "") => take(name, (text) => form.test(text)) ?? otherwise,
-    /** A seed. */
-    seed: (/** @type {string} */ otherwise) => take("seed", isSeed) ?? otherwise,
+    /** The text of a name if it is right. */
+    matching: (/** @type {string} */ name, /** @type {(text: string) => boolean} */ isRight, otherwise = "") => take(name, isRight) ?? otherwise,
     /** A number within bounds. */
     number: (/** @type {string} */ name, /** @type {number} */ otherwise, /** @type {number[]} */ [least, most] = [-Infinity, Infinity]) => {
       const text = take(name, (one) => one.trim() !== "" && Number.isFinite(Number(one)) && Number(one) >= least && Number(one) <= most);

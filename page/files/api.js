@@ -94,6 +94,22 @@ function look(/** @type {number} */ wait) {
   }, wait);
 }
 
+/** The pieces of the body of an answer, as they come. One that breaks off says that the server is away. */
+export const piecesOf = async function* (/** @type {Response} */ answer) {
+  const reader = /** @type {ReadableStream<Uint8Array>} */ (answer.body).getReader();
+  try {
+    for (;;) {
+      const { done, value } = await reader.read();
+      if (done) return;
+      yield value;
+    }
+  } catch (error) {
+    throw isAborted(error) ? error : brokeOff();
+  } finally {
+    reader.cancel().catch(() => {});
+  }
+};
+
 /** Says that a body broke off: the server went away while it was sending. */
 export function brokeOff() {
   presence(true);
@@ -159,21 +175,8 @@ export async function askJson(path, options) {
   }
 }
 
-/** A number that is written as it was typed. */
-export class Digits {
-  constructor(text) {
-    const isNumber = /^-?\d+(\.\d+)?(e[+-]?\d+)?$/i.test(text);
-    this.text = isNumber ? text.replace(/^(-?)0+(?=\d)/, "$1") : JSON.stringify(text);
-  }
-}
-
-/** Writes JSON, with `Digits` as they are; `indent` as of `JSON.stringify`. */
-export function json(value, indent = 0) {
-  const marks = [];
-  const text = JSON.stringify(value, (_, member) => {
-    if (!(member instanceof Digits)) return member;
-    marks.push(member.text);
-    return `\u0000${marks.length - 1}\u0000`;
-  }, indent);
-  return text.replace(/"\\u0000(\d+)\\u0000"/g, (_, i) => marks[Number(i)]);
+/** A number that JSON has as it was typed, with all of its digits where the browser can; what is no number is text. */
+export function digits(/** @type {string} */ text) {
+  if (!/^-?\d+(\.\d+)?(e[+-]?\d+)?$/i.test(text)) return text;
+  return JSON.rawJSON?.(text.replace(/^(-?)0+(?=\d)/, "$1")) ?? Number(text);
 }

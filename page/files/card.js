@@ -1,10 +1,11 @@
 // A point that is pointed at: its card, and its place and neighbors above the plane.
 
 import { askJson, isAborted, wordsOf } from "./api.js";
-import { byId, contextOf, make, settled, spoken } from "./dom.js";
+import { byId, make, settled, spoken } from "./dom.js";
 import { decimalsFor, distance, formatPlace, moved, parsePlace, toNumber } from "./place.js";
 import { attributesOf, joined, setOf, worldPairs } from "./query.js";
 import { themeColor } from "./theme.js";
+import { fitted } from "./view.js";
 
 /** How near a pointer has to be to a point, in CSS pixels; a finger or a key may miss by more. */
 const HOVER = 14;
@@ -189,10 +190,8 @@ export class Card {
     const { over } = this;
     if (!this.point && !this.hasInk) return;
     this.hasInk = Boolean(this.point);
-    [over.width, over.height] = view.pixels;
+    const { context } = fitted(over, view.width, view.height);
     if (!this.point) return;
-    const context = contextOf(over);
-    context.scale(view.ratio, view.ratio);
     const [x, y] = this.onCanvas(this.point.x, this.point.y);
     context.strokeStyle = themeColor("accent");
     context.lineWidth = 1.5;

@@ -2,25 +2,18 @@
 
 import { contextOf } from "./dom.js";
 import { themeColor } from "./theme.js";
-import { fineness } from "./view.js";
+import { fitted } from "./view.js";
 
-/** Makes a canvas as fine as the screen; returns its context in CSS pixels with its size. */
+/** Makes a canvas ready to draw on, in CSS pixels, with a height by its width. */
 function prepared(canvas, aspect) {
   const width = canvas.clientWidth || 280;
-  const height = Math.round(width * aspect);
-  const ratio = fineness();
-  Object.assign(canvas, { width: Math.round(width * ratio), height: Math.round(height * ratio) });
-  const context = contextOf(canvas);
-  context.scale(ratio, ratio);
-  return { context, width, height };
+  return fitted(canvas, width, Math.round(width * aspect));
 }
 
-/**
- * Draws curves. `series` are `{ values: [[x, y], …], color, dash }` with the names of theme colors;
- * `x` and `y` are the ranges; `name` names the horizontal axis; a line marks y = 1.
- */
-export function lineChart(canvas, { series, x, y, name, aspect = 0.5 }) {
+/** Draws a curve of `[x, y]`, with one `beside` it dashed, for x up to `end` and y up to `top`; `name` names the horizontal axis. */
+export function lineChart(canvas, values, { beside = [], end = 3, top = topOf(values, beside), name = "ν", aspect = 0.5 }) {
   const { context, width, height } = prepared(canvas, aspect);
+  const [x, y] = [[0, end], [0, top]];
   const frame = { left: 22, right: 6, top: 6, bottom: 20 };
   const px = (v) => frame.left + ((v - x[0]) / (x[1] - x[0])) * (width - frame.left - frame.right);
   const py = (v) => height - frame.bottom - ((v - y[0]) / (y[1] - y[0])) * (height - frame.top - frame.bottom);
@@ -44,11 +37,11 @@ export function lineChart(canvas, { series, x, y, name, aspect = 0.5 }) {
   context.beginPath();
   context.rect(frame.left, frame.top - 2, width - frame.left - frame.right, height - frame.top - frame.bottom + 4);
   context.clip();
-  for (const { values, color, dash } of series) {
-    context.strokeStyle = themeColor(color);
-    context.lineWidth = dash ? 1.5 : 1.75;
-    context.setLineDash(dash ? [5, 4] : []);
-    line(context, values.map(([a, b]) => [px(a), py(b)]));
+  for (const curve of [beside, values]) {
+    context.strokeStyle = themeColor(curve === values ? "accent" : "soft");
+    context.lineWidth = curve === values ? 1.75 : 1.5;
+    context.setLineDash(curve === values ? [] : [5, 4]);
+    line(context, curve.map(([a, b]) => [px(a), py(b)]));
   }
   context.restore();
 }

@@ -1,7 +1,8 @@
 // The chunks that are there, loading, or wanted: requested nearest first and a few at a time, aborted when
 // they leave the view, kept while there is room.
 
-import { Gone, Problem, ask, brokeOff, isAway, onPresence } from "./api.js";
+import { Gone, Problem, ask, brokeOff, isAway, onPresence, piecesOf } from "./api.js";
+import { firstOf } from "./bisect.js";
 import { chunkRequest, columnsOf } from "./query.js";
 
 /** Requests at a time: browsers open six connections, and one is for what is asked beside. */
@@ -40,16 +41,11 @@ const ROOM = (navigator.deviceMemory ?? 8) >= 4 ? 256e6 : 96e6;
  * @typedef {object} Kind
  * @property {(layers: any[], address: any, keep: number) => { path: string, body?: string }} requestOf
  * @property {(layers: any[]) => string[]} columnsOf The columns that follow x and y.
- * @property {(address: any) => string} nameOf An address as text.
  * @property {(layers: any[], address: any) => Promise<Float32Array<ArrayBuffer>>} [make] Makes the points where no server is asked.
  */
 
 /** @type {Kind} */
-const PLANE = {
-  requestOf: chunkRequest,
-  columnsOf,
-  nameOf: ({ size, cx, cy }) => `${size}/${cx}/${cy}`,
-};
+const PLANE = { requestOf: chunkRequest, columnsOf };
 
 /** The chunks of the layers that are shown. */
 export class Chunks {
@@ -117,7 +113,8 @@ export class Chunks {
   }
 
   key(/** @type {Address} */ address, /** @type {number} */ keep) {
-    return `${this.identity} ${keep} ${this.kind.nameOf(address)}`;
+    const { size, cx, cy, cz } = address;
+    return [this.identity, keep, size, cx, cy, cz].join(" ");
   }
 
   /**
@@ -157,6 +154,18 @@ export class Chunks {
     if (this.wanted.length === 0) return 1;
     const part = (/** @type {Chunk} */ chunk) => (chunk.state === "done" ? 1 : chunk.total > 0 ? chunk.count / chunk.total : 0);
     return this.wanted.reduce((sum, chunk) => sum + part(chunk), 0) / this.wanted.length;
+  }
+
+  /** What of what is looked at is there: points, chunks that are done, of those that are wanted; and bytes that have come so far. */
+  get sums() {
+    const { wanted, received } = this;
+    return {
+      points: wanted.reduce((sum, { count }) => sum + count, 0),
+      done: wanted.filter(({ state }) => state === "done").length,
+      wanted: wanted.length,
+      received,
+      isLater: wanted.some(({ state }) => state === "later"),
+    };
   }
 
   /** Drops what was not looked at for longest, until the rest has room. */
@@ -210,16 +219,11 @@ export class Chunks {
     const record = 4 * chunk.stride;
     chunk.data = new Float32Array(chunk.total * chunk.stride);
     const bytes = new Uint8Array(chunk.data.buffer);
-    const reader = /** @type {ReadableStream<Uint8Array>} */ (answer.body).getReader();
     let filled = 0;
-    for (;;) {
-      const piece = await reader.read().catch((error) => {
-        throw error.name === "AbortError" ? error : brokeOff();
-      });
-      if (piece.done) break;
-      bytes.set(piece.value.subarray(0, bytes.length - filled), filled);
-      filled += piece.value.length;
-      this.received += piece.value.length;
+    for await (const piece of piecesOf(answer)) {
+      bytes.set(piece.subarray(0, bytes.length - filled), filled);
+      filled += piece.length;
+      this.received += piece.length;
       chunk.count = Math.min(chunk.total, Math.floor(filled / record));
       this.changed();
     }
@@ -255,19 +259,11 @@ export class Chunks {
 /** The runs of a chunk's points by layer, as far as they have arrived: `[{ layer, first, count }]`. */
 export function runsOf(/** @type {Chunk} */ chunk) {
   if (chunk.columns[0] !== "layer") return [{ layer: 0, first: 0, count: chunk.count }];
-  // Points come one layer after another, so where each begins can be bisected for.
+  // Points come one layer after another.
   const { data, stride, count } = chunk;
-  const firstOf = (/** @type {number} */ layer) => {
-    let [low, high] = [0, count];
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (data[middle * stride + 2] < layer) low = middle + 1;
-      else high = middle;
-    }
-    return low;
-  };
+  const firstIn = (/** @type {number} */ layer) => firstOf(count, (k) => data[k * stride + 2] >= layer);
   return chunk.layers.map((_, layer) => {
-    const first = firstOf(layer);
-    return { layer, first, count: firstOf(layer + 1) - first };
+    const first = firstIn(layer);
+    return { layer, first, count: firstIn(layer + 1) - first };
   });
 }

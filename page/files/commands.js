@@ -1,6 +1,7 @@
 // What returns the points in view: texts to paste elsewhere (the address, curl, Python), and downloads, with their sizes first.
 
-import { ask, brokeOff, hasKey } from "./api.js";
+import { ask, hasKey, piecesOf } from "./api.js";
+import { make } from "./dom.js";
 import { documentOf } from "./sent.js";
 import { askedOf } from "./query.js";
 
@@ -108,14 +109,9 @@ export async function save(/** @type {Request} */ { path, body }, /** @type {str
   const answer = await ask(path, { body });
   const pieces = [];
   let bytes = 0;
-  const reader = /** @type {ReadableStream<Uint8Array>} */ (answer.body).getReader();
-  for (;;) {
-    const piece = await reader.read().catch((error) => {
-      throw error.name === "AbortError" ? error : brokeOff();
-    });
-    if (piece.done) break;
-    pieces.push(piece.value);
-    bytes += piece.value.length;
+  for await (const piece of piecesOf(answer)) {
+    pieces.push(piece);
+    bytes += piece.length;
     progress(bytes);
   }
   const url = URL.createObjectURL(new Blob(pieces));
@@ -125,8 +121,7 @@ export async function save(/** @type {Request} */ { path, body }, /** @type {str
 }
 
 function click(url, name) {
-  const link = document.createElement("a");
-  Object.assign(link, { href: url, download: name });
+  const link = make("a", { href: url, download: name });
   document.body.append(link);
   link.click();
   link.remove();

@@ -33,12 +33,12 @@ function listen(id, event, call) {
 const thrown = () => String(1 + Math.floor(Math.random() * 999_999));
 
 export class Controls {
-  /** The server's lists: its tables (`profiles`), its fields, the names of its worlds; `stipple` takes a picture's file. */
+  /** The server's lists: its tables (`profiles`), its fields, its worlds; `stipple` takes a picture's file. */
   constructor(session, { profiles, fields, worlds }, stipple) {
     this.session = session;
     this.profiles = profiles;
     this.fields = fields.map(({ name }) => name);
-    this.worlds = worlds;
+    this.worlds = worlds.map(({ name }) => name);
     this.stipple = stipple;
     this.picked = 0;
     this.notes = [];

@@ -82,6 +82,15 @@ export function settled(wait, call) {
   return later;
 }
 
+/** A function that calls another one in the next frame, once however often it is called until then. */
+export function framed(/** @type {() => void} */ call) {
+  let frame = 0;
+  return () => (frame ||= requestAnimationFrame(() => {
+    frame = 0;
+    call();
+  }));
+}
+
 /** A number with at most `digits` significant digits, groups of three set apart. */
 export function spoken(/** @type {number} */ value, digits = 4) {
   if (!Number.isFinite(value)) return "–";

@@ -3,21 +3,9 @@
 import { useKey } from "./api.js";
 import { make } from "./dom.js";
 
-/** A control with its label, further lines, and a line for what is wrong with its value. */
-export function field(words, id, control, ...more) {
-  const element = make("div", { class: "field" }, make("label", { for: id }, words), control, ...more);
-  wrongAt(control, element);
-  return element;
-}
-
 /** Adds the line for what is wrong with the value of a control to its field. */
-export function wrongAt(control, element = control.closest(".field")) {
-  element.append(make("p", { class: "note bad", id: `wrong-${control.id}`, role: "alert", hidden: true }));
-}
-
-/** A list to choose from; `changed(value)` hears what is chosen. */
-export function select(id, changed, attributes = {}) {
-  return make("select", { id, ...attributes, onchange: (event) => changed(event.target.value) });
+export function wrongAt(control) {
+  control.closest(".field").append(make("p", { class: "note bad", id: `wrong-${control.id}`, role: "alert", hidden: true }));
 }
 
 /** Sets what a list offers, as keys or as pairs of a key and its words, and what is chosen. */

@@ -3,7 +3,7 @@
 
 import { encoded } from "./address.js";
 import { ask, wordsOf } from "./api.js";
-import { lineChart, pointPicture, spectrumPicture, topOf } from "./charts.js";
+import { lineChart, pointPicture, spectrumPicture } from "./charts.js";
 import { byId, make, spoken } from "./dom.js";
 import { measure } from "./worker.js";
 import { PROFILE_WORDS, profileNames } from "./profiles.js";
@@ -14,15 +14,6 @@ import { HEXAGONAL, figureOf, recordedOf } from "./understand.js";
 const MEASURED = 64;
 const DRAWN = 20;
 
-/** What the pictures mean. */
-const MEANING = [
-  ["Profile", ": a kind of noise: how evenly points lie, and at which distances."],
-  ["Points", ": a square 20 spacings wide."],
-  ["Spectrum", ": how much of each frequency there is in every direction, with frequency 0 in the middle. An empty middle means an even "
-    + "spread, rings mean regular distances, and a round picture favors no direction."],
-  ["Curve", ": the same, averaged over all directions, as measured on the table. 1 is pure chance."],
-];
-
 export class Gallery {
   constructor(session, profiles) {
     this.session = session;
@@ -31,6 +22,7 @@ export class Gallery {
     const rank = (name) => ({ blue: -1, pattern: 1 })[name] ?? 0;
     this.names.sort((a, b) => rank(a) - rank(b));
     this.cards = null;
+    byId("close-gallery").addEventListener("click", () => session.choose((state) => (state.tab = "choose"), "tab"));
   }
 
   opened(tab) {
@@ -44,14 +36,7 @@ export class Gallery {
   async show() {
     if (this.cards) return;
     this.cards = this.names.map((name) => this.card(name));
-    byId("gallery").replaceChildren(
-      make("header", {}, make("h2", {}, "All profiles side by side"),
-        make("span", { class: "soft" }, "points · spectrum to ν 2.5 · radial power to ν 3"),
-        make("button", { type: "button", id: "close-gallery", onclick: () => this.session.choose((state) => (state.tab = "choose"), "tab") }, "Close")),
-      make("details", { class: "meaning" }, make("summary", {}, "What the pictures mean"),
-        MEANING.map(([name, words]) => make("p", { class: "note" }, make("b", {}, name), words))),
-      make("div", { class: "cards" }, this.cards.map((card) => card.element)),
-    );
+    byId("profile-cards").append(...this.cards.map((card) => card.element));
     const isWhole = await Promise.all(this.cards.map((card) => this.fill(card)));
     document.documentElement.dataset.gallery = isWhole.every(Boolean) ? "ready" : "failed";
   }
@@ -85,7 +70,7 @@ export class Gallery {
       card.draw = () => {
         pointPicture(points, packed, DRAWN);
         if (card.measured) spectrumPicture(spectrum, card.measured.image, card.measured.cells);
-        lineChart(curve, { series: [{ values: table, color: "accent" }], x: [0, 3], y: [0, topOf(table)], name: "ν", aspect: 0.36 });
+        lineChart(curve, table, { aspect: 0.36 });
       };
       card.draw();
       card.measured = await measure(Float64Array.from(packed), MEASURED);

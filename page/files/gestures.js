@@ -2,6 +2,7 @@
 
 import { byId, icon } from "./dom.js";
 import { followPointers, followWheel, placeOf } from "./hands.js";
+import { parsePlace } from "./place.js";
 import { watchTheme } from "./theme.js";
 
 /** How far a key moves the view, as a share of its shorter side; with Shift a whole one. */
@@ -40,6 +41,21 @@ export function moveBy(canvas, plane, { tapped, hovered }) {
     else if (event.key === "Enter" || event.key === " ") tapped([plane.view.width / 2, plane.view.height / 2]);
     else return;
     event.preventDefault();
+  });
+}
+
+/**
+ * Has the form with coordinates lead to a place: `go({ x, y })` returns why it cannot be looked at, or nothing, and `say` hears
+ * what is wrong.
+ */
+export function jumps(say, go) {
+  const field = byId("jump-at");
+  byId("jump").addEventListener("submit", (event) => {
+    event.preventDefault();
+    const [x, y] = field.value.split(/[,;]|\s+/).filter(Boolean).map(parsePlace);
+    const wrong = x && y ? go({ x, y }) : "is not a place. Type two numbers, such as 1e12, -3.5.";
+    field.setAttribute("aria-invalid", String(Boolean(wrong)));
+    say(wrong && `“${field.value}” ${wrong}`);
   });
 }
 

@@ -7,9 +7,9 @@ import { byId, icon, settled, skipLinks, spoken } from "./dom.js";
 import { faultsOf, faultsBefore } from "./faults.js";
 import { openFlight } from "./flight.js";
 import { Gallery } from "./gallery.js";
-import { moveBy, tools } from "./gestures.js";
+import { jumps, moveBy, tools } from "./gestures.js";
 import { farthest, isTooFar } from "./grid.js";
-import { parsePlace, place, toNumber } from "./place.js";
+import { place, toNumber } from "./place.js";
 import { sendPicture, takeDrops } from "./sent.js";
 import { Notice } from "./notice.js";
 import { Plane } from "./plane.js";
@@ -22,11 +22,9 @@ import { LAYER, initial } from "./state.js";
 import { Start } from "./start.js";
 import { Tabs } from "./tabs.js";
 import { Take } from "./take.js";
-import { Trouble } from "./trouble.js";
 import { Paint } from "./paint/paint.js";
 import { palette } from "./theme.js";
 import { Understand } from "./understand.js";
-import { worldNames } from "./worlds.js";
 
 const root = document.documentElement;
 /** Whether the visitor comes without a link to a view. */
@@ -69,17 +67,16 @@ const plane = new Plane(byId("plane"), {
     if (!isUnderstood) return;
     root.dataset.state = "failed";
     const isTooMuch = error instanceof Problem && error.status === 413;
-    /** @type {import("./trouble.js").Buttons} */
-    const buttons = [["Try again", retry]];
-    if (isTooMuch) buttons.unshift(["Zoom in", () => plane.zoom(2)]);
-    if (isTooMuch) trouble.refuse("There are more points in this view than the server sends at once. Zoom in, or choose fewer points.", { buttons });
-    else trouble.refuse("The server does not send these points.", { said: error.message, buttons });
+    if (!isTooMuch) return notice.say("refused", "The server does not send these points.", { note: error.message });
+    notice.say("refused", "There are more points in this view than the server sends at once. Zoom in, or choose fewer points.", {
+      buttons: [["Zoom in", () => plane.zoom(2)], ["Try again", retry]],
+    });
   },
 });
 
 /** Requests everything again that was refused or put off. */
 function retry() {
-  trouble.clear();
+  notice.clear();
   plane.chunks.retry();
   if (!isUnderstood) (controls ? refresh : begin)();
   else loading();
@@ -94,12 +91,11 @@ const again = settled(300, () => {
 /** Points are awaited. */
 function loading() {
   root.dataset.state = "loading";
-  trouble.watch();
+  notice.watch();
 }
 
 /** Whether an answer is awaited that the points depend on. */
 let isAsking = false;
-const trouble = new Trouble(plane, () => isAsking, retry);
 
 /** When something is done again. */
 let timer = 0;
@@ -107,7 +103,7 @@ let timer = 0;
 /** Does something again later, because the server is busy; `error` says how much later. */
 function later(error, what) {
   const wait = Math.max(1, error.retryAfter) * 1000;
-  trouble.busy(performance.now() + wait);
+  notice.busy(performance.now() + wait);
   clearTimeout(timer);
   timer = setTimeout(what, wait);
 }
@@ -139,10 +135,11 @@ function countsInView() {
   return counts;
 }
 
-const notice = new Notice(byId("banner"), () => (controls ? refresh() : begin()), () => {
+const notice = new Notice(byId("banner"), retry, () => {
   controls ? refresh() : begin();
   status.moved();
 });
+notice.awaited = { chunks: plane.chunks, isAsking: () => isAsking };
 const say = (/** @type {string | null} */ words) => notice.say("wrong", words);
 onPresence((gone) => (root.dataset.presence = gone ? "gone" : "here"));
 
@@ -177,7 +174,7 @@ async function refresh(isChosen = false) {
   const mine = latest;
   clearTimeout(timer);
   isAsking = true;
-  trouble.watch();
+  notice.watch();
   const lacking = await session.settleWorld().then(() => null, (error) => error);
   const layers = session.state.layers.map((layer) => ({ ...layer }));
   const notes = lacking ? [{ faults: { "": worldFault(lacking) }, error: lacking }] : await notesOf(layers);
@@ -185,7 +182,7 @@ async function refresh(isChosen = false) {
   const passing = notes.map((note) => note.error).find((error) => error?.isPassing);
   if (passing) return later(passing, () => refresh(isChosen));
   isAsking = false;
-  trouble.clear();
+  notice.clear();
   controls?.note(notes);
   const errors = notes.map((note) => note.error).filter(Boolean);
   if (errors.some((error) => error instanceof Gone)) return;
@@ -213,11 +210,11 @@ function sayFaults(notes, isChosen) {
   const words = other ?? Object.values(notes[wrong].faults)[0];
   const named = notes.length > 1 ? `Layer ${wrong + 1}: ${words}` : words;
   if (isChosen && isSeen && !other) return;
-  if (isChosen) return notice.say("wrong", named, other ? [["Try again", () => refresh()]] : [["Show it", () => pointOut(wrong)]]);
-  /** @type {import("./trouble.js").Buttons} */
+  if (isChosen) return notice.say("wrong", named, { buttons: other ? [["Try again", () => refresh()]] : [["Show it", () => pointOut(wrong)]] });
+  /** @type {import("./notice.js").Buttons} */
   const buttons = [["Begin afresh", afresh]];
   if (!other) buttons.unshift(["Show the field", () => pointOut(wrong)]);
-  trouble.refuse("This link leads to points that cannot be drawn.", { said: named, buttons });
+  notice.say("refused", "This link leads to points that cannot be drawn.", { note: named, buttons });
 }
 
 /** Why a world cannot be shown, in the page's words. */
@@ -227,7 +224,7 @@ function worldFault(error) {
 
 /** Begins with what a visitor sees who comes without a link. */
 function afresh() {
-  trouble.clear();
+  notice.clear();
   session.choose((state) => Object.assign(state, initial()), "layers", "view", "tab");
 }
 
@@ -266,53 +263,23 @@ function goBack(spacing) {
   const isOnPlane = plane.span && !isTooFar(plane.view, spacing);
   const [to, name] = isOnPlane ? [plane.view, "the place before"] : [{ x: place(0), y: place(0) }, "the origin"];
   session.correct((state) => Object.assign(state, { x: to.x, y: to.y }));
-  news = `${words} is too far out: at this spacing, coordinates tell points apart only up to ${spoken(farthest(spacing), 3)} from the origin. Here is ${name} instead.`;
+  news = `${words} ${farOut(spacing)} Here is ${name} instead.`;
 }
 
-function jump(event) {
-  event.preventDefault();
-  const field = byId("jump-at");
-  const [x, y] = field.value.split(/[,;]|\s+/).filter(Boolean).map(parsePlace);
-  field.setAttribute("aria-invalid", String(!x || !y));
-  if (!x || !y) {
-    say(`“${field.value}” is not a place. Type two numbers, such as 1e12, -3.5.`);
-    return;
-  }
-  if (plane.isTooFar({ x, y })) {
-    field.setAttribute("aria-invalid", "true");
-    const most = spoken(farthest(plane.look?.spacing ?? 1), 3);
-    say(`“${field.value}” is too far out: at this spacing, coordinates tell points apart only up to ${most} from the origin.`);
-    return;
-  }
-  say(null);
-  session.choose((state) => Object.assign(state, { x, y }), "view");
+/** What is said of a place without points. */
+const farOut = (/** @type {number} */ spacing) => `is too far out: at this spacing, coordinates tell points apart only up to ${spoken(farthest(spacing), 3)} from the origin.`;
+
+function jump(at) {
+  if (plane.isTooFar(at)) return farOut(plane.look?.spacing ?? 1);
+  session.choose((state) => Object.assign(state, at), "view");
   byId("plane").focus();
+  return null;
 }
 
 const ICONS = {
   share: "M10 14a4.5 4.5 0 0 0 6.4 0l3-3a4.5 4.5 0 0 0-6.4-6.4l-1 1M14 10a4.5 4.5 0 0 0-6.4 0l-3 3a4.5 4.5 0 0 0 6.4 6.4l1-1",
   fold: "M6 15l6-6 6 6",
 };
-
-function buttons() {
-  for (const [id, path] of Object.entries(ICONS)) byId(id).append(icon(path));
-  byId("jump").addEventListener("submit", jump);
-  byId("brand").addEventListener("click", (event) => {
-    event.preventDefault();
-    afresh();
-  });
-  byId("share").addEventListener("click", share);
-  byId("fold").addEventListener("click", () => fold(byId("fold").getAttribute("aria-expanded") === "true"));
-  const home = () => {
-    byId("jump-at").value = "";
-    byId("jump-at").removeAttribute("aria-invalid");
-    session.choose((state) => Object.assign(state, { x: place(0), y: place(0), span: initial().span * (plane.look?.spacing ?? 1) }), "view");
-  };
-  tools(plane, home, () => {
-    if (plane.look) plane.show({ ...plane.look, ...palette(plane.look.layers) });
-    tell("themed");
-  });
-}
 
 /** Copies the address of the view. */
 async function share() {
@@ -358,7 +325,23 @@ const start = new Start(session, () => {
   byId("plane").focus();
 }, mention);
 parts.push(pour, start, card, understand, take, shade, paint);
-buttons();
+for (const [id, path] of Object.entries(ICONS)) byId(id).append(icon(path));
+jumps(say, jump);
+byId("brand").addEventListener("click", (event) => {
+  event.preventDefault();
+  afresh();
+});
+byId("share").addEventListener("click", share);
+byId("fold").addEventListener("click", () => fold(byId("fold").getAttribute("aria-expanded") === "true"));
+const home = () => {
+  byId("jump-at").value = "";
+  byId("jump-at").removeAttribute("aria-invalid");
+  session.choose((state) => Object.assign(state, { x: place(0), y: place(0), span: initial().span * (plane.look?.spacing ?? 1) }), "view");
+};
+tools(plane, home, () => {
+  if (plane.look) plane.show({ ...plane.look, ...palette(plane.look.layers) });
+  tell("themed");
+});
 skipLinks();
 takeDrops(byId("stage"), stipple);
 const tabs = new Tabs(session, fold, (tab) => tell("opened", tab));
@@ -377,7 +360,7 @@ session.on((changed) => {
 async function stipple(file) {
   if (!controls) return;
   try {
-    notice.say("wrong", `Sending “${file.name}” …`, []);
+    notice.say("wrong", `Sending “${file.name}” …`, { buttons: [] });
     const members = await sendPicture(file, plane.view);
     say(null);
     session.leaveWorld();
@@ -431,9 +414,9 @@ function refused(error) {
 async function begin() {
   try {
     isAsking = true;
-    trouble.watch();
+    notice.watch();
     if (!plane.span) beginEarly();
-    const [{ profiles }, { fields }, worlds] = await Promise.all([askJson("/v1/profiles"), askJson("/v1/fields"), worldNames()]);
+    const [{ profiles }, { fields }, { worlds }] = await Promise.all([askJson("/v1/profiles"), askJson("/v1/fields"), askJson("/v1/worlds")]);
     settle(profiles);
     tables = profiles;
     controls = new Controls(session, { profiles, fields, worlds }, stipple);

@@ -6,13 +6,8 @@
  * @typedef {{ i: number, f: number }} Place
  */
 
-/**
- * A coordinate from two numbers.
- * @param {number} i
- * @param {number} f
- * @returns {Place}
- */
-export function place(i, f = 0) {
+/** A coordinate from two numbers. */
+export function place(/** @type {number} */ i, f = 0) {
   const whole = Math.floor(i);
   const sum = f + (i - whole);
   const carry = Math.floor(sum);

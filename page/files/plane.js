@@ -1,7 +1,8 @@
 // The view of the plane: where it is, how it moves, and the loop that paints it.
 
-import { chunkSize, cornerFrom, farthest, isTooFar } from "./grid.js";
-import { Chunks, runsOf } from "./chunks.js";
+import { chunkSize, farthest, isTooFar } from "./grid.js";
+import { Chunks } from "./chunks.js";
+import { framed } from "./dom.js";
 import { Painter } from "./painter.js";
 import { moved, place, toNumber } from "./place.js";
 import { Sheets } from "./sheets.js";
@@ -45,7 +46,7 @@ export class Plane extends Moving {
     this.sheets = new Sheets(this.painter, this.chunks);
     /** @type {Look & { spacing: number } | null} */
     this.look = null;
-    this.isWaiting = false;
+    this.draw = framed(() => this.paint());
     this.zoomedAt = -Infinity;
     new ResizeObserver(() => canvas.clientWidth && canvas.clientHeight && this.resize(canvas.clientWidth, canvas.clientHeight)).observe(canvas);
   }
@@ -84,15 +85,6 @@ export class Plane extends Moving {
   zoom(factor, at = [this.view.width / 2, this.view.height / 2]) {
     this.zoomedAt = performance.now();
     super.zoom(factor, at);
-  }
-
-  draw() {
-    if (this.isWaiting) return;
-    this.isWaiting = true;
-    requestAnimationFrame(() => {
-      this.isWaiting = false;
-      this.paint();
-    });
   }
 
   /** One frame. */
@@ -134,27 +126,10 @@ export class Plane extends Moving {
     return chunkSize(this.view, this.look?.spacing ?? 1);
   }
 
-  /** Calls `visit(layer, x, y, chunk, k)` for the points in view and up to `margin` around it, x and y from its middle. */
-  each(/** @type {(layer: number, x: number, y: number, chunk: Chunk, k: number) => void} */ visit, margin = 0) {
+  /** Visits the points in view and up to `margin` around it, as `Sheets.around`. */
+  each(/** @type {import("./sheets.js").Visit} */ visit, margin = 0) {
     const { width, height, unit } = this.view;
-    this.around([0, 0], [(width * unit) / 2 + margin, (height * unit) / 2 + margin], visit);
-  }
-
-  /** As `each`, for the points of a box around a place. */
-  around(/** @type {number[]} */ [middleX, middleY], /** @type {number[]} */ [halfX, halfY], /** @type {Parameters<Plane["each"]>[0]} */ visit) {
-    const { view, sheets } = this;
-    for (const { chunk } of sheets.front?.parts ?? []) {
-      const [left, low] = [cornerFrom(chunk.cx, chunk.size, view.x), cornerFrom(chunk.cy, chunk.size, view.y)];
-      const [toX, toY] = [left - middleX, low - middleY];
-      if (toX > halfX || toY > halfY || toX + chunk.size < -halfX || toY + chunk.size < -halfY) continue;
-      for (const { layer, first, count } of runsOf(chunk)) {
-        for (let k = first; k < first + count; k += 1) {
-          const x = left + chunk.data[k * chunk.stride];
-          const y = low + chunk.data[k * chunk.stride + 1];
-          if (x - middleX >= -halfX && x - middleX < halfX && y - middleY >= -halfY && y - middleY < halfY) visit(layer, x, y, chunk, k);
-        }
-      }
-    }
+    this.sheets.around(this.view, [0, 0], [(width * unit) / 2 + margin, (height * unit) / 2 + margin], visit);
   }
 
   /** The point nearest to a place on the canvas, if it is within a distance in CSS pixels. */
@@ -163,7 +138,7 @@ export class Plane extends Moving {
     const at = [(px - view.width / 2) * view.unit, (view.height / 2 - py) * view.unit];
     const reach = within * view.unit;
     let [best, nearest] = [/** @type {{ chunk: Chunk, k: number } | null} */ (null), reach];
-    this.around(at, [reach, reach], (_, x, y, chunk, k) => {
+    this.sheets.around(view, at, [reach, reach], (_, x, y, chunk, k) => {
       const away = Math.hypot(x - at[0], y - at[1]);
       if (away <= nearest) [best, nearest] = [{ chunk, k }, away];
     });

@@ -1,6 +1,6 @@
 // From the choices on the page to a request: parameters of an address for one layer, a body for several.
 
-import { Digits, json } from "./api.js";
+import { digits } from "./api.js";
 import { encoded } from "./address.js";
 import { decimalsFor, formatPlace, moved } from "./place.js";
 import { documentOf } from "./sent.js";
@@ -51,7 +51,7 @@ export function joined(pairs) {
 
 /**
  * The same as members of a JSON object: numbers as numbers, as far as they are some. A seed above
- * 2⁵³ keeps its digits through `raw`, as JSON allows and JavaScript does not. With `isWhole`, a field that
+ * 2⁵³ keeps its digits, as JSON allows and JavaScript does not. With `isWhole`, a field that
  * this page has sent is described in full, so that no server has to hold it.
  */
 function memberOf(layer, keep = 1, isWhole = false) {
@@ -59,7 +59,7 @@ function memberOf(layer, keep = 1, isWhole = false) {
   for (const [name, value] of setOf(layer, keep)) {
     if (["spacing", "density", "min_distance", "settle", "lod"].includes(name)) members[name] = numberOr(value);
     else if (name === "warp") members[name] = value === "off" || value === "on" ? value : numberOr(value);
-    else if (name === "seed") members[name] = new Digits(value);
+    else if (name === "seed") members[name] = digits(value);
     else if (name === "attributes") members[name] = value.split(",");
     else if (name === "scale_range") members[name] = value.split(",").map(numberOr);
     else if (name === "field") members[name] = (isWhole && documentOf(value)) || value;
@@ -80,7 +80,7 @@ function layerName(i) {
 
 /** Asks with this body whether layers are right together. */
 export function togetherBody(layers) {
-  return json(bodyOf(layers, { bbox: [0, 0, 1e-300, 1e-300] }));
+  return JSON.stringify(bodyOf(layers, { bbox: [0, 0, 1e-300, 1e-300] }));
 }
 
 /** Several layers over a region, as the body of `POST /v1/points:query`. */
@@ -115,7 +115,7 @@ export function chunkRequest(layers, { size, cx, cy }, keep) {
     return { path: `/v1/chunks/${size}/${cx}/${cy}?${query}` };
   }
   const region = { chunk: { size, x: cx, y: cy } };
-  return { path: "/v1/points:query", body: json(bodyOf(layers, region, keep, { format: "f32" })) };
+  return { path: "/v1/points:query", body: JSON.stringify(bodyOf(layers, region, keep, { format: "f32" })) };
 }
 
 /**
@@ -128,9 +128,10 @@ export function askedOf(layers, box, keep, looks = [], isWhole = false) {
     const pairs = world ? worldPairs(world, keep) : setOf(layers[0], keep);
     return { query: `?${joined([["bbox", box.join(",")], ...pairs, ...looks])}` };
   }
-  const region = { bbox: box.map((side) => new Digits(side)) };
+  const region = { bbox: box.map(digits) };
   const form = Object.fromEntries(looks.map(([name, value]) => [name, numberOr(value)]));
-  return { query: "", body: json(layers.length > 1 ? bodyOf(layers, region, keep, form, isWhole) : { region, ...memberOf(layers[0], keep, isWhole), ...form }, 2) };
+  const body = layers.length > 1 ? bodyOf(layers, region, keep, form, isWhole) : { region, ...memberOf(layers[0], keep, isWhole), ...form };
+  return { query: "", body: JSON.stringify(body, null, 2) };
 }
 
 /** The columns of packed answers besides x and y, as the server joins those of several layers. */

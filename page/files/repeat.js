@@ -1,8 +1,8 @@
 // What repeats without a seam, to take away: a period of the points of a layer, or a mask for dithering.
 
 import { ask, askJson } from "./api.js";
-import { counted, contextOf, make } from "./dom.js";
-import { select, setOptions } from "./form.js";
+import { byId, contextOf, counted } from "./dom.js";
+import { setOptions } from "./form.js";
 import { choicesOf } from "./profiles.js";
 import { joined } from "./query.js";
 
@@ -11,16 +11,14 @@ const SIDES = ["64", "128", "256", "512"];
 const STANDARD = "128";
 /** Periods of more points are not offered here, but for the smallest one. */
 const MOST_POINTS = 60_000;
-/** The sides of the picture, in pixels: two copies of a period lie side by side. */
-const PICTURE = { width: 480, height: 240 };
+/** The height of the picture, in pixels, which is twice as wide: two copies of a period lie side by side. */
+const HEIGHT = 240;
 
 export class Repeat {
   /** `changed()` hears that another size is chosen. */
   constructor(changed) {
-    this.sizes = select("repeat-size", changed);
-    this.picture = make("canvas", { id: "repeat-picture", ...PICTURE, role: "img", "aria-label": "Copies side by side" });
-    this.note = make("p", { class: "note" });
-    this.element = make("div", { class: "field" }, make("label", { for: "repeat-size" }, "Size"), this.sizes, this.picture, this.note);
+    this.sizes = byId("repeat-size");
+    this.sizes.addEventListener("change", changed);
     /** The map of the layer, or the smallest that its profile has: it has the shortest periods. */
     this.map = "";
   }
@@ -41,14 +39,14 @@ export class Repeat {
     this.map = layer.map || maps[0];
     await (what === "mask" ? this.offer(SIDES.map((side) => [side, `${side} × ${side} pixels`]), STANDARD) : this.periods({ ...layer, alpha }, signal));
     const path = this.path(what, layer);
-    const answer = await ask(what === "mask" ? path : `${path}&format=png&size=${PICTURE.height}`, { signal });
+    const answer = await ask(what === "mask" ? path : `${path}&format=png&size=${HEIGHT}`, { signal });
     const count = Number(answer.headers.get("strew-count"));
     const copy = await createImageBitmap(await answer.blob());
-    const context = contextOf(this.picture);
+    const context = contextOf(byId("repeat-picture"));
     context.fillStyle = /** @type {CanvasPattern} */ (context.createPattern(copy, "repeat"));
-    context.clearRect(0, 0, PICTURE.width, PICTURE.height);
-    context.fillRect(0, 0, PICTURE.width, PICTURE.height);
-    this.note.textContent = what === "mask"
+    context.clearRect(0, 0, 2 * HEIGHT, HEIGHT);
+    context.fillRect(0, 0, 2 * HEIGHT, HEIGHT);
+    byId("repeat-note").textContent = what === "mask"
       ? "Repeat it over a picture, pixel by pixel: a pixel turns white where its gray is above the threshold."
       : `${counted(count)} on a square of ${Math.sqrt(Number(this.sizes.value))} mean spacings. Its copies, two of them here, join without a seam.`;
     return count;

@@ -1,7 +1,7 @@
 // Fields that this page sends, pictures that become dots among them: the server holds them while it has room, and the page sends
 // them again when it has not.
 
-import { Problem, askJson, json, onRefused } from "./api.js";
+import { Problem, askJson, onRefused } from "./api.js";
 import { contextOf } from "./dom.js";
 import { toNumber } from "./place.js";
 
@@ -19,9 +19,9 @@ export function isSent(field) {
  * without the names of others that were sent; it is sent in turn if the server does not hold those.
  */
 export function send(document, whole = document) {
-  const body = json(document);
+  const body = JSON.stringify(document);
   if (!sending.has(body)) {
-    const sent = post(body, json(whole)).then(({ name }) => {
+    const sent = post(body, JSON.stringify(whole)).then(({ name }) => {
       held.set(name, whole);
       return name;
     });

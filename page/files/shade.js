@@ -2,7 +2,7 @@
 // is drawn as gray, it is in the color of the layer.
 
 import { ask } from "./api.js";
-import { byId, contextOf } from "./dom.js";
+import { byId, contextOf, framed } from "./dom.js";
 import { chunksOf, cornerFrom } from "./grid.js";
 import { GRAY } from "./sheets.js";
 import { cssOf, themeColor } from "./theme.js";
@@ -32,6 +32,7 @@ export class Shade {
     this.layers = [];
     this.tiles = new Map();
     this.mosaic = document.createElement("canvas");
+    this.draw = framed(() => this.paint());
   }
 
   /** The layers that are shown now. */
@@ -66,17 +67,8 @@ export class Shade {
     this.draw();
   }
 
-  draw() {
-    if (!this.field || this.isWaiting || !this.plane.span) return;
-    this.isWaiting = true;
-    requestAnimationFrame(() => {
-      this.isWaiting = false;
-      this.paint();
-    });
-  }
-
   paint() {
-    if (!this.field) return;
+    if (!this.field || !this.plane.span) return;
     const { view } = this.plane;
     const [width, height] = view.pixels;
     sized(this.canvas, view.pixels);

@@ -15,6 +15,11 @@ const STRETCH = 1.6;
 /** How much of the ground the densest layer covers where density is drawn as gray. */
 export const GRAY = 0.55;
 
+/**
+ * Hears of a point: its layer, where it is as seen from the middle of a view, and its chunk and number there.
+ * @typedef {(layer: number, x: number, y: number, chunk: import("./chunks.js").Chunk, k: number) => void} Visit
+ */
+
 export class Sheets {
   constructor(painter, chunks) {
     this.painter = painter;
@@ -153,6 +158,22 @@ export class Sheets {
       const high = from.map((v, i) => Math.min([width, height][i], Math.round((v + chunk.size) / pixel + view.pixels[i] / 2)));
       if (high[0] <= low[0] || high[1] <= low[1]) continue;
       this.painter.show(this.back.surface, { ...placed, rect: [low[0], low[1], high[0] - low[0], high[1] - low[1]] });
+    }
+  }
+
+  /** Calls `visit` for the points of a box of half sides around a place, which is seen from the middle of a view. */
+  around(view, /** @type {number[]} */ [middleX, middleY], /** @type {number[]} */ [halfX, halfY], /** @type {Visit} */ visit) {
+    for (const { chunk } of this.front?.parts ?? []) {
+      const [left, low] = [cornerFrom(chunk.cx, chunk.size, view.x), cornerFrom(chunk.cy, chunk.size, view.y)];
+      const [toX, toY] = [left - middleX, low - middleY];
+      if (toX > halfX || toY > halfY || toX + chunk.size < -halfX || toY + chunk.size < -halfY) continue;
+      for (const { layer, first, count } of runsOf(chunk)) {
+        for (let k = first; k < first + count; k += 1) {
+          const x = left + chunk.data[k * chunk.stride];
+          const y = low + chunk.data[k * chunk.stride + 1];
+          if (x - middleX >= -halfX && x - middleX < halfX && y - middleY >= -halfY && y - middleY < halfY) visit(layer, x, y, chunk, k);
+        }
+      }
     }
   }
 

@@ -97,10 +97,10 @@ export function fromHash(/** @type {string} */ hash) {
   if (x && y) Object.assign(state, { x, y });
   state.span = given.number("span", state.span, [Number.MIN_VALUE, Infinity]);
   if (given.size > 0) state.tab = "choose";
-  state.tab = given.matching("tab", /^(start|choose|understand|take|gallery)$/, state.tab);
-  state.take = given.matching("take", /^(tile|mask)$/);
-  state.world = given.matching("world", /^[\w.-]{1,64}$/);
-  state.worldSeed = given.matching("world.seed", /^\d{1,20}$/);
+  state.tab = given.matching("tab", (text) => /^(start|choose|understand|take|gallery)$/.test(text), state.tab);
+  state.take = given.matching("take", (text) => /^(tile|mask)$/.test(text));
+  state.world = given.matching("world", (text) => /^[\w.-]{1,64}$/.test(text));
+  state.worldSeed = given.matching("world.seed", (text) => /^\d{1,20}$/.test(text));
   const layers = Math.trunc(given.number("layers", 1, [1, MOST_LAYERS]));
   state.layers = Array.from({ length: layers }, (_, i) => layerFrom(given, i));
   state.wrong = given.wrong();

@@ -28,7 +28,6 @@ export class Take {
     this.again = settled(250, () => this.weigh());
     byId("take-what").addEventListener("change", () => session.choose((state) => (state.take = byId("take-what").value), "tab"));
     this.repeat = new Repeat(() => this.again());
-    byId("take-repeat").replaceWith(this.repeat.element);
     byId("take-thinned").addEventListener("change", () => {
       this.isThinned = byId("take-thinned").checked;
       this.rested();
@@ -103,7 +102,7 @@ export class Take {
     const { layers } = this.session.state;
     const { repeats } = this;
     setOptions(byId("take-what"), layers[0].world ? WHAT.slice(0, 1) : WHAT, repeats);
-    this.repeat.element.hidden = !repeats;
+    byId("take-repeat").hidden = !repeats;
     byId("take-thin").hidden = Boolean(repeats) || this.plane.keep >= 1;
     byId("take-format").hidden = repeats === "mask";
     const { request } = this;

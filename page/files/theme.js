@@ -23,25 +23,21 @@ export function watchTheme(button, changed) {
   button.addEventListener("click", () => {
     const theme = isDark() ? "light" : "dark";
     set(theme);
-    remember(theme);
+    remembered(theme);
     tell();
   });
   dark.addEventListener("change", tell);
   tell();
 }
 
-function remembered() {
+/** The theme that the browser remembers, another one from now on if it is given; none where pages may keep nothing. */
+function remembered(theme = "") {
   try {
+    if (theme) localStorage.setItem(KEY, theme);
     return localStorage.getItem(KEY);
   } catch {
     return null;
   }
-}
-
-function remember(theme) {
-  try {
-    localStorage.setItem(KEY, theme);
-  } catch { /* Then it is forgotten. */ }
 }
 
 /** Red, green and blue of a color as browsers write it, from 0 to 1. */
@@ -55,20 +51,20 @@ export function cssOf(rgb) {
 }
 
 /** Whether the theme of now is dark. */
-function isDark() {
+export function isDark() {
   const { theme } = document.documentElement.dataset;
   return theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
 }
 
-/** The resolved color of an element's background, as red, green and blue from 0 to 1. */
-function resolved(className, isPaper) {
+/** What an element of a class and a style computes to. */
+function probed(className, style, /** @type {"color" | "backgroundColor"} */ name) {
   const probe = document.createElement("i");
   probe.className = className;
-  if (isPaper) probe.style.colorScheme = "light";
+  Object.assign(probe.style, style);
   document.body.append(probe);
-  const numbers = channels(getComputedStyle(probe).backgroundColor);
+  const { [name]: color } = getComputedStyle(probe);
   probe.remove();
-  return numbers;
+  return color;
 }
 
 /**
@@ -76,11 +72,9 @@ function resolved(className, isPaper) {
  * a face in negative is no face.
  */
 export function palette(layers = []) {
-  const isPaper = layers.some((layer) => layer.paper);
-  return {
-    ground: resolved("probe-ground", isPaper),
-    colors: COLOR_NAMES.map((_, i) => resolved(`swatch-${i}`, isPaper)),
-  };
+  const style = layers.some((layer) => layer.paper) ? { colorScheme: "light" } : {};
+  const numbers = (/** @type {string} */ name) => channels(probed(name, style, "backgroundColor"));
+  return { ground: numbers("probe-ground"), colors: COLOR_NAMES.map((_, i) => numbers(`swatch-${i}`)) };
 }
 
 /** A color of the theme as red, green and blue from 0 to 1. */
@@ -90,11 +84,5 @@ export function themeNumbers(name) {
 
 /** A color of the theme as CSS, for drawing on canvases. */
 export function themeColor(name) {
-  const probe = document.createElement("i");
-  probe.className = "probe";
-  probe.style.color = `var(--${name})`;
-  document.body.append(probe);
-  const { color } = getComputedStyle(probe);
-  probe.remove();
-  return color;
+  return probed("probe", { color: `var(--${name})` }, "color");
 }

@@ -1,7 +1,7 @@
 // The tab Understand: what the points in view measure, beside what the table was measured to be.
 
 import { ask, askJson, wordsOf } from "./api.js";
-import { lineChart, spectrumPicture, topOf } from "./charts.js";
+import { lineChart, spectrumPicture } from "./charts.js";
 import { byId, make, settled, spoken } from "./dom.js";
 import { measure } from "./worker.js";
 import { joined } from "./query.js";
@@ -153,15 +153,8 @@ export class Understand {
     const note = thinned ? "What is in view is thinned, so it is not what the table was made for. " : "";
     this.say(`${part}${note}Distances are those to the nearest neighbor, in mean spacings; a honeycomb has 1.07.`);
     const table = recorded.measured.radial.values.map(([nu, power]) => [nu, power]);
-    lineChart(byId("radial"), {
-      series: [{ values: table, color: "soft", dash: true }, { values: radial, color: "accent" }],
-      x: [0, 3], y: [0, topOf(table, radial)], name: "ν",
-    });
-    const recordedRdf = recorded.measured.rdf.values;
-    lineChart(byId("rdf"), {
-      series: [{ values: recordedRdf, color: "soft", dash: true }, { values: rdf, color: "accent" }],
-      x: [0, 5], y: [0, topOf(recordedRdf, rdf)], name: "r",
-    });
+    lineChart(byId("radial"), radial, { beside: table });
+    lineChart(byId("rdf"), rdf, { beside: recorded.measured.rdf.values, end: 5, name: "r" });
     spectrumPicture(byId("spectrum"), image, cells);
   }
 }

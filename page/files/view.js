@@ -1,5 +1,6 @@
 // A view of the plane that hands move and enlarge: what a canvas shows of it.
 
+import { contextOf } from "./dom.js";
 import { moved, place } from "./place.js";
 
 /** @typedef {import("./place.js").Place} Place */
@@ -24,6 +25,16 @@ export function fineness() {
 /** Gives a canvas a number of pixels, which empties it, unless it has that number already. */
 export function sized(/** @type {HTMLCanvasElement} */ canvas, /** @type {number[]} */ [width, height]) {
   if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+}
+
+/** Makes a canvas as fine as the screen, and empty. Returns its context, which draws in CSS pixels, and its size in these. */
+export function fitted(/** @type {HTMLCanvasElement} */ canvas, width = canvas.clientWidth, height = canvas.clientHeight) {
+  const ratio = fineness();
+  sized(canvas, [width, height].map((side) => Math.round(side * ratio)));
+  const context = contextOf(canvas);
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.clearRect(0, 0, width, height);
+  return { context, width, height };
 }
 
 /** A view that is dragged and zoomed. What shows it says how far it goes, and hears of every change. */

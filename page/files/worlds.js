@@ -13,12 +13,6 @@ function colorOf(name, i) {
   return COLORS.find(([words]) => words.test(name ?? ""))?.[1] ?? i;
 }
 
-/** The names of the server's worlds. */
-export async function worldNames() {
-  const { worlds } = await askJson("/v1/worlds");
-  return worlds.map(({ name }) => name);
-}
-
 /** The layers of a world, as the server resolves them; `seed` is a common seed, or empty for the world's own. */
 export async function layersOfWorld(name, seed) {
   const world = { name, seed };

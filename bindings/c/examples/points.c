@@ -16,13 +16,13 @@ static void check(strew_code code) {
 /* The points of a box, in a buffer of exactly the size that they need. */
 static void box(const strew_library *library) {
     strew_plan *plan = NULL;
-    check(strew_plan_query(library, "bbox=0,0,10,10&spacing=1&seed=7", &plan));
+    check(strew_plan_query(library, 2, "bbox=0,0,10,10&spacing=1&seed=7", &plan));
     uint64_t count = 0;
     check(strew_plan_count(plan, &count));
     double *xy = malloc(2 * count * sizeof *xy);
     int64_t *ids = malloc(2 * count * sizeof *ids);
     if (!xy || !ids) abort();
-    check(strew_plan_fill_xy(plan, xy, count));
+    check(strew_plan_fill_coordinates(plan, xy, count));
     check(strew_plan_fill_ids(plan, ids, count));
     printf("%" PRIu64 " points in the box\n", count);
     for (int i = 0; i < 3; i++)
@@ -37,7 +37,8 @@ static void chunk(const strew_library *library) {
     const char *forest = "{\"spacing\": 2, \"seed\": 5, \"attributes\": [\"angle\", \"variant\"],"
                          " \"variants\": {\"oak\": 3, \"birch\": 1}}";
     strew_plan *plan = NULL;
-    check(strew_plan_chunk(library, forest, 64, -3, 2, &plan));
+    const int64_t at[2] = {-3, 2};
+    check(strew_plan_chunk(library, 2, forest, 64, at, &plan));
     uint64_t count = 0;
     check(strew_plan_count(plan, &count));
     double origin[2];
@@ -45,7 +46,7 @@ static void chunk(const strew_library *library) {
     double *angles = malloc(count * sizeof *angles);
     int32_t *variants = malloc(count * sizeof *variants);
     if (!xy || !angles || !variants) abort();
-    check(strew_plan_fill_xy_f32(plan, xy, count, origin));
+    check(strew_plan_fill_coordinates_f32(plan, xy, count, origin));
     check(strew_plan_fill_numbers(plan, "angle", angles, count));
     check(strew_plan_fill_codes(plan, "variant", variants, count));
     strew_bytes *columns = NULL;
@@ -63,12 +64,12 @@ static void chunk(const strew_library *library) {
 /* Points in space: a ball, as x, y and z by turns. */
 static void ball(const strew_library *library) {
     strew_plan *plan = NULL;
-    check(strew_space_plan_query(library, "ball=5,5,5,3&spacing=1&seed=7", &plan));
+    check(strew_plan_query(library, 3, "ball=5,5,5,3&spacing=1&seed=7", &plan));
     uint64_t count = 0;
     check(strew_plan_count(plan, &count));
     double *xyz = malloc(3 * count * sizeof *xyz);
     if (!xyz) abort();
-    check(strew_space_fill_xyz(plan, xyz, count));
+    check(strew_plan_fill_coordinates(plan, xyz, count));
     printf("%" PRIu64 " points in the ball, the first at %.3f, %.3f, %.3f\n", count, xyz[0], xyz[1], xyz[2]);
     free(xyz);
     strew_plan_free(plan);
@@ -82,10 +83,10 @@ int main(void) {
     ball(library);
     strew_point nearest[3];
     size_t found = 0;
-    check(strew_nearest(library, "at=5,5&k=3&spacing=1&seed=7", nearest, 3, &found, NULL));
+    check(strew_nearest(library, 2, "at=5,5&k=3&spacing=1&seed=7", nearest, 3, &found, NULL));
     printf("%zu points near 5, 5; the nearest is %.3f away\n", found, nearest[0].distance);
     strew_plan *plan = NULL;
-    if (strew_plan_query(library, "bbox=0,0,10,10&spacing=-1", &plan) == STREW_INVALID_QUERY)
+    if (strew_plan_query(library, 2, "bbox=0,0,10,10&spacing=-1", &plan) == STREW_INVALID_QUERY)
         printf("refused: %s\n", strew_error_message());
     strew_library_free(library);
     return 0;

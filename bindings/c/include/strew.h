@@ -50,29 +50,17 @@ typedef struct strew_plan strew_plan;
 
 /* A point of a set. */
 typedef struct {
-  /* Its stable id, `x:y` in text. */
-  int64_t id[2];
-  /* Its coordinate along x. */
-  double x;
-  /* Its coordinate along y. */
-  double y;
-  /* Its distance from the place whose neighbors were searched, else 0. */
-  double distance;
-} strew_point;
-
-/* A point in space. */
-typedef struct {
-  /* Its stable id, `x:y:z` in text. */
+  /* Its stable id, `x:y` in text, in space `x:y:z`. The third integer is 0 in the plane. */
   int64_t id[3];
   /* Its coordinate along x. */
   double x;
   /* Its coordinate along y. */
   double y;
-  /* Its coordinate along z. */
+  /* Its coordinate along z; 0 in the plane. */
   double z;
   /* Its distance from the place whose neighbors were searched, else 0. */
   double distance;
-} strew_space_point;
+} strew_point;
 
 #ifdef __cplusplus
 extern "C" {
@@ -142,26 +130,36 @@ strew_code strew_library_hold_field(const strew_library *library, const char *bo
 
 /* Plans a query and counts its points. Free the plan with `strew_plan_free`.
  *
- * `query` is the JSON body of `POST /v1/points:query`, or the query string of `GET /v1/points`:
- * `bbox=0,0,10,10&spacing=1&seed=7`.
+ * `axes` is 2 for the plane and 3 for space. `query` is the JSON body of `POST /v1/points:query`, or the query string of
+ * `GET /v1/points`: `bbox=0,0,10,10&spacing=1&seed=7`; in space those of `/v1/space/points`, such as
+ * `ball=5,5,5,3&spacing=1&seed=7`.
  *
  * Arguments:
  * `library` is a library, `query` a text, `plan` a place for a pointer. */
-strew_code strew_plan_query(const strew_library *library, const char *query, strew_plan **plan);
+strew_code strew_plan_query(const strew_library *library,
+                            uint32_t axes,
+                            const char *query,
+                            strew_plan **plan);
 
-/* Plans the points of a chunk, the square of the world grid with this size, column and row. Coordinates are
- * relative to its corner (`strew_plan_origin`). Chunks that share an edge share no point and lose none.
+/* Plans the points of a chunk, the square or cube of the world grid with this size and these indices along the axes.
+ * Coordinates are relative to its corner (`strew_plan_origin`). Neighbors share no point and lose none.
  *
  * `query` is as in `strew_plan_query`, without a region: one text serves all chunks.
  *
  * Arguments:
- * As `strew_plan_query`. */
+ * As `strew_plan_query`; `at` has `axes` integers. */
 strew_code strew_plan_chunk(const strew_library *library,
+                            uint32_t axes,
                             const char *query,
                             double size,
-                            int64_t column,
-                            int64_t row,
+                            const int64_t *at,
                             strew_plan **plan);
+
+/* The number of coordinates of each point: 2 in the plane, 3 in space; 0 for null.
+ *
+ * Arguments:
+ * `plan` is null or a plan. */
+uint32_t strew_plan_axes(const strew_plan *plan);
 
 /* The exact number of points, which can be more than an answer may have.
  *
@@ -174,34 +172,36 @@ strew_code strew_plan_count(const strew_plan *plan, uint64_t *count);
 /* The place that the `f64` coordinates are relative to: the corner of a chunk, else the origin of the world.
  *
  * Arguments:
- * `plan` is a plan, `origin` has room for two numbers. */
+ * `plan` is a plan, `origin` has room for a number of each axis. */
 strew_code strew_plan_origin(const strew_plan *plan, double *origin);
 
-/* Writes the coordinates: x and y by turns, for each point, in the fixed order of the query.
+/* Writes the coordinates: x and y by turns, in space x, y and z, for each point, in the fixed order of the query.
  *
- * `capacity` is the number of points that `xy` has room for; `STREW_BUFFER_TOO_SMALL` if it is too little. No
+ * `capacity` is the number of points that `coordinates` has room for; `STREW_BUFFER_TOO_SMALL` if it is too little. No
  * other memory is needed. Large answers are made on all cores.
  *
  * Arguments:
- * `plan` is a plan, `xy` has room for 2 * `capacity` numbers. */
-strew_code strew_plan_fill_xy(const strew_plan *plan, double *xy, size_t capacity);
+ * `plan` is a plan, `coordinates` has room for `capacity` numbers of each axis. */
+strew_code strew_plan_fill_coordinates(const strew_plan *plan,
+                                       double *coordinates,
+                                       size_t capacity);
 
 /* Writes the coordinates as `f32`, relative to the lower corner of the region, which is written to `origin` unless
  * that is null.
  *
  * Arguments:
- * `plan` is a plan, `xy` has room for 2 * `capacity` numbers, `origin` is null or has room for two. */
-strew_code strew_plan_fill_xy_f32(const strew_plan *plan,
-                                  float *xy,
-                                  size_t capacity,
-                                  double *origin);
+ * As `strew_plan_fill_coordinates`; `origin` is null or has room for a number of each axis. */
+strew_code strew_plan_fill_coordinates_f32(const strew_plan *plan,
+                                           float *coordinates,
+                                           size_t capacity,
+                                           double *origin);
 
-/* Writes the stable ids: two integers for each point, which are `x:y` in text.
+/* Writes the stable ids: an integer of each axis for each point, which are `x:y` or `x:y:z` in text.
  *
  * The first call that needs ids or a column makes all of them; they stay in memory until the plan is freed.
  *
  * Arguments:
- * `plan` is a plan, `ids` has room for 2 * `capacity` numbers. */
+ * `plan` is a plan, `ids` has room for `capacity` numbers of each axis. */
 strew_code strew_plan_fill_ids(const strew_plan *plan, int64_t *ids, size_t capacity);
 
 /* Writes a column of numbers, such as `angle` or `scale`; NaN where a layer lacks it.
@@ -259,22 +259,24 @@ strew_code strew_plan_document(const strew_plan *plan,
                                const char *wanted,
                                strew_bytes **document);
 
-/* The point of an id. `set` is the query string of `GET /v1/points/{id}`, such as `spacing=1&seed=7`.
+/* The point of an id, an integer of each axis. `axes` is 2 for the plane and 3 for space; `set` is the query string of
+ * `GET /v1/points/{id}`, in space of `GET /v1/space/points/{id}`, such as `spacing=1&seed=7`.
  *
  * Returns `STREW_NO_SUCH_POINT` if the set has no point with that id. `attributes`, unless it is null, receives the
  * point with its attributes as JSON.
  *
  * Arguments:
- * `library` is a library, `set` a text, `found` a place for a point, `attributes` null or a place for a pointer. */
+ * `library` is a library, `set` a text, `id` has `axes` integers, `found` is a place for a point, `attributes` null or a
+ * place for a pointer. */
 strew_code strew_point_by_id(const strew_library *library,
+                             uint32_t axes,
                              const char *set,
-                             int64_t x,
-                             int64_t y,
+                             const int64_t *id,
                              strew_point *found,
                              strew_bytes **attributes);
 
-/* The points nearest to a place, nearest first. `query` is the query string of `GET /v1/nearest`, such as
- * `at=5,5&k=3&spacing=1&seed=7`.
+/* The points nearest to a place, nearest first. `axes` is 2 for the plane and 3 for space; `query` is the query string of
+ * `GET /v1/nearest`, such as `at=5,5&k=3&spacing=1&seed=7`, in space of `GET /v1/space/nearest`.
  *
  * Up to `capacity` points are written, and the number of those found to `count`, unless that is null. `attributes`,
  * unless it is null, receives all points with their attributes as JSON.
@@ -283,109 +285,12 @@ strew_code strew_point_by_id(const strew_library *library,
  * `library` is a library, `query` a text, `found` has room for `capacity` points, `count` is null or a place for a
  * number, `attributes` null or a place for a pointer. */
 strew_code strew_nearest(const strew_library *library,
+                         uint32_t axes,
                          const char *query,
                          strew_point *found,
                          size_t capacity,
                          size_t *count,
                          strew_bytes **attributes);
-
-/* Plans a query in space and counts its points. Free the plan with `strew_plan_free`.
- *
- * `query` is the JSON body of `POST /v1/space/points`, or the query string of `GET /v1/space/points`:
- * `ball=5,5,5,3&spacing=1&seed=7`.
- *
- * Calls that begin with `strew_space_` write its coordinates, its ids and its origin. Counts, columns, documents and
- * parts come from the calls that plans of the plane have.
- *
- * Arguments:
- * `library` is a library, `query` a text, `plan` a place for a pointer. */
-strew_code strew_space_plan_query(const strew_library *library,
-                                  const char *query,
-                                  strew_plan **plan);
-
-/* Plans the points of a chunk of space, the cube of the world grid with this size and this place along x, y and z.
- * Coordinates are relative to its corner (`strew_space_origin`). Neighbors share no point and lose none.
- *
- * `query` is as in `strew_space_plan_query`, without a region: one text serves all chunks.
- *
- * Arguments:
- * As `strew_space_plan_query`. */
-strew_code strew_space_plan_chunk(const strew_library *library,
-                                  const char *query,
-                                  double size,
-                                  int64_t x,
-                                  int64_t y,
-                                  int64_t z,
-                                  strew_plan **plan);
-
-/* The place that the `f64` coordinates are relative to: the corner of a chunk, else the origin of the world.
- *
- * Returns `STREW_INVALID_ARGUMENT` for a plan of the plane, as all calls for space do.
- *
- * Arguments:
- * `plan` is a plan, `origin` has room for three numbers. */
-strew_code strew_space_origin(const strew_plan *plan, double *origin);
-
-/* Writes the coordinates: x, y and z by turns, for each point, in the fixed order of the query.
- *
- * `capacity` is the number of points that `xyz` has room for; `STREW_BUFFER_TOO_SMALL` if it is too little. No
- * other memory is needed. Large answers are made on all cores.
- *
- * Arguments:
- * `plan` is a plan, `xyz` has room for 3 * `capacity` numbers. */
-strew_code strew_space_fill_xyz(const strew_plan *plan,
-                                double *xyz,
-                                size_t capacity);
-
-/* Writes the coordinates as `f32`, relative to the lower corner of the region, which is written to `origin` unless
- * that is null.
- *
- * Arguments:
- * `plan` is a plan, `xyz` has room for 3 * `capacity` numbers, `origin` is null or has room for three. */
-strew_code strew_space_fill_xyz_f32(const strew_plan *plan,
-                                    float *xyz,
-                                    size_t capacity,
-                                    double *origin);
-
-/* Writes the stable ids: three integers for each point, which are `x:y:z` in text.
- *
- * The first call that needs ids or a column makes all of them; they stay in memory until the plan is freed.
- *
- * Arguments:
- * `plan` is a plan, `ids` has room for 3 * `capacity` numbers. */
-strew_code strew_space_fill_ids(const strew_plan *plan, int64_t *ids, size_t capacity);
-
-/* The point in space of an id. `set` is the query string of `GET /v1/space/points/{id}`, such as
- * `spacing=1&seed=7`.
- *
- * Returns `STREW_NO_SUCH_POINT` if the set has no point with that id. `attributes`, unless it is null, receives the
- * point with its attributes as JSON.
- *
- * Arguments:
- * `library` is a library, `set` a text, `found` a place for a point, `attributes` null or a place for a pointer. */
-strew_code strew_space_point_by_id(const strew_library *library,
-                                   const char *set,
-                                   int64_t x,
-                                   int64_t y,
-                                   int64_t z,
-                                   strew_space_point *found,
-                                   strew_bytes **attributes);
-
-/* The points in space nearest to a place, nearest first. `query` is the query string of `GET /v1/space/nearest`,
- * such as `at=5,5,5&k=3&spacing=1&seed=7`.
- *
- * Up to `capacity` points are written, and the number of those found to `count`, unless that is null. `attributes`,
- * unless it is null, receives all points with their attributes as JSON.
- *
- * Arguments:
- * `library` is a library, `query` a text, `found` has room for `capacity` points, `count` is null or a place for a
- * number, `attributes` null or a place for a pointer. */
-strew_code strew_space_nearest(const strew_library *library,
-                               const char *query,
-                               strew_space_point *found,
-                               size_t capacity,
-                               size_t *count,
-                               strew_bytes **attributes);
 
 /* The words of the last error in the calling thread, those of REST: field, value, what is allowed.
  *

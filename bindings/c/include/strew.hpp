@@ -51,16 +51,45 @@ inline std::string text(strew_bytes *handle) {
 
 } // namespace detail
 
-/* A planned query: its points are counted, and made when they are wanted. */
-class AnyPlan {
+/* A planned query, with Axes coordinates for each point: its points are counted, and made when they are wanted. */
+template <std::size_t Axes>
+class BasicPlan {
 public:
-    explicit AnyPlan(strew_plan *handle) : handle_(handle) {}
+    explicit BasicPlan(strew_plan *handle) : handle_(handle) {}
 
     /* The exact number of points. */
     std::uint64_t count() const {
         std::uint64_t count = 0;
         check(strew_plan_count(get(), &count));
         return count;
+    }
+
+    /* What the numbers of coordinates() are relative to. */
+    std::array<double, Axes> origin() const {
+        std::array<double, Axes> origin{};
+        check(strew_plan_origin(get(), origin.data()));
+        return origin;
+    }
+
+    /* The coordinates of each point, by turns: x, y, in space z. */
+    std::vector<double> coordinates() const {
+        std::vector<double> at(Axes * count());
+        check(strew_plan_fill_coordinates(get(), at.data(), at.size() / Axes));
+        return at;
+    }
+
+    /* The same as float, relative to the lower corner of the region, which is written to `origin`. */
+    std::vector<float> coordinates_f32(std::array<double, Axes> *origin = nullptr) const {
+        std::vector<float> at(Axes * count());
+        check(strew_plan_fill_coordinates_f32(get(), at.data(), at.size() / Axes, origin ? origin->data() : nullptr));
+        return at;
+    }
+
+    /* The integers of each id, by turns. */
+    std::vector<std::int64_t> ids() const {
+        std::vector<std::int64_t> ids(Axes * count());
+        check(strew_plan_fill_ids(get(), ids.data(), ids.size() / Axes));
+        return ids;
     }
 
     /* A column of numbers, such as angle. */
@@ -98,75 +127,9 @@ private:
     std::unique_ptr<strew_plan, detail::Free> handle_;
 };
 
-/* A planned query of the plane. */
-class Plan : public AnyPlan {
-public:
-    using AnyPlan::AnyPlan;
-
-    /* What the coordinates of xy() are relative to. */
-    std::array<double, 2> origin() const {
-        std::array<double, 2> origin{};
-        check(strew_plan_origin(get(), origin.data()));
-        return origin;
-    }
-
-    /* x and y of each point, by turns. */
-    std::vector<double> xy() const {
-        std::vector<double> xy(2 * count());
-        check(strew_plan_fill_xy(get(), xy.data(), xy.size() / 2));
-        return xy;
-    }
-
-    /* The same as float, relative to the lower corner of the region, which is written to `origin`. */
-    std::vector<float> xy_f32(std::array<double, 2> *origin = nullptr) const {
-        std::vector<float> xy(2 * count());
-        double *out = origin ? origin->data() : nullptr;
-        check(strew_plan_fill_xy_f32(get(), xy.data(), xy.size() / 2, out));
-        return xy;
-    }
-
-    /* The two integers of each id, by turns. */
-    std::vector<std::int64_t> ids() const {
-        std::vector<std::int64_t> ids(2 * count());
-        check(strew_plan_fill_ids(get(), ids.data(), ids.size() / 2));
-        return ids;
-    }
-};
-
-/* A planned query in space. */
-class SpacePlan : public AnyPlan {
-public:
-    using AnyPlan::AnyPlan;
-
-    /* What the coordinates of xyz() are relative to. */
-    std::array<double, 3> origin() const {
-        std::array<double, 3> origin{};
-        check(strew_space_origin(get(), origin.data()));
-        return origin;
-    }
-
-    /* x, y and z of each point, by turns. */
-    std::vector<double> xyz() const {
-        std::vector<double> xyz(3 * count());
-        check(strew_space_fill_xyz(get(), xyz.data(), xyz.size() / 3));
-        return xyz;
-    }
-
-    /* The same as float, relative to the lower corner of the region, which is written to `origin`. */
-    std::vector<float> xyz_f32(std::array<double, 3> *origin = nullptr) const {
-        std::vector<float> xyz(3 * count());
-        double *out = origin ? origin->data() : nullptr;
-        check(strew_space_fill_xyz_f32(get(), xyz.data(), xyz.size() / 3, out));
-        return xyz;
-    }
-
-    /* The three integers of each id, by turns. */
-    std::vector<std::int64_t> ids() const {
-        std::vector<std::int64_t> ids(3 * count());
-        check(strew_space_fill_ids(get(), ids.data(), ids.size() / 3));
-        return ids;
-    }
-};
+/* A planned query of the plane, and one in space. */
+using Plan = BasicPlan<2>;
+using SpacePlan = BasicPlan<3>;
 
 /* Tables, with which queries are answered. Threads may share one. */
 class Library {
@@ -179,69 +142,63 @@ public:
     }
 
     /* Plans a query: JSON, or text such as bbox=0,0,10,10&spacing=1&seed=7. */
-    Plan plan(const std::string &query) const {
-        strew_plan *plan = nullptr;
-        check(strew_plan_query(get(), query.c_str(), &plan));
-        return Plan(plan);
-    }
-
-    /* Plans a chunk of a query without a region. */
-    Plan chunk(const std::string &query, double size, std::int64_t column, std::int64_t row) const {
-        strew_plan *plan = nullptr;
-        check(strew_plan_chunk(get(), query.c_str(), size, column, row, &plan));
-        return Plan(plan);
-    }
-
-    /* The points nearest to a place: at=5,5&k=3&spacing=1. At most `most` are returned. */
-    std::vector<strew_point> nearest(const std::string &query, std::size_t most = 1024) const {
-        std::vector<strew_point> found(most);
-        std::size_t count = 0;
-        check(strew_nearest(get(), query.c_str(), found.data(), most, &count, nullptr));
-        found.resize(count < most ? count : most);
-        return found;
-    }
-
-    /* The point of an id, in a set such as spacing=1&seed=7. */
-    strew_point point(const std::string &set, std::int64_t x, std::int64_t y) const {
-        strew_point found{};
-        check(strew_point_by_id(get(), set.c_str(), x, y, &found, nullptr));
-        return found;
-    }
+    Plan plan(const std::string &query) const { return planned<2>(query); }
 
     /* Plans a query in space: JSON, or text such as ball=5,5,5,3&spacing=1&seed=7. */
-    SpacePlan space(const std::string &query) const {
+    SpacePlan space(const std::string &query) const { return planned<3>(query); }
+
+    /* Plans a chunk of a query without a region, by its indices along the axes: two of them, or three in space. */
+    template <std::size_t Axes>
+    BasicPlan<Axes> chunk(const std::string &query, double size, const std::array<std::int64_t, Axes> &at) const {
         strew_plan *plan = nullptr;
-        check(strew_space_plan_query(get(), query.c_str(), &plan));
-        return SpacePlan(plan);
+        check(strew_plan_chunk(get(), Axes, query.c_str(), size, at.data(), &plan));
+        return BasicPlan<Axes>(plan);
     }
 
-    /* Plans a chunk of space of a query without a region. */
-    SpacePlan space_chunk(const std::string &query, double size, const std::array<std::int64_t, 3> &at) const {
-        strew_plan *plan = nullptr;
-        check(strew_space_plan_chunk(get(), query.c_str(), size, at[0], at[1], at[2], &plan));
-        return SpacePlan(plan);
+    Plan chunk(const std::string &query, double size, std::int64_t column, std::int64_t row) const {
+        return chunk<2>(query, size, {{column, row}});
     }
 
-    /* The points in space nearest to a place: at=5,5,5&k=3&spacing=1. At most `most` are returned. */
-    std::vector<strew_space_point> space_nearest(const std::string &query, std::size_t most = 1024) const {
-        std::vector<strew_space_point> found(most);
-        std::size_t count = 0;
-        check(strew_space_nearest(get(), query.c_str(), found.data(), most, &count, nullptr));
-        found.resize(count < most ? count : most);
+    /* The points nearest to a place: at=5,5&k=3&spacing=1, in space at=5,5,5. At most `most` are returned. */
+    std::vector<strew_point> nearest(const std::string &query, std::size_t most = 1024) const {
+        return near(2, query, most);
+    }
+
+    std::vector<strew_point> space_nearest(const std::string &query, std::size_t most = 1024) const {
+        return near(3, query, most);
+    }
+
+    /* The point of an id, of two integers or three in space, in a set such as spacing=1&seed=7. */
+    template <std::size_t Axes>
+    strew_point point(const std::string &set, const std::array<std::int64_t, Axes> &id) const {
+        strew_point found{};
+        check(strew_point_by_id(get(), Axes, set.c_str(), id.data(), &found, nullptr));
         return found;
     }
 
-    /* The point in space of an id, in a set such as spacing=1&seed=7. */
-    strew_space_point space_point(const std::string &set, const std::array<std::int64_t, 3> &id) const {
-        strew_space_point found{};
-        check(strew_space_point_by_id(get(), set.c_str(), id[0], id[1], id[2], &found, nullptr));
-        return found;
+    strew_point point(const std::string &set, std::int64_t x, std::int64_t y) const {
+        return point<2>(set, {{x, y}});
     }
 
     /* The handle, which stays this object's. */
     const strew_library *get() const { return handle_.get(); }
 
 private:
+    template <std::size_t Axes>
+    BasicPlan<Axes> planned(const std::string &query) const {
+        strew_plan *plan = nullptr;
+        check(strew_plan_query(get(), Axes, query.c_str(), &plan));
+        return BasicPlan<Axes>(plan);
+    }
+
+    std::vector<strew_point> near(std::uint32_t axes, const std::string &query, std::size_t most) const {
+        std::vector<strew_point> found(most);
+        std::size_t count = 0;
+        check(strew_nearest(get(), axes, query.c_str(), found.data(), most, &count, nullptr));
+        found.resize(count < most ? count : most);
+        return found;
+    }
+
     std::unique_ptr<strew_library, detail::Free> handle_;
 };
 

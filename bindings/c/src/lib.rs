@@ -7,7 +7,7 @@
 //!
 //! `include/strew.h` is generated from this crate; a test compares both.
 
-mod coordinates;
+mod dimension;
 #[cfg(feature = "documents")]
 mod documents;
 mod failure;
@@ -15,11 +15,9 @@ mod handles;
 mod memory;
 mod plan;
 mod single;
-mod space;
 #[cfg(target_arch = "wasm32")]
 mod wasm;
 
 pub use failure::Code;
 pub use handles::{strew_bytes, strew_library, strew_plan};
 pub use single::strew_point;
-pub use space::strew_space_point;

@@ -2,70 +2,78 @@
 
 use std::ffi::c_char;
 
-use ::strew_plan::{
-    Library,
-    library::{Further, FurtherValues},
-};
+use ::strew_plan::library::{Further, FurtherValues};
 use serde_json::json;
 use strew_error::integer::Long;
 use strew_query::{Draft, RegionDraft, ShapeDraft};
 
 use crate::{
-    coordinates::{fill, fill_f32, fill_ids, origin_of},
+    dimension::Dimension,
     failure::{Code, Failure, guarded},
     handles::{strew_bytes, strew_library, strew_plan},
-    memory::{borrowed, place, room, text},
+    memory::{borrowed, listed, place, room, text},
 };
-
-/// The number of coordinates in the plane.
-const AXES: usize = 2;
 
 /// Plans a query and counts its points. Free the plan with `strew_plan_free`.
 ///
-/// `query` is the JSON body of `POST /v1/points:query`, or the query string of `GET /v1/points`:
-/// `bbox=0,0,10,10&spacing=1&seed=7`.
+/// `axes` is 2 for the plane and 3 for space. `query` is the JSON body of `POST /v1/points:query`, or the query string of
+/// `GET /v1/points`: `bbox=0,0,10,10&spacing=1&seed=7`; in space those of `/v1/space/points`, such as
+/// `ball=5,5,5,3&spacing=1&seed=7`.
 ///
 /// # Safety
 /// `library` is a library, `query` a text, `plan` a place for a pointer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn strew_plan_query(
     library: *const strew_library,
+    axes: u32,
     query: *const c_char,
     plan: *mut *mut strew_plan,
 ) -> Code {
-    // SAFETY: as the caller promises.
-    guarded(|| unsafe { planned(library, query, plan, Library::read) })
+    guarded(|| {
+        let read = Dimension::of(axes)?;
+        // SAFETY: as the caller promises.
+        unsafe { planned(library, query, plan, |text| read.query(text)) }
+    })
 }
 
-/// Plans the points of a chunk, the square of the world grid with this size, column and row. Coordinates are
-/// relative to its corner (`strew_plan_origin`). Chunks that share an edge share no point and lose none.
+/// Plans the points of a chunk, the square or cube of the world grid with this size and these indices along the axes.
+/// Coordinates are relative to its corner (`strew_plan_origin`). Neighbors share no point and lose none.
 ///
 /// `query` is as in `strew_plan_query`, without a region: one text serves all chunks.
 ///
 /// # Safety
-/// As `strew_plan_query`.
+/// As `strew_plan_query`; `at` has `axes` integers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn strew_plan_chunk(
     library: *const strew_library,
+    axes: u32,
     query: *const c_char,
     size: f64,
-    column: i64,
-    row: i64,
+    at: *const i64,
     plan: *mut *mut strew_plan,
 ) -> Code {
-    let read = |text: &str| {
-        Ok(Library::read(text)?.within(Ok(RegionDraft {
-            path: "chunk".into(),
-            shape: ShapeDraft::Chunk(size, [column, row]),
-        })))
-    };
-    // SAFETY: as the caller promises.
-    guarded(|| unsafe { planned(library, query, plan, read) })
+    guarded(|| {
+        let dimension = Dimension::of(axes)?;
+        // SAFETY: as the caller promises.
+        let at = unsafe { listed(at, dimension.axes(), "at")? };
+        let shape = match *at {
+            [x, y, z] => ShapeDraft::Cube(size, [x, y, z]),
+            _ => ShapeDraft::Chunk(size, [at[0], at[1]]),
+        };
+        let path = "chunk".into();
+        let read = |text: &str| {
+            Ok(dimension
+                .query(text)?
+                .within(Ok(RegionDraft { path, shape })))
+        };
+        // SAFETY: as the caller promises.
+        unsafe { planned(library, query, plan, read) }
+    })
 }
 
 /// # Safety
 /// As [`strew_plan_query`].
-pub unsafe fn planned(
+unsafe fn planned(
     library: *const strew_library,
     query: *const c_char,
     plan: *mut *mut strew_plan,
@@ -84,6 +92,16 @@ pub unsafe fn planned(
         columns: std::sync::OnceLock::new(),
     })));
     Ok(())
+}
+
+/// The number of coordinates of each point: 2 in the plane, 3 in space; 0 for null.
+///
+/// # Safety
+/// `plan` is null or a plan.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn strew_plan_axes(plan: *const strew_plan) -> u32 {
+    // SAFETY: as the caller promises.
+    unsafe { plan.as_ref() }.map_or(0, |plan| plan.planned.axes() as u32)
 }
 
 /// The exact number of points, which can be more than an answer may have.
@@ -107,60 +125,103 @@ pub unsafe extern "C" fn strew_plan_count(plan: *const strew_plan, count: *mut u
 /// The place that the `f64` coordinates are relative to: the corner of a chunk, else the origin of the world.
 ///
 /// # Safety
-/// `plan` is a plan, `origin` has room for two numbers.
+/// `plan` is a plan, `origin` has room for a number of each axis.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn strew_plan_origin(plan: *const strew_plan, origin: *mut f64) -> Code {
-    // SAFETY: as the caller promises.
-    guarded(|| unsafe { origin_of::<AXES>(plan, origin) })
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        let plan = unsafe { borrowed(plan, "plan")? };
+        // SAFETY: as the caller promises.
+        let out = unsafe { room(origin, plan.planned.axes(), "origin")? };
+        match &plan.planned.query.region.corner {
+            Some(corner) => out.copy_from_slice(corner.as_slice()),
+            None => out.fill(0.0),
+        }
+        Ok(())
+    })
 }
 
-/// Writes the coordinates: x and y by turns, for each point, in the fixed order of the query.
+/// Writes the coordinates: x and y by turns, in space x, y and z, for each point, in the fixed order of the query.
 ///
-/// `capacity` is the number of points that `xy` has room for; `STREW_BUFFER_TOO_SMALL` if it is too little. No
+/// `capacity` is the number of points that `coordinates` has room for; `STREW_BUFFER_TOO_SMALL` if it is too little. No
 /// other memory is needed. Large answers are made on all cores.
 ///
 /// # Safety
-/// `plan` is a plan, `xy` has room for 2 * `capacity` numbers.
+/// `plan` is a plan, `coordinates` has room for `capacity` numbers of each axis.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn strew_plan_fill_xy(
+pub unsafe extern "C" fn strew_plan_fill_coordinates(
     plan: *const strew_plan,
-    xy: *mut f64,
+    coordinates: *mut f64,
     capacity: usize,
 ) -> Code {
-    // SAFETY: as the caller promises.
-    guarded(|| unsafe { fill::<AXES>(plan, xy, capacity, "xy") })
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        let (plan, at) = unsafe { filled(plan, coordinates, capacity, "coordinates")? };
+        plan.library.fill_coordinates(&plan.planned, at)?;
+        Ok(())
+    })
 }
 
 /// Writes the coordinates as `f32`, relative to the lower corner of the region, which is written to `origin` unless
 /// that is null.
 ///
 /// # Safety
-/// `plan` is a plan, `xy` has room for 2 * `capacity` numbers, `origin` is null or has room for two.
+/// As `strew_plan_fill_coordinates`; `origin` is null or has room for a number of each axis.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn strew_plan_fill_xy_f32(
+pub unsafe extern "C" fn strew_plan_fill_coordinates_f32(
     plan: *const strew_plan,
-    xy: *mut f32,
+    coordinates: *mut f32,
     capacity: usize,
     origin: *mut f64,
 ) -> Code {
-    // SAFETY: as the caller promises.
-    guarded(|| unsafe { fill_f32::<AXES>(plan, xy, capacity, origin, "xy") })
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        let (plan, at) = unsafe { filled(plan, coordinates, capacity, "coordinates")? };
+        let (_, from) = plan.library.fill_offsets(&plan.planned, at)?;
+        if !origin.is_null() {
+            // SAFETY: as the caller promises.
+            let out = unsafe { room(origin, plan.planned.axes(), "origin")? };
+            out.copy_from_slice(from.as_slice());
+        }
+        Ok(())
+    })
 }
 
-/// Writes the stable ids: two integers for each point, which are `x:y` in text.
+/// Writes the stable ids: an integer of each axis for each point, which are `x:y` or `x:y:z` in text.
 ///
 /// The first call that needs ids or a column makes all of them; they stay in memory until the plan is freed.
 ///
 /// # Safety
-/// `plan` is a plan, `ids` has room for 2 * `capacity` numbers.
+/// `plan` is a plan, `ids` has room for `capacity` numbers of each axis.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn strew_plan_fill_ids(
     plan: *const strew_plan,
     ids: *mut i64,
     capacity: usize,
 ) -> Code {
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        let (plan, ids) = unsafe { filled(plan, ids, capacity, "ids")? };
+        ids.copy_from_slice(&plan.columns()?.ids);
+        Ok(())
+    })
+}
+
+/// A plan, and the room for a number of each axis for each of its points.
+///
+/// # Safety
+/// `plan` is a plan, `numbers` has room for `capacity` numbers of each axis.
+unsafe fn filled<'a, T: Copy>(
+    plan: *const strew_plan,
+    numbers: *mut T,
+    capacity: usize,
+    name: &str,
+) -> Result<(&'a strew_plan, &'a mut [T]), Failure> {
     // SAFETY: as the caller promises.
-    guarded(|| unsafe { fill_ids::<AXES>(plan, ids, capacity) })
+    let plan = unsafe { borrowed(plan, "plan")? };
+    let count = plan.count_for(capacity)? * plan.planned.axes();
+    // SAFETY: as the caller promises.
+    Ok((plan, unsafe { room(numbers, count, name)? }))
 }
 
 /// Writes a column of numbers, such as `angle` or `scale`; NaN where a layer lacks it.

@@ -20,29 +20,33 @@ static strew_library *library;
 
 static strew_plan *planned(const char *query) {
     strew_plan *plan = NULL;
-    EXPECT(strew_plan_query(library, query, &plan) == STREW_OK);
+    EXPECT(strew_plan_query(library, 2, query, &plan) == STREW_OK);
     return plan;
 }
 
 /* Null for every pointer, text that is not UTF-8, buffers that are too small. */
 static void arguments(void) {
     strew_plan *plan = NULL;
+    const int64_t origin[2] = {1, 1};
     EXPECT(strew_library_open(NULL, NULL) == STREW_INVALID_ARGUMENT);
-    EXPECT(strew_plan_query(NULL, "", &plan) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_plan_query(NULL, 2, "", &plan) == STREW_INVALID_ARGUMENT);
     EXPECT(strcmp(strew_error_field(), "library") == 0);
-    EXPECT(strew_plan_query(library, NULL, &plan) == STREW_INVALID_ARGUMENT);
-    EXPECT(strew_plan_query(library, "spacing=1", NULL) == STREW_INVALID_ARGUMENT);
-    EXPECT(strew_plan_query(library, "\xff", &plan) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_plan_query(library, 2, NULL, &plan) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_plan_query(library, 2, "spacing=1", NULL) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_plan_query(library, 2, "\xff", &plan) == STREW_INVALID_ARGUMENT);
     EXPECT(strcmp(strew_error_message(), "`query`: not UTF-8; allowed: text in UTF-8") == 0);
-    EXPECT(strew_plan_chunk(library, "spacing=1", 0.0 / 0.0, 0, 0, &plan) == STREW_INVALID_QUERY);
-    EXPECT(strew_plan_chunk(library, "spacing=1", -1, 0, 0, &plan) == STREW_INVALID_QUERY);
-    EXPECT(plan == NULL);
+    EXPECT(strew_plan_chunk(library, 2, "spacing=1", 0.0 / 0.0, origin, &plan) == STREW_INVALID_QUERY);
+    EXPECT(strew_plan_chunk(library, 2, "spacing=1", -1, origin, &plan) == STREW_INVALID_QUERY);
+    EXPECT(strew_plan_chunk(library, 2, "spacing=1", 1, NULL, &plan) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_plan_query(library, 4, "spacing=1", &plan) == STREW_INVALID_ARGUMENT);
+    EXPECT(strcmp(strew_error_field(), "axes") == 0);
+    EXPECT(plan == NULL && strew_plan_axes(NULL) == 0);
     EXPECT(strew_plan_count(NULL, NULL) == STREW_INVALID_ARGUMENT);
-    EXPECT(strew_nearest(library, "at=0,0&spacing=1", NULL, 1, NULL, NULL) == STREW_INVALID_ARGUMENT);
-    EXPECT(strew_nearest(library, "at=0,0&spacing=1", NULL, 0, NULL, NULL) == STREW_OK);
-    EXPECT(strew_point_by_id(library, "spacing=1", 1, 1, NULL, NULL) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_nearest(library, 2, "at=0,0&spacing=1", NULL, 1, NULL, NULL) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_nearest(library, 2, "at=0,0&spacing=1", NULL, 0, NULL, NULL) == STREW_OK);
+    EXPECT(strew_point_by_id(library, 2, "spacing=1", origin, NULL, NULL) == STREW_INVALID_ARGUMENT);
     strew_point point;
-    EXPECT(strew_point_by_id(library, "spacing=1", 1, 1, &point, NULL) == STREW_NO_SUCH_POINT);
+    EXPECT(strew_point_by_id(library, 2, "spacing=1", origin, &point, NULL) == STREW_NO_SUCH_POINT);
     EXPECT(strcmp(strew_error_kind(), "no-such-point") == 0);
     strew_library *other = NULL;
     EXPECT(strew_library_open("no/such/folder", &other) == STREW_TABLE_UNREADABLE);
@@ -57,14 +61,14 @@ static void arguments(void) {
 static void tables(void) {
     strew_plan *plan = NULL;
     const char *green = "bbox=0,0,10,10&spacing=1&profile=green&map=s";
-    EXPECT(strew_plan_query(library, green, &plan) == STREW_INVALID_QUERY);
+    EXPECT(strew_plan_query(library, 2, green, &plan) == STREW_INVALID_QUERY);
     EXPECT(strcmp(strew_error_field(), "profile") == 0);
     EXPECT(strstr(strew_error_message(), "open a folder that has its file") && !strstr(strew_error_message(), "forge"));
     strew_library *whole = NULL;
     EXPECT(strew_library_open(getenv("TABLES"), &whole) == STREW_OK);
-    EXPECT(strew_plan_query(whole, green, &plan) == STREW_OK);
+    EXPECT(strew_plan_query(whole, 2, green, &plan) == STREW_OK);
     strew_plan_free(plan);
-    EXPECT(strew_plan_query(whole, "bbox=0,0,9,9&spacing=1&variants=a:1,b:3&spread=joint", &plan) == STREW_OK);
+    EXPECT(strew_plan_query(whole, 2, "bbox=0,0,9,9&spacing=1&variants=a:1,b:3&spread=joint", &plan) == STREW_OK);
     strew_plan_free(plan);
     strew_library_free(whole);
     EXPECT(strcmp(strew_version(), STREW_VERSION_STRING) == 0);
@@ -80,14 +84,14 @@ static void buffers(void) {
     int64_t *ids = malloc(2 * count * sizeof *ids);
     int32_t *codes = malloc(count * sizeof *codes);
     EXPECT(xy && angles && near && ids && codes);
-    EXPECT(strew_plan_fill_xy(plan, xy, count - 1) == STREW_BUFFER_TOO_SMALL);
+    EXPECT(strew_plan_fill_coordinates(plan, xy, count - 1) == STREW_BUFFER_TOO_SMALL);
     EXPECT(strcmp(strew_error_message(),
                   "`capacity` = `99`: has room for fewer than the 100 points; allowed: 100 or more") == 0);
-    EXPECT(strew_plan_fill_xy(plan, NULL, count) == STREW_INVALID_ARGUMENT);
-    EXPECT(strew_plan_fill_xy(plan, xy, count) == STREW_OK);
+    EXPECT(strew_plan_fill_coordinates(plan, NULL, count) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_plan_fill_coordinates(plan, xy, count) == STREW_OK);
     double origin[2] = {1, 1};
-    EXPECT(strew_plan_fill_xy_f32(plan, near, count, origin) == STREW_OK && origin[0] == 0);
-    EXPECT(strew_plan_fill_xy_f32(plan, near, count, NULL) == STREW_OK);
+    EXPECT(strew_plan_fill_coordinates_f32(plan, near, count, origin) == STREW_OK && origin[0] == 0);
+    EXPECT(strew_plan_fill_coordinates_f32(plan, near, count, NULL) == STREW_OK);
     EXPECT(strew_plan_fill_ids(plan, ids, count) == STREW_OK);
     EXPECT(strew_plan_fill_ids(plan, ids, 0) == STREW_BUFFER_TOO_SMALL);
     EXPECT(strew_plan_fill_numbers(plan, "angle", angles, count) == STREW_OK);
@@ -98,7 +102,7 @@ static void buffers(void) {
     EXPECT(strcmp(strew_error_message(), "`column`: no column `size`; allowed: angle, variant") == 0);
     for (uint64_t i = 0; i < count; i++) {
         strew_point found;
-        EXPECT(strew_point_by_id(library, "spacing=1&seed=7", ids[2 * i], ids[2 * i + 1], &found, NULL) == STREW_OK);
+        EXPECT(strew_point_by_id(library, 2, "spacing=1&seed=7", ids + 2 * i, &found, NULL) == STREW_OK);
         EXPECT(found.x == xy[2 * i] && found.y == xy[2 * i + 1]);
         EXPECT(near[2 * i] >= 0 && near[2 * i] < 10 && codes[i] >= 0 && codes[i] < 2);
     }
@@ -118,54 +122,47 @@ static void buffers(void) {
     free(angles);
     free(xy);
     plan = planned("bbox=0.1,0.1,0.2,0.2&spacing=50");
-    EXPECT(strew_plan_fill_xy(plan, NULL, 0) == STREW_OK);
+    EXPECT(strew_plan_fill_coordinates(plan, NULL, 0) == STREW_OK);
     strew_plan_free(plan);
     plan = planned("bbox=-5e5,-5e5,5e5,5e5&spacing=0.001");
     EXPECT(strew_plan_count(plan, &count) == STREW_OK && count > 999999999000000000u);
-    EXPECT(strew_plan_fill_xy(plan, NULL, 0) == STREW_TOO_MANY_POINTS);
+    EXPECT(strew_plan_fill_coordinates(plan, NULL, 0) == STREW_TOO_MANY_POINTS);
     strew_plan_free(plan);
 }
 
-/* Points in space, and the calls for the plane that refuse them. */
+/* Points in space, by the same calls. */
 static void space(void) {
     strew_plan *plan = NULL;
-    EXPECT(strew_space_plan_query(library, NULL, &plan) == STREW_INVALID_ARGUMENT);
-    EXPECT(strew_space_plan_query(library, "bbox=0,0,1,1&spacing=1", &plan) == STREW_INVALID_QUERY);
-    EXPECT(strew_space_plan_chunk(library, "spacing=1", -1, 0, 0, 0, &plan) == STREW_INVALID_QUERY);
-    EXPECT(strew_space_plan_chunk(library, "spacing=1&attributes=rotation", 4, -3, 2, 1, &plan) == STREW_OK);
+    const int64_t cube[3] = {-3, 2, 1}, nowhere[3] = {1, 0, 0};
+    EXPECT(strew_plan_query(library, 3, NULL, &plan) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_plan_query(library, 3, "bbox=0,0,1,1&spacing=1", &plan) == STREW_INVALID_QUERY);
+    EXPECT(strew_plan_chunk(library, 3, "spacing=1", -1, cube, &plan) == STREW_INVALID_QUERY);
+    EXPECT(strew_plan_chunk(library, 3, "spacing=1&attributes=rotation", 4, cube, &plan) == STREW_OK);
     uint64_t count = 0;
-    EXPECT(strew_plan_count(plan, &count) == STREW_OK && count > 40);
+    EXPECT(strew_plan_count(plan, &count) == STREW_OK && count > 40 && strew_plan_axes(plan) == 3);
     double *xyz = malloc(3 * count * sizeof *xyz), *turns = malloc(count * sizeof *turns), origin[3] = {1, 1, 1};
     float *near = malloc(3 * count * sizeof *near);
     int64_t *ids = malloc(3 * count * sizeof *ids);
     EXPECT(xyz && turns && near && ids);
-    EXPECT(strew_space_fill_xyz(plan, xyz, count - 1) == STREW_BUFFER_TOO_SMALL);
-    EXPECT(strew_space_fill_xyz(plan, xyz, count) == STREW_OK);
-    EXPECT(strew_space_fill_xyz_f32(plan, near, count, NULL) == STREW_OK);
-    EXPECT(strew_space_fill_xyz_f32(plan, near, count, origin) == STREW_OK && origin[0] == -12);
-    EXPECT(strew_space_origin(plan, origin) == STREW_OK && origin[1] == 8 && origin[2] == 4);
-    EXPECT(strew_space_fill_ids(plan, ids, count) == STREW_OK);
+    EXPECT(strew_plan_fill_coordinates(plan, xyz, count - 1) == STREW_BUFFER_TOO_SMALL);
+    EXPECT(strew_plan_fill_coordinates(plan, xyz, count) == STREW_OK);
+    EXPECT(strew_plan_fill_coordinates_f32(plan, near, count, NULL) == STREW_OK);
+    EXPECT(strew_plan_fill_coordinates_f32(plan, near, count, origin) == STREW_OK && origin[0] == -12);
+    EXPECT(strew_plan_origin(plan, origin) == STREW_OK && origin[1] == 8 && origin[2] == 4);
+    EXPECT(strew_plan_fill_ids(plan, ids, count) == STREW_OK);
     EXPECT(strew_plan_fill_numbers(plan, "qw", turns, count) == STREW_OK);
-    EXPECT(strew_plan_fill_xy(plan, xyz, count) == STREW_INVALID_ARGUMENT);
-    EXPECT(strcmp(strew_error_message(), "`plan`: points in space; allowed: a plan of strew_plan_query") == 0);
-    EXPECT(strew_plan_fill_ids(plan, ids, count) == STREW_INVALID_ARGUMENT);
-    EXPECT(strew_plan_origin(plan, origin) == STREW_INVALID_ARGUMENT);
     for (uint64_t i = 0; i < count; i++) {
-        strew_space_point found;
+        strew_point found;
         int64_t *id = ids + 3 * i;
-        EXPECT(strew_space_point_by_id(library, "spacing=1", id[0], id[1], id[2], &found, NULL) == STREW_OK);
+        EXPECT(strew_point_by_id(library, 3, "spacing=1", id, &found, NULL) == STREW_OK);
         EXPECT(found.id[2] == id[2] && found.z >= 4 && found.z < 8 && near[3 * i + 2] >= 0 && near[3 * i + 2] < 4);
     }
-    strew_space_point nearest[2];
+    strew_point nearest[2];
     size_t some = 0;
-    EXPECT(strew_space_nearest(library, "at=1,2,3&k=2&spacing=1", nearest, 2, &some, NULL) == STREW_OK && some == 2);
+    EXPECT(strew_nearest(library, 3, "at=1,2,3&k=2&spacing=1", nearest, 2, &some, NULL) == STREW_OK && some == 2);
     EXPECT(nearest[0].distance <= nearest[1].distance);
-    EXPECT(strew_space_nearest(library, "at=1,2&spacing=1", nearest, 2, &some, NULL) == STREW_INVALID_QUERY);
-    EXPECT(strew_space_point_by_id(library, "spacing=1", 1, 0, 0, nearest, NULL) == STREW_NO_SUCH_POINT);
-    strew_plan_free(plan);
-    plan = planned("bbox=0,0,2,2&spacing=1");
-    EXPECT(strew_space_fill_xyz(plan, xyz, count) == STREW_INVALID_ARGUMENT);
-    EXPECT(strew_space_origin(plan, origin) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_nearest(library, 3, "at=1,2&spacing=1", nearest, 2, &some, NULL) == STREW_INVALID_QUERY);
+    EXPECT(strew_point_by_id(library, 3, "spacing=1", nowhere, nearest, NULL) == STREW_NO_SUCH_POINT);
     strew_plan_free(plan);
     free(ids);
     free(near);
@@ -177,7 +174,7 @@ static void space(void) {
 static void *mistaken(void *query) {
     strew_plan *plan = NULL;
     EXPECT(strcmp(strew_error_message(), "") == 0);
-    EXPECT(strew_plan_query(library, query, &plan) == STREW_INVALID_QUERY);
+    EXPECT(strew_plan_query(library, 2, query, &plan) == STREW_INVALID_QUERY);
     EXPECT(strstr(strew_error_message(), query));
     EXPECT(strstr(strew_error_document(), "\"errors\":[{\"field\":"));
     return NULL;
@@ -200,7 +197,7 @@ int main(void) {
     uint64_t count = 0;
     EXPECT(strew_plan_count(plan, &count) == STREW_OK && count > 8);
     double xy[2 * 32];
-    EXPECT(strew_plan_fill_xy(plan, xy, 32) == STREW_OK);
+    EXPECT(strew_plan_fill_coordinates(plan, xy, 32) == STREW_OK);
     strew_plan_free(plan);
     puts("all calls are as they should be");
     return 0;

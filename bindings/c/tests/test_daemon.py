@@ -62,7 +62,7 @@ class Strew:
 
     def plan(self, query: str, kind: Kind) -> ctypes.c_void_p | None:
         plan = ctypes.c_void_p()
-        code = getattr(self.calls, kind.plan)(self.library, query.encode(), ctypes.byref(plan))
+        code = self.calls.strew_plan_query(self.library, len(kind.axes), query.encode(), ctypes.byref(plan))
         return plan if code == 0 else None
 
     def bytes(self, call: str, *arguments: Any) -> bytes:
@@ -81,17 +81,14 @@ class Strew:
 
 @dataclass(frozen=True)
 class Kind:
-    """The calls and the path for queries of the plane, or in space."""
+    """The axes and the path for queries of the plane, or in space."""
 
     axes: str
     path: str
-    plan: str
-    coordinates: str
-    ids: str
 
 
-PLANE = Kind("xy", "/v1/points:query", "strew_plan_query", "strew_plan_fill_xy", "strew_plan_fill_ids")
-SPACE = Kind("xyz", "/v1/space/points", "strew_space_plan_query", "strew_space_fill_xyz", "strew_space_fill_ids")
+PLANE = Kind("xy", "/v1/points:query")
+SPACE = Kind("xyz", "/v1/space/points")
 
 
 def answer(url: str, query: str) -> tuple[int, bytes]:
@@ -111,9 +108,9 @@ def same_words(strew: Strew, content: bytes) -> None:
 
 def same_points(strew: Strew, plan: ctypes.c_void_p, document: dict[str, Any], kind: Kind) -> None:
     rows, count, each = document["points"], len(document["points"]), len(kind.axes)
-    at = strew.filled(kind.coordinates, ctypes.c_double, each * count, plan, each=each)
+    at = strew.filled("strew_plan_fill_coordinates", ctypes.c_double, each * count, plan, each=each)
     assert at == [row[axis] for row in rows for axis in kind.axes]
-    ids = strew.filled(kind.ids, ctypes.c_int64, each * count, plan, each=each)
+    ids = strew.filled("strew_plan_fill_ids", ctypes.c_int64, each * count, plan, each=each)
     assert ids == [int(part) for row in rows for part in row["id"].split(":")]
     for column in json.loads(strew.bytes("strew_plan_columns", plan)):
         name, expected = column["name"], [row.get(column["name"]) for row in rows]
@@ -154,7 +151,7 @@ def same_neighbors(strew: Strew, url: str) -> None:
     with urllib.request.urlopen(f"{url}/v1/space/nearest?{address}") as response:
         there = json.loads(response.read())["neighbors"]
     none = ctypes.c_void_p()
-    found = strew.bytes("strew_space_nearest", strew.library, address.encode(), none, ctypes.c_size_t(0), none)
+    found = strew.bytes("strew_nearest", strew.library, 3, address.encode(), none, ctypes.c_size_t(0), none)
     assert len(there) == 3 and json.loads(found) == there
 
 

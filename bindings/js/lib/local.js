@@ -4,7 +4,7 @@ import { StrewError } from "./error.js";
 import { compile, content, isAddress } from "./files.js";
 import { Module } from "./module.js";
 import { Source, rowsOf } from "./points.js";
-import { PLANE, SPACE, address, integers } from "./query.js";
+import { PLANE, address, integers } from "./query.js";
 
 /** The table that answers by default, and by default the only one that is loaded. */
 export const DEFAULT_TABLES = ["blue-5-sqrt3-over-2-m.strew"];
@@ -12,21 +12,8 @@ export const DEFAULT_TABLES = ["blue-5-sqrt3-over-2-m.strew"];
 /** The table for points in space that answers by default. */
 export const SPACE_TABLES = ["space-blue-5-sqrt3-over-2-r16.strew"];
 
-/** The calls of the module by its prefixes, and the bytes of a point. */
-const calls = (of, ofPlan, { axes }) => ({
-    plan: `${of}plan_query`,
-    origin: `${ofPlan}origin`,
-    fill: `${ofPlan}fill_${axes}`,
-    near: `${ofPlan}fill_${axes}_f32`,
-    ids: `${ofPlan}fill_ids`,
-    nearest: `${of}nearest`,
-    point: `${of}point_by_id`,
-    bytes: 8 + 16 * axes.length,
-});
-const CALLS = new Map([
-    [PLANE, calls("strew_", "strew_plan_", PLANE)],
-    [SPACE, calls("strew_space_", "strew_space_", SPACE)],
-]);
+/** The bytes of a point as C has it: an id of three integers, three coordinates and a distance. */
+const POINT_BYTES = 56;
 
 /** This page or process. */
 export class Local extends Source {
@@ -44,7 +31,7 @@ export class Local extends Source {
         const module = this.#module;
         return module.scoped((room) => {
             const out = room(4);
-            module.call(CALLS.get(dimension).plan, this.#library, module.text(room, query), out);
+            module.call("strew_plan_query", this.#library, dimension.axes.length, module.text(room, query), out);
             return new Plan(module, module.pointer(out), dimension);
         });
     }
@@ -53,17 +40,18 @@ export class Local extends Source {
         const module = this.#module;
         return module.scoped((room) => {
             const set = module.text(room, address(values));
-            return module.json(CALLS.get(dimension).nearest, room, this.#library, set, 0, 0, 0);
+            return module.json("strew_nearest", room, this.#library, dimension.axes.length, set, 0, 0, 0);
         });
     }
 
     point(id, values, dimension) {
         const module = this.#module;
-        const calls = CALLS.get(dimension);
         return module.scoped((room) => {
             const parts = integers(id, dimension);
             const set = module.text(room, address(values));
-            return module.json(calls.point, room, this.#library, set, ...parts, room(calls.bytes));
+            const at = room(8 * parts.length);
+            new BigInt64Array(module.memory, at, parts.length).set(parts);
+            return module.json("strew_point_by_id", room, this.#library, parts.length, set, at, room(POINT_BYTES));
         });
     }
 
@@ -80,13 +68,11 @@ export class Local extends Source {
 class Plan {
     #module;
     #plan;
-    #calls;
     #axes;
 
     constructor(module, plan, dimension) {
         this.#module = module;
         this.#plan = plan;
-        this.#calls = CALLS.get(dimension);
         this.#axes = dimension.axes.length;
         module.plans.add(this, plan);
     }
@@ -129,7 +115,7 @@ class Plan {
     }
 
     coordinates() {
-        return this.#filled(Float64Array, this.#axes, this.#calls.fill);
+        return this.#filled(Float64Array, this.#axes, "strew_plan_fill_coordinates");
     }
 
     offsets() {
@@ -137,7 +123,7 @@ class Plan {
         const [count, axes] = [this.#few(), this.#axes];
         return module.scoped((room) => {
             const from = room(8 * axes);
-            const fill = (at) => module.call(this.#calls.near, this.#plan, at, count, from);
+            const fill = (at) => module.call("strew_plan_fill_coordinates_f32", this.#plan, at, count, from);
             const at = module.filled(Float32Array, axes * count, room, fill);
             return { at, origin: [...new Float64Array(module.memory, from, axes)] };
         });
@@ -146,13 +132,13 @@ class Plan {
     origin() {
         return this.#module.scoped((room) => {
             const out = room(8 * this.#axes);
-            this.#module.call(this.#calls.origin, this.#plan, out);
+            this.#module.call("strew_plan_origin", this.#plan, out);
             return [...new Float64Array(this.#module.memory, out, this.#axes)];
         });
     }
 
     columns() {
-        const ids = this.#filled(BigInt64Array, this.#axes, this.#calls.ids);
+        const ids = this.#filled(BigInt64Array, this.#axes, "strew_plan_fill_ids");
         const listed = this.#module.scoped((room) => this.#module.json("strew_plan_columns", room, this.#plan));
         const further = listed.map(({ name, names }) => {
             const [kind, call] = names ? [Int32Array, "codes"] : [Float64Array, "numbers"];

@@ -24,7 +24,7 @@ namespace Strew
         /// <exception cref="StrewException">The query is not valid.</exception>
         public Plan Query(string query)
         {
-            StrewException.Check(Native.strew_plan_query(handle, Utf8(query), out PlanHandle plan));
+            StrewException.Check(Native.strew_plan_query(handle, 2, Utf8(query), out PlanHandle plan));
             return new Plan(plan);
         }
 
@@ -33,7 +33,7 @@ namespace Strew
         /// <exception cref="StrewException">The query is not valid.</exception>
         public Plan Chunk(string query, double size, long column, long row)
         {
-            Code code = Native.strew_plan_chunk(handle, Utf8(query), size, column, row, out PlanHandle plan);
+            Code code = Native.strew_plan_chunk(handle, 2, Utf8(query), size, new[] { column, row }, out PlanHandle plan);
             StrewException.Check(code);
             return new Plan(plan);
         }

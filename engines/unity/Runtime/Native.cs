@@ -22,11 +22,11 @@ namespace Strew
         internal static extern void strew_library_free(IntPtr library);
 
         [DllImport(Library)]
-        internal static extern Code strew_plan_query(LibraryHandle library, byte[] query, out PlanHandle plan);
+        internal static extern Code strew_plan_query(LibraryHandle library, uint axes, byte[] query, out PlanHandle plan);
 
         [DllImport(Library)]
         internal static extern Code strew_plan_chunk(
-            LibraryHandle library, byte[] query, double size, long column, long row, out PlanHandle plan);
+            LibraryHandle library, uint axes, byte[] query, double size, long[] at, out PlanHandle plan);
 
         [DllImport(Library)]
         internal static extern void strew_plan_free(IntPtr plan);
@@ -38,15 +38,15 @@ namespace Strew
         internal static extern Code strew_plan_origin(PlanHandle plan, [Out] double[] origin);
 
         [DllImport(Library)]
-        internal static extern Code strew_plan_fill_xy(PlanHandle plan, [Out] double[] xy, UIntPtr capacity);
+        internal static extern Code strew_plan_fill_coordinates(PlanHandle plan, [Out] double[] xy, UIntPtr capacity);
 
         [DllImport(Library)]
-        internal static extern Code strew_plan_fill_xy_f32(
+        internal static extern Code strew_plan_fill_coordinates_f32(
             PlanHandle plan, [Out] float[] xy, UIntPtr capacity, [Out] double[] origin);
 
         // For memory that is not an array, such as a NativeArray's.
-        [DllImport(Library, EntryPoint = "strew_plan_fill_xy_f32")]
-        internal static extern Code strew_plan_fill_xy_f32_at(
+        [DllImport(Library, EntryPoint = "strew_plan_fill_coordinates_f32")]
+        internal static extern Code strew_plan_fill_coordinates_f32_at(
             PlanHandle plan, IntPtr xy, UIntPtr capacity, [Out] double[] origin);
 
         [DllImport(Library)]

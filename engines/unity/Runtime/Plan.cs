@@ -32,7 +32,7 @@ namespace Strew
         public double[] Positions()
         {
             var xy = new double[2 * Count];
-            StrewException.Check(Native.strew_plan_fill_xy(handle, xy, Capacity));
+            StrewException.Check(Native.strew_plan_fill_coordinates(handle, xy, Capacity));
             return xy;
         }
 
@@ -42,7 +42,7 @@ namespace Strew
         {
             var xy = new float[2 * Count];
             origin = new double[2];
-            StrewException.Check(Native.strew_plan_fill_xy_f32(handle, xy, Capacity, origin));
+            StrewException.Check(Native.strew_plan_fill_coordinates_f32(handle, xy, Capacity, origin));
             return xy;
         }
 
@@ -55,7 +55,7 @@ namespace Strew
         {
             var origin = new double[2];
             var room = (UIntPtr)(uint)capacity;
-            StrewException.Check(Native.strew_plan_fill_xy_f32_at(handle, xy, room, origin));
+            StrewException.Check(Native.strew_plan_fill_coordinates_f32_at(handle, xy, room, origin));
             return origin;
         }
 

@@ -3,14 +3,15 @@
 import { givenIn, hashOf } from "../address.js";
 import { askJson } from "../api.js";
 import { topOf } from "../charts.js";
-import { byId, make, settled, skipLinks } from "../dom.js";
-import { moveBy, tools } from "../gestures.js";
+import { byId, framed, settled, skipLinks } from "../dom.js";
+import { jumps, moveBy, tools } from "../gestures.js";
+import { setOptions } from "../form.js";
 import { Notice } from "../notice.js";
-import { decimalsFor, formatPlace, parsePlace, place, toNumber } from "../place.js";
+import { decimalsFor, formatPlace, place, toNumber } from "../place.js";
+import { profileNames } from "../profiles.js";
 import { Moving } from "../view.js";
 import { METHODS } from "./methods.js";
 import { Panel } from "./panel.js";
-
 
 /** The fewest and the most mean spacings along the shorter side of a panel. */
 const LEAST_SPAN = 4;
@@ -34,8 +35,8 @@ function fromHash(hash, isNarrow) {
   return {
     ...(isPlace ? { x, y } : { x: place(FAR), y: place(FAR) }),
     span: bounded(span),
-    seed: Number(given.matching("seed", /^\d{1,9}$/, "1")),
-    profile: given.matching("profile", /^[\w.-]{1,64}$/, "blue"),
+    seed: Number(given.matching("seed", (text) => /^\d{1,9}$/.test(text), "1")),
+    profile: given.matching("profile", (text) => /^[\w.-]{1,64}$/.test(text), "blue"),
     wrong: given.wrong(),
   };
 }
@@ -83,21 +84,19 @@ const notice = new Notice(byId("banner"), () => {
 }, () => begin());
 const say = (words) => notice.say("wrong", words);
 
-let isWaiting = false;
+const paint = framed(() => {
+  for (const panel of panels) panel.draw(joint.view);
+  const { x, y } = joint.view;
+  byId("far").textContent = isFar() ? "Back to the origin" : "A billion units away";
+  const now = `${x.i + x.f},${y.i + y.f}`;
+  if (now !== root.dataset.at) again();
+  root.dataset.at = now;
+});
+const isFar = () => Math.abs(joint.view.x.i) > FAR / 2;
+
 function draw() {
   write();
-  if (isWaiting) return;
-  isWaiting = true;
-  requestAnimationFrame(() => {
-    isWaiting = false;
-    for (const panel of panels) panel.draw(joint.view);
-    const { x, y } = joint.view;
-    const isFar = Math.abs(x.i) > FAR / 2;
-    byId("far").textContent = isFar ? "Back to the origin" : "A billion units away";
-    const now = `${x.i + x.f},${y.i + y.f}`;
-    if (now !== root.dataset.at) again();
-    root.dataset.at = now;
-  });
+  paint();
 }
 
 const write = settled(250, () => {
@@ -158,50 +157,9 @@ function resize() {
   if (clientWidth && clientHeight) joint.resize(clientWidth, clientHeight);
 }
 
-function jump(event) {
-  event.preventDefault();
-  const field = byId("jump-at");
-  const [x, y] = field.value.split(/[,;]|\s+/).filter(Boolean).map(parsePlace);
-  const isPlace = x && y && Math.abs(x.i) <= FARTHEST && Math.abs(y.i) <= FARTHEST;
-  field.setAttribute("aria-invalid", String(!isPlace));
-  say(isPlace ? null : `“${field.value}” is not a place here. Enter two numbers from −1e12 to 1e12, such as 1e6, -3.5.`);
-  if (isPlace) joint.lookAt(x, y);
-}
-
 function home() {
   byId("jump-at").value = "";
   joint.lookAt(place(0), place(0));
-}
-
-function listen() {
-  tools(joint, home, () => {
-    for (const panel of panels) panel.themed();
-    chart();
-    draw();
-  });
-  byId("jump").addEventListener("submit", jump);
-  byId("far").addEventListener("click", () => {
-    const isFar = Math.abs(joint.view.x.i) > FAR / 2;
-    if (isFar) home();
-    else joint.lookAt(place(FAR), place(FAR));
-  });
-  const [field, profile] = [byId("seed"), byId("profile")];
-  field.addEventListener("change", () => {
-    const seed = Number(field.value);
-    const isSeed = Number.isInteger(seed) && seed >= 0 && seed < 1e9;
-    field.setAttribute("aria-invalid", String(!isSeed));
-    say(isSeed ? null : "The seed must be a whole number from 0 to 999,999,999.");
-    if (isSeed) choose({ seed });
-  });
-  profile.addEventListener("change", () => choose({ profile: profile.value }));
-}
-
-function build() {
-  byId("methods").append(...panels.map(({ element }) => element));
-  for (const { plane } of panels) {
-    moveBy(plane, joint, { tapped: () => {}, hovered: () => {} });
-    new ResizeObserver(resize).observe(plane);
-  }
 }
 
 addEventListener("hashchange", () => {
@@ -213,12 +171,12 @@ addEventListener("hashchange", () => {
 async function begin() {
   try {
     const { profiles } = await askJson("/v1/profiles");
-    const names = [...new Set(profiles.map(({ profile }) => profile))];
+    const names = profileNames(profiles);
     if (!names.includes(state.profile)) {
       if (location.hash.includes("profile=")) say(`This server has no profile “${state.profile}”.`);
       [state.profile] = names.includes("blue") ? ["blue"] : names;
     }
-    byId("profile").replaceChildren(...names.map((name) => make("option", { value: name }, name)));
+    setOptions(byId("profile"), names, state.profile);
   } catch (error) {
     notice.refused(error);
   }
@@ -228,7 +186,30 @@ async function begin() {
 say(state.wrong);
 // For tests.
 globalThis.strew = { joint, panels };
-build();
-listen();
+byId("methods").append(...panels.map(({ element }) => element));
+for (const { plane } of panels) {
+  moveBy(plane, joint, { tapped: () => {}, hovered: () => {} });
+  new ResizeObserver(resize).observe(plane);
+}
+tools(joint, home, () => {
+  for (const panel of panels) panel.themed();
+  chart();
+  draw();
+});
+jumps(say, ({ x, y }) => {
+  if (!isNear(x) || !isNear(y)) return "is too far out: this page ends 1e12 from the origin.";
+  joint.lookAt(x, y);
+  return null;
+});
+byId("far").addEventListener("click", () => (isFar() ? home() : joint.lookAt(place(FAR), place(FAR))));
+const [field, profile] = [byId("seed"), byId("profile")];
+field.addEventListener("change", () => {
+  const seed = Number(field.value);
+  const isSeed = Number.isInteger(seed) && seed >= 0 && seed < 1e9;
+  field.setAttribute("aria-invalid", String(!isSeed));
+  say(isSeed ? null : "The seed must be a whole number from 0 to 999,999,999.");
+  if (isSeed) choose({ seed });
+});
+profile.addEventListener("change", () => choose({ profile: profile.value }));
 skipLinks();
 begin();

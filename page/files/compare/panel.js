@@ -2,7 +2,6 @@
 
 import { lineChart, spectrumPicture } from "../charts.js";
 import { make } from "../dom.js";
-import { cornerFrom } from "../grid.js";
 import { measure } from "../worker.js";
 import { Painter } from "../painter.js";
 import { distance } from "../place.js";
@@ -96,12 +95,7 @@ export class Panel {
   say(view) {
     const window = windowAround(view, view.width * view.unit, view.height * view.unit);
     let seen = 0;
-    for (const { chunk: { data, count, stride, cx, cy, size } } of this.sheets.front.parts) {
-      const [left, low] = [cornerFrom(cx, size, view.x), cornerFrom(cy, size, view.y)];
-      for (let p = 0; p < count * stride; p += stride) {
-        seen += Number(2 * Math.abs(data[p] + left) < window.width && 2 * Math.abs(data[p + 1] + low) < window.height);
-      }
-    }
+    this.sheets.around(view, [0, 0], [window.width / 2, window.height / 2], () => (seen += 1));
     // Nothing is said of points that are still on their way.
     const { made, words, why } = seen === 0 && !this.isOutside ? { words: "", why: "" } : priceOf(this.method.id, window, {
       seen, total: this.source.total, isOutside: this.isOutside, nanoseconds: this.source.nanoseconds,
@@ -135,9 +129,6 @@ export class Panel {
   chart(top, reference) {
     const { image, cells, radial } = this.measured ?? { image: new Float32Array(1), cells: 1, radial: [] };
     spectrumPicture(this.spectrum, image, cells);
-    const beside = reference && reference !== radial ? [{ values: reference, color: "soft", dash: true }] : [];
-    lineChart(this.radial, {
-      series: [...beside, { values: radial, color: "accent" }], x: [0, 3], y: [0, top], name: "ν", aspect: 0.55,
-    });
+    lineChart(this.radial, radial, { beside: reference === radial ? [] : reference, top, aspect: 0.55 });
   }
 }

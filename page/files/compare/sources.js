@@ -30,7 +30,6 @@ export class Source {
     const kind = this.isServed ? undefined : {
       requestOf: (layers) => ({ path: `${method} ${layers[0].seed}` }),
       columnsOf: () => [],
-      nameOf: ({ size, cx, cy }) => `${size}/${cx}/${cy}`,
       make: async (_, { size, cx, cy }) => {
         const { points } = await this.made({ x: place(cx * size), y: place(cy * size), width: size, height: size });
         return Float32Array.from(points);

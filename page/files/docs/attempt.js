@@ -1,6 +1,6 @@
 // Trying an operation: a form with its parameters, the curl line of what the form says, and what the server answers.
 
-import { brokeOff, hasKey, headersFor } from "../api.js";
+import { brokeOff, digits, hasKey, headersFor, piecesOf } from "../api.js";
 import { encoded } from "../address.js";
 import { quoted } from "../commands.js";
 import { bytes, contextOf, copy, make } from "../dom.js";
@@ -105,7 +105,7 @@ async function sent({ address, headers, text }, method, type, update) {
     const all = { ...headersFor(text), ...Object.fromEntries(headers) };
     if (text !== undefined) all["content-type"] = type;
     const answer = await fetch(address, { method, headers: all, body: text });
-    const { parts, received, isWhole } = await beginning(answer.body);
+    const { parts, received, isWhole } = await beginning(answer);
     const took = Math.round(performance.now() - began);
     const kind = answer.headers.get("content-type") ?? "";
     const blob = new Blob(parts, { type: kind });
@@ -124,19 +124,13 @@ async function sent({ address, headers, text }, method, type, update) {
 }
 
 /** The first part of a body; the rest is not waited for. */
-async function beginning(body) {
+async function beginning(answer) {
   const parts = [];
   let received = 0;
-  const reader = body?.getReader();
-  while (reader) {
-    const { done, value } = await reader.read();
-    if (done) return { parts, received, isWhole: true };
-    parts.push(value);
-    received += value.length;
-    if (received > 50 * SHOWN) {
-      reader.cancel();
-      return { parts, received, isWhole: false };
-    }
+  for await (const piece of answer.body ? piecesOf(answer) : []) {
+    parts.push(piece);
+    received += piece.length;
+    if (received > 50 * SHOWN) return { parts, received, isWhole: false };
   }
   return { parts, received, isWhole: true };
 }
@@ -163,23 +157,11 @@ async function picture(blob) {
   }
 }
 
-/** The parts of JSON: empty lists and objects, strings, marks, numbers and words. */
-const TOKENS = /\{\s*\}|\[\s*\]|"(?:[^"\\]|\\.)*"|[{}[\],:]|[^\s"{}[\],:]+/g;
-
 /** JSON with a member a line, its numbers as they came; what is no single document stays as it is. */
 function pretty(text) {
   try {
-    JSON.parse(text);
+    return JSON.stringify(JSON.parse(text, (_, value, from) => (typeof value === "number" && from?.source ? digits(from.source) : value)), null, 2);
   } catch {
     return text;
   }
-  let margin = "\n";
-  return text.match(TOKENS).map((token) => {
-    if (token === ":") return ": ";
-    if (token === ",") return `,${margin}`;
-    if (token === "{" || token === "[") margin += "  ";
-    else if (token === "}" || token === "]") margin = margin.slice(0, -2);
-    else return /^[{[]/.test(token) ? token[0] + token.at(-1) : token;
-    return token === "{" || token === "[" ? token + margin : margin + token;
-  }).join("");
 }

@@ -2,7 +2,7 @@
 
 import { Pattern, blockOf, intervalOf, nearest, turns } from "./pattern.js";
 import { colorOf, indexOf } from "./indices.js";
-import { disk, dotOf, line, pair, palette } from "./pen.js";
+import { disk, dotOf, line, pair } from "./pen.js";
 import { REACH, sociable } from "./same.js";
 import { Figure } from "./stage.js";
 
@@ -64,11 +64,6 @@ export class Blocks extends Figure {
     return this.points.reduce((best, point) => (far(point) < far(best) ? point : best));
   }
 
-  look(point) {
-    this.point = point;
-    this.tell();
-  }
-
   tell() {
     const n = this.starts.length;
     const block = blockOf(this.pattern, this.starts, this.point);
@@ -78,16 +73,13 @@ export class Blocks extends Figure {
     this.stage?.say(`R = ${this.radius}: ${n} × ${n} = ${kinds} blocks, so ${kinds} kinds of surroundings. ${seen}.`);
   }
 
-  draw(context, width, height) {
-    const colors = palette();
+  draw(context, width, height, colors) {
     const { pattern, starts } = this;
     const { t } = pattern;
     const edge = REACH + 0.7;
     this.panels = pair(width, height, [[0, 0], [t, t]], [[-edge, -edge], [edge, edge]]);
     const [gate, plane] = this.panels;
-    context.globalAlpha = 0.12;
-    gate.fill(context, [0, 0], [t, t], colors.gate);
-    context.globalAlpha = 1;
+    gate.fill(context, [0, 0], [t, t], colors.gate, 0.12);
     const bounds = this.pattern.index(this.point[0], this.point[1]).map((index) => intervalOf(starts, index));
     const low = bounds.map((i) => turns(starts[i]));
     const high = bounds.map((i) => turns(starts[i + 1] ?? pattern.side));

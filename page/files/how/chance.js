@@ -1,7 +1,7 @@
 // Points by chance beside as many of Strew's: they fall one by one, cells and a ring count them.
 
 import { streamOf } from "../hash.js";
-import { disk, disks, line, pair, palette, words } from "./pen.js";
+import { disk, disks, line, pair, words } from "./pen.js";
 import { Figure } from "./stage.js";
 
 /** The side of the square in mean spacings, the points in it, and the cells along a side. */
@@ -89,10 +89,9 @@ export class Chance extends Figure {
     this.stage.say(`The ring has room for four points. It now holds ${found[0]} on the left and ${found[1]} on the right; so far it has held ${chance} on the left, ${strew} on the right.`);
   }
 
-  draw(context, width, height) {
+  draw(context, width, height, colors) {
     const range = [[0, 0], [SIDE, SIDE]];
     this.panels = pair(width, height, range, range);
-    const colors = palette();
     const fallen = Math.floor(this.fallen);
     for (const [i, points] of [this.chance, this.strew].entries()) {
       const panel = this.panels[i];
@@ -112,9 +111,7 @@ export class Chance extends Figure {
     for (const [x, y] of points) counts[Math.floor(y / size) * CELLS + Math.floor(x / size)] += 1;
     counts.forEach((count, i) => {
       const corner = [(i % CELLS) * size, Math.floor(i / CELLS) * size];
-      context.globalAlpha = Math.min(1, count / 10) * 0.5;
-      panel.fill(context, corner, [size, size], colors.soft);
-      context.globalAlpha = 1;
+      panel.fill(context, corner, [size, size], colors.soft, Math.min(1, count / 10) * 0.5);
       const small = Math.max(10, panel.scale * 0.5);
       if (points.length > 0) words(context, String(count), panel.to([corner[0] + 0.32, corner[1] + size - 0.36]), colors.ink, small);
     });

@@ -1,7 +1,7 @@
 // A row of places and one hand that turns by α a place: where it stands in the gate, there is a point.
 
 import { Pattern, turns } from "./pattern.js";
-import { Panel, dial, disk, eased, line, palette, words } from "./pen.js";
+import { Panel, dial, disk, eased, line, words } from "./pen.js";
 import { Figure } from "./stage.js";
 
 /** The places that are shown. */
@@ -13,8 +13,6 @@ const STAYS = 0.16;
 export const degrees = (turn, digits = 1) => `${(turn * 360).toFixed(digits)}°`;
 
 export class Row extends Figure {
-  /** @type {import("./pen.js").Panel} */
-  chart;
   /** @type {((at: number) => void) | undefined} */
   told;
   at = 0;
@@ -68,7 +66,7 @@ export class Row extends Figure {
   }
 
   touched(at) {
-    const place = Math.round(this.chart.from(at)[0]);
+    const place = Math.round(this.panels[0].from(at)[0]);
     this.go(Math.min(this.first + SHOWN - 1, Math.max(this.first, place)));
   }
 
@@ -89,19 +87,17 @@ export class Row extends Figure {
     this.stage?.say(`Place ${at.toLocaleString("en")}: ${product}${full}. The gate ends at ${degrees(pattern.t)}, so there is ${isPoint ? "a point" : "no point"} here.`);
   }
 
-  draw(context, width, height) {
-    const colors = palette();
+  draw(context, width, height, colors) {
     const { pattern } = this;
     const radius = Math.min(height * 0.4, width * 0.15);
     const from = this.turn(this.at);
     const share = this.visited === this.at ? eased(Math.max(0, Math.min(1, (this.seconds - STAYS) / TURNS))) : 0;
     const hand = from + share * (pattern.alpha / 2);
-    dial(context, [radius + 4, height / 2], radius, pattern.t, hand, colors);
+    dial(context, [radius + 4, height / 2], radius, pattern.t, hand);
     const left = 2 * radius + 26;
-    const chart = (this.chart = new Panel(left, 8, width - left - 8, height - 46, [this.first - 0.5, 0], [this.first + SHOWN - 0.5, 1]));
-    context.globalAlpha = 0.25;
-    chart.fill(context, [chart.x0, 0], [SHOWN, pattern.t], colors.gate);
-    context.globalAlpha = 1;
+    const chart = new Panel([left, 8, width - left - 8, height - 46], [this.first - 0.5, 0], [this.first + SHOWN - 0.5, 1]);
+    this.panels = [chart];
+    chart.fill(context, [chart.x0, 0], [SHOWN, pattern.t], colors.gate, 0.25);
     line(context, chart.to([chart.x0, 0]), chart.to([chart.x1, 0]), colors.edge);
     line(context, chart.to([chart.x0, pattern.t]), chart.to([chart.x1, pattern.t]), colors.gate, 1.5);
     line(context, chart.to([chart.x0, 1]), chart.to([chart.x1, 1]), colors.line);

@@ -3,7 +3,7 @@
 import { streamOf } from "../hash.js";
 import { colorOf, indexOf } from "./indices.js";
 import { Pattern, blockOf, nearest } from "./pattern.js";
-import { Panel, disk, dotOf, lines, palette } from "./pen.js";
+import { Panel, disk, dotOf, lines } from "./pen.js";
 import { Figure } from "./stage.js";
 
 /** An α that is near the standard one and a fraction, so the pattern repeats after `SIDE` places; and how far points look. */
@@ -92,15 +92,6 @@ export class Found extends Figure {
     while (this.round < ROUNDS) this.step();
   }
 
-  touched(at) {
-    if (this.panels[0].holds(at)) this.look(nearest(this.points, this.panels[0].from(at)));
-  }
-
-  look(point) {
-    super.look(point);
-    this.tell();
-  }
-
   /** The points of the block that is chosen, by their numbers. */
   get chosen() {
     return this.blocks[this.blockOf[this.points.indexOf(this.point)]];
@@ -111,9 +102,8 @@ export class Found extends Figure {
     this.stage?.say(`Round ${this.round}: ${length} points of ${this.points.length} are in the ringed block; the mean of their pushes moves them all. The nearest two of all points are ${this.least.toFixed(2)} mean spacings apart.`);
   }
 
-  draw(context, width, height) {
-    const colors = palette();
-    const panel = new Panel(1, 1, width - 2, height - 2, [0, 0], [SIDE, SIDE / 2]);
+  draw(context, width, height, colors) {
+    const panel = new Panel([1, 1, width - 2, height - 2], [0, 0], [SIDE, SIDE / 2]);
     const { places, pushes } = this.now;
     this.panels = [panel];
     panel.clipped(context, () => {

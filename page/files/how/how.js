@@ -28,14 +28,8 @@ const stageOf = (/** @type {string} */ id) => /** @type {Stage} */ (stages.find(
 
 const { race, row, same, blocks, vectors, seeds, served } = figures;
 
-stageOf("race").choices("race-kind", (kind) => {
-  race.begin(kind === "together");
-  replay(stageOf("race"));
-});
-stageOf("same").choices("same-kind", (kind) => {
-  same.choose(kind);
-  replay(stageOf("same"));
-});
+stageOf("race").choices("race-kind", (kind) => race.begin(kind === "together"));
+stageOf("same").choices("same-kind", (kind) => same.choose(kind));
 stageOf("row").slider("row-angle", (value) => degrees(value / 360), (value) => row.choose(value / 180));
 byId("row-place").addEventListener("change", () => {
   const place = Math.min(MOST_PLACE, Math.max(0, Math.floor(Number(byId("row-place").value))));
@@ -68,12 +62,6 @@ byId("seeds-next").addEventListener("click", () => {
 });
 byId("served-far").addEventListener("click", () => served.jump());
 byId("served-copy").addEventListener("click", () => copy(byId("served-command"), byId("served-copy")));
-
-/** Plays a figure from its beginning, or shows its end where no motion is wanted. */
-function replay(stage) {
-  if (matchMedia("(prefers-reduced-motion: reduce)").matches) stage.finish();
-  else Object.assign(stage, { isOver: false, isPaused: false });
-}
 
 /** Has the server's points requested when a figure comes near. */
 const argument = new Argument();

@@ -2,7 +2,7 @@
 
 import { Pattern, turns } from "./pattern.js";
 import { degrees } from "./dials.js";
-import { Panel, dial, disk, disks, isDark, line, palette } from "./pen.js";
+import { dial, disk, disks, line, pair, palette } from "./pen.js";
 import { Figure } from "./stage.js";
 
 /** The colors at the corners of the set region: (0, 0), (t, 0), (0, t), (t, t). */
@@ -24,16 +24,12 @@ export function indexOf(/** @type {Pattern} */ pattern, /** @type {number[]} */ 
 export function colorOf(pattern, index) {
   const [u, v] = index.map((at) => at / pattern.t);
   const weights = [(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v];
-  const lift = isDark() ? LIFT : 0;
+  const lift = palette().isDark ? LIFT : 0;
   const mixed = [0, 1, 2].map((channel) => CORNERS.reduce((sum, color, i) => sum + color[channel] * weights[i], 0));
   return `rgb(${mixed.map((value) => Math.round(value + lift * (255 - value))).join(" ")})`;
 }
 
 export class Indices extends Figure {
-  /** @type {import("./pen.js").Panel} */
-  grid;
-  /** @type {import("./pen.js").Panel} */
-  square;
   walked = 0;
 
   constructor() {
@@ -73,9 +69,10 @@ export class Indices extends Figure {
   }
 
   touched(at) {
-    if (this.grid.holds(at)) return this.go(this.grid.from(at));
-    if (!this.square.holds(at)) return;
-    const [u, v] = this.square.from(at);
+    const [grid, square] = this.panels;
+    if (grid.holds(at)) return this.go(grid.from(at));
+    if (!square.holds(at)) return;
+    const [u, v] = square.from(at);
     const far = (/** @type {number[]} */ [a, b]) => (a - u) ** 2 + (b - v) ** 2;
     const best = this.indices.reduce((one, index, i) => (far(index) < far(this.indices[one]) ? i : one), 0);
     this.go(this.places[best]);
@@ -93,17 +90,13 @@ export class Indices extends Figure {
     this.stage?.say(`Column ${this.at[0]}, row ${this.at[1]}: the first hand stands at ${degrees(index[0])}, the second at ${degrees(index[1])}. ${said}`);
   }
 
-  draw(context, width, height) {
-    const colors = palette();
+  draw(context, width, height, colors) {
     const { t } = this.pattern;
-    const side = Math.min(height - 4, width * 0.415);
-    const top = (height - side) / 2;
-    const grid = (this.grid = new Panel(2, top, side, side, [-0.7, -0.7], [LAST + 0.7, LAST + 0.7]));
-    const square = (this.square = new Panel(width - side - 2, top, side, side, [0, 0], [1, 1]));
+    this.panels = pair(width, height, [[-0.7, -0.7], [LAST + 0.7, LAST + 0.7]], [[0, 0], [1, 1]], 0.415);
+    const [grid, square] = this.panels;
+    const { top, width: side } = grid;
     const done = this.stage.isOver ? this.places.length : Math.floor(this.walked) + 1;
-    context.globalAlpha = 0.25;
-    square.fill(context, [0, 0], [t, t], colors.gate);
-    context.globalAlpha = 1;
+    square.fill(context, [0, 0], [t, t], colors.gate, 0.25);
     const all = this.places.map((place, i) => ({ place, index: this.indices[i], isDone: i < done }));
     const points = all.filter(({ index, isDone }) => isDone && index.every((v) => v < t));
     disks(context, all.map(({ place }) => grid.to(place)), Math.max(0.7, grid.scale * 0.07), colors.edge);
@@ -119,8 +112,8 @@ export class Indices extends Figure {
     const index = this.indices[Math.floor(this.walked)];
     const radius = Math.min(width * 0.062, side * 0.24);
     const centers = [0.27, 0.73].map((share) => [width / 2, top + side * share]);
-    dial(context, centers[0], radius, t, index[0], colors);
-    dial(context, centers[1], radius, t, index[1], colors);
+    dial(context, centers[0], radius, t, index[0]);
+    dial(context, centers[1], radius, t, index[1]);
     disk(context, grid.to(this.at), Math.max(4, grid.scale * 0.6), colors.index, 2);
     const seen = square.to(index);
     context.globalAlpha = 0.6;

@@ -1,5 +1,7 @@
 // The AA pattern of an α in the page itself: the arithmetic of the server, in integers of 2⁻⁶⁴ turns.
 
+import { firstOf } from "../bisect.js";
+
 const HALF = 1n << 63n;
 
 /** The square root of an integer, rounded down. */
@@ -78,13 +80,7 @@ export class Pattern {
 
 /** The interval that holds an index. */
 export function intervalOf(starts, index) {
-  let [low, high] = [0, starts.length - 1];
-  while (low < high) {
-    const middle = (low + high + 1) >> 1;
-    if (starts[middle] <= index) low = middle;
-    else high = middle - 1;
-  }
-  return low;
+  return firstOf(starts.length, (i) => starts[i] > index) - 1;
 }
 
 /** The block of a point on a map, as text. */

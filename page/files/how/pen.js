@@ -1,19 +1,20 @@
 // Drawing for the figures of the essay: shapes in CSS pixels, panels with coordinates of their own, colors by quantity.
 
-import { themeColor } from "../theme.js";
+import { isDark, themeColor } from "../theme.js";
 
 const NAMES = ["ink", "soft", "line", "edge", "ground", "clash", "gate", "index", "block", "vector"];
 
 /** @typedef {CanvasRenderingContext2D} Context */
 
-/** @type {Record<string, string> | null} */
+/** @type {Record<string, any> | null} */
 let known = null;
 
-/** The colors of the theme and of the quantities, by name, and the `family` of the type; kept until `forget`. */
+/** The colors of the theme and of the quantities, by name, the `family` of the type and whether it `isDark`; kept until `forget`. */
 export function palette() {
   known ??= {
     ...Object.fromEntries(NAMES.map((name) => [name, themeColor(name)])),
     family: getComputedStyle(document.body).fontFamily,
+    isDark: isDark(),
   };
   return known;
 }
@@ -21,11 +22,6 @@ export function palette() {
 /** Has colors looked up again. */
 export function forget() {
   known = null;
-}
-
-/** Whether the ground is dark: its red is below 100 of 255. */
-export function isDark() {
-  return /^rgba?\(\d?\d\D/.test(palette().ground);
 }
 
 /** A share of a way that begins and ends gently. */
@@ -36,14 +32,8 @@ export function dotOf(scale) {
   return Math.max(1.7, scale * 0.4);
 }
 
-/**
- * A circle, filled or, with a thickness, in outline.
- * @param {Context} context
- * @param {number[]} middle
- * @param {number} radius
- * @param {string} color
- */
-export function disk(context, [x, y], radius, color, thickness = 0) {
+/** A circle, filled or, with a thickness, in outline. */
+export function disk(/** @type {Context} */ context, /** @type {number[]} */ [x, y], /** @type {number} */ radius, /** @type {string} */ color, thickness = 0) {
   context.beginPath();
   context.arc(x, y, radius, 0, 2 * Math.PI);
   if (thickness > 0) {
@@ -56,8 +46,9 @@ export function disk(context, [x, y], radius, color, thickness = 0) {
   }
 }
 
-/** Many circles of one color. */
-export function disks(context, places, radius, color) {
+/** Many circles of one color, which may be faint. */
+export function disks(context, places, radius, color, alpha = 1) {
+  context.globalAlpha = alpha;
   context.fillStyle = color;
   context.beginPath();
   for (const [x, y] of places) {
@@ -65,15 +56,10 @@ export function disks(context, places, radius, color) {
     context.arc(x, y, radius, 0, 2 * Math.PI);
   }
   context.fill();
+  context.globalAlpha = 1;
 }
 
-/**
- * @param {Context} context
- * @param {number[]} from
- * @param {number[]} to
- * @param {string} color
- */
-export function line(context, [x, y], [u, v], color, thickness = 1) {
+export function line(/** @type {Context} */ context, /** @type {number[]} */ [x, y], /** @type {number[]} */ [u, v], /** @type {string} */ color, thickness = 1) {
   context.strokeStyle = color;
   context.lineWidth = thickness;
   context.beginPath();
@@ -94,14 +80,8 @@ export function lines(/** @type {Context} */ context, /** @type {number[][][]} *
   context.stroke();
 }
 
-/**
- * A line with a head at its end; what is too short has none.
- * @param {Context} context
- * @param {number[]} from
- * @param {number[]} to
- * @param {string} color
- */
-export function arrow(context, from, to, color, thickness = 1.5) {
+/** A line with a head at its end; what is too short has none. */
+export function arrow(/** @type {Context} */ context, /** @type {number[]} */ from, /** @type {number[]} */ to, /** @type {string} */ color, thickness = 1.5) {
   line(context, from, to, color, thickness);
   const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
   if (length < 3) return;
@@ -115,33 +95,18 @@ export function arrow(context, from, to, color, thickness = 1.5) {
   context.fill();
 }
 
-/**
- * Words on a canvas; `align` is that of canvases, the place is their middle in height.
- * @param {Context} context
- * @param {string} text
- * @param {number[]} place
- * @param {string} color
- * @param {number} size
- * @param {CanvasTextAlign} align
- */
-export function words(context, text, [x, y], color, size = 12, align = "center") {
+/** Words on a canvas around a place. */
+export function words(/** @type {Context} */ context, /** @type {string} */ text, /** @type {number[]} */ [x, y], /** @type {string} */ color, size = 12) {
   context.font = `${size}px ${palette().family}`;
-  context.textAlign = align;
+  context.textAlign = "center";
   context.textBaseline = "middle";
   context.fillStyle = color;
   context.fillText(text, x, y);
 }
 
-/**
- * A dial: a gate of a number of turns from the right side on, and a hand at a turn; turns go against the clock.
- * @param {Context} context
- * @param {number[]} middle
- * @param {number} radius
- * @param {number} gate
- * @param {number} turn
- * @param {Record<string, string>} colors
- */
-export function dial(context, [x, y], radius, gate, turn, colors) {
+/** A dial: a gate of a number of turns from the right side on, and a hand at a turn; turns go against the clock. */
+export function dial(/** @type {Context} */ context, /** @type {number[]} */ [x, y], /** @type {number} */ radius, /** @type {number} */ gate, /** @type {number} */ turn) {
+  const colors = palette();
   context.fillStyle = colors.gate;
   context.globalAlpha = 0.3;
   context.beginPath();
@@ -162,15 +127,7 @@ export function dial(context, [x, y], radius, gate, turn, colors) {
 
 /** A part of a canvas, a box in pixels with a range of coordinates of its own, y upward. */
 export class Panel {
-  /**
-   * @param {number} left
-   * @param {number} top
-   * @param {number} width
-   * @param {number} height
-   * @param {number[]} low
-   * @param {number[]} high
-   */
-  constructor(left, top, width, height, [x0, y0], [x1, y1]) {
+  constructor(/** @type {number[]} */ [left, top, width, height], /** @type {number[]} */ [x0, y0], /** @type {number[]} */ [x1, y1]) {
     this.left = left;
     this.top = top;
     this.width = width;
@@ -207,20 +164,17 @@ export class Panel {
     context.restore();
   }
 
-  fill(/** @type {Context} */ context, /** @type {number[]} */ [x, y], /** @type {number[]} */ [width, height], /** @type {string} */ color) {
+  /** Fills a box with a color, which may be faint. */
+  fill(/** @type {Context} */ context, /** @type {number[]} */ [x, y], /** @type {number[]} */ [width, height], /** @type {string} */ color, alpha = 1) {
     const [left, bottom] = this.to([x, y]);
     const [right, top] = this.to([x + width, y + height]);
+    context.globalAlpha = alpha;
     context.fillStyle = color;
     context.fillRect(left, top, right - left, bottom - top);
+    context.globalAlpha = 1;
   }
 
-  /**
-   * @param {Context} context
-   * @param {number[]} corner
-   * @param {number[]} size
-   * @param {string} color
-   */
-  outline(context, [x, y], [width, height], color, thickness = 1) {
+  outline(/** @type {Context} */ context, /** @type {number[]} */ [x, y], /** @type {number[]} */ [width, height], /** @type {string} */ color, thickness = 1) {
     const [left, bottom] = this.to([x, y]);
     const [right, top] = this.to([x + width, y + height]);
     context.strokeStyle = color;
@@ -233,9 +187,9 @@ export class Panel {
   }
 }
 
-/** Two square panels side by side with a gap in between, each with the range of its coordinates. */
-export function pair(/** @type {number} */ width, /** @type {number} */ height, /** @type {number[][]} */ first, /** @type {number[][]} */ second) {
-  const side = Math.min(height - 2, width * 0.485);
+/** Two square panels side by side, each with the range of its coordinates; `share` is theirs of the width. */
+export function pair(/** @type {number} */ width, /** @type {number} */ height, /** @type {number[][]} */ first, /** @type {number[][]} */ second, share = 0.485) {
+  const side = Math.min(height - 2, width * share);
   const top = (height - side) / 2;
-  return [new Panel(1, top, side, side, first[0], first[1]), new Panel(width - side - 1, top, side, side, second[0], second[1])];
+  return [new Panel([1, top, side, side], first[0], first[1]), new Panel([width - side - 1, top, side, side], second[0], second[1])];
 }

@@ -1,7 +1,7 @@
 // Two pieces of Poisson disks that are made at the same time, or one after the other, and where they clash.
 
 import { streamOf } from "../hash.js";
-import { Panel, disk, disks, line, palette, words } from "./pen.js";
+import { Panel, disks, line, lines, words } from "./pen.js";
 import { Figure } from "./stage.js";
 
 /** The sides of a piece, in widths of a piece, and the least distance. */
@@ -103,30 +103,22 @@ export class Race extends Figure {
       : "No clash. But the right piece had to wait for the left one, as each would on a plane without an edge.");
   }
 
-  draw(context, width, height) {
-    const colors = palette();
-    const panel = new Panel(1, 1, width - 2, height - 2, [0, 0], [2, HEIGHT]);
+  draw(context, width, height, colors) {
+    const panel = new Panel([1, 1, width - 2, height - 2], [0, 0], [2, HEIGHT]);
     const radius = (LEAST / 2) * panel.scale;
     panel.clipped(context, () => {
       const all = this.pieces.flat().map((point) => panel.to(point));
-      context.globalAlpha = 0.16;
-      disks(context, all, radius, colors.soft);
-      context.globalAlpha = 1;
+      disks(context, all, radius, colors.soft, 0.16);
       disks(context, all, panel.scale * 0.0125, colors.ink);
       for (const at of this.missed.slice(-12)) {
         const [x, y] = panel.to(at);
         line(context, [x - 3, y - 3], [x + 3, y + 3], colors.soft);
         line(context, [x - 3, y + 3], [x + 3, y - 3], colors.soft);
       }
-      for (const [a, b] of this.clashes) {
-        for (const point of [a, b]) {
-          context.globalAlpha = 0.3;
-          disk(context, panel.to(point), radius, colors.clash);
-          context.globalAlpha = 1;
-          disk(context, panel.to(point), panel.scale * 0.016, colors.clash);
-        }
-        line(context, panel.to(a), panel.to(b), colors.clash, 2);
-      }
+      const clashes = this.clashes.map((both) => both.map((point) => panel.to(point)));
+      disks(context, clashes.flat(), radius, colors.clash, 0.3);
+      disks(context, clashes.flat(), panel.scale * 0.016, colors.clash);
+      lines(context, clashes, colors.clash, 2);
     });
     context.setLineDash([6, 5]);
     line(context, panel.to([1, 0]), panel.to([1, HEIGHT]), colors.edge, 1.5);

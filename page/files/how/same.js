@@ -1,8 +1,8 @@
 // Points of one block, that is of nearly the same index, and their surroundings laid over each other: they agree.
 
-import { Pattern, blockOf, nearest } from "./pattern.js";
+import { Pattern, blockOf } from "./pattern.js";
 import { colorOf, indexOf } from "./indices.js";
-import { disk, dotOf, pair, palette } from "./pen.js";
+import { disk, dotOf, pair } from "./pen.js";
 import { Figure } from "./stage.js";
 
 /** Half the sides of the windows: of the pattern that is shown, of the surroundings, and of where alike points are looked for. */
@@ -78,11 +78,6 @@ export class Same extends Figure {
     this.tell();
   }
 
-  touched(at) {
-    if (!this.panels[0].holds(at)) return;
-    this.look(nearest(this.points, this.panels[0].from(at)));
-  }
-
   look(point) {
     if (String(point) !== String(this.point)) this.pick(point);
     this.laid = this.alike.length;
@@ -111,8 +106,7 @@ export class Same extends Figure {
     this.stage?.say(`${this.laid} points ${kind}, laid over each other. ${said}`);
   }
 
-  draw(context, width, height) {
-    const colors = palette();
+  draw(context, width, height, colors) {
     const edge = REACH + 0.7;
     const around = AROUND + 0.7;
     this.panels = pair(width, height, [[-edge, -edge], [edge, edge]], [[-around, -around], [around, around]]);

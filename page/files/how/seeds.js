@@ -1,7 +1,7 @@
 // What is left to choose: how dense, which seed, how much warp. All points are the server's; they move by their addresses.
 
 import { settled } from "../dom.js";
-import { Panel, disk, eased, palette } from "./pen.js";
+import { Panel, disk, eased } from "./pen.js";
 import { Figure } from "./stage.js";
 
 /** The window in units of the plane, and what is requested around it. */
@@ -108,9 +108,8 @@ export class Seeds extends Figure {
     this.stage.say(`Density ${density}, seed ${seed}, ${bent}: ${inside} points in this window of ${WIDE} × ${HIGH}, from the server.`);
   }
 
-  draw(context, width, height) {
-    const colors = palette();
-    const panel = new Panel(1, 1, width - 2, height - 2, [0, 0], [WIDE, HIGH]);
+  draw(context, width, height, colors) {
+    const panel = new Panel([1, 1, width - 2, height - 2], [0, 0], [WIDE, HIGH]);
     const share = eased(this.share);
     const radius = panel.scale * 0.17 * this.chosen.density ** -0.5 + 0.5;
     panel.clipped(context, () => {
@@ -126,7 +125,6 @@ export class Seeds extends Figure {
         context.globalAlpha = 1 - share;
         disk(context, panel.to(place), radius, colors.soft);
       }
-      context.globalAlpha = 1;
     });
     panel.frame(context, colors.line);
     this.stage.name(`${this.to.size} points in two shades, by squares of their addresses: the squares are straight without warp and bent with it.`);

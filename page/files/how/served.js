@@ -3,7 +3,7 @@
 import { byId, make } from "../dom.js";
 import { Pattern, intervalOf, nearest, turns } from "./pattern.js";
 import { degrees } from "./dials.js";
-import { Panel, arrow, disk, palette } from "./pen.js";
+import { Panel, arrow, disk } from "./pen.js";
 import { Figure } from "./stage.js";
 
 /** The window in mean spacings, with a spacing of 1. */
@@ -39,8 +39,6 @@ const grouped = (v) => v.toLocaleString("en").replace("-", "−");
 const rounded = (v) => v.toFixed(2).replace("-", "−");
 
 export class Served extends Figure {
-  /** @type {import("./pen.js").Panel} */
-  panel;
   /** @type {string | undefined} */
   id;
   /** @type {number[][] | null} */
@@ -51,7 +49,6 @@ export class Served extends Figure {
     this.pattern = new Pattern();
     this.starts = this.pattern.starts(RADIUS);
     this.corner = [0, 0];
-    this.points = [];
     this.ids = new Map();
   }
 
@@ -74,10 +71,6 @@ export class Served extends Figure {
     this.corner = this.isFar ? [0, 0] : [FAR, FAR];
     byId("served-far").textContent = this.isFar ? "Back to the origin" : "A billion away";
     this.load();
-  }
-
-  touched(at) {
-    if (this.points.length > 0 && this.panel.holds(at)) this.look(nearest(this.points, this.panel.from(at)));
   }
 
   /** Requests a point by its id, with the warp and without. */
@@ -115,9 +108,9 @@ export class Served extends Figure {
     this.isAlike = String(own) === String(block);
   }
 
-  draw(context, width, height) {
-    const colors = palette();
-    const panel = (this.panel = new Panel(1, 1, width - 2, height - 2, [0, 0], [WIDE, HIGH]));
+  draw(context, width, height, colors) {
+    const panel = new Panel([1, 1, width - 2, height - 2], [0, 0], [WIDE, HIGH]);
+    this.panels = [panel];
     panel.clipped(context, () => {
       for (const point of this.points) disk(context, panel.to(point), panel.scale * 0.11, point === this.point ? colors.index : colors.ink);
       if (this.point) disk(context, panel.to(this.point), panel.scale * 0.25, colors.index, 2.5);

@@ -1,12 +1,12 @@
 // A figure of the essay on its stage: it begins to move when it comes into view, rests while it is out of view, and
 // takes pointers and keys.
 
-import { Gone, Problem, ask, onPresence, wordsOf } from "../api.js";
-import { byId, contextOf } from "../dom.js";
+import { Gone, Problem, ask, wordsOf } from "../api.js";
+import { byId } from "../dom.js";
 import { placeOf } from "../hands.js";
-import { fineness, sized } from "../view.js";
-import { nextOf } from "./pattern.js";
-import { forget } from "./pen.js";
+import { fitted } from "../view.js";
+import { nearest, nextOf } from "./pattern.js";
+import { forget, palette } from "./pen.js";
 
 /** The least time between two frames, in seconds: figures are calm, and processors may be slow. */
 const FRAME = 1 / 32;
@@ -20,9 +20,10 @@ const SWEEP = 320;
 const lessMotion = matchMedia("(prefers-reduced-motion: reduce)");
 
 /**
- * A figure has `draw(context, width, height)`, and where it moves `step(seconds)`, which returns whether it goes on,
- * `finish()`, which leads to its last frame, and `restart()`. `touched([x, y])` hears of pointers in pixels,
- * `moved([right, up])` of arrow keys: those of points take the next one.
+ * A figure has `draw(context, width, height, colors)`, and where it moves `step(seconds)`, which returns whether it goes on,
+ * `finish()`, which leads to its last frame, and `restart()`. Where its canvas can have the focus, `touched([x, y])` hears of
+ * pointers in pixels and `moved([right, up])` of arrow keys: they look at the nearest of its points in the first panel, and at
+ * the next one.
  */
 export class Figure {
   /** @type {Stage} */
@@ -30,10 +31,15 @@ export class Figure {
   /** @type {import("./pen.js").Panel[]} */
   panels;
   /** @type {number[][]} */
-  points;
+  points = [];
   /** @type {number[]} */
   point;
   seconds = 0;
+
+  touched(at) {
+    const [panel] = this.panels;
+    if (this.points.length > 0 && panel.holds(at)) this.look(nearest(this.points, panel.from(at)));
+  }
 
   moved(step) {
     if (this.point) this.look(nextOf(this.points, this.point, step) ?? this.point);
@@ -42,7 +48,11 @@ export class Figure {
   /** Looks at a point that was chosen. */
   look(point) {
     this.point = point;
+    this.tell();
   }
+
+  /** Says what is seen. */
+  tell() {}
 }
 
 export class Stage {
@@ -59,7 +69,7 @@ export class Stage {
     this.said = this.element.querySelector(".said");
     this.button = this.element.querySelector(".play");
     this.button?.addEventListener("click", () => this.press());
-    if (figure.touched) this.listen();
+    if (this.canvas.tabIndex === 0) this.listen();
     if (lessMotion.matches) this.finish();
     new ResizeObserver(() => this.draw()).observe(this.canvas);
     new IntersectionObserver(([entry]) => this.seen(entry.isIntersecting), { threshold: SHARE }).observe(this.canvas);
@@ -177,13 +187,15 @@ export class Stage {
     };
   }
 
-  /** Binds buttons of which one is pressed: `data-value` is what they choose. */
+  /** Binds buttons of which one is pressed: `data-value` is what they choose. The figure begins again. */
   choices(id, changed) {
     const buttons = [...byId(id).querySelectorAll("button")];
     for (const button of buttons) {
       button.addEventListener("click", () => {
         for (const other of buttons) other.setAttribute("aria-pressed", String(other === button));
         changed(button.dataset.value);
+        if (lessMotion.matches) this.finish();
+        else Object.assign(this, { isOver: false, isPaused: false });
         this.go();
         this.draw();
       });
@@ -200,16 +212,9 @@ export class Stage {
   }
 
   draw() {
-    const { canvas } = this;
-    const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+    const { context, width, height } = fitted(this.canvas);
     // Before its style is there a canvas has next to no size.
-    if (width < 60 || height < 40) return;
-    const ratio = fineness();
-    sized(canvas, [width, height].map((side) => Math.round(side * ratio)));
-    const context = contextOf(canvas);
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    context.clearRect(0, 0, width, height);
-    this.figure.draw(context, width, height);
+    if (width >= 60 && height >= 40) this.figure.draw(context, width, height, palette());
   }
 
   themed() {
@@ -229,16 +234,14 @@ export class Stage {
         return mine === this.turn ? answer : null;
       } catch (error) {
         if (mine !== this.turn) return null;
-        if (error instanceof Gone) {
-          this.say("The server does not answer. This figure waits until it does.");
-          await presence();
-        } else if (error instanceof Problem && error.isPassing) {
-          this.say("The server is busy. This figure tries again.");
-          await new Promise((later) => setTimeout(later, 1000 * Math.max(1, error.retryAfter)));
-        } else {
+        const isBusy = error instanceof Problem && error.isPassing;
+        if (isBusy) this.say("The server is busy. This figure tries again.");
+        else if (error instanceof Gone) this.say("The server does not answer. This figure waits until it does.");
+        else {
           this.say(`The server refused: ${wordsOf(error)}`);
           return null;
         }
+        await new Promise((later) => setTimeout(later, 1000 * Math.max(1, isBusy ? error.retryAfter : 1)));
       }
     }
   }
@@ -258,15 +261,4 @@ function draggable(number, input) {
     input.value = String(at);
     input.dispatchEvent(new Event("input"));
   });
-}
-
-/** Waits until the server is back. */
-function presence() {
-  return /** @type {Promise<void>} */ (new Promise((back) => {
-    const end = onPresence((isGone) => {
-      if (isGone) return;
-      end();
-      back();
-    });
-  }));
 }

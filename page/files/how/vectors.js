@@ -2,7 +2,7 @@
 
 import { Pattern, blockOf, nearest } from "./pattern.js";
 import { colorOf, indexOf } from "./indices.js";
-import { arrow, disk, dotOf, eased, lines, pair, palette } from "./pen.js";
+import { arrow, disk, dotOf, eased, lines, pair } from "./pen.js";
 import { Figure } from "./stage.js";
 
 /** Half the sides of the windows and of what is requested, in grid units; and of where twins are looked for. */
@@ -53,7 +53,7 @@ export class Vectors extends Figure {
   /** Shows a point and its twin. */
   async look(point) {
     if (!point || String(point) === String(this.point)) return;
-    super.look(point);
+    Object.assign(this, { point });
     const twin = this.twins.get(String(point)) ?? point;
     for (const middle of [[0, 0], twin]) {
       await this.request(middle);
@@ -101,10 +101,6 @@ export class Vectors extends Figure {
     this.slider?.set(Math.round(100 * share));
   }
 
-  touched(at) {
-    if (this.points && this.panels[0].holds(at)) this.look(nearest(this.points, this.panels[0].from(at)));
-  }
-
   tell() {
     const vectors = this.pair.map((point) => this.vectors.get(point.join(":")));
     if (!vectors.every(Boolean)) return;
@@ -114,8 +110,7 @@ export class Vectors extends Figure {
     this.stage.say(`The ringed points, of ${here} and of ${there}, are in the same block${this.isAlike ? " and have the same" : ", but not the same"} vector: (${x}, ${y}) steps of the grid.`);
   }
 
-  draw(context, width, height) {
-    const colors = palette();
+  draw(context, width, height, colors) {
     const [here, there] = this.pair;
     const range = (x, y) => [[x - REACH, y - REACH], [x + REACH, y + REACH]];
     this.panels = pair(width, height, range(0, 0), range(there[0] - here[0], there[1] - here[1]));

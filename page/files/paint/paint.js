@@ -1,11 +1,11 @@
 // Fields by hand: a bar of tools on the plane, what was painted with them, and the field that it is.
 
-import { wordsOf } from "../api.js";
+import { Problem, wordsOf } from "../api.js";
 import { byId, icon } from "../dom.js";
 import { describe, documentOf, isSent, send } from "../sent.js";
 import { MOST_PAINT } from "../state.js";
 import { Brush } from "./brush.js";
-import { blank, excess, fieldOf, read, simplified, written } from "./strokes.js";
+import { blank, fieldOf, read, simplified, written } from "./strokes.js";
 
 const TOOLS = ["paint", "road", "erase"];
 /** A line is kept to this part of the brush's size. */
@@ -215,11 +215,6 @@ export class Paint {
     this.follow();
     this.cleared = null;
     const before = this.work;
-    const tooMuch = excess({ ...before, ...members }, whole);
-    if (tooMuch) {
-      this.render();
-      return this.fail(tooMuch);
-    }
     this.work = read(written({ ...before, ...members }));
     if (this.work.strokes.length === 0) this.work = blank(before.base);
     this.render();
@@ -239,7 +234,8 @@ export class Paint {
       if (mine !== this.turn) return;
       if (this.owner === layer) this.work = before;
       this.render();
-      this.fail(wordsOf(error));
+      const isTooMuch = error instanceof Problem && error.status === 400;
+      this.fail(isTooMuch ? "One painting holds no more. Strokes of the same tool, size and strength in a row count as one." : wordsOf(error));
     }
   }
 

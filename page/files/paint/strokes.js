@@ -3,12 +3,8 @@
 /** The letters of the kinds in the text. */
 const KINDS = { p: "paint", e: "erase", r: "road" };
 const LETTERS = { paint: "p", erase: "e", road: "r" };
-/** The limits of fields on the server: shapes, their depth within each other, and vertices of lines. */
-const MOST_PARTS = 64;
-const MOST_DEPTH = 16;
-const MOST_VERTICES = 10_000;
-/** Every stroke has two vertices at least. */
-const MOST_STROKES = MOST_VERTICES / 2;
+/** Lines of a field have 10,000 vertices at most, and every stroke has two at least. */
+const MOST_STROKES = 5000;
 
 /** @typedef {{ kind: string, size: number, strength: number, line: number[][] }} Stroke */
 
@@ -93,28 +89,6 @@ export function fieldOf({ base, ground, strokes }, ofBase = (name) => ({ name })
   }
   for (const shape of shapesOf(strokes.filter(({ kind }) => kind === "road"))) join("multiply", shapeOf("road", shape, shape.lines));
   return field;
-}
-
-/** The shapes of a field, how deep they lie within each other, and the vertices of their lines. */
-function extentOf(field) {
-  const [[shape, value]] = Object.entries(field);
-  const inner = Array.isArray(value) ? value : shape === "invert" ? [value] : shape === "curve" ? [value.of] : [];
-  const all = inner.map(extentOf);
-  const sum = (name, own) => all.reduce((total, one) => total + one[name], own);
-  return {
-    parts: sum("parts", 1),
-    depth: 1 + Math.max(0, ...all.map(({ depth }) => depth)),
-    vertices: sum("vertices", shape === "distance" ? (value.lines ?? []).flat().length : 0),
-  };
-}
-
-/** Says what makes a painting too large for a field; nothing if it fits. */
-export function excess(work, ofBase) {
-  const { parts, depth, vertices } = extentOf(fieldOf(work, ofBase));
-  if (depth > MOST_DEPTH) return "The brush and the eraser have taken turns too often for one painting. Undo the last strokes, or group those of one kind.";
-  if (parts > MOST_PARTS) return `One painting holds ${MOST_PARTS} shapes. Strokes of the same tool, size and strength in a row count as one.`;
-  if (vertices > MOST_VERTICES) return `The lines of one painting have ${MOST_VERTICES.toLocaleString("en")} points at most. Undo the last stroke.`;
-  return "";
 }
 
 /** A line without the points that lie within a distance of the rest (Douglas and Peucker). */

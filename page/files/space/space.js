@@ -1,9 +1,8 @@
 // The page of space: a volume to turn, zoom and fly through, and the request for the chunk in the middle.
 
 import { isSeed } from "../address.js";
-import { isAway } from "../api.js";
-import { byId, bytes, copy, counted, icon, make, settled, skipLinks } from "../dom.js";
-import { fault, field, select, setOptions } from "../form.js";
+import { byId, bytes, copy, counted, icon, settled, skipLinks } from "../dom.js";
+import { fault, wrongAt } from "../form.js";
 import { tools } from "../gestures.js";
 import { Notice } from "../notice.js";
 import { formatPlace, place } from "../place.js";
@@ -11,12 +10,9 @@ import { themeNumbers } from "../theme.js";
 import { fineness, sized } from "../view.js";
 import { cameraOf } from "../walk/camera.js";
 import { sceneOn } from "./scene.js";
-import { PROFILES, REACH, fromHash, isInReach, isSpacing, toHash } from "./state.js";
+import { fromHash, isInReach, isSpacing, toHash } from "./state.js";
 import { Viewer } from "./viewer.js";
 import { Volume, chunkAt, cornerOf, pathOf, sizeFor } from "./volume.js";
-
-/** Milliseconds without a byte after which the page says that it waits. */
-const PATIENCE = 1500;
 
 const root = document.documentElement;
 const canvas = byId("view");
@@ -28,10 +24,11 @@ const notice = new Notice(byId("banner"), () => {
   volume.chunks.retry();
   later();
 }, () => later());
-notice.say("wrong", state.wrong.join(" ") || null);
+notice.say("wrong", state.wrong);
 if (!scene) notice.say("blind", "The picture needs WebGL2, which this browser does not have. The request for the points works without.");
 
 const volume = new Volume(() => (isStale = true), (error) => notice.refused(error));
+notice.awaited = volume;
 const viewer = new Viewer(canvas, state, () => {
   notice.say("wrong", null);
   later();
@@ -79,23 +76,17 @@ function frame(now) {
     volume.move(state);
     scene?.draw(look());
     [isStale, pictured] = [false, same];
-    tell(now);
-  } else if (root.dataset.state === "loading") {
-    tell(now);
+    tell();
   }
   requestAnimationFrame(frame);
 }
 
-let heard = { received: -1, at: 0 };
-
-/** The line below, and whether the server takes long. */
-function tell(now) {
-  const { points, chunks, wanted, received, isBusy } = volume.sums;
-  if (received !== heard.received || chunks === wanted) heard = { received, at: now };
-  const isLong = now - heard.at > PATIENCE && !isAway();
-  notice.say("busy", isBusy ? "The server is busy. This page tries again by itself." : isLong ? "The server is slow to answer." : null);
-  root.dataset.state = notice.said.refused ? "failed" : chunks === wanted ? "ready" : "loading";
-  const parts = [`${counted(points)} in ${chunks === wanted ? counted(chunks, "chunk") : `${chunks} of ${wanted} chunks`}`, bytes(received),
+/** The line below. */
+function tell() {
+  const { points, done, wanted, received } = volume.chunks.sums;
+  root.dataset.state = notice.said.refused ? "failed" : done === wanted ? "ready" : "loading";
+  if (done < wanted) notice.watch();
+  const parts = [`${counted(points)} in ${done === wanted ? counted(done, "chunk") : `${done} of ${wanted} chunks`}`, bytes(received),
     `at ${state.at.map((one) => formatPlace(one, Number(state.spacing) < 1 ? 2 : 0)).join(", ")}`];
   const text = parts.join(" · ");
   if (byId("tally").textContent !== text) byId("tally").textContent = text;
@@ -108,8 +99,8 @@ const later = settled(350, () => {
   if (hash !== location.hash) history.replaceState(null, "", hash);
   const here = chunkAt(state.at, sizeFor(Number(state.spacing)));
   byId("command").textContent = `curl -f '${location.origin}${pathOf(state, here, "csv")}' -o chunk.csv`;
-  const { points, chunks } = volume.sums;
-  byId("spoken").textContent = `${counted(points)} in ${counted(chunks, "chunk")} around ${state.at.map((one) => formatPlace(one, 0)).join(", ")}`;
+  const { points, done } = volume.chunks.sums;
+  byId("spoken").textContent = `${counted(points)} in ${counted(done, "chunk")} around ${state.at.map((one) => formatPlace(one, 0)).join(", ")}`;
 });
 
 /** Takes another value of a field. */
@@ -121,32 +112,26 @@ function choose(name, value) {
   later();
 }
 
-function text(id, words, isRight, wrong) {
-  const changed = (event) => {
-    const value = event.target.value.trim();
+/** Has a field of text choose what is right, and say what is wrong. */
+function text(id, isRight, wrong) {
+  const input = /** @type {HTMLInputElement} */ (byId(id));
+  wrongAt(input);
+  input.addEventListener("input", () => {
+    const value = input.value.trim();
     fault(byId("fields"), id, isRight(value) ? null : wrong);
     if (isRight(value)) choose(id, value);
-  };
-  const mode = id === "seed" ? "numeric" : "decimal";
-  return field(words, id, make("input", { id, inputmode: mode, autocomplete: "off", spellcheck: "false", oninput: changed }));
+  });
 }
 
-byId("fields").append(
-  make("div", { class: "pair" },
-    text("spacing", "Mean spacing", (value) => isSpacing(value) && isInReach(state.at, value),
-      "The mean spacing must be a number from 0.001 to 1000000; far from the origin it must not be small."),
-    text("seed", "Seed", isSeed, "The seed must be a whole number from 0 to 18446744073709551615.")),
-  make("div", { class: "pair" },
-    field("Profile", "profile", select("profile", (value) => choose("profile", value))),
-    field("Reach, in spacings", "reach", make("input", {
-      id: "reach", type: "range", min: REACH[0], max: REACH[1], oninput: (event) => choose("reach", Number(event.target.value)),
-    }))),
-);
+text("spacing", (value) => isSpacing(value) && isInReach(state.at, value),
+  "The mean spacing must be a number from 0.001 to 1000000; far from the origin it must not be small.");
+text("seed", isSeed, "The seed must be a whole number from 0 to 18446744073709551615.");
+byId("profile").addEventListener("change", () => choose("profile", byId("profile").value));
+byId("reach").addEventListener("input", () => choose("reach", Number(byId("reach").value)));
 
 function fill() {
-  setOptions(byId("profile"), PROFILES, state.profile);
-  for (const id of ["spacing", "seed", "reach"]) {
-    /** @type {HTMLInputElement} */ (byId(id)).value = String(state[/** @type {"spacing"} */ (id)]);
+  for (const id of /** @type {const} */ (["spacing", "seed", "profile", "reach"])) {
+    byId(id).value = String(state[id]);
     fault(byId("fields"), id, null);
   }
 }
@@ -156,7 +141,7 @@ function go(next) {
   Object.assign(state, next);
   home = null;
   byId("jump").textContent = "Jump far away";
-  notice.say("wrong", state.wrong.join(" ") || null);
+  notice.say("wrong", state.wrong);
   notice.say("refused", null);
   fill();
   isStale = true;

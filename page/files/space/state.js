@@ -4,7 +4,7 @@ import { givenIn, hashOf, isSeed } from "../address.js";
 import { formatPlace, place, toNumber } from "../place.js";
 
 /** The profiles of points in space. */
-export const PROFILES = ["blue", "spaced"];
+const PROFILES = ["blue", "spaced"];
 /** The fewest and the most mean spacings that points are drawn within. */
 export const REACH = [8, 24];
 /** The steepest look up or down, in radians. */
@@ -31,22 +31,15 @@ export function isInReach(at, spacing) {
   return at.every((one) => one && Math.abs(toNumber(one)) <= FARTHEST * Number(spacing));
 }
 
-/** The state of an address, with what in it was not understood, as words for each. */
+/** The state of an address, with what is said of it where it was not understood in full. */
 export function fromHash(hash) {
   const given = givenIn(hash);
-  const wrong = [];
-  const text = (name, isRight, words) => {
-    if (given.has(name) && isRight(given.text(name))) return given.text(name);
-    if (given.has(name)) wrong.push(words);
-    return BEGINNING[name];
-  };
   const number = (/** @type {string} */ name, /** @type {number[]} */ bounds) => given.number(name, BEGINNING[name], bounds);
-  const spacing = text("spacing", isSpacing, "The spacing in the address is not a number from 0.001 to 1000000, so it is 1.");
+  const spacing = given.matching("spacing", isSpacing, BEGINNING.spacing);
   const at = given.has("at") ? given.at() : MIDDLE();
   const isNear = at.length === 3 && isInReach(at, spacing);
-  if (!isNear) wrong.push("The place in the address is out of reach. Here is the beginning instead.");
   const turn = Math.PI / 180;
-  return {
+  const state = {
     /** The place that is looked at. */
     at: isNear ? /** @type {Place[]} */ (at) : MIDDLE(),
     yaw: number("yaw", [-360, 360]) * turn,
@@ -55,12 +48,13 @@ export function fromHash(hash) {
     away: number("away", [0, 4 * REACH[1]]),
     reach: Math.round(number("reach", REACH)),
     spacing,
-    seed: text("seed", isSeed, "The seed in the address is not a whole number below 2⁶⁴, so it is 7."),
-    profile: text("profile", (value) => PROFILES.includes(value), "The profile in the address is not for space, so it is blue."),
+    seed: given.matching("seed", isSeed, BEGINNING.seed),
+    profile: given.matching("profile", (value) => PROFILES.includes(value), BEGINNING.profile),
     /** Whether the address says nothing of the view. */
     isPlain: !given.has("at"),
-    wrong: [...wrong, given.wrong() ?? []].flat(),
   };
+  const outside = "The place in the address is out of reach. Here is the beginning instead.";
+  return { ...state, wrong: [isNear ? null : outside, given.wrong()].filter(Boolean).join(" ") || null };
 }
 
 /** The address of a state. */

@@ -3,6 +3,7 @@
 
 import { Held, followPointers, followWheel } from "../hands.js";
 import { moved } from "../place.js";
+import { cameraOf } from "../walk/camera.js";
 import { REACH, STEEPEST } from "./state.js";
 
 /** Mean spacings a second; Shift makes it several times as many. */
@@ -97,14 +98,10 @@ export class Viewer {
 
   /** Moves by mean spacings to the right, ahead and up, as seen from the eye. */
   go(right, ahead, up) {
-    const { yaw, pitch, spacing, at } = this.state;
-    const [sy, cy, sp, cp] = [Math.sin(yaw), Math.cos(yaw), Math.sin(pitch), Math.cos(pitch)];
-    const by = [
-      right * cy + ahead * cp * sy - up * sy * sp,
-      -right * sy + ahead * cp * cy - up * cy * sp,
-      ahead * sp + up * cp,
-    ];
-    this.state.at = at.map((one, axis) => moved(one, by[axis] * Number(spacing)));
+    const { spacing, at } = this.state;
+    const eye = cameraOf(this.state, 1, 1);
+    const along = (axis) => right * eye.right[axis] + ahead * eye.ahead[axis] + up * eye.up[axis];
+    this.state.at = at.map((one, axis) => moved(one, along(axis) * Number(spacing)));
     this.took();
   }
 

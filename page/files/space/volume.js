@@ -15,7 +15,6 @@ const ROOM = 12e6;
 const SPACE = {
   requestOf: ([set], address) => ({ path: pathOf(set, address, "f32") }),
   columnsOf: () => ["z"],
-  nameOf: ({ size, cx, cy, cz }) => `${size}/${cx}/${cy}/${cz}`,
 };
 
 /** The parameters that say what the points are. */
@@ -77,18 +76,5 @@ export class Volume {
     this.around = { what, at: [...at] };
     this.chunks.show([{ spacing, seed, profile }]);
     this.chunks.want(chunksAround(at, size, reach * unit + step), 1);
-  }
-
-  /** Numbers for the line below. */
-  get sums() {
-    const { wanted, received } = this.chunks;
-    const done = wanted.filter((chunk) => chunk.state === "done");
-    return {
-      points: done.reduce((sum, chunk) => sum + chunk.count, 0),
-      chunks: done.length,
-      wanted: wanted.length,
-      received,
-      isBusy: wanted.some((chunk) => chunk.state === "later"),
-    };
   }
 }

@@ -122,14 +122,3 @@ export function standing(chunk, ground) {
   });
   return { floats, runs };
 }
-
-/** How many of sorted ranks are below a share. */
-export function below(ranks, share) {
-  let [low, high] = [0, ranks.length];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (ranks[middle] < share) low = middle + 1;
-    else high = middle;
-  }
-  return low;
-}

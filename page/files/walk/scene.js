@@ -1,10 +1,11 @@
 // The picture by WebGL2: sky, ground, shadows, and everything that stands, a draw for each kind and leaf. Instances go
 // to the graphics processor once; which of them are drawn is a beginning of each run, as these are sorted by rank.
 
+import { firstOf } from "../bisect.js";
 import { bufferOf, glOn, isSoftware, programOf } from "../program.js";
 import { sized } from "../view.js";
 import { sees } from "./camera.js";
-import { GROUND_FLOATS, INSTANCE_FLOATS, below, netOf } from "./ground.js";
+import { GROUND_FLOATS, INSTANCE_FLOATS, netOf } from "./ground.js";
 import { GROUND, SHADOWS, SKY, THINGS } from "./shaders.js";
 import { KINDS, VERTEX_FLOATS, allShapes } from "./shapes.js";
 
@@ -157,7 +158,7 @@ class Scene {
         const run = thing.runs.find((one) => one.kind === kind);
         if (!run) continue;
         const share = Math.min(1, (thing.near / Math.max(thing.leaf.away, 1e-9)) ** 2);
-        const count = share < 1 ? below(run.ranks, share) : run.ranks.length;
+        const count = share < 1 ? firstOf(run.ranks.length, (k) => run.ranks[k] >= share) : run.ranks.length;
         if (count > 0) visit(thing, run, count);
       }
     }

@@ -1,13 +1,13 @@
 // The walk: puts its parts together and draws, as finely as the machine can.
 
-import { givenIn, hashOf } from "../address.js";
+import { givenIn, hashOf, isSeed } from "../address.js";
 import { askJson } from "../api.js";
 import { byId, bytes, make } from "../dom.js";
 import { Notice } from "../notice.js";
 import { formatPlace, place } from "../place.js";
 import { joined, setOf } from "../query.js";
 import { LAYER, initial, toHash } from "../state.js";
-import { watchTheme } from "../theme.js";
+import { isDark, watchTheme } from "../theme.js";
 import { cameraOf } from "./camera.js";
 import { Plan } from "./map.js";
 import { STEEPEST, Walker, stick } from "./move.js";
@@ -42,11 +42,11 @@ function fromHash(hash) {
   const [x, y] = given.at();
   const isNear = x && y && Math.max(Math.abs(x.i), Math.abs(y.i)) <= 1e14;
   const radians = (name, otherwise) => ((given.number(name, otherwise) % 360) * Math.PI) / 180;
-  const quality = given.matching("quality", /^[0-3]$/);
+  const quality = given.matching("quality", (text) => /^[0-3]$/.test(text));
   const read = {
     x: isNear ? x : place(START.x), y: isNear ? y : place(START.y),
     yaw: radians("yaw", START.yaw), pitch: Math.max(-STEEPEST, Math.min(STEEPEST, radians("pitch", -5))),
-    seed: given.seed("7"),
+    seed: given.matching("seed", isSeed, "7"),
     quality: quality ? Number(quality) : null,
     isFlying: given.text("fly") !== "0" && !given.has("at"),
     isAloft: given.text("fly") === "1",
@@ -263,8 +263,7 @@ byId("fly").addEventListener("click", () => {
 addEventListener("keydown", (event) => event.key === "Escape" && close());
 canvas.addEventListener("webglcontextlost", () => location.reload());
 watchTheme(byId("theme"), () => {
-  const isDark = getComputedStyle(document.body).colorScheme.includes("dark") && byId("theme").getAttribute("aria-pressed") === "true";
-  scene.mode = isDark || isScenery ? "dusk" : "day";
+  scene.mode = isDark() || isScenery ? "dusk" : "day";
 });
 addEventListener("hashchange", ({ newURL }) => {
   // The place may have been written into the address since.

@@ -244,13 +244,9 @@ export class World {
 
   /** Numbers for the line below: points that are loaded, chunks, bytes received so far. */
   get sums() {
-    const wanted = this.sets.flatMap(({ chunks }) => chunks.wanted);
-    return {
-      loaded: wanted.reduce((sum, chunk) => sum + chunk.count, 0),
-      chunks: wanted.filter((chunk) => chunk.state === "done").length,
-      wanted: wanted.length,
-      received: this.sets.reduce((sum, { chunks }) => sum + chunks.received, 0),
-    };
+    const [trees, grass] = this.sets.map(({ chunks }) => chunks.sums);
+    const both = (/** @type {"points" | "done" | "wanted" | "received"} */ name) => trees[name] + grass[name];
+    return { loaded: both("points"), chunks: both("done"), wanted: both("wanted"), received: both("received") };
   }
 
   /** The height of the ground at a place. */

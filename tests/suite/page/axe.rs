@@ -82,7 +82,7 @@ fn axe_finds_nothing_in_the_tabs() {
     assert_clean_in_both(&browser, "kinds");
     browser.go("about:blank");
     browser.go(&daemon.url("/#at=0,0&span=30&alpha=3"));
-    browser.until("!document.querySelector('#trouble').hidden");
+    browser.until("!document.querySelector('#banner').hidden");
     add(&browser, &axe);
     assert_clean_in_both(&browser, "a link that is refused");
 }

@@ -9,11 +9,11 @@ use crate::support::{
 
 /// The words over the plane, or nothing.
 const WORDS: &str =
-    "(() => { const e = document.querySelector('#trouble'); return !e.hidden && e.innerText; })()";
+    "(() => { const e = document.querySelector('#banner'); return !e.hidden && e.innerText; })()";
 /// Whether nothing is said there.
-const QUIET: &str = "document.querySelector('#trouble').hidden";
+const QUIET: &str = "document.querySelector('#banner').hidden";
 /// Whether the words are where the plane's middle is.
-const IN_THE_MIDDLE: &str = "(() => { const [a, b] = ['#trouble', '#plane'].map((q) => document.querySelector(q).getBoundingClientRect()); \
+const IN_THE_MIDDLE: &str = "(() => { const [a, b] = ['#banner', '#plane'].map((q) => document.querySelector(q).getBoundingClientRect()); \
     return a.left < b.left + b.width / 2 && a.right > b.left + b.width / 2 && a.top < b.top + b.height / 2 && a.bottom > b.top + b.height / 2; })()";
 
 #[test]
@@ -52,7 +52,7 @@ fn a_busy_server_is_asked_again_at_once_by_a_button() {
         .value("strew.plane.chunks.wanted.filter(({ state }) => state === 'waiting').length");
     assert_ne!(waiting, 0);
     front.set(Points::Pass);
-    browser.click("#trouble button");
+    browser.click("#banner button");
     assert!(browser.ready() > 100);
     browser.until(QUIET);
 }
@@ -88,7 +88,7 @@ fn too_many_points_are_said_with_the_way_out() {
         "{words}"
     );
     front.set(Points::Pass);
-    browser.click("#trouble button");
+    browser.click("#banner button");
     browser.until("strew.plane.span === 30");
     assert!(browser.ready() > 100);
     browser.until(QUIET);
@@ -112,7 +112,7 @@ fn a_link_to_what_cannot_be_drawn_says_so_over_the_plane() {
     );
     assert_eq!(browser.value(IN_THE_MIDDLE), true);
     browser.until("document.querySelector('#tally').textContent === 'Check the field marked red'");
-    browser.click("#trouble button");
+    browser.click("#banner button");
     browser.until(
         "document.activeElement.id === 'alpha' && !document.querySelector('#choose').hidden",
     );
@@ -122,7 +122,7 @@ fn a_link_to_what_cannot_be_drawn_says_so_over_the_plane() {
     browser.go("about:blank");
     browser.go(&daemon.url("/#at=0,0&span=30&amount=-1"));
     browser.until(WORDS);
-    browser.click("#trouble button:last-of-type");
+    browser.click("#banner button:last-of-type");
     assert!(browser.ready() > 100);
     assert_eq!(browser.value("location.hash.includes('amount=1&')"), true);
 }

@@ -209,7 +209,7 @@ fn far_away_on_a_phone_bounded_methods_say_that_they_end() {
     browser.choose("#jump-at", "1e15, 0");
     browser.value("document.querySelector('#jump').requestSubmit()");
     browser.until("!document.querySelector('#banner').hidden");
-    assert!(browser.text("#banner").contains("not a place here"));
+    assert!(browser.text("#banner").contains("too far out"));
     // A meaningless hash leaves the defaults.
     open(&browser, &daemon, "#at=1e18,0&span=-3&seed=x&profile=%22");
     assert_eq!(browser.value("strew.joint.view.x.i"), 1_000_000_000);

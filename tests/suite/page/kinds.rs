@@ -112,5 +112,5 @@ fn a_world_of_the_server_is_shown_by_its_name() {
     assert_eq!(browser.errors(), Vec::<String>::new());
     browser.go("about:blank");
     browser.go(&daemon.url("/#at=0,0&span=30&world=nope"));
-    browser.until("document.querySelector('#trouble').innerText.includes('no world “nope”')");
+    browser.until("document.querySelector('#banner').innerText.includes('no world “nope”')");
 }

@@ -82,7 +82,7 @@ fn keys_fly_chunks_follow_and_the_address_keeps_the_place() {
     browser.click("#jump");
     browser.until(&format!("{READY} && strew.state.at[2].i === 1e9"));
     requested(&browser, "/chunks/8/125000000/125000000/125000000?");
-    browser.until("strew.volume.sums.points > 1000");
+    browser.until("strew.volume.chunks.sums.points > 1000");
     browser.click("#jump");
     browser.until(&format!("{READY} && strew.state.at[0].i < 1000"));
     // The address of a place opens it.

@@ -56,7 +56,7 @@ fn the_header_is_current() {
     let mut config =
         cbindgen::Config::from_file(root.join("cbindgen.toml")).expect("cbindgen.toml");
     config.after_includes = Some(version_macros(&manifest));
-    let sources = ["handles", "plan", "documents", "single", "space", "failure"];
+    let sources = ["handles", "plan", "documents", "single", "failure"];
     let builder = sources
         .iter()
         .fold(cbindgen::Builder::new(), |builder, name| {

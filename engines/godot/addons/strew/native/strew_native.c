@@ -91,8 +91,8 @@ static void fill(native *self, strew_code code, strew_plan *plan, GDExtensionTyp
 static void chunk(native *self, const GDExtensionConstTypePtr *arguments, GDExtensionTypePtr result) {
     char *query = utf8(arguments[0]);
     strew_plan *plan = NULL;
-    strew_code code = strew_plan_chunk(library, query, *(const double *)arguments[1], *(const int64_t *)arguments[2],
-                                       *(const int64_t *)arguments[3], &plan);
+    const int64_t at[2] = {*(const int64_t *)arguments[2], *(const int64_t *)arguments[3]};
+    strew_code code = strew_plan_chunk(library, 2, query, *(const double *)arguments[1], at, &plan);
     fill(self, code, plan, result);
     free(query);
 }
@@ -101,7 +101,7 @@ static void chunk(native *self, const GDExtensionConstTypePtr *arguments, GDExte
 static void region(native *self, const GDExtensionConstTypePtr *arguments, GDExtensionTypePtr result) {
     char *query = utf8(arguments[0]);
     strew_plan *plan = NULL;
-    fill(self, strew_plan_query(library, query, &plan), plan, result);
+    fill(self, strew_plan_query(library, 2, query, &plan), plan, result);
     free(query);
 }
 
