@@ -9,20 +9,20 @@ use super::files;
 /// A part, the endings of its files, and the most lines that it may have.
 const CEILINGS: &[(&str, &[&str], usize)] = &[
     ("src", &["rs"], 21_589),
-    ("crates/catalog", &["rs"], 5028),
+    ("crates/catalog", &["rs"], 4968),
     ("crates/config", &["rs"], 1560),
-    ("crates/core", &["rs"], 48_483),
+    ("crates/core", &["rs"], 48_788),
     ("crates/encode", &["rs"], 8256),
     ("crates/error", &["rs"], 1073),
     ("crates/forge", &["rs"], 16_003),
     ("crates/pages", &["rs"], 439),
-    ("crates/plan", &["rs"], 4325),
+    ("crates/plan", &["rs"], 4328),
     ("crates/proto", &["rs"], 337),
-    ("crates/query", &["rs"], 8787),
+    ("crates/query", &["rs"], 8801),
     ("crates/raster", &["rs"], 2976),
     ("crates/service", &["rs"], 5975),
     ("crates/testkit", &["rs"], 1197),
-    ("tests", &["rs", "py"], 29_482),
+    ("tests", &["rs", "py"], 29_509),
     ("engines", &["rs", "py", "gd", "cs", "c"], 3894),
     ("fuzz", &["rs"], 747),
     ("benches", &["rs", "py"], 2949),
@@ -38,8 +38,8 @@ const CEILINGS: &[(&str, &[&str], usize)] = &[
 const MODULES: &[(&str, &str)] = &[
     (
         "crates/core/src",
-        "attribute 1350 distance 486 field 3664 kernel 3771 lattice 2537 map 1646 near 1506 pattern 1904 \
-         periodic 1240 plan 1020 set 780 settle 3304 shape 1808 space 5196 table 3411 walk 3680 warp 1462",
+        "attribute 1350 distance 486 field 3664 kernel 3771 lattice 2605 map 1646 near 1506 pattern 1904 \
+         periodic 1240 plan 1020 set 769 settle 3304 shape 1808 space 5161 table 3411 walk 3908 warp 1462",
     ),
     (
         "crates/forge/src",

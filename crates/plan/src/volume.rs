@@ -62,7 +62,9 @@ impl Planner<'_> {
             }
             (Ok(spacing), _) => {
                 let rows = effort::rows_of_volume(&points, &volume, test);
-                self.check_rows_in_space(rows + effort::lacking_in_space(set, &points, &volume))?;
+                self.check_rows_in_space(
+                    rows + effort::lacking_in_space(set, &points, &volume) / effort::ROW,
+                )?;
                 let plan = points.within_until(volume.clone(), self.stop.clone());
                 plan.map_err(|error| match error.kind() {
                     ErrorKind::Stopped => {

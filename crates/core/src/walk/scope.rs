@@ -1,14 +1,18 @@
 //! Scopes: the part of a lattice that a plan covers.
 
+use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::{missing::Missing, sieve::Sieve};
+use super::{
+    missing::Missing,
+    sieve::{LocalSieve, Sieve},
+};
 pub(crate) use crate::lattice::bounds::Corner;
 use crate::{
     error::{Error, ErrorKind},
     field::constant,
     lattice::{
-        BAND_WIDTH, LATTICE_LIMIT, Lattice, Span,
+        BAND_WIDTH, LATTICE_LIMIT, Lattice, PointId, Span,
         bounds::{Bounds, bounds, check_limit},
     },
     near::Mask,
@@ -124,7 +128,8 @@ impl Scope {
             corner,
             in_field: None,
         };
-        let missing = Missing::new(&scope);
+        let Self { x, y, sieve, .. } = &scope;
+        let missing = Self::missing(lattice, [x, y], sieve.as_ref(), &scope.stop);
         if !missing.is_empty() {
             let sieve = scope.sieve.take().unwrap_or_else(|| scope.box_sieve());
             scope.sieve = Some(sieve.without(missing));
@@ -142,6 +147,40 @@ impl Scope {
             y,
             ..self.clone()
         }
+    }
+
+    /// The points of a scope, given by its parts, that its lattice leaves out by their ids. Meaningless once its flag is
+    /// raised.
+    fn missing(
+        lattice: &Lattice,
+        [x, y]: [&Span; 2],
+        sieve: Option<&Sieve>,
+        stop: &Stop,
+    ) -> Missing {
+        if lattice.without.is_empty() {
+            return Missing::default();
+        }
+        let [start, end] = [x.all.start, x.all.end].map(|x| PointId { x, y: i64::MIN });
+        let near = lattice.without.within(start..end);
+        let all = Missing::in_order(near.filter(|id| y.all.contains(&id.y)).collect());
+        let mut found = Vec::new();
+        if lattice.settle().is_some() {
+            // Where they end does not matter: they are left out of counts of parts all of which is inside.
+            found = all;
+            found.retain(|id| {
+                let share = lattice.share_of(*id);
+                share.is_some_and(|share| lattice.is_of_level(*id, share))
+            });
+        } else {
+            let inside = Inside {
+                lattice,
+                spans: [x, y],
+                sieve: sieve.map(Sieve::local),
+                stop,
+            };
+            inside.keep(sieve.and_then(Sieve::area), &all, &mut found);
+        }
+        Missing::new(found)
     }
 
     /// A sieve that leaves all points of the box.
@@ -166,5 +205,50 @@ impl Scope {
     /// The lattice of the set.
     pub(crate) fn whole_lattice(&self) -> &Lattice {
         self.in_field.as_ref().unwrap_or(&self.lattice)
+    }
+}
+
+/// So many points are compared with a whole area; more are halved, and the area with them.
+const TOGETHER: usize = 16;
+
+/// What the points of a scope must satisfy beside its area.
+struct Inside<'a> {
+    lattice: &'a Lattice,
+    spans: [&'a Span; 2],
+    sieve: Option<LocalSieve>,
+    stop: &'a Stop,
+}
+
+impl Inside<'_> {
+    /// Adds those of some ids, which are in the scope's order, whose points lie inside.
+    fn keep(&self, area: Option<&Area>, ids: &[PointId], found: &mut Vec<PointId>) {
+        if self.stop.is_raised() || area.is_some_and(|area| area.is_all_or_nothing() == Some(false))
+        {
+            return;
+        }
+        let sieve = self.sieve.as_ref();
+        if ids.len() > TOGETHER {
+            for half in [&ids[..ids.len() / 2], &ids[ids.len() / 2..]] {
+                let near = sieve.zip(area).map(|(sieve, area)| {
+                    let [columns, rows] = [|id: &PointId| id.x, |id: &PointId| id.y].map(|v| {
+                        let all = || half.iter().map(v);
+                        all().min().unwrap_or(0)..all().max().unwrap_or(0) + 1
+                    });
+                    area.focus(&sieve.world([&columns, &rows]))
+                });
+                self.keep(near.as_ref(), half, found);
+            }
+            return;
+        }
+        let is_inside = |id: &&PointId| {
+            let Some(place) = self.lattice.place_of_any(**id) else {
+                return false;
+            };
+            let at = place.map(|k| self.lattice.world(k));
+            (0..2).all(|axis| self.spans[axis].bounds.contains(&place[axis]))
+                && area.is_none_or(|area| area.contains(at))
+                && sieve.is_none_or(|sieve| sieve.is_clear(at))
+        };
+        found.extend(ids.iter().filter(is_inside));
     }
 }

@@ -96,7 +96,7 @@ pub(crate) struct Run {
     /// Whether all of their points pass; otherwise each must be tested.
     pub(crate) passes: bool,
     /// The edges to compare them with, if not with the whole area.
-    pub(super) near: Option<Near>,
+    near: Option<Near>,
 }
 
 impl LocalSieve {
@@ -243,7 +243,8 @@ impl LocalSieve {
         }
         push(next..columns.end, false, near);
         if !self.missing.is_empty() {
-            self.missing.cut(&rows, columns, runs);
+            let missing = self.missing.columns(columns.start, &rows);
+            missing.into_iter().for_each(|x| cut(runs, x));
         }
     }
 
@@ -258,6 +259,23 @@ impl LocalSieve {
         let x = x * self.per_unit;
         at_or_above(x - self.reach[0][1] - room(x))
     }
+}
+
+/// Makes a column a run of its own, whose points are tested.
+fn cut(runs: &mut Vec<Run>, x: i64) {
+    let holds = |run: &Run| run.passes && run.columns.contains(&x);
+    let Some(place) = runs.iter().position(holds) else {
+        return;
+    };
+    let Range { start, end } = runs[place].columns;
+    let parts = [(start..x, true), (x..x + 1, false), (x + 1..end, true)];
+    let parts = parts.into_iter().filter(|(columns, _)| !columns.is_empty());
+    let parts = parts.map(|(columns, passes)| Run {
+        columns,
+        passes,
+        near: None,
+    });
+    runs.splice(place..=place, parts);
 }
 
 /// The first integer at or above `x`. Casts saturate.

@@ -10,7 +10,7 @@ mod point;
 mod volume;
 
 use strew_core::{
-    Alpha, Area, Placement, PointSet, Region, Spacing, Warp,
+    Area, Placement, PointSet, Region, Spacing, Warp,
     server::Stop,
     space::{SpaceSet, Volume},
 };
@@ -93,9 +93,9 @@ impl Selection {
             (false, true) => TESTED,
             (false, false) => 0.0,
         };
-        let unit = unit(points.placement().spacing, points.table().alpha());
+        let unit = points.placement().spacing.get() * points.table().alpha().set_side_f64();
         Self {
-            lacked: within.map_or(0.0, |within| lacking(set, unit, &within)),
+            lacked: within.map_or(0.0, |within| point::lacking(set, unit, &within) / ROW),
             set: points,
             area,
             by_point: made + test + varied,
@@ -284,27 +284,6 @@ fn rows(selection: &Selection) -> f64 {
         0.0
     };
     along + across + cleared + looks
-}
-
-/// The world units of a lattice unit.
-pub(super) fn unit(spacing: Spacing, alpha: Alpha) -> f64 {
-    spacing.get() * alpha.set_side_f64()
-}
-
-/// The rows that finding the points of a box takes that are left out by their ids.
-pub(super) fn lacking<const D: usize>(set: &Set, unit: f64, within: &Region<D>) -> f64 {
-    /// The nanoseconds of looking whether one lies inside.
-    const LACKED: f64 = 200.0;
-    /// The lattice units that points are moved, at most.
-    const MOVED: f64 = 64.0;
-    let Some(except) = &set.except else {
-        return 0.0;
-    };
-    let [start, end] = [
-        within.min()[0] / unit - MOVED,
-        within.max()[0] / unit + MOVED,
-    ];
-    except.within(&(start as i64..end as i64)) as f64 * LACKED / ROW
 }
 
 /// The rows that settling the points near an outline takes: some thirty places for each local spacing of it, but no

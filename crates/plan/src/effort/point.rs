@@ -50,3 +50,20 @@ pub fn point(set: &Set, looks: f64, test: f64, within: Region) -> f64 {
     let values = set.attributes.as_slice().len() as f64;
     POINT + VALUE * values + passed + varied + ground + test * looks.min(TESTED)
 }
+
+/// The nanoseconds to find the points of a box that are left out by their ids, at a number of world units for each of the
+/// lattice.
+pub fn lacking<const D: usize>(set: &Set, unit: f64, within: &Region<D>) -> f64 {
+    /// Those of looking whether one lies inside.
+    const LACKED: f64 = 200.0;
+    /// The lattice units that points are moved, at most.
+    const MOVED: f64 = 64.0;
+    let Some(except) = &set.except else {
+        return 0.0;
+    };
+    let [start, end] = [
+        within.min()[0] / unit - MOVED,
+        within.max()[0] / unit + MOVED,
+    ];
+    except.within(&(start as i64..end as i64)) as f64 * LACKED
+}

@@ -11,9 +11,8 @@ use strew_encode::Source;
 use strew_query::{Query, Set};
 
 use super::{
-    ROW,
     layers::look,
-    point::{LOOKED_AT, counts},
+    point::{self, LOOKED_AT, counts},
 };
 use crate::resolve::{Resolved, in_space as placed};
 
@@ -218,7 +217,7 @@ pub(super) fn counting(query: &Query) -> f64 {
             let placement = points.placement();
             let test = test(&chains, set, points, (&volume, query.region.bounds));
             let counted =
-                counting_set(points, &volume, test) * counts + lacking(set, points, &volume) * ROW;
+                counting_set(points, &volume, test) * counts + lacking(set, points, &volume);
             let is_sought = window.offset > 0;
             let sought = is_sought.then(|| {
                 seeking(
@@ -275,10 +274,10 @@ pub fn test(
     field + chains.test(points, &set.clear_of, volume)
 }
 
-/// The rows that finding the points inside takes that are left out by their ids.
+/// The nanoseconds to find the points inside that are left out by their ids.
 pub fn lacking(set: &Set, points: &SpaceSet, volume: &Volume) -> f64 {
-    let unit = super::unit(points.placement().spacing, points.table().map().alpha());
-    (volume.bounds()).map_or(0.0, |within| super::lacking(set, unit, &within))
+    let unit = points.placement().spacing.get() * points.table().map().alpha().set_side_f64();
+    (volume.bounds()).map_or(0.0, |within| point::lacking(set, unit, &within))
 }
 
 /// The points that counting a set in a field looks at.
