@@ -78,7 +78,7 @@ fn an_interrupt_keeps_a_checkpoint() {
     assert!(text.contains("the same command resumes from"), "{text}");
     assert!(kept.exists() && !folder.join("t.strew").exists());
     // A damaged checkpoint is refused with a message; --restart ignores it.
-    fs::write(&kept, "strewck2 and no more").expect("writable");
+    fs::write(&kept, "strewck3 and no more").expect("writable");
     let refused = run(folder, &["--steps", "2"]);
     assert_eq!(refused.status.code(), Some(2));
     assert!(errors(&refused).contains("damaged"), "{}", errors(&refused));
