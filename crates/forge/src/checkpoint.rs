@@ -44,7 +44,7 @@ pub struct State<const D: usize> {
     pub steps: u32,
     /// A vector for each block, in mean spacings: the best so far, or the last.
     pub moves: Vec<[f64; D]>,
-    /// What the phase has beside them: numbers, and lists of vectors that are empty or as long.
+    /// The phase's own numbers, and lists of vectors, each empty or as long as the moves.
     pub(crate) numbers: [f64; 4],
     pub(crate) lists: [Vec<[f64; D]>; 3],
 }

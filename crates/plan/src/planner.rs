@@ -89,9 +89,9 @@ impl<'a> Planner<'a> {
         let plan = match (known, here) {
             (Ok(spacing), _) if is_over || here.is_some() => {
                 let cursor = here.map_or_else(nothing, |token| token.mark.in_plane());
-                let plan = selection.set.resume(selection.area.clone(), cursor);
+                let seen = if is_over { &layer } else { &selection.set };
+                let plan = seen.resume_until(selection.area.clone(), cursor, self.stop.clone());
                 let plan = plan.map_err(|error| region.too_far(spacing, &error))?;
-                let plan = plan.stopped_by(self.stop.clone());
                 match set.amount {
                     // The spacing may give a few points more.
                     Amount::Count(count) => {

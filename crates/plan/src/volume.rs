@@ -50,7 +50,8 @@ impl Planner<'_> {
         let mark = here.map_or(NOTHING, |token| token.mark).in_space();
         let plan = match (known, here) {
             (Ok(spacing), _) if is_over || here.is_some() => {
-                let plan = points.resume(volume.clone(), mark);
+                let seen = if is_over { &layer } else { &points };
+                let plan = seen.resume_until(volume.clone(), mark, self.stop.clone());
                 let plan = plan.map_err(|error| region.too_far(spacing, &error))?;
                 match set.amount {
                     // The spacing may give a few points more.

@@ -39,7 +39,20 @@ macro_rules! requested {
             /// # Errors
             /// As [`within`](Self::within).
             pub fn resume(&self, area: impl Into<$Area>, cursor: $Cursor) -> Result<Plan, Error> {
-                let (area, stop) = (area.into(), Stop::default());
+                self.resume_until(area, cursor, Stop::default())
+            }
+
+            /// [`resume`](Self::resume) of a plan that a flag stops.
+            ///
+            /// # Errors
+            /// As [`resume`](Self::resume), and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+            pub fn resume_until(
+                &self,
+                area: impl Into<$Area>,
+                cursor: $Cursor,
+                stop: Stop,
+            ) -> Result<Plan, Error> {
+                let area = area.into();
                 let plan = Plan::new(&self.lattice, &self.mask, area, stop, Some(cursor.total))?;
                 Ok(plan.from_cursor(cursor))
             }

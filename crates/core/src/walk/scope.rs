@@ -128,8 +128,7 @@ impl Scope {
             corner,
             in_field: None,
         };
-        let Self { x, y, sieve, .. } = &scope;
-        let missing = Self::missing(lattice, [x, y], sieve.as_ref(), &scope.stop);
+        let missing = scope.find_missing();
         if !missing.is_empty() {
             let sieve = scope.sieve.take().unwrap_or_else(|| scope.box_sieve());
             scope.sieve = Some(sieve.without(missing));
@@ -149,14 +148,9 @@ impl Scope {
         }
     }
 
-    /// The points of a scope, given by its parts, that its lattice leaves out by their ids. Meaningless once its flag is
-    /// raised.
-    fn missing(
-        lattice: &Lattice,
-        [x, y]: [&Span; 2],
-        sieve: Option<&Sieve>,
-        stop: &Stop,
-    ) -> Missing {
+    /// The points that the lattice leaves out by their ids. Meaningless once the flag is raised.
+    fn find_missing(&self) -> Missing {
+        let Self { lattice, x, y, .. } = self;
         if lattice.without.is_empty() {
             return Missing::default();
         }
@@ -168,19 +162,54 @@ impl Scope {
             // Where they end does not matter: they are left out of counts of parts all of which is inside.
             found = all;
             found.retain(|id| {
-                let share = lattice.share_of(*id);
+                let share = lattice.share_of(*id).filter(|_| !self.stop.is_raised());
                 share.is_some_and(|share| lattice.is_of_level(*id, share))
             });
         } else {
-            let inside = Inside {
-                lattice,
-                spans: [x, y],
-                sieve: sieve.map(Sieve::local),
-                stop,
-            };
-            inside.keep(sieve.and_then(Sieve::area), &all, &mut found);
+            let sieve = self.sieve.as_ref();
+            let local = sieve.map(Sieve::local);
+            let area = sieve.and_then(Sieve::area);
+            self.keep_inside((local.as_ref(), area), &all, &mut found);
         }
         Missing::new(found)
+    }
+
+    /// Adds those of some ids, in order, whose points lie inside: the sieve's, and in what of its area matters to them.
+    fn keep_inside(
+        &self,
+        (sieve, area): (Option<&LocalSieve>, Option<&Area>),
+        ids: &[PointId],
+        found: &mut Vec<PointId>,
+    ) {
+        /// So many are compared with the whole area. Where there are more, they are halved, and so is the area.
+        const TOGETHER: usize = 16;
+        if self.stop.is_raised() || area.and_then(Area::is_all_or_nothing) == Some(false) {
+            return;
+        }
+        if ids.len() > TOGETHER {
+            for half in [&ids[..ids.len() / 2], &ids[ids.len() / 2..]] {
+                let near = sieve.zip(area).map(|(sieve, area)| {
+                    let [columns, rows] = [|id: &PointId| id.x, |id: &PointId| id.y].map(|v| {
+                        let all = || half.iter().map(v);
+                        all().min().unwrap_or(0)..all().max().unwrap_or(0) + 1
+                    });
+                    area.focus(&sieve.world([&columns, &rows]))
+                });
+                self.keep_inside((sieve, near.as_ref()), half, found);
+            }
+            return;
+        }
+        let is_inside = |id: &&PointId| {
+            let Some([x, y]) = self.lattice.place_of_any(**id) else {
+                return false;
+            };
+            let at = [x, y].map(|k| self.lattice.world(k));
+            self.x.bounds.contains(&x)
+                && self.y.bounds.contains(&y)
+                && area.is_none_or(|area| area.contains(at))
+                && sieve.is_none_or(|sieve| sieve.is_clear(at))
+        };
+        found.extend(ids.iter().filter(is_inside));
     }
 
     /// A sieve that leaves all points of the box.
@@ -205,50 +234,5 @@ impl Scope {
     /// The lattice of the set.
     pub(crate) fn whole_lattice(&self) -> &Lattice {
         self.in_field.as_ref().unwrap_or(&self.lattice)
-    }
-}
-
-/// So many points are compared with a whole area; more are halved, and the area with them.
-const TOGETHER: usize = 16;
-
-/// What the points of a scope must satisfy beside its area.
-struct Inside<'a> {
-    lattice: &'a Lattice,
-    spans: [&'a Span; 2],
-    sieve: Option<LocalSieve>,
-    stop: &'a Stop,
-}
-
-impl Inside<'_> {
-    /// Adds those of some ids, which are in the scope's order, whose points lie inside.
-    fn keep(&self, area: Option<&Area>, ids: &[PointId], found: &mut Vec<PointId>) {
-        if self.stop.is_raised() || area.is_some_and(|area| area.is_all_or_nothing() == Some(false))
-        {
-            return;
-        }
-        let sieve = self.sieve.as_ref();
-        if ids.len() > TOGETHER {
-            for half in [&ids[..ids.len() / 2], &ids[ids.len() / 2..]] {
-                let near = sieve.zip(area).map(|(sieve, area)| {
-                    let [columns, rows] = [|id: &PointId| id.x, |id: &PointId| id.y].map(|v| {
-                        let all = || half.iter().map(v);
-                        all().min().unwrap_or(0)..all().max().unwrap_or(0) + 1
-                    });
-                    area.focus(&sieve.world([&columns, &rows]))
-                });
-                self.keep(near.as_ref(), half, found);
-            }
-            return;
-        }
-        let is_inside = |id: &&PointId| {
-            let Some(place) = self.lattice.place_of_any(**id) else {
-                return false;
-            };
-            let at = place.map(|k| self.lattice.world(k));
-            (0..2).all(|axis| self.spans[axis].bounds.contains(&place[axis]))
-                && area.is_none_or(|area| area.contains(at))
-                && sieve.is_none_or(|sieve| sieve.is_clear(at))
-        };
-        found.extend(ids.iter().filter(is_inside));
     }
 }

@@ -22,8 +22,8 @@ const HALF: f64 = WIDTH as f64 / 2.0;
 const SHARPNESS: f64 = 2.30 * WIDTH as f64;
 
 /// The Fourier sums Σ w·exp(−2πi k·x) of a sample for all k with components up to `modes` of which the first is not negative,
-/// ascending, each mapped by `each`. The side of the sample is 1; without weights w = 1.
-pub(super) fn sums<const D: usize, T: Send>(
+/// ascending, each mapped by `each`. Those of k and −k are conjugate: k > 0 is one of both. The side of the sample is 1; without weights w = 1.
+pub(crate) fn sums<const D: usize, T: Send>(
     set: &Sample<D>,
     weights: Option<&[f64]>,
     modes: usize,
@@ -50,19 +50,6 @@ pub(super) fn sums<const D: usize, T: Send>(
     let columns = (0..grid.columns).into_par_iter();
     let all: Vec<Vec<T>> = columns.map_init(|| grid.scratch(), of_column).collect();
     all.into_iter().flatten().collect()
-}
-
-/// The [`sums`] of one of k and −k each, which have conjugate sums, without 0.
-pub(crate) fn waves<const D: usize, T: Send>(
-    set: &Sample<D>,
-    weights: Option<&[f64]>,
-    modes: usize,
-    each: impl Fn([i64; D], Complex<f64>) -> Option<T> + Sync,
-) -> Vec<T> {
-    let is_one = |k: &[i64; D]| *k > [0; D];
-    sums(set, weights, modes, |k, sum| {
-        is_one(&k).then(|| each(k, sum)).flatten()
-    })
 }
 
 /// A grid that points are spread onto.
@@ -312,7 +299,7 @@ mod tests {
         let set = Sample::torus(1.0, SplitMix::new(4).places::<3>(500, 1.0));
         let with = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let sums = || waves(&set, None, 6, |_, sum| Some(sum));
+            let sums = || sums(&set, None, 6, |_, sum| Some(sum));
             pool.expect("threads").install(sums)
         };
         assert_eq!(with(1), with(3));

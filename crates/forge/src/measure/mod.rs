@@ -21,7 +21,7 @@ mod voronoi;
 pub use crate::twins::{ThinnedTwin, twin_set};
 pub(crate) use distance::HEXAGONAL;
 pub use distance::{Distances, Rdf};
-pub(crate) use fourier::{of_grid, waves};
+pub(crate) use fourier::{of_grid, sums};
 pub use pair::Shared;
 pub use recurrence::recurrence;
 pub use set::{Sample, square_set, window_set};

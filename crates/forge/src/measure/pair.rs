@@ -8,7 +8,7 @@ use rustfft::num_complex::Complex;
 
 use super::{
     Sample,
-    fourier::{of_grid, size_from, waves},
+    fourier::{of_grid, size_from, sums},
 };
 
 /// The structure that two windows have in common.
@@ -45,8 +45,8 @@ impl Shared {
         let size = |k: [i64; D]| (k.iter().map(|k| k * k).sum::<i64>() as f64).sqrt();
         let sizes = LOW_END * side..nu_max * side;
         let [first, second] = [a, b].map(|set| {
-            waves(set, None, modes, |k, sum| {
-                sizes.contains(&size(k)).then_some((k, sum))
+            sums(set, None, modes, |k, sum| {
+                (k > [0; D] && sizes.contains(&size(k))).then_some((k, sum))
             })
         });
         let both = first.into_iter().zip(second);

@@ -27,11 +27,8 @@ pub struct Voronoi {
 /// The width, in mean spacings, of the margin of a window that does not count. Cells farther inside are whole unless there
 /// is a hole of half this radius.
 const MARGIN: f64 = 6.0;
-/// Half the side of the square that cells are cut from, in mean spacings. No cell is nearly as
-/// large.
-const HALF_SIDE: f64 = 4.0;
-/// Points per parallel task.
-const CHUNK: usize = 256;
+/// Half the sides of the squares that cells are cut from, in mean spacings: the next one where the cell reaches an edge.
+const HALF_SIDES: [f64; 4] = [4.0, 8.0, 16.0, 32.0];
 
 impl Voronoi {
     /// Measures a set; of a window its points at least 6 mean spacings from the edge. All figures are 0 without points. If
@@ -73,25 +70,20 @@ impl Voronoi {
     }
 }
 
-/// What `of` makes of the cell of each point of a set, in a window of those at least `margin` from its edge, with the number
-/// of the point.
+/// Cuts the cell of each point, in a window of those at least `margin` from its edge. Returns the numbers of the points and
+/// the results of `of`.
 pub(crate) fn cells<T: Send>(
     set: &Sample,
     margin: f64,
     of: impl Fn(&Polygon) -> T + Sync,
 ) -> Vec<(u32, T)> {
     let list = CellList::of(set, 1.0);
-    let of_chunk = |chunk: &[(u32, [f64; 2])]| -> Vec<(u32, T)> {
-        let mut cell = Polygon::default();
-        let counted = chunk.iter().filter(|(_, p)| set.is_inner(margin, p));
-        let cut = counted.map(|&(index, p)| {
-            cell.begin(&list, index, p);
-            (index, of(&cell))
-        });
-        cut.collect()
-    };
-    let all: Vec<Vec<(u32, T)>> = list.members.par_chunks(CHUNK).map(of_chunk).collect();
-    all.into_iter().flatten().collect()
+    let inner = (list.members.par_iter()).filter(|(_, p)| set.is_inner(margin, p));
+    let cells = inner.map_init(Polygon::default, |cell, &(index, p)| {
+        cell.begin(&list, index, p);
+        (index, of(cell))
+    });
+    cells.collect()
 }
 
 /// The cell of a point, relative to it.
@@ -110,11 +102,21 @@ pub(crate) struct Polygon {
 impl Polygon {
     /// Cuts the cell of the point `p`, which has the index `own`.
     fn begin(&mut self, list: &CellList, own: u32, p: [f64; 2]) {
-        let corner = |[x, y]: [f64; 2]| [[x * HALF_SIDE, y * HALF_SIDE], [0.0; 2]];
-        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-        self.corners.clear();
-        self.corners.extend(corners.map(corner));
-        (self.reach, self.is_shared) = (2.0 * HALF_SIDE * HALF_SIDE, false);
+        for half in HALF_SIDES {
+            let corners = [[-half, -half], [half, -half], [half, half], [-half, half]];
+            self.corners.clear();
+            self.corners
+                .extend(corners.map(|corner| [corner, [0.0; 2]]));
+            (self.reach, self.is_shared) = (2.0 * half * half, false);
+            self.cut_by(list, own, p);
+            if self.corners.iter().all(|[_, beyond]| *beyond != [0.0; 2]) {
+                break;
+            }
+        }
+    }
+
+    /// Cuts off what is nearer to other points.
+    fn cut_by(&mut self, list: &CellList, own: u32, p: [f64; 2]) {
         for ring in 0.. {
             // Bisectors to points in this ring are at least this far away.
             let far = 0.5 * f64::from((ring - 1).max(0)) * list.width();
@@ -197,6 +199,14 @@ mod tests {
         // The empty circle reaches the six neighbors, each of which gains a sixth of the cell.
         assert!((holed.largest_hole - 1.0).abs() < 1e-3, "{holed:?}");
         assert!((holed.area_deviation - 1.0 / 6.0).abs() < 1e-3, "{holed:?}");
+        // Wider holes, too: within half a spacing of the circle that was emptied.
+        let mut points = hexagonal(97, 112).points().to_vec();
+        points.retain(|p| (p[0] - 52.0).hypot(p[1] - 52.0) > 10.0);
+        let wide = Voronoi::of(&Sample::torus(f64::sqrt(97.0 * 112.0), points));
+        assert!(
+            (wide.largest_hole * HEXAGONAL - 10.0).abs() < 1.0,
+            "{wide:?}"
+        );
     }
 
     #[test]

@@ -108,7 +108,7 @@ pub(super) const LLOYD: Profile = Profile {
     ],
 };
 
-/// What suits most curves.
+/// Values that suit most curves.
 const FOLLOWING: Following = Following {
     curve: "",
     weights: WEIGHTS,

@@ -7,7 +7,7 @@ use strew_core::{
 };
 
 use crate::{
-    measure::{Ring, Sample, Summary, rings_of, waves},
+    measure::{Ring, Sample, Summary, rings_of, sums},
     numeric::SplitMix,
 };
 
@@ -28,10 +28,10 @@ const SHELL: f64 = 0.04;
 /// with a component of more than `least`.
 fn powers(set: &Sample<3>, weights: Option<&[f64]>, total: f64, least: i64) -> Vec<(f64, f64)> {
     let modes = (HIGHEST * set.side()).ceil() as usize;
-    waves(set, weights, modes, |k, sum| {
+    sums(set, weights, modes, |k, sum| {
         let squared: i64 = k.iter().map(|k| k * k).sum();
         let frequency = (squared as f64).sqrt() / set.side();
-        let is_wanted = frequency < HIGHEST && k.iter().any(|k| k.abs() > least);
+        let is_wanted = k > [0; 3] && frequency < HIGHEST && k.iter().any(|k| k.abs() > least);
         is_wanted.then(|| (frequency, sum.norm_sqr() / total.max(f64::MIN_POSITIVE)))
     })
 }

@@ -51,8 +51,7 @@ pub fn point(set: &Set, looks: f64, test: f64, within: Region) -> f64 {
     POINT + VALUE * values + passed + varied + ground + test * looks.min(TESTED)
 }
 
-/// The nanoseconds to find the points of a box that are left out by their ids, at a number of world units for each of the
-/// lattice.
+/// The nanoseconds to find what is left out of a box by its id, where a lattice unit is `unit` world units.
 pub fn lacking<const D: usize>(set: &Set, unit: f64, within: &Region<D>) -> f64 {
     /// Those of looking whether one lies inside.
     const LACKED: f64 = 200.0;
